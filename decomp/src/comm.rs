@@ -1,0 +1,99 @@
+//! Messages between ranks: the trait, the form for one rank, and MPI.
+
+#[cfg(feature = "mpi")]
+pub mod mpi;
+
+/// What the ranks of a run say to each other. Calls marked "collective" must be made by all
+/// ranks in the same order. A rank that waits in vain ends the run with a message: there is
+/// nothing that its caller could do.
+pub trait Comm {
+    /// This rank, from 0.
+    fn rank(&self) -> usize;
+
+    /// Number of ranks.
+    fn size(&self) -> usize;
+
+    /// Sends each `(rank, words)` and receives one message from each rank of `from` (in that
+    /// order) into `received`. Every send must be met by a receive on the other side.
+    fn exchange(
+        &self,
+        sends: &[(usize, &[u64])],
+        from: &[usize],
+        received: &mut Vec<Vec<u64>>,
+    );
+
+    /// Least of each value over the ranks. Collective.
+    fn min(&self, values: &mut [f64]);
+
+    /// Sum of each value over the ranks, exact. Collective.
+    fn sum(&self, values: &mut [i64]);
+
+    /// Every rank's words at rank 0, by rank; nothing elsewhere. Collective.
+    fn gather(&self, words: &[u64]) -> Vec<Vec<u64>> {
+        let mut all = Vec::new();
+        if self.rank() == 0 {
+            let from: Vec<usize> = (1..self.size()).collect();
+            self.exchange(&[], &from, &mut all);
+            all.insert(0, words.to_vec());
+        } else {
+            self.exchange(&[(0, words)], &[], &mut all);
+        }
+        all
+    }
+
+    /// Rank 0's bytes on every rank. Collective.
+    fn broadcast(&self, bytes: Vec<u8>) -> Vec<u8> {
+        let mut received = Vec::new();
+        if self.rank() == 0 {
+            let mut words = vec![bytes.len() as u64];
+            words.extend(bytes.chunks(8).map(|c| {
+                let mut word = [0; 8];
+                word[..c.len()].copy_from_slice(c);
+                u64::from_le_bytes(word)
+            }));
+            let sends: Vec<(usize, &[u64])> = (1..self.size()).map(|r| (r, &words[..])).collect();
+            self.exchange(&sends, &[], &mut received);
+            return bytes;
+        }
+        self.exchange(&[], &[0], &mut received);
+        let (length, words) = received[0].split_first().expect("a broadcast has its length");
+        let mut out: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
+        out.truncate(*length as usize);
+        out
+    }
+
+    /// Ends all ranks with `code`, from this one alone.
+    fn abort(&self, code: i32) -> !;
+}
+
+/// One rank, no messages.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Serial;
+
+impl Comm for Serial {
+    fn rank(&self) -> usize {
+        0
+    }
+
+    fn size(&self) -> usize {
+        1
+    }
+
+    fn exchange(
+        &self,
+        sends: &[(usize, &[u64])],
+        from: &[usize],
+        received: &mut Vec<Vec<u64>>,
+    ) {
+        debug_assert!(sends.is_empty() && from.is_empty(), "one rank has nobody to talk to");
+        received.clear();
+    }
+
+    fn min(&self, _values: &mut [f64]) {}
+
+    fn sum(&self, _values: &mut [i64]) {}
+
+    fn abort(&self, code: i32) -> ! {
+        std::process::exit(code)
+    }
+}

@@ -1,0 +1,127 @@
+//! An n-dimensional range of indices, the one place with index arithmetic.
+
+/// The indices `lower <= i < upper` in each of `D` directions; the first direction runs fastest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct IndexBox<const D: usize> {
+    /// First index in each direction.
+    pub lower: [i64; D],
+    /// One past the last index in each direction.
+    pub upper: [i64; D],
+}
+
+impl<const D: usize> IndexBox<D> {
+    /// The box from `lower` up to, not including, `upper`.
+    pub fn new(lower: [i64; D], upper: [i64; D]) -> Self {
+        IndexBox { lower, upper }
+    }
+
+    /// Number of indices along `axis`; 0 if there is none.
+    pub fn extent(&self, axis: usize) -> usize {
+        (self.upper[axis] - self.lower[axis]).max(0) as usize
+    }
+
+    /// Number of indices in all.
+    pub fn count(&self) -> usize {
+        (0..D).map(|a| self.extent(a)).product()
+    }
+
+    /// Whether no index is inside.
+    pub fn is_empty(&self) -> bool {
+        (0..D).any(|a| self.upper[a] <= self.lower[a])
+    }
+
+    /// Whether `index` is inside.
+    pub fn contains(&self, index: [i64; D]) -> bool {
+        (0..D).all(|a| self.lower[a] <= index[a] && index[a] < self.upper[a])
+    }
+
+    /// The indices that both boxes hold; possibly empty.
+    pub fn intersect(&self, other: &Self) -> Self {
+        IndexBox {
+            lower: std::array::from_fn(|a| self.lower[a].max(other.lower[a])),
+            upper: std::array::from_fn(|a| self.upper[a].min(other.upper[a])),
+        }
+    }
+
+    /// Grown by `depth` at every side.
+    pub fn grow(&self, depth: i64) -> Self {
+        IndexBox { lower: self.lower.map(|l| l - depth), upper: self.upper.map(|u| u + depth) }
+    }
+
+    /// Cut into `parts` boxes along each direction, as even as whole indices allow; the first
+    /// direction runs fastest in the list.
+    pub fn tile(&self, parts: [usize; D]) -> Vec<Self> {
+        let all = IndexBox::new([0; D], parts.map(|p| p as i64));
+        let cut = |axis: usize, k: i64| {
+            self.lower[axis] + k * self.extent(axis) as i64 / parts[axis] as i64
+        };
+        all.iter()
+            .map(|k| IndexBox {
+                lower: std::array::from_fn(|a| cut(a, k[a])),
+                upper: std::array::from_fn(|a| cut(a, k[a] + 1)),
+            })
+            .collect()
+    }
+
+    /// Place of `index` in an array over this box. `index` must be inside.
+    pub fn flat(&self, index: [i64; D]) -> usize {
+        debug_assert!(self.contains(index), "{index:?} is not in {self:?}");
+        let mut at = 0;
+        for a in (0..D).rev() {
+            at = at * self.extent(a) + (index[a] - self.lower[a]) as usize;
+        }
+        at
+    }
+
+    /// All indices in the order of an array over this box.
+    pub fn iter(&self) -> impl Iterator<Item = [i64; D]> + use<D> {
+        let b = *self;
+        (0..b.count()).map(move |mut k| {
+            std::array::from_fn(|a| {
+                let n = b.extent(a);
+                let i = b.lower[a] + (k % n) as i64;
+                k /= n;
+                i
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn boxes() -> impl Strategy<Value = IndexBox<2>> {
+        ((-9i64..9, -9i64..9), (0i64..12, 0i64..12))
+            .prop_map(|((x, y), (w, h))| IndexBox::new([x, y], [x + w, y + h]))
+    }
+
+    proptest! {
+        #[test]
+        fn intersection_holds_what_both_hold(a in boxes(), b in boxes()) {
+            let both = a.intersect(&b);
+            for i in a.grow(1).iter() {
+                prop_assert_eq!(both.contains(i), a.contains(i) && b.contains(i));
+            }
+        }
+
+        #[test]
+        fn tiles_hold_each_index_once(a in boxes(), p in 1usize..5, q in 1usize..5) {
+            let tiles = a.tile([p, q]);
+            prop_assert_eq!(tiles.len(), p * q);
+            for i in a.grow(1).iter() {
+                let holders = tiles.iter().filter(|t| t.contains(i)).count();
+                prop_assert_eq!(holders, usize::from(a.contains(i)));
+            }
+        }
+
+        #[test]
+        fn flat_is_the_place_in_iteration(a in boxes()) {
+            for (k, i) in a.iter().enumerate() {
+                prop_assert_eq!(a.flat(i), k);
+            }
+            prop_assert_eq!(a.iter().count(), a.count());
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! Patches and messages for particle-grid methods.
+//!
+//! The domain is a box of cells, cut into patches; patches are dealt to ranks. A patch owns the
+//! particles in its cells and the nodes at their lower corners. What it needs beyond those comes
+//! in two ways, both the same between two patches of one rank and between ranks:
+//!
+//! - [`RowExchange`] gives each patch copies ("ghosts") of the particle rows that reach its
+//!   nodes, and hands over ("migrates") rows that have moved into another patch, in one message
+//!   a neighbouring rank.
+//! - [`NodeExchange`] gives each patch finished values of nodes that other patches own.
+//!
+//! Rows stand in canonical order, by global cell and then by id, so every patch that sums
+//! particle terms into a node adds the same terms in the same order: any layout and any number of
+//! ranks or threads gives the same bits.
+//!
+//! This crate knows no physics: a row is an id, a cell and some declared columns of `f64`.
+//! It does not interpolate, integrate, write files, or choose when anything is exchanged.
+
+mod balance;
+pub mod comm;
+mod index_box;
+mod layout;
+mod nodes;
+mod reduce;
+mod rows;
+mod table;
+
+pub use balance::{assign_patches, choose_cuts};
+pub use comm::{Comm, Serial};
+pub use index_box::IndexBox;
+pub use layout::{Image, Layout, Side};
+pub use nodes::{NodeArrays, NodeExchange, Parity};
+pub use reduce::{ExactSum, exact_sums};
+pub use rows::{RowError, RowExchange, gather_rows};
+pub use table::{Block, ColumnSpec, Mirror};

@@ -1,0 +1,96 @@
+//! Sums that come out the same in any order.
+
+use crate::Comm;
+
+/// Bits below the largest term that a sum keeps: with 2^40 terms it stays within an `i128`.
+const KEPT: i32 = 80;
+
+/// A set of sums over all ranks that do not depend on the order of their terms.
+///
+/// Each term is rounded to a whole multiple of 2^-80 of the largest, and the multiples are added
+/// as integers, which is exact (pre-rounding to a common quantum: Demmel & Nguyen 2013, "Fast
+/// reproducible floating-point summation"; integers instead of bins). The error is at most
+/// 2^-81 of the largest term for each term.
+#[derive(Clone, Debug)]
+pub struct ExactSum {
+    quantum: f64,
+    inverse: f64,
+    total: i128,
+}
+
+impl ExactSum {
+    /// A sum whose terms are no larger than `largest` in magnitude. All parts of one sum must be
+    /// given the same `largest`.
+    pub fn new(largest: f64) -> Self {
+        let exponent = if largest > 0.0 { largest.log2().ceil() as i32 + 1 } else { 0 };
+        // a quantum too small for a double loses nothing that a double could show
+        let scale = (exponent - KEPT).max(-1000);
+        ExactSum { quantum: 2f64.powi(scale), inverse: 2f64.powi(-scale), total: 0 }
+    }
+
+    /// Adds a term.
+    pub fn add(&mut self, term: f64) {
+        self.total += (term * self.inverse).round_ties_even() as i128;
+    }
+
+    /// The sum so far.
+    pub fn value(&self) -> f64 {
+        self.total as f64 * self.quantum
+    }
+}
+
+/// Sums of several quantities over the terms of all ranks, to the same bits for any way of
+/// dealing terms to ranks. `terms` calls its argument for each term with the quantity's number;
+/// it is run twice. Collective.
+pub fn exact_sums<C: Comm + ?Sized, const N: usize>(
+    comm: &C,
+    terms: impl Fn(&mut dyn FnMut(usize, f64)),
+) -> [f64; N] {
+    let mut largest = [0.0f64; N];
+    terms(&mut |k, term| largest[k] = largest[k].max(term.abs()));
+    largest = largest.map(|l| -l);
+    comm.min(&mut largest);
+    let mut sums = largest.map(|l| ExactSum::new(-l));
+    terms(&mut |k, term| sums[k].add(term));
+    // limbs of 32 bits leave room for 2^31 ranks
+    let mut limbs: Vec<i64> = sums
+        .iter()
+        .flat_map(|s| {
+            let t = s.total;
+            [t as u32 as i64, (t >> 32) as u32 as i64, (t >> 64) as u32 as i64, (t >> 96) as i64]
+        })
+        .collect();
+    comm.sum(&mut limbs);
+    for (sum, limb) in sums.iter_mut().zip(limbs.chunks(4)) {
+        sum.total = limb.iter().rev().fold(0, |high, &l| (high << 32) + l as i128);
+    }
+    sums.map(|s| s.value())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Serial;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn order_does_not_matter(mut terms in prop::collection::vec(-1e20f64..1e20, 1..60)) {
+            let sum = |t: &[f64]| exact_sums::<_, 1>(&Serial, |add| t.iter().for_each(|&x| add(0, x)))[0];
+            let forward = sum(&terms);
+            terms.reverse();
+            prop_assert_eq!(forward.to_bits(), sum(&terms).to_bits());
+            terms.sort_by(f64::total_cmp);
+            prop_assert_eq!(forward.to_bits(), sum(&terms).to_bits());
+        }
+    }
+
+    #[test]
+    fn cancellation_is_exact() {
+        let terms = [1e10, 1.0, -1e10, 3e-9];
+        let [sum] = exact_sums(&Serial, |add| terms.iter().for_each(|&x| add(0, x)));
+        assert!((sum - (1.0 + 3e-9)).abs() < 1e-13);
+        let [tiny, none] = exact_sums(&Serial, |add| add(0, 5e-200));
+        assert_eq!((tiny, none), (5e-200, 0.0));
+    }
+}
