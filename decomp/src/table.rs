@@ -120,7 +120,7 @@ impl<const D: usize> Block<D> {
     }
 
     /// Keeps the own rows for which `keep` says so. There must be no ghosts.
-    pub(crate) fn retain(&mut self, keep: &[bool]) {
+    pub fn retain(&mut self, keep: &[bool]) {
         debug_assert_eq!(self.rows(), self.own);
         let mut at = 0;
         self.ids.retain(|_| { at += 1; keep[at - 1] });

@@ -1,0 +1,242 @@
+//! What a material does to rows of particles: called once a run of rows of one body, the loop
+//! inside knows its equation of state.
+//!
+//! Knows no grid, no messages, no dimension.
+
+use crate::material::{EquationOfState, IdealGas, Linear, MieGruneisen};
+use crate::scene::{Eos, Material};
+
+/// Rows at the middle of a step; see [`Model::mid_step`].
+pub struct MidStep<'a> {
+    /// Mass [kg].
+    pub mass: &'a [f64],
+    /// Volume at J = 1 [m3].
+    pub volume0: &'a [f64],
+    /// J at the start of the step.
+    pub jacobian: &'a [f64],
+    /// J at the middle of the step.
+    pub jacobian_mid: &'a [f64],
+    /// Specific internal energy at the start of the step [J/kg].
+    pub energy: &'a [f64],
+    /// Artificial viscosity [Pa], if there is any.
+    pub q: Option<&'a [f64]>,
+    /// Set to (p + q) V [J].
+    pub stress_volume: &'a mut [f64],
+    /// Set to p [Pa] and to -dV/dp along the isentrope [m3/Pa], if wanted.
+    pub compliance: Option<(&'a mut [f64], &'a mut [f64])>,
+}
+
+/// Rows after a change of volume; see [`Model::change_volume`].
+pub struct VolumeChange<'a> {
+    /// Mass [kg].
+    pub mass: &'a [f64],
+    /// Volume at J = 1 [m3].
+    pub volume0: &'a [f64],
+    /// J before.
+    pub before: &'a [f64],
+    /// J after.
+    pub after: &'a [f64],
+    /// Artificial viscosity during the change [Pa], if there is any.
+    pub q: Option<&'a [f64]>,
+    /// Pressure before, set to that after [Pa].
+    pub pressure: &'a mut [f64],
+    /// Specific internal energy before, set to that after [J/kg].
+    pub energy: &'a mut [f64],
+}
+
+/// A material, as the step sees it.
+pub trait Model: Send + Sync {
+    /// Stress at the middle of the step, with the energy that the half-step's work gives:
+    /// p = (f + g (e - q dv))/(1 + g dv) from e_mid = e - (p + q) dv, dv the change of specific
+    /// volume so far.
+    fn mid_step(&self, rows: MidStep<'_>);
+
+    /// Energy and pressure after a change of volume by the mid-point rule,
+    /// e' = e - ((p + p')/2 + q) dv, solved together with p' = f + g e'.
+    fn change_volume(&self, rows: VolumeChange<'_>);
+
+    /// Sets pressure [Pa] and sound speed [m/s] of rows from J and e. Tells the first row whose
+    /// state lies outside of the model, and why.
+    fn refresh(
+        &self,
+        jacobian: &[f64],
+        energy: &[f64],
+        pressure: &mut [f64],
+        sound_speed: &mut [f64],
+    ) -> Option<(usize, String)>;
+
+    /// The specific internal energy at which the material at rest is at `pressure` [J/kg].
+    fn energy_at(&self, pressure: f64) -> f64;
+}
+
+/// The model of a material of a scene.
+pub fn build(material: &Material) -> Box<dyn Model> {
+    let rho0 = material.density;
+    match material.eos {
+        Eos::MieGruneisen { c0, s, gamma0 } => Box::new(Point(MieGruneisen { rho0, c0, s, gamma0 })),
+        Eos::IdealGas { gamma } => Box::new(Point(IdealGas { rho0, gamma })),
+    }
+}
+
+/// The loops over an equation of state.
+struct Point<E>(E);
+
+impl<E: EquationOfState> Model for Point<E> {
+    fn mid_step(&self, rows: MidStep<'_>) {
+        let n = rows.mass.len();
+        let (mass, volume0, j, j_mid) =
+            (rows.mass, &rows.volume0[..n], &rows.jacobian[..n], &rows.jacobian_mid[..n]);
+        let (energy, out) = (&rows.energy[..n], &mut rows.stress_volume[..n]);
+        let pressure_at = |r: usize, q: f64| {
+            let dv = (j_mid[r] - j[r]) * volume0[r] / mass[r];
+            let Linear { cold, energy_factor } = self.0.linear(j_mid[r]);
+            (cold + energy_factor * (energy[r] - q * dv)) / (1.0 + energy_factor * dv)
+        };
+        match rows.q {
+            Some(q) => {
+                for r in 0..n {
+                    out[r] = (pressure_at(r, q[r]) + q[r]) * volume0[r] * j_mid[r];
+                }
+            }
+            None => {
+                for r in 0..n {
+                    out[r] = pressure_at(r, 0.0) * volume0[r] * j_mid[r];
+                }
+            }
+        }
+        if let Some((pressure, compliance)) = rows.compliance {
+            for r in 0..n {
+                let p = pressure_at(r, rows.q.map_or(0.0, |q| q[r]));
+                // -dV/dp = V^2/(m c^2)
+                let volume = volume0[r] * j_mid[r];
+                let c2 = self.0.sound_speed_squared(j_mid[r], p);
+                pressure[r] = p;
+                compliance[r] = if c2 > 0.0 { volume * volume / (mass[r] * c2) } else { 0.0 };
+            }
+        }
+    }
+
+    fn change_volume(&self, rows: VolumeChange<'_>) {
+        for r in 0..rows.mass.len() {
+            let dv = (rows.after[r] - rows.before[r]) * rows.volume0[r] / rows.mass[r];
+            let q = rows.q.map_or(0.0, |q| q[r]);
+            let Linear { cold, energy_factor } = self.0.linear(rows.after[r]);
+            let energy = (rows.energy[r] - (0.5 * (rows.pressure[r] + cold) + q) * dv)
+                / (1.0 + 0.5 * energy_factor * dv);
+            rows.energy[r] = energy;
+            rows.pressure[r] = cold + energy_factor * energy;
+        }
+    }
+
+    fn refresh(
+        &self,
+        jacobian: &[f64],
+        energy: &[f64],
+        pressure: &mut [f64],
+        sound_speed: &mut [f64],
+    ) -> Option<(usize, String)> {
+        let n = jacobian.len();
+        let (energy, pressure, sound_speed) =
+            (&energy[..n], &mut pressure[..n], &mut sound_speed[..n]);
+        let mut sound = true;
+        for r in 0..n {
+            let p = self.0.pressure(jacobian[r], energy[r]);
+            let c2 = self.0.sound_speed_squared(jacobian[r], p);
+            pressure[r] = p;
+            sound_speed[r] = c2.sqrt();
+            // a comparison with NaN is false
+            sound &= jacobian[r] > 0.0 && c2 >= 0.0 && p.abs() < f64::INFINITY;
+            sound &= self.0.fault(jacobian[r], p).is_none();
+        }
+        if sound {
+            return None;
+        }
+        (0..n).find_map(|r| {
+            let (j, p) = (jacobian[r], pressure[r]);
+            let rho = self.0.reference_density() / j;
+            let state = format!("density {rho:.6e} kg/m3, pressure {p:.6e} Pa");
+            if !(j.is_finite() && p.is_finite() && energy[r].is_finite()) {
+                Some((r, format!("its state is not a number ({state})")))
+            } else if j <= 0.0 {
+                Some((r, format!("its volume is negative (J = {j:.6e})")))
+            } else if let Some(fault) = self.0.fault(j, p) {
+                Some((r, format!("it is {fault} ({state})")))
+            } else if sound_speed[r].is_nan() {
+                Some((r, format!("its sound speed is imaginary ({state})")))
+            } else {
+                None
+            }
+        })
+    }
+
+    fn energy_at(&self, pressure: f64) -> f64 {
+        self.0.energy_at(1.0, pressure)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GAS: Point<IdealGas> = Point(IdealGas { rho0: 2.0, gamma: 1.4 });
+
+    #[test]
+    fn mid_step_pressure_has_the_energy_of_its_own_work() {
+        let (j, j_mid, e, q) = ([1.0], [0.98], [3.0], [0.2]);
+        let mut stress = [0.0];
+        GAS.mid_step(MidStep {
+            mass: &[0.02],
+            volume0: &[0.01],
+            jacobian: &j,
+            jacobian_mid: &j_mid,
+            energy: &e,
+            q: Some(&q),
+            stress_volume: &mut stress,
+            compliance: None,
+        });
+        let p = stress[0] / (0.01 * 0.98) - 0.2;
+        let dv = (0.98 - 1.0) / 2.0;
+        let e_mid = 3.0 - (p + 0.2) * dv;
+        assert!((p - GAS.0.pressure(0.98, e_mid)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn change_of_volume_is_second_order_along_an_isentrope() {
+        let error = |steps: usize| {
+            let (mut p, mut e) = ([GAS.0.pressure(1.0, 3.0)], [3.0]);
+            let start = p[0];
+            for k in 0..steps {
+                let at = |k: usize| [1.0 - 0.4 * k as f64 / steps as f64];
+                GAS.change_volume(VolumeChange {
+                    mass: &[0.02],
+                    volume0: &[0.01],
+                    before: &at(k),
+                    after: &at(k + 1),
+                    q: None,
+                    pressure: &mut p,
+                    energy: &mut e,
+                });
+            }
+            (p[0] / (start * 0.6f64.powf(-1.4)) - 1.0).abs()
+        };
+        let order = (error(20) / error(40)).log2();
+        assert!((order - 2.0).abs() < 0.05, "{order}");
+    }
+
+    #[test]
+    fn a_state_outside_of_the_model_is_named() {
+        let copper = Point(MieGruneisen { rho0: 8930.0, c0: 3940.0, s: 1.489, gamma0: 1.96 });
+        let mut told = |j: f64, e: f64| {
+            let (mut p, mut c) = ([0.0; 2], [0.0; 2]);
+            copper.refresh(&[0.9, j], &[0.0, e], &mut p, &mut c)
+        };
+        assert_eq!(told(0.9, 0.0), None);
+        for (j, e, word) in
+            [(0.2, 0.0, "limit 1/s"), (1.5, 0.0, "tension"), (-0.1, 0.0, "negative"), (0.9, f64::NAN, "not a number")]
+        {
+            let (row, what) = told(j, e).unwrap();
+            assert_eq!(row, 1);
+            assert!(what.contains(word), "{what}");
+        }
+    }
+}

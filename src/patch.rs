@@ -1,0 +1,179 @@
+//! One patch: its rows, its nodes, and what a step keeps for them.
+
+use std::ops::Range;
+
+use decomp::{Block, IndexBox, Layout, NodeArrays};
+
+use crate::grid::Band;
+use crate::shape::{Shape, Weights};
+
+/// The weights of every row of a patch, ghosts too, `width` nodes each.
+#[derive(Clone, Debug, Default)]
+pub struct Stencils {
+    /// Nodes a row.
+    pub width: usize,
+    /// First node of each row, in the patch's arrays.
+    pub first: Vec<u32>,
+    /// Values, `width` a row.
+    pub values: Vec<f64>,
+    /// Gradients [1/m], `width` a row.
+    pub gradients: Vec<f64>,
+}
+
+impl Stencils {
+    /// The weights of `row`.
+    #[inline(always)]
+    pub fn row<const K: usize>(&self, row: usize) -> (usize, &[f64; K], &[f64; K]) {
+        let at = row * K..(row + 1) * K;
+        (
+            self.first[row] as usize,
+            self.values[at.clone()].try_into().expect("K values a row"),
+            self.gradients[at].try_into().expect("K gradients a row"),
+        )
+    }
+}
+
+/// What a patch tells of its step.
+#[derive(Clone, Debug, Default)]
+pub struct Told {
+    /// Longest time step that its particles allow at a Courant number of 1 [s].
+    pub time_step: f64,
+    /// Greatest length of a particle [cells].
+    pub length: f64,
+    /// The first fault.
+    pub fault: Option<Fault>,
+}
+
+/// A state that ends the run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// Id of the particle.
+    pub id: u64,
+    /// Its position [m].
+    pub position: f64,
+    /// Its body.
+    pub body: usize,
+    /// What is wrong with it.
+    pub what: String,
+}
+
+/// What has left a patch's part of the domain by an outflow, in the grid's frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Left {
+    /// Number of particles.
+    pub count: u64,
+    /// Mass [kg].
+    pub mass: f64,
+    /// Momentum [kg m/s].
+    pub momentum: f64,
+    /// Kinetic energy [J].
+    pub kinetic: f64,
+    /// Internal energy [J].
+    pub internal: f64,
+}
+
+/// One patch. Its layout is that of `D` directions; the physics is one-dimensional so far.
+#[derive(Clone, Debug)]
+pub struct Patch<const D: usize> {
+    /// Its cells.
+    pub cells: IndexBox<D>,
+    /// Its rows.
+    pub block: Block<D>,
+    /// Its nodes.
+    pub nodes: NodeArrays<D>,
+    /// Weights of its rows.
+    pub stencils: Stencils,
+    /// Mass matrix.
+    pub band: Band,
+    /// Matrix of compliances, for pressure relaxation.
+    pub compliance_band: Band,
+    /// Runs of rows in canonical order.
+    pub runs: Vec<Range<usize>>,
+    /// Nodes that hold material, of those owned.
+    pub active: Range<usize>,
+    /// What it tells of its step.
+    pub told: Told,
+    /// What has left by an outflow.
+    pub left: Left,
+    /// Longest particle that ghosts and halos are deep enough for [cells].
+    pub reach_length: f64,
+}
+
+impl<const D: usize> Patch<D> {
+    /// The patch `index` of `layout`, with `block`'s rows and `fields` nodal arrays with a halo
+    /// of `depth` nodes.
+    pub fn new(layout: &Layout<D>, index: usize, block: Block<D>, depth: i64, fields: usize) -> Self {
+        Patch {
+            cells: layout.patches()[index],
+            block,
+            nodes: NodeArrays::new(layout, index, depth, fields),
+            stencils: Stencils::default(),
+            band: Band::default(),
+            compliance_band: Band::default(),
+            runs: Vec::new(),
+            active: 0..0,
+            told: Told::default(),
+            left: Left::default(),
+            reach_length: f64::INFINITY,
+        }
+    }
+}
+
+impl Patch<1> {
+    /// Computes the weights of all rows from the columns `fraction` and `length` [cells].
+    pub fn find_weights<S: Shape, const K: usize>(
+        &mut self,
+        fraction: usize,
+        length: usize,
+        inverse_cell: f64,
+    ) {
+        let rows = self.block.rows();
+        let stencils = &mut self.stencils;
+        stencils.width = K;
+        stencils.first.resize(rows, 0);
+        stencils.values.resize(rows * K, 0.0);
+        stencils.gradients.resize(rows * K, 0.0);
+        let lower = self.nodes.nodes.lower[0] as i32;
+        let (fractions, lengths) =
+            (&self.block.columns[fraction][..rows], &self.block.columns[length][..rows]);
+        let cells = &self.block.cells[..rows];
+        let out = stencils
+            .first
+            .iter_mut()
+            .zip(stencils.values.chunks_exact_mut(K))
+            .zip(stencils.gradients.chunks_exact_mut(K));
+        for (row, ((first, values), gradients)) in out.enumerate() {
+            let w: Weights<K> = S::weights(fractions[row], lengths[row]);
+            *first = (cells[row][0] + w.first - lower) as u32;
+            values.copy_from_slice(&w.values);
+            for (out, g) in gradients.iter_mut().zip(w.gradients) {
+                *out = g * inverse_cell;
+            }
+        }
+        self.block.runs(&mut self.runs);
+        self.find_active(K);
+    }
+
+    /// The owned nodes that any row touches, as a range of the patch's arrays.
+    fn find_active(&mut self, width: usize) {
+        let lower = self.nodes.nodes.lower[0];
+        let owned = (self.nodes.owned.lower[0].max(lower) - lower) as usize
+            ..(self.nodes.owned.upper[0].min(self.nodes.nodes.upper[0]) - lower) as usize;
+        let first = self.stencils.first.iter().min().map_or(owned.end, |&f| f as usize);
+        let last = self.stencils.first.iter().max().map_or(0, |&f| f as usize + width);
+        let start = owned.start.max(first);
+        self.active = start..owned.end.min(last).max(start);
+    }
+}
+
+impl<const D: usize> AsMut<Block<D>> for Patch<D> {
+    fn as_mut(&mut self) -> &mut Block<D> {
+        &mut self.block
+    }
+}
+
+impl<const D: usize> AsMut<NodeArrays<D>> for Patch<D> {
+    fn as_mut(&mut self) -> &mut NodeArrays<D> {
+        &mut self.nodes
+    }
+}

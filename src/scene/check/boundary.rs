@@ -1,0 +1,89 @@
+//! Sides of the domain that cannot stand opposite each other.
+
+use super::super::errors::Fault;
+use super::super::model::{Scene, Side};
+use super::CheckedScene;
+
+/// A rigid side of the domain: a plane of symmetry, a wall or a piston.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wall {
+    /// Whether it stands at the upper end of x.
+    pub upper: bool,
+    /// Where it stands at the start [m].
+    pub position: f64,
+    /// Its velocity along x [m/s].
+    pub velocity: f64,
+}
+
+impl Wall {
+    /// Path of the key that sets it.
+    pub(super) fn path(&self) -> &'static str {
+        if self.upper { "boundary.x_upper" } else { "boundary.x_lower" }
+    }
+}
+
+impl CheckedScene {
+    /// The rigid sides of the domain, the lower one first.
+    pub fn walls(&self) -> Vec<Wall> {
+        let Some(boundary) = &self.scene.boundary else { return Vec::new() };
+        let domain = &self.scene.domain;
+        let wall = |side, position, upper| {
+            rigid_velocity(side).map(|velocity| Wall { upper, position, velocity })
+        };
+        let lower = wall(boundary.x_lower, domain.lower[0], false);
+        let upper = wall(boundary.x_upper, domain.upper[0], true);
+        lower.into_iter().chain(upper).collect()
+    }
+
+    /// The rigid side that body `i` touches and moves into, if there is one.
+    pub fn wall_struck_by(&self, i: usize) -> Option<Wall> {
+        self.walls()
+            .into_iter()
+            .find(|w| self.gap_to(w, i) <= self.tolerance(0) && self.closing_speed(w, i) > 0.0)
+    }
+
+    /// Distance from body `i` to a wall [m].
+    pub(super) fn gap_to(&self, wall: &Wall, i: usize) -> f64 {
+        let extent = &self.scene.bodies[i].extent;
+        if wall.upper { wall.position - extent.upper[0] } else { extent.lower[0] - wall.position }
+    }
+
+    /// Speed at which body `i` and a wall come together [m/s].
+    pub(super) fn closing_speed(&self, wall: &Wall, i: usize) -> f64 {
+        let relative = self.bodies[i].velocity[0] - wall.velocity;
+        if wall.upper { relative } else { -relative }
+    }
+}
+
+/// Velocity of a side that lets nothing through [m/s].
+fn rigid_velocity(side: Side) -> Option<f64> {
+    match side {
+        Side::Symmetry | Side::Wall => Some(0.0),
+        Side::Velocity(velocity) => Some(velocity),
+        Side::Free | Side::Periodic | Side::Outflow => None,
+    }
+}
+
+pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
+    let Some(boundary) = &scene.boundary else { return Ok(()) };
+    let (lower, upper) = (boundary.x_lower, boundary.x_upper);
+    let other = serde_json::json!(upper);
+    if (lower == Side::Periodic) != (upper == Side::Periodic) {
+        let reason = format!(
+            "cannot stand opposite boundary.x_upper = {other}; allowed: \"periodic\" on both \
+             sides or on neither"
+        );
+        return Err(Fault::new("boundary.x_lower", lower, reason));
+    }
+    match (rigid_velocity(lower), rigid_velocity(upper)) {
+        (Some(a), Some(b)) if a != b => {
+            let reason = format!(
+                "cannot stand opposite boundary.x_upper = {other}, since the grid travels with a \
+                 piston; allowed: the same velocity on both sides (a wall and a plane of symmetry \
+                 are at rest), \"free\" or \"outflow\""
+            );
+            Err(Fault::new("boundary.x_lower", lower, reason))
+        }
+        _ => Ok(()),
+    }
+}

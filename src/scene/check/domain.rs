@@ -1,0 +1,109 @@
+//! The domain: a whole number of cells, cut into no more patches than there are cells.
+
+use super::super::errors::Fault;
+use super::super::model::{CellSize, Domain};
+use super::{check_box, check_length};
+
+/// How far the domain may be from a whole number of cells [cells].
+const WHOLE: f64 = 1e-6;
+
+/// A cell size that differs by less from the domain's over its cells is taken as it stands [-].
+const ROUNDING: f64 = 1e-12;
+
+/// Cells or particles beyond this are refused wherever the scene is read.
+pub(super) const MOST: f64 = 1e15;
+
+/// The grid that a domain asks for.
+pub(super) struct Grid {
+    pub dimension: usize,
+    pub cell_size: Vec<f64>,
+    pub cells: Vec<usize>,
+}
+
+pub(super) fn check(domain: &Domain) -> Result<Grid, Fault> {
+    let dimension = domain.lower.len();
+    check_length("domain.upper", &domain.upper, dimension)?;
+    let asked = match &domain.cell_size {
+        CellSize::Uniform(size) => vec![*size; dimension],
+        CellSize::PerDirection(sizes) => {
+            check_length("domain.cell_size", sizes, dimension)?;
+            sizes.clone()
+        }
+    };
+    if let Some(patches) = &domain.patches {
+        check_length("domain.patches", patches, dimension)?;
+    }
+    if dimension != 1 {
+        let reason = if dimension == 2 {
+            "two dimensions are not built yet; allowed: one number, give one number here and in \
+             every other array"
+        } else {
+            "more than two dimensions; allowed: one number"
+        };
+        return Err(Fault::new("domain.lower", &domain.lower, reason));
+    }
+    check_box("domain", &domain.lower, &domain.upper)?;
+    let mut grid = Grid { dimension, cell_size: Vec::new(), cells: Vec::new() };
+    for (d, &size) in asked.iter().enumerate() {
+        let (lower, upper) = (domain.lower[d], domain.upper[d]);
+        let cells = whole_cells(domain, lower, upper, size)?;
+        grid.cells.push(cells as usize);
+        let exact = (upper - lower) / cells;
+        let same = (size - exact).abs() <= ROUNDING * exact;
+        grid.cell_size.push(if same { size } else { exact });
+    }
+    let total: f64 = grid.cells.iter().map(|&n| n as f64).product();
+    if total > MOST {
+        return Err(too_many(domain, total));
+    }
+    if let Some(patches) = &domain.patches {
+        for (&count, &cells) in patches.iter().zip(&grid.cells) {
+            if count > cells {
+                let reason = format!("more patches than cells; allowed: 1 to {cells}");
+                return Err(Fault::new("domain.patches", patches, reason));
+            }
+        }
+    }
+    Ok(grid)
+}
+
+fn whole_cells(domain: &Domain, lower: f64, upper: f64, size: f64) -> Result<f64, Fault> {
+    let length = upper - lower;
+    let cells = length / size;
+    if cells.is_nan() || cells > MOST {
+        return Err(too_many(domain, cells));
+    }
+    let whole = cells.round().max(1.0);
+    if (cells - whole).abs() > WHOLE.max(4.0 * f64::EPSILON * whole) {
+        let reason = format!(
+            "divides the domain into {} cells; allowed: a whole number of cells, the nearest \
+             is {} for {whole} cells",
+            tidy(cells),
+            tidy(length / whole)
+        );
+        return Err(Fault::new("domain.cell_size", &domain.cell_size, reason));
+    }
+    // positions must tell a millionth of a cell
+    let least = lower.abs().max(upper.abs()) * f64::EPSILON / WHOLE;
+    if size < least {
+        let reason = format!(
+            "too small for doubles at coordinates up to {}; allowed: at least {least}",
+            lower.abs().max(upper.abs())
+        );
+        return Err(Fault::new("domain.cell_size", &domain.cell_size, reason));
+    }
+    Ok(whole)
+}
+
+/// A number for people: 15 digits, which hides what rounding left.
+fn tidy(number: f64) -> f64 {
+    format!("{number:.14e}").parse().unwrap_or(number)
+}
+
+fn too_many(domain: &Domain, cells: f64) -> Fault {
+    let reason = format!(
+        "divides the domain into {cells:e} cells; allowed: at most {MOST:e}, and what the \
+         machine's memory holds"
+    );
+    Fault::new("domain.cell_size", &domain.cell_size, reason)
+}

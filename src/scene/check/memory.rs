@@ -1,0 +1,82 @@
+//! What a run needs of the machine's memory, told before it is taken.
+
+use super::super::errors::{Fault, SceneError, one_line};
+use super::CheckedScene;
+use super::domain::MOST;
+
+/// Memory that a run takes for one particle, outputs included [bytes].
+pub const BYTES_PER_PARTICLE: u64 = 600;
+
+/// Memory that a run takes for one cell [bytes].
+pub const BYTES_PER_CELL: u64 = 400;
+
+impl CheckedScene {
+    /// Cells of the domain.
+    pub fn cell_count(&self) -> u64 {
+        self.cells.iter().map(|&n| n as u64).product()
+    }
+
+    /// Estimate of the memory that the run takes on all ranks together [bytes].
+    pub fn memory(&self) -> u64 {
+        let particles = self.particles.saturating_mul(BYTES_PER_PARTICLE);
+        particles.saturating_add(self.cell_count().saturating_mul(BYTES_PER_CELL))
+    }
+
+    /// Refuses a run that needs more than `available` bytes; `None` is taken as enough.
+    ///
+    /// Apart from the rest of the check, since what is available differs from rank to rank and
+    /// from moment to moment: one rank asks, and tells the others.
+    pub fn check_memory(&self, available: Option<u64>) -> Result<(), SceneError> {
+        match available {
+            Some(available) if self.memory() > available => Err(SceneError::Memory {
+                file: one_line(&self.file),
+                particles: self.particles,
+                cells: self.cell_count(),
+                needed: self.memory(),
+                available,
+            }),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Counts that no machine holds are refused wherever the scene is read.
+pub(super) fn check_counts(checked: &CheckedScene) -> Result<(), Fault> {
+    if checked.particles as f64 > MOST {
+        let reason = format!("{} particles in all; allowed: at most {MOST:e}", checked.particles);
+        return Err(Fault::missing("bodies", reason));
+    }
+    Ok(())
+}
+
+/// Memory that this machine can still give [bytes]: what the kernel calls available, or what the
+/// control group leaves if that is less; `None` where neither is told.
+pub fn available_memory() -> Option<u64> {
+    let read = |path: &str| std::fs::read_to_string(path).ok();
+    let kernel = read("/proc/meminfo").and_then(|text| mem_available(&text));
+    let number = |path: &str| read(path)?.trim().parse::<u64>().ok();
+    let group = number("/sys/fs/cgroup/memory.max")
+        .zip(number("/sys/fs/cgroup/memory.current"))
+        .map(|(most, taken)| most.saturating_sub(taken));
+    match (kernel, group) {
+        (Some(kernel), Some(group)) => Some(kernel.min(group)),
+        (kernel, group) => kernel.or(group),
+    }
+}
+
+fn mem_available(meminfo: &str) -> Option<u64> {
+    let line = meminfo.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_kernels_line_is_read() {
+        let text = "MemTotal:       16 kB\nMemFree: 2 kB\nMemAvailable:    8 kB\n";
+        assert_eq!(mem_available(text), Some(8192));
+        assert_eq!(mem_available("MemTotal: 1 kB\n"), None);
+    }
+}

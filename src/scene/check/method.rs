@@ -1,0 +1,105 @@
+//! Options of the scheme that cannot go together, each refused with both keys named.
+
+use serde::Serialize;
+
+use super::super::errors::Fault;
+use super::super::model::{
+    EnergyUpdate, LimitedTerms, Scene, ShapeKind, Stepping, StressUpdate, Transfer,
+};
+
+/// Beyond this Courant number the schemes with a filter were seen to fail [-].
+const COURANT_TRIED: f64 = 0.8;
+
+const MIDPOINT: &str = "method.stepping = \"midpoint\"";
+
+pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Fault> {
+    let method = &scene.method;
+    if method.stepping == Stepping::Midpoint {
+        check_midpoint(scene)?;
+    } else {
+        check_leapfrog(scene)?;
+    }
+    if let Some(viscosity) = &scene.artificial_viscosity
+        && viscosity.limited != LimitedTerms::Linear
+        && viscosity.limiter.is_none()
+    {
+        let reason = "says nothing while artificial_viscosity.limiter is left out; allowed: to \
+                      leave both out, or artificial_viscosity.limiter \"christensen\" or \"nodal\"";
+        return Err(Fault::new("artificial_viscosity.limited", viscosity.limited, reason));
+    }
+    if method.shape == ShapeKind::Linear {
+        warnings.push(
+            "method.shape = \"linear\": inaccurate, since forces jump when a particle passes into \
+             another cell; allowed all the same"
+                .to_string(),
+        );
+    }
+    if scene.time.courant > COURANT_TRIED {
+        warnings.push(format!(
+            "time.courant = {}: beyond {COURANT_TRIED} most schemes were seen to be unstable",
+            scene.time.courant
+        ));
+    }
+    Ok(())
+}
+
+/// A mid-point step has one order of stress, and needs what its options act on.
+fn check_midpoint(scene: &Scene) -> Result<(), Fault> {
+    let method = &scene.method;
+    if method.stress_update != StressUpdate::Last {
+        return Err(conflict(
+            ("method.stress_update", method.stress_update),
+            ("method.stepping", method.stepping),
+            "\"last\", or method.stepping = \"leapfrog\"",
+        ));
+    }
+    let transfer = ("method.transfer", method.transfer);
+    if method.energy == EnergyUpdate::Compatible && method.transfer == Transfer::Apic {
+        let allowed = "\"textbook\" or \"compatible_mean\", or another method.transfer";
+        return Err(conflict(("method.energy", method.energy), transfer, allowed));
+    }
+    if method.filter_heat && matches!(method.transfer, Transfer::Flip | Transfer::Apic) {
+        let allowed = "false, or method.transfer \"pic\", {\"flip_pic\": a}, {\"xpic\": m} or \
+                       {\"fmpm\": m}";
+        return Err(conflict(("method.filter_heat", true), transfer, allowed));
+    }
+    match method.edge_mask {
+        Some(mask) if !matches!(method.transfer, Transfer::Fmpm(_)) => {
+            let allowed = "to leave it out, or method.transfer {\"fmpm\": m}";
+            Err(conflict(("method.edge_mask", mask), transfer, allowed))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A leapfrog step has none of the options that are made for the mid-point.
+fn check_leapfrog(scene: &Scene) -> Result<(), Fault> {
+    let method = &scene.method;
+    let stepping = ("method.stepping", method.stepping);
+    if method.energy != EnergyUpdate::Textbook {
+        let allowed = format!("\"textbook\", or {MIDPOINT}");
+        return Err(conflict(("method.energy", method.energy), stepping, &allowed));
+    }
+    if method.filter_heat {
+        let allowed = format!("false, or {MIDPOINT}");
+        return Err(conflict(("method.filter_heat", true), stepping, &allowed));
+    }
+    let allowed = format!("to leave it out, or {MIDPOINT}");
+    if let Some(relaxation) = method.pressure_relaxation {
+        return Err(conflict(("method.pressure_relaxation", relaxation), stepping, &allowed));
+    }
+    match method.edge_mask {
+        Some(mask) => Err(conflict(("method.edge_mask", mask), stepping, &allowed)),
+        None => Ok(()),
+    }
+}
+
+/// One key that another forbids: their paths and values, and what is allowed for the first.
+fn conflict(
+    (path, value): (&str, impl Serialize),
+    (other_path, other): (&str, impl Serialize),
+    allowed: &str,
+) -> Fault {
+    let other = serde_json::json!(other);
+    Fault::new(path, value, format!("cannot go with {other_path} = {other}; allowed: {allowed}"))
+}

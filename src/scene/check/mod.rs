@@ -1,0 +1,131 @@
+//! What the keys of a scene say of each other, checked whole before anything is built.
+//!
+//! The bounds of single numbers stand in the model and were checked on reading.
+
+mod bodies;
+mod boundary;
+mod domain;
+mod impact;
+mod memory;
+mod method;
+mod output;
+mod reference;
+
+use serde::Serialize;
+
+use super::errors::{Fault, one_line};
+use super::model::{Material, Scene};
+
+pub use bodies::CheckedBody;
+pub use boundary::Wall;
+pub use memory::{BYTES_PER_CELL, BYTES_PER_PARTICLE, available_memory};
+
+/// A scene that passed every check, and the numbers that follow from it.
+#[derive(Clone, Debug)]
+pub struct CheckedScene {
+    /// The scene as it stands in the file, overrides put in.
+    pub scene: Scene,
+    /// Name of the scene's file in messages.
+    pub file: String,
+    /// Dimension D.
+    pub dimension: usize,
+    /// Edges of a cell [m], in each direction: as the scene has them, or the domain's edge over its
+    /// cells where that is more than rounding away.
+    pub cell_size: Vec<f64>,
+    /// Cells in each direction.
+    pub cells: Vec<usize>,
+    /// Particles of all bodies.
+    pub particles: u64,
+    /// What follows for each body, in the order of the scene's.
+    pub bodies: Vec<CheckedBody>,
+    /// Times of the profiles [s], at least one.
+    pub profile_times: Vec<f64>,
+    /// Time from one row of the histories to the next [s]; none: no histories.
+    pub history_interval: Option<f64>,
+    /// What will run but is known to be inaccurate, one line each.
+    pub warnings: Vec<String>,
+}
+
+impl CheckedScene {
+    pub(super) fn new(scene: Scene, file: &str) -> Result<Self, Fault> {
+        let mut warnings = Vec::new();
+        check_printable("title", &scene.title)?;
+        let domain::Grid { dimension, cell_size, cells } = domain::check(&scene.domain)?;
+        method::check(&scene, &mut warnings)?;
+        boundary::check(&scene)?;
+        let bodies = bodies::check(&scene, &cell_size, &mut warnings)?;
+        let mut checked = CheckedScene {
+            dimension,
+            cell_size,
+            cells,
+            particles: bodies.iter().fold(0, |sum, body| sum.saturating_add(body.particles)),
+            bodies,
+            profile_times: output::profile_times(&scene)?,
+            history_interval: output::history_interval(&scene),
+            warnings,
+            file: file.to_string(),
+            scene,
+        };
+        memory::check_counts(&checked)?;
+        output::check_tracers(&checked)?;
+        reference::check(&mut checked)?;
+        impact::check(&mut checked)?;
+        for warning in &mut checked.warnings {
+            *warning = one_line(warning);
+        }
+        Ok(checked)
+    }
+
+    /// The material of body `i`.
+    pub fn material_of(&self, i: usize) -> &Material {
+        &self.scene.materials[&self.scene.bodies[i].material]
+    }
+
+    /// Lengths below this are none [m], in each direction.
+    fn tolerance(&self, direction: usize) -> f64 {
+        bodies::TOUCHING * self.cell_size[direction]
+    }
+}
+
+/// Characters of a name or title.
+const LONGEST_NAME: usize = 200;
+
+/// A name or title that is told in one line.
+fn check_printable(path: &str, text: &str) -> Result<(), Fault> {
+    if text.trim().is_empty() {
+        return Err(Fault::new(path, text, "is empty; allowed: at least one printable character"));
+    }
+    if text.chars().count() > LONGEST_NAME {
+        let reason = format!("is too long; allowed: at most {LONGEST_NAME} characters");
+        return Err(Fault::new(path, text, reason));
+    }
+    if text != one_line(text) {
+        let reason = "has a control character; allowed: one line of printable characters";
+        return Err(Fault::new(path, text, reason));
+    }
+    Ok(())
+}
+
+/// One entry a direction.
+fn check_length<T: Serialize>(path: &str, values: &[T], dimension: usize) -> Result<(), Fault> {
+    if values.len() == dimension {
+        return Ok(());
+    }
+    let plural = if dimension == 1 { "" } else { "s" };
+    let reason = format!(
+        "{} numbers, but domain.lower has {dimension}, which is the dimension of the scene; \
+         allowed: {dimension} number{plural}",
+        values.len()
+    );
+    Err(Fault::new(path, values, reason))
+}
+
+/// The lower corner below the upper one.
+fn check_box(path: &str, lower: &[f64], upper: &[f64]) -> Result<(), Fault> {
+    if lower.iter().zip(upper).all(|(l, u)| l < u) {
+        return Ok(());
+    }
+    let lower = serde_json::json!(lower);
+    let reason = format!("not above {path}.lower = {lower}; allowed: lower < upper");
+    Err(Fault::new(format!("{path}.upper"), upper, reason))
+}

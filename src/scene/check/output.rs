@@ -1,0 +1,77 @@
+//! Times of profiles and histories, and the particles that are followed.
+
+use std::collections::{HashMap, HashSet};
+
+use super::super::conform::join;
+use super::super::errors::{Fault, suggest};
+use super::super::model::Scene;
+use super::{CheckedScene, check_length};
+
+/// Rows of the histories where the scene says no interval.
+const ROWS: f64 = 200.0;
+
+/// Times of the profiles, strictly increasing, none beyond the end.
+pub(super) fn profile_times(scene: &Scene) -> Result<Vec<f64>, Fault> {
+    let times = &scene.output.profiles.times;
+    let end = scene.time.end;
+    for (i, &time) in times.iter().enumerate() {
+        let path = || format!("output.profiles.times[{i}]");
+        if time > end {
+            let reason = format!("beyond time.end = {end:e}; allowed: above 0 and at most {end:e}");
+            return Err(Fault::new(path(), time, reason));
+        }
+        if i > 0 && time <= times[i - 1] {
+            let before = times[i - 1];
+            let reason = format!(
+                "not above the time before it, {before:e}; allowed: increasing times, above 0 and \
+                 at most time.end = {end:e}"
+            );
+            return Err(Fault::new(path(), time, reason));
+        }
+    }
+    Ok(if times.is_empty() { vec![end] } else { times.clone() })
+}
+
+pub(super) fn history_interval(scene: &Scene) -> Option<f64> {
+    let histories = scene.output.histories.as_ref()?;
+    Some(histories.interval.unwrap_or(scene.time.end / ROWS))
+}
+
+pub(super) fn check_tracers(checked: &CheckedScene) -> Result<(), Fault> {
+    let Some(histories) = &checked.scene.output.histories else { return Ok(()) };
+    let bodies: HashMap<_, _> =
+        checked.scene.bodies.iter().map(|body| (body.name.as_str(), body)).collect();
+    let mut names = HashSet::new();
+    for (i, tracer) in histories.tracers.iter().enumerate() {
+        let path = format!("output.histories.tracers[{i}].name");
+        let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        if tracer.name.is_empty() || !tracer.name.chars().all(plain) {
+            let reason = "no name of a column; allowed: letters, digits, _ and -";
+            return Err(Fault::new(path, &tracer.name, reason));
+        }
+        if !names.insert(tracer.name.as_str()) {
+            let reason = "another tracer has this name; allowed: a name of its own";
+            return Err(Fault::new(path, &tracer.name, reason));
+        }
+        let path = join("output.histories.tracers", &tracer.name);
+        let Some(body) = bodies.get(tracer.body.as_str()) else {
+            let known = checked.scene.bodies.iter().map(|body| body.name.as_str());
+            let reason = format!("no such body{}", suggest(&tracer.body, known));
+            return Err(Fault::new(join(&path, "body"), &tracer.body, reason));
+        };
+        let path = join(&path, "at");
+        check_length(&path, &tracer.at, checked.dimension)?;
+        for (d, at) in tracer.at.iter().enumerate() {
+            let tolerance = checked.tolerance(d);
+            let (lower, upper) = (body.extent.lower[d], body.extent.upper[d]);
+            if *at < lower - tolerance || *at > upper + tolerance {
+                let reason = format!(
+                    "outside of its body; allowed: {lower} to {upper} ({}.box)",
+                    join("bodies", &body.name)
+                );
+                return Err(Fault::new(path, &tracer.at, reason));
+            }
+        }
+    }
+    Ok(())
+}

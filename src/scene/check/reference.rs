@@ -1,0 +1,190 @@
+//! Whether the exact solution that a scene names holds for its bodies.
+
+use super::super::conform::join;
+use super::super::errors::{Fault, suggest};
+use super::super::model::{Eos, FlyerImpact, Reference, Riemann, Side, WallImpact};
+use super::CheckedScene;
+
+pub(super) fn check(checked: &mut CheckedScene) -> Result<(), Fault> {
+    match checked.scene.reference.clone() {
+        None => Ok(()),
+        Some(Reference::FlyerImpact(impact)) => check_flyer_impact(checked, &impact),
+        Some(Reference::Riemann(riemann)) => check_riemann(checked, &riemann),
+        Some(Reference::WallImpact(impact)) => check_wall_impact(checked, &impact),
+    }
+}
+
+fn check_flyer_impact(checked: &mut CheckedScene, impact: &FlyerImpact) -> Result<(), Fault> {
+    const FLYER: &str = "reference.flyer_impact.flyer";
+    const TARGET: &str = "reference.flyer_impact.target";
+    let flyer = find_body(checked, FLYER, &impact.flyer)?;
+    let target = find_body(checked, TARGET, &impact.target)?;
+    check_unlike(TARGET, &impact.target, FLYER, flyer == target)?;
+    for (path, i) in [(FLYER, flyer), (TARGET, target)] {
+        check_eos(checked, path, i, "mie_gruneisen")?;
+        let body = &checked.scene.bodies[i];
+        if body.pressure != 0.0 {
+            let key = join(&join("bodies", &body.name), "pressure");
+            let reason =
+                format!("the exact solution of {path} starts without pressure; allowed: 0");
+            return Err(Fault::new(key, body.pressure, reason));
+        }
+    }
+    let from_below = check_touch(checked, FLYER, flyer, TARGET, target)?;
+    let speed = checked.bodies[flyer].velocity[0] - checked.bodies[target].velocity[0];
+    let closing = if from_below { speed } else { -speed };
+    if closing <= 0.0 {
+        let key = join(&join("bodies", &impact.flyer), "velocity");
+        let sign = if from_below { "above" } else { "below" };
+        let target_velocity = checked.bodies[target].velocity[0];
+        let reason = format!(
+            "does not approach {TARGET} = \"{}\"; allowed: {sign} {target_velocity}, the target's \
+             velocity",
+            impact.target
+        );
+        return Err(Fault::new(key, &checked.bodies[flyer].velocity, reason));
+    }
+    warn_of_flyer(checked, flyer, target, from_below);
+    Ok(())
+}
+
+/// What keeps the run from its exact solution, though it may run.
+fn warn_of_flyer(checked: &mut CheckedScene, flyer: usize, target: usize, from_below: bool) {
+    let impedance = |i: usize| match checked.material_of(i).eos {
+        Eos::MieGruneisen { c0, .. } => checked.material_of(i).density * c0,
+        Eos::IdealGas { .. } => 0.0,
+    };
+    let mut warnings = Vec::new();
+    if impedance(flyer) < impedance(target) {
+        warnings.push(
+            "reference.flyer_impact: the flyer is softer than the target and would separate; \
+             without contact the run holds them together"
+                .to_string(),
+        );
+    }
+    let rear = &checked.scene.bodies[flyer].extent;
+    let tolerance = checked.tolerance(0);
+    let rear_at = if from_below { rear.lower[0] } else { rear.upper[0] };
+    let at_wall = |i: usize| {
+        let domain = &checked.scene.domain;
+        let end = if from_below { domain.lower[0] } else { domain.upper[0] };
+        let side = checked.scene.boundary.as_ref().map_or(Side::Free, |boundary| {
+            if from_below { boundary.x_lower } else { boundary.x_upper }
+        });
+        let beside = checked.scene.bodies.iter().enumerate().any(|(j, body)| {
+            let near = if from_below { body.extent.upper[0] } else { body.extent.lower[0] };
+            j != i && (near - rear_at).abs() <= tolerance
+        });
+        beside || ((rear_at - end).abs() <= tolerance && side != Side::Free)
+    };
+    if at_wall(flyer) {
+        warnings.push(
+            "reference.flyer_impact: the flyer's rear touches another body or a side of the \
+             domain; the exact solution takes it as free"
+                .to_string(),
+        );
+    }
+    checked.warnings.extend(warnings);
+}
+
+fn check_riemann(checked: &CheckedScene, riemann: &Riemann) -> Result<(), Fault> {
+    const LEFT: &str = "reference.riemann.left";
+    const RIGHT: &str = "reference.riemann.right";
+    let left = find_body(checked, LEFT, &riemann.left)?;
+    let right = find_body(checked, RIGHT, &riemann.right)?;
+    check_unlike(RIGHT, &riemann.right, LEFT, left == right)?;
+    let mut escape = 0.0;
+    for (path, i) in [(LEFT, left), (RIGHT, right)] {
+        check_eos(checked, path, i, "ideal_gas")?;
+        let (body, material) = (&checked.scene.bodies[i], checked.material_of(i));
+        if body.pressure <= 0.0 {
+            let key = join(&join("bodies", &body.name), "pressure");
+            let reason = format!("the exact solution of {path} needs pressure; allowed: above 0");
+            return Err(Fault::new(key, body.pressure, reason));
+        }
+        if let Eos::IdealGas { gamma } = material.eos {
+            escape += 2.0 * (gamma * body.pressure / material.density).sqrt() / (gamma - 1.0);
+        }
+    }
+    if !check_touch(checked, LEFT, left, RIGHT, right)? {
+        let reason = format!("lies above {RIGHT} = \"{}\"; allowed: the body below", riemann.right);
+        return Err(Fault::new(LEFT, &riemann.left, reason));
+    }
+    let apart = checked.bodies[right].velocity[0] - checked.bodies[left].velocity[0];
+    if apart >= escape {
+        let key = join(&join("bodies", &riemann.right), "velocity");
+        let reason = format!(
+            "leaves {LEFT} at {apart} m/s, so that a vacuum opens, which the exact solution does \
+             not have; allowed: less than {escape} m/s apart"
+        );
+        return Err(Fault::new(key, &checked.bodies[right].velocity, reason));
+    }
+    Ok(())
+}
+
+fn check_wall_impact(checked: &CheckedScene, impact: &WallImpact) -> Result<(), Fault> {
+    const BODY: &str = "reference.wall_impact.body";
+    let body = find_body(checked, BODY, &impact.body)?;
+    if checked.wall_struck_by(body).is_some() {
+        return Ok(());
+    }
+    let box_path = join(&join("bodies", &impact.body), "box");
+    let reason = format!(
+        "{box_path} touches no wall that the body moves into; allowed: a body beside \
+         boundary.x_lower or boundary.x_upper \"wall\", \"symmetry\" or {{\"velocity\": v}}, and \
+         moving towards it"
+    );
+    Err(Fault::new(BODY, &impact.body, reason))
+}
+
+/// The body of this name.
+fn find_body(checked: &CheckedScene, path: &str, name: &str) -> Result<usize, Fault> {
+    let names: Vec<_> = checked.scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    names.iter().position(|&known| known == name).ok_or_else(|| {
+        Fault::new(path, name, format!("no such body{}", suggest(name, names.iter().copied())))
+    })
+}
+
+fn check_unlike(path: &str, name: &str, other: &str, same: bool) -> Result<(), Fault> {
+    if !same {
+        return Ok(());
+    }
+    Err(Fault::new(path, name, format!("the same body as {other}; allowed: two bodies")))
+}
+
+fn check_eos(checked: &CheckedScene, path: &str, i: usize, wanted: &str) -> Result<(), Fault> {
+    let eos = serde_json::json!(checked.material_of(i).eos);
+    let body = &checked.scene.bodies[i];
+    if eos["type"] == wanted {
+        return Ok(());
+    }
+    let key = join("materials", &body.material);
+    let reason =
+        format!("{key}.eos.type = {}; allowed: a body whose eos is \"{wanted}\"", eos["type"]);
+    Err(Fault::new(path, &body.name, reason))
+}
+
+/// Whether the first body lies below the second; they must touch along x.
+fn check_touch(
+    checked: &CheckedScene,
+    path: &str,
+    a: usize,
+    other_path: &str,
+    b: usize,
+) -> Result<bool, Fault> {
+    let [first, second] = [a, b].map(|i| &checked.scene.bodies[i].extent);
+    let tolerance = checked.tolerance(0);
+    let above = second.lower[0] - first.upper[0];
+    let below = first.lower[0] - second.upper[0];
+    if above.abs() <= tolerance || below.abs() <= tolerance {
+        return Ok(above.abs() <= tolerance);
+    }
+    let names = [a, b].map(|i| checked.scene.bodies[i].name.as_str());
+    let reason = format!(
+        "a gap of {:e} m to {other_path} = \"{}\" is not supported by this reference; allowed: \
+         bodies whose boxes touch",
+        above.max(below),
+        names[1]
+    );
+    Err(Fault::new(path, names[0], reason))
+}

@@ -1,0 +1,289 @@
+//! A scene's JSON text held against the schema of its structs.
+//!
+//! Faults of type, name and bounds are found here rather than by serde, whose messages lose the
+//! path inside of tagged enums; so what an editor shows, what `schema` prints and what a run
+//! accepts cannot differ. Only those words of JSON schema are known here that the scene's
+//! structs bring forth.
+
+use serde_json::{Map, Value};
+
+use super::errors::{Fault, list, nearest, suggest};
+
+/// `key` as a path takes it: in double quotes where it could be misread.
+pub(super) fn quote(key: &str) -> String {
+    let plain = !key.is_empty() && !key.contains(['.', '[', ']', '=', '"']);
+    if plain { key.to_string() } else { Value::from(key).to_string() }
+}
+
+/// Path of `key` below `path`, as `--set` takes it.
+pub(super) fn join(path: &str, key: &str) -> String {
+    if path.is_empty() { quote(key) } else { format!("{path}.{}", quote(key)) }
+}
+
+/// The key of an entry of an array: its name where no other has the same, else its number.
+fn entry_key(entries: &[Value], i: usize) -> String {
+    let name = |entry: &Value| entry.get("name").and_then(Value::as_str).map(str::to_string);
+    let unlike_others = |own: &String| {
+        !own.is_empty() && entries.iter().filter(|e| name(e).as_ref() == Some(own)).count() == 1
+    };
+    name(&entries[i]).filter(unlike_others).map_or(format!("[{i}]"), |own| quote(&own))
+}
+
+/// Holds `scene` against the schema; the first fault is told.
+pub(super) fn conform(scene: &Value) -> Result<(), Fault> {
+    let root = super::schema();
+    let empty = Map::new();
+    let definitions = root.get("$defs").and_then(Value::as_object).unwrap_or(&empty);
+    Conform { definitions }.check(&root, scene)
+}
+
+struct Conform<'a> {
+    definitions: &'a Map<String, Value>,
+}
+
+impl Conform<'_> {
+    fn resolve<'s>(&'s self, schema: &'s Value) -> &'s Value {
+        let name = schema.get("$ref").and_then(Value::as_str).and_then(|r| r.rsplit('/').next());
+        name.and_then(|name| self.definitions.get(name)).unwrap_or(schema)
+    }
+
+    fn check(&self, schema: &Value, value: &Value) -> Result<(), Fault> {
+        let schema = self.resolve(schema);
+        if let Some(options) = schema.get("anyOf").and_then(Value::as_array) {
+            let option = options.iter().find(|o| has_type(self.resolve(o), value));
+            return match option {
+                Some(option) => self.check(option, value),
+                None => Err(self.wrong(schema, value)),
+            };
+        }
+        if let Some(variants) = schema.get("oneOf").and_then(Value::as_array) {
+            return self.check_variants(schema, variants, value);
+        }
+        if !has_type(schema, value) {
+            return Err(self.wrong(schema, value));
+        }
+        match value {
+            Value::Number(_) if !within_bounds(schema, value) => Err(self.wrong(schema, value)),
+            Value::Array(entries) => self.check_array(schema, entries, value),
+            Value::Object(object) => self.check_object(schema, object),
+            _ => Ok(()),
+        }
+    }
+
+    /// What is allowed instead of `value`.
+    fn wrong(&self, schema: &Value, value: &Value) -> Fault {
+        Fault::new("", value, format!("not allowed; allowed: {}", self.allowed(schema)))
+    }
+
+    fn check_array(&self, schema: &Value, entries: &[Value], value: &Value) -> Result<(), Fault> {
+        let least = schema.get("minItems").and_then(Value::as_u64).unwrap_or(0);
+        if (entries.len() as u64) < least {
+            return Err(self.wrong(schema, value));
+        }
+        let Some(items) = schema.get("items") else { return Ok(()) };
+        for (i, entry) in entries.iter().enumerate() {
+            self.check(items, entry).map_err(|fault| fault.below(&entry_key(entries, i)))?;
+        }
+        Ok(())
+    }
+
+    fn check_object(&self, schema: &Value, object: &Map<String, Value>) -> Result<(), Fault> {
+        let empty = Map::new();
+        let known = schema.get("properties").and_then(Value::as_object).unwrap_or(&empty);
+        let others = schema.get("additionalProperties").filter(|others| others.is_object());
+        for (key, value) in object {
+            match known.get(key).or(others) {
+                Some(schema) => self.check(schema, value).map_err(|f| f.below(&quote(key)))?,
+                None => {
+                    let names = known.keys().map(String::as_str);
+                    let reason = format!("unknown key{}", suggest(key, names));
+                    return Err(Fault::new(quote(key), value, reason));
+                }
+            }
+        }
+        let required = schema.get("required").and_then(Value::as_array);
+        for key in required.into_iter().flatten().filter_map(Value::as_str) {
+            if !object.contains_key(key) {
+                let allowed = self.allowed(&known[key]);
+                let reason = format!("missing key; allowed: {allowed}");
+                return Err(Fault::missing(key, reason));
+            }
+        }
+        Ok(())
+    }
+
+    /// An enum: plain names, objects of one key, or objects that say their `type`.
+    fn check_variants(
+        &self,
+        schema: &Value,
+        variants: &[Value],
+        value: &Value,
+    ) -> Result<(), Fault> {
+        if variants.iter().any(|variant| constant(variant) == Some(value)) {
+            return Ok(());
+        }
+        let Value::Object(object) = value else {
+            return Err(self.no_variant(schema, variants, value));
+        };
+        if variants.iter().any(|variant| tag(variant).is_some()) {
+            return self.check_tagged(variants, object);
+        }
+        let (1, Some((key, inner))) = (object.len(), object.iter().next()) else {
+            return Err(self.wrong(schema, value));
+        };
+        let has_key = |v: &&Value| constant(v).is_none() && variant_name(v) == Some(key);
+        match variants.iter().find(has_key) {
+            Some(variant) => self.check_object(variant, object),
+            None => {
+                let known: Vec<_> = variants.iter().filter_map(variant_name).collect();
+                let reason = format!("unknown name{}", suggest(key, known));
+                Err(Fault::new(quote(key), inner, reason))
+            }
+        }
+    }
+
+    /// An object that says by its `type` which variant it is.
+    fn check_tagged(&self, variants: &[Value], object: &Map<String, Value>) -> Result<(), Fault> {
+        let known: Vec<_> = variants.iter().filter_map(tag).collect();
+        let Some(value) = object.get("type") else {
+            return Err(Fault::missing("type", format!("missing key; allowed: {}", list(known))));
+        };
+        let name = value.as_str().unwrap_or("");
+        match variants.iter().find(|variant| tag(variant) == Some(name)) {
+            Some(variant) => self.check_object(variant, object),
+            None => Err(Fault::new("type", value, format!("unknown type{}", suggest(name, known)))),
+        }
+    }
+
+    /// A value that is none of the variants; a name that is near to one is told.
+    fn no_variant(&self, schema: &Value, variants: &[Value], value: &Value) -> Fault {
+        let name = value.as_str().unwrap_or("");
+        let near = nearest(name, variants.iter().filter_map(variant_name));
+        let near = variants.iter().find(|v| near.is_some() && variant_name(v) == near);
+        let Some(near) = near else { return self.wrong(schema, value) };
+        let (near, allowed) = (self.allowed(near), self.allowed(schema));
+        Fault::new("", value, format!("not allowed; did you mean {near}? allowed: {allowed}"))
+    }
+
+    /// What a schema allows, in words.
+    fn allowed(&self, schema: &Value) -> String {
+        let schema = self.resolve(schema);
+        if let Some(options) = schema.get("anyOf").and_then(Value::as_array) {
+            let texts: Vec<_> = options.iter().map(|option| self.allowed(option)).collect();
+            return texts.join(", or ");
+        }
+        if let Some(variants) = schema.get("oneOf").and_then(Value::as_array) {
+            let texts: Vec<_> = variants.iter().map(|variant| self.allowed(variant)).collect();
+            return texts.join(", ");
+        }
+        if let Some(constant) = constant(schema) {
+            return constant.to_string();
+        }
+        let mut texts: Vec<_> =
+            types(schema).into_iter().map(|name| self.allowed_type(schema, name)).collect();
+        texts.dedup();
+        texts.join(", or ")
+    }
+
+    fn allowed_type(&self, schema: &Value, name: &str) -> String {
+        match name {
+            "number" => format!("a number{}", bounds(schema)),
+            "integer" => format!("a whole number{}", bounds(schema)),
+            "boolean" => "true or false".to_string(),
+            "string" => "a string".to_string(),
+            "array" => {
+                let entry = schema.get("items").map(|items| self.allowed(items));
+                let entry = entry.unwrap_or_else(|| "any value".to_string());
+                let empty = schema.get("minItems").and_then(Value::as_u64).unwrap_or(0) == 0;
+                let array = if empty { "an array" } else { "an array, not empty" };
+                format!("{array}, each entry {entry}")
+            }
+            "object" => match schema.get("properties").and_then(Value::as_object) {
+                Some(keys) if keys.len() == 1 => {
+                    let texts =
+                        keys.iter().map(|(k, s)| format!("{{\"{k}\": {}}}", self.allowed(s)));
+                    texts.collect::<String>()
+                }
+                Some(keys) => {
+                    let names: Vec<_> = keys.keys().map(String::as_str).collect();
+                    format!("an object with the keys {}", names.join(", "))
+                }
+                None => "an object of names".to_string(),
+            },
+            other => other.to_string(),
+        }
+    }
+}
+
+/// The one value that a variant stands for.
+fn constant(variant: &Value) -> Option<&Value> {
+    variant.get("const")
+}
+
+/// The `type` of a variant that says it.
+fn tag(variant: &Value) -> Option<&str> {
+    variant.get("properties")?.get("type")?.get("const")?.as_str()
+}
+
+/// The name of a variant: itself, or the only key of its object.
+fn variant_name(variant: &Value) -> Option<&str> {
+    match constant(variant) {
+        Some(name) => name.as_str(),
+        None => variant.get("required")?.get(0)?.as_str(),
+    }
+}
+
+fn types(schema: &Value) -> Vec<&str> {
+    match schema.get("type") {
+        Some(Value::String(name)) => vec![name],
+        Some(Value::Array(names)) => names.iter().filter_map(Value::as_str).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Whether `value` is of a type that the schema allows; variants are told apart later.
+fn has_type(schema: &Value, value: &Value) -> bool {
+    if schema.get("oneOf").is_some() {
+        return !value.is_null();
+    }
+    types(schema).into_iter().any(|name| match name {
+        "number" => value.is_number(),
+        "integer" => value.is_u64() || value.is_i64(),
+        "boolean" => value.is_boolean(),
+        "string" => value.is_string(),
+        "array" => value.is_array(),
+        "object" => value.is_object(),
+        "null" => value.is_null(),
+        _ => false,
+    })
+}
+
+fn within_bounds(schema: &Value, value: &Value) -> bool {
+    let Some(number) = value.as_f64() else { return false };
+    let bound = |key: &str| schema.get(key).and_then(Value::as_f64);
+    let widest = match schema.get("format").and_then(Value::as_str) {
+        Some("uint32") => f64::from(u32::MAX),
+        _ => f64::INFINITY,
+    };
+    bound("minimum").is_none_or(|b| number >= b)
+        && bound("maximum").is_none_or(|b| number <= b)
+        && bound("exclusiveMinimum").is_none_or(|b| number > b)
+        && bound("exclusiveMaximum").is_none_or(|b| number < b)
+        && number <= widest
+}
+
+/// The bounds of a number in words, with a blank before them.
+fn bounds(schema: &Value) -> String {
+    let mut texts = Vec::new();
+    for (key, words) in [
+        ("exclusiveMinimum", "above"),
+        ("minimum", "at least"),
+        ("exclusiveMaximum", "below"),
+        ("maximum", "at most"),
+    ] {
+        if let Some(bound) = schema.get(key).and_then(Value::as_f64) {
+            texts.push(format!("{words} {bound}"));
+        }
+    }
+    if texts.is_empty() { String::new() } else { format!(" {}", texts.join(" and ")) }
+}

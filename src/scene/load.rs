@@ -1,0 +1,215 @@
+//! From a file to a checked scene: read, parse, override, hold against the schema, check.
+//!
+//! Knows no MPI: one rank reads the bytes and sends them, every rank parses them, and
+//! [`parse`] looks at nothing but its arguments, so that all reach the same verdict.
+
+use std::fmt;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde_json::{Map, Value};
+
+use super::errors::{Fault, LONGEST_VALUE, SceneError, one_line, shorten};
+use super::overrides::apply;
+use super::{CheckedScene, Scene, conform::conform};
+
+/// A scene's file may be this long [bytes].
+pub const LARGEST_FILE: u64 = 16 << 20;
+
+/// Reads the text of a scene, at most [`LARGEST_FILE`] bytes; it is not looked into.
+pub fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
+    let fail = |reason: String| SceneError::File {
+        file: one_line(&path.display().to_string()),
+        reason: one_line(&reason),
+    };
+    let cannot = |error: std::io::Error| fail(format!("cannot be read: {error}"));
+    let metadata = std::fs::metadata(path).map_err(cannot)?;
+    if !metadata.is_file() {
+        let kind = if metadata.is_dir() { "a directory" } else { "no regular file" };
+        return Err(fail(format!("is {kind}; allowed: a scene, one JSON file")));
+    }
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(LARGEST_FILE + 1).read_to_end(&mut bytes))
+        .map_err(cannot)?;
+    if bytes.len() as u64 > LARGEST_FILE {
+        let length = metadata.len();
+        return Err(fail(format!(
+            "is {length} bytes long; allowed: a scene of at most {LARGEST_FILE} bytes (16 MiB)"
+        )));
+    }
+    Ok(bytes)
+}
+
+/// Makes a checked scene of a file's bytes and the overrides `PATH=VALUE`, in their order.
+///
+/// `file` names the scene in messages. The first fault ends it.
+pub fn parse(bytes: &[u8], file: &str, sets: &[String]) -> Result<CheckedScene, SceneError> {
+    let mut value = parse_json(bytes, file)?;
+    if value.is_object() {
+        for set in sets {
+            apply(&mut value, set)?;
+        }
+    }
+    from_value(value, file)
+}
+
+/// Checks a scene that was not read from a file; `file` names it in messages.
+pub fn check(scene: Scene, file: &str) -> Result<CheckedScene, SceneError> {
+    // a number that is not finite becomes null here, and is refused as such
+    let value =
+        serde_json::to_value(scene).map_err(|e| Fault::missing("", e.to_string()).within(file))?;
+    from_value(value, file)
+}
+
+fn from_value(value: Value, file: &str) -> Result<CheckedScene, SceneError> {
+    conform(&value).map_err(|fault| fault.within(file))?;
+    let scene = serde_path_to_error::deserialize(value)
+        .map_err(|e| Fault::missing(e.path().to_string(), e.inner().to_string()).within(file))?;
+    CheckedScene::new(scene, file).map_err(|fault| fault.within(file))
+}
+
+/// Parses JSON text; a key that stands twice is a fault.
+fn parse_json(bytes: &[u8], file: &str) -> Result<Value, SceneError> {
+    let fail = |reason: &str| SceneError::File { file: one_line(file), reason: reason.to_string() };
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        fail(&format!("is not UTF-8 from byte {} on; allowed: JSON in UTF-8", error.valid_up_to()))
+    })?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    if text.trim().is_empty() {
+        return Err(fail("is empty; allowed: a scene, one JSON object"));
+    }
+    let mut reader = serde_json::Deserializer::from_str(text);
+    let value = serde_path_to_error::deserialize::<_, Strict>(&mut reader)
+        .map_err(|e| (e.path().to_string(), e.into_inner()))
+        .and_then(|Strict(value)| match reader.end() {
+            Ok(()) => Ok(value),
+            Err(error) => Err((String::new(), error)),
+        });
+    value.map_err(|(path, error)| SceneError::Syntax {
+        file: one_line(file),
+        line: error.line(),
+        column: error.column(),
+        path: one_line(&shorten(key_path(&path), LONGEST_VALUE)),
+        reason: one_line(&syntax_reason(text, &error)),
+    })
+}
+
+/// The known part of a path of serde_path_to_error, which ends in `?` between two keys.
+fn key_path(path: &str) -> &str {
+    path.trim_end_matches('?').trim_end_matches('.')
+}
+
+/// What serde_json says, in plain words and with the text that it stumbled over.
+fn syntax_reason(text: &str, error: &serde_json::Error) -> String {
+    let said = error.to_string();
+    let said = said.split(" at line ").next().unwrap_or(&said);
+    if said.starts_with("recursion limit") {
+        return "nested too deep; allowed: at most 127 levels".to_string();
+    }
+    if error.is_eof() {
+        return format!("not JSON, the text ends too early ({said})");
+    }
+    if error.is_data() {
+        return said.to_string();
+    }
+    let token = token_at(text, error.line(), error.column());
+    match said {
+        "number out of range" => {
+            format!("{token} is too large for a number; allowed: finite numbers, at most 1.7e308")
+        }
+        "expected value" | "expected ident" | "invalid number" if is_word(&token) => {
+            format!(
+                "{token} is not JSON; allowed: a finite number, a string in quotes, true, false, null, [...] or {{...}}"
+            )
+        }
+        _ => format!("not JSON, {said}, found {token}"),
+    }
+}
+
+fn is_word(token: &str) -> bool {
+    token.chars().any(char::is_alphanumeric)
+}
+
+/// The word about a line and column, both from 1, the column in bytes.
+fn token_at(text: &str, line: usize, column: usize) -> String {
+    let line = text.split('\n').nth(line.saturating_sub(1)).unwrap_or("");
+    let mut at = column.saturating_sub(1).min(line.len());
+    while !line.is_char_boundary(at) {
+        at -= 1;
+    }
+    let ends = |c: char| c.is_whitespace() || ",:[]{}\"".contains(c);
+    let start = line[..at].rfind(ends).map_or(0, |i| i + 1);
+    let end = line[at..].find(ends).map_or(line.len(), |i| at + i);
+    let word = match line[start..end].trim() {
+        "" => line[at..].chars().next().map_or("the end of the line".to_string(), String::from),
+        word => word.to_string(),
+    };
+    shorten(&word, LONGEST_VALUE)
+}
+
+/// A JSON value in whose objects no key stands twice.
+struct Strict(Value);
+
+impl<'de> Deserialize<'de> for Strict {
+    fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<Self, D::Error> {
+        reader.deserialize_any(StrictVisitor).map(Strict)
+    }
+}
+
+struct StrictVisitor;
+
+impl<'de> Visitor<'de> for StrictVisitor {
+    type Value = Value;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a JSON value")
+    }
+
+    fn visit_bool<E>(self, value: bool) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_u64<E>(self, value: u64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_f64<E>(self, value: f64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_str<E>(self, value: &str) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_unit<E>(self) -> Result<Value, E> {
+        Ok(Value::Null)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<Value, A::Error> {
+        let mut array = Vec::new();
+        while let Some(Strict(entry)) = entries.next_element()? {
+            array.push(entry);
+        }
+        Ok(array.into())
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Value, A::Error> {
+        let mut object = Map::new();
+        while let Some(key) = entries.next_key::<String>()? {
+            if object.contains_key(&key) {
+                let key = Value::from(key);
+                return Err(de::Error::custom(format!("key {key} stands twice; allowed: once")));
+            }
+            let Strict(value) = entries.next_value()?;
+            object.insert(key, value);
+        }
+        Ok(object.into())
+    }
+}

@@ -1,0 +1,24 @@
+//! The scene: what a run is told, read from JSON and checked once, whole.
+//!
+//! [`read`] takes the bytes from a file, [`parse`] makes a [`CheckedScene`] of them or one
+//! [`SceneError`] of one line: the key's path, its value, what is allowed. Knows no MPI and no
+//! particles.
+
+// units in brackets, such as [m], are no links
+#![allow(rustdoc::broken_intra_doc_links)]
+
+mod check;
+mod conform;
+mod errors;
+mod load;
+mod model;
+mod overrides;
+mod schema;
+
+pub use check::{
+    BYTES_PER_CELL, BYTES_PER_PARTICLE, CheckedBody, CheckedScene, Wall, available_memory,
+};
+pub use errors::SceneError;
+pub use load::{LARGEST_FILE, check, parse, read};
+pub use model::*;
+pub use schema::schema;

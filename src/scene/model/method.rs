@@ -1,0 +1,160 @@
+//! The scheme and the artificial viscosity.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The scheme. Options left out take the plain textbook form.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Method {
+    /// Shape function.
+    pub shape: ShapeKind,
+    /// Transfer of velocity from the grid to the particles.
+    pub transfer: Transfer,
+    /// When stress is updated within a leapfrog step.
+    #[serde(default)]
+    pub stress_update: StressUpdate,
+    /// How a step is centred in time.
+    #[serde(default)]
+    pub stepping: Stepping,
+    /// How the work of the stress is counted into the internal energy.
+    #[serde(default)]
+    pub energy: EnergyUpdate,
+    /// Give the kinetic energy that the transfer's filter takes back to the same particle as
+    /// heat.
+    #[serde(default)]
+    pub filter_heat: bool,
+    /// Relaxation of the pressure towards its projection on the grid; absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure_relaxation: Option<PressureRelaxation>,
+    /// Fraction of a node's volume that must hold material for the filter's inverse to act on
+    /// its force [-]; absent: no mask.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0), extend("exclusiveMaximum" = 1.0))]
+    pub edge_mask: Option<f64>,
+}
+
+/// Shape functions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ShapeKind {
+    /// Hat functions at the particle's centre (Sulsky, Chen & Schreyer 1994).
+    Linear,
+    /// Hat functions averaged over the particle's undeformed size (Bardenhagen & Kober 2004).
+    Gimp,
+    /// Hat functions interpolated from the corners of the deforming particle (Sadeghirad,
+    /// Brannon & Burghardt 2011).
+    Cpdi,
+    /// Quadratic B-splines at the particle's centre (Steffen, Kirby & Berzins 2008).
+    BsplineQuadratic,
+    /// Cubic B-splines at the particle's centre (Steffen, Kirby & Berzins 2008).
+    BsplineCubic,
+    /// Quadratic B-splines averaged over the deforming particle.
+    CpdiBsplineQuadratic,
+}
+
+/// Transfers of velocity.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Transfer {
+    /// Adds the nodal change of velocity to the particle's (Brackbill & Ruppel 1986).
+    Flip,
+    /// Takes the nodal velocity (Harlow 1964).
+    Pic,
+    /// Takes the nodal velocity and its affine part (Jiang et al. 2015).
+    Apic,
+    /// This share of FLIP, the rest PIC [-].
+    FlipPic(#[schemars(range(min = 0.0, max = 1.0))] f64),
+    /// Filters the particle's velocity, by this order (Hammerquist & Nairn 2017).
+    Xpic(#[schemars(range(min = 1, max = 50))] u32),
+    /// Full mass matrix by a series of this order, for velocity and force (Nairn & Hammerquist 2021).
+    Fmpm(#[schemars(range(min = 1, max = 50))] u32),
+}
+
+/// Orders of the stress update.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum StressUpdate {
+    /// After the momentum, from the new nodal velocity (USL).
+    #[default]
+    Last,
+    /// Before the momentum, from the old nodal velocity (USF).
+    First,
+    /// After the momentum, from the new particle velocity mapped to the nodes again (MUSL).
+    ModifiedLast,
+}
+
+/// How a step is centred in time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Stepping {
+    /// Stress and shape functions at the start of the step.
+    #[default]
+    Leapfrog,
+    /// Stress and shape functions at the middle of the step.
+    Midpoint,
+}
+
+/// How the work of the stress is counted into the internal energy.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum EnergyUpdate {
+    /// -(p + q) dv along the particle's own change of volume, by the mid-point rule.
+    #[default]
+    Textbook,
+    /// With the nodal velocity that makes kinetic and internal energy add up to rounding.
+    Compatible,
+    /// With the mean of the old and new nodal velocity: cheaper, not exact.
+    CompatibleMean,
+}
+
+/// Relaxation of the pressure.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PressureRelaxation {
+    /// Fraction of the deviation that one relaxation takes away [-].
+    #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0.0))]
+    pub rate: f64,
+    /// Steps from one relaxation to the next.
+    #[schemars(range(min = 1))]
+    pub interval: u32,
+}
+
+/// Artificial viscosity q = rho (linear c h |D| + quadratic h^2 D^2), in compression alone.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ArtificialViscosity {
+    /// Coefficient of the linear term [-].
+    #[schemars(range(min = 0.0))]
+    pub linear: f64,
+    /// Coefficient of the quadratic term [-].
+    #[schemars(range(min = 0.0))]
+    pub quadratic: f64,
+    /// Takes viscosity away where the velocity is smooth; absent: full viscosity.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limiter: Option<Limiter>,
+    /// The terms that the limiter acts on.
+    #[serde(default)]
+    pub limited: LimitedTerms,
+}
+
+/// Limiters of the artificial viscosity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Limiter {
+    /// From the ratios of the neighbouring cells' gradients (Christensen 1990).
+    Christensen,
+    /// From the least nodal mean of the gradient about the particle.
+    Nodal,
+}
+
+/// Terms that a limiter acts on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LimitedTerms {
+    /// The linear term.
+    #[default]
+    Linear,
+    /// Both terms.
+    Both,
+}

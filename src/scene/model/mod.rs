@@ -1,0 +1,126 @@
+//! The scene as it stands in the JSON file: plain structs and the bounds of single numbers.
+//!
+//! The bounds are attributes of the fields: the JSON schema shows them, and reading a scene
+//! checks them against that same schema. What two keys say of each other is not known here.
+
+mod matter;
+mod method;
+mod output;
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+pub use matter::*;
+pub use method::*;
+pub use output::*;
+
+/// A scene: everything that a run is told.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// One line that names the run in tables and pictures.
+    pub title: String,
+    /// What the scene is, and the sources of its constants.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub description: String,
+    /// The grid.
+    pub domain: Domain,
+    /// When to end, and the length of steps.
+    pub time: Time,
+    /// The scheme.
+    pub method: Method,
+    /// Materials by name.
+    pub materials: BTreeMap<String, Material>,
+    /// Bodies; their order numbers the particles.
+    #[schemars(length(min = 1))]
+    pub bodies: Vec<Body>,
+    /// Artificial viscosity; absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub artificial_viscosity: Option<ArtificialViscosity>,
+    /// What stands at the sides of the domain; absent: free on every side.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub boundary: Option<Boundary>,
+    /// What is written.
+    #[serde(default)]
+    pub output: Output,
+    /// The exact solution that the run is held against.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference: Option<Reference>,
+}
+
+/// The domain, a box of cells cut into patches.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Domain {
+    /// Lower corner [m]; its length is the dimension of the scene.
+    #[schemars(length(min = 1))]
+    pub lower: Vec<f64>,
+    /// Upper corner [m].
+    pub upper: Vec<f64>,
+    /// Edge of a cell [m], one number or one a direction; the domain is a whole number of cells.
+    pub cell_size: CellSize,
+    /// Patches in each direction; absent: chosen from ranks and threads, and printed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = 1)))]
+    pub patches: Option<Vec<usize>>,
+}
+
+/// Edge of a cell [m].
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum CellSize {
+    /// The same in each direction.
+    Uniform(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
+    /// One a direction.
+    PerDirection(
+        #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0.0}))] Vec<f64>,
+    ),
+}
+
+/// Time.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Time {
+    /// End of the run [s].
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub end: f64,
+    /// Courant number, in (0, 1] [-].
+    #[serde(default = "default_courant")]
+    #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0.0))]
+    pub courant: f64,
+}
+
+fn default_courant() -> f64 {
+    0.4
+}
+
+/// The sides of the domain; one left out is free.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Boundary {
+    /// Side at the lower end of x.
+    pub x_lower: Side,
+    /// Side at the upper end of x.
+    pub x_upper: Side,
+}
+
+/// What stands at one side of the domain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Nothing: a particle that passes it ends the run.
+    #[default]
+    Free,
+    /// A plane of symmetry.
+    Symmetry,
+    /// A rigid wall; in one dimension the same as symmetry.
+    Wall,
+    /// Joined to the opposite side.
+    Periodic,
+    /// Open: a particle that passes it leaves the run, and is booked.
+    Outflow,
+    /// A rigid piston with this velocity along x [m/s]; the grid travels with it.
+    Velocity(f64),
+}

@@ -1,0 +1,100 @@
+//! What is written, and the exact solution that a run is held against.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What is written.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Output {
+    /// Profiles: every particle at given times.
+    pub profiles: Profiles,
+    /// Histories; absent: none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub histories: Option<Histories>,
+    /// Write `results.hdf5`.
+    pub hdf5: bool,
+    /// Draw the pictures.
+    pub pictures: bool,
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Output { profiles: Profiles::default(), histories: None, hdf5: true, pictures: true }
+    }
+}
+
+/// Profiles.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Profiles {
+    /// Times [s], increasing, each met exactly; empty: the end alone.
+    #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0.0}))]
+    pub times: Vec<f64>,
+}
+
+/// Histories.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Histories {
+    /// Time from one row to the next [s]; a row is taken at the first step's end past it.
+    /// Absent: a two hundredth of the end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub interval: Option<f64>,
+    /// Particles that are followed.
+    #[serde(default)]
+    pub tracers: Vec<Tracer>,
+}
+
+/// A particle that is followed.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Tracer {
+    /// Name of its columns.
+    pub name: String,
+    /// Body it belongs to.
+    pub body: String,
+    /// The particle that starts nearest to this place is taken [m].
+    pub at: Vec<f64>,
+}
+
+/// The exact solution that a run is held against.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Reference {
+    /// A plate strikes a target (Burghardt 2010).
+    FlyerImpact(FlyerImpact),
+    /// Two ideal gases, the diaphragm removed at the start (Sod 1978).
+    Riemann(Riemann),
+    /// A body runs into a rigid wall or is driven by a piston: one steady shock.
+    WallImpact(WallImpact),
+}
+
+/// Two names of bodies; all else comes from them.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FlyerImpact {
+    /// The plate that strikes.
+    pub flyer: String,
+    /// The plate that is struck; profiles are scored in it.
+    pub target: String,
+}
+
+/// Two names of bodies that touch.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Riemann {
+    /// The body on the lower side.
+    pub left: String,
+    /// The body on the upper side.
+    pub right: String,
+}
+
+/// The body that runs into the wall.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WallImpact {
+    /// The body.
+    pub body: String,
+}

@@ -1,0 +1,33 @@
+//! Cubic B-splines at the particle's centre (Steffen, Kirby & Berzins 2008). The splines run on
+//! beyond a body's ends; at a wall they are mirrored, which is their right boundary form.
+
+use super::{Extent, Shape, Weights};
+
+/// Cubic B-splines.
+#[derive(Clone, Copy, Debug)]
+pub struct BsplineCubic;
+
+impl Shape for BsplineCubic {
+    const EXTENT: Extent = Extent::Point;
+
+    fn nodes(_length: f64) -> usize {
+        4
+    }
+
+    #[inline(always)]
+    fn weights<const K: usize>(fraction: f64, _length: f64) -> Weights<K> {
+        let t = fraction;
+        let r = 1.0 - t;
+        let sixth = 1.0 / 6.0;
+        let mut w = Weights::none(-1);
+        w.values[0] = r * r * r * sixth;
+        w.values[1] = (3.0 * t * t * t - 6.0 * t * t + 4.0) * sixth;
+        w.values[2] = (3.0 * r * r * r - 6.0 * r * r + 4.0) * sixth;
+        w.values[3] = t * t * t * sixth;
+        w.gradients[0] = -0.5 * r * r;
+        w.gradients[1] = 1.5 * t * t - 2.0 * t;
+        w.gradients[2] = -1.5 * r * r + 2.0 * r;
+        w.gradients[3] = 0.5 * t * t;
+        w
+    }
+}

@@ -1,0 +1,49 @@
+//! Quadratic B-splines averaged over the deforming particle: the CPDI idea on smoother
+//! functions.
+//!
+//! Values by Simpson's rule over the particle's length, (phi(lower) + 4 phi(centre) +
+//! phi(upper))/6, which keeps linear fields exact; gradients by the exact mean,
+//! (phi(upper) - phi(lower))/length. The same rule serves parallelograms in two dimensions.
+
+use super::{Extent, Shape, Weights, quadratic};
+
+/// Quadratic B-splines averaged over the deforming particle.
+#[derive(Clone, Copy, Debug)]
+pub struct CpdiBsplineQuadratic;
+
+impl Shape for CpdiBsplineQuadratic {
+    const EXTENT: Extent = Extent::Current;
+
+    fn nodes(length: f64) -> usize {
+        length.ceil() as usize + 3
+    }
+
+    #[inline(always)]
+    fn weights<const K: usize>(fraction: f64, length: f64) -> Weights<K> {
+        let half = 0.5 * length;
+        let (first, lower) = quadratic(fraction - half);
+        let (middle, centre) = quadratic(fraction);
+        let (last, upper) = quadratic(fraction + half);
+        let (c, u) = ((middle - first) as usize, (last - first) as usize);
+        let (sixth, inverse) = (1.0 / 6.0, 1.0 / length);
+        let mut w = Weights::none(first);
+        let pick = |values: &[f64; 3], from: usize, k: usize| {
+            let at = k.wrapping_sub(from);
+            if at == 0 {
+                values[0]
+            } else if at == 1 {
+                values[1]
+            } else if at == 2 {
+                values[2]
+            } else {
+                0.0
+            }
+        };
+        for k in 0..K {
+            let (at_lower, at_upper) = (pick(&lower, 0, k), pick(&upper, u, k));
+            w.values[k] = (at_lower + 4.0 * pick(&centre, c, k) + at_upper) * sixth;
+            w.gradients[k] = (at_upper - at_lower) * inverse;
+        }
+        w
+    }
+}

@@ -1,0 +1,136 @@
+//! Shape functions: one file a function, one line a function in [`with_shape`](crate::step).
+//!
+//! A shape function gives a particle weights on the nodes about it. Lengths are in cells: a
+//! particle lies at `fraction` in [0, 1) of its cell and is `length` long. Knows no materials,
+//! no time, no messages.
+
+mod bspline_cubic;
+mod bspline_quadratic;
+mod cpdi;
+mod cpdi_bspline_quadratic;
+mod gimp;
+mod linear;
+
+pub use bspline_cubic::BsplineCubic;
+pub use bspline_quadratic::BsplineQuadratic;
+pub use cpdi::Cpdi;
+pub use cpdi_bspline_quadratic::CpdiBsplineQuadratic;
+pub use gimp::Gimp;
+pub use linear::Linear;
+
+/// Weights of one particle on a line of `K` nodes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weights<const K: usize> {
+    /// First node, counted from the particle's cell's lower node.
+    pub first: i32,
+    /// Value of each node's function; they sum to 1.
+    pub values: [f64; K],
+    /// Gradient of each node's function [1/cell]; they sum to 0.
+    pub gradients: [f64; K],
+}
+
+impl<const K: usize> Weights<K> {
+    fn none(first: i32) -> Self {
+        Weights { first, values: [0.0; K], gradients: [0.0; K] }
+    }
+}
+
+/// A shape function along one direction.
+pub trait Shape: Copy + Send + Sync + 'static {
+    /// Whether the particle's length matters, and if so whether it is the deformed one.
+    const EXTENT: Extent;
+
+    /// Most nodes that a particle of `length` (and all shorter ones) gives weight to.
+    fn nodes(length: f64) -> usize;
+
+    /// The weights of a particle at `fraction` of its cell. `K` is at least `nodes(length)`.
+    fn weights<const K: usize>(fraction: f64, length: f64) -> Weights<K>;
+}
+
+/// Which length of the particle a shape function looks at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// None.
+    Point,
+    /// The undeformed one.
+    Undeformed,
+    /// The current one.
+    Current,
+}
+
+/// The three quadratic B-splines at `x` and the first of their nodes. Their knots lie midway
+/// between nodes.
+#[inline(always)]
+fn quadratic(x: f64) -> (i32, [f64; 3]) {
+    let first = (x - 0.5).floor();
+    let t = x - 0.5 - first;
+    let r = 1.0 - t;
+    (first as i32, [0.5 * r * r, 0.5 + t * r, 0.5 * t * t])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sums that every shape function keeps, for particles anywhere and of any length.
+    fn check<S: Shape>(linear: bool) {
+        for i in 0..50 {
+            for length in [0.01, 0.24, 0.5, 0.77, 1.0, 1.3, 2.4] {
+                if S::EXTENT == Extent::Undeformed && length > 1.0 {
+                    continue;
+                }
+                let fraction = i as f64 / 50.0;
+                assert!(S::nodes(length) <= 8);
+                let w = S::weights::<8>(fraction, length);
+                let sum: f64 = w.values.iter().sum();
+                let slope: f64 = w.gradients.iter().sum();
+                assert!((sum - 1.0).abs() < 1e-14, "values sum to {sum}");
+                assert!(slope.abs() < 1e-12, "gradients sum to {slope}");
+                let place = |k: usize| (w.first + k as i32) as f64;
+                let x: f64 = (0..8).map(|k| w.values[k] * place(k)).sum();
+                let dx: f64 = (0..8).map(|k| w.gradients[k] * place(k)).sum();
+                if linear {
+                    assert!((x - fraction).abs() < 1e-14, "x at {fraction}: {x}");
+                    assert!((dx - 1.0).abs() < 1e-12, "gradient of x at {fraction}: {dx}");
+                }
+                let used = (0..8).filter(|&k| w.values[k] != 0.0).max().unwrap() + 1;
+                assert!(used <= S::nodes(length), "{used} nodes at {fraction}, {length}");
+            }
+        }
+    }
+
+    #[test]
+    fn values_sum_to_one_and_gradients_to_zero() {
+        check::<Linear>(true);
+        check::<Gimp>(true);
+        check::<Cpdi>(true);
+        check::<BsplineQuadratic>(true);
+        check::<BsplineCubic>(true);
+        check::<CpdiBsplineQuadratic>(true);
+    }
+
+    #[test]
+    fn fewer_nodes_give_the_same_weights() {
+        let wide = CpdiBsplineQuadratic::weights::<8>(0.3, 0.5);
+        let narrow = CpdiBsplineQuadratic::weights::<4>(0.3, 0.5);
+        assert_eq!(wide.values[..4], narrow.values);
+        assert_eq!(wide.gradients[..4], narrow.gradients);
+    }
+
+    #[test]
+    fn gradients_of_point_shapes_are_derivatives_of_their_values() {
+        fn compare<S: Shape>() {
+            let h = 1e-6;
+            let (a, b) = (S::weights::<8>(0.3 - h, 0.4), S::weights::<8>(0.3 + h, 0.4));
+            let w = S::weights::<8>(0.3, 0.4);
+            for k in 0..8 {
+                let slope = (b.values[k] - a.values[k]) / (2.0 * h);
+                assert!((w.gradients[k] - slope).abs() < 1e-8, "node {k}");
+            }
+        }
+        compare::<Linear>();
+        compare::<Gimp>();
+        compare::<BsplineQuadratic>();
+        compare::<BsplineCubic>();
+    }
+}

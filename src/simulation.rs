@@ -1,0 +1,490 @@
+//! A run in memory: the scene's particles on their patches, advanced step by step.
+//!
+//! A value, without globals: several can live in one process. Files and pictures are made
+//! elsewhere from what it tells.
+
+use decomp::{
+    Comm, IndexBox, Layout, NodeArrays, NodeExchange, RowError, RowExchange, assign_patches,
+    choose_cuts, exact_sums, gather_rows,
+};
+use sha2::{Digest, Sha256};
+
+use crate::output::{ParticleTable, TableColumn};
+use crate::particles::{self, Columns};
+use crate::patch::{Left, Patch};
+use crate::scene::{CheckedScene, Side};
+use crate::step::{PhaseTimes, Reach, Stepper, World};
+
+/// Why a run ended before its time.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// A particle's state is none that the run could go on from.
+    #[error(
+        "particle {id} of body `{body}` at x = {position:.6e} m, time {time:.6e} s, step {step}: {what}"
+    )]
+    Particle {
+        /// Its id.
+        id: u64,
+        /// Name of its body.
+        body: String,
+        /// Its position [m].
+        position: f64,
+        /// Time [s].
+        time: f64,
+        /// Number of the step.
+        step: u64,
+        /// What is wrong.
+        what: String,
+    },
+    /// The time step has become too short to end.
+    #[error(
+        "time {time:.6e} s, step {step}: the stable time step has fallen to {dt:.3e} s; the run is unstable or the scene too stiff"
+    )]
+    TimeStep {
+        /// Time [s].
+        time: f64,
+        /// Number of the step.
+        step: u64,
+        /// The step [s].
+        dt: f64,
+    },
+    /// A row was lost by the decomposition.
+    #[error(transparent)]
+    Row(#[from] RowError),
+    /// Another rank tells.
+    #[error("another rank has failed")]
+    Elsewhere,
+}
+
+/// Sums over all particles, to the same bits for any layout.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Totals {
+    /// Mass [kg].
+    pub mass: f64,
+    /// Momentum [kg m/s].
+    pub momentum: f64,
+    /// Sum of m |v| [kg m/s].
+    pub absolute_momentum: f64,
+    /// Kinetic energy [J].
+    pub kinetic: f64,
+    /// Internal energy [J].
+    pub internal: f64,
+}
+
+/// What a particle that is followed tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Followed {
+    /// Its position [m].
+    pub position: f64,
+    /// Its velocity [m/s].
+    pub velocity: f64,
+    /// Its pressure [Pa].
+    pub pressure: f64,
+    /// Half of its length [m].
+    pub half_length: f64,
+}
+
+/// A run in memory.
+pub struct Simulation<'a, C: Comm + ?Sized> {
+    comm: &'a C,
+    scene: &'a CheckedScene,
+    stepper: Stepper,
+    layout: Layout<1>,
+    patches: Vec<Patch<1>>,
+    reach: Reach,
+    rows: RowExchange<1>,
+    nodes: NodeExchange<1>,
+    pool: Option<rayon::ThreadPool>,
+    times: PhaseTimes,
+    grid_velocity: f64,
+    time: f64,
+    step: u64,
+    dt: f64,
+}
+
+/// What the side of a scene is to the decomposition.
+fn decomp_side(side: Side) -> decomp::Side {
+    match side {
+        Side::Free | Side::Outflow => decomp::Side::Open,
+        Side::Symmetry | Side::Wall | Side::Velocity(_) => decomp::Side::Mirror,
+        Side::Periodic => decomp::Side::Wrap,
+    }
+}
+
+/// The sides of a scene.
+pub fn sides(scene: &CheckedScene) -> [Side; 2] {
+    scene.scene.boundary.as_ref().map_or([Side::Free; 2], |b| [b.x_lower, b.x_upper])
+}
+
+/// The velocity at which the grid travels with a piston [m/s].
+fn grid_velocity(scene: &CheckedScene) -> f64 {
+    sides(scene).iter().find_map(|s| if let Side::Velocity(v) = s { Some(*v) } else { None }).unwrap_or(0.0)
+}
+
+/// Patches narrower than this only cost.
+const LEAST_CELLS: usize = 16;
+
+/// The number of patches for a scene on so many ranks and threads: the scene's own, or one for
+/// each thread of each rank unless they would be too narrow.
+pub fn patch_counts(scene: &CheckedScene, ranks: usize, threads: usize) -> Vec<usize> {
+    match &scene.scene.domain.patches {
+        Some(patches) => patches.clone(),
+        None => choose_cuts([scene.cells[0]], ranks * threads, LEAST_CELLS).to_vec(),
+    }
+}
+
+/// Particles in each patch, counted without making them.
+fn count_particles(scene: &CheckedScene, layout: &Layout<1>) -> Vec<u64> {
+    let mut counts = vec![0u64; layout.patches().len()];
+    for (body, checked) in scene.scene.bodies.iter().zip(&scene.bodies) {
+        let (lower, upper) = (body.extent.lower[0], body.extent.upper[0]);
+        for (count, patch) in counts.iter_mut().zip(layout.patches()) {
+            let x = |cell: i64| scene.scene.domain.lower[0] + cell as f64 * scene.cell_size[0];
+            let inside = (upper.min(x(patch.upper[0])) - lower.max(x(patch.lower[0]))).max(0.0);
+            *count += (inside / (upper - lower) * checked.lattice[0] as f64).round() as u64;
+        }
+    }
+    counts
+}
+
+impl<'a, C: Comm + ?Sized> Simulation<'a, C> {
+    /// Makes the particles of `scene`. Collective.
+    pub fn new(scene: &'a CheckedScene, comm: &'a C, threads: usize) -> Result<Self, RunError> {
+        let stepper = Stepper::new(scene);
+        let cuts = patch_counts(scene, comm.size(), threads);
+        let domain = IndexBox::new([0], [scene.cells[0] as i64]);
+        let layout = Layout::new(domain, [sides(scene).map(decomp_side)], [cuts[0]]);
+        let weights = count_particles(scene, &layout);
+        let layout = layout.with_ranks(assign_patches(&weights, comm.size()));
+        let grid_velocity = grid_velocity(scene);
+        let energies = stepper.starting_energies(scene);
+        let blocks = particles::fill(
+            scene,
+            &stepper.columns,
+            &layout,
+            comm.rank(),
+            grid_velocity,
+            &energies,
+        );
+        let longest = (scene.scene.bodies.iter().zip(&scene.bodies))
+            .map(|(b, c)| (b.extent.upper[0] - b.extent.lower[0]) / c.lattice[0] as f64)
+            .fold(0.0, f64::max)
+            / scene.cell_size[0];
+        let reach = stepper.reach(longest).unwrap_or(Reach { nodes: 4 });
+        let patches = layout.patches_of(comm.rank()).into_iter().zip(blocks).map(|(p, block)| {
+            Patch::new(&layout, p, block, reach.depth(), stepper.fields.count)
+        });
+        let pool = (threads > 1).then(|| {
+            rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .expect("the system gives threads")
+        });
+        let mut simulation = Simulation {
+            comm,
+            scene,
+            patches: patches.collect(),
+            rows: RowExchange::new(&layout, comm.rank(), reach.cells(), 1),
+            nodes: NodeExchange::new(&layout, comm.rank(), reach.halo()),
+            stepper,
+            layout,
+            reach,
+            pool,
+            times: PhaseTimes::default(),
+            grid_velocity,
+            time: 0.0,
+            step: 0,
+            dt: 0.0,
+        };
+        simulation.check_reach(longest)?;
+        simulation.with_world(|stepper, world| stepper.prime(world))?;
+        simulation.agree()?;
+        Ok(simulation)
+    }
+
+    fn with_world<R>(&mut self, call: impl FnOnce(&Stepper, &mut World<'_, C>) -> R) -> R {
+        let mut world = World {
+            comm: self.comm,
+            patches: &mut self.patches,
+            rows: &mut self.rows,
+            nodes: &mut self.nodes,
+            pool: self.pool.as_ref(),
+            times: &mut self.times,
+        };
+        call(&self.stepper, &mut world)
+    }
+
+    /// Time [s].
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Steps made.
+    pub fn steps(&self) -> u64 {
+        self.step
+    }
+
+    /// Length of the last step, or of the first to come [s].
+    pub fn time_step(&self) -> f64 {
+        self.dt
+    }
+
+    /// The patches and who has them.
+    pub fn layout(&self) -> &Layout<1> {
+        &self.layout
+    }
+
+    /// Seconds spent in each phase on this rank.
+    pub fn phase_seconds(&self) -> &PhaseTimes {
+        &self.times
+    }
+
+    /// The columns of a particle.
+    pub fn columns(&self) -> &Columns {
+        &self.stepper.columns
+    }
+
+    /// Own particles on this rank.
+    pub fn particles_here(&self) -> usize {
+        self.patches.iter().map(|p| p.block.own()).sum()
+    }
+
+    /// The longest stable step over all ranks, and the verdict on all ranks' faults. Collective.
+    fn agree(&mut self) -> Result<(), RunError> {
+        let faulty = self.patches.iter().any(|p| p.told.fault.is_some());
+        let shortest = self.patches.iter().map(|p| p.told.time_step).fold(f64::INFINITY, f64::min);
+        let longest = self.patches.iter().map(|p| p.told.length).fold(0.0, f64::max);
+        let mut told = [shortest, -longest, if faulty { -1.0 } else { 0.0 }];
+        self.comm.min(&mut told);
+        if told[2] < 0.0 {
+            return Err(self.gather_fault());
+        }
+        self.dt = self.scene.scene.time.courant * told[0];
+        self.check_reach(-told[1])
+    }
+
+    /// Makes ghosts and halos as deep as the longest particle needs. Alike on all ranks.
+    fn check_reach(&mut self, longest: f64) -> Result<(), RunError> {
+        let Some(reach) = self.stepper.reach(longest) else {
+            return Err(RunError::Particle {
+                id: 0,
+                body: "any".into(),
+                position: f64::NAN,
+                time: self.time,
+                step: self.step,
+                what: format!(
+                    "a particle has been stretched over {longest:.1} cells, further than this shape function reaches; use more particles a cell or smaller steps"
+                ),
+            });
+        };
+        if reach != self.reach {
+            self.reach = reach;
+            let rank = self.comm.rank();
+            self.rows = RowExchange::new(&self.layout, rank, reach.cells(), 1);
+            self.nodes = NodeExchange::new(&self.layout, rank, reach.halo());
+            let mine = self.layout.patches_of(rank);
+            for (patch, index) in self.patches.iter_mut().zip(mine) {
+                patch.nodes =
+                    NodeArrays::new(&self.layout, index, reach.depth(), self.stepper.fields.count);
+            }
+        }
+        let limit = self.stepper.longest_within(reach);
+        self.patches.iter_mut().for_each(|p| p.reach_length = limit);
+        Ok(())
+    }
+
+    /// The fault of the lowest particle id, at rank 0. Collective.
+    fn gather_fault(&self) -> RunError {
+        let mine = self.patches.iter().filter_map(|p| p.told.fault.as_ref()).min_by_key(|f| f.id);
+        let mut words = Vec::new();
+        if let Some(fault) = mine {
+            words.extend([fault.id, fault.position.to_bits(), fault.body as u64]);
+            words.extend(fault.what.bytes().map(u64::from));
+        }
+        let all = self.comm.gather(&words);
+        match all.iter().filter(|w| !w.is_empty()).min_by_key(|w| w[0]) {
+            Some(w) => RunError::Particle {
+                id: w[0],
+                body: self.scene.scene.bodies[w[2] as usize].name.clone(),
+                position: f64::from_bits(w[1]) + self.grid_velocity * self.time,
+                time: self.time,
+                step: self.step,
+                what: String::from_utf8_lossy(&w[3..].iter().map(|&b| b as u8).collect::<Vec<_>>())
+                    .into_owned(),
+            },
+            None => RunError::Elsewhere,
+        }
+    }
+
+    /// One step, the last one before `until` [s] shortened to meet it exactly; the step after is
+    /// as long as if it had not been. Collective.
+    pub fn advance(&mut self, until: f64) -> Result<(), RunError> {
+        let left = until - self.time;
+        let stable = self.dt;
+        // a remainder below rounding of the time is no step of its own
+        let meets = stable * (1.0 + 1e-9) >= left;
+        let dt = if meets { left } else { stable };
+        if dt < 1e-9 * self.scene.scene.time.end / self.scene.cells[0] as f64 && !meets {
+            return Err(RunError::TimeStep { time: self.time, step: self.step, dt });
+        }
+        self.step += 1;
+        let step = self.step;
+        self.with_world(|stepper, world| stepper.advance(world, dt, step))?;
+        self.time = if meets { until } else { self.time + dt };
+        self.agree()
+    }
+
+    /// Sums over all particles in the frame of the scene. Collective.
+    pub fn totals(&self) -> Totals {
+        let c = &self.stepper.columns;
+        let [mass, momentum, absolute_momentum, kinetic, internal] =
+            exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
+                for patch in &self.patches {
+                    let column = |k: usize| &patch.block.columns[k];
+                    let (m, v, e) = (column(c.mass), column(c.velocity), column(c.energy));
+                    for r in 0..patch.block.own() {
+                        let v = v[r] + self.grid_velocity;
+                        add(0, m[r]);
+                        add(1, m[r] * v);
+                        add(2, m[r] * v.abs());
+                        add(3, 0.5 * m[r] * v * v);
+                        add(4, m[r] * e[r]);
+                    }
+                }
+            });
+        Totals { mass, momentum, absolute_momentum, kinetic, internal }
+    }
+
+    /// What has left by outflows, in the frame of the grid. Collective.
+    pub fn left(&self) -> Left {
+        let [count, mass, momentum, kinetic, internal] =
+            exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
+                for left in self.patches.iter().map(|p| p.left) {
+                    let terms =
+                        [left.count as f64, left.mass, left.momentum, left.kinetic, left.internal];
+                    terms.iter().enumerate().for_each(|(k, t)| add(k, *t));
+                }
+            });
+        Left { count: count as u64, mass, momentum, kinetic, internal }
+    }
+
+    /// All particles and the digest of the whole state, every bit in order of id, at rank 0;
+    /// nothing elsewhere. Collective.
+    pub fn gather(&self) -> Option<(ParticleTable, String)> {
+        let c = &self.stepper.columns;
+        let state = c.state();
+        let (ids, columns) =
+            gather_rows(self.comm, self.patches.iter().map(|p| &p.block), &state);
+        if self.comm.rank() != 0 {
+            return None;
+        }
+        let mut digest = Sha256::new();
+        let mut bytes = Vec::with_capacity(8 * (columns.len() + 1));
+        for (row, id) in ids.iter().enumerate() {
+            bytes.clear();
+            bytes.extend(id.to_le_bytes());
+            columns.iter().for_each(|c| bytes.extend(c[row].to_le_bytes()));
+            digest.update(&bytes);
+        }
+        let digest = digest.finalize().iter().map(|b| format!("{b:02x}")).collect();
+        let column = |k: usize| &columns[state.iter().position(|&s| s == k).expect("state")];
+        Some((self.table(&ids, column), digest))
+    }
+
+    fn table<'b>(&self, ids: &[u64], column: impl Fn(usize) -> &'b Vec<f64>) -> ParticleTable {
+        let c = &self.stepper.columns;
+        let shift = self.grid_velocity * self.time;
+        let x: Vec<f64> = column(c.position).iter().map(|x| x + shift).collect();
+        let mut order: Vec<usize> = (0..ids.len()).collect();
+        order.sort_by(|&a, &b| x[a].total_cmp(&x[b]).then(ids[a].cmp(&ids[b])));
+        let pick = |f: &dyn Fn(usize) -> f64| order.iter().map(|&r| f(r)).collect::<Vec<f64>>();
+        let named = |name: &str, unit: &str, values| TableColumn {
+            name: name.into(),
+            unit: unit.into(),
+            values,
+        };
+        let (m, v0, j) = (column(c.mass), column(c.volume0), column(c.jacobian));
+        let q = c.viscosity.map(&column);
+        let columns = vec![
+            named("x", "m", pick(&|r| x[r])),
+            named("pressure", "Pa", pick(&|r| column(c.pressure)[r])),
+            named("velocity", "m/s", pick(&|r| column(c.velocity)[r] + self.grid_velocity)),
+            named("density", "kg/m3", pick(&|r| m[r] / (v0[r] * j[r]))),
+            named("specific_internal_energy", "J/kg", pick(&|r| column(c.energy)[r])),
+            named("artificial_viscosity", "Pa", pick(&|r| q.map_or(0.0, |q| q[r]))),
+        ];
+        let body: Vec<u32> = order.iter().map(|&r| column(c.body)[r] as u32).collect();
+        ParticleTable {
+            time: self.time,
+            dimension: 1,
+            ids: order.iter().map(|&r| ids[r]).collect(),
+            material: body.iter().map(|&b| self.scene.bodies[b as usize].material as u32).collect(),
+            materials: self.scene.scene.materials.keys().cloned().collect(),
+            body,
+            columns,
+        }
+    }
+
+    /// The particles of the ids in `wanted` (in order) at rank 0; `None` for one that has left.
+    /// Nothing elsewhere. Collective.
+    pub fn follow(&self, wanted: &[u64]) -> Vec<Option<Followed>> {
+        let c = &self.stepper.columns;
+        let shift = self.grid_velocity * self.time;
+        let mut words = Vec::new();
+        for patch in &self.patches {
+            let column = |k: usize, r: usize| patch.block.columns[k][r];
+            for row in 0..patch.block.own() {
+                let id = patch.block.ids[row];
+                if !wanted.contains(&id) {
+                    continue;
+                }
+                let half = 0.5 * column(c.volume0, row) * column(c.jacobian, row);
+                words.push(id);
+                words.push((column(c.position, row) + shift).to_bits());
+                words.push((column(c.velocity, row) + self.grid_velocity).to_bits());
+                words.push(column(c.pressure, row).to_bits());
+                words.push(half.to_bits());
+            }
+        }
+        let all = self.comm.gather(&words);
+        if self.comm.rank() != 0 {
+            return Vec::new();
+        }
+        let rows: Vec<&[u64]> = all.iter().flat_map(|w| w.chunks(5)).collect();
+        wanted
+            .iter()
+            .map(|id| {
+                rows.iter().find(|w| w[0] == *id).map(|w| Followed {
+                    position: f64::from_bits(w[1]),
+                    velocity: f64::from_bits(w[2]),
+                    pressure: f64::from_bits(w[3]),
+                    half_length: f64::from_bits(w[4]),
+                })
+            })
+            .collect()
+    }
+
+    /// Position and pressure of every `stride`th particle by id, sorted by x, at rank 0; empty
+    /// elsewhere. Collective.
+    pub fn sample_pressure(&self, stride: u64) -> Vec<(f64, f64)> {
+        let c = &self.stepper.columns;
+        let shift = self.grid_velocity * self.time;
+        let mut words = Vec::new();
+        for patch in &self.patches {
+            for row in 0..patch.block.own() {
+                if patch.block.ids[row].is_multiple_of(stride) {
+                    words.push((patch.block.columns[c.position][row] + shift).to_bits());
+                    words.push(patch.block.columns[c.pressure][row].to_bits());
+                }
+            }
+        }
+        let all = self.comm.gather(&words);
+        let mut points: Vec<(f64, f64)> = all
+            .iter()
+            .flat_map(|w| w.chunks(2))
+            .map(|w| (f64::from_bits(w[0]), f64::from_bits(w[1])))
+            .collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points
+    }
+}

@@ -1,0 +1,90 @@
+//! Leapfrog stepping, the textbook form: stress and shape functions at the start of the step,
+//! stress updated last (USL), first (USF) or last from the velocity mapped again (MUSL; all
+//! three: Bardenhagen 2002, "Energy conservation error in the material point method").
+
+use decomp::{Comm, RowError};
+
+use super::{Stepper, World};
+use crate::patch::Patch;
+use crate::scene::StressUpdate;
+
+impl Stepper {
+    /// One step. Collective.
+    ///
+    /// Stress first and modified last send the rows a second time, for what a ghost carries has
+    /// changed within the step.
+    pub(super) fn advance_leapfrog<C: Comm + ?Sized>(
+        &self,
+        world: &mut World<'_, C>,
+        dt: f64,
+    ) -> Result<(), RowError> {
+        let star = self.fields.velocity_star;
+        world.each(|patch| {
+            patch.block.drop_ghosts();
+            self.current_stress(patch);
+            self.locate(patch, 0.0, self.columns.jacobian);
+        });
+        world.exchange_rows()?;
+        world.each(|patch| {
+            self.find_weights(patch);
+            self.scatter_motion(patch);
+        });
+        if self.stress_update == StressUpdate::First {
+            world.each(|patch| self.divide_by_mass(patch));
+            self.filter_velocity(world);
+            world.each(|patch| {
+                self.gather_gradient(patch, star);
+                self.update_stress(patch, dt);
+                self.current_stress(patch);
+            });
+            world.exchange_rows()?;
+            world.each(|patch| self.scatter_motion(patch));
+        }
+        world.each(|patch| {
+            self.scatter_force(patch);
+            self.divide_by_mass(patch);
+        });
+        self.solve_velocity(world, dt);
+        world.each(|patch| {
+            self.gather_velocity(patch);
+            self.move_rows(patch, dt);
+        });
+        match self.stress_update {
+            StressUpdate::Last => world.each(|patch| {
+                self.gather_gradient(patch, star);
+                self.update_stress(patch, dt);
+            }),
+            StressUpdate::ModifiedLast => {
+                world.exchange_rows()?;
+                world.each(|patch| {
+                    self.scatter_motion(patch);
+                    self.divide_by_mass(patch);
+                });
+                self.filter_velocity(world);
+                world.each(|patch| {
+                    self.gather_gradient(patch, star);
+                    self.update_stress(patch, dt);
+                });
+            }
+            StressUpdate::First => {}
+        }
+        world.each(|patch| self.refresh(patch));
+        Ok(())
+    }
+
+    /// x += dt N v'.
+    fn move_rows(&self, patch: &mut Patch<1>, dt: f64) {
+        use super::{MOST_NODES, with_width};
+        use crate::transfer::{dot, window};
+        fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper, dt: f64) {
+            let n = patch.block.own();
+            let star = &patch.nodes.fields[s.fields.velocity_star][..];
+            let x = &mut patch.block.columns[s.columns.position][..n];
+            for (r, x) in x.iter_mut().enumerate() {
+                let (first, values, _) = patch.stencils.row::<K>(r);
+                *x += dt * dot(values, window(star, first));
+            }
+        }
+        with_width!(patch.stencils.width, go(patch, self, dt));
+    }
+}

@@ -1,0 +1,86 @@
+//! Mid-point stepping: stress and shape functions at the middle of the step.
+//!
+//! ```text
+//! x_h = x + dt/2 v_p,  J_h = J (1 + dt/2 D)      D: gradient of the last v'
+//! p_h from J_h and the energy of the middle,  s = p_h + q
+//! f_i = sum V0 J_h s G_i
+//! v = sum K^l vL,  v' = v + dt sum K^l f/m
+//! v_p' = N v',  x += dt/2 (v_p + v_p'),  J += dt J_h G (v + v')/2
+//! e += -s V0 J_h dt (G w)/m + heat
+//! ```
+//!
+//! With w of [`Stepper::solve_work`] and the filter's heat, kinetic and internal energy add up
+//! to rounding.
+
+use decomp::{Comm, RowError};
+
+use super::{Stepper, World};
+
+impl Stepper {
+    /// One step; `relax` is the rate of pressure relaxation if this step has it. Collective.
+    pub(super) fn advance_midpoint<C: Comm + ?Sized>(
+        &self,
+        world: &mut World<'_, C>,
+        dt: f64,
+        relax: Option<f64>,
+    ) -> Result<(), RowError> {
+        let mid = self.columns.jacobian_mid.expect("mid-point stepping has the column");
+        world.each(|patch| {
+            patch.block.drop_ghosts();
+            self.half_step_volume(patch, dt);
+            self.find_viscosity(patch, mid);
+            self.mid_step_stress(patch, relax.is_some());
+            self.locate(patch, 0.5 * dt, mid);
+        });
+        world.exchange_rows()?;
+        world.each(|patch| {
+            self.find_weights(patch);
+            self.scatter_motion(patch);
+            self.scatter_force(patch);
+            self.divide_by_mass(patch);
+        });
+        self.solve_velocity(world, dt);
+        if self.compatible {
+            self.solve_work(world);
+        }
+        if relax.is_some() {
+            self.project_pressure(world);
+        }
+        world.each(|patch| {
+            self.gather_midpoint(patch, dt);
+            if let Some(rate) = relax {
+                self.relax_pressure(patch, rate);
+            }
+            self.refresh(patch);
+        });
+        Ok(())
+    }
+
+    /// The gradient of the starting velocity, which the first step needs: a step of no length
+    /// that moves nothing. Collective.
+    pub(super) fn prime_gradient<C: Comm + ?Sized>(
+        &self,
+        world: &mut World<'_, C>,
+    ) -> Result<(), RowError> {
+        let jacobian = self.columns.jacobian;
+        world.each(|patch| {
+            self.current_stress(patch);
+            self.locate(patch, 0.0, jacobian);
+            // ghosts carry every declared column
+            for (spec, column) in self.columns.specs.iter().zip(&mut patch.block.columns) {
+                if spec.ghost {
+                    column.resize(patch.block.ids.len(), 0.0);
+                }
+            }
+        });
+        world.exchange_rows()?;
+        world.each(|patch| {
+            self.find_weights(patch);
+            self.scatter_motion(patch);
+            self.divide_by_mass(patch);
+        });
+        self.solve_velocity(world, 0.0);
+        world.each(|patch| self.gather_gradient(patch, self.fields.velocity_star));
+        Ok(())
+    }
+}

@@ -1,0 +1,243 @@
+//! One time step, written as the method reads in a paper.
+//!
+//! [`Stepper`] holds what a scene chose; [`Stepper::advance`] runs the list of phases of
+//! [`midpoint`] or [`leapfrog`]. Physics and messages meet in [`World`], which calls a phase on
+//! every patch and the exchanges between phases.
+
+mod gather;
+mod leapfrog;
+mod midpoint;
+mod relaxation;
+mod rows;
+mod scatter;
+mod series;
+mod world;
+
+pub use world::{PhaseTimes, World};
+
+use decomp::{Comm, Parity};
+
+use crate::constitutive::{self, Model};
+use crate::grid::Fields;
+use crate::particles::Columns;
+use crate::patch::Patch;
+use crate::scene::{
+    CheckedScene, EnergyUpdate, PressureRelaxation, ShapeKind, Side, Stepping, StressUpdate,
+};
+use crate::shape::{self, Extent, Shape};
+use crate::transfer::Scheme;
+use crate::viscosity::Viscosity;
+
+/// Velocity components change sign in a mirror.
+const ODD: Parity = Parity::Odd(0);
+
+/// What a scene chose, made ready for stepping.
+pub struct Stepper {
+    /// Where the columns stand.
+    pub columns: Columns,
+    /// Where the nodal fields stand.
+    pub fields: Fields,
+    scheme: Scheme,
+    stepping: Stepping,
+    stress_update: StressUpdate,
+    compatible: bool,
+    filter_heat: bool,
+    relaxation: Option<PressureRelaxation>,
+    edge_mask: Option<f64>,
+    viscosity: Option<Viscosity>,
+    /// One a body.
+    models: Vec<Box<dyn Model>>,
+    shape: ShapeKind,
+    /// Edge of a cell [m] and its inverse.
+    cell: f64,
+    inverse_cell: f64,
+    /// Lower corner of the domain [m] and its number of cells.
+    lower: f64,
+    cells: i64,
+    sides: [Side; 2],
+    /// Mass below which a node counts as empty [kg].
+    empty_mass: f64,
+}
+
+/// Calls `$call` with the type of a shape function and a number of nodes known at compile time,
+/// at least `$nodes`. One line a shape function.
+macro_rules! with_shape {
+    ($kind:expr, $nodes:expr, $call:ident ( $($arg:expr),* )) => {
+        match $kind {
+            ShapeKind::Linear => $call::<shape::Linear, 2>($($arg),*),
+            ShapeKind::Gimp => $call::<shape::Gimp, 3>($($arg),*),
+            ShapeKind::Cpdi => with_shape!(@wide $call, shape::Cpdi, $nodes, $($arg),*),
+            ShapeKind::BsplineQuadratic => $call::<shape::BsplineQuadratic, 3>($($arg),*),
+            ShapeKind::BsplineCubic => $call::<shape::BsplineCubic, 4>($($arg),*),
+            ShapeKind::CpdiBsplineQuadratic => {
+                with_shape!(@wide $call, shape::CpdiBsplineQuadratic, $nodes, $($arg),*)
+            }
+        }
+    };
+    (@wide $call:ident, $shape:ty, $nodes:expr, $($arg:expr),*) => {
+        match $nodes {
+            0..=3 => $call::<$shape, 3>($($arg),*),
+            4 => $call::<$shape, 4>($($arg),*),
+            5..=6 => $call::<$shape, 6>($($arg),*),
+            7..=10 => $call::<$shape, 10>($($arg),*),
+            _ => $call::<$shape, MOST_NODES>($($arg),*),
+        }
+    };
+}
+
+/// Calls `$call` with the width of a patch's stencils known at compile time.
+macro_rules! with_width {
+    ($width:expr, $call:ident ( $($arg:expr),* )) => {
+        match $width {
+            0..=2 => $call::<2>($($arg),*),
+            3 => $call::<3>($($arg),*),
+            4 => $call::<4>($($arg),*),
+            6 => $call::<6>($($arg),*),
+            10 => $call::<10>($($arg),*),
+            _ => $call::<MOST_NODES>($($arg),*),
+        }
+    };
+}
+use with_width;
+
+/// Most nodes along one direction that a particle may touch.
+const MOST_NODES: usize = 18;
+
+/// How far particles reach, which decides how deep ghosts and halos are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reach {
+    /// Nodes that the longest particle may touch.
+    pub nodes: usize,
+}
+
+impl Reach {
+    /// Cells from which particles reach a patch's nodes.
+    pub fn cells(&self) -> i64 {
+        self.nodes.div_ceil(2) as i64
+    }
+
+    /// Depth of the halo in which a patch needs other owners' nodal values.
+    pub fn halo(&self) -> i64 {
+        (2 * self.cells() - 1).max(2)
+    }
+
+    /// Depth of the nodal arrays, so that a product with the mass matrix never leaves them.
+    pub fn depth(&self) -> i64 {
+        self.halo() + MOST_NODES.min(self.nodes.max(4)) as i64
+    }
+}
+
+/// How much longer a particle may be at the middle of a step than at its start.
+const STRETCH: f64 = 1.25;
+
+impl Stepper {
+    /// What `scene` chose.
+    pub fn new(scene: &CheckedScene) -> Self {
+        let method = &scene.scene.method;
+        let viscosity = scene.scene.artificial_viscosity.as_ref();
+        let sides = scene.scene.boundary.as_ref().map_or([Side::Free; 2], |b| [b.x_lower, b.x_upper]);
+        let bodies = &scene.scene.bodies;
+        let materials = &scene.scene.materials;
+        let cell = scene.cell_size[0];
+        let densest = bodies.iter().map(|b| materials[&b.material].density).fold(0.0, f64::max);
+        Stepper {
+            columns: Columns::new(scene),
+            fields: Fields::new(method.edge_mask.is_some(), method.pressure_relaxation.is_some()),
+            scheme: method.transfer.into(),
+            stepping: method.stepping,
+            stress_update: method.stress_update,
+            compatible: method.energy == EnergyUpdate::Compatible,
+            filter_heat: method.filter_heat,
+            relaxation: method.pressure_relaxation,
+            edge_mask: method.edge_mask,
+            viscosity: viscosity.map(|v| Viscosity::new(v, cell)),
+            models: bodies.iter().map(|b| constitutive::build(&materials[&b.material])).collect(),
+            shape: method.shape,
+            cell,
+            inverse_cell: 1.0 / cell,
+            lower: scene.scene.domain.lower[0],
+            cells: scene.cells[0] as i64,
+            sides,
+            // what such a node holds is below rounding of its neighbours
+            empty_mass: densest * cell * 2f64.powi(-90),
+        }
+    }
+
+    /// The specific internal energy at which each body starts [J/kg].
+    pub fn starting_energies(&self, scene: &CheckedScene) -> Vec<f64> {
+        let bodies = scene.scene.bodies.iter();
+        bodies.zip(&self.models).map(|(b, m)| m.energy_at(b.pressure)).collect()
+    }
+
+    /// The reach of particles up to `length` long [cells], with room to stretch in a step; `None`
+    /// if they are longer than any stencil.
+    pub fn reach(&self, length: f64) -> Option<Reach> {
+        fn nodes<S: Shape, const K: usize>(length: f64) -> usize {
+            S::nodes(length)
+        }
+        let length = match self.extent() {
+            Extent::Current => length * STRETCH,
+            _ => length,
+        };
+        let nodes = with_shape!(self.shape, 4usize, nodes(length));
+        (nodes <= MOST_NODES).then_some(Reach { nodes })
+    }
+
+    /// The longest particle [cells] that `reach` is deep enough for.
+    pub fn longest_within(&self, reach: Reach) -> f64 {
+        fn nodes<S: Shape, const K: usize>() -> usize {
+            S::nodes(0.01)
+        }
+        (reach.nodes + 1 - with_shape!(self.shape, 4usize, nodes())) as f64
+    }
+
+    fn extent(&self) -> Extent {
+        fn extent<S: Shape, const K: usize>() -> Extent {
+            S::EXTENT
+        }
+        with_shape!(self.shape, 4usize, extent())
+    }
+
+    /// Whether step number `step` (from 1) relaxes the pressure.
+    fn relaxes(&self, step: u64) -> Option<f64> {
+        self.relaxation.filter(|r| step.is_multiple_of(r.interval as u64)).map(|r| r.rate)
+    }
+
+    /// Makes the starting state whole: pressure, sound speed and, where the scheme needs it, the
+    /// gradient of the starting velocity. Collective.
+    pub fn prime<C: Comm + ?Sized>(&self, world: &mut World<'_, C>) -> Result<(), decomp::RowError> {
+        world.each(|patch| self.refresh(patch));
+        if self.stepping == Stepping::Midpoint {
+            self.prime_gradient(world)?;
+            world.each(|patch| self.refresh(patch));
+        }
+        Ok(())
+    }
+
+    /// Advances all patches by `dt` [s]; `step` numbers the steps from 1. Collective.
+    pub fn advance<C: Comm + ?Sized>(
+        &self,
+        world: &mut World<'_, C>,
+        dt: f64,
+        step: u64,
+    ) -> Result<(), decomp::RowError> {
+        match self.stepping {
+            Stepping::Midpoint => self.advance_midpoint(world, dt, self.relaxes(step)),
+            Stepping::Leapfrog => self.advance_leapfrog(world, dt),
+        }
+    }
+
+    /// Weights of all rows of a patch, as wide as its longest row needs.
+    fn find_weights(&self, patch: &mut Patch<1>) {
+        fn find<S: Shape, const K: usize>(patch: &mut Patch<1>, s: &Stepper) {
+            patch.find_weights::<S, K>(s.columns.fraction, s.columns.length, s.inverse_cell)
+        }
+        fn nodes<S: Shape, const K: usize>(length: f64) -> usize {
+            S::nodes(length)
+        }
+        let lengths = &patch.block.columns[self.columns.length];
+        let longest = lengths.iter().copied().fold(0.0, f64::max);
+        let width = with_shape!(self.shape, 4usize, nodes(longest));
+        with_shape!(self.shape, width, find(patch, self));
+    }
+}

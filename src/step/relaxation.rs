@@ -1,0 +1,112 @@
+//! Relaxation of the pressure towards its projection on the grid.
+//!
+//! Updated-Lagrangian schemes leave a null space of stress: patterns of pressure that give no
+//! nodal force and so are never damped. Each relaxation takes the fraction r of what the grid
+//! cannot see. With the compliance w_p = -dV/dp = V^2/(m c^2) as the weight, P = sum_(l<4) K^l
+//! P_L the nodal pressure by the series of four terms, u = K^3 P_L its last term and Pbar = N P,
+//!
+//! ```text
+//! dV = r w_p (p - Pbar),  J += dV/V0
+//! e += (-Pbar dV + r w_p (N(u P) - (N u) Pbar))/m
+//! ```
+//!
+//! Volume and energy are kept exactly, and a material interface is no special case. p is the
+//! pressure at the middle of the step.
+
+use decomp::{Comm, Parity};
+
+use super::{MOST_NODES, Stepper, World, with_width};
+use crate::patch::Patch;
+use crate::transfer::{add, dot, window};
+
+/// Terms of the projection's series.
+const ORDER: u32 = 4;
+
+impl Stepper {
+    /// Nodal pressure and the last term of its series, halos included. Collective between
+    /// neighbours.
+    pub(super) fn project_pressure<C: Comm + ?Sized>(&self, world: &mut World<'_, C>) {
+        let [_, _, sum, term, scratch] = self.fields.relaxation;
+        world.each(|patch| {
+            fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper) {
+                s.scatter_pressure::<K>(patch);
+            }
+            with_width!(patch.stencils.width, go(patch, self));
+        });
+        world.refresh(&[(term, Parity::Even)]);
+        world.each(|patch| {
+            let [sum, term] = patch.nodes.fields_mut([sum, term]);
+            sum.copy_from_slice(term);
+        });
+        for _ in 1..ORDER {
+            world.each(|patch| {
+                let inverse = self.fields.relaxation[1];
+                let [inverse, x, y] = patch.nodes.fields_mut([inverse, term, scratch]);
+                patch.compliance_band.product(x, patch.active.clone(), y);
+                for i in patch.active.clone() {
+                    x[i] -= inverse[i] * y[i];
+                }
+            });
+            world.refresh(&[(term, Parity::Even)]);
+            world.each(|patch| {
+                let [sum, term] = patch.nodes.fields_mut([sum, term]);
+                for (sum, term) in sum.iter_mut().zip(term) {
+                    *sum += *term;
+                }
+            });
+        }
+    }
+
+    fn scatter_pressure<const K: usize>(&self, patch: &mut Patch<1>) {
+        let [weight, inverse, _, term, _] = self.fields.relaxation;
+        let rows = patch.block.rows();
+        let (Some(p), Some(w)) = (self.columns.pressure_mid, self.columns.compliance) else {
+            return;
+        };
+        let (p, w) = (&patch.block.columns[p][..rows], &patch.block.columns[w][..rows]);
+        patch.compliance_band.clear(patch.nodes.nodes.count(), K);
+        let [weight, inverse, term] = patch.nodes.fields_mut([weight, inverse, term]);
+        weight.fill(0.0);
+        inverse.fill(0.0);
+        term.fill(0.0);
+        for run in &patch.runs {
+            for r in run.clone() {
+                let (first, n, _) = patch.stencils.row::<K>(r);
+                let wp = w[r] * p[r];
+                add(weight, first, n.map(|n| n * w[r]));
+                add(term, first, n.map(|n| n * wp));
+                patch.compliance_band.add(first, w[r], n);
+            }
+        }
+        patch.compliance_band.finish();
+        for i in patch.active.clone() {
+            inverse[i] = if weight[i] > 0.0 { 1.0 / weight[i] } else { 0.0 };
+            term[i] *= inverse[i];
+        }
+    }
+
+    /// Moves volume and energy of the own rows.
+    pub(super) fn relax_pressure(&self, patch: &mut Patch<1>, rate: f64) {
+        fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper, rate: f64) {
+            let [_, _, sum, term, _] = s.fields.relaxation;
+            let c = &s.columns;
+            let (Some(p), Some(w)) = (c.pressure_mid, c.compliance) else { return };
+            let (projected, last) = (&patch.nodes.fields[sum][..], &patch.nodes.fields[term][..]);
+            let n = patch.block.own();
+            let [j, e, mass, volume0, p, w] =
+                patch.block.columns_mut([c.jacobian, c.energy, c.mass, c.volume0, p, w]);
+            for r in 0..n {
+                let (first, values, _) = patch.stencils.row::<K>(r);
+                let (nodal, u): (&[f64; K], &[f64; K]) =
+                    (window(projected, first), window(last, first));
+                let mean = dot(values, nodal);
+                let both = std::array::from_fn(|k| u[k] * nodal[k]);
+                let share = rate * w[r];
+                let dv = share * (p[r] - mean);
+                j[r] += dv / volume0[r];
+                e[r] += (share * (dot(values, &both) - dot(values, u) * mean) - mean * dv) / mass[r];
+            }
+        }
+        with_width!(patch.stencils.width, go(patch, self, rate));
+    }
+}

@@ -1,0 +1,157 @@
+//! The nodal equations: filtered velocity, acceleration through the full mass matrix, and the
+//! velocity whose gradient does the work.
+//!
+//! With the lumped masses m_i, the mass matrix M and K = 1 - m^-1 M, the series sum_(l<k) K^l
+//! approximates (m^-1 M)^-1 (Nairn & Hammerquist 2021). Each product needs the finished values
+//! of its neighbours' nodes, which the owners send; sums never cross a border.
+
+use decomp::{Comm, Parity};
+
+use super::{ODD, Stepper, World};
+use crate::patch::Patch;
+use crate::transfer::Scheme;
+
+/// field[i] -= m^-1 (M x)[i] for the owned nodes, x the field itself: field = K field.
+fn apply_k(s: &Stepper, patch: &mut Patch<1>, field: usize) {
+    let f = &s.fields;
+    let [inverse, x, y] = patch.nodes.fields_mut([f.inverse, field, f.scratch]);
+    patch.band.product(x, patch.active.clone(), y);
+    for i in patch.active.clone() {
+        x[i] -= inverse[i] * y[i];
+    }
+}
+
+/// Adds one field to another.
+fn accumulate(patch: &mut Patch<1>, sum: usize, term: usize) {
+    let [sum, term] = patch.nodes.fields_mut([sum, term]);
+    for (sum, term) in sum.iter_mut().zip(term) {
+        *sum += *term;
+    }
+}
+
+fn copy(patch: &mut Patch<1>, from: usize, to: usize) {
+    let [from, to] = patch.nodes.fields_mut([from, to]);
+    to.copy_from_slice(from);
+}
+
+impl Stepper {
+    /// Takes nodes with little material out of a field: chi = 0 where the filled fraction of the
+    /// node's volume is below the edge mask.
+    fn mask(&self, patch: &mut Patch<1>, field: usize) {
+        let Some(least) = self.edge_mask else { return };
+        let [volume, values] = patch.nodes.fields_mut([self.fields.volume, field]);
+        for (value, volume) in values.iter_mut().zip(volume) {
+            if *volume < least {
+                *value = 0.0;
+            }
+        }
+    }
+
+    /// From lumped velocity and force to velocity, acceleration and end-of-step velocity, halos
+    /// included: v = sum_(l<k) K^l vL, b = sum_(l<k) t_l with t_0 = f/m and t_l = K chi t_(l-1),
+    /// v' = v + dt b. Collective between neighbours.
+    pub(super) fn solve_velocity<C: Comm + ?Sized>(&self, world: &mut World<'_, C>, dt: f64) {
+        let f = &self.fields;
+        world.refresh(&[(f.inverse, Parity::Even), (f.lumped, ODD), (f.acceleration, ODD)]);
+        if self.edge_mask.is_some() {
+            world.refresh(&[(f.volume, Parity::Even)]);
+        }
+        world.each(|patch| copy(patch, f.lumped, f.velocity));
+        if let Scheme::Series { order, force } = self.scheme {
+            let term = f.scratch2;
+            world.each(|patch| {
+                copy(patch, f.lumped, f.remainder);
+                copy(patch, f.acceleration, term);
+            });
+            for _ in 1..order {
+                world.each(|patch| {
+                    apply_k(self, patch, f.remainder);
+                    if force {
+                        self.mask(patch, term);
+                        apply_k(self, patch, term);
+                    }
+                });
+                match force {
+                    true => world.refresh(&[(f.remainder, ODD), (term, ODD)]),
+                    false => world.refresh(&[(f.remainder, ODD)]),
+                }
+                world.each(|patch| {
+                    accumulate(patch, f.velocity, f.remainder);
+                    if force {
+                        accumulate(patch, f.acceleration, term);
+                    }
+                });
+            }
+        }
+        world.each(|patch| {
+            let [v, b, star] =
+                patch.nodes.fields_mut([f.velocity, f.acceleration, f.velocity_star]);
+            for i in 0..v.len() {
+                star[i] = v[i] + dt * b[i];
+            }
+        });
+    }
+
+    /// The velocity w with which f.w is the exact change of kinetic energy, so that the work
+    /// done on the particles adds up with it to rounding. Collective between neighbours.
+    ///
+    /// Series: w = sum_(l<k) (chi K)^l (vL + A v')/2 (l = 0 alone where the force is lumped);
+    /// blend: w = a vL + A ((1 - a) vL + dt b/2); A = m^-1 M.
+    pub(super) fn solve_work<C: Comm + ?Sized>(&self, world: &mut World<'_, C>) {
+        let f = &self.fields;
+        match self.scheme {
+            Scheme::Series { order, force } => {
+                world.each(|patch| {
+                    let [inverse, star, lumped, y, w] = patch.nodes.fields_mut([
+                        f.inverse,
+                        f.velocity_star,
+                        f.lumped,
+                        f.scratch,
+                        f.scratch2,
+                    ]);
+                    patch.band.product(star, patch.active.clone(), y);
+                    for i in patch.active.clone() {
+                        w[i] = 0.5 * (lumped[i] + inverse[i] * y[i]);
+                    }
+                });
+                world.refresh(&[(f.scratch2, ODD)]);
+                world.each(|patch| copy(patch, f.scratch2, f.work));
+                if force {
+                    for _ in 1..order {
+                        world.each(|patch| {
+                            apply_k(self, patch, f.scratch2);
+                            self.mask(patch, f.scratch2);
+                        });
+                        world.refresh(&[(f.scratch2, ODD)]);
+                        world.each(|patch| accumulate(patch, f.work, f.scratch2));
+                    }
+                }
+            }
+            Scheme::Blend(a) => {
+                world.each(|patch| {
+                    let [lumped, star, x] =
+                        patch.nodes.fields_mut([f.lumped, f.velocity_star, f.scratch2]);
+                    for i in 0..x.len() {
+                        x[i] = (1.0 - a) * lumped[i] + 0.5 * (star[i] - lumped[i]);
+                    }
+                    let [inverse, lumped, x, y, w] = patch.nodes.fields_mut([
+                        f.inverse, f.lumped, f.scratch2, f.scratch, f.work,
+                    ]);
+                    patch.band.product(x, patch.active.clone(), y);
+                    for i in patch.active.clone() {
+                        w[i] = a * lumped[i] + inverse[i] * y[i];
+                    }
+                });
+                world.refresh(&[(f.work, ODD)]);
+            }
+            Scheme::Affine => unreachable!("the scene check refuses compatible energy with APIC"),
+        }
+    }
+
+    /// Lumped velocity through the series, halos included, for velocities that were mapped
+    /// again within a step. Collective between neighbours.
+    pub(super) fn filter_velocity<C: Comm + ?Sized>(&self, world: &mut World<'_, C>) {
+        // no force: the acceleration's sums are zero
+        self.solve_velocity(world, 0.0);
+    }
+}

@@ -1,0 +1,223 @@
+//! Files, text, keys and single numbers that are refused on reading.
+
+use std::path::Path;
+
+use flyer_mpm::scene::{self, parse};
+use serde_json::Value;
+
+use super::{refused, refused_edit, refused_text, tells, with};
+
+#[test]
+fn files_that_are_no_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let message = |path: &Path| scene::read(path).unwrap_err().to_string();
+    let missing = folder.path().join("missing.json");
+    tells(&message(&missing), &["missing.json", "cannot be read", "No such file"]);
+    tells(&message(folder.path()), &["is a directory"]);
+    tells(&message(&folder.path().join("a\nb.json")), &["a\\nb.json", "cannot be read"]);
+    let long = folder.path().join("long.json");
+    std::fs::File::create(&long).unwrap().set_len(scene::LARGEST_FILE + 1).unwrap();
+    tells(&message(&long), &["long.json", "16777217 bytes", "at most 16777216 bytes"]);
+
+    refused_text("", &["bad.json: is empty", "allowed"]);
+    refused_text(" \n\t", &["is empty"]);
+    refused_text("[1, 2]", &["the scene = [1,2]", "an object with the keys", "title"]);
+    refused_text("42", &["the scene = 42"]);
+    refused_text("{\"title\": ", &["line 1 column", "ends too early"]);
+    refused_text("title: flyer", &["line 1 column", "title"]);
+    refused_text("{} {}", &["trailing characters"]);
+    refused_text("{\"title\": \"a\",}", &["line 1", "trailing comma"]);
+    refused_text(&"[".repeat(1_000_000), &["nested too deep", "127 levels"]);
+    refused_text(&"{\"a\":".repeat(1_000_000), &["nested too deep"]);
+    let error = parse(b"{\"title\": \"\xff\"}", "bad.json", &[]).unwrap_err().to_string();
+    tells(&error, &["bad.json", "not UTF-8 from byte 11"]);
+}
+
+#[test]
+fn numbers_that_are_none() {
+    let bad = |end: &str| format!("{{\n  \"time\": {{\n    \"end\": {end}\n  }}\n}}");
+    for (end, found) in [
+        ("NaN", "NaN is not JSON; allowed: a finite number"),
+        ("nan", "nan is not JSON"),
+        ("-NaN", "-NaN is not JSON"),
+        ("Infinity", "Infinity is not JSON"),
+        ("-Infinity", "-Infinity is not JSON"),
+        ("1e999", "1e999 is too large for a number; allowed: finite numbers"),
+        ("-1e999", "-1e999 is too large"),
+        (".5", ".5"),
+    ] {
+        refused_text(&bad(end), &["bad.json: line 3 column ", "at time.end", found]);
+    }
+    refused_text(&bad("0x10"), &["bad.json: line 3 column ", "at time: not JSON", "0x10"]);
+    let mut checked = with("flyer.json", &[]).unwrap().scene;
+    checked.bodies[0].velocity = Some(vec![f64::NAN]);
+    let error = scene::check(checked, "made").unwrap_err().to_string();
+    tells(&error, &["made: bodies.flyer.velocity[0] = null", "a number"]);
+}
+
+#[test]
+fn a_key_that_stands_twice() {
+    let text = "{\"time\": {\"end\": 1, \"end\": 2}}";
+    refused_text(text, &["at time", "\"end\" stands twice", "allowed: once"]);
+}
+
+#[test]
+fn unknown_keys_and_names() {
+    let edit = |set: &str, fragments: &[&str]| refused("flyer.json", &[set], fragments);
+    edit(
+        "domain.cel_size=1",
+        &["domain.cel_size = 1", "unknown key", "did you mean cell_size?", "lower, patches, upper"],
+    );
+    edit("comment=hello", &["flyer.json: comment = \"hello\"", "unknown key", "allowed: "]);
+    edit("materials.copper.rho=1", &["materials.copper.rho = 1", "allowed: density, eos"]);
+    edit("materials.copper.eos.c_0=1", &["materials.copper.eos.c_0", "did you mean c0?"]);
+    edit(
+        "materials.copper.eos.type=mie_gruneissen",
+        &["materials.copper.eos.type = \"mie_gruneissen\"", "did you mean mie_gruneisen?"],
+    );
+    edit("materials.copper.eos.type=3", &["materials.copper.eos.type = 3", "ideal_gas"]);
+    edit("materials.copper.eos.type=ideal_gas", &["materials.copper.eos.c0", "allowed: gamma"]);
+    edit("materials.copper.eos={}", &["materials.copper.eos.type", "missing", "mie_gruneisen"]);
+    edit(
+        "method.shape=bspline_quadratik",
+        &[
+            "method.shape = \"bspline_quadratik\"",
+            "did you mean \"bspline_quadratic\"?",
+            "\"gimp\"",
+        ],
+    );
+    edit(
+        "method.transfer=fmpm",
+        &["method.transfer = \"fmpm\"", "did you mean {\"fmpm\": a whole number"],
+    );
+    edit("method.transfer={\"fmpn\": 4}", &["method.transfer.fmpn = 4", "did you mean fmpm?"]);
+    edit("method.transfer.xpic=2", &["method.transfer = {", "\"flip\""]);
+    edit("method.transfer={}", &["method.transfer = {}", "\"flip\""]);
+    edit("boundary.x_lower=open", &["boundary.x_lower = \"open\"", "\"outflow\""]);
+    edit("boundary.y_lower=free", &["boundary.y_lower", "allowed: x_lower, x_upper"]);
+    edit("reference={\"flyer\": 1}", &["reference.flyer", "flyer_impact", "riemann"]);
+    edit("reference.flyer_impact.speed=1", &["reference.flyer_impact.speed", "flyer, target"]);
+    edit(
+        "bodies.flyer.material=cooper",
+        &["bodies.flyer.material = \"cooper\"", "did you mean copper?", "aluminium, copper"],
+    );
+    edit(
+        "reference.flyer_impact.target=targer",
+        &["reference.flyer_impact.target = \"targer\"", "did you mean target?", "flyer, target"],
+    );
+}
+
+#[test]
+fn wrong_types() {
+    let edit = |set: &str, fragments: &[&str]| refused("flyer.json", &[set], fragments);
+    edit("time.end=soon", &["time.end = \"soon\"", "a number above 0"]);
+    edit("time=[]", &["time = []", "an object with the keys courant, end"]);
+    edit("bodies={}", &["bodies = {}", "an array"]);
+    edit("bodies=[]", &["bodies = []", "an array"]);
+    edit("bodies=[1]", &["bodies[0] = 1", "an object with the keys"]);
+    edit("domain.cell_size=true", &["domain.cell_size = true", "a number above 0, or an array"]);
+    edit("domain.patches=[2.0]", &["domain.patches[0] = 2.0", "a whole number at least 1"]);
+    edit("bodies.flyer.particles_per_cell=2", &["bodies.flyer.particles_per_cell = 2", "an array"]);
+    edit("bodies.flyer.velocity=1000", &["bodies.flyer.velocity = 1000", "an array"]);
+    edit("method.filter_heat=1", &["method.filter_heat = 1", "true or false"]);
+    edit("method.transfer={\"fmpm\": 2.5}", &["method.transfer.fmpm = 2.5", "a whole number"]);
+    edit("materials=[]", &["materials = []", "an object of names"]);
+    edit("title=7", &["title = 7", "a string"]);
+}
+
+#[test]
+fn missing_keys() {
+    for (path, fragments) in [
+        ("/title", ["title: missing key", "a string"]),
+        ("/time/end", ["time.end: missing key", "a number above 0"]),
+        ("/domain/cell_size", ["domain.cell_size: missing key", "a number above 0, or an array"]),
+        ("/method/shape", ["method.shape: missing key", "\"cpdi\""]),
+        ("/materials/copper/density", ["materials.copper.density: missing", "a number above 0"]),
+        ("/materials/copper/eos/c0", ["materials.copper.eos.c0: missing", "a number above 0"]),
+        ("/bodies/0/box", ["bodies.flyer.box: missing", "lower, upper"]),
+        ("/bodies/0/name", ["bodies[0].name: missing", "a string"]),
+        ("/reference/flyer_impact/target", ["reference.flyer_impact.target: missing", "a string"]),
+    ] {
+        let (parent, key) = path.rsplit_once('/').unwrap();
+        let remove = |scene: &mut Value| {
+            scene.pointer_mut(parent).unwrap().as_object_mut().unwrap().remove(key).unwrap();
+        };
+        refused_edit(remove, &fragments);
+    }
+}
+
+#[test]
+fn numbers_out_of_bounds() {
+    for (path, value, allowed) in [
+        ("time.end", "0", "a number above 0"),
+        ("time.end", "-1e-6", "a number above 0"),
+        ("time.courant", "1.5", "a number above 0 and at most 1"),
+        ("time.courant", "0", "a number above 0 and at most 1"),
+        ("domain.cell_size", "-1e-5", "a number above 0"),
+        ("domain.cell_size", "0", "a number above 0"),
+        ("materials.copper.density", "-8930", "a number above 0"),
+        ("materials.copper.eos.c0", "0", "a number above 0"),
+        ("materials.copper.eos.s", "0", "a number above 0"),
+        ("materials.copper.eos.s", "-1.489", "a number above 0"),
+        ("materials.copper.eos.gamma0", "-1", "a number above 0"),
+        ("artificial_viscosity.linear", "-0.1", "a number at least 0"),
+        ("artificial_viscosity.quadratic", "-0.1", "a number at least 0"),
+        ("method.transfer.fmpm", "0", "a whole number at least 1 and at most 50"),
+        ("method.transfer.fmpm", "51", "at most 50"),
+        ("method.transfer.fmpm", "-3", "at least 1"),
+        ("method.pressure_relaxation.rate", "1.5", "above 0 and at most 1"),
+        ("method.pressure_relaxation.interval", "0", "at least 1"),
+        ("method.pressure_relaxation.interval", "5000000000", "a whole number"),
+        ("method.edge_mask", "1.0", "at least 0 and below 1"),
+        ("output.histories.interval", "0", "a number above 0"),
+    ] {
+        let set = format!("{path}={value}");
+        let shown: Value = serde_json::from_str(value).unwrap();
+        refused("flyer.json", &[&set], &[&format!("{path} = {shown}"), "allowed: ", allowed]);
+    }
+    let sets = ["method.transfer={\"flip_pic\": 1.1}"];
+    refused("flyer.json", &sets, &["method.transfer.flip_pic = 1.1", "at least 0 and at most 1"]);
+    let sets = ["materials.gas_left.eos.gamma=1"];
+    refused("sod.json", &sets, &["materials.gas_left.eos.gamma = 1", "a number above 1"]);
+    let sets = ["bodies.flyer.particles_per_cell=[0]"];
+    refused(
+        "flyer.json",
+        &sets,
+        &["bodies.flyer.particles_per_cell[0] = 0", "a whole number at least 1"],
+    );
+    let sets = ["materials.copper.density=1e307"];
+    refused("flyer.json", &sets, &["materials.copper.density = 1e+307", "no finite stiffness"]);
+}
+
+#[test]
+fn huge_files_get_a_short_verdict_soon() {
+    let name = "n".repeat(5_000_000);
+    refused_edit(|scene| scene[&name] = 1.into(), &["unknown key", "allowed: artificial"]);
+    refused_edit(|scene| scene["bodies"][0]["material"] = name.clone().into(), &["no such"]);
+    refused_edit(|scene| scene["bodies"][0]["name"] = name.clone().into(), &["at most 200"]);
+    let bodies = |scene: &mut Value| {
+        let body = scene["bodies"][0].clone();
+        let many = (0..50_000).map(|i| {
+            let mut body = body.clone();
+            body["name"] = i.to_string().into();
+            body
+        });
+        scene["bodies"] = many.collect();
+    };
+    refused_edit(bodies, &["bodies.1.box", "overlaps bodies.0.box"]);
+    let unknown = |scene: &mut Value| {
+        bodies(scene);
+        scene["bodies"][49_999]["colour"] = "red".into();
+    };
+    refused_edit(unknown, &["bodies.49999.colour = \"red\"", "unknown key"]);
+    let nobody = |scene: &mut Value| {
+        bodies(scene);
+        for i in 0..50_000 {
+            let lower = f64::from(i) * 1.6e-7;
+            scene["bodies"][i as usize]["box"] =
+                serde_json::json!({"lower": [lower], "upper": [lower + 1.5e-7]});
+            scene["bodies"][i as usize]["particles_per_cell"] = serde_json::json!([100]);
+        }
+    };
+    refused_edit(nobody, &["reference.flyer_impact.flyer", "no such body", "and 49980 more"]);
+}

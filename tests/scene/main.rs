@@ -1,0 +1,63 @@
+//! Scenes: those shipped, overrides, and every bad one with its message.
+
+mod keys;
+mod random;
+mod refused;
+mod shipped;
+
+use std::path::{Path, PathBuf};
+
+use flyer_mpm::scene::{self, CheckedScene, parse};
+use serde_json::Value;
+
+fn inputs() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs");
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut files: Vec<_> =
+        entries.filter(|path| path.extension().is_some_and(|e| e == "json")).collect();
+    files.sort();
+    files
+}
+
+fn shipped(name: &str) -> Vec<u8> {
+    scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs").join(name)).unwrap()
+}
+
+fn with(name: &str, sets: &[&str]) -> Result<CheckedScene, String> {
+    let sets: Vec<_> = sets.iter().map(ToString::to_string).collect();
+    parse(&shipped(name), name, &sets).map_err(|error| error.to_string())
+}
+
+/// The message is one line that holds every fragment.
+#[track_caller]
+fn tells(message: &str, fragments: &[&str]) {
+    assert_eq!(message.lines().count(), 1, "{message}");
+    assert!(message.len() < 2000, "{message}");
+    for fragment in fragments {
+        assert!(message.contains(fragment), "no `{fragment}` in: {message}");
+    }
+}
+
+#[track_caller]
+fn refused(name: &str, sets: &[&str], fragments: &[&str]) {
+    match with(name, sets) {
+        Ok(_) => panic!("{sets:?} passed"),
+        Err(message) => tells(&message, fragments),
+    }
+}
+
+#[track_caller]
+fn refused_text(text: &str, fragments: &[&str]) {
+    match parse(text.as_bytes(), "bad.json", &[]) {
+        Ok(_) => panic!("{text:.200} passed"),
+        Err(error) => tells(&error.to_string(), fragments),
+    }
+}
+
+/// `flyer.json` with one edit of its JSON.
+#[track_caller]
+fn refused_edit(edit: impl FnOnce(&mut Value), fragments: &[&str]) {
+    let mut value: Value = serde_json::from_slice(&shipped("flyer.json")).unwrap();
+    edit(&mut value);
+    refused_text(&value.to_string(), fragments);
+}
