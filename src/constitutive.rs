@@ -73,7 +73,9 @@ pub trait Model: Send + Sync {
 pub fn build(material: &Material) -> Box<dyn Model> {
     let rho0 = material.density;
     match material.eos {
-        Eos::MieGruneisen { c0, s, gamma0 } => Box::new(Point(MieGruneisen { rho0, c0, s, gamma0 })),
+        Eos::MieGruneisen { c0, s, gamma0 } => {
+            Box::new(Point(MieGruneisen { rho0, c0, s, gamma0 }))
+        }
         Eos::IdealGas { gamma } => Box::new(Point(IdealGas { rho0, gamma })),
     }
 }
@@ -231,9 +233,12 @@ mod tests {
             copper.refresh(&[0.9, j], &[0.0, e], &mut p, &mut c)
         };
         assert_eq!(told(0.9, 0.0), None);
-        for (j, e, word) in
-            [(0.2, 0.0, "limit 1/s"), (1.5, 0.0, "tension"), (-0.1, 0.0, "negative"), (0.9, f64::NAN, "not a number")]
-        {
+        for (j, e, word) in [
+            (0.2, 0.0, "limit 1/s"),
+            (1.5, 0.0, "tension"),
+            (-0.1, 0.0, "negative"),
+            (0.9, f64::NAN, "not a number"),
+        ] {
             let (row, what) = told(j, e).unwrap();
             assert_eq!(row, 1);
             assert!(what.contains(word), "{what}");

@@ -134,12 +134,10 @@ impl Band {
         let n = to - from;
         let y = &mut y[from..to];
         let main = &self.diagonals[0][from..to];
-        let above: [(&[f64], &[f64]); W] = std::array::from_fn(|d| {
-            (&self.diagonals[d][from..to], &x[from + d..to + d])
-        });
-        let below: [(&[f64], &[f64]); W] = std::array::from_fn(|d| {
-            (&self.diagonals[d][from - d..to - d], &x[from - d..to - d])
-        });
+        let above: [(&[f64], &[f64]); W] =
+            std::array::from_fn(|d| (&self.diagonals[d][from..to], &x[from + d..to + d]));
+        let below: [(&[f64], &[f64]); W] =
+            std::array::from_fn(|d| (&self.diagonals[d][from - d..to - d], &x[from - d..to - d]));
         let centre = &x[from..to];
         for i in 0..n {
             let mut sum = main[i] * centre[i];
@@ -160,7 +158,8 @@ mod tests {
     fn the_band_is_the_matrix_of_products() {
         let mut band = Band::default();
         band.clear(12, 3);
-        let particles = [(3, 2.0, [0.2, 0.5, 0.3]), (4, 1.5, [0.1, 0.6, 0.3]), (3, 0.7, [0.0, 0.4, 0.6])];
+        let particles =
+            [(3, 2.0, [0.2, 0.5, 0.3]), (4, 1.5, [0.1, 0.6, 0.3]), (3, 0.7, [0.0, 0.4, 0.6])];
         let mut full = [[0.0; 12]; 12];
         for (first, mass, values) in &particles {
             band.add(*first, *mass, values);

@@ -1,13 +1,17 @@
 //! flyer-mpm: impact and shock waves by the material point method.
 
-//pub mod exact;
+pub mod constitutive;
+pub mod exact;
+pub mod figures;
+pub mod grid;
 pub mod material;
 pub mod output;
-pub mod scene;
-pub mod constitutive;
-pub mod grid;
 pub mod particles;
 pub mod patch;
+pub mod probes;
+pub mod reference;
+pub mod run;
+pub mod scene;
 pub mod shape;
 pub mod simulation;
 pub mod step;

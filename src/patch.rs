@@ -102,7 +102,13 @@ pub struct Patch<const D: usize> {
 impl<const D: usize> Patch<D> {
     /// The patch `index` of `layout`, with `block`'s rows and `fields` nodal arrays with a halo
     /// of `depth` nodes.
-    pub fn new(layout: &Layout<D>, index: usize, block: Block<D>, depth: i64, fields: usize) -> Self {
+    pub fn new(
+        layout: &Layout<D>,
+        index: usize,
+        block: Block<D>,
+        depth: i64,
+        fields: usize,
+    ) -> Self {
         Patch {
             cells: layout.patches()[index],
             block,

@@ -118,7 +118,10 @@ pub fn sides(scene: &CheckedScene) -> [Side; 2] {
 
 /// The velocity at which the grid travels with a piston [m/s].
 fn grid_velocity(scene: &CheckedScene) -> f64 {
-    sides(scene).iter().find_map(|s| if let Side::Velocity(v) = s { Some(*v) } else { None }).unwrap_or(0.0)
+    sides(scene)
+        .iter()
+        .find_map(|s| if let Side::Velocity(v) = s { Some(*v) } else { None })
+        .unwrap_or(0.0)
 }
 
 /// Patches narrower than this only cost.
@@ -171,9 +174,10 @@ impl<'a, C: Comm + ?Sized> Simulation<'a, C> {
             .fold(0.0, f64::max)
             / scene.cell_size[0];
         let reach = stepper.reach(longest).unwrap_or(Reach { nodes: 4 });
-        let patches = layout.patches_of(comm.rank()).into_iter().zip(blocks).map(|(p, block)| {
-            Patch::new(&layout, p, block, reach.depth(), stepper.fields.count)
-        });
+        let patches =
+            layout.patches_of(comm.rank()).into_iter().zip(blocks).map(|(p, block)| {
+                Patch::new(&layout, p, block, reach.depth(), stepper.fields.count)
+            });
         let pool = (threads > 1).then(|| {
             rayon::ThreadPoolBuilder::new()
                 .num_threads(threads)
@@ -373,8 +377,7 @@ impl<'a, C: Comm + ?Sized> Simulation<'a, C> {
     pub fn gather(&self) -> Option<(ParticleTable, String)> {
         let c = &self.stepper.columns;
         let state = c.state();
-        let (ids, columns) =
-            gather_rows(self.comm, self.patches.iter().map(|p| &p.block), &state);
+        let (ids, columns) = gather_rows(self.comm, self.patches.iter().map(|p| &p.block), &state);
         if self.comm.rank() != 0 {
             return None;
         }

@@ -90,7 +90,8 @@ pub fn nodal<const K: usize>(
         if value > 0.0 {
             let i = first + k;
             let known = inverse_mass[i - 1] > 0.0 && inverse_mass[i + 1] > 0.0;
-            let d = if known { (velocity[i + 1] - velocity[i - 1]) * half_inverse_cell } else { 0.0 };
+            let d =
+                if known { (velocity[i + 1] - velocity[i - 1]) * half_inverse_cell } else { 0.0 };
             least = least.min(d / gradient);
         }
     }

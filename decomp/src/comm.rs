@@ -15,12 +15,7 @@ pub trait Comm {
 
     /// Sends each `(rank, words)` and receives one message from each rank of `from` (in that
     /// order) into `received`. Every send must be met by a receive on the other side.
-    fn exchange(
-        &self,
-        sends: &[(usize, &[u64])],
-        from: &[usize],
-        received: &mut Vec<Vec<u64>>,
-    );
+    fn exchange(&self, sends: &[(usize, &[u64])], from: &[usize], received: &mut Vec<Vec<u64>>);
 
     /// Least of each value over the ranks. Collective.
     fn min(&self, values: &mut [f64]);
@@ -79,12 +74,7 @@ impl Comm for Serial {
         1
     }
 
-    fn exchange(
-        &self,
-        sends: &[(usize, &[u64])],
-        from: &[usize],
-        received: &mut Vec<Vec<u64>>,
-    ) {
+    fn exchange(&self, sends: &[(usize, &[u64])], from: &[usize], received: &mut Vec<Vec<u64>>) {
         debug_assert!(sends.is_empty() && from.is_empty(), "one rank has nobody to talk to");
         received.clear();
     }

@@ -28,7 +28,9 @@ impl<const D: usize> Image<D> {
 
     /// Where node `i` appears.
     pub fn node(&self, i: [i64; D]) -> [i64; D] {
-        std::array::from_fn(|a| if self.flip[a] { self.shift[a] - i[a] } else { i[a] + self.shift[a] })
+        std::array::from_fn(
+            |a| if self.flip[a] { self.shift[a] - i[a] } else { i[a] + self.shift[a] },
+        )
     }
 
     /// Where cell `c` (between nodes c and c + 1) appears.
@@ -40,7 +42,9 @@ impl<const D: usize> Image<D> {
 
     /// The node that appears at `i`.
     pub fn source_node(&self, i: [i64; D]) -> [i64; D] {
-        std::array::from_fn(|a| if self.flip[a] { self.shift[a] - i[a] } else { i[a] - self.shift[a] })
+        std::array::from_fn(
+            |a| if self.flip[a] { self.shift[a] - i[a] } else { i[a] - self.shift[a] },
+        )
     }
 
     /// Where the cells of `b` appear.
@@ -56,10 +60,18 @@ impl<const D: usize> Image<D> {
     fn boxed(&self, b: &IndexBox<D>, node: i64) -> IndexBox<D> {
         IndexBox {
             lower: std::array::from_fn(|a| {
-                if self.flip[a] { self.shift[a] - b.upper[a] + node } else { b.lower[a] + self.shift[a] }
+                if self.flip[a] {
+                    self.shift[a] - b.upper[a] + node
+                } else {
+                    b.lower[a] + self.shift[a]
+                }
             }),
             upper: std::array::from_fn(|a| {
-                if self.flip[a] { self.shift[a] - b.lower[a] + node } else { b.upper[a] + self.shift[a] }
+                if self.flip[a] {
+                    self.shift[a] - b.lower[a] + node
+                } else {
+                    b.upper[a] + self.shift[a]
+                }
             }),
         }
     }
@@ -186,9 +198,7 @@ impl<const D: usize> Layout<D> {
         let n = upper - lower;
         let turns = depth / n + 1;
         match self.sides[a] {
-            [Side::Wrap, _] | [_, Side::Wrap] => {
-                (-turns..=turns).map(|k| (false, k * n)).collect()
-            }
+            [Side::Wrap, _] | [_, Side::Wrap] => (-turns..=turns).map(|k| (false, k * n)).collect(),
             [Side::Mirror, Side::Mirror] => (-turns..=turns)
                 .flat_map(|k| [(false, 2 * n * k), (true, 2 * lower + 2 * n * k)])
                 .collect(),
@@ -235,8 +245,7 @@ mod tests {
 
     #[test]
     fn patch_of_agrees_with_the_boxes() {
-        let layout =
-            Layout::new(IndexBox::new([-3, 2], [8, 9]), [[Side::Open; 2]; 2], [3, 2]);
+        let layout = Layout::new(IndexBox::new([-3, 2], [8, 9]), [[Side::Open; 2]; 2], [3, 2]);
         for cell in layout.domain().iter() {
             assert!(layout.patches()[layout.patch_of(cell)].contains(cell));
         }

@@ -273,8 +273,7 @@ mod tests {
     fn check(sides: [Side; 2], parts: usize, exact: impl Fn(i64) -> f64, parity: Parity) {
         let layout = Layout::new(IndexBox::new([0], [10]), [sides], [parts]);
         let mut exchange = NodeExchange::new(&layout, 0, 4);
-        let mut patches: Vec<_> =
-            (0..parts).map(|p| NodeArrays::new(&layout, p, 4, 1)).collect();
+        let mut patches: Vec<_> = (0..parts).map(|p| NodeArrays::new(&layout, p, 4, 1)).collect();
         for arrays in &mut patches {
             for node in arrays.owned.iter() {
                 let at = arrays.nodes.flat(node);
@@ -297,7 +296,8 @@ mod tests {
             check([Side::Wrap; 2], parts, |i| i.rem_euclid(10) as f64, Parity::Even);
             check([Side::Mirror, Side::Open], parts, |i| i as f64, Parity::Odd(0));
             check([Side::Open, Side::Mirror], parts, |i| (i - 10).abs() as f64, Parity::Even);
-            let both = |i: i64| (std::f64::consts::PI * i as f64 / 10.0).cos().mul_add(1e3, 0.0).round();
+            let both =
+                |i: i64| (std::f64::consts::PI * i as f64 / 10.0).cos().mul_add(1e3, 0.0).round();
             check([Side::Mirror; 2], parts, both, Parity::Even);
         }
     }

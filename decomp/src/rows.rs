@@ -6,7 +6,9 @@ use crate::{Block, Comm, Image, Layout};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RowError {
     /// It has moved further in one step than its patch's neighbours.
-    #[error("particle {id} moved from patch {patch} to cell {cell:?} in one step, past its neighbours")]
+    #[error(
+        "particle {id} moved from patch {patch} to cell {cell:?} in one step, past its neighbours"
+    )]
     MovedTooFar {
         /// Its id.
         id: u64,
@@ -283,8 +285,7 @@ pub fn gather_rows<'a, const D: usize, C: Comm + ?Sized>(
     let mut rows: Vec<&[u64]> = all.iter().flat_map(|w| w.chunks(width)).collect();
     rows.sort_unstable_by_key(|r| r[0]);
     let ids = rows.iter().map(|r| r[0]).collect();
-    let columns =
-        (1..width).map(|c| rows.iter().map(|r| f64::from_bits(r[c])).collect()).collect();
+    let columns = (1..width).map(|c| rows.iter().map(|r| f64::from_bits(r[c])).collect()).collect();
     (ids, columns)
 }
 
@@ -300,11 +301,7 @@ mod tests {
     ];
 
     /// Rows at `cells` moved by `moves`, exchanged; then each patch's rows as (cell, id, v).
-    fn seen(
-        layout: &Layout<1>,
-        cells: &[(i64, i64)],
-        depth: i64,
-    ) -> Vec<Vec<(i64, u64, f64)>> {
+    fn seen(layout: &Layout<1>, cells: &[(i64, i64)], depth: i64) -> Vec<Vec<(i64, u64, f64)>> {
         let count = layout.patches().len();
         let mut blocks: Vec<Block<1>> = (0..count).map(|_| Block::new(&SPECS)).collect();
         for (id, (cell, _)) in cells.iter().enumerate() {

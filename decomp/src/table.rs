@@ -123,12 +123,21 @@ impl<const D: usize> Block<D> {
     pub fn retain(&mut self, keep: &[bool]) {
         debug_assert_eq!(self.rows(), self.own);
         let mut at = 0;
-        self.ids.retain(|_| { at += 1; keep[at - 1] });
+        self.ids.retain(|_| {
+            at += 1;
+            keep[at - 1]
+        });
         at = 0;
-        self.cells.retain(|_| { at += 1; keep[at - 1] });
+        self.cells.retain(|_| {
+            at += 1;
+            keep[at - 1]
+        });
         for column in &mut self.columns {
             at = 0;
-            column.retain(|_| { at += 1; keep[at - 1] });
+            column.retain(|_| {
+                at += 1;
+                keep[at - 1]
+            });
         }
         self.own = self.ids.len();
     }
@@ -171,8 +180,8 @@ impl<const D: usize> Block<D> {
         runs.clear();
         let (mut own, mut ghost) = (0, self.own);
         while own < self.own || ghost < self.rows() {
-            let take_own = ghost == self.rows()
-                || (own < self.own && self.key(own) < self.key(ghost));
+            let take_own =
+                ghost == self.rows() || (own < self.own && self.key(own) < self.key(ghost));
             let (start, end, other, other_end) = if take_own {
                 (own, self.own, ghost, self.rows())
             } else {
@@ -184,7 +193,11 @@ impl<const D: usize> Block<D> {
                 let limit = self.key(other);
                 start + partition_point(start, end, |r| self.key(r) < limit)
             };
-            if take_own { own = stop } else { ghost = stop }
+            if take_own {
+                own = stop
+            } else {
+                ghost = stop
+            }
             runs.push(start..stop);
         }
     }

@@ -44,7 +44,8 @@ mod tests {
         // p rho^-gamma is constant
         let at = |j: f64| p * (jacobian / j).powf(1.4);
         let h = 1e-6;
-        let slope = (at(jacobian - h) - at(jacobian + h)) / (1.3 / (jacobian - h) - 1.3 / (jacobian + h));
+        let slope =
+            (at(jacobian - h) - at(jacobian + h)) / (1.3 / (jacobian - h) - 1.3 / (jacobian + h));
         assert!((gas.sound_speed_squared(jacobian, p) / slope - 1.0).abs() < 1e-8);
     }
 }

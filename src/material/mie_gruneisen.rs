@@ -58,7 +58,13 @@ impl EquationOfState for MieGruneisen {
         let compressed = chi.max(0.0);
         let r = 1.0 / (1.0 - self.s * compressed);
         Linear {
-            cold: self.rho0 * self.c0 * self.c0 * chi * (1.0 - 0.5 * self.gamma0 * compressed) * r * r,
+            cold: self.rho0
+                * self.c0
+                * self.c0
+                * chi
+                * (1.0 - 0.5 * self.gamma0 * compressed)
+                * r
+                * r,
             energy_factor: self.gamma0 * self.rho0,
         }
     }
@@ -68,7 +74,9 @@ impl EquationOfState for MieGruneisen {
         let chi = 1.0 - jacobian;
         let compressed = chi.max(0.0);
         let r = 1.0 / (1.0 - self.s * compressed);
-        let slope = self.rho0 * self.c0 * self.c0
+        let slope = self.rho0
+            * self.c0
+            * self.c0
             * (r * r * r * (1.0 + (self.s - self.gamma0) * compressed));
         jacobian * jacobian * (slope + self.gamma0 * pressure) / self.rho0
     }
@@ -89,7 +97,8 @@ impl EquationOfState for MieGruneisen {
 mod tests {
     use super::*;
 
-    const ALUMINIUM: MieGruneisen = MieGruneisen { rho0: 2785.0, c0: 5386.0, s: 1.339, gamma0: 2.1 };
+    const ALUMINIUM: MieGruneisen =
+        MieGruneisen { rho0: 2785.0, c0: 5386.0, s: 1.339, gamma0: 2.1 };
 
     #[test]
     fn sound_speed_is_the_isentropic_derivative_of_pressure() {

@@ -4,9 +4,6 @@
 //! [`SceneError`] of one line: the key's path, its value, what is allowed. Knows no MPI and no
 //! particles.
 
-// units in brackets, such as [m], are no links
-#![allow(rustdoc::broken_intra_doc_links)]
-
 mod check;
 mod conform;
 mod errors;

@@ -26,7 +26,13 @@ impl Shape for Cpdi {
         let apart = last - first;
         for k in 0..K {
             let at = k as f64;
-            let from_lower = if k == 0 { 1.0 - a } else if k == 1 { a } else { 0.0 };
+            let from_lower = if k == 0 {
+                1.0 - a
+            } else if k == 1 {
+                a
+            } else {
+                0.0
+            };
             let from_upper = if at == apart {
                 1.0 - b
             } else if at == apart + 1.0 {

@@ -122,7 +122,8 @@ impl Stepper {
             let (c, f) = (&s.columns, &s.fields);
             let n = patch.block.own();
             let nodal = |k: usize| &patch.nodes.fields[k][..];
-            let (lumped, start, star) = (nodal(f.lumped), nodal(f.velocity), nodal(f.velocity_star));
+            let (lumped, start, star) =
+                (nodal(f.lumped), nodal(f.velocity), nodal(f.velocity_star));
             let (remainder, work) = (nodal(f.remainder), nodal(f.work));
             let mid = c.jacobian_mid.expect("mid-point stepping has the column");
             let [x, v, j, e, d, mass, j_mid, stress] = patch.block.columns_mut([
@@ -137,8 +138,7 @@ impl Stepper {
             ]);
             for r in 0..n {
                 let (first, values, g) = patch.stencils.row::<K>(r);
-                let (v0, v1): (&[f64; K], &[f64; K]) =
-                    (window(start, first), window(star, first));
+                let (v0, v1): (&[f64; K], &[f64; K]) = (window(start, first), window(star, first));
                 let mean: [f64; K] = std::array::from_fn(|k| 0.5 * (v0[k] + v1[k]));
                 let old = v[r];
                 let (new, heat) = match s.scheme {

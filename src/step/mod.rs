@@ -135,7 +135,8 @@ impl Stepper {
     pub fn new(scene: &CheckedScene) -> Self {
         let method = &scene.scene.method;
         let viscosity = scene.scene.artificial_viscosity.as_ref();
-        let sides = scene.scene.boundary.as_ref().map_or([Side::Free; 2], |b| [b.x_lower, b.x_upper]);
+        let sides =
+            scene.scene.boundary.as_ref().map_or([Side::Free; 2], |b| [b.x_lower, b.x_upper]);
         let bodies = &scene.scene.bodies;
         let materials = &scene.scene.materials;
         let cell = scene.cell_size[0];
@@ -205,7 +206,10 @@ impl Stepper {
 
     /// Makes the starting state whole: pressure, sound speed and, where the scheme needs it, the
     /// gradient of the starting velocity. Collective.
-    pub fn prime<C: Comm + ?Sized>(&self, world: &mut World<'_, C>) -> Result<(), decomp::RowError> {
+    pub fn prime<C: Comm + ?Sized>(
+        &self,
+        world: &mut World<'_, C>,
+    ) -> Result<(), decomp::RowError> {
         world.each(|patch| self.refresh(patch));
         if self.stepping == Stepping::Midpoint {
             self.prime_gradient(world)?;

@@ -104,7 +104,8 @@ impl Stepper {
                 let share = rate * w[r];
                 let dv = share * (p[r] - mean);
                 j[r] += dv / volume0[r];
-                e[r] += (share * (dot(values, &both) - dot(values, u) * mean) - mean * dv) / mass[r];
+                e[r] +=
+                    (share * (dot(values, &both) - dot(values, u) * mean) - mean * dv) / mass[r];
             }
         }
         with_width!(patch.stencils.width, go(patch, self, rate));

@@ -41,9 +41,9 @@ impl Stepper {
             (&patch.block.columns[c.mass][..rows], &patch.block.columns[c.velocity][..rows]);
         let lower = patch.nodes.nodes.lower[0];
         let [nodal_mass, momentum] = patch.nodes.fields_mut([f.mass, f.lumped]);
-        let affine = c.affine.map(|a| {
-            (&patch.block.columns[a][..rows], &patch.block.columns[c.fraction][..rows])
-        });
+        let affine = c
+            .affine
+            .map(|a| (&patch.block.columns[a][..rows], &patch.block.columns[c.fraction][..rows]));
         for run in &patch.runs {
             for r in run.clone() {
                 let (first, n, _) = patch.stencils.row::<K>(r);

@@ -134,9 +134,9 @@ impl Stepper {
                     for i in 0..x.len() {
                         x[i] = (1.0 - a) * lumped[i] + 0.5 * (star[i] - lumped[i]);
                     }
-                    let [inverse, lumped, x, y, w] = patch.nodes.fields_mut([
-                        f.inverse, f.lumped, f.scratch2, f.scratch, f.work,
-                    ]);
+                    let [inverse, lumped, x, y, w] = patch
+                        .nodes
+                        .fields_mut([f.inverse, f.lumped, f.scratch2, f.scratch, f.work]);
                     patch.band.product(x, patch.active.clone(), y);
                     for i in patch.active.clone() {
                         w[i] = a * lumped[i] + inverse[i] * y[i];

@@ -98,12 +98,7 @@ impl Comm for Mpi {
         self.world.size() as usize
     }
 
-    fn exchange(
-        &self,
-        sends: &[(usize, &[u64])],
-        from: &[usize],
-        received: &mut Vec<Vec<u64>>,
-    ) {
+    fn exchange(&self, sends: &[(usize, &[u64])], from: &[usize], received: &mut Vec<Vec<u64>>) {
         received.resize_with(from.len(), Vec::new);
         mpi::request::scope(|scope| {
             let requests: Vec<_> = sends

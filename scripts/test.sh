@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Sets up what is missing, then runs every test; arguments go to cargo test.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+# shellcheck source=scripts/mpi_env.sh
+. "$root/scripts/mpi_env.sh"
+cd "$root"
+
+scripts/setup.sh --tests
+
+# Tests start more ranks than a small machine has cores.
+export OMPI_MCA_rmaps_base_oversubscribe=1
+if [ "$(cores)" -lt 4 ]; then
+    export OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_mpi_yield_when_idle=1
+fi
+
+# VTK's own reader, from pip, for tests/vtk_reader.rs.
+if [ -z "${FLYER_MPM_VTK_PYTHON:-}" ]; then
+    venv="$root/target/vtk-venv"
+    if ! "$venv/bin/python" -c 'import vtkmodules.vtkIOHDF, numpy' 2>/dev/null; then
+        echo "test: making a Python environment with vtk in target/vtk-venv"
+        rm -rf "$venv"
+        mkdir -p "$root/target"
+        python3 -m venv "$venv"
+        "$venv/bin/python" -m pip install --quiet --disable-pip-version-check 'vtk>=9.4' numpy ||
+            echo "test: vtk cannot be installed; its test will be skipped" >&2
+    fi
+    if "$venv/bin/python" -c 'import vtkmodules.vtkIOHDF, numpy' 2>/dev/null; then
+        export FLYER_MPM_VTK_PYTHON="$venv/bin/python"
+    fi
+fi
+
+cargo test --workspace --release "$@"

@@ -1,0 +1,111 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+/// Impact and shock waves by the material point method, held against exact solutions.
+///
+/// Runs a scene on all ranks that it is started with:
+///
+///   mpirun -n 2 flyer-mpm inputs/flyer.json
+///   flyer-mpm inputs/flyer.json --set domain.cell_size=5e-6 --output output/fine
+///
+/// Results go to output/<name of the scene>/: summary.json (errors against the exact solution,
+/// energy, times), one CSV a profile time, histories.csv, results.hdf5 (ParaView opens it) and
+/// pictures. A rerun replaces them once it is complete; a run that fails leaves them as they
+/// were.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true,
+    arg_required_else_help = true,
+    max_term_width = 100
+)]
+pub struct Cli {
+    /// What else than a run.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+
+    /// The run.
+    #[command(flatten)]
+    pub run: Option<RunArgs>,
+}
+
+/// A scene and its overrides.
+#[derive(Clone, Debug, Args)]
+pub struct SceneArgs {
+    /// The scene: a JSON file (`flyer-mpm schema` describes it).
+    #[arg(value_name = "SCENE.json")]
+    pub scene: PathBuf,
+
+    /// Overrides a value of the scene, such as domain.patches=[8], bodies.flyer.velocity=[500] (by
+    /// name or index) or method.shape=cpdi; may be repeated. What is not JSON is a string.
+    #[arg(long, value_name = "PATH=VALUE")]
+    pub set: Vec<String>,
+}
+
+/// A run.
+#[derive(Clone, Debug, Args)]
+pub struct RunArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+
+    /// Folder of the results [default: output/<name of the scene>/].
+    #[arg(long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// Threads a rank.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = threads)]
+    pub threads: usize,
+
+    /// Refuse to replace an earlier result.
+    #[arg(long)]
+    pub keep: bool,
+
+    /// Say nothing but errors.
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// What else the program does.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Print the exact chain of wave interactions of an impact and draw its Hugoniots and x-t
+    /// diagram, without a run.
+    Hugoniot {
+        /// The scene.
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// Folder of the pictures [default: output/<name of the scene>_hugoniot/].
+        #[arg(long, value_name = "DIR")]
+        output: Option<PathBuf>,
+    },
+    /// Check a scene and tell what a run would take: particles, cells, memory, steps, effects.
+    Check {
+        /// The scene.
+        #[command(flatten)]
+        scene: SceneArgs,
+    },
+    /// Print the JSON schema of a scene.
+    Schema,
+    /// Compare the results of two runs: norms, and the first particle and column that differ.
+    /// Exit code 1 if they differ.
+    Compare {
+        /// Folder of the first results.
+        #[arg(value_name = "RUN")]
+        first: PathBuf,
+        /// Folder of the second results.
+        #[arg(value_name = "RUN")]
+        second: PathBuf,
+    },
+}
+
+fn threads(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(n) if (1..=1024).contains(&n) => Ok(n),
+        _ => Err("a whole number from 1 to 1024 is allowed".into()),
+    }
+}

@@ -1,0 +1,453 @@
+//! The source document's solution: a chain of impedance matches, each rarefaction taken as a
+//! shock that runs back along the Hugoniot.
+//!
+//! Frame: flyer [-L, 0] at +U, target [0, inf) at rest, contact at t = 0. Hugoniot of a material
+//! about (u0, P = 0), P = rho0 (C0 + S w) w, with w = u - u0 for right-going waves and u0 - u for
+//! left-going ones. States: 0 target, 1 flyer, even ones at the interface, odd ones at the
+//! flyer's free rear. Source: Burghardt (2010), Shock wave propagation verification test of the
+//! Uintah MPM code, section 2; its eq. 3 lost rho0.
+//!
+//! Wave speeds are Lagrangian (relative to the undeformed material), the chord of the curve
+//! between the two states: C0 + S (ua + ub - 2 u0). Compressions follow from the mass jump across
+//! each wave. Holds until a later wave in the target overtakes an earlier one
+//! ([`Chain::valid_until`]), and to the order of the entropy change, cubic in the shock's
+//! strength.
+
+use super::{ExactError, Point, Profile, finite, positive};
+use crate::material::MieGruneisen;
+
+/// One of the two plates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plate {
+    /// The body that strikes.
+    Flyer,
+    /// The body that is struck; the one that is scored.
+    Target,
+}
+
+/// Kinds of waves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WaveKind {
+    /// Pressure rises across it.
+    Shock,
+    /// Pressure falls across it.
+    Rarefaction,
+}
+
+/// A state of the chain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChainState {
+    /// The document's number.
+    pub number: usize,
+    /// Pressure [Pa].
+    pub p: f64,
+    /// Velocity [m/s].
+    pub u: f64,
+    /// Density in the flyer [kg/m3]; `None` if the flyer is never in this state.
+    pub rho_flyer: Option<f64>,
+    /// Density in the target [kg/m3]; `None` if the target is never in this state.
+    pub rho_target: Option<f64>,
+}
+
+/// A wave of the chain, a straight line in the x-t diagram.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChainWave {
+    /// Whose plate it runs in.
+    pub plate: Plate,
+    /// Shock or rarefaction.
+    pub kind: WaveKind,
+    /// Number of the state ahead.
+    pub from: usize,
+    /// Number of the state behind.
+    pub to: usize,
+    /// Speed relative to the undeformed material [m/s], positive.
+    pub lagrangian_speed: f64,
+    /// Whether it runs towards -x.
+    pub leftward: bool,
+    /// Time [s] and place [m] of its start.
+    pub start: [f64; 2],
+    /// Time [s] and place [m] of its end; `None` in the target, where it goes on.
+    pub end: Option<[f64; 2]>,
+    /// Speed in space, dx/dt [m/s].
+    pub velocity: f64,
+}
+
+/// The chain of wave interactions, rarefactions taken as shocks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chain {
+    /// States by number.
+    pub states: Vec<ChainState>,
+    /// Waves by the time of their start.
+    pub waves: Vec<ChainWave>,
+    /// Whether the plates part: the pressure of state 4 would be negative, since state 3 has
+    /// u < 0 (softer flyer). State 4 is then the target's, at P = 0, and the flyer stays in
+    /// state 3.
+    pub separates: bool,
+    /// When the plates part [s].
+    pub separation_time: Option<f64>,
+    /// Time from which a later wave of the target has overtaken an earlier one [s].
+    pub valid_until: f64,
+    /// Density of the target at rest [kg/m3].
+    target_density: f64,
+    /// Breaks of the interface's (after separation: the target face's) path: time, place.
+    interface: Vec<[f64; 2]>,
+}
+
+/// Pressure of the right-going Hugoniot about (`u0`, 0) at velocity `u` [Pa].
+pub fn hugoniot_right(m: &MieGruneisen, u0: f64, u: f64) -> f64 {
+    m.rho0 * (m.c0 + m.s * (u - u0)) * (u - u0)
+}
+
+/// Pressure of the left-going Hugoniot about (`u0`, 0) at velocity `u` [Pa].
+pub fn hugoniot_left(m: &MieGruneisen, u0: f64, u: f64) -> f64 {
+    hugoniot_right(m, -u0, -u)
+}
+
+/// The velocity u0 about which the right-going Hugoniot passes through (`u`, `p`) [m/s].
+pub fn centre_right(m: &MieGruneisen, p: f64, u: f64) -> f64 {
+    u - velocity_jump(m, p)
+}
+
+/// The velocity u0 about which the left-going Hugoniot passes through (`u`, `p`) [m/s].
+pub fn centre_left(m: &MieGruneisen, p: f64, u: f64) -> f64 {
+    u + velocity_jump(m, p)
+}
+
+/// The w of P = rho0 (C0 + S w) w [m/s].
+pub(super) fn velocity_jump(m: &MieGruneisen, p: f64) -> f64 {
+    let b = m.rho0 * m.c0;
+    2.0 * p / (b + (b * b + 4.0 * m.rho0 * m.s * p).sqrt())
+}
+
+/// Where the right-going Hugoniot of `target` about (0, 0) meets the left-going one of `flyer`
+/// about (`speed`, 0) [m/s].
+pub(super) fn impedance_match(flyer: &MieGruneisen, target: &MieGruneisen, speed: f64) -> f64 {
+    let a = target.rho0 * target.s - flyer.rho0 * flyer.s;
+    let b = target.rho0 * target.c0 + flyer.rho0 * (flyer.c0 + 2.0 * flyer.s * speed);
+    let c = flyer.rho0 * speed * (flyer.c0 + flyer.s * speed);
+    2.0 * c / (b + (b * b + 4.0 * a * c).sqrt())
+}
+
+/// Refuses constants and impacts outside of what the equation of state can bear.
+pub(super) fn check(
+    flyer: &MieGruneisen,
+    target: &MieGruneisen,
+    speed: f64,
+    thickness: f64,
+) -> Result<(), ExactError> {
+    positive("the speed of impact", speed)?;
+    positive("the flyer's thickness", thickness)?;
+    for m in [flyer, target] {
+        positive("rho0", m.rho0)?;
+        positive("c0", m.c0)?;
+        positive("s", m.s)?;
+        finite("gamma0", m.gamma0)?;
+    }
+    let u = impedance_match(flyer, target, speed);
+    for (m, w) in [(flyer, speed - u), (target, u)] {
+        let chi = w / (m.c0 + m.s * w);
+        if !(chi < 0.95 && chi * m.s < 0.95) {
+            return Err(ExactError::State {
+                what: "the impact compresses past 0.95 or 0.95/s",
+                chi,
+            });
+        }
+    }
+    Ok(())
+}
+
+impl Chain {
+    /// The chain up to the state numbered `last_state`, at least 2; it ends earlier when the
+    /// plates part or come to rest.
+    pub fn new(
+        flyer: MieGruneisen,
+        target: MieGruneisen,
+        speed: f64,
+        thickness: f64,
+        last_state: usize,
+    ) -> Result<Chain, ExactError> {
+        check(&flyer, &target, speed, thickness)?;
+        let mut chain = Chain {
+            states: vec![
+                ChainState {
+                    number: 0,
+                    p: 0.0,
+                    u: 0.0,
+                    rho_flyer: None,
+                    rho_target: Some(target.rho0),
+                },
+                ChainState {
+                    number: 1,
+                    p: 0.0,
+                    u: speed,
+                    rho_flyer: Some(flyer.rho0),
+                    rho_target: None,
+                },
+            ],
+            waves: Vec::new(),
+            separates: false,
+            separation_time: None,
+            valid_until: f64::INFINITY,
+            target_density: target.rho0,
+            interface: vec![[0.0, 0.0]],
+        };
+        let mut t = 0.0;
+        let (mut face, mut rear) = (0.0, -thickness); // places of the flyer's two faces
+        let (mut ahead_u, mut ahead_chi) = (0.0, 0.0); // the target before the next wave
+        let mut flyer_u = speed;
+        for number in (2..=last_state.max(2)).step_by(2) {
+            let parts = flyer_u < 0.0;
+            let u = if parts { 0.0 } else { impedance_match(&flyer, &target, flyer_u) };
+            // the wave into the target
+            let kind = if u > ahead_u { WaveKind::Shock } else { WaveKind::Rarefaction };
+            let w = target.c0 + target.s * (u + ahead_u);
+            let ahead = if number == 2 { 0 } else { number - 2 };
+            let velocity = ahead_u + (1.0 - ahead_chi) * w;
+            chain.push(ChainWave {
+                plate: Plate::Target,
+                kind,
+                from: ahead,
+                to: number,
+                lagrangian_speed: w,
+                leftward: false,
+                start: [t, face],
+                end: None,
+                velocity,
+            });
+            ahead_chi += (u - ahead_u) / w;
+            ahead_u = u;
+            let p = hugoniot_right(&target, 0.0, u);
+            let rho_target = Some(target.rho0 / (1.0 - ahead_chi));
+            if parts {
+                chain.separates = true;
+                chain.separation_time = Some(t);
+                chain.states.push(ChainState { number, p, u, rho_flyer: None, rho_target });
+                break;
+            }
+            // the shock back through the flyer, and its rarefaction from the free rear
+            let up = flyer_u - u;
+            let w = flyer.c0 + flyer.s * up;
+            let chi = up / w;
+            let rho_flyer = Some(flyer.rho0 / (1.0 - chi));
+            chain.states.push(ChainState { number, p, u, rho_flyer, rho_target });
+            if up <= 1e-12 * speed {
+                break; // both plates have come to rest: the materials are equal
+            }
+            let (t_rear, t_face) = (t + thickness / w, t + 2.0 * thickness / w);
+            let (rear_then, face_then) = (rear + flyer_u * (t_rear - t), face + u * (t_face - t));
+            chain.push(ChainWave {
+                plate: Plate::Flyer,
+                kind: WaveKind::Shock,
+                from: number - 1,
+                to: number,
+                lagrangian_speed: w,
+                leftward: true,
+                start: [t, face],
+                end: Some([t_rear, rear_then]),
+                velocity: flyer_u - w,
+            });
+            if number == last_state.max(2) {
+                break;
+            }
+            // symmetric about state 2, 4, ...: the rarefaction undoes the shock's jump
+            let mut next_u = u - up;
+            if next_u.abs() <= 1e-12 * speed {
+                next_u = 0.0;
+            }
+            chain.states.push(ChainState {
+                number: number + 1,
+                p: 0.0,
+                u: next_u,
+                rho_flyer: Some(flyer.rho0),
+                rho_target: None,
+            });
+            chain.push(ChainWave {
+                plate: Plate::Flyer,
+                kind: WaveKind::Rarefaction,
+                from: number,
+                to: number + 1,
+                lagrangian_speed: w,
+                leftward: false,
+                start: [t_rear, rear_then],
+                end: Some([t_face, face_then]),
+                velocity: u + (1.0 - chi) * w,
+            });
+            rear = rear_then + next_u * (t_face - t_rear);
+            (t, face, flyer_u) = (t_face, face_then, next_u);
+            chain.interface.push([t, face]);
+            if number + 1 >= last_state {
+                break;
+            }
+        }
+        chain.find_overtaking();
+        Ok(chain)
+    }
+
+    fn push(&mut self, wave: ChainWave) {
+        self.waves.push(wave);
+    }
+
+    /// Waves of the target, the earliest first.
+    fn target_waves(&self) -> impl Iterator<Item = &ChainWave> {
+        self.waves.iter().filter(|w| w.plate == Plate::Target)
+    }
+
+    fn find_overtaking(&mut self) {
+        let waves: Vec<_> = self.target_waves().collect();
+        let mut first = f64::INFINITY;
+        for (a, b) in waves.iter().zip(waves.iter().skip(1)) {
+            let gain = b.lagrangian_speed - a.lagrangian_speed;
+            if gain > 0.0 {
+                let delay = b.start[0] - a.start[0];
+                first = first.min(b.start[0] + a.lagrangian_speed * delay / gain);
+            }
+        }
+        self.valid_until = first;
+    }
+
+    /// Place of the interface (after separation: of the target's face) at time `t` [m].
+    pub fn interface_position(&self, t: f64) -> f64 {
+        let k = self.interface.partition_point(|b| b[0] <= t).max(1) - 1;
+        let [from, x] = self.interface[k];
+        // during leg k the interface is in state 2 k + 2
+        let state =
+            self.states.get(2 * k + 2).or_else(|| self.states.iter().rfind(|s| s.number % 2 == 0));
+        x + state.map_or(0.0, |s| s.u) * (t - from)
+    }
+
+    /// The document's black line: pressure, velocity and density in the target at time `t`,
+    /// constant between the waves that have entered it, from the interface to a little ahead
+    /// of the shock (as far again as the shock has run). The energy is that of the jump
+    /// conditions. `None` outside of 0 < t <= `valid_until`.
+    pub fn shock_profile(&self, t: f64) -> Option<Profile> {
+        if !(t > 0.0 && t <= self.valid_until) {
+            return None;
+        }
+        let mut points = Vec::new();
+        let mut at = Point { rho: self.target_density, ..Point::default() };
+        let mut place = None; // Lagrangian and Eulerian place of the wave before
+        for wave in self.target_waves().take_while(|w| w.start[0] < t) {
+            let lagrangian = wave.lagrangian_speed * (t - wave.start[0]);
+            let x = match place {
+                None => lagrangian,
+                Some((l, x)) => x - (l - lagrangian) * self.target_density / at.rho,
+            };
+            if place.is_none() {
+                points.push(Point { x: 2.0 * x, ..at });
+            }
+            place = Some((lagrangian, x));
+            points.push(Point { x, ..at });
+            let Some(behind) = self.states.iter().find(|s| s.number == wave.to) else { break };
+            let rho = behind.rho_target.unwrap_or(at.rho);
+            let work = 0.5 * (at.p + behind.p) * (1.0 / at.rho - 1.0 / rho);
+            at = Point { x, p: behind.p, u: behind.u, rho, e: at.e + work };
+            points.push(at);
+        }
+        let (l, x) = place?;
+        points.push(Point { x: x - l * self.target_density / at.rho, ..at });
+        points.reverse();
+        Some(Profile { points })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::samples::{ALUMINIUM, COPPER};
+
+    fn standard() -> Chain {
+        Chain::new(COPPER, ALUMINIUM, 1000.0, 0.5e-3, 6).unwrap()
+    }
+
+    #[test]
+    fn the_documents_states() {
+        let want = [
+            (2, 690.935777, 12.144294e9),
+            (3, 381.871553, 0.0),
+            (4, 266.027390, 4.254325e9),
+            (5, 150.183228, 0.0),
+            (6, 105.014699, 1.616347e9),
+        ];
+        let chain = standard();
+        assert_eq!(chain.states.len(), 7);
+        for (number, u, p) in want {
+            let s = chain.states[number];
+            assert_eq!(s.number, number);
+            assert!((s.u - u).abs() < 6e-7, "{number}: u {}", s.u);
+            assert!((s.p - p).abs() < 600.0, "{number}: P {}", s.p);
+        }
+        assert!((chain.states[2].rho_target.unwrap() - 3127.380).abs() < 6e-4);
+        assert!((chain.states[2].rho_flyer.unwrap() - 9604.616).abs() < 6e-4);
+        assert!(!chain.separates);
+    }
+
+    #[test]
+    fn the_documents_waves() {
+        let chain = standard();
+        let waves: Vec<_> = chain.target_waves().collect();
+        for (w, speed) in waves.iter().zip([6311.163, 6667.374, 5882.825]) {
+            assert!((w.lagrangian_speed - speed).abs() < 6e-4, "{}", w.lagrangian_speed);
+        }
+        assert!((waves[1].start[0] - 0.227263e-6).abs() < 6e-13);
+        // each wave in the flyer ends where the next one starts
+        let flyer: Vec<_> = chain.waves.iter().filter(|w| w.plate == Plate::Flyer).collect();
+        for (a, b) in flyer.iter().zip(flyer.iter().skip(1)) {
+            let end = a.end.unwrap();
+            assert!((end[0] - b.start[0]).abs() < 1e-18 && (end[1] - b.start[1]).abs() < 1e-15);
+            let ran = a.velocity * (end[0] - a.start[0]);
+            assert!((a.start[1] + ran - end[1]).abs() < 1e-15, "{a:?}");
+        }
+    }
+
+    #[test]
+    fn the_black_line_conserves_mass_and_momentum() {
+        let chain = standard();
+        for t in [0.2e-6, 0.5e-6, 0.9e-6] {
+            let points = chain.shock_profile(t).unwrap().points;
+            let area = |f: fn(&Point) -> f64| -> f64 {
+                points.windows(2).map(|w| f(&w[0]) * (w[1].x - w[0].x)).sum()
+            };
+            let ahead = points.last().unwrap().x;
+            assert!((area(|q| q.rho) / (ALUMINIUM.rho0 * ahead) - 1.0).abs() < 1e-12);
+            let impulse: f64 = {
+                // pressure on the interface: state 2, 4, 6 in turn
+                let t2 = 0.22726294e-6f64.min(t);
+                let wave = chain.target_waves().nth(2).unwrap().start[0];
+                let t4 = (t.min(wave) - t2).max(0.0);
+                let t6 = (t - t2 - t4).max(0.0);
+                [t2, t4, t6].iter().zip([2, 4, 6]).map(|(t, k)| t * chain.states[k].p).sum()
+            };
+            assert!((area(|q| q.rho * q.u) / impulse - 1.0).abs() < 1e-6, "{t}");
+            assert!((points[0].x / chain.interface_position(t) - 1.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn equal_materials_come_to_rest_and_a_softer_flyer_parts() {
+        let equal = Chain::new(COPPER, COPPER, 1000.0, 1e-3, 10).unwrap();
+        assert!(!equal.separates && equal.states.len() == 5);
+        assert_eq!((equal.states[4].p, equal.states[4].u), (0.0, 0.0));
+        assert!((equal.states[2].p - 20.916e9).abs() < 5e5);
+        let soft = Chain::new(ALUMINIUM, COPPER, 1500.0, 0.5e-3, 8).unwrap();
+        assert!(soft.separates && soft.states[3].u < 0.0 && soft.states.len() == 5);
+        assert!(soft.separation_time.unwrap() > 0.0);
+        assert!(soft.shock_profile(0.4e-6).unwrap().points[0].p == 0.0);
+    }
+
+    #[test]
+    fn curves_pass_through_their_states() {
+        let (p, u) = (5e9, 100.0);
+        assert!((hugoniot_right(&COPPER, centre_right(&COPPER, p, u), u) / p - 1.0).abs() < 1e-13);
+        assert!((hugoniot_left(&COPPER, centre_left(&COPPER, p, u), u) / p - 1.0).abs() < 1e-13);
+    }
+
+    #[test]
+    fn refuses_what_cannot_be() {
+        let chain = |speed, thickness| Chain::new(COPPER, ALUMINIUM, speed, thickness, 6);
+        for (speed, thickness) in
+            [(0.0, 1e-3), (-5.0, 1e-3), (f64::NAN, 1e-3), (1e3, 0.0), (1e6, 1e-3)]
+        {
+            assert!(chain(speed, thickness).is_err());
+        }
+    }
+}

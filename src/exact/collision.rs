@@ -1,0 +1,144 @@
+//! What leaves a point where two fronts meet: the Riemann problem between two states, of one or
+//! two materials, and against a free surface.
+//!
+//! Left-going wave of strength a, right-going wave of strength b; equal pressure and velocity
+//! between them. Newton's rule from the strengths of the fronts that came in.
+
+use super::wave::{Jump, State, wave};
+use crate::material::MieGruneisen;
+
+/// The two waves that leave a collision.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Outgoing {
+    /// Strength (change of compression) and number of steps of the left-going wave.
+    pub left: (f64, usize),
+    /// The same of the right-going wave.
+    pub right: (f64, usize),
+    /// State behind the left-going wave.
+    pub left_star: State,
+    /// State behind the right-going wave.
+    pub right_star: State,
+}
+
+/// A material and the state that a wave runs into.
+pub(super) type Side<'a> = (&'a MieGruneisen, &'a State);
+
+/// In how many steps a wave with change of pressure `dp` is taken; shocks are never split.
+fn steps(dp: f64, quantum: f64) -> usize {
+    if dp < -1.5 * quantum { (-dp / quantum).round() as usize } else { 1 }
+}
+
+/// Keeps a strength within what the material can be compressed or stretched to.
+fn bounded(m: &MieGruneisen, state: &State, d: f64) -> f64 {
+    let room = (1.0f64.min(1.0 / m.s) - state.chi).max(1e-3);
+    d.clamp(-3.0, 0.9 * room)
+}
+
+/// A wave whose number of steps follows its strength, until `fixed` holds it.
+fn stepped(
+    (m, state): Side,
+    d: f64,
+    side: f64,
+    quantum: f64,
+    count: &mut usize,
+    fixed: bool,
+) -> Jump {
+    let mut out = wave(m, state, d, side, *count);
+    if !fixed {
+        let wanted = steps(out.behind.p - state.p, quantum);
+        if wanted != *count {
+            *count = wanted;
+            out = wave(m, state, d, side, wanted);
+        }
+    }
+    out
+}
+
+/// Solves between `left` and `right`; `guess` are the strengths to start from, `quantum` the
+/// pressure of one step of a fan [Pa], `tolerance` what the pressures may differ by [Pa].
+pub(super) fn collide(
+    left: Side,
+    right: Side,
+    guess: (f64, f64),
+    quantum: f64,
+    tolerance: f64,
+) -> Option<Outgoing> {
+    let (mut a, mut b) = guess;
+    let (mut na, mut nb) = (1, 1);
+    let impedance = left.0.rho0 * left.0.c0;
+    for round in 0..60 {
+        let fixed = round > 4;
+        let l = stepped(left, a, -1.0, quantum, &mut na, fixed);
+        let r = stepped(right, b, 1.0, quantum, &mut nb, fixed);
+        let dp = l.behind.p - r.behind.p;
+        let du = l.behind.u - r.behind.u;
+        if !(dp.is_finite() && du.is_finite()) {
+            return None;
+        }
+        if dp.abs() <= tolerance && du.abs() * impedance <= tolerance {
+            return Some(Outgoing {
+                left: (a, na),
+                right: (b, nb),
+                left_star: l.behind,
+                right_star: r.behind,
+            });
+        }
+        // l.dp da - r.dp db = -dp;  -l.du da - r.du db = -du
+        let determinant = l.dp * r.du + r.dp * l.du;
+        a = bounded(left.0, left.1, a + (r.dp * du - r.du * dp) / determinant);
+        b = bounded(right.0, right.1, b + (l.dp * du + l.du * dp) / determinant);
+    }
+    None
+}
+
+/// The wave that brings `state` to the pressure 0 of a free surface: strength, steps, state.
+pub(super) fn set_free(
+    m: &MieGruneisen,
+    state: &State,
+    side: f64,
+    quantum: f64,
+    tolerance: f64,
+) -> Option<(f64, usize, State)> {
+    let (mut d, mut count) = (0.0, 1);
+    for round in 0..60 {
+        let out = stepped((m, state), d, side, quantum, &mut count, round > 4);
+        if !out.behind.p.is_finite() {
+            return None;
+        }
+        if out.behind.p.abs() <= tolerance {
+            return Some((d, count, State { p: 0.0, ..out.behind }));
+        }
+        d = bounded(m, state, d - out.behind.p / out.dp);
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::chain::impedance_match;
+    use crate::exact::samples::{ALUMINIUM, COPPER};
+    use crate::exact::wave::{at_rest, shocked};
+
+    #[test]
+    fn two_plates_meet_at_the_impedance_match() {
+        for speed in [10.0, 1000.0, 5000.0] {
+            let (l, r) = (at_rest(speed), at_rest(0.0));
+            let out = collide((&COPPER, &l), (&ALUMINIUM, &r), (0.0, 0.0), 1e8, 1.0).unwrap();
+            let want = impedance_match(&COPPER, &ALUMINIUM, speed);
+            assert!(
+                (out.left_star.u - want).abs() < 1e-6 && (out.right_star.u - want).abs() < 1e-6
+            );
+        }
+    }
+
+    #[test]
+    fn a_free_surface_gives_a_fan() {
+        let top = shocked(&COPPER, 309.064223);
+        let (d, n, free) = set_free(&COPPER, &top, 1.0, top.p / 100.0, 1.0).unwrap();
+        assert!(d < 0.0 && n == 100 && free.p == 0.0);
+        // state 3 of the true solution, in the frame where the target is at rest
+        let u3 = 690.935777 + (free.u - top.u);
+        assert!((u3 - 381.582123).abs() < 1e-4, "{u3}");
+    }
+}

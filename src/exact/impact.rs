@@ -1,0 +1,553 @@
+//! The impact of two plates in the coordinates of a scene: which body strikes which, where and
+//! when they touch, and the true solution at the times asked for.
+//!
+//! The frame of [`super::tracking`] and [`super::chain`] has the flyer on the left and the
+//! target at rest at x >= 0, contact at t = 0. Here the flyer may come from either side, both
+//! bodies may move, and there may be a gap. Holds while the target's shock has not reached its
+//! rear.
+
+use super::chain::{Chain, Plate};
+use super::profile::{History, HistoryPoint, Landmarks, Path, PathKind, Point, Profile};
+use super::release::Release;
+use super::tracking::{INTERFACE_RECORD, REAR_RECORD, Setup, Tracker};
+use super::{ExactError, finite};
+use crate::material::MieGruneisen;
+
+/// A plate as it stands at time 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImpactBody {
+    /// What it is made of.
+    pub material: MieGruneisen,
+    /// Lower face [m].
+    pub lower: f64,
+    /// Upper face [m].
+    pub upper: f64,
+    /// Velocity [m/s].
+    pub velocity: f64,
+}
+
+/// How finely the waves are followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Accuracy {
+    /// Fronts of a fan that falls from P2 to 0; the error falls as its square, the cost rises
+    /// as its square.
+    pub wavelets: usize,
+}
+
+impl Default for Accuracy {
+    fn default() -> Accuracy {
+        Accuracy { wavelets: 160 }
+    }
+}
+
+/// A material point whose history is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tracer {
+    /// The plate that it is in.
+    pub plate: Plate,
+    /// Its place at time 0 [m].
+    pub x: f64,
+}
+
+/// The solution at one time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Snapshot {
+    /// Time [s].
+    pub time: f64,
+    /// Both plates by x; `None` once the shock has reached the target's rear.
+    pub profile: Option<Profile>,
+    /// The target alone.
+    pub target: Option<Profile>,
+    /// What stands out in the target; `None` before contact and with the profile.
+    pub landmarks: Option<Landmarks>,
+}
+
+/// The true solution of an impact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// One for each time asked for, in the order asked.
+    pub snapshots: Vec<Snapshot>,
+    /// The target's struck face.
+    pub interface: History,
+    /// The flyer's free rear.
+    pub flyer_rear: History,
+    /// The target's rear, as long as nothing has reached it.
+    pub target_rear: History,
+    /// One for each tracer, in the order asked.
+    pub tracers: Vec<History>,
+    /// The lines of the x-t diagram.
+    pub paths: Vec<Path>,
+    /// States and times that need no tracking (times from contact, velocities relative to the
+    /// target).
+    pub release: Release,
+    /// When the plates first part [s].
+    pub separation_time: Option<f64>,
+    /// When the shock reaches the target's rear: infinite if that is after the last time asked.
+    pub valid_until: f64,
+    /// Wave interactions followed.
+    pub interactions: usize,
+}
+
+/// The impact of a flyer on a target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impact {
+    /// The body that strikes.
+    pub flyer: ImpactBody,
+    /// The body that is struck, and scored.
+    pub target: ImpactBody,
+    /// Whether the flyer comes from the side of +x.
+    pub mirrored: bool,
+    /// Closing speed [m/s].
+    pub speed: f64,
+    /// When they touch [s].
+    pub contact_time: f64,
+    /// No shock is at the target's rear before this; see [`Solution::valid_until`] [s].
+    pub valid_until: f64,
+}
+
+impl Impact {
+    /// Two bodies that approach each other, or touch and approach.
+    pub fn new(flyer: ImpactBody, target: ImpactBody) -> Result<Impact, ExactError> {
+        for body in [&flyer, &target] {
+            finite("a body's lower face", body.lower)?;
+            finite("a body's upper face", body.upper)?;
+            finite("a body's velocity", body.velocity)?;
+            if body.upper <= body.lower {
+                return Err(ExactError::NoImpact("a body has no thickness"));
+            }
+        }
+        let mirrored = flyer.lower + flyer.upper > target.lower + target.upper;
+        let (gap, speed) = if mirrored {
+            (flyer.lower - target.upper, target.velocity - flyer.velocity)
+        } else {
+            (target.lower - flyer.upper, flyer.velocity - target.velocity)
+        };
+        let size = (flyer.upper - flyer.lower).min(target.upper - target.lower);
+        if gap < -1e-9 * size {
+            return Err(ExactError::NoImpact("the bodies overlap"));
+        }
+        if speed <= 0.0 {
+            return Err(ExactError::NoImpact("the bodies do not approach each other"));
+        }
+        // a gap within rounding of the faces' coordinates is none
+        let gap = if gap < 1e-9 * size { 0.0 } else { gap };
+        let mut impact = Impact {
+            flyer,
+            target,
+            mirrored,
+            speed,
+            contact_time: gap / speed,
+            valid_until: f64::INFINITY,
+        };
+        let shock = impact.release(4)?.target_shock;
+        impact.valid_until = impact.contact_time + (target.upper - target.lower) / shock;
+        Ok(impact)
+    }
+
+    /// Thickness of the flyer [m].
+    pub fn thickness(&self) -> f64 {
+        self.flyer.upper - self.flyer.lower
+    }
+
+    /// The document's chain, in its own frame: see [`Impact::to_lab_x`].
+    pub fn chain(&self, last_state: usize) -> Result<Chain, ExactError> {
+        let (f, t) = (self.flyer.material, self.target.material);
+        Chain::new(f, t, self.speed, self.thickness(), last_state)
+    }
+
+    /// The true solution's states and times, in the frame of the target at rest.
+    pub fn release(&self, last_state: usize) -> Result<Release, ExactError> {
+        let (f, t) = (self.flyer.material, self.target.material);
+        Release::new(f, t, self.speed, self.thickness(), last_state)
+    }
+
+    fn sign(&self) -> f64 {
+        if self.mirrored { -1.0 } else { 1.0 }
+    }
+
+    /// The target's struck face at time 0 [m].
+    fn face(&self) -> f64 {
+        if self.mirrored { self.target.upper } else { self.target.lower }
+    }
+
+    /// Place in the scene at the scene's time `t` of what is at `x` in the frame of the target
+    /// at rest [m].
+    pub fn to_lab_x(&self, t: f64, x: f64) -> f64 {
+        self.face() + self.target.velocity * t + self.sign() * x
+    }
+
+    /// Velocity in the scene of what has `u` in the frame of the target at rest [m/s].
+    pub fn to_lab_u(&self, u: f64) -> f64 {
+        self.target.velocity + self.sign() * u
+    }
+
+    /// The point in the scene at the scene's time `t`.
+    fn to_lab(&self, t: f64, q: &Point) -> Point {
+        Point { x: self.to_lab_x(t, q.x), u: self.to_lab_u(q.u), ..*q }
+    }
+
+    fn profile_to_lab(&self, t: f64, points: &[Point]) -> Profile {
+        let mut points: Vec<_> = points.iter().map(|q| self.to_lab(t, q)).collect();
+        if self.mirrored {
+            points.reverse();
+        }
+        Profile { points }
+    }
+
+    /// The chain's profile over the whole target at the scene's time `t`: the black line of
+    /// figure 4. `None` before contact and when it has ceased to hold.
+    pub fn chain_profile(&self, chain: &Chain, t: f64) -> Option<Profile> {
+        let since = t - self.contact_time;
+        if t > self.valid_until {
+            return None;
+        }
+        let mut profile = chain.shock_profile(since)?;
+        let end = self.target.upper - self.target.lower;
+        if let Some(last) = profile.points.last_mut() {
+            last.x = end;
+        }
+        Some(self.profile_to_lab(t, &profile.points))
+    }
+
+    /// The true solution at `times` (in any order) and at the `tracers`; histories and paths
+    /// reach to the last of the times.
+    pub fn solve(
+        &self,
+        times: &[f64],
+        tracers: &[Tracer],
+        accuracy: Accuracy,
+    ) -> Result<Solution, ExactError> {
+        for &t in times {
+            finite("a time", t)?;
+        }
+        let release = self.release(6)?;
+        let flyer_face = if self.mirrored { self.flyer.lower } else { self.flyer.upper };
+        let probe = |tracer: &Tracer| match tracer.plate {
+            Plate::Flyer => self.sign() * (tracer.x - flyer_face),
+            Plate::Target => self.sign() * (tracer.x - self.face()),
+        };
+        let probes: Vec<(Plate, f64)> = tracers.iter().map(|t| (t.plate, probe(t))).collect();
+        let setup = Setup {
+            flyer: self.flyer.material,
+            target: self.target.material,
+            speed: self.speed,
+            thickness: self.thickness(),
+            target_thickness: self.target.upper - self.target.lower,
+            wavelets: accuracy.wavelets,
+        };
+        let mut tracker = Tracker::new(setup, &probes)?;
+        let mut order: Vec<usize> = (0..times.len()).collect();
+        order.sort_by(|&a, &b| times[a].total_cmp(&times[b]));
+        let mut snapshots: Vec<Option<Snapshot>> = vec![None; times.len()];
+        for k in order {
+            snapshots[k] = Some(self.snapshot(times[k], &mut tracker, &release)?);
+        }
+        let thickness = self.thickness();
+        let end = self.contact_time + tracker.time;
+        let at_rest = |t: f64| HistoryPoint {
+            t,
+            x: self.to_lab_x(t, setup.target_thickness),
+            u: self.to_lab_u(0.0),
+            p: 0.0,
+        };
+        let interface = self.history(&tracker, INTERFACE_RECORD, Plate::Target, 0.0);
+        let flyer_rear = self.history(&tracker, REAR_RECORD, Plate::Flyer, -thickness);
+        let target_rear = History { points: vec![at_rest(0.0), at_rest(end)] };
+        let lines = [
+            (&interface, Plate::Target, PathKind::Interface),
+            (&flyer_rear, Plate::Flyer, PathKind::FreeSurface),
+            (&target_rear, Plate::Target, PathKind::FreeSurface),
+        ];
+        let paths = self.paths(&tracker, lines);
+        let of_probe =
+            |(k, &(plate, x)): (usize, &(Plate, f64))| self.history(&tracker, k + 2, plate, x);
+        Ok(Solution {
+            snapshots: snapshots.into_iter().flatten().collect(),
+            tracers: probes.iter().enumerate().map(of_probe).collect(),
+            interface,
+            flyer_rear,
+            target_rear,
+            paths,
+            release,
+            separation_time: tracker.separation_time.map(|t| t + self.contact_time),
+            valid_until: tracker.ended.map_or(f64::INFINITY, |t| t + self.contact_time),
+            interactions: tracker.events,
+        })
+    }
+
+    fn snapshot(
+        &self,
+        time: f64,
+        tracker: &mut Tracker,
+        release: &Release,
+    ) -> Result<Snapshot, ExactError> {
+        let since = time - self.contact_time;
+        tracker.advance(since.max(0.0))?;
+        if tracker.ended.is_some() {
+            return Ok(Snapshot { time, profile: None, target: None, landmarks: None });
+        }
+        let (mut flyer, mut target, landmarks);
+        if since <= 0.0 {
+            (flyer, target) =
+                (self.untouched(Plate::Flyer, since), self.untouched(Plate::Target, 0.0));
+            landmarks = None;
+        } else {
+            flyer = tracker.profile(Plate::Flyer);
+            target = tracker.profile(Plate::Target);
+            landmarks = Some(self.landmarks(time, &target, release));
+        }
+        let target_profile = self.profile_to_lab(time, &target);
+        flyer.append(&mut target);
+        let profile = Some(self.profile_to_lab(time, &flyer));
+        Ok(Snapshot { time, profile, target: Some(target_profile), landmarks })
+    }
+
+    /// The ends of a plate that nothing has touched, `since` contact.
+    fn untouched(&self, plate: Plate, since: f64) -> Vec<Point> {
+        let (ends, u, rho) = match plate {
+            Plate::Flyer => {
+                let face = self.speed * since;
+                ([face - self.thickness(), face], self.speed, self.flyer.material.rho0)
+            }
+            Plate::Target => {
+                ([0.0, self.target.upper - self.target.lower], 0.0, self.target.material.rho0)
+            }
+        };
+        ends.map(|x| Point { x, u, rho, ..Point::default() }).to_vec()
+    }
+
+    /// What stands out in the target's profile `points` (frame of the target at rest).
+    fn landmarks(&self, time: f64, points: &[Point], release: &Release) -> Landmarks {
+        let since = time - self.contact_time;
+        let (rho2, e2) = release.plateau(Plate::Target);
+        let (rho2_flyer, e2_flyer) = release.plateau(Plate::Flyer);
+        let p2 = release.states[0].p;
+        let front = points.iter().rev().find(|q| q.p > 1e-7 * p2);
+        let interface = points.first().map_or(0.0, |q| q.x);
+        let lab = |x: f64| self.to_lab_x(time, x);
+        let lab_range = |a: f64, b: f64| {
+            let (a, b) = (lab(a), lab(b));
+            [a.min(b), a.max(b)]
+        };
+        let plateau = front.filter(|_| since < release.catch_up_time).map(|front| {
+            let head = release.target_head * (since - release.head_time);
+            let behind = release.target_shock * since - head;
+            let compressed = self.target.material.rho0 / rho2;
+            let from =
+                if since <= release.head_time { interface } else { front.x - behind * compressed };
+            lab_range(from, front.x)
+        });
+        // a second plateau: where the pressure stays at state 4's, behind the fan
+        let p4 = release.state(4).map(|s| s.p);
+        let plateau_4 = p4.and_then(|p4| {
+            let near = |q: &Point| (q.p - p4).abs() < 3e-3 * p2;
+            let until_front = points.iter().take_while(|q| front.is_some_and(|f| q.x < f.x));
+            let points: Vec<&Point> = until_front.collect();
+            let last = points.iter().rposition(|q| near(q))?;
+            let first = points[..last].iter().rposition(|q| !near(q)).map_or(0, |k| k + 1);
+            (first < last).then(|| {
+                // the ends lie on the lines to the next points out
+                let cross = |inside: &Point, outside: &Point| {
+                    let level = p4 + (3e-3 * p2).copysign(outside.p - p4);
+                    let w = (level - inside.p) / (outside.p - inside.p);
+                    inside.x + w.clamp(0.0, 1.0) * (outside.x - inside.x)
+                };
+                let lower = match first.checked_sub(1) {
+                    Some(k) => cross(points[first], points[k]),
+                    None => points[first].x,
+                };
+                let upper = match points.get(last + 1) {
+                    Some(q) => cross(points[last], q),
+                    None => points[last].x,
+                };
+                lab_range(lower, upper)
+            })
+        });
+        Landmarks {
+            direction: self.sign(),
+            interface: lab(interface),
+            far_end: lab(self.target.upper - self.target.lower),
+            shock: front.map(|q| lab(q.x)),
+            plateau,
+            p2,
+            rho2,
+            e2,
+            rho2_flyer,
+            e2_flyer,
+            plateau_4,
+            p4: p4.filter(|_| plateau_4.is_some()),
+            behind_shock: front.map_or(0.0, |q| q.p),
+        }
+    }
+
+    /// History of a recorded point that was at `x` (frame of the target at rest) at contact.
+    fn history(&self, tracker: &Tracker, number: usize, plate: Plate, x: f64) -> History {
+        let u0 = match plate {
+            Plate::Flyer => self.speed,
+            Plate::Target => 0.0,
+        };
+        let mut place = x;
+        let mut points: Vec<HistoryPoint> = Vec::new();
+        let mut last: Option<(f64, f64)> = None;
+        let mut push = |since: f64, p: f64, u: f64, place: f64| {
+            let t = since + self.contact_time;
+            points.push(HistoryPoint { t, x: self.to_lab_x(t, place), u: self.to_lab_u(u), p });
+        };
+        if self.contact_time > 0.0 {
+            push(-self.contact_time, 0.0, u0, x - u0 * self.contact_time);
+        }
+        for (since, [p, u]) in tracker.history(number, [0.0, u0]) {
+            if let Some((before, u_before)) = last {
+                place += 0.5 * (u + u_before) * (since - before);
+            }
+            last = Some((since, u));
+            push(since, p, u, place);
+        }
+        History { points }
+    }
+
+    /// The lines of the x-t diagram until the tracker's time.
+    fn paths(&self, tracker: &Tracker, histories: [(&History, Plate, PathKind); 3]) -> Vec<Path> {
+        let lab = |&[since, x]: &[f64; 2]| {
+            let t = since + self.contact_time;
+            [t, self.to_lab_x(t, x)]
+        };
+        let mut paths: Vec<Path> = histories
+            .into_iter()
+            .map(|(history, plate, kind)| {
+                let points = history.points.iter().map(|h| [h.t, h.x]).collect();
+                Path { plate, kind, points }
+            })
+            .collect();
+        for (plate, kind, points) in tracker.drawn() {
+            paths.push(Path { plate, kind, points: points.iter().map(lab).collect() });
+        }
+        paths
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::samples::{ALUMINIUM, COPPER};
+
+    pub(super) fn standard(thickness: f64) -> Impact {
+        let flyer =
+            ImpactBody { material: COPPER, lower: -thickness, upper: 0.0, velocity: 1000.0 };
+        let target =
+            ImpactBody { material: ALUMINIUM, lower: 0.0, upper: 16.0 * 0.5e-3, velocity: 0.0 };
+        Impact::new(flyer, target).unwrap()
+    }
+
+    /// Largest fault in the integrals of mass, momentum and energy, each over its whole.
+    fn conservation(impact: &Impact, snapshot: &Snapshot) -> f64 {
+        let all = &snapshot.profile.as_ref().unwrap().points;
+        let target = &snapshot.target.as_ref().unwrap().points;
+        // the flyer's points come first, or last if it comes from the right
+        let rest = all.len() - target.len();
+        let flyer = if impact.mirrored { &all[target.len()..] } else { &all[..rest] };
+        let integral = |f: &dyn Fn(&Point) -> f64, points: &[Point]| -> f64 {
+            points.windows(2).map(|w| 0.5 * (f(&w[0]) + f(&w[1])) * (w[1].x - w[0].x)).sum()
+        };
+        let both = |f: &dyn Fn(&Point) -> f64| integral(f, flyer) + integral(f, target);
+        let (l, u) = (impact.thickness(), impact.speed);
+        let t = impact.target.upper - impact.target.lower;
+        let (rf, rt) = (impact.flyer.material.rho0, impact.target.material.rho0);
+        let v = impact.target.velocity;
+        let energy = |q: &Point| q.rho * (q.e + 0.5 * (q.u - v) * (q.u - v));
+        println!(
+            "{:.3} {:.1e} {:.1e} {:.1e} {:.1e}",
+            snapshot.time * 1e6,
+            integral(&|q| q.rho, flyer) / (rf * l) - 1.0,
+            (integral(&|q| q.rho, target) - rt * t) / (rf * l),
+            both(&|q| q.rho * (q.u - v)).abs() / (rf * l * u) - 1.0,
+            both(&energy) / (0.5 * rf * l * u * u) - 1.0,
+        );
+        [
+            integral(&|q| q.rho, flyer) / (rf * l) - 1.0,
+            (integral(&|q| q.rho, target) - rt * t) / (rf * l),
+            both(&|q| q.rho * (q.u - v)).abs() / (rf * l * u) - 1.0,
+            both(&energy) / (0.5 * rf * l * u * u) - 1.0,
+        ]
+        .into_iter()
+        .fold(0.0, |a, b| a.max(b.abs()))
+    }
+
+    #[test]
+    fn debug_two() {
+        let m = |rho0, c0, s, gamma0| MieGruneisen { rho0, c0, s, gamma0 };
+        let w = m(19224.0, 4029.0, 1.237, 1.54);
+        let pb = m(11350.0, 2051.0, 1.46, 2.77);
+        for (f, t, speed) in [(w, ALUMINIUM, 3000.0), (pb, pb, 3000.0), (COPPER, ALUMINIUM, 1000.0)]
+        {
+            let flyer = ImpactBody { material: f, lower: -0.5e-3, upper: 0.0, velocity: speed };
+            let target = ImpactBody { material: t, lower: 0.0, upper: 40e-3, velocity: 0.0 };
+            let impact = Impact::new(flyer, target).unwrap();
+            let times: Vec<f64> =
+                [0.3, 0.9, 1.5, 2.0, 2.5, 2.9, 2.95, 3.0, 3.05, 3.1, 3.2, 3.3, 4.0, 7.0, 10.]
+                    .map(|k| k * 1e-3 / f.c0)
+                    .to_vec();
+            for n in [80, 160, 320] {
+                let s = impact.solve(&times, &[], Accuracy { wavelets: n }).unwrap();
+                println!("catch {:.3}", s.release.catch_up_time * f.c0 * 1e3);
+                let e: Vec<String> = s
+                    .snapshots
+                    .iter()
+                    .map(|q| format!("{:.1e}", conservation(&impact, q)))
+                    .collect();
+                println!("{n} {}", e.join(" "));
+            }
+        }
+    }
+
+    #[test]
+    fn debug_standard() {
+        let m = |rho0, c0, s, gamma0| MieGruneisen { rho0, c0, s, gamma0 };
+        let metals = [
+            ("Cu", COPPER),
+            ("Al", ALUMINIUM),
+            ("Ta", m(16654.0, 3414.0, 1.2, 1.6)),
+            ("W", m(19224.0, 4029.0, 1.237, 1.54)),
+            ("PMMA", m(1186.0, 2598.0, 1.516, 0.97)),
+            ("Pb", m(11350.0, 2051.0, 1.46, 2.77)),
+            ("Be", m(1851.0, 7998.0, 1.124, 1.16)),
+        ];
+        for (fn_, f) in metals {
+            for (tn, t) in metals {
+                for speed in [30.0, 300.0, 1000.0, 3000.0, 6000.0] {
+                    let flyer =
+                        ImpactBody { material: f, lower: -0.5e-3, upper: 0.0, velocity: speed };
+                    let target =
+                        ImpactBody { material: t, lower: 0.0, upper: 40e-3, velocity: 0.0 };
+                    let Ok(impact) = Impact::new(flyer, target) else {
+                        println!("{fn_} {tn} {speed} refused");
+                        continue;
+                    };
+                    let times: Vec<f64> = [0.3, 0.9, 1.5, 3.0].map(|k| k * 1e-3 / f.c0).to_vec();
+                    let start = std::time::Instant::now();
+                    match impact.solve(&times, &[], Accuracy::default()) {
+                        Ok(s) => {
+                            let e: Vec<String> = s
+                                .snapshots
+                                .iter()
+                                .filter(|q| q.profile.is_some())
+                                .map(|q| format!("{:.1e}", conservation(&impact, q)))
+                                .collect();
+                            println!(
+                                "{fn_} {tn} {speed} {:?} ev {} sep {:?}/{} catch {:.2e} paths {} {}",
+                                start.elapsed(),
+                                s.interactions,
+                                s.separation_time,
+                                s.release.separates,
+                                s.release.catch_up_time,
+                                s.paths.len(),
+                                e.join(" ")
+                            );
+                        }
+                        Err(e) => println!("{fn_} {tn} {speed} ERROR {e}"),
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Closed and near-exact solutions that runs are held against.
+//!
+//! - [`chain`]: the source document's chain of impedance matches, rarefactions taken as shocks;
+//! - [`impact`]: the true solution of a plate impact, with rarefaction fans, in lab coordinates
+//!   (`tracking` stands behind it: front tracking in Lagrangian coordinates);
+//! - [`release`]: the closed-form states and times of that solution, by release isentropes;
+//! - [`riemann`]: two ideal gases at a diaphragm; [`wall`]: one body run into a wall;
+//! - [`score`]: how a computed profile is held against one of these.
+//!
+//! Knows materials, but no particles, grid, scene or files. One dimension, uniaxial strain,
+//! no strength, no heat conduction. SI units; pressure is positive in compression.
+
+pub mod chain;
+mod collision;
+pub mod impact;
+mod isentrope;
+pub mod profile;
+pub mod release;
+pub mod riemann;
+pub mod score;
+mod smoothing;
+mod tracking;
+pub mod wall;
+mod wave;
+
+pub use chain::{Chain, ChainState, ChainWave, Plate, WaveKind};
+pub use impact::{Accuracy, Impact, ImpactBody, Snapshot, Solution, Tracer};
+pub use profile::{History, HistoryPoint, Landmarks, Path, PathKind, Point, Profile};
+pub use release::Release;
+pub use riemann::{GasState, Riemann};
+pub use score::{Errors, Sample, cell_average, interface_errors, score, score_density};
+pub use wall::{WallImpact, WallMaterial};
+
+/// Why an exact solution could not be had.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ExactError {
+    /// A number that is not positive and finite, or out of range.
+    #[error("{name} is {value}, but must be {allowed}")]
+    Number {
+        /// What the number is.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// The bodies do not approach each other, or overlap.
+    #[error("no impact: {0}")]
+    NoImpact(&'static str),
+    /// A state that the material cannot bear.
+    #[error("{what}, at compression chi = {chi}")]
+    State {
+        /// What is wrong with it.
+        what: &'static str,
+        /// Compression 1 - rho0/rho [-].
+        chi: f64,
+    },
+    /// Two gases parting so fast that a vacuum opens.
+    #[error(
+        "the gases part at {difference} m/s and leave a vacuum; less than {limit} m/s is needed"
+    )]
+    Vacuum {
+        /// u_right - u_left [m/s].
+        difference: f64,
+        /// The speed at which a vacuum opens [m/s].
+        limit: f64,
+    },
+    /// The search for a state between two waves did not end.
+    #[error("no state found between two waves meeting at t = {time} s, X = {place} m")]
+    NoConvergence {
+        /// Time [s].
+        time: f64,
+        /// Lagrangian place [m].
+        place: f64,
+    },
+    /// More waves than can be followed.
+    #[error("more than {limit} wave interactions before t = {time} s")]
+    TooManyWaves {
+        /// Greatest number of interactions.
+        limit: usize,
+        /// The time reached [s].
+        time: f64,
+    },
+}
+
+/// `value` if it is positive and finite.
+fn positive(name: &'static str, value: f64) -> Result<f64, ExactError> {
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(ExactError::Number { name, value, allowed: "positive and finite" })
+    }
+}
+
+/// `value` if it is finite.
+fn finite(name: &'static str, value: f64) -> Result<f64, ExactError> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(ExactError::Number { name, value, allowed: "finite" })
+    }
+}
+
+/// The materials of PROBLEM.md, section 1, for tests.
+#[cfg(test)]
+pub(crate) mod samples {
+    use crate::material::MieGruneisen;
+
+    pub const COPPER: MieGruneisen =
+        MieGruneisen { rho0: 8930.0, c0: 3940.0, s: 1.489, gamma0: 1.96 };
+    pub const ALUMINIUM: MieGruneisen =
+        MieGruneisen { rho0: 2785.0, c0: 5386.0, s: 1.339, gamma0: 2.1 };
+}

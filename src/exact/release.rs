@@ -1,0 +1,234 @@
+//! The true solution's states and times that need no wave tracking: release along isentropes.
+//!
+//! Frame as in [`super::chain`]. State 2 is the impedance match; in state 3 the flyer has been
+//! released to P = 0 along its isentrope through state 2; state 4 is where the target's release
+//! isentrope through state 2 meets the flyer's recompression from state 3 (along the same
+//! isentrope, that is, before it steepens into a shock); and so on. Unlike the chain's, these
+//! waves spread: a head and a tail run at the sound speeds on their two sides.
+
+use super::chain::{check, impedance_match};
+use super::isentrope::to_pressure;
+use super::wave::{State, density, shocked, sound_speed};
+use super::{ExactError, Plate};
+use crate::material::MieGruneisen;
+
+/// A state of the true solution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReleaseState {
+    /// The document's number.
+    pub number: usize,
+    /// Velocity (in the frame of the target at rest) [m/s].
+    pub u: f64,
+    /// Pressure [Pa].
+    pub p: f64,
+    /// Density in the flyer [kg/m3].
+    pub rho_flyer: Option<f64>,
+    /// Density in the target [kg/m3].
+    pub rho_target: Option<f64>,
+    /// Specific internal energy in the flyer [J/kg].
+    pub e_flyer: Option<f64>,
+    /// Specific internal energy in the target [J/kg].
+    pub e_target: Option<f64>,
+}
+
+/// States, speeds and times of the true solution. Speeds are Lagrangian (relative to the
+/// undeformed material); times count from contact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Release {
+    /// States 2, 3, 4 and on, as many as were asked for; fewer if the plates part or rest.
+    pub states: Vec<ReleaseState>,
+    /// Whether the plates part during the first release (softer flyer).
+    pub separates: bool,
+    /// Shock speed in the flyer [m/s].
+    pub flyer_shock: f64,
+    /// Shock speed in the target [m/s].
+    pub target_shock: f64,
+    /// Speed of the fan's head in the flyer [m/s].
+    pub flyer_head: f64,
+    /// Speed of the fan's tail in the flyer [m/s].
+    pub flyer_tail: f64,
+    /// Speed of the fan's head in the target [m/s].
+    pub target_head: f64,
+    /// Speed of the fan's tail in the target [m/s].
+    pub target_tail: f64,
+    /// The shock reaches the flyer's rear [s].
+    pub rear_time: f64,
+    /// The fan's head comes back to the interface [s].
+    pub head_time: f64,
+    /// The fan's head catches the target's shock [s]; infinite if it never does.
+    pub catch_up_time: f64,
+    /// Where it does, from the place of contact [m].
+    pub catch_up_place: f64,
+}
+
+impl Release {
+    /// The states up to the one numbered `last_state`, and the times.
+    pub fn new(
+        flyer: MieGruneisen,
+        target: MieGruneisen,
+        speed: f64,
+        thickness: f64,
+        last_state: usize,
+    ) -> Result<Release, ExactError> {
+        check(&flyer, &target, speed, thickness)?;
+        let u2 = impedance_match(&flyer, &target, speed);
+        let flyer_2 = State { u: u2, ..shocked(&flyer, speed - u2) };
+        let target_2 = shocked(&target, u2);
+        let named = |number, flyer_state: Option<&State>, target_state: Option<&State>| {
+            let any = flyer_state.or(target_state).copied().unwrap_or_default();
+            ReleaseState {
+                number,
+                u: any.u,
+                p: any.p,
+                rho_flyer: flyer_state.map(|s| density(&flyer, s)),
+                rho_target: target_state.map(|s| density(&target, s)),
+                e_flyer: flyer_state.map(|s| s.e),
+                e_target: target_state.map(|s| s.e),
+            }
+        };
+        let mut states = vec![named(2, Some(&flyer_2), Some(&target_2))];
+        let (mut in_flyer, mut in_target) = (flyer_2, target_2);
+        let mut separates = false;
+        let mut target_tail = f64::NAN;
+        for number in (3..=last_state.max(4)).step_by(2) {
+            let free = to_pressure(&flyer, in_flyer, 1.0, 0.0)?;
+            states.push(named(number, Some(&free), None));
+            let (a, b) = meet(&flyer, &target, free, in_target)?;
+            let part = b.p < -1e-9 * target_2.p;
+            if part {
+                separates = true;
+                in_target = to_pressure(&target, in_target, 1.0, 0.0)?;
+                states.push(named(number + 1, None, Some(&in_target)));
+            } else {
+                (in_flyer, in_target) = (a, b);
+                states.push(named(number + 1, Some(&a), Some(&b)));
+            }
+            if number == 3 {
+                target_tail = sound_speed(&target, &in_target);
+            }
+            if part || in_target.p < 1e-9 * target_2.p {
+                break;
+            }
+        }
+        states.retain(|s| s.number <= last_state.max(4));
+        let flyer_shock = flyer.c0 + flyer.s * (speed - u2);
+        let target_shock = target.c0 + target.s * u2;
+        let flyer_head = sound_speed(&flyer, &flyer_2);
+        let target_head = sound_speed(&target, &target_2);
+        let rear_time = thickness / flyer_shock;
+        let head_time = rear_time + thickness / flyer_head;
+        let gain = target_head - target_shock;
+        let catch_up_time = if gain > 0.0 { head_time * target_head / gain } else { f64::INFINITY };
+        Ok(Release {
+            separates,
+            flyer_shock,
+            target_shock,
+            flyer_head,
+            flyer_tail: sound_speed(&flyer, &to_pressure(&flyer, flyer_2, 1.0, 0.0)?),
+            target_head,
+            target_tail,
+            rear_time,
+            head_time,
+            catch_up_time,
+            catch_up_place: target_shock * catch_up_time,
+            states,
+        })
+    }
+
+    /// The state with the document's `number`.
+    pub fn state(&self, number: usize) -> Option<&ReleaseState> {
+        self.states.iter().find(|s| s.number == number)
+    }
+
+    /// Density [kg/m3] and specific internal energy [J/kg] of state 2 in one of the plates.
+    pub fn plateau(&self, plate: Plate) -> (f64, f64) {
+        let s = &self.states[0];
+        let (rho, e) = match plate {
+            Plate::Flyer => (s.rho_flyer, s.e_flyer),
+            Plate::Target => (s.rho_target, s.e_target),
+        };
+        (rho.unwrap_or(f64::NAN), e.unwrap_or(f64::NAN))
+    }
+}
+
+/// Where the flyer's left-going isentrope through `free` meets the target's right-going one
+/// through `behind`: the flyer's state and the target's.
+fn meet(
+    flyer: &MieGruneisen,
+    target: &MieGruneisen,
+    mut free: State,
+    mut behind: State,
+) -> Result<(State, State), ExactError> {
+    let scale = behind.p;
+    for _ in 0..60 {
+        let zf = flyer.rho0 * sound_speed(flyer, &free);
+        let zt = target.rho0 * sound_speed(target, &behind);
+        let p = (free.p / zf + behind.p / zt + free.u - behind.u) / (1.0 / zf + 1.0 / zt);
+        let done = (p - free.p).abs() + (p - behind.p).abs() <= 1e-14 * scale;
+        if done || !p.is_finite() {
+            break;
+        }
+        free = to_pressure(flyer, free, -1.0, p)?;
+        behind = to_pressure(target, behind, 1.0, p)?;
+    }
+    if (free.u - behind.u).abs() > 1e-8 * behind.u.abs().max(free.u.abs()).max(1.0) {
+        return Err(ExactError::State { what: "no state 4 found", chi: behind.chi });
+    }
+    Ok((free, behind))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::samples::{ALUMINIUM, COPPER};
+
+    #[test]
+    fn the_true_states() {
+        let release = Release::new(COPPER, ALUMINIUM, 1000.0, 0.5e-3, 6).unwrap();
+        let want = [
+            (2, 690.935777, 12.144294e9),
+            (3, 381.582123, 0.0),
+            (4, 265.304053, 4.267375e9),
+            (5, 149.025984, 0.0),
+            (6, 103.606537, 1.624223e9),
+        ];
+        assert_eq!(release.states.len(), 5);
+        for (s, (number, u, p)) in release.states.iter().zip(want) {
+            assert_eq!(s.number, number);
+            assert!((s.u - u).abs() < 6e-7, "{number}: u {}", s.u);
+            assert!((s.p - p).abs() < 600.0, "{number}: P {}", s.p);
+        }
+        let (rho, e) = release.plateau(Plate::Target);
+        assert!((rho - 3127.380).abs() < 6e-4 && (e - 238_696.0).abs() < 0.6);
+        let (rho, e) = release.plateau(Plate::Flyer);
+        assert!((rho - 9604.616).abs() < 6e-4 && (e - 47_760.0).abs() < 0.6);
+    }
+
+    #[test]
+    fn the_true_speeds_and_times() {
+        let release = Release::new(COPPER, ALUMINIUM, 1000.0, 0.5e-3, 4).unwrap();
+        let close = |a: f64, b: f64, by: f64| assert!((a - b).abs() <= by, "{a} {b}");
+        close(release.flyer_head, 4855.239, 6e-4);
+        close(release.flyer_tail, 3940.0, 6e-4);
+        close(release.target_head, 7207.040, 6e-4);
+        close(release.target_tail, 6083.364, 6e-4);
+        close(release.target_shock, 6311.163, 6e-4);
+        close(release.rear_time, 0.113631e-6, 6e-13);
+        close(release.head_time, 0.216613e-6, 6e-13);
+        close(release.catch_up_time, 1.742580e-6, 6e-13);
+        close(release.catch_up_place, 10.9977e-3, 6e-8);
+        let thin = Release::new(COPPER, ALUMINIUM, 1000.0, 0.25e-3, 4).unwrap();
+        close(thin.catch_up_time, 0.871290e-6, 6e-13);
+        close(thin.catch_up_place, 5.498853e-3, 6e-10);
+    }
+
+    #[test]
+    fn equal_plates_rest_and_a_softer_flyer_parts() {
+        let equal = Release::new(COPPER, COPPER, 1000.0, 0.5e-3, 6).unwrap();
+        assert!(!equal.separates);
+        let four = equal.state(4).unwrap();
+        assert!(four.p.abs() < 1e-2 * 6e3 && (four.u - equal.states[1].u).abs() < 1e-3);
+        let soft = Release::new(ALUMINIUM, COPPER, 1500.0, 0.5e-3, 6).unwrap();
+        assert!(soft.separates && soft.state(4).unwrap().p == 0.0 && soft.state(5).is_none());
+    }
+}

@@ -1,0 +1,445 @@
+//! How a computed profile is held against an exact one: PROBLEM.md, section 3.
+//!
+//! Particles, sorted by x, are joined by straight lines ("raw"); after [`cell_average`] the same
+//! is done with the means of the cells. Beyond the first and the last of them their value is
+//! held. Everything is seen with the shock running to the right: a mirrored impact is turned
+//! round first. An error that has no meaning is `None`.
+
+use serde::Serialize;
+
+use super::{Landmarks, Point, Profile};
+
+/// A particle, or the mean of a cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Place [m].
+    pub x: f64,
+    /// Current volume, in one dimension a length [m]; only ratios matter.
+    pub volume: f64,
+    /// Pressure [Pa].
+    pub p: f64,
+    /// Density [kg/m3].
+    pub rho: f64,
+    /// Specific internal energy [J/kg].
+    pub e: f64,
+}
+
+/// Errors of a profile, all fractions unless said otherwise.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Errors {
+    /// int |p - p_exact| dx / int |p_exact| dx.
+    pub l1: Option<f64>,
+    /// The root of int (p - p_exact)^2 dx / int p_exact^2 dx.
+    pub l2: Option<f64>,
+    /// int |p - p_exact| dx / P2, in cells.
+    pub e1_cells: Option<f64>,
+    /// Mean over the middle 40 % of the first plateau against P2, signed.
+    pub plateau: Option<f64>,
+    /// Rms about a straight line there, of P2.
+    pub noise: Option<f64>,
+    /// Where the pressure first reaches half of what is behind the exact shock, seen from ahead:
+    /// computed minus exact, along the shock's way, in cells.
+    pub shock_position_cells: Option<f64>,
+    /// Distance between 10 % and 90 % of that pressure, in cells.
+    pub rise_cells: Option<f64>,
+    /// Greatest pressure minus the exact profile's greatest, of P2, signed.
+    pub overshoot: Option<f64>,
+    /// Mean over the middle 60 % of the second plateau against the exact mean there, signed.
+    pub plateau_4: Option<f64>,
+    /// Mean density over the middle 40 % of the first plateau, signed.
+    pub density_plateau: Option<f64>,
+    /// Mean specific internal energy there, signed.
+    pub energy_plateau: Option<f64>,
+    /// int |rho - rho_exact| dx [kg/m2], for Riemann problems.
+    pub density_l1: Option<f64>,
+}
+
+/// Replaces the particles in each cell of the grid (cells of size `h`, one face at `origin`) by
+/// their mean, weighted by volume, at their mean place. `samples` sorted by x.
+pub fn cell_average(samples: &[Sample], h: f64, origin: f64) -> Vec<Sample> {
+    let cell = |s: &Sample| ((s.x - origin) / h).floor();
+    samples
+        .chunk_by(|a, b| cell(a) == cell(b))
+        .map(|group| {
+            let volume: f64 = group.iter().map(|s| s.volume).sum();
+            let mean =
+                |f: fn(&Sample) -> f64| group.iter().map(|s| s.volume * f(s)).sum::<f64>() / volume;
+            Sample {
+                x: mean(|s| s.x),
+                volume,
+                p: mean(|s| s.p),
+                rho: mean(|s| s.rho),
+                e: mean(|s| s.e),
+            }
+        })
+        .collect()
+}
+
+/// A function made of straight lines.
+type Line = Vec<(f64, f64)>;
+
+/// Joins the samples by lines over [`lower`, `upper`], the outermost values held to the ends.
+fn line(samples: &[Sample], lower: f64, upper: f64, value: fn(&Sample) -> f64) -> Line {
+    let mut points: Line = samples.iter().map(|s| (s.x, value(s))).collect();
+    if let (Some(&first), Some(&last)) = (points.first(), points.last()) {
+        if first.0 > lower {
+            points.insert(0, (lower, first.1));
+        }
+        if last.0 < upper {
+            points.push((upper, last.1));
+        }
+    }
+    cut(&points, lower, upper)
+}
+
+/// The part of a line within [`lower`, `upper`].
+fn cut(points: &[(f64, f64)], lower: f64, upper: f64) -> Line {
+    let as_points = points.iter().map(|&(x, p)| Point { x, p, ..Point::default() }).collect();
+    let part = Profile { points: as_points }.between(lower, upper);
+    part.points.iter().map(|q| (q.x, q.p)).collect()
+}
+
+/// Integrals over [`lower`, `upper`] of |a - b|, (a - b)^2, |b|, b^2 for two lines that cover it.
+fn integrals(a: &[(f64, f64)], b: &[(f64, f64)], lower: f64, upper: f64) -> [f64; 4] {
+    let mut places: Vec<f64> = a.iter().chain(b).map(|q| q.0).collect();
+    places.extend([lower, upper]);
+    places.retain(|x| (lower..=upper).contains(x));
+    places.sort_by(f64::total_cmp);
+    places.dedup();
+    let mut sums = [0.0; 4];
+    let (mut ka, mut kb) = (0, 0);
+    for pair in places.windows(2) {
+        let (x0, x1) = (pair[0], pair[1]);
+        let (Some(va), Some(vb)) = (piece(a, &mut ka, x0, x1), piece(b, &mut kb, x0, x1)) else {
+            continue;
+        };
+        let (d0, d1) = (va.0 - vb.0, va.1 - vb.1);
+        sums[0] += (x1 - x0) * mean_size(d0, d1);
+        sums[1] += (x1 - x0) * (d0 * d0 + d0 * d1 + d1 * d1) / 3.0;
+        sums[2] += (x1 - x0) * mean_size(vb.0, vb.1);
+        sums[3] += (x1 - x0) * (vb.0 * vb.0 + vb.0 * vb.1 + vb.1 * vb.1) / 3.0;
+    }
+    sums
+}
+
+/// Mean of |d| on a piece where d goes straight from `d0` to `d1`.
+fn mean_size(d0: f64, d1: f64) -> f64 {
+    if d0 * d1 >= 0.0 {
+        0.5 * (d0 + d1).abs()
+    } else {
+        0.5 * (d0 * d0 + d1 * d1) / (d0.abs() + d1.abs())
+    }
+}
+
+/// Values at both ends of [`x0`, `x1`], which lies within one piece of the line; `k` walks on.
+fn piece(line: &[(f64, f64)], k: &mut usize, x0: f64, x1: f64) -> Option<(f64, f64)> {
+    while *k + 1 < line.len() && (line[*k + 1].0 <= x0) {
+        *k += 1;
+    }
+    let (a, b) = (line.get(*k)?, line.get(*k + 1)?);
+    if a.0 > x0 || b.0 < x1 {
+        return None;
+    }
+    let slope = (b.1 - a.1) / (b.0 - a.0);
+    Some((a.1 + slope * (x0 - a.0), a.1 + slope * (x1 - a.0)))
+}
+
+/// Mean of a line over [`lower`, `upper`].
+fn mean_over(points: &[(f64, f64)], lower: f64, upper: f64) -> Option<f64> {
+    let part = cut(points, lower, upper);
+    let area: f64 = part.windows(2).map(|w| 0.5 * (w[0].1 + w[1].1) * (w[1].0 - w[0].0)).sum();
+    let width = part.last()?.0 - part.first()?.0;
+    (width > 0.0).then(|| area / width)
+}
+
+/// Where the line first reaches `level`, coming from the right.
+fn crossing(points: &[(f64, f64)], level: f64) -> Option<f64> {
+    let k = points.iter().rposition(|q| q.1 >= level)?;
+    let a = points[k];
+    let b = *points.get(k + 1)?;
+    Some(a.0 + (b.0 - a.0) * (a.1 - level) / (a.1 - b.1))
+}
+
+/// The middle `share` of a zone.
+fn middle(zone: [f64; 2], share: f64) -> [f64; 2] {
+    let (centre, half) = (0.5 * (zone[0] + zone[1]), 0.5 * share * (zone[1] - zone[0]));
+    [centre - half, centre + half]
+}
+
+/// Mean, and rms about the straight line of least squares.
+fn mean_and_noise(samples: &[&Sample]) -> (f64, f64) {
+    let n = samples.len() as f64;
+    let mean = |f: &dyn Fn(&Sample) -> f64| samples.iter().map(|s| f(s)).sum::<f64>() / n;
+    let (x, p) = (mean(&|s| s.x), mean(&|s| s.p));
+    let xx = mean(&|s| (s.x - x) * (s.x - x));
+    let slope = if xx > 0.0 { mean(&|s| (s.x - x) * (s.p - p)) / xx } else { 0.0 };
+    let rest = mean(&|s| (s.p - p - slope * (s.x - x)).powi(2));
+    (p, rest.sqrt())
+}
+
+/// A reference turned so that its shock runs to the right.
+fn turned(
+    samples: &[Sample],
+    exact: &Profile,
+    marks: &Landmarks,
+) -> (Vec<Sample>, Profile, Landmarks) {
+    if marks.direction > 0.0 {
+        return (samples.to_vec(), exact.clone(), *marks);
+    }
+    let samples = samples.iter().rev().map(|s| Sample { x: -s.x, ..*s }).collect();
+    let points = exact.points.iter().rev().map(|q| Point { x: -q.x, u: -q.u, ..*q }).collect();
+    let zone = |z: [f64; 2]| [-z[1], -z[0]];
+    let marks = Landmarks {
+        direction: 1.0,
+        interface: -marks.interface,
+        far_end: -marks.far_end,
+        shock: marks.shock.map(|x| -x),
+        plateau: marks.plateau.map(zone),
+        plateau_4: marks.plateau_4.map(zone),
+        ..*marks
+    };
+    (samples, Profile { points }, marks)
+}
+
+/// Scores the `samples` of one body, sorted by x, against the exact profile of (at least) that
+/// body; `h` is the size of a cell [m].
+pub fn score(samples: &[Sample], exact: &Profile, landmarks: &Landmarks, h: f64) -> Errors {
+    if samples.len() < 2 || !samples.iter().all(|s| s.x.is_finite() && s.p.is_finite()) {
+        return Errors::default();
+    }
+    let (samples, exact, marks) = turned(samples, exact, landmarks);
+    let (lower, upper) = (marks.interface, marks.far_end);
+    let computed = line(&samples, lower, upper, |s| s.p);
+    let truth: Line = exact.between(lower, upper).points.iter().map(|q| (q.x, q.p)).collect();
+    let [d1, d2, size, square] = integrals(&computed, &truth, lower, upper);
+    let some_if = |ok: bool, value: f64| (ok && value.is_finite()).then_some(value);
+    let p2 = marks.p2;
+    let greatest = |line: &Line| line.iter().map(|q| q.1).fold(f64::NEG_INFINITY, f64::max);
+    let mut errors = Errors {
+        l1: some_if(size > 0.0, d1 / size),
+        l2: some_if(square > 0.0, (d2 / square).sqrt()),
+        e1_cells: some_if(p2 > 0.0, d1 / (p2 * h)),
+        overshoot: some_if(p2 > 0.0, (greatest(&computed) - greatest(&truth)) / p2),
+        ..Errors::default()
+    };
+    if let Some(shock) = marks.shock {
+        let at = |share: f64| crossing(&computed, share * marks.behind_shock);
+        errors.shock_position_cells = at(0.5).map(|x| (x - shock) / h);
+        errors.rise_cells = at(0.1).zip(at(0.9)).map(|(toe, top)| (toe - top) / h);
+    }
+    if let Some(zone) = marks.plateau.filter(|z| z[1] - z[0] >= 8.0 * h * (1.0 - 1e-9)) {
+        let [from, to] = middle(zone, 0.4);
+        let inside: Vec<&Sample> = samples.iter().filter(|s| (from..=to).contains(&s.x)).collect();
+        if inside.len() >= 3 {
+            let n = inside.len() as f64;
+            let mean = |f: fn(&Sample) -> f64| inside.iter().map(|s| f(s)).sum::<f64>() / n;
+            let (p, noise) = mean_and_noise(&inside);
+            errors.plateau = some_if(p2 > 0.0, p / p2 - 1.0);
+            errors.noise = some_if(p2 > 0.0, noise / p2);
+            errors.density_plateau = some_if(marks.rho2 > 0.0, mean(|s| s.rho) / marks.rho2 - 1.0);
+            errors.energy_plateau = some_if(marks.e2 > 0.0, mean(|s| s.e) / marks.e2 - 1.0);
+        }
+    }
+    if let Some(zone) = marks.plateau_4.filter(|z| z[1] - z[0] >= 5.0 * h * (1.0 - 1e-9)) {
+        let [from, to] = middle(zone, 0.6);
+        if let (Some(mean), Some(want)) =
+            (mean_over(&computed, from, to), mean_over(&truth, from, to))
+        {
+            errors.plateau_4 = some_if(want > 1e-3 * p2, mean / want - 1.0);
+        }
+    }
+    errors
+}
+
+/// Scores samples of any bodies, sorted by x, between `lower` and `upper` where there is no one
+/// shock to look at (Riemann problems): l1, l2 of the pressure and density_l1.
+pub fn score_density(samples: &[Sample], exact: &Profile, lower: f64, upper: f64) -> Errors {
+    let finite = |s: &Sample| s.x.is_finite() && s.p.is_finite() && s.rho.is_finite();
+    if samples.len() < 2 || !samples.iter().all(finite) {
+        return Errors::default();
+    }
+    let truth = exact.between(lower, upper).points;
+    let p: Line = truth.iter().map(|q| (q.x, q.p)).collect();
+    let rho: Line = truth.iter().map(|q| (q.x, q.rho)).collect();
+    let [d1, d2, size, square] = integrals(&line(samples, lower, upper, |s| s.p), &p, lower, upper);
+    let density = integrals(&line(samples, lower, upper, |s| s.rho), &rho, lower, upper)[0];
+    Errors {
+        l1: (size > 0.0).then(|| d1 / size),
+        l2: (square > 0.0).then(|| (d2 / square).sqrt()),
+        density_l1: Some(density),
+        ..Errors::default()
+    }
+}
+
+/// Greatest errors of density and of specific internal energy within ten cells of the interface,
+/// as fractions of rho2 and e2: faults of the energy show here, not in the pressure.
+pub fn interface_errors(
+    samples: &[Sample],
+    exact: &Profile,
+    landmarks: &Landmarks,
+    h: f64,
+) -> Option<(f64, f64)> {
+    let near = samples.iter().filter(|s| (s.x - landmarks.interface).abs() <= 10.0 * h);
+    near.filter_map(|s| {
+        let q = exact.at(s.x)?;
+        Some(((s.rho - q.rho).abs() / landmarks.rho2, (s.e - q.e).abs() / landmarks.e2))
+    })
+    .reduce(|a, b| (a.0.max(b.0), a.1.max(b.1)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::samples::{ALUMINIUM, COPPER};
+    use crate::exact::{Accuracy, Impact, ImpactBody};
+
+    fn point(x: f64, p: f64) -> Point {
+        Point { x, p, u: 0.0, rho: 2.0 * p + 1.0, e: 3.0 * p }
+    }
+
+    fn marks() -> Landmarks {
+        Landmarks {
+            direction: 1.0,
+            interface: 0.0,
+            far_end: 100.0,
+            shock: Some(60.0),
+            plateau: Some([20.0, 60.0]),
+            p2: 4.0,
+            rho2: 9.0,
+            e2: 12.0,
+            rho2_flyer: f64::NAN,
+            e2_flyer: f64::NAN,
+            plateau_4: None,
+            p4: None,
+            behind_shock: 4.0,
+        }
+    }
+
+    fn step() -> Profile {
+        Profile {
+            points: vec![point(0.0, 4.0), point(60.0, 4.0), point(60.0, 0.0), point(100.0, 0.0)],
+        }
+    }
+
+    fn samples(p: impl Fn(f64) -> f64) -> Vec<Sample> {
+        let at = |k: usize| 0.25 + 0.5 * k as f64;
+        let one = |x| Sample { x, volume: 0.5, p: p(x), rho: 2.0 * p(x) + 1.0, e: 3.0 * p(x) };
+        (0..200).map(|k| one(at(k))).collect()
+    }
+
+    fn close(a: Option<f64>, b: f64, by: f64) {
+        assert!((a.unwrap() - b).abs() <= by, "{a:?} {b}");
+    }
+
+    #[test]
+    fn a_shifted_step() {
+        let errors = score(&samples(|x| if x < 62.0 { 4.0 } else { 0.0 }), &step(), &marks(), 1.0);
+        // two cells too far, joined by a line half a cell wide
+        close(errors.l1, 2.0 / 60.0, 1e-12);
+        close(errors.e1_cells, 2.0, 1e-12);
+        close(errors.shock_position_cells, 2.0, 1e-12);
+        close(errors.rise_cells, 0.4, 1e-12);
+        close(errors.plateau, 0.0, 1e-12);
+        close(errors.noise, 0.0, 1e-12);
+        close(errors.overshoot, 0.0, 1e-12);
+        assert_eq!((errors.plateau_4, errors.density_l1), (None, None));
+    }
+
+    #[test]
+    fn a_mirrored_run_scores_the_same() {
+        let run =
+            samples(|x| if x < 59.0 { 4.1 + 0.01 * (3.0 * x).sin() } else { 0.02 * (100.0 - x) });
+        let want = score(&run, &step(), &marks(), 1.0);
+        let turned: Vec<_> = run.iter().rev().map(|s| Sample { x: 7.0 - s.x, ..*s }).collect();
+        let points = step().points.iter().rev().map(|q| Point { x: 7.0 - q.x, ..*q }).collect();
+        let there = Landmarks {
+            direction: -1.0,
+            interface: 7.0,
+            far_end: -93.0,
+            shock: Some(-53.0),
+            plateau: Some([-53.0, -13.0]),
+            ..marks()
+        };
+        let got = score(&turned, &Profile { points }, &there, 1.0);
+        for (a, b) in [
+            (got.l1, want.l1),
+            (got.shock_position_cells, want.shock_position_cells),
+            (got.rise_cells, want.rise_cells),
+            (got.plateau, want.plateau),
+            (got.noise, want.noise),
+            (got.overshoot, want.overshoot),
+            (got.energy_plateau, want.energy_plateau),
+        ] {
+            close(a, b.unwrap(), 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_crossing_of_signs_is_counted_on_both_sides() {
+        let a = [(0.0, -1.0), (2.0, 1.0)];
+        let b = [(0.0, 0.0), (2.0, 0.0)];
+        let [d1, d2, size, _] = integrals(&a, &b, 0.0, 2.0);
+        assert!((d1 - 1.0).abs() < 1e-15 && (d2 - 2.0 / 3.0).abs() < 1e-15 && size == 0.0);
+    }
+
+    #[test]
+    fn a_plateau_under_eight_cells_is_not_judged() {
+        let errors = score(&samples(|_| 4.0), &step(), &marks(), 5.1);
+        assert_eq!((errors.plateau, errors.noise, errors.energy_plateau), (None, None, None));
+        assert!(score(&[], &step(), &marks(), 1.0).l1.is_none());
+        assert!(score(&samples(|_| f64::NAN), &step(), &marks(), 1.0).l1.is_none());
+    }
+
+    #[test]
+    fn cells_hold_their_particles_mean() {
+        let of = |x: f64, volume: f64, p: f64| Sample { x, volume, p, rho: 1.0, e: p };
+        let cells =
+            cell_average(&[of(0.2, 1.0, 2.0), of(0.8, 3.0, 6.0), of(1.5, 1.0, 7.0)], 1.0, 0.0);
+        assert_eq!(cells.len(), 2);
+        assert_eq!((cells[0].p, cells[0].volume, cells[1].p), (5.0, 4.0, 7.0));
+        assert!((cells[0].x - 0.65).abs() < 1e-15);
+    }
+
+    /// Exact means of a profile over cells of size `h`, `shift` of a cell off the grid.
+    fn exact_cells(profile: &Profile, h: f64, shift: f64) -> Vec<Sample> {
+        let (lower, upper) = profile.span().unwrap();
+        let (first, last) = ((lower / h).ceil() as i64, (upper / h).floor() as i64 - 1);
+        let line: Line = profile.points.iter().map(|q| (q.x, q.p)).collect();
+        (first..last)
+            .map(|k| {
+                let from = (k as f64 + shift) * h;
+                let p = mean_over(&line, from, from + h).unwrap();
+                Sample { x: from + 0.5 * h, volume: h, p, rho: 1.0, e: 1.0 }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn standard_problem_floor_and_the_documents_line() {
+        let body =
+            |material, lower, upper, velocity| ImpactBody { material, lower, upper, velocity };
+        let flyer = body(COPPER, -0.5e-3, 0.0, 1000.0);
+        let impact = Impact::new(flyer, body(ALUMINIUM, 0.0, 8e-3, 0.0)).unwrap();
+        let solution = impact.solve(&[0.5e-6, 1e-6], &[], Accuracy::default()).unwrap();
+        let chain = impact.chain(12).unwrap();
+        // the document's line is off by 4.4 % and 9.0 %
+        for (snapshot, want) in solution.snapshots.iter().zip([0.0445, 0.090]) {
+            let marks = snapshot.landmarks.unwrap();
+            let line = |p: &Profile| -> Line { p.points.iter().map(|q| (q.x, q.p)).collect() };
+            let truth = line(snapshot.target.as_ref().unwrap());
+            let black = line(&impact.chain_profile(&chain, snapshot.time).unwrap());
+            let [d1, _, size, _] = integrals(&black, &truth, marks.interface, marks.far_end);
+            close(Some(d1 / size), want, 6e-4);
+        }
+        // the floor at cells of 0.01 mm; it depends on where in its cell the shock stands
+        let last = &solution.snapshots[1];
+        let (truth, h) = (last.target.as_ref().unwrap(), 1e-5);
+        for (shift, l1, rise) in [(0.1, 0.0013, 0.81), (0.4, 0.0022, 1.5), (0.6, 0.0025, 1.6)] {
+            let errors = score(&exact_cells(truth, h, shift), truth, &last.landmarks.unwrap(), h);
+            close(errors.l1, l1, 5e-5);
+            close(errors.rise_cells, rise, 0.01);
+            close(errors.plateau, 0.0, 1e-6);
+            close(errors.plateau_4, 0.0, 1e-4);
+        }
+    }
+}

@@ -1,0 +1,535 @@
+//! What happens where two fronts meet, and what the row of fronts becomes.
+
+use super::super::ExactError;
+use super::super::chain::Plate;
+use super::super::collision::{Outgoing, collide, set_free};
+use super::super::profile::PathKind;
+use super::super::wave::{State, jump, sound_speed};
+use super::{Front, INTERFACE_RECORD, Kind, NONE, REAR_RECORD, Record, Tracker};
+use crate::material::MieGruneisen;
+
+/// Fronts of compression above this many quanta are shocks.
+const SHOCK_QUANTA: f64 = 3.0;
+/// Two small fronts merge if together they are below this many quanta.
+const MERGED_QUANTA: f64 = 0.75;
+
+/// A path that goes on: its number and the Eulerian place where it is now [m].
+type Trail = Option<(usize, f64)>;
+
+/// The wave to be put into the row.
+struct Leaving {
+    strength: f64,
+    steps: usize,
+    star: State,
+    trail: Trail,
+    /// Eulerian place, for paths that start here [m].
+    place: f64,
+}
+
+impl Tracker {
+    /// Fronts `a` and `b`, neighbours, meet now.
+    pub(super) fn collision(&mut self, a: usize, b: usize) -> Result<(), ExactError> {
+        let (ka, kb) = (self.fronts[a].kind, self.fronts[b].kind);
+        if kb == Kind::End {
+            self.ended = Some(self.time);
+            return Ok(());
+        }
+        if ka == Kind::Rear {
+            return self.reflect_at_rear(a, b);
+        }
+        if a == self.interface {
+            return self.meet_at_interface(None, Some(b));
+        }
+        if b == self.interface {
+            return self.meet_at_interface(Some(a), None);
+        }
+        let before = self.fronts[a].prev;
+        let after = self.fronts[b].next;
+        if matches!(ka, Kind::Edge(_)) || matches!(kb, Kind::Edge(_)) {
+            self.pass_edge(a, b);
+        } else {
+            self.cross(a, b)?;
+        }
+        self.foresee_range(before, after);
+        Ok(())
+    }
+
+    fn foresee_range(&mut self, from: usize, to: usize) {
+        let mut k = from;
+        while k != to && k != NONE {
+            self.foresee(k);
+            k = self.fronts[k].next;
+        }
+    }
+
+    fn no_convergence(&self, place: f64) -> ExactError {
+        ExactError::NoConvergence { time: self.time, place }
+    }
+
+    /// Where the front is now on its path, if it draws one.
+    fn trail(&mut self, k: usize) -> Trail {
+        let front = &self.fronts[k];
+        let path = front.path?;
+        let place = front.place_at(self.time);
+        self.paths[path].2.push([self.time, place]);
+        Some((path, place))
+    }
+
+    fn new_path(&mut self, x: f64, kind: PathKind, place: f64, flyer: bool) -> usize {
+        debug_assert!(x.is_finite());
+        let plate = if flyer { Plate::Flyer } else { Plate::Target };
+        self.paths.push((plate, kind, vec![[self.time, place]]));
+        self.paths.len() - 1
+    }
+
+    fn record(&mut self, number: usize, family: usize, incoming: Kind, after: &State) {
+        self.records[number].push(Record {
+            t: self.time,
+            family,
+            strong: incoming == Kind::Strong,
+            edge: matches!(incoming, Kind::Edge(_)),
+            after: [after.p, after.u],
+        });
+    }
+
+    fn edge(&self, kind: Kind, family: i8, x: f64, m: &MieGruneisen, right: State) -> Front {
+        let speed = f64::from(family) * sound_speed(m, &right);
+        Front { family, t: self.time, speed, ..Front::fixed(kind, x, right) }
+    }
+
+    /// The edge of a fan meets anything that is not a boundary: it goes through, or is lost in
+    /// a wave of its own family.
+    fn pass_edge(&mut self, a: usize, b: usize) {
+        let (fa, fb) = (self.fronts[a], self.fronts[b]);
+        let a_is_edge = matches!(fa.kind, Kind::Edge(_));
+        if fa.family == fb.family {
+            let lost = if a_is_edge { a } else { b };
+            self.trail(lost);
+            self.remove(lost);
+            return;
+        }
+        let (edge, other) = if a_is_edge { (a, b) } else { (b, a) };
+        let trail = self.trail(edge);
+        let front = self.fronts[edge];
+        let x =
+            if self.fronts[other].family == 0 { self.fronts[other].x } else { fa.at(self.time) };
+        if let Kind::Probe(number) = self.fronts[other].kind {
+            let after = self.fronts[other].right;
+            self.record(number, if a_is_edge { 2 } else { 0 }, front.kind, &after);
+        }
+        let before = fa.prev;
+        self.remove(edge);
+        let right = if a_is_edge { fb.right } else { self.fronts[before].right };
+        let m = *self.material_of(other);
+        let mut passed = self.edge(front.kind, front.family, x, &m, right);
+        (passed.path, passed.place) = trail.map_or((None, x), |(k, place)| (Some(k), place));
+        self.insert_after(if a_is_edge { other } else { before }, passed);
+    }
+
+    /// The material that a front (not the interface) is in.
+    fn material_of(&self, front: usize) -> &MieGruneisen {
+        if self.fronts[front].flyer { &self.setup.flyer } else { &self.setup.target }
+    }
+
+    /// Two waves, or a wave and a contact, of one material.
+    fn cross(&mut self, a: usize, b: usize) -> Result<(), ExactError> {
+        let (fa, fb) = (self.fronts[a], self.fronts[b]);
+        let x = if fa.family == 0 {
+            fa.x
+        } else if fb.family == 0 {
+            fb.x
+        } else {
+            0.5 * (fa.at(self.time) + fb.at(self.time))
+        };
+        let m = *self.material_of(a);
+        let before = fa.prev;
+        let (left, middle, right) = (self.fronts[before].right, fa.right, fb.right);
+        let (mut guess, mut incoming) = ((0.0, 0.0), [false; 2]);
+        for (f, l, r) in [(&fa, &left, &middle), (&fb, &middle, &right)] {
+            if f.family < 0 {
+                guess.0 += r.chi - l.chi;
+                incoming[0] = true;
+            } else if f.family > 0 {
+                guess.1 += l.chi - r.chi;
+                incoming[1] = true;
+            }
+        }
+        let split = fa.kind == Kind::Strong || fb.kind == Kind::Strong;
+        let quantum = if split { self.quantum } else { f64::INFINITY };
+        let out = collide((&m, &left), (&m, &right), guess, quantum, self.tolerance)
+            .ok_or_else(|| self.no_convergence(x))?;
+        let goes_left = incoming[0] || (out.left_star.p - left.p).abs() > self.least;
+        let goes_right = incoming[1] || (out.right_star.p - right.p).abs() > self.least;
+        let (mut trails, mut marker) = ([None, None], None);
+        for (k, f) in [(a, &fa), (b, &fb)] {
+            if f.family == 0 {
+                marker = Some(f.kind);
+            } else if f.path.is_some() {
+                let side = usize::from(f.family > 0);
+                let trail = self.trail(k);
+                // a shock's path goes on rather than another's
+                if trails[side].is_none() || f.kind == Kind::Strong {
+                    trails[side] = trail;
+                }
+            }
+        }
+        let Outgoing { mut left_star, mut right_star, .. } = out;
+        if !goes_left {
+            left_star = left;
+        }
+        if !goes_right {
+            right_star = right;
+        }
+        let jump_kept = 1e-5 * self.quantum / (m.rho0 * m.c0 * m.c0);
+        if marker.is_none() && (left_star.chi - right_star.chi).abs() > jump_kept {
+            marker = Some(Kind::Contact);
+        }
+        if marker.is_none() {
+            let mean = |f: fn(&State) -> f64| 0.5 * (f(&left_star) + f(&right_star));
+            let both = State {
+                chi: mean(|s| s.chi),
+                p: mean(|s| s.p),
+                u: mean(|s| s.u),
+                e: mean(|s| s.e),
+            };
+            left_star = if goes_left { both } else { left };
+            right_star = if goes_right { left_star } else { right };
+            if !goes_right {
+                left_star = right;
+            }
+        }
+        if let Some(Kind::Probe(number)) = marker {
+            let came = if fa.family > 0 { (2, fa.kind) } else { (0, fb.kind) };
+            self.record(number, came.0, came.1, &right_star);
+        }
+        self.remove(a);
+        self.remove(b);
+        let mut last = before;
+        if goes_left {
+            let (strength, steps) = out.left;
+            let wave =
+                Leaving { strength, steps, star: left_star, trail: trails[0], place: f64::NAN };
+            last = self.send_left(last, &m, &left, x, wave);
+        }
+        if let Some(kind) = marker {
+            let fixed = Front { t: self.time, ..Front::fixed(kind, x, right_star) };
+            last = self.insert_after(last, fixed);
+        }
+        if goes_right {
+            let (strength, steps) = out.right;
+            let wave =
+                Leaving { strength, steps, star: right_star, trail: trails[1], place: f64::NAN };
+            self.send_right(last, &m, &right, x, wave);
+        }
+        Ok(())
+    }
+
+    /// The kind of a single front, and its path: shocks start one.
+    fn kind_and_path(
+        &mut self,
+        x: f64,
+        dp: f64,
+        wave: &Leaving,
+        last: usize,
+    ) -> (Kind, Option<usize>, f64) {
+        let strong = dp > SHOCK_QUANTA * self.quantum;
+        let kind = if strong { Kind::Strong } else { Kind::Weak };
+        match wave.trail {
+            Some((path, place)) => (kind, Some(path), place),
+            None if strong => {
+                let place = if wave.place.is_nan() { self.eulerian(last, x) } else { wave.place };
+                let flyer = self.fronts[last].flyer;
+                (kind, Some(self.new_path(x, PathKind::Shock, place, flyer)), place)
+            }
+            None => (kind, None, x),
+        }
+    }
+
+    /// Eulerian place of X = `x`, which lies in the state after front `last` [m].
+    fn eulerian(&self, last: usize, x: f64) -> f64 {
+        let faces = self.faces();
+        let at = |k: usize| self.fronts[k].at(self.time);
+        if self.fronts[last].flyer {
+            let (mut place, mut k, mut from) = (faces[0], self.fronts[self.interface].prev, 0.0);
+            while k != last && k != NONE {
+                place -= (1.0 - self.fronts[k].right.chi) * (from - at(k));
+                (from, k) = (at(k), self.fronts[k].prev);
+            }
+            place - (1.0 - self.fronts[last].right.chi) * (from - x)
+        } else {
+            let (mut place, mut k) = (faces[1], self.interface);
+            while k != last {
+                let next = self.fronts[k].next;
+                place += (1.0 - self.fronts[k].right.chi) * (at(next) - at(k));
+                k = next;
+            }
+            place + (1.0 - self.fronts[last].right.chi) * (x - at(last))
+        }
+    }
+
+    /// Puts a left-going wave into the row after `last`; the last front put.
+    fn send_left(
+        &mut self,
+        last: usize,
+        m: &MieGruneisen,
+        ahead: &State,
+        x: f64,
+        wave: Leaving,
+    ) -> usize {
+        let front = Front { family: -1, t: self.time, ..Front::fixed(Kind::Weak, x, wave.star) };
+        if wave.steps == 1 {
+            let (kind, path, place) = self.kind_and_path(x, wave.star.p - ahead.p, &wave, last);
+            let speed = -jump(m, ahead, wave.strength, -1.0).speed;
+            return self.insert_after(last, Front { kind, speed, path, place, ..front });
+        }
+        let flyer = self.fronts[last].flyer;
+        let place = if wave.place.is_nan() { self.eulerian(last, x) } else { wave.place };
+        let mut last = last;
+        let mut state = *ahead;
+        for end in [PathKind::FanHead, PathKind::FanTail] {
+            let path = Some(self.new_path(x, end, place, flyer));
+            let edge = self.edge(Kind::Edge(end), -1, x, m, state);
+            last = self.insert_after(last, Front { path, place, ..edge });
+            if end == PathKind::FanTail {
+                break;
+            }
+            for k in 1..=wave.steps {
+                let step = jump(m, &state, wave.strength / wave.steps as f64, -1.0);
+                state = if k == wave.steps { wave.star } else { step.behind };
+                last = self.insert_after(last, Front { speed: -step.speed, right: state, ..front });
+            }
+        }
+        last
+    }
+
+    /// Puts a right-going wave into the row after `last`, whose state becomes the wave's.
+    fn send_right(&mut self, last: usize, m: &MieGruneisen, ahead: &State, x: f64, wave: Leaving) {
+        let front = Front { family: 1, t: self.time, ..Front::fixed(Kind::Weak, x, *ahead) };
+        if wave.steps == 1 {
+            let (kind, path, place) = self.kind_and_path(x, wave.star.p - ahead.p, &wave, last);
+            let speed = jump(m, ahead, wave.strength, 1.0).speed;
+            self.insert_after(last, Front { kind, speed, path, place, ..front });
+            return;
+        }
+        let flyer = self.fronts[last].flyer;
+        let place = if wave.place.is_nan() { self.eulerian(last, x) } else { wave.place };
+        let mut state = *ahead;
+        // from the head back: each is put in directly after `last`
+        for end in [PathKind::FanHead, PathKind::FanTail] {
+            let path = Some(self.new_path(x, end, place, flyer));
+            let edge = self.edge(Kind::Edge(end), 1, x, m, state);
+            self.insert_after(last, Front { path, place, ..edge });
+            if end == PathKind::FanTail {
+                break;
+            }
+            for k in 1..=wave.steps {
+                let step = jump(m, &state, wave.strength / wave.steps as f64, 1.0);
+                self.insert_after(last, Front { speed: step.speed, right: state, ..front });
+                state = if k == wave.steps { wave.star } else { step.behind };
+            }
+        }
+    }
+
+    /// A left-going front reaches the flyer's free rear.
+    fn reflect_at_rear(&mut self, rear: usize, b: usize) -> Result<(), ExactError> {
+        let front = self.fronts[b];
+        let after = front.next;
+        let place = self.fronts[rear].place_at(self.time);
+        self.fronts[rear].place = place;
+        self.fronts[rear].t = self.time;
+        let x = self.fronts[rear].x;
+        let m = self.setup.flyer;
+        self.trail(b);
+        self.remove(b);
+        if let Kind::Edge(kind) = front.kind {
+            let path = Some(self.new_path(x, kind, place, true));
+            let edge = self.edge(front.kind, 1, x, &m, front.right);
+            self.insert_after(rear, Front { path, place, ..edge });
+            self.fronts[rear].right = front.right;
+        } else {
+            let split = front.kind == Kind::Strong;
+            let quantum = if split { self.quantum } else { f64::INFINITY };
+            let (strength, steps, star) = set_free(&m, &front.right, 1.0, quantum, self.tolerance)
+                .ok_or_else(|| self.no_convergence(x))?;
+            self.fronts[rear].right = star;
+            let wave = Leaving { strength, steps, star, trail: None, place };
+            self.send_right(rear, &m, &front.right, x, wave);
+        }
+        let star = self.fronts[rear].right;
+        self.record(REAR_RECORD, 0, front.kind, &star);
+        self.foresee_range(rear, after);
+        Ok(())
+    }
+
+    /// Fronts reach the interface from the flyer (`a`), from the target (`b`), or neither (the
+    /// plates meet).
+    pub(super) fn meet_at_interface(
+        &mut self,
+        a: Option<usize>,
+        b: Option<usize>,
+    ) -> Result<(), ExactError> {
+        let i = self.interface;
+        self.faces.x = self.faces();
+        self.faces.t = self.time;
+        self.fronts[i].t = self.time;
+        let (flyer, target) = (self.setup.flyer, self.setup.target);
+        let came = a.or(b).map_or(Kind::Strong, |k| self.fronts[k].kind);
+        let family = if a.is_some() {
+            2
+        } else if b.is_some() {
+            0
+        } else {
+            1
+        };
+        let [mut left, mut right] = self.facing();
+        let mut after = self.fronts[i].next;
+        if let Some(a) = a {
+            left = self.fronts[self.fronts[a].prev].right;
+            self.trail(a);
+            self.remove(a);
+        }
+        if let Some(b) = b {
+            right = self.fronts[b].right;
+            after = self.fronts[b].next;
+            self.trail(b);
+            self.remove(b);
+            self.fronts[i].right = right;
+        }
+        let before = self.fronts[i].prev;
+        let [place_l, place_r] = self.faces.x;
+        if let Kind::Edge(kind) = came {
+            if a.is_some() || !self.faces.open {
+                let path = Some(self.new_path(0.0, kind, place_l, true));
+                let edge = self.edge(came, -1, 0.0, &flyer, left);
+                self.insert_after(before, Front { path, place: place_l, ..edge });
+            }
+            if b.is_some() || !self.faces.open {
+                let path = Some(self.new_path(0.0, kind, place_r, false));
+                let edge = self.edge(came, 1, 0.0, &target, right);
+                self.insert_after(i, Front { path, place: place_r, ..edge });
+            }
+        } else {
+            let split = came == Kind::Strong;
+            let quantum = if split { self.quantum } else { f64::INFINITY };
+            let failed = self.no_convergence(0.0);
+            let mut waves = None;
+            if !self.faces.open {
+                let out = collide(
+                    (&flyer, &left),
+                    (&target, &right),
+                    (0.0, 0.0),
+                    quantum,
+                    self.tolerance,
+                )
+                .ok_or(failed.clone())?;
+                if out.right_star.p < -1e-6 * self.quantum * self.setup.wavelets as f64 {
+                    self.faces.open = true;
+                    self.separation_time.get_or_insert(self.time);
+                } else {
+                    waves =
+                        Some((Some((out.left, out.left_star)), Some((out.right, out.right_star))));
+                }
+            }
+            let (l, r) = match waves {
+                Some(waves) => waves,
+                None => {
+                    let free = |m, state, side| {
+                        let out = set_free(m, state, side, quantum, self.tolerance);
+                        out.map(|(d, n, star)| ((d, n), star)).ok_or(failed.clone())
+                    };
+                    let l = if left.p != 0.0 { Some(free(&flyer, &left, -1.0)?) } else { None };
+                    let r = if right.p != 0.0 { Some(free(&target, &right, 1.0)?) } else { None };
+                    (l, r)
+                }
+            };
+            if let Some(((strength, steps), star)) = l
+                && (a.is_none() || (star.p - left.p).abs() > self.least)
+            {
+                let wave = Leaving { strength, steps, star, trail: None, place: place_l };
+                self.send_left(before, &flyer, &left, 0.0, wave);
+            }
+            if let Some(((strength, steps), star)) = r
+                && (b.is_none() || (star.p - right.p).abs() > self.least)
+            {
+                self.fronts[i].right = star;
+                let wave = Leaving { strength, steps, star, trail: None, place: place_r };
+                self.send_right(i, &target, &right, 0.0, wave);
+            }
+        }
+        let star = self.fronts[i].right;
+        if b.is_some() || !self.faces.open || self.separation_time == Some(self.time) {
+            self.record(INTERFACE_RECORD, family, came, &star);
+        }
+        self.foresee_closing();
+        self.foresee_range(before, after);
+        Ok(())
+    }
+
+    /// When the plates, apart now, will meet again.
+    fn foresee_closing(&mut self) {
+        self.faces.version = self.faces.version.wrapping_add(1);
+        if !self.faces.open {
+            return;
+        }
+        let [l, r] = self.facing();
+        let rate = l.u - r.u;
+        if rate > 1e-12 * self.setup.speed {
+            let gap = (self.faces.x[1] - self.faces.x[0]).max(0.0);
+            self.heap.push(super::Meeting {
+                t: self.time + gap / rate,
+                fronts: [self.interface, NONE],
+                stamps: [self.faces.version, 0],
+            });
+        }
+    }
+
+    /// The plates meet again.
+    pub(super) fn close(&mut self) -> Result<(), ExactError> {
+        let x = self.faces();
+        self.faces.x = [0.5 * (x[0] + x[1]); 2];
+        self.faces.t = self.time;
+        self.faces.open = false;
+        self.meet_at_interface(None, None)
+    }
+
+    /// Merges neighbours of one family that are small even together, so that waves weakened by
+    /// reflections hold fewer fronts.
+    pub(super) fn merge_small(&mut self) {
+        let reach = 0.02 * self.setup.thickness;
+        let mut a = self.fronts[self.rear].next;
+        while a != NONE {
+            let b = self.fronts[a].next;
+            if b == NONE {
+                break;
+            }
+            let (fa, fb) = (self.fronts[a], self.fronts[b]);
+            let small = |f: &Front| f.kind == Kind::Weak && f.path.is_none();
+            let left = self.fronts[fa.prev].right;
+            let (da, db) = (fa.right.p - left.p, fb.right.p - fa.right.p);
+            let (xa, xb) = (fa.at(self.time), fb.at(self.time));
+            let merges = fa.family == fb.family
+                && small(&fa)
+                && small(&fb)
+                && da * db > 0.0
+                && (da + db).abs() < MERGED_QUANTA * self.quantum
+                && xb - xa < reach;
+            if !merges {
+                a = b;
+                continue;
+            }
+            let m = *self.material_of(a);
+            let side = f64::from(fa.family);
+            let (ahead, behind) = if side > 0.0 { (fb.right, left) } else { (left, fb.right) };
+            let speed = side * jump(&m, &ahead, behind.chi - ahead.chi, side).speed;
+            let x = (da * xa + db * xb) / (da + db);
+            let before = fa.prev;
+            self.remove(a);
+            self.remove(b);
+            let merged = Front { x, t: self.time, speed, ..fb };
+            let k = self.insert_after(before, Front { path: None, ..merged });
+            self.foresee(before);
+            self.foresee(k);
+            a = self.fronts[k].next;
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Faults in reading or writing results.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use super::summary::SUMMARY_FILE;
+
+/// A fault in reading or writing results; each is one line that names the path.
+#[derive(Debug, Error)]
+pub enum OutputError {
+    /// The system refused.
+    #[error("{}: cannot {doing}: {source}", path.display())]
+    Io {
+        /// What was tried, such as `create the folder`.
+        doing: &'static str,
+        /// What it was tried on.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// Something other than a folder stands where the folder should be.
+    #[error("{}: is not a folder; choose another --output", .0.display())]
+    NotAFolder(PathBuf),
+    /// An earlier result is there, and the user wants it kept.
+    #[error(
+        "{}: exists, and --keep forbids replacing it; remove it or choose another --output",
+        .0.display()
+    )]
+    Exists(PathBuf),
+    /// The folder holds something that no run of ours has written.
+    #[error(
+        "{}: holds files but no {SUMMARY_FILE} of an earlier run, so it is not replaced; \
+         choose another --output",
+        .0.display()
+    )]
+    NotOurs(PathBuf),
+    /// The folder cannot be renamed.
+    #[error("{}: is {why}, which cannot be replaced; choose a folder inside it", path.display())]
+    Fixed {
+        /// The folder.
+        path: PathBuf,
+        /// What it is, such as `a mount point`.
+        why: &'static str,
+    },
+    /// HDF5 refused.
+    #[error("{}: cannot write HDF5: {message}", path.display())]
+    Hdf5 {
+        /// The file.
+        path: PathBuf,
+        /// What the library says, on one line.
+        message: String,
+    },
+    /// Not the JSON that was expected.
+    #[error("{}: {source}", path.display())]
+    Json {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and where.
+        source: serde_json::Error,
+    },
+    /// Not the CSV that was expected.
+    #[error("{}: line {line}: {message}", path.display())]
+    Csv {
+        /// The file.
+        path: PathBuf,
+        /// Number of the line, from 1.
+        line: usize,
+        /// What is wrong.
+        message: String,
+    },
+}
+
+impl OutputError {
+    /// Puts what was tried, and on which path, before a fault of the system.
+    pub fn io(doing: &'static str, path: &Path) -> impl FnOnce(io::Error) -> OutputError {
+        let path = path.to_path_buf();
+        move |source| OutputError::Io { doing, path, source }
+    }
+}

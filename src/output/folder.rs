@@ -1,0 +1,353 @@
+//! The folder of results: written aside, put in place as a whole.
+//!
+//! Everything is written into a temporary folder beside the target, on the same file system.
+//! [`OutputFolder::commit`] then renames an earlier result aside, the new one into its place, and
+//! deletes the earlier one. A run that fails before that leaves the earlier result as it was.
+//! Knows no MPI: called on one rank alone.
+
+use std::fs;
+use std::io::{self, ErrorKind::NotADirectory};
+use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::error::OutputError;
+use super::summary::SUMMARY_FILE;
+
+/// The folder of a scene's results where `--output` says nothing: `output/<stem of the scene>`.
+pub fn default_folder(scene: &Path) -> PathBuf {
+    let stem = scene.file_stem().unwrap_or_else(|| "scene".as_ref());
+    Path::new("output").join(stem)
+}
+
+/// Finds out, before the run, whether a result can be put at `target`; leaves nothing behind.
+/// With `keep` an earlier result is a fault; an empty folder never is.
+pub fn check_writable(target: &Path, keep: bool) -> Result<(), OutputError> {
+    OutputFolder::create(target, keep).map(drop)
+}
+
+/// A folder of results that is being written.
+///
+/// Dropped without [`OutputFolder::commit`], it leaves no trace.
+#[derive(Debug)]
+pub struct OutputFolder {
+    /// As the user named it.
+    target: PathBuf,
+    /// Where the result will stand: absolute, links followed.
+    place: PathBuf,
+    /// Where it is written.
+    partial: PathBuf,
+    /// Parents that were made for it, outermost first.
+    made: Vec<PathBuf>,
+    keep: bool,
+    committed: bool,
+}
+
+impl OutputFolder {
+    /// Makes the temporary folder beside `target`, and the parents that it needs.
+    pub fn create(target: &Path, keep: bool) -> Result<OutputFolder, OutputError> {
+        let absolute = resolve(target)?;
+        if let Some(parent) = absolute.parent() {
+            recover(parent, &absolute);
+        }
+        check_replaceable(target, &absolute, keep)?;
+        let Some(parent) = absolute.parent() else {
+            return Err(OutputError::Fixed { path: target.into(), why: "the root folder" });
+        };
+        let mut folder = OutputFolder {
+            target: target.to_path_buf(),
+            partial: parent.join(aside_name(&absolute, "partial")),
+            place: absolute.clone(),
+            made: Vec::new(),
+            keep,
+            committed: false,
+        };
+        let missing: Vec<&Path> = parent.ancestors().take_while(|p| !p.exists()).collect();
+        for path in missing.into_iter().rev() {
+            match fs::create_dir(path) {
+                Ok(()) => folder.made.push(path.to_path_buf()),
+                Err(e) if e.kind() == io::ErrorKind::AlreadyExists && path.is_dir() => {}
+                Err(e) => return Err(OutputError::io("create the folder", path)(e)),
+            }
+        }
+        fs::create_dir(&folder.partial)
+            .map_err(OutputError::io("write into the folder", parent))?;
+        Ok(folder)
+    }
+
+    /// The temporary folder, for files to be written in.
+    pub fn path(&self) -> &Path {
+        &self.partial
+    }
+
+    /// A file of the temporary folder.
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.partial.join(name)
+    }
+
+    /// Where the result will stand, as the user named it.
+    pub fn target(&self) -> &Path {
+        &self.target
+    }
+
+    /// Puts the result in place of an earlier one, as a whole; returns where it stands, as the
+    /// user named it.
+    pub fn commit(mut self) -> Result<PathBuf, OutputError> {
+        check_replaceable(&self.target, &self.place, self.keep)?;
+        let parent = self.place.parent().unwrap_or(Path::new("/"));
+        let earlier = parent.join(aside_name(&self.place, "earlier"));
+        let replaces = self.place.exists();
+        if replaces {
+            fs::rename(&self.place, &earlier)
+                .map_err(OutputError::io("set the earlier result aside", &self.target))?;
+        }
+        if let Err(error) = fs::rename(&self.partial, &self.place) {
+            if replaces {
+                fs::rename(&earlier, &self.place)
+                    .map_err(OutputError::io("put the earlier result back", &earlier))?;
+            }
+            return Err(OutputError::io("put the result in place", &self.target)(error));
+        }
+        self.committed = true;
+        if replaces {
+            remove(&earlier)?;
+        }
+        Ok(self.target.clone())
+    }
+}
+
+impl Drop for OutputFolder {
+    /// Best effort: an error that is already on its way is the one worth telling.
+    fn drop(&mut self) {
+        if !self.committed {
+            let _ = fs::remove_dir_all(&self.partial);
+            for parent in self.made.iter().rev() {
+                let _ = fs::remove_dir(parent);
+            }
+        }
+    }
+}
+
+fn remove(folder: &Path) -> Result<(), OutputError> {
+    fs::remove_dir_all(folder).map_err(OutputError::io("remove the folder", folder))
+}
+
+/// The absolute path, links followed as far as the path exists, `.` and `..` resolved.
+fn resolve(target: &Path) -> Result<PathBuf, OutputError> {
+    let absolute = std::path::absolute(target).map_err(OutputError::io("find the path", target))?;
+    let mut path = PathBuf::new();
+    for component in absolute.components() {
+        match component {
+            Component::ParentDir => {
+                path.pop();
+            }
+            Component::CurDir => {}
+            other => path.push(other),
+        }
+        match path.canonicalize() {
+            Ok(real) => path = real,
+            Err(e) if path.is_symlink() => {
+                return Err(OutputError::io("follow the link", &path)(e));
+            }
+            Err(e) if matches!(e.kind(), io::ErrorKind::NotFound | NotADirectory) => {}
+            Err(e) => return Err(OutputError::io("reach the folder", &path)(e)),
+        }
+    }
+    Ok(path)
+}
+
+/// Refuses a target that is not a folder, that is not ours to delete, or that cannot be renamed.
+fn check_replaceable(named: &Path, target: &Path, keep: bool) -> Result<(), OutputError> {
+    if let Some(file) = target.ancestors().find(|p| p.exists()).filter(|p| !p.is_dir()) {
+        return Err(OutputError::NotAFolder(if file == target { named } else { file }.into()));
+    }
+    if !target.exists() {
+        return Ok(());
+    }
+    if std::env::current_dir().is_ok_and(|here| here.starts_with(target)) {
+        return Err(OutputError::Fixed { path: named.into(), why: "the current folder" });
+    }
+    if is_mount_point(target) {
+        return Err(OutputError::Fixed { path: named.into(), why: "a mount point" });
+    }
+    let mut entries = fs::read_dir(target).map_err(OutputError::io("read the folder", named))?;
+    if entries.next().is_none() {
+        return Ok(());
+    }
+    if keep {
+        return Err(OutputError::Exists(named.into()));
+    }
+    if is_result(target) { Ok(()) } else { Err(OutputError::NotOurs(named.into())) }
+}
+
+/// Whether a run of ours has written this folder.
+fn is_result(folder: &Path) -> bool {
+    let Ok(text) = fs::read_to_string(folder.join(SUMMARY_FILE)) else { return false };
+    serde_json::from_str::<serde_json::Value>(&text)
+        .is_ok_and(|v| ["version", "scene", "profiles"].iter().all(|key| v.get(key).is_some()))
+}
+
+/// Whether something is mounted on the folder; false where that cannot be told.
+fn is_mount_point(folder: &Path) -> bool {
+    let mounts = fs::read_to_string("/proc/self/mountinfo").unwrap_or_default();
+    mounts.lines().any(|line| line.split(' ').nth(4).map(Path::new) == Some(folder))
+}
+
+/// This machine's name, so that a folder left behind is not taken for that of a process elsewhere.
+fn host() -> String {
+    let name = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
+    name.trim().chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-').collect()
+}
+
+/// What the names of all folders that we make beside `target` begin with: hidden.
+fn aside_prefix(target: &Path) -> String {
+    format!(".{}.flyer.", target.file_name().unwrap_or_default().to_string_lossy())
+}
+
+/// Name of a folder beside `target` that no other process, nor another value of this one, takes.
+fn aside_name(target: &Path, role: &str) -> String {
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
+    format!("{}{role}-{}-{}.{count}", aside_prefix(target), host(), std::process::id())
+}
+
+/// Cleans up beside `target` after processes of this machine that died in the middle: an earlier
+/// result that was set aside goes back where nothing replaced it; what was half-written goes.
+/// Best effort: what it leaves does no harm.
+fn recover(parent: &Path, target: &Path) {
+    let Ok(entries) = fs::read_dir(parent) else { return };
+    let (prefix, host) = (aside_prefix(target), format!("{}-", host()));
+    for entry in entries.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let Some((role, owner)) = name.strip_prefix(&prefix).and_then(|s| s.split_once('-')) else {
+            continue;
+        };
+        let process = owner.strip_prefix(&host).and_then(|s| s.split_once('.')).map(|(p, _)| p);
+        match role {
+            _ if !process.is_some_and(is_dead) => {}
+            "earlier" if !target.exists() => {
+                let _ = fs::rename(entry.path(), target);
+            }
+            "earlier" | "partial" => {
+                let _ = fs::remove_dir_all(entry.path());
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Whether no process of this machine has this number; false where that cannot be told.
+fn is_dead(process: &str) -> bool {
+    let is_number = !process.is_empty() && process.bytes().all(|b| b.is_ascii_digit());
+    is_number && Path::new("/proc/self").exists() && !Path::new("/proc").join(process).exists()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn write(folder: &Path, mark: &str) {
+        let text = format!(r#"{{"version": "{mark}", "scene": {{}}, "profiles": []}}"#);
+        fs::write(folder.join(SUMMARY_FILE), text).unwrap();
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name());
+        let mut names: Vec<_> = entries.map(|n| n.to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn replaces_as_a_whole_and_only_on_commit() {
+        let home = tempfile::tempdir().unwrap();
+        let target = home.path().join("a/b/run");
+        for mark in ["1", "2"] {
+            let folder = OutputFolder::create(&target, false).unwrap();
+            write(folder.path(), mark);
+            fs::write(folder.file(mark), "").unwrap();
+            assert_eq!(folder.commit().unwrap(), target);
+            assert_eq!(names(&target), [mark, SUMMARY_FILE]);
+            assert_eq!(names(target.parent().unwrap()), ["run"]);
+        }
+        let failed = OutputFolder::create(&target, false).unwrap();
+        write(failed.path(), "3");
+        assert_eq!(names(&target), ["2", SUMMARY_FILE]);
+        drop(failed);
+        assert_eq!(names(&target), ["2", SUMMARY_FILE]);
+        assert_eq!(names(target.parent().unwrap()), ["run"]);
+    }
+
+    #[test]
+    fn leaves_no_trace_of_parents_that_it_made() {
+        let home = tempfile::tempdir().unwrap();
+        check_writable(&home.path().join("a/b/run"), false).unwrap();
+        assert!(names(home.path()).is_empty());
+    }
+
+    #[test]
+    fn keep_refuses_a_result_but_not_an_empty_folder() {
+        let home = tempfile::tempdir().unwrap();
+        let target = home.path().join("run");
+        fs::create_dir(&target).unwrap();
+        OutputFolder::create(&target, true).unwrap().commit().unwrap();
+        write(&target, "1");
+        assert!(matches!(check_writable(&target, true), Err(OutputError::Exists(_))));
+        check_writable(&target, false).unwrap();
+        // A result that came while this one ran is kept as well.
+        fs::remove_file(target.join(SUMMARY_FILE)).unwrap();
+        let folder = OutputFolder::create(&target, true).unwrap();
+        write(&target, "2");
+        assert!(matches!(folder.commit(), Err(OutputError::Exists(_))));
+        assert_eq!(names(&target), [SUMMARY_FILE]);
+    }
+
+    #[test]
+    fn refuses_what_is_not_a_result() {
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path().join("mine");
+        fs::create_dir(&folder).unwrap();
+        fs::write(folder.join("thesis.tex"), "").unwrap();
+        let error = check_writable(&folder, false).unwrap_err();
+        assert!(error.to_string().contains("mine: holds files but no summary.json"), "{error}");
+        fs::write(folder.join(SUMMARY_FILE), "{}").unwrap();
+        assert!(matches!(check_writable(&folder, false), Err(OutputError::NotOurs(_))));
+        let file = folder.join("thesis.tex");
+        assert!(
+            matches!(check_writable(&file, false), Err(OutputError::NotAFolder(p)) if p == file)
+        );
+        let below = file.join("run");
+        assert!(matches!(check_writable(&below, false), Err(OutputError::NotAFolder(_))));
+        let here = std::env::current_dir().unwrap();
+        assert!(matches!(check_writable(&here, false), Err(OutputError::Fixed { .. })));
+        let error = check_writable(Path::new("/proc/run"), false).unwrap_err();
+        assert!(error.to_string().starts_with("/proc: cannot write into the folder"), "{error}");
+        assert_eq!(names(&folder), [SUMMARY_FILE, "thesis.tex"]);
+    }
+
+    #[test]
+    fn a_link_stays_a_link() {
+        let home = tempfile::tempdir().unwrap();
+        let (real, link) = (home.path().join("real"), home.path().join("link"));
+        fs::create_dir(&real).unwrap();
+        std::os::unix::fs::symlink(&real, &link).unwrap();
+        let folder = OutputFolder::create(&link, false).unwrap();
+        write(folder.path(), "1");
+        folder.commit().unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(names(&real), [SUMMARY_FILE]);
+    }
+
+    #[test]
+    fn puts_back_what_a_dead_process_had_set_aside() {
+        let home = tempfile::tempdir().unwrap();
+        let target = home.path().join("run");
+        let dead = format!("{}-4999999.0", host());
+        let aside = home.path().join(format!(".run.flyer.earlier-{dead}"));
+        fs::create_dir(&aside).unwrap();
+        write(&aside, "1");
+        fs::create_dir(home.path().join(format!(".run.flyer.partial-{dead}"))).unwrap();
+        check_writable(&target, false).unwrap();
+        assert_eq!(names(home.path()), ["run"]);
+        assert!(is_result(&target));
+    }
+}

@@ -1,0 +1,16 @@
+//! What a run writes: tables, histories, pictures, a summary, in a folder put in place as a
+//! whole. Called on one rank; knows no MPI and no grid.
+
+pub mod compare;
+pub mod csv;
+pub mod error;
+pub mod folder;
+pub mod histories;
+pub mod pictures;
+pub mod report;
+pub mod summary;
+mod table;
+pub mod vtkhdf;
+
+pub use error::OutputError;
+pub use table::{ParticleTable, TableColumn};

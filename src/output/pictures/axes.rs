@@ -1,0 +1,96 @@
+//! What stands around a panel: frame, ticks, numbers, labels.
+
+use super::canvas::{Align, Canvas, Rect, Shape, Text, WIDTH};
+use super::color::Color;
+use super::figure::Stroke;
+use super::text;
+use super::ticks::Ruler;
+
+pub(super) const LABEL_EM: f64 = 21.0;
+pub(super) const TICK_EM: f64 = 19.0;
+/// Length of a numbered tick.
+pub(super) const TICK: f64 = 7.0;
+/// Room at the page's border.
+pub(super) const MARGIN: f64 = 28.0;
+
+pub(super) const INK: Color = Color(0x33, 0x33, 0x38);
+pub(super) const GRID: Color = Color(0xe4, 0xe5, 0xe8);
+
+/// Faint lines at the numbered ticks.
+pub(super) fn grid(canvas: &mut Canvas, area: &Rect, x: &Ruler, y: &Ruler) {
+    for tick in x.ticks.iter().filter(|tick| !tick.text.is_empty()) {
+        let at = area.left + tick.at * area.width();
+        canvas.line(&[(at, area.top), (at, area.bottom)], 1.0, GRID, Stroke::Solid);
+    }
+    for tick in y.ticks.iter().filter(|tick| !tick.text.is_empty()) {
+        let at = area.bottom - tick.at * area.height();
+        canvas.line(&[(area.left, at), (area.right, at)], 1.0, GRID, Stroke::Solid);
+    }
+}
+
+/// The frame with its ticks, and the numbers and the label of the upright axis.
+pub(super) fn frame(canvas: &mut Canvas, area: &Rect, x: &Ruler, y: &Ruler, label: f64) {
+    outline(canvas, area, 1.5);
+    for tick in &x.ticks {
+        let length = if tick.text.is_empty() { 0.5 * TICK } else { TICK };
+        let at = area.left + tick.at * area.width();
+        canvas.line(&[(at, area.bottom), (at, area.bottom + length)], 1.5, INK, Stroke::Solid);
+    }
+    for tick in &y.ticks {
+        let length = if tick.text.is_empty() { 0.5 * TICK } else { TICK };
+        let at = area.bottom - tick.at * area.height();
+        canvas.line(&[(area.left - length, at), (area.left, at)], 1.5, INK, Stroke::Solid);
+        let place = (area.left - TICK - 6.0, at + 0.36 * TICK_EM);
+        canvas.text(&tick.text, place, TICK_EM, Align::Right, INK);
+    }
+    upright(canvas, &y.label, label, area);
+}
+
+/// A rectangle's border.
+pub(super) fn outline(canvas: &mut Canvas, area: &Rect, width: f64) {
+    let (a, b) = ((area.left, area.top), (area.right, area.bottom));
+    let corners = [a, (b.0, a.1), b, (a.0, b.1), a];
+    for side in corners.windows(2) {
+        canvas.line(side, width, INK, Stroke::Solid);
+    }
+}
+
+/// An upright label at `x`, along the middle of `area`.
+fn upright(canvas: &mut Canvas, label: &str, x: f64, area: &Rect) {
+    let width = text::width(label, LABEL_EM, false);
+    let room = area.height() + 16.0;
+    canvas.shapes.push(Shape::Text(Text {
+        text: label.into(),
+        at: (x, 0.5 * (area.top + area.bottom)),
+        em: if width > room { LABEL_EM * room / width } else { LABEL_EM },
+        bold: false,
+        color: INK,
+        align: Align::Center,
+        upright: true,
+    }));
+}
+
+/// The numbers and the label of the common axis, under the lowest panel.
+pub(super) fn x_numbers(canvas: &mut Canvas, area: &Rect, x: &Ruler) {
+    let base = area.bottom + TICK + 5.0 + TICK_EM;
+    for tick in &x.ticks {
+        let at = area.left + tick.at * area.width();
+        canvas.text(&tick.text, (at, base), TICK_EM, Align::Center, INK);
+    }
+    let middle = 0.5 * (area.left + area.right);
+    canvas.text(&x.label, (middle, base + LABEL_EM + 10.0), LABEL_EM, Align::Center, INK);
+}
+
+/// The frame, the numbers and the label of a colour bar, the latter against the page's right
+/// margin.
+pub(super) fn bar(canvas: &mut Canvas, bar: &Rect, colors: &Ruler) {
+    outline(canvas, bar, 1.5);
+    for tick in &colors.ticks {
+        let length = if tick.text.is_empty() { 0.5 * TICK } else { TICK };
+        let at = bar.bottom - tick.at * bar.height();
+        canvas.line(&[(bar.right, at), (bar.right + length, at)], 1.5, INK, Stroke::Solid);
+        let place = (bar.right + TICK + 6.0, at + 0.36 * TICK_EM);
+        canvas.text(&tick.text, place, TICK_EM, Align::Left, INK);
+    }
+    upright(canvas, &colors.label, WIDTH - MARGIN, bar);
+}

@@ -1,0 +1,127 @@
+//! Series as lines and marks inside a panel.
+
+use super::canvas::{Canvas, Place, Rect, Shape};
+use super::color::Color;
+use super::figure::{Points, Scale, Series};
+use super::occupancy::Occupancy;
+use super::thin::{LIMIT, thin};
+use super::ticks::{Ruler, drawable};
+
+/// Border of outlined lines.
+const BORDER: Color = Color(0x10, 0x08, 0x20);
+
+/// Where a point stands in a panel.
+pub(super) fn place(area: &Rect, x: &Ruler, y: &Ruler, (px, py): (f64, f64)) -> Option<Place> {
+    let (across, up) = (x.place(px)?, y.place(py)?);
+    Some((area.left + across * area.width(), area.bottom - up * area.height()))
+}
+
+/// Drawable points in runs without a break, thinned.
+pub(super) fn runs(points: &Points, x_scale: Scale, y_scale: Scale) -> Vec<Vec<(f64, f64)>> {
+    let (mut run, mut good) = (0, Vec::new());
+    for (&x, &y) in std::iter::zip(&points.x, &points.y) {
+        if drawable(x, x_scale) && drawable(y, y_scale) {
+            good.push((run, x, y));
+        } else {
+            run += 1;
+        }
+    }
+    let ordinates: Vec<f64> = good.iter().map(|point| point.2).collect();
+    let mut last = None;
+    let mut runs: Vec<Vec<(f64, f64)>> = Vec::new();
+    for (run, x, y) in thin(&ordinates, LIMIT).into_iter().map(|index| good[index]) {
+        if last != Some(run) {
+            runs.push(Vec::new());
+        }
+        last = Some(run);
+        runs.last_mut().into_iter().for_each(|run| run.push((x, y)));
+    }
+    runs
+}
+
+/// Draws a series, whose points are in runs of places without a break.
+pub(super) fn draw(
+    canvas: &mut Canvas,
+    occupancy: &mut Occupancy,
+    series: &Series,
+    runs: &[Vec<Place>],
+    area: &Rect,
+) {
+    let style = &series.style;
+    if let Some(stroke) = style.stroke {
+        let lines: Vec<Vec<Place>> = runs.iter().flat_map(|run| clipped(run, area)).collect();
+        for line in &lines {
+            occupancy.add_line(line);
+            if style.outlined {
+                canvas.line(line, style.width + 2.0, BORDER, stroke);
+            }
+        }
+        for line in &lines {
+            canvas.line(line, style.width, style.color, stroke);
+        }
+    }
+    let lone = |run: &&Vec<Place>| run.len() == 1 && style.mark.is_none();
+    let radius = style.mark.unwrap_or(style.width);
+    let marked = runs.iter().filter(|run| style.mark.is_some() || lone(run)).flatten();
+    for &at in marked.filter(|at| area.grown(0.5).contains(**at)) {
+        occupancy.add_point(at);
+        canvas.shapes.push(Shape::Dot { at, radius, color: style.color });
+    }
+}
+
+/// The parts of a line inside a rectangle, without points too near to be told from their
+/// neighbours.
+fn clipped(points: &[Place], area: &Rect) -> Vec<Vec<Place>> {
+    let mut lines: Vec<Vec<Place>> = Vec::new();
+    let mut end = None;
+    for pair in points.windows(2) {
+        let Some((a, b)) = area.clip(pair[0], pair[1]) else {
+            end = None;
+            continue;
+        };
+        if end != Some(a) {
+            lines.push(vec![a]);
+        }
+        if let Some(line) = lines.last_mut() {
+            line.push(b);
+        }
+        end = Some(b);
+    }
+    for line in &mut lines {
+        let last = line.len() - 1;
+        let mut kept = line[0];
+        let mut index = 0;
+        line.retain(|&at| {
+            let far = (at.0 - kept.0).abs().max((at.1 - kept.1).abs()) > 0.3;
+            let keep = index == 0 || index == last || far;
+            index += 1;
+            if keep {
+                kept = at;
+            }
+            keep
+        });
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_finite_breaks_a_line() {
+        let points = Points::new([0.0, 1.0, 2.0, 3.0, 4.0], [1.0, 2.0, f64::NAN, 3.0, 4.0]);
+        let expected = [[(0.0, 1.0), (1.0, 2.0)], [(3.0, 3.0), (4.0, 4.0)]];
+        assert_eq!(runs(&points, Scale::Linear, Scale::Linear), expected);
+        assert!(runs(&points, Scale::Linear, Scale::Log).len() == 2);
+    }
+
+    #[test]
+    fn lines_leave_and_enter_the_panel() {
+        let area = Rect { left: 0.0, top: 0.0, right: 10.0, bottom: 10.0 };
+        let line = [(-5.0, 5.0), (5.0, 5.0), (5.0, -5.0), (8.0, -5.0), (8.0, 5.0)];
+        let parts = clipped(&line, &area);
+        assert_eq!(parts[0], [(0.0, 5.0), (5.0, 5.0), (5.0, 0.0)]);
+        assert_eq!(parts[1], [(8.0, 0.0), (8.0, 5.0)]);
+    }
+}

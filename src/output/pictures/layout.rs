@@ -1,0 +1,191 @@
+//! From a figure to shapes on a page.
+
+use super::PictureError;
+use super::annotations;
+use super::axes::{self, LABEL_EM, MARGIN, TICK, TICK_EM};
+use super::canvas::{Align, Canvas, HEIGHT, Place, Rect, Shape, Text, WIDTH};
+use super::color::Color;
+use super::color_map::ColorMap;
+use super::curves::{self, place};
+use super::figure::{Axis, Figure, Panel, Points, Series};
+use super::legend;
+use super::occupancy::Occupancy;
+use super::text;
+use super::ticks::{Ruler, drawable};
+
+const TITLE_EM: f64 = 25.0;
+const BAR: f64 = 26.0;
+const FAINT: Color = Color(0x77, 0x77, 0x7c);
+
+/// Lays a figure out.
+pub(super) fn lay_out(figure: &Figure) -> Result<Canvas, PictureError> {
+    check(figure)?;
+    let mut canvas = Canvas { title: figure.title.clone(), ..Canvas::default() };
+    let areas = areas(figure);
+    let top = MARGIN + TITLE_EM + 6.0;
+    let legend_end = legend::draw(&mut canvas, figure, areas.left, WIDTH - MARGIN, top);
+    title(&mut canvas, &figure.title, areas.left);
+
+    let x = Ruler::new(&figure.x, x_values(figure), wanted(areas.right - areas.left, 120.0));
+    let bottom = HEIGHT - MARGIN - LABEL_EM - TICK_EM - 24.0;
+    let panels = areas_of_panels(figure.panels.len(), &areas, legend_end + 16.0, bottom);
+    for (index, (panel, area)) in figure.panels.iter().zip(&panels).enumerate() {
+        let y = y_ruler(figure, panel, area.height());
+        draw_panel(&mut canvas, figure, panel, area, (&x, &y));
+        axes::frame(&mut canvas, area, &x, &y, areas.label);
+        if index + 1 == panels.len() {
+            axes::x_numbers(&mut canvas, area, &x);
+        }
+    }
+    Ok(canvas)
+}
+
+fn check(figure: &Figure) -> Result<(), PictureError> {
+    let lengths = |series: &str, x: usize, y: usize| PictureError::Lengths {
+        figure: figure.title.clone(),
+        series: series.into(),
+        x,
+        y,
+    };
+    for panel in &figure.panels {
+        for Series { name, points: Points { x, y }, .. } in &panel.series {
+            if x.len() != y.len() {
+                return Err(lengths(name, x.len(), y.len()));
+            }
+        }
+        for row in panel.map.iter().flat_map(|map| &map.rows) {
+            if row.x.len() != row.pressure.len() {
+                return Err(lengths("colour map", row.x.len(), row.pressure.len()));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The space that all panels share.
+struct Areas {
+    left: f64,
+    right: f64,
+    /// Middle of the upright labels.
+    label: f64,
+}
+
+fn areas(figure: &Figure) -> Areas {
+    let height = 0.7 * HEIGHT / figure.panels.len().max(1) as f64;
+    let rulers = figure.panels.iter().map(|panel| y_ruler(figure, panel, height));
+    let numbers = rulers.map(|ruler| widest(&ruler)).fold(0.0, f64::max);
+    let bars = figure
+        .panels
+        .iter()
+        .filter_map(|panel| panel.map.as_ref())
+        .map(|map| 24.0 + BAR + TICK + 8.0 + widest(&bar_ruler(map, height)) + 14.0 + LABEL_EM);
+    Areas {
+        left: MARGIN + LABEL_EM + 14.0 + numbers + 6.0 + TICK,
+        right: WIDTH - MARGIN - bars.fold(0.0, f64::max),
+        label: MARGIN + 0.75 * LABEL_EM,
+    }
+}
+
+fn widest(ruler: &Ruler) -> f64 {
+    ruler.ticks.iter().map(|tick| text::width(&tick.text, TICK_EM, false)).fold(0.0, f64::max)
+}
+
+fn areas_of_panels(count: usize, areas: &Areas, top: f64, bottom: f64) -> Vec<Rect> {
+    let gap = 22.0;
+    let height = (bottom - top - gap * (count.max(1) - 1) as f64) / count.max(1) as f64;
+    (0..count)
+        .map(|index| {
+            let top = top + index as f64 * (height + gap);
+            Rect { left: areas.left, right: areas.right, top, bottom: top + height }
+        })
+        .collect()
+}
+
+fn wanted(length: f64, room: f64) -> usize {
+    ((length / room) as usize).clamp(3, 10)
+}
+
+/// Abscissae that the x axis must hold; a colour map's go before those of series.
+fn x_values(figure: &Figure) -> impl Iterator<Item = f64> {
+    let rows =
+        figure.panels.iter().filter_map(|panel| panel.map.as_ref()).flat_map(|map| &map.rows);
+    let mapped: Vec<f64> = rows.flat_map(|row| row.x.iter().copied()).collect();
+    let use_series = !mapped.iter().any(|&x| drawable(x, figure.x.scale));
+    let panels = figure.panels.iter().filter(move |_| use_series);
+    let series =
+        panels.clone().flat_map(|panel| &panel.series).flat_map(|s| s.points.x.iter().copied());
+    let labels = panels.flat_map(|panel| &panel.labels).map(|label| label.x);
+    series.chain(labels).chain(mapped)
+}
+
+fn y_ruler(figure: &Figure, panel: &Panel, height: f64) -> Ruler {
+    let rows = panel.map.iter().flat_map(|map| &map.rows);
+    let mapped: Vec<f64> = rows.map(|row| row.time).collect();
+    let use_series = !mapped.iter().any(|&t| drawable(t, panel.y.scale));
+    let x_scale = figure.x.scale;
+    let series = panel.series.iter().filter(|_| use_series).flat_map(|series| {
+        std::iter::zip(&series.points.x, &series.points.y)
+            .filter(move |(x, _)| drawable(**x, x_scale))
+            .map(|(_, y)| *y)
+    });
+    let labels = panel.labels.iter().filter(|_| use_series).map(|label| label.y);
+    Ruler::new(&panel.y, series.chain(labels).chain(mapped), wanted(height, 70.0))
+}
+
+fn bar_ruler(map: &ColorMap, height: f64) -> Ruler {
+    let axis = Axis::linear(&map.label, &map.unit).tight();
+    Ruler::new(&axis, map.values(), wanted(height, 70.0))
+}
+
+fn title(canvas: &mut Canvas, title: &str, left: f64) {
+    let (room, width) = (WIDTH - MARGIN - left, text::width(title, TITLE_EM, true));
+    let em = if width > room { TITLE_EM * room / width } else { TITLE_EM };
+    canvas.shapes.push(Shape::Text(Text {
+        text: title.into(),
+        at: (left, MARGIN + 0.8 * TITLE_EM),
+        em,
+        bold: true,
+        color: Color::BLACK,
+        align: Align::Left,
+        upright: false,
+    }));
+}
+
+fn draw_panel(
+    canvas: &mut Canvas,
+    figure: &Figure,
+    panel: &Panel,
+    area: &Rect,
+    (x, y): (&Ruler, &Ruler),
+) {
+    let mut occupancy = Occupancy::new(*area);
+    let below = canvas.shapes.len();
+    if let Some(map) = &panel.map {
+        let left = area.right + 24.0;
+        let bar = Rect { left, right: left + BAR, ..*area };
+        let colors = bar_ruler(map, area.height());
+        canvas.images.push(map.image(*area, x, y, &colors));
+        canvas.images.push(ColorMap::bar(bar));
+        axes::bar(canvas, &bar, &colors);
+    } else {
+        axes::grid(canvas, area, x, y);
+    }
+    let mut empty = true;
+    for series in &panel.series {
+        let runs = curves::runs(&series.points, figure.x.scale, panel.y.scale);
+        let places = |run: &Vec<_>| run.iter().filter_map(|p| place(area, x, y, *p)).collect();
+        let runs: Vec<Vec<Place>> = runs.iter().map(places).collect();
+        empty &= runs.is_empty();
+        curves::draw(canvas, &mut occupancy, series, &runs, area);
+    }
+    let mapped = panel.map.as_ref().is_some_and(|map| map.values().any(f64::is_finite));
+    if empty && !mapped && panel.labels.is_empty() {
+        let middle = (0.5 * (area.left + area.right), 0.5 * (area.top + area.bottom));
+        canvas.text("no data", middle, LABEL_EM, Align::Center, FAINT);
+    }
+    for label in &panel.labels {
+        annotations::label(canvas, &mut occupancy, label, area, x, y);
+    }
+    annotations::close_up(canvas, &mut occupancy, (figure, panel), area, (x, y), below);
+    annotations::notes(canvas, &occupancy, &panel.notes, area);
+}

@@ -1,0 +1,61 @@
+//! The legend: names of the series in rows under the title, where they cover no data.
+
+use super::canvas::{Align, Canvas, Rect, Shape};
+use super::color::Color;
+use super::color_map::DARKEST;
+use super::figure::{Figure, Style};
+use super::text;
+
+const EM: f64 = 19.0;
+const ROW: f64 = 30.0;
+const SWATCH: f64 = 46.0;
+const SPACE: f64 = 34.0;
+
+/// Draws the legend from `top` downwards between `left` and `right`; returns where it ends.
+pub(super) fn draw(canvas: &mut Canvas, figure: &Figure, left: f64, right: f64, top: f64) -> f64 {
+    let entries = entries(figure);
+    if entries.is_empty() {
+        return top;
+    }
+    let (mut x, mut y) = (left, top + 0.5 * ROW);
+    for (name, style) in entries {
+        let width = SWATCH + 10.0 + text::width(name, EM, false);
+        if x > left && x + width > right {
+            (x, y) = (left, y + ROW);
+        }
+        swatch(canvas, style, x, y);
+        canvas.text(name, (x + SWATCH + 10.0, y + 0.35 * EM), EM, Align::Left, Color::BLACK);
+        x += width + SPACE;
+    }
+    y + 0.5 * ROW
+}
+
+/// Names with their first look, in the order of drawing.
+fn entries(figure: &Figure) -> Vec<(&str, &Style)> {
+    let mut entries: Vec<(&str, &Style)> = Vec::new();
+    for series in figure.panels.iter().flat_map(|panel| &panel.series) {
+        if !series.name.is_empty() && entries.iter().all(|(name, _)| *name != series.name) {
+            entries.push((&series.name, &series.style));
+        }
+    }
+    entries
+}
+
+fn swatch(canvas: &mut Canvas, style: &Style, x: f64, y: f64) {
+    let end = x + SWATCH;
+    if style.outlined {
+        let rect = Rect { left: x, top: y - 10.0, right: end, bottom: y + 10.0 };
+        canvas.fill(rect, DARKEST, 1.0);
+    }
+    if let Some(stroke) = style.stroke {
+        let inset = if style.outlined { 5.0 } else { 0.0 };
+        canvas.line(&[(x + inset, y), (end - inset, y)], style.width, style.color, stroke);
+    }
+    if let Some(radius) = style.mark {
+        let places: &[f64] = if style.stroke.is_some() { &[0.5] } else { &[0.2, 0.5, 0.8] };
+        for share in places {
+            let at = (x + share * SWATCH, y);
+            canvas.shapes.push(Shape::Dot { at, radius, color: style.color });
+        }
+    }
+}

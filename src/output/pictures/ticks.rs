@@ -1,0 +1,305 @@
+//! Axes made concrete: ends, readable unit, round ticks.
+
+use super::figure::{Axis, Scale};
+
+/// Values beyond this are not drawn: differences of such numbers overflow.
+const HUGE: f64 = 1e200;
+
+/// Whether a value can be drawn on an axis of this spacing.
+pub(super) fn drawable(value: f64, scale: Scale) -> bool {
+    value.abs() < HUGE && (scale == Scale::Linear || value > 1.0 / HUGE)
+}
+
+/// A mark on an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Tick {
+    /// Where, as a fraction of the axis.
+    pub at: f64,
+    /// Its number; empty for a minor tick.
+    pub text: String,
+}
+
+/// An axis with ends and ticks.
+#[derive(Debug, Clone)]
+pub(super) struct Ruler {
+    /// Label with the unit shown.
+    pub label: String,
+    /// Ticks in ascending order of kind, then place.
+    pub ticks: Vec<Tick>,
+    low: f64,
+    high: f64,
+    scale: Scale,
+}
+
+impl Ruler {
+    /// Makes `axis` concrete for `values`, with about `wanted` numbered ticks.
+    pub fn new(axis: &Axis, values: impl Iterator<Item = f64>, wanted: usize) -> Self {
+        let scale = axis.scale;
+        let data = values.filter(|&v| drawable(v, scale)).fold(None, |range, v| match range {
+            None => Some((v, v)),
+            Some((low, high)) => Some((v.min(low), v.max(high))),
+        });
+        let given = axis.range.filter(|&(low, high)| {
+            low < high && drawable(low, scale) && drawable(high, scale) && !is_flat(low, high)
+        });
+        let (low, high) = match (given, scale) {
+            (Some(ends), _) => ends,
+            (None, Scale::Linear) => ends_linear(data, axis.margin),
+            (None, Scale::Log) => ends_log(data, axis.margin),
+        };
+        let (unit, factor) = match scale {
+            Scale::Linear => readable_unit(&axis.unit, low.abs().max(high.abs())),
+            Scale::Log => (axis.unit.clone(), 1.0),
+        };
+        let label =
+            if unit.is_empty() { axis.label.clone() } else { format!("{} ({unit})", axis.label) };
+        let mut ruler = Self { label, ticks: Vec::new(), low, high, scale };
+        ruler.ticks = match scale {
+            Scale::Linear => ruler.ticks_linear(factor, wanted),
+            Scale::Log => ruler.ticks_log(wanted),
+        };
+        ruler
+    }
+
+    /// Where `value` stands, as a fraction of the axis: below 0 and above 1 outside; `None` if it
+    /// cannot be drawn.
+    pub fn place(&self, value: f64) -> Option<f64> {
+        if !drawable(value, self.scale) {
+            return None;
+        }
+        Some(match self.scale {
+            Scale::Linear => (value - self.low) / (self.high - self.low),
+            Scale::Log => (value / self.low).ln() / (self.high / self.low).ln(),
+        })
+    }
+
+    /// The value at a fraction of a linear axis.
+    pub fn value(&self, fraction: f64) -> f64 {
+        self.low + fraction * (self.high - self.low)
+    }
+
+    fn tick(&self, value: f64, text: String) -> Option<Tick> {
+        self.place(value).map(|at| Tick { at: at.clamp(0.0, 1.0), text })
+    }
+
+    fn ticks_linear(&self, factor: f64, wanted: usize) -> Vec<Tick> {
+        let (low, high) = (self.low / factor, self.high / factor);
+        let (step, parts) = round_step((high - low) / wanted.max(1) as f64);
+        let decimals = (-(step.log10() + 1e-9).floor()).clamp(0.0, 15.0) as usize;
+        let numbered = multiples(low, high, step)
+            .filter_map(|v| self.tick(v * factor, with_minus(&format!("{v:.decimals$}"))));
+        let minor =
+            multiples(low, high, step / parts).filter_map(|v| self.tick(v * factor, String::new()));
+        numbered.chain(minor).collect()
+    }
+
+    fn ticks_log(&self, wanted: usize) -> Vec<Tick> {
+        let first = (self.low.log10() - 1e-9).ceil() as i32;
+        let last = (self.high.log10() + 1e-9).floor() as i32;
+        if last - first < 2 {
+            return self.ticks_within_decades(wanted);
+        }
+        let stride = ((last - first + 1) as usize).div_ceil(wanted.max(2)) as i32;
+        let plain = first >= -3 && last <= 4;
+        let power = |k: i32| {
+            if plain { format!("{}", 10f64.powi(k)) } else { format!("10{}", superscript(k)) }
+        };
+        let numbered = (first..=last)
+            .filter(|k| k.rem_euclid(stride) == 0)
+            .filter_map(|k| self.tick(10f64.powi(k), power(k)));
+        let minor = if stride == 1 { self.minor_log() } else { Vec::new() };
+        numbered.chain(minor).collect()
+    }
+
+    fn minor_log(&self) -> Vec<Tick> {
+        let (first, last) = (self.low.log10().floor() as i32, self.high.log10().ceil() as i32);
+        (first..last)
+            .flat_map(|k| (2..10).map(move |digit| f64::from(digit) * 10f64.powi(k)))
+            .filter(|v| (self.low..=self.high).contains(v))
+            .filter_map(|v| self.tick(v, String::new()))
+            .collect()
+    }
+
+    /// Ticks of a logarithmic axis that shows few powers of ten: other digits are numbered too.
+    fn ticks_within_decades(&self, wanted: usize) -> Vec<Tick> {
+        let first = self.low.log10().floor() as i32;
+        let round = |digits: &[f64]| -> Vec<Tick> {
+            (first..first + 4)
+                .flat_map(|k| digits.iter().map(move |&digit| (k, digit)))
+                .filter(|&(k, digit)| (self.low..=self.high).contains(&(digit * 10f64.powi(k))))
+                .filter_map(|(k, digit)| {
+                    let value = digit * 10f64.powi(k);
+                    let text = if (-3..4).contains(&k) {
+                        format!("{value:.*}", (-k).max(0) as usize)
+                    } else {
+                        format!("{digit}×10{}", superscript(k))
+                    };
+                    self.tick(value, text)
+                })
+                .collect()
+        };
+        let mut ticks = round(&[1.0, 2.0, 5.0]);
+        if ticks.len() < 3 {
+            ticks = round(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0]);
+        }
+        if ticks.len() < 2 {
+            return self.ticks_linear(1.0, wanted);
+        }
+        ticks.extend(self.minor_log());
+        ticks
+    }
+}
+
+/// Whether two ends are so near that rounding shows between them.
+fn is_flat(low: f64, high: f64) -> bool {
+    high - low <= 1e-10 * low.abs().max(high.abs())
+}
+
+fn ends_linear(data: Option<(f64, f64)>, margin: f64) -> (f64, f64) {
+    let Some((mut low, mut high)) = data else { return (0.0, 1.0) };
+    if is_flat(low, high) {
+        let room = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
+        return (low - room, high + room);
+    }
+    if margin > 0.0 {
+        // Zero is shown where it is near.
+        if low > 0.0 && low < 0.3 * high {
+            low = 0.0;
+        }
+        if high < 0.0 && high > 0.3 * low {
+            high = 0.0;
+        }
+    }
+    let room = margin * (high - low);
+    (low - room, high + room)
+}
+
+fn ends_log(data: Option<(f64, f64)>, margin: f64) -> (f64, f64) {
+    let Some((low, high)) = data else { return (0.1, 10.0) };
+    if is_flat(low, high) {
+        return (low / 2.0, high * 2.0);
+    }
+    let room = (high / low).powf(margin);
+    (low / room, high * room)
+}
+
+/// The unit to show for values up to `greatest`, and its size in `unit`.
+fn readable_unit(unit: &str, greatest: f64) -> (String, f64) {
+    if greatest == 0.0 || (unit == "m/s" && (0.1..1e4).contains(&greatest)) {
+        return (unit.into(), 1.0);
+    }
+    let power = greatest.log10();
+    let base = unit.split(['/', '·', ' ']).next().unwrap_or_default();
+    if ["Pa", "m", "s", "J", "N", "W", "Hz"].contains(&base) {
+        // The shown numbers go up to between 0.1 and 100.
+        let thousands = ((power + 1.0) / 3.0).floor() as i32;
+        if let Some(prefix) = ["f", "p", "n", "µ", "m", "", "k", "M", "G", "T", "P"]
+            .get((thousands + 5).max(0) as usize)
+            .filter(|_| thousands >= -5)
+        {
+            return (format!("{prefix}{unit}"), 1000f64.powi(thousands));
+        }
+    }
+    if (1e-2..1e5).contains(&greatest) {
+        return (unit.into(), 1.0);
+    }
+    let power = power.floor() as i32;
+    let shown = format!("10{} {unit}", superscript(power));
+    (shown.trim_end().into(), 10f64.powi(power))
+}
+
+/// The round step next to `raw`, and into how many parts minor ticks cut it.
+fn round_step(raw: f64) -> (f64, f64) {
+    let power = 10f64.powf(raw.log10().floor());
+    match raw / power {
+        x if x <= 1.0 + 1e-9 => (power, 5.0),
+        x if x <= 2.0 + 1e-9 => (2.0 * power, 4.0),
+        x if x <= 5.0 + 1e-9 => (5.0 * power, 5.0),
+        _ => (10.0 * power, 5.0),
+    }
+}
+
+/// Multiples of `step` from `low` to `high`, at most a hundred.
+fn multiples(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
+    let first = (low / step - 1e-6).ceil();
+    let last = (high / step + 1e-6).floor();
+    // Adding zero makes minus zero plain zero.
+    (0..100)
+        .map(move |i| first + f64::from(i))
+        .take_while(move |&n| n <= last)
+        .map(move |n| n * step + 0.0)
+}
+
+/// A number with a real minus sign in place of the hyphen.
+fn with_minus(number: &str) -> String {
+    number.replace('-', "−")
+}
+
+fn superscript(number: i32) -> String {
+    let raised = |c| match c {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        digit => char::from_u32('⁰' as u32 + (digit as u32 - '0' as u32)).unwrap_or(digit),
+    };
+    number.to_string().chars().map(raised).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(axis: &Axis, values: &[f64]) -> (String, Vec<String>) {
+        let ruler = Ruler::new(axis, values.iter().copied(), 5);
+        let texts = ruler.ticks.into_iter().map(|tick| tick.text).filter(|text| !text.is_empty());
+        (ruler.label, texts.collect())
+    }
+
+    #[test]
+    fn chooses_readable_units_and_round_numbers() {
+        let axis = Axis::linear("Pressure", "Pa").tight();
+        let (label, texts) = numbers(&axis, &[0.0, 12.144e9]);
+        assert_eq!((label.as_str(), texts.join(" ").as_str()), ("Pressure (GPa)", "0 5 10"));
+        let axis = Axis::linear("Time", "s").tight();
+        let (label, texts) = numbers(&axis, &[0.0, 1e-6]);
+        assert_eq!(label, "Time (µs)");
+        assert_eq!(texts.join(" "), "0.0 0.2 0.4 0.6 0.8 1.0");
+        let axis = Axis::linear("Velocity", "m/s").tight();
+        let (label, texts) = numbers(&axis, &[-500.0, 500.0]);
+        assert_eq!(
+            (label.as_str(), texts.join(" ").as_str()),
+            ("Velocity (m/s)", "−400 −200 0 200 400")
+        );
+        let axis = Axis::linear("Drift", "").tight();
+        assert_eq!(numbers(&axis, &[0.0, 3e-13]).0, "Drift (10⁻¹³)");
+    }
+
+    #[test]
+    fn logarithmic_axes_have_powers_of_ten() {
+        let axis = Axis::log("Error", "");
+        assert_eq!(numbers(&axis, &[1e-6, 1.0, 0.0, -3.0]).1.join(" "), "10⁻⁶ 10⁻⁴ 10⁻² 10⁰");
+        assert_eq!(numbers(&axis, &[0.02, 0.06]).1.join(" "), "0.02 0.03 0.04 0.05 0.06");
+        assert_eq!(numbers(&axis, &[0.5, 200.0]).1.join(" "), "1 10 100");
+        assert_eq!(numbers(&axis, &[0.03, 0.9]).1.join(" "), "0.05 0.1 0.2 0.5 1");
+    }
+
+    #[test]
+    fn any_data_give_finite_ticks_in_range() {
+        let odd =
+            [f64::NAN, f64::INFINITY, 1e300, f64::MIN_POSITIVE, 0.0, -1e-250, 5.0, 5.0 + 1e-15];
+        for scale in [Scale::Linear, Scale::Log] {
+            for margin in [0.0, 0.05] {
+                for a in odd {
+                    for b in odd {
+                        let axis = Axis { scale, margin, ..Axis::linear("x", "Pa") };
+                        let ruler = Ruler::new(&axis, [a, b].into_iter(), 6);
+                        assert!(ruler.low < ruler.high, "{a} {b} {scale:?}");
+                        assert!(ruler.ticks.iter().all(|tick| (0.0..=1.0).contains(&tick.at)));
+                        assert!(ruler.ticks.iter().any(|tick| !tick.text.is_empty()), "{a} {b}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! The x-t diagram: computed pressure as colour, with exact wave paths over it.
+
+use super::color::Color;
+use super::color_map::ColorMap;
+use super::figure::{Axis, Figure, Panel, Points, Series, Stroke, Style};
+
+/// Computed pressure over position and time, and the paths of waves.
+#[derive(Debug, Clone)]
+pub struct WaveDiagram {
+    /// The line at the top.
+    pub title: String,
+    /// Computed pressure, a row a time; rows may differ in length.
+    pub rows: Vec<Row>,
+    /// Wave paths; paths of one name share a colour and an entry in the legend.
+    pub paths: Vec<WavePath>,
+}
+
+/// Pressure along x at one time.
+#[derive(Debug, Clone)]
+pub struct Row {
+    /// Time \[s\].
+    pub time: f64,
+    /// Positions \[m\].
+    pub x: Vec<f64>,
+    /// Pressures \[Pa\].
+    pub pressure: Vec<f64>,
+}
+
+/// The path of a wave, of an interface or of a free surface.
+#[derive(Debug, Clone)]
+pub struct WavePath {
+    /// Name in the legend: "shock".
+    pub name: String,
+    /// Positions \[m\] as x and times \[s\] as y.
+    pub points: Points,
+    /// Pattern of the line.
+    pub stroke: Stroke,
+}
+
+impl WaveDiagram {
+    /// Colours that show on every shade of the map.
+    const COLORS: [Color; 4] =
+        [Color::WHITE, Color(0xff, 0x6e, 0x6e), Color(0xff, 0xb0, 0xe8), Color(0xff, 0xc8, 0x5a)];
+
+    /// The figure.
+    pub fn figure(&self) -> Figure {
+        let mut panel = Panel::new(Axis::linear("Time", "s").tight());
+        let mut names: Vec<&str> = Vec::new();
+        for path in &self.paths {
+            let known = names.iter().position(|name| *name == path.name);
+            let index = known.unwrap_or_else(|| {
+                names.push(&path.name);
+                names.len() - 1
+            });
+            let color = Self::COLORS[index % Self::COLORS.len()];
+            let line = Style::line(color).stroke(path.stroke).width(2.0);
+            let style = Style { outlined: true, ..line };
+            panel.series.push(Series::new(&path.name, path.points.clone(), style));
+        }
+        panel.map =
+            Some(ColorMap { label: "Pressure".into(), unit: "Pa".into(), rows: self.rows.clone() });
+        Figure::new(&self.title, Axis::linear("Position", "m").tight()).panel(panel)
+    }
+}

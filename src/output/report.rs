@@ -1,0 +1,202 @@
+//! The table that a run ends with.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::summary::{ProfileSummary, Summary};
+
+/// Errors of a profile by name, with a heading and whether they are shown in per cent.
+const ERRORS: [(&str, &str, bool); 11] = [
+    ("l1", "L1 %", true),
+    ("l2", "L2 %", true),
+    ("e1_cells", "E1 cells", false),
+    ("plateau", "plateau %", true),
+    ("noise", "noise %", true),
+    ("shock_position_cells", "shock cells", false),
+    ("rise_cells", "rise cells", false),
+    ("overshoot", "overshoot %", true),
+    ("plateau_4", "plateau 4 %", true),
+    ("density_plateau", "density %", true),
+    ("energy_plateau", "energy %", true),
+];
+
+/// Each time's errors, energy, momentum, steps, seconds, and where the files are, as aligned text.
+pub fn report(summary: &Summary, folder: &Path) -> String {
+    let mut text = format!("{}\n", summary.title);
+    for warning in &summary.warnings {
+        text += &format!("warning: {warning}\n");
+    }
+    if summary.profiles.iter().any(|p| p.errors.is_some()) {
+        text += &table(&errors(&summary.profiles));
+    }
+    text += &table(&facts(summary, folder));
+    text
+}
+
+/// One line a profile; errors that no profile has are left out.
+fn errors(profiles: &[ProfileSummary]) -> Vec<Vec<String>> {
+    let mut shown: Vec<(String, String, bool)> =
+        ERRORS.iter().map(|(key, head, p)| ((*key).into(), (*head).into(), *p)).collect();
+    // What another reference scores by.
+    for (key, _) in profiles.iter().filter_map(|p| p.errors.as_ref()?.as_object()).flatten() {
+        if !shown.iter().any(|(name, ..)| name == key) {
+            shown.push((key.clone(), key.replace('_', " "), false));
+        }
+    }
+    shown.retain(|(key, ..)| profiles.iter().any(|p| p.error(key).is_some()));
+    let heading = ["time".to_owned()].into_iter().chain(shown.iter().map(|(_, h, _)| h.clone()));
+    let mut lines = vec![heading.collect::<Vec<_>>()];
+    for profile in profiles {
+        let value = |key: &str, percent: bool| match profile.error(key) {
+            None => "-".to_owned(),
+            Some(value) => significant(value * if percent { 100.0 } else { 1.0 }),
+        };
+        let values = shown.iter().map(|(key, _, percent)| value(key, *percent));
+        lines.push([seconds(profile.time)].into_iter().chain(values).collect());
+    }
+    lines
+}
+
+fn facts(summary: &Summary, folder: &Path) -> Vec<Vec<String>> {
+    let Summary { energy, momentum, .. } = summary;
+    let dimension = momentum.start.len();
+    let per = ["/m2", "/m", ""][dimension.clamp(1, 3) - 1];
+    let drift = |d: Option<f64>| d.map_or("-".into(), |d| format!("{d:.1e}"));
+    let vector = |v: &[f64]| v.iter().map(|v| format!("{v:.6e}")).collect::<Vec<_>>().join(" ");
+    let joined = |n: &[usize]| n.iter().map(usize::to_string).collect::<Vec<_>>().join(" x ");
+    let mut facts = vec![
+        (
+            "energy",
+            format!(
+                "start {:.6e}  end {:.6e} J{per}  boundaries {:.2e}  drift {}",
+                energy.total_start,
+                energy.total_end,
+                energy.boundary_work,
+                drift(energy.drift)
+            ),
+        ),
+        (
+            "momentum",
+            format!(
+                "start {}  end {} kg m/s{per}  boundaries {}  drift {}",
+                vector(&momentum.start),
+                vector(&momentum.end),
+                vector(&momentum.boundary_impulse),
+                drift(momentum.drift)
+            ),
+        ),
+    ];
+    if let Some(out) = &summary.outflow {
+        facts.push(("outflow", format!("{} particles, {:.6e} kg{per}", out.particles, out.mass)));
+    }
+    facts.push((
+        "run",
+        format!(
+            "{} particles, {} cells, {} steps, {} ranks x {} threads, {} patches",
+            summary.particles,
+            summary.cells,
+            summary.steps,
+            summary.ranks,
+            summary.threads,
+            joined(&summary.patches)
+        ),
+    ));
+    facts.push((
+        "seconds",
+        format!(
+            "{:.3} in all, {:.3} in the time loop, {:.3} of CPU, {:.2} M particle-steps per CPU second",
+            summary.wall_seconds,
+            summary.loop_wall_seconds,
+            summary.cpu_seconds,
+            summary.particle_steps_per_cpu_second * 1e-6
+        ),
+    ));
+    facts.push(("results", folder.display().to_string()));
+    facts.into_iter().map(|(name, text)| vec![name.to_owned(), text]).collect()
+}
+
+/// Lines of cells as columns: the first to the left, the others to the right.
+fn table(lines: &[Vec<String>]) -> String {
+    let columns = lines.iter().map(Vec::len).max().unwrap_or(0);
+    let length = |s: &String| s.chars().count();
+    let width = |i: usize| lines.iter().filter_map(|l| l.get(i)).map(length).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut text = String::new();
+    for line in lines {
+        let mut row = String::new();
+        for (i, (cell, &width)) in line.iter().zip(&widths).enumerate() {
+            // Two columns are a list of names and sentences, more are numbers.
+            let _ = match i {
+                0 => write!(row, "  {cell:width$}"),
+                _ if columns == 2 => write!(row, "  {cell}"),
+                _ => write!(row, "  {cell:>width$}"),
+            };
+        }
+        text += row.trim_end();
+        text.push('\n');
+    }
+    text
+}
+
+/// A number with three digits that count.
+fn significant(value: f64) -> String {
+    let size = value.abs();
+    match size {
+        _ if value == 0.0 => "0".into(),
+        _ if !(1e-3..1e4).contains(&size) => format!("{value:.1e}"),
+        _ => format!("{value:.*}", (2 - size.log10().floor() as i32).max(0) as usize),
+    }
+}
+
+/// A time with its unit.
+fn seconds(time: f64) -> String {
+    let (unit, scale) = match time {
+        t if t >= 0.1 => ("s", 1.0),
+        t if t >= 1e-3 => ("ms", 1e3),
+        t if t >= 1e-8 => ("us", 1e6),
+        _ => ("ns", 1e9),
+    };
+    format!("{} {unit}", (time * scale * 1e6).round() / 1e6)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::summary::tests::example;
+    use super::*;
+
+    #[test]
+    fn tells_every_figure() {
+        let mut summary = example();
+        summary.profiles[1].errors = Some(serde_json::json!({"l1": 0.01, "density_l1": 0.5}));
+        let text = report(&summary, Path::new("output/flyer"));
+        let expected = "\
+flyer
+warning: linear shape functions ring across cells
+  time     L1 %  plateau %  density l1
+  0.5 us  0.890   -0.00100           -
+  1 us     1.00          -       0.500
+  energy    start 1.000000e1  end 1.100000e1 J/m2  boundaries 5.00e-1  drift 5.0e-2
+  momentum  start 8.000000e0  end 8.000000e0 kg m/s/m2  boundaries 0.000000e0  drift 0.0e0
+  run       1700 particles, 1000 cells, 2612 steps, 2 ranks x 1 threads, 4 patches
+  seconds   1.250 in all, 0.750 in the time loop, 2.000 of CPU, 5.90 M particle-steps per CPU second
+  results   output/flyer
+";
+        assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn without_a_reference_there_are_no_errors() {
+        let mut summary = example();
+        summary.profiles[0].errors = None;
+        assert!(!report(&summary, Path::new("out")).contains("L1"));
+    }
+
+    #[test]
+    fn numbers_and_times_are_short() {
+        assert_eq!(
+            ["123.456", "12345.6", "0.0456", "1e-9"].map(|s| significant(s.parse().unwrap())),
+            ["123", "1.2e4", "0.0456", "1.0e-9"]
+        );
+        assert_eq!([0.2, 0.05, 2e-7, 0.0].map(seconds), ["0.2 s", "50 ms", "0.2 us", "0 ns"]);
+    }
+}

@@ -1,0 +1,257 @@
+//! `summary.json`: what a run was, what it cost, what it kept and how far it is from exact.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::error::OutputError;
+
+/// Name of the file in the folder of results.
+pub const SUMMARY_FILE: &str = "summary.json";
+
+/// The whole of `summary.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Title of the scene.
+    pub title: String,
+    /// Version of the program.
+    pub version: String,
+    /// The scene as run: after `--set`, defaults filled in.
+    pub scene: Value,
+    /// Ranks.
+    pub ranks: usize,
+    /// Threads of each rank.
+    pub threads: usize,
+    /// Patches in each direction.
+    pub patches: Vec<usize>,
+    /// Particles at the start.
+    pub particles: u64,
+    /// Cells of the domain.
+    pub cells: u64,
+    /// Steps of the time loop.
+    pub steps: u64,
+    /// Wall time of the whole process up to the writing of this file \[s\].
+    pub wall_seconds: f64,
+    /// Wall time of the time loop \[s\].
+    pub loop_wall_seconds: f64,
+    /// User CPU time of all ranks \[s\].
+    pub cpu_seconds: f64,
+    /// Particles times steps over the CPU time of the time loop, all ranks \[1/s\].
+    pub particle_steps_per_cpu_second: f64,
+    /// CPU or wall time of each phase by name, as the simulation counts it \[s\].
+    pub phase_seconds: BTreeMap<String, f64>,
+    /// Energy.
+    pub energy: Energy,
+    /// Momentum.
+    pub momentum: Momentum,
+    /// What has left the domain; absent where nothing can.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outflow: Option<Outflow>,
+    /// One entry a profile, in the order of their times.
+    pub profiles: Vec<ProfileSummary>,
+    /// What the user should know, one line each.
+    pub warnings: Vec<String>,
+}
+
+/// Energy of all particles \[J\]; in one dimension \[J/m2\], in two \[J/m\].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Energy {
+    /// Kinetic energy at the start.
+    pub kinetic_start: f64,
+    /// Internal energy at the start.
+    pub internal_start: f64,
+    /// Sum of the two.
+    pub total_start: f64,
+    /// Kinetic energy at the end.
+    pub kinetic_end: f64,
+    /// Internal energy at the end.
+    pub internal_end: f64,
+    /// Sum of the two.
+    pub total_end: f64,
+    /// Work that the boundaries did on the particles, less what left with particles.
+    pub boundary_work: f64,
+    /// (total_end - total_start - boundary_work) / total_start \[-\]; where that is 0, over
+    /// total_end; null where both are.
+    pub drift: Option<f64>,
+}
+
+impl Energy {
+    /// Totals and drift from kinetic and internal energy at \[start, end\].
+    pub fn new(kinetic: [f64; 2], internal: [f64; 2], boundary_work: f64) -> Energy {
+        let [total_start, total_end] = [kinetic[0] + internal[0], kinetic[1] + internal[1]];
+        Energy {
+            kinetic_start: kinetic[0],
+            internal_start: internal[0],
+            total_start,
+            kinetic_end: kinetic[1],
+            internal_end: internal[1],
+            total_end,
+            boundary_work,
+            drift: ratio(
+                total_end - total_start - boundary_work,
+                if total_start == 0.0 { total_end } else { total_start },
+            ),
+        }
+    }
+}
+
+/// Momentum of all particles \[kg m/s\]; in one dimension \[kg/(m s)\], in two \[kg/s\].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Momentum {
+    /// At the start, D numbers.
+    pub start: Vec<f64>,
+    /// At the end, D numbers.
+    pub end: Vec<f64>,
+    /// Impulse of the boundaries on the particles, less what left with particles, D numbers.
+    pub boundary_impulse: Vec<f64>,
+    /// |end - start - boundary_impulse| over the sum of m|v| at the start \[-\]; with its sign in
+    /// one dimension; null where that sum is 0.
+    pub drift: Option<f64>,
+}
+
+impl Momentum {
+    /// Drift from momentum at start and end, the impulse of the boundaries and the sum of m|v| at
+    /// the start.
+    pub fn new(start: &[f64], end: &[f64], boundary_impulse: &[f64], scale: f64) -> Momentum {
+        let left = |i: usize| end[i] - start[i] - boundary_impulse[i];
+        let left = match start.len() {
+            1 => left(0),
+            d => (0..d).map(|i| left(i) * left(i)).sum::<f64>().sqrt(),
+        };
+        Momentum {
+            start: start.into(),
+            end: end.into(),
+            boundary_impulse: boundary_impulse.into(),
+            drift: ratio(left, scale),
+        }
+    }
+}
+
+/// What has left the domain through open sides.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outflow {
+    /// Number of particles.
+    pub particles: u64,
+    /// Their mass \[kg\]; in one dimension \[kg/m2\], in two \[kg/m\].
+    pub mass: f64,
+    /// Their momentum, D numbers, in the unit of [`Momentum`].
+    pub momentum: Vec<f64>,
+    /// Their kinetic and internal energy, in the unit of [`Energy`].
+    pub energy: f64,
+}
+
+/// One profile.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ProfileSummary {
+    /// Time \[s\].
+    pub time: f64,
+    /// File of the profile, relative to the folder of results.
+    pub file: String,
+    /// SHA-256 over the whole state of the particles, in the order of their ids, in hexadecimal.
+    pub state_sha256: String,
+    /// Errors of the raw profile, fractions; null without a reference.
+    pub errors: Option<Value>,
+    /// Errors after averaging over cells, fractions; null without a reference.
+    pub errors_cell: Option<Value>,
+}
+
+impl ProfileSummary {
+    /// The error `name` of the raw profile; none where it is undefined.
+    pub fn error(&self, name: &str) -> Option<f64> {
+        self.errors.as_ref()?.get(name)?.as_f64()
+    }
+}
+
+impl Summary {
+    /// Writes `summary.json` into `folder`.
+    pub fn write(&self, folder: &Path) -> Result<(), OutputError> {
+        let path = folder.join(SUMMARY_FILE);
+        let mut text = serde_json::to_string_pretty(self)
+            .map_err(|source| OutputError::Json { path: path.clone(), source })?;
+        text.push('\n');
+        fs::write(&path, text).map_err(OutputError::io("write the file", &path))
+    }
+
+    /// Reads `summary.json` of `folder`.
+    pub fn read(folder: &Path) -> Result<Summary, OutputError> {
+        let path = folder.join(SUMMARY_FILE);
+        let text = fs::read_to_string(&path).map_err(OutputError::io("read the file", &path))?;
+        serde_json::from_str(&text).map_err(|source| OutputError::Json { path, source })
+    }
+}
+
+/// a/b, none where b is 0.
+fn ratio(a: f64, b: f64) -> Option<f64> {
+    (b != 0.0).then(|| a / b)
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    /// A summary with two profiles, the first of them scored.
+    pub(in super::super) fn example() -> Summary {
+        let profile = |time: f64, errors: Option<Value>| ProfileSummary {
+            time,
+            file: format!("profile_{:.3}us.csv", time * 1e6),
+            state_sha256: "00ff".into(),
+            errors: errors.clone(),
+            errors_cell: errors,
+        };
+        Summary {
+            title: "flyer".into(),
+            version: "0.1.0".into(),
+            scene: json!({"domain": {"lower": [0.0]}}),
+            ranks: 2,
+            threads: 1,
+            patches: vec![4],
+            particles: 1700,
+            cells: 1000,
+            steps: 2612,
+            wall_seconds: 1.25,
+            loop_wall_seconds: 0.75,
+            cpu_seconds: 2.0,
+            particle_steps_per_cpu_second: 5.9e6,
+            phase_seconds: [("transfer".to_owned(), 0.5)].into(),
+            energy: Energy::new([10.0, 4.0], [0.0, 7.0], 0.5),
+            momentum: Momentum::new(&[8.0], &[8.0], &[0.0], 8.0),
+            outflow: None,
+            profiles: vec![
+                profile(5e-7, Some(json!({"l1": 0.0089, "plateau": -1e-5, "noise": null}))),
+                profile(1e-6, None),
+            ],
+            warnings: vec!["linear shape functions ring across cells".into()],
+        }
+    }
+
+    #[test]
+    fn drifts_are_what_is_left_when_boundaries_are_booked() {
+        let summary = example();
+        assert_eq!(summary.energy.drift, Some(0.05));
+        let momentum = Momentum::new(&[1.0, 0.0], &[4.5, 4.0], &[0.5, 0.0], 10.0);
+        assert_eq!(momentum.drift, Some(0.5));
+        assert_eq!(Momentum::new(&[0.0], &[0.0], &[0.0], 0.0).drift, None);
+        assert_eq!(Energy::new([0.0, 3.0], [0.0, 1.0], 3.0).drift, Some(0.25));
+        assert_eq!(Energy::new([0.0; 2], [0.0; 2], 0.0).drift, None);
+    }
+
+    #[test]
+    fn comes_back_from_its_file() {
+        let home = tempfile::tempdir().unwrap();
+        let summary = example();
+        summary.write(home.path()).unwrap();
+        assert_eq!(Summary::read(home.path()).unwrap(), summary);
+        let text = fs::read_to_string(home.path().join(SUMMARY_FILE)).unwrap();
+        let value: Value = serde_json::from_str(&text).unwrap();
+        assert!(value["profiles"][1]["errors"].is_null());
+        assert_eq!(summary.profiles[0].error("l1"), Some(0.0089));
+        assert_eq!(summary.profiles[0].error("noise"), None);
+        let missing = Summary::read(&home.path().join("none")).unwrap_err().to_string();
+        assert!(missing.contains("none/summary.json: cannot read the file"), "{missing}");
+    }
+}

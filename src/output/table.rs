@@ -1,0 +1,49 @@
+//! A table of particles at one time, as the outputs see it.
+
+/// One named column of a [`ParticleTable`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableColumn {
+    /// Name as it stands in files, such as `pressure`.
+    pub name: String,
+    /// SI unit, such as `Pa`.
+    pub unit: String,
+    /// One value a particle.
+    pub values: Vec<f64>,
+}
+
+/// Every particle of the run at one time, sorted by x (ties by id).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParticleTable {
+    /// Time [s].
+    pub time: f64,
+    /// Dimension of the scene; the first columns are the D coordinates.
+    pub dimension: usize,
+    /// Id of each particle.
+    pub ids: Vec<u64>,
+    /// Material of each particle, an index into `materials`.
+    pub material: Vec<u32>,
+    /// Names of the materials.
+    pub materials: Vec<String>,
+    /// Body of each particle, an index into the scene's bodies.
+    pub body: Vec<u32>,
+    /// The columns in the order of the files: x, pressure, velocity, density,
+    /// specific_internal_energy, artificial_viscosity, then those that an effect adds.
+    pub columns: Vec<TableColumn>,
+}
+
+impl ParticleTable {
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Whether there is no particle.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// Values of the column `name`, if there is one.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        self.columns.iter().find(|c| c.name == name).map(|c| c.values.as_slice())
+    }
+}

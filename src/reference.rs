@@ -1,0 +1,217 @@
+//! The exact solution that a scene names, and the scores of profiles against it.
+//!
+//! Turns the scene's bodies into the terms of [`crate::exact`]; knows no MPI.
+
+use crate::exact::{
+    Accuracy, Chain, Errors, ExactError, GasState, Impact, ImpactBody, Plate, Profile, Riemann,
+    Sample, Solution, Tracer, WallImpact, WallMaterial, cell_average, score, score_density,
+};
+use crate::material::MieGruneisen;
+use crate::output::ParticleTable;
+use crate::scene::{self, CheckedScene, Eos};
+
+/// States of the chain that tables and pictures show.
+pub const LAST_STATE: usize = 6;
+
+/// The exact solution of a scene, at its profile times.
+pub enum Reference {
+    /// A plate strikes a target.
+    Impact(Box<ImpactReference>),
+    /// Two gases side by side.
+    Riemann {
+        /// The solution.
+        solution: Riemann,
+        /// Where the diaphragm was [m].
+        diaphragm: f64,
+    },
+    /// A body runs into a wall.
+    Wall {
+        /// The solution.
+        solution: WallImpact,
+        /// The body.
+        body: usize,
+    },
+}
+
+/// A plate that strikes a target.
+pub struct ImpactReference {
+    /// The two bodies.
+    pub impact: Impact,
+    /// The document's chain: rarefactions as shocks.
+    pub chain: Chain,
+    /// The true solution, a snapshot for each profile time.
+    pub solution: Solution,
+    /// The bodies' numbers.
+    pub flyer: usize,
+    /// The bodies' numbers.
+    pub target: usize,
+}
+
+fn body_named(scene: &CheckedScene, name: &str) -> usize {
+    scene.scene.bodies.iter().position(|b| b.name == name).expect("the check has found the body")
+}
+
+fn solid(scene: &CheckedScene, body: usize) -> MieGruneisen {
+    let material = scene.material_of(body);
+    match material.eos {
+        Eos::MieGruneisen { c0, s, gamma0 } => {
+            MieGruneisen { rho0: material.density, c0, s, gamma0 }
+        }
+        _ => unreachable!("the check has refused other equations of state"),
+    }
+}
+
+fn gas(scene: &CheckedScene, body: usize) -> GasState {
+    let material = scene.material_of(body);
+    let Eos::IdealGas { gamma } = material.eos else {
+        unreachable!("the check has refused other equations of state")
+    };
+    let (p, u) = (scene.scene.bodies[body].pressure, scene.bodies[body].velocity[0]);
+    GasState { rho: material.density, u, p, gamma }
+}
+
+/// The bodies of an impact in the terms of the exact solution.
+pub fn impact_of(
+    scene: &CheckedScene,
+    named: &scene::FlyerImpact,
+) -> Result<(Impact, [usize; 2]), ExactError> {
+    let numbers = [body_named(scene, &named.flyer), body_named(scene, &named.target)];
+    let [flyer, target] = numbers.map(|b| {
+        let extent = &scene.scene.bodies[b].extent;
+        ImpactBody {
+            material: solid(scene, b),
+            lower: extent.lower[0],
+            upper: extent.upper[0],
+            velocity: scene.bodies[b].velocity[0],
+        }
+    });
+    Ok((Impact::new(flyer, target)?, numbers))
+}
+
+impl Reference {
+    /// The solution that the scene names, at its profile times and for its tracers.
+    pub fn new(scene: &CheckedScene) -> Result<Option<Reference>, ExactError> {
+        let Some(named) = &scene.scene.reference else { return Ok(None) };
+        Ok(Some(match named {
+            scene::Reference::FlyerImpact(named) => {
+                let (impact, [flyer, target]) = impact_of(scene, named)?;
+                let histories = scene.scene.output.histories.iter();
+                let tracers: Vec<Tracer> = histories
+                    .flat_map(|h| &h.tracers)
+                    .filter_map(|t| {
+                        let body = body_named(scene, &t.body);
+                        let plate = match body {
+                            b if b == flyer => Plate::Flyer,
+                            b if b == target => Plate::Target,
+                            _ => return None,
+                        };
+                        Some(Tracer { plate, x: t.at[0] })
+                    })
+                    .collect();
+                let mut times = scene.profile_times.clone();
+                times.push(scene.scene.time.end);
+                let solution = impact.solve(&times, &tracers, Accuracy::default())?;
+                let chain = impact.chain(LAST_STATE)?;
+                let all = ImpactReference { impact, chain, solution, flyer, target };
+                Reference::Impact(Box::new(all))
+            }
+            scene::Reference::Riemann(named) => {
+                let (left, right) =
+                    (body_named(scene, &named.left), body_named(scene, &named.right));
+                Reference::Riemann {
+                    solution: Riemann::solve(gas(scene, left), gas(scene, right))?,
+                    diaphragm: scene.scene.bodies[left].extent.upper[0],
+                }
+            }
+            scene::Reference::WallImpact(named) => {
+                let body = body_named(scene, &named.body);
+                let wall = scene.wall_struck_by(body).ok_or(ExactError::NoImpact(
+                    "the body of the reference does not run into a wall",
+                ))?;
+                let extent = &scene.scene.bodies[body].extent;
+                let material = match scene.material_of(body).eos {
+                    Eos::MieGruneisen { .. } => WallMaterial::MieGruneisen(solid(scene, body)),
+                    Eos::IdealGas { gamma } => {
+                        let state = gas(scene, body);
+                        let e = state.p / ((gamma - 1.0) * state.rho);
+                        WallMaterial::IdealGas { gamma, rho: state.rho, e }
+                    }
+                };
+                let solution = WallImpact::new(
+                    material,
+                    extent.lower[0],
+                    extent.upper[0],
+                    scene.bodies[body].velocity[0],
+                    !wall.upper,
+                    wall.velocity,
+                )?;
+                Reference::Wall { solution, body }
+            }
+        }))
+    }
+
+    /// The exact profile at profile time number `k` of the scene, where there is one.
+    pub fn profile(&self, scene: &CheckedScene, k: usize) -> Option<Profile> {
+        let t = scene.profile_times[k];
+        match self {
+            Reference::Impact(all) => all.solution.snapshots[k].target.clone(),
+            Reference::Riemann { solution, diaphragm } => {
+                let domain = &scene.scene.domain;
+                Some(solution.profile(*diaphragm, t, domain.lower[0], domain.upper[0]))
+            }
+            Reference::Wall { solution, .. } => solution.profile(t),
+        }
+    }
+
+    /// The scores of the particles of profile time number `k`: as they are, and averaged over
+    /// cells; `None` where no exact solution holds.
+    pub fn score(
+        &self,
+        scene: &CheckedScene,
+        k: usize,
+        table: &ParticleTable,
+    ) -> Option<(Errors, Errors)> {
+        let exact = self.profile(scene, k)?;
+        let h = scene.cell_size[0];
+        let scored = match self {
+            Reference::Impact(all) => Some(all.target),
+            Reference::Wall { body, .. } => Some(*body),
+            Reference::Riemann { .. } => None,
+        };
+        let samples = samples(scene, table, scored);
+        let averaged = cell_average(&samples, h, scene.scene.domain.lower[0]);
+        let time = scene.profile_times[k];
+        let judge = |samples: &[Sample]| match self {
+            Reference::Impact(all) => {
+                let marks = all.solution.snapshots[k].landmarks.as_ref()?;
+                Some(score(samples, &exact, marks, h))
+            }
+            Reference::Wall { solution, .. } => {
+                Some(score(samples, &exact, &solution.landmarks(time)?, h))
+            }
+            Reference::Riemann { .. } => {
+                let domain = &scene.scene.domain;
+                Some(score_density(samples, &exact, domain.lower[0], domain.upper[0]))
+            }
+        };
+        Some((judge(&samples)?, judge(&averaged)?))
+    }
+}
+
+/// The particles of `body` (or all) as samples.
+fn samples(scene: &CheckedScene, table: &ParticleTable, body: Option<usize>) -> Vec<Sample> {
+    let column = |name| table.column(name).expect("the table has its own columns");
+    let (x, p) = (column("x"), column("pressure"));
+    let (rho, e) = (column("density"), column("specific_internal_energy"));
+    (0..table.len())
+        .filter(|&r| body.is_none_or(|b| table.body[r] as usize == b))
+        .map(|r| {
+            // a particle's mass is an equal share of its body's
+            let b = table.body[r] as usize;
+            let extent = &scene.scene.bodies[b].extent;
+            let length = (extent.upper[0] - extent.lower[0]) / scene.bodies[b].lattice[0] as f64;
+            let volume = length * scene.material_of(b).density / rho[r];
+            Sample { x: x[r], volume, p: p[r], rho: rho[r], e: e[r] }
+        })
+        .collect()
+}

@@ -1,0 +1,333 @@
+//! A run with its files: steps, profiles, histories, scores, pictures, summary.
+//!
+//! Every rank steps; rank 0 gathers, scores and writes.
+
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use decomp::Comm;
+use indicatif::{ProgressBar, ProgressStyle};
+use nix::sys::resource::{UsageWho, getrusage};
+
+use crate::figures::{self, PressureRow};
+use crate::output::csv::{profile_names, write_profile};
+use crate::output::folder::OutputFolder;
+use crate::output::histories::{HISTORIES_FILE, Histories};
+use crate::output::pictures::PictureError;
+use crate::output::report::report;
+use crate::output::summary::{Energy, Momentum, Outflow, ProfileSummary, Summary};
+use crate::output::vtkhdf::{RESULTS_FILE, RunInfo, write_vtkhdf};
+use crate::output::{OutputError, ParticleTable};
+use crate::probes::Probes;
+use crate::reference::Reference;
+use crate::scene::{CheckedScene, Side};
+use crate::simulation::{RunError, Simulation, Totals, sides};
+
+/// Why a run has no result.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// The run itself.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// Its files.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// Its pictures.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+}
+
+/// How to run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Folder of the results.
+    pub output: PathBuf,
+    /// Refuse to replace an earlier result.
+    pub keep: bool,
+    /// Say nothing but errors.
+    pub quiet: bool,
+    /// Threads a rank.
+    pub threads: usize,
+    /// When the process started.
+    pub started: Instant,
+}
+
+/// Rows of the x-t diagram.
+const WAVE_ROWS: u64 = 120;
+
+/// Particles in a row of the x-t diagram, at most.
+const WAVE_POINTS: u64 = 2000;
+
+/// User CPU time of this process so far [s].
+pub fn user_cpu_seconds() -> f64 {
+    getrusage(UsageWho::RUSAGE_SELF).map_or(0.0, |usage| {
+        let time = usage.user_time();
+        time.tv_sec() as f64 + 1e-6 * time.tv_usec() as f64
+    })
+}
+
+/// Tells how far a run is: a bar on a terminal, else a line now and then.
+struct Progress {
+    bar: Option<ProgressBar>,
+    end: f64,
+    told: Instant,
+    started: Instant,
+    speaks: bool,
+}
+
+impl Progress {
+    fn new(end: f64, speaks: bool) -> Self {
+        let bar = (speaks && std::io::stderr().is_terminal()).then(|| {
+            let bar = ProgressBar::new(1000);
+            let style = "{bar:40} {percent:>3} %  {msg}  left {eta}";
+            bar.set_style(ProgressStyle::with_template(style).expect("the template is sound"));
+            bar
+        });
+        Progress { bar, end, told: Instant::now(), started: Instant::now(), speaks }
+    }
+
+    fn tell(&mut self, time: f64, step: u64) {
+        let every = Duration::from_millis(if self.bar.is_some() { 100 } else { 10_000 });
+        if !self.speaks || self.told.elapsed() < every {
+            return;
+        }
+        self.told = Instant::now();
+        let share = time / self.end;
+        match &self.bar {
+            Some(bar) => {
+                bar.set_position((1000.0 * share) as u64);
+                bar.set_message(format!("{time:.4e} s, step {step}"));
+            }
+            None => {
+                let left = self.started.elapsed().as_secs_f64() * (1.0 / share.max(1e-9) - 1.0);
+                eprintln!(
+                    "{:5.1} %  time {time:.4e} s, step {step}, {left:.0} s left",
+                    100.0 * share
+                );
+            }
+        }
+    }
+
+    fn finish(self) {
+        if let Some(bar) = self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// What the time loop leaves at rank 0.
+struct Recorded {
+    tables: Vec<(ParticleTable, String)>,
+    waves: Vec<PressureRow>,
+    histories: Option<Histories>,
+}
+
+/// Steps to the end, recording on the way. Collective.
+fn step_to_end<C: Comm + ?Sized>(
+    simulation: &mut Simulation<'_, C>,
+    scene: &CheckedScene,
+    comm: &C,
+    quiet: bool,
+) -> Result<Recorded, RunError> {
+    let end = scene.scene.time.end;
+    let first = comm.rank() == 0;
+    let mut progress = Progress::new(end, first && !quiet);
+    let mut probes = Probes::new(scene);
+    let mut recorded = Recorded { tables: Vec::new(), waves: Vec::new(), histories: None };
+    let stride = scene.particles.div_ceil(WAVE_POINTS).max(1);
+    let draws = scene.scene.output.pictures;
+    let mut due_wave = 0;
+    let mut due_profile = 0;
+    loop {
+        let time = simulation.time();
+        if let Some(probes) = &mut probes {
+            probes.sample(simulation);
+        }
+        if draws && time >= due_wave as f64 * end / WAVE_ROWS as f64 {
+            due_wave = (time / end * WAVE_ROWS as f64) as u64 + 1;
+            let points = simulation.sample_pressure(stride);
+            if first {
+                recorded.waves.push(PressureRow { time, points });
+            }
+        }
+        if scene.profile_times.get(due_profile) == Some(&time) {
+            due_profile += 1;
+            recorded.tables.extend(simulation.gather());
+        }
+        if time >= end {
+            break;
+        }
+        let until = scene.profile_times.get(due_profile).copied().unwrap_or(end);
+        simulation.advance(until)?;
+        progress.tell(simulation.time(), simulation.steps());
+    }
+    progress.finish();
+    recorded.histories = probes.map(Probes::into_histories);
+    Ok(recorded)
+}
+
+/// Runs a scene and writes its results; returns the final table at rank 0. Collective.
+pub fn run<C: Comm + ?Sized>(
+    comm: &C,
+    scene: &CheckedScene,
+    options: &Options,
+) -> Result<Option<String>, Failure> {
+    let mut simulation = Simulation::new(scene, comm, options.threads)?;
+    let start = simulation.totals();
+    let (loop_start, loop_cpu) = (Instant::now(), user_cpu_seconds());
+    let recorded = step_to_end(&mut simulation, scene, comm, options.quiet)?;
+    let loop_wall_seconds = loop_start.elapsed().as_secs_f64();
+    let loop_cpu = user_cpu_seconds() - loop_cpu;
+    let (end, left) = (simulation.totals(), simulation.left());
+    let spent = comm.gather(&[loop_cpu.to_bits(), user_cpu_seconds().to_bits()]);
+    if comm.rank() != 0 {
+        return Ok(None);
+    }
+    let seconds = |rank: &[u64], k: usize| f64::from_bits(rank[k]);
+    let loop_cpu: f64 = spent.iter().map(|r| seconds(r, 0)).sum();
+    let others_cpu: f64 = spent.iter().skip(1).map(|r| seconds(r, 1)).sum();
+
+    // a run is worth its files even where no exact solution can be had
+    let mut warnings = scene.warnings.clone();
+    let reference = Reference::new(scene).unwrap_or_else(|error| {
+        warnings.push(format!("no exact solution: {error}"));
+        None
+    });
+    let folder = OutputFolder::create(&options.output, options.keep)?;
+    let profiles = write_profiles(scene, reference.as_ref(), &recorded, &folder)?;
+    let as_run = serde_json::to_value(&scene.scene).expect("a scene is plain data");
+    if scene.scene.output.hdf5 {
+        let bodies: Vec<String> = scene.scene.bodies.iter().map(|b| b.name.clone()).collect();
+        let info = RunInfo { title: &scene.scene.title, scene: &as_run, bodies: &bodies };
+        let tables: Vec<ParticleTable> = recorded.tables.iter().map(|t| t.0.clone()).collect();
+        write_vtkhdf(&folder.file(RESULTS_FILE), &tables, &info)?;
+    }
+    if let Some(histories) = &recorded.histories {
+        histories.write(&folder.file(HISTORIES_FILE))?;
+    }
+    if scene.scene.output.pictures {
+        draw(scene, reference.as_ref(), &recorded, &profiles, &folder)?;
+    }
+    let (energy, momentum, outflow) = balance(scene, &start, &end, &left);
+    let particle_steps = scene.particles as f64 * simulation.steps() as f64;
+    let layout = simulation.layout();
+    let phases = simulation.phase_seconds().0.iter();
+    let summary = Summary {
+        title: scene.scene.title.clone(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        scene: as_run,
+        ranks: comm.size(),
+        threads: options.threads,
+        patches: vec![layout.patches().len()],
+        particles: scene.particles,
+        cells: scene.cell_count(),
+        steps: simulation.steps(),
+        wall_seconds: options.started.elapsed().as_secs_f64(),
+        loop_wall_seconds,
+        cpu_seconds: user_cpu_seconds() + others_cpu,
+        particle_steps_per_cpu_second: particle_steps / loop_cpu.max(1e-9),
+        phase_seconds: phases.map(|(name, s)| (name.to_string(), *s)).collect(),
+        energy,
+        momentum,
+        outflow,
+        profiles,
+        warnings,
+    };
+    summary.write(folder.path())?;
+    let place = folder.commit()?;
+    Ok(Some(report(&summary, &place)))
+}
+
+/// Writes each profile and scores it.
+fn write_profiles(
+    scene: &CheckedScene,
+    reference: Option<&Reference>,
+    recorded: &Recorded,
+    folder: &OutputFolder,
+) -> Result<Vec<ProfileSummary>, Failure> {
+    let names = profile_names(&scene.profile_times);
+    let mut profiles = Vec::new();
+    for (k, ((table, digest), file)) in recorded.tables.iter().zip(names).enumerate() {
+        write_profile(&folder.file(&file), table)?;
+        let scores = reference.and_then(|r| r.score(scene, k, table));
+        let as_json = |e| serde_json::to_value(e).expect("errors are plain data");
+        let (errors, errors_cell) = match scores {
+            Some((raw, cell)) => (Some(as_json(raw)), Some(as_json(cell))),
+            None => (None, None),
+        };
+        profiles.push(ProfileSummary {
+            time: table.time,
+            file,
+            state_sha256: digest.clone(),
+            errors,
+            errors_cell,
+        });
+    }
+    Ok(profiles)
+}
+
+/// All pictures of a run.
+fn draw(
+    scene: &CheckedScene,
+    reference: Option<&Reference>,
+    recorded: &Recorded,
+    profiles: &[ProfileSummary],
+    folder: &OutputFolder,
+) -> Result<(), PictureError> {
+    if let Some(Reference::Impact(all)) = reference {
+        let bodies = [all.flyer, all.target];
+        figures::draw_hugoniots(scene, bodies, &all.impact, &all.chain, folder.path())?;
+    }
+    for (k, ((table, _), profile)) in recorded.tables.iter().zip(profiles).enumerate() {
+        let mut notes = Vec::new();
+        if let Some(l1) = profile.error("l1") {
+            notes.push(format!("L1 {:.2} % of the true solution", 100.0 * l1));
+        }
+        if let Some(plateau) = profile.error("plateau") {
+            notes.push(format!("plateau {:+.3} %", 100.0 * plateau));
+        }
+        let stem = Path::new(&profile.file).with_extension("");
+        let stem = stem.to_string_lossy().replace("profile", "figure_4");
+        figures::draw_profile(scene, reference, k, table, notes, &folder.file(&stem))?;
+    }
+    let title = format!("{}: pressure and wave paths", scene.scene.title);
+    figures::draw_waves(&title, &recorded.waves, reference, &folder.file("x_t_diagram"))?;
+    if let Some(histories) = &recorded.histories {
+        figures::draw_histories(scene, histories, reference, &folder.file("histories"))?;
+    }
+    Ok(())
+}
+
+/// Energy and momentum at start and end, with what sides and outflows have given and taken.
+///
+/// A wall's impulse on the particles is what their momentum has changed by, for nothing else
+/// acts on them from outside; a piston's work is its velocity times its impulse.
+fn balance(
+    scene: &CheckedScene,
+    start: &Totals,
+    end: &Totals,
+    left: &crate::patch::Left,
+) -> (Energy, Momentum, Option<Outflow>) {
+    let rigid = |s: &Side| matches!(s, Side::Symmetry | Side::Wall | Side::Velocity(_));
+    let sides = sides(scene);
+    let mut impulse = -left.momentum;
+    if sides.iter().any(rigid) {
+        impulse = end.momentum - start.momentum;
+    }
+    let piston = sides.iter().find_map(|s| match s {
+        Side::Velocity(v) => Some(*v),
+        _ => None,
+    });
+    let work = piston.unwrap_or(0.0) * impulse - (left.kinetic + left.internal);
+    let energy = Energy::new([start.kinetic, end.kinetic], [start.internal, end.internal], work);
+    let momentum =
+        Momentum::new(&[start.momentum], &[end.momentum], &[impulse], start.absolute_momentum);
+    let outflow = sides.contains(&Side::Outflow).then(|| Outflow {
+        particles: left.count,
+        mass: left.mass,
+        momentum: vec![left.momentum],
+        energy: left.kinetic + left.internal,
+    });
+    (energy, momentum, outflow)
+}
