@@ -49,9 +49,14 @@ pub struct SceneArgs {
 /// A run.
 #[derive(Clone, Debug, Args)]
 pub struct RunArgs {
-    /// The scene.
-    #[command(flatten)]
-    pub scene: SceneArgs,
+    /// The scene: a JSON file (`flyer-mpm schema` describes it).
+    #[arg(value_name = "SCENE.json")]
+    pub scene: PathBuf,
+
+    /// Overrides a value of the scene, such as domain.patches=[8], bodies.flyer.velocity=[500] (by
+    /// name or index) or method.shape=cpdi; may be repeated. What is not JSON is a string.
+    #[arg(long, value_name = "PATH=VALUE")]
+    pub set: Vec<String>,
 
     /// Folder of the results [default: output/<name of the scene>/].
     #[arg(long, value_name = "DIR")]
@@ -68,6 +73,13 @@ pub struct RunArgs {
     /// Say nothing but errors.
     #[arg(long)]
     pub quiet: bool,
+}
+
+impl RunArgs {
+    /// The scene and its overrides.
+    pub fn scene(&self) -> SceneArgs {
+        SceneArgs { scene: self.scene.clone(), set: self.set.clone() }
+    }
 }
 
 /// What else the program does.

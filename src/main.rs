@@ -51,7 +51,7 @@ fn act<C: Comm>(comm: &C, started: Instant) -> ExitCode {
     let outcome = match (cli.command, cli.run) {
         (None, Some(args)) => run_scene(comm, &args, started),
         // the rest is done by one rank
-        (Some(_), _) if !first => Ok(()),
+        _ if !first => Ok(()),
         (Some(command), _) => side_command(command),
         (None, None) => Err((BAD_INPUT, "a scene is needed; see --help".into())),
     };
@@ -82,10 +82,10 @@ fn read_scene(args: &SceneArgs) -> Outcome<(Vec<u8>, CheckedScene)> {
 }
 
 fn run_scene<C: Comm>(comm: &C, args: &RunArgs, started: Instant) -> Outcome<()> {
-    let output = args.output.clone().unwrap_or_else(|| default_folder(&args.scene.scene));
+    let output = args.output.clone().unwrap_or_else(|| default_folder(&args.scene));
     // rank 0 looks at everything that a run could fail on before it sends the scene on
     let mine = match comm.rank() {
-        0 => read_scene(&args.scene).and_then(|(bytes, checked)| {
+        0 => read_scene(&args.scene()).and_then(|(bytes, checked)| {
             checked.check_memory(scene::available_memory()).map_err(bad)?;
             check_writable(&output, args.keep).map_err(bad)?;
             Ok((bytes, checked))
@@ -100,7 +100,7 @@ fn run_scene<C: Comm>(comm: &C, args: &RunArgs, started: Instant) -> Outcome<()>
     let checked = match verdict {
         Err(error) if bytes.is_empty() => return Err(error),
         Ok(checked) => checked,
-        Err(_) => scene::parse(&bytes, &args.scene.scene.display().to_string(), &args.scene.set)
+        Err(_) => scene::parse(&bytes, &args.scene.display().to_string(), &args.set)
             .map_err(bad)?,
     };
     if comm.rank() == 0 && !args.quiet {

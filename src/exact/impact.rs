@@ -489,7 +489,7 @@ mod tests {
                     .to_vec();
             for n in [80, 160, 320] {
                 let s = impact.solve(&times, &[], Accuracy { wavelets: n }).unwrap();
-                println!("catch {:.3}", s.release.catch_up_time * f.c0 * 1e3);
+                println!("events {}", s.interactions);
                 let e: Vec<String> = s
                     .snapshots
                     .iter()

@@ -143,7 +143,11 @@ fn correction<const N: usize>(
         if last || gap(k).is_some_and(|g| g > APART * near) {
             let limits =
                 [if start == 0 { from } else { f64::NAN }, if last { to } else { f64::NAN }];
+            let c0 = corners.len();
             wave(limits, steps, jumps, &own[start..=k], &mut corners);
+            let area: f64 = corners[c0..].windows(2).map(|w| 0.5 * (w[0].2[1] + w[1].1[1]) * (w[1].0 - w[0].0)).sum();
+            let full: f64 = jumps[own[start]..=own[k]].iter().map(|j| j[1].abs()).sum();
+            if area.abs() > 1e-5 { println!("wave family {family} from {:.6e} to {:.6e} n {} area {:.3e} sum {:.3e} first {:.2e} {:.2e} last {:.2e} {:.2e}, at {:?}", steps[own[start]].at, steps[own[k]].at, k - start + 1, area, full, jumps[own[start]][1], jumps[own[(start+1).min(k)]][1], jumps[own[k]][1], jumps[own[k.max(1)-1]][1], own[start..=k].iter().take(4).map(|&i| steps[i].at).collect::<Vec<_>>()); }
             start = k + 1;
         }
     }

@@ -225,7 +225,7 @@ impl Tracker {
             interface: 0,
             faces: Faces { t: 0.0, x: [0.0; 2], open: false, version: 0 },
             quantum,
-            least: (2e-6 * quantum).min(1e-6 * p2),
+            least: (2e-5 * quantum).min(1e-6 * p2),
             tolerance: 1e-12 * p2,
             events: 0,
             next_merge: 1000,
