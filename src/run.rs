@@ -311,7 +311,7 @@ fn balance(
 ) -> (Energy, Momentum, Option<Outflow>) {
     let rigid = |s: &Side| matches!(s, Side::Symmetry | Side::Wall | Side::Velocity(_));
     let sides = sides(scene);
-    let mut impulse = -left.momentum;
+    let mut impulse = 0.0 - left.momentum;
     if sides.iter().any(rigid) {
         impulse = end.momentum - start.momentum;
     }
@@ -319,7 +319,7 @@ fn balance(
         Side::Velocity(v) => Some(*v),
         _ => None,
     });
-    let work = piston.unwrap_or(0.0) * impulse - (left.kinetic + left.internal);
+    let work = piston.unwrap_or(0.0) * impulse + (0.0 - (left.kinetic + left.internal));
     let energy = Energy::new([start.kinetic, end.kinetic], [start.internal, end.internal], work);
     let momentum =
         Momentum::new(&[start.momentum], &[end.momentum], &[impulse], start.absolute_momentum);

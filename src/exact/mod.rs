@@ -11,6 +11,8 @@
 //! no strength, no heat conduction. SI units; pressure is positive in compression.
 
 pub mod chain;
+#[cfg(test)]
+mod checks;
 mod collision;
 pub mod impact;
 mod isentrope;

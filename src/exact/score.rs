@@ -201,6 +201,14 @@ fn turned(
     (samples, Profile { points }, marks)
 }
 
+/// Relative L1 difference of the pressures of two profiles, over where both are known.
+pub fn difference(profile: &Profile, exact: &Profile) -> f64 {
+    let line = |p: &Profile| -> Line { p.points.iter().map(|q| (q.x, q.p)).collect() };
+    let (Some(a), Some(b)) = (profile.span(), exact.span()) else { return f64::NAN };
+    let [d1, _, size, _] = integrals(&line(profile), &line(exact), a.0.max(b.0), a.1.min(b.1));
+    d1 / size
+}
+
 /// Scores the `samples` of one body, sorted by x, against the exact profile of (at least) that
 /// body; `h` is the size of a cell [m].
 pub fn score(samples: &[Sample], exact: &Profile, landmarks: &Landmarks, h: f64) -> Errors {

@@ -102,7 +102,6 @@ fn options_that_cannot_go_together_are_named() {
     }
     edit("method.stepping=leapfrog", &["method.energy = \"compatible\"", leapfrog, "textbook"]);
     for (set, fragments) in [
-        ("method.energy=compatible_mean", ["method.energy = \"compatible_mean\"", "textbook"]),
         ("method.filter_heat=true", ["method.filter_heat = true", "false"]),
         ("method.edge_mask=0.3", ["method.edge_mask = 0.3", "leave it out"]),
         (

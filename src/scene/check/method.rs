@@ -55,7 +55,7 @@ fn check_midpoint(scene: &Scene) -> Result<(), Fault> {
     }
     let transfer = ("method.transfer", method.transfer);
     if method.energy == EnergyUpdate::Compatible && method.transfer == Transfer::Apic {
-        let allowed = "\"textbook\" or \"compatible_mean\", or another method.transfer";
+        let allowed = "\"textbook\", or another method.transfer";
         return Err(conflict(("method.energy", method.energy), transfer, allowed));
     }
     if method.filter_heat && matches!(method.transfer, Transfer::Flip | Transfer::Apic) {

@@ -99,13 +99,12 @@ pub enum Stepping {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum EnergyUpdate {
-    /// -(p + q) dv along the particle's own change of volume, by the mid-point rule.
+    /// -(p + q) dv along the particle's own change of volume, by the mid-point rule. With
+    /// mid-point steps this is the work of the mean of the old and new nodal velocity.
     #[default]
     Textbook,
     /// With the nodal velocity that makes kinetic and internal energy add up to rounding.
     Compatible,
-    /// With the mean of the old and new nodal velocity: cheaper, not exact.
-    CompatibleMean,
 }
 
 /// Relaxation of the pressure.
