@@ -8,7 +8,7 @@ use flyer_mpm::exact::{Accuracy, Chain, Impact, Plate, Release, Solution, WaveKi
 use flyer_mpm::figures::{self, PressureRow, plate_name};
 use flyer_mpm::output::folder::OutputFolder;
 use flyer_mpm::output::summary::SUMMARY_FILE;
-use flyer_mpm::reference::{self, LAST_STATE};
+use flyer_mpm::reference;
 use flyer_mpm::scene::{CheckedScene, Reference};
 use flyer_mpm::simulation::{RunError, Simulation};
 use serde_json::json;
@@ -78,6 +78,9 @@ mod erased {
     }
 }
 
+/// States of the chain that the table shows.
+const SHOWN_STATES: usize = 6;
+
 /// Rows of the x-t diagram.
 const ROWS: usize = 160;
 
@@ -91,8 +94,8 @@ pub fn hugoniot(scene: &CheckedScene, output: &Path) -> Outcome<String> {
     };
     let failed = |e: &dyn std::fmt::Display| (FAILED, e.to_string());
     let (impact, bodies) = reference::impact_of(scene, named).map_err(|e| failed(&e))?;
-    let chain = impact.chain(LAST_STATE).map_err(|e| failed(&e))?;
-    let release = impact.release(LAST_STATE).map_err(|e| failed(&e))?;
+    let chain = impact.chain(SHOWN_STATES).map_err(|e| failed(&e))?;
+    let release = impact.release(SHOWN_STATES).map_err(|e| failed(&e))?;
     let end = scene.scene.time.end;
     let times: Vec<f64> = (0..=ROWS).map(|k| end * k as f64 / ROWS as f64).collect();
     let solution = impact.solve(&times, &[], Accuracy::default()).map_err(|e| failed(&e))?;

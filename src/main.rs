@@ -6,6 +6,7 @@
 mod cli;
 mod describe;
 
+use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -66,6 +67,11 @@ fn act<C: Comm>(comm: &C, started: Instant) -> ExitCode {
     }
 }
 
+/// Prints to standard output; a reader that has gone, as `head` does, is no fault.
+fn say(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
+}
+
 /// An exit code and one line; an empty line where another rank speaks.
 type Outcome<T> = Result<T, (u8, String)>;
 
@@ -100,8 +106,9 @@ fn run_scene<C: Comm>(comm: &C, args: &RunArgs, started: Instant) -> Outcome<()>
     let checked = match verdict {
         Err(error) if bytes.is_empty() => return Err(error),
         Ok(checked) => checked,
-        Err(_) => scene::parse(&bytes, &args.scene.display().to_string(), &args.set)
-            .map_err(bad)?,
+        Err(_) => {
+            scene::parse(&bytes, &args.scene.display().to_string(), &args.set).map_err(bad)?
+        }
     };
     if comm.rank() == 0 && !args.quiet {
         announce(comm, &checked, args.threads);
@@ -110,7 +117,7 @@ fn run_scene<C: Comm>(comm: &C, args: &RunArgs, started: Instant) -> Outcome<()>
         Options { output, keep: args.keep, quiet: args.quiet, threads: args.threads, started };
     match run(comm, &checked, &options) {
         Ok(Some(report)) if !args.quiet => {
-            print!("{report}");
+            say(&report);
             Ok(())
         }
         Ok(_) => Ok(()),
@@ -146,13 +153,13 @@ fn side_command(command: Command) -> Outcome<()> {
     match command {
         Command::Schema => {
             let text = serde_json::to_string_pretty(&scene::schema()).map_err(bad)?;
-            println!("{text}");
+            say(&(text + "\n"));
             Ok(())
         }
         Command::Check { scene } => {
             let (_, checked) = read_scene(&scene)?;
             checked.check_memory(scene::available_memory()).map_err(bad)?;
-            print!("{}", describe::check(&checked).map_err(|e| (FAILED, e.to_string()))?);
+            say(&describe::check(&checked).map_err(|e| (FAILED, e.to_string()))?);
             Ok(())
         }
         Command::Hugoniot { scene, output } => {
@@ -160,12 +167,12 @@ fn side_command(command: Command) -> Outcome<()> {
             let stem = scene.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             let output =
                 output.unwrap_or_else(|| Path::new("output").join(format!("{stem}_hugoniot")));
-            print!("{}", describe::hugoniot(&checked, &output)?);
+            say(&describe::hugoniot(&checked, &output)?);
             Ok(())
         }
         Command::Compare { first, second } => {
             let comparison = compare(&first, &second).map_err(bad)?;
-            println!("{comparison}");
+            say(&format!("{comparison}\n"));
             match comparison.same_bits() {
                 true => Ok(()),
                 false => Err((1, String::new())),

@@ -10,8 +10,8 @@ use crate::material::MieGruneisen;
 use crate::output::ParticleTable;
 use crate::scene::{self, CheckedScene, Eos};
 
-/// States of the chain that tables and pictures show.
-pub const LAST_STATE: usize = 6;
+/// States of the chain that profiles are drawn from; fewer leave waves out near the interface.
+pub const LAST_STATE: usize = 12;
 
 /// The exact solution of a scene, at its profile times.
 pub enum Reference {

@@ -228,7 +228,7 @@ impl<'a, C: Comm + ?Sized> Simulation<'a, C> {
         self.step
     }
 
-    /// Length of the last step, or of the first to come [s].
+    /// Length of the next step, unless an output shortens it [s].
     pub fn time_step(&self) -> f64 {
         self.dt
     }

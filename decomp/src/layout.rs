@@ -135,10 +135,10 @@ impl<const D: usize> Layout<D> {
 
     /// The cell `c` brought into the domain across joined sides, or `None` if it lies outside.
     pub fn wrap_cell(&self, mut c: [i64; D]) -> Option<[i64; D]> {
-        for a in 0..D {
+        for (a, c) in c.iter_mut().enumerate() {
             if self.sides[a][0] == Side::Wrap {
-                c[a] = (c[a] - self.domain.lower[a]).rem_euclid(self.domain.extent(a) as i64)
-                    + self.domain.lower[a];
+                let lower = self.domain.lower[a];
+                *c = (*c - lower).rem_euclid(self.domain.extent(a) as i64) + lower;
             }
         }
         self.domain.contains(c).then_some(c)

@@ -125,8 +125,8 @@ impl<const D: usize> RowExchange<D> {
             message.clear();
         }
         self.local.clear();
-        for k in 0..blocks.len() {
-            let block = blocks[k].as_mut();
+        for (k, block) in blocks.iter_mut().enumerate() {
+            let block = block.as_mut();
             block.drop_ghosts();
             self.give(k, block)?;
         }

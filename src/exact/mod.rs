@@ -5,7 +5,7 @@
 //!   (`tracking` stands behind it: front tracking in Lagrangian coordinates);
 //! - [`release`]: the closed-form states and times of that solution, by release isentropes;
 //! - [`riemann`]: two ideal gases at a diaphragm; [`wall`]: one body run into a wall;
-//! - [`score`]: how a computed profile is held against one of these.
+//! - [`mod@score`]: how a computed profile is held against one of these.
 //!
 //! Knows materials, but no particles, grid, scene or files. One dimension, uniaxial strain,
 //! no strength, no heat conduction. SI units; pressure is positive in compression.

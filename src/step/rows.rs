@@ -60,7 +60,7 @@ impl Stepper {
     /// Wraps rows across joined sides, books those that leave by an outflow, faults the others.
     fn leave(&self, patch: &mut Patch<1>) {
         let mut keep = vec![true; patch.block.own()];
-        for row in 0..patch.block.own() {
+        for (row, keep) in keep.iter_mut().enumerate() {
             let cell = patch.block.cells[row][0] as i64;
             if (0..self.cells).contains(&cell) {
                 continue;
@@ -70,7 +70,7 @@ impl Stepper {
                 Side::Periodic => {
                     patch.block.cells[row] = [cell.rem_euclid(self.cells) as i32];
                 }
-                Side::Outflow => keep[row] = false,
+                Side::Outflow => *keep = false,
                 _ => {
                     let name = ["lower", "upper"][side];
                     self.fault(patch, row, format!("it leaves the domain by its {name} side"));

@@ -23,6 +23,7 @@ use crate::material::MieGruneisen;
 
 mod events;
 mod read;
+mod sending;
 
 /// Interactions after which tracking gives up.
 const MOST_EVENTS: usize = 20_000_000;
