@@ -228,7 +228,7 @@ mod tests {
     #[test]
     fn a_state_outside_of_the_model_is_named() {
         let copper = Point(MieGruneisen { rho0: 8930.0, c0: 3940.0, s: 1.489, gamma0: 1.96 });
-        let mut told = |j: f64, e: f64| {
+        let told = |j: f64, e: f64| {
             let (mut p, mut c) = ([0.0; 2], [0.0; 2]);
             copper.refresh(&[0.9, j], &[0.0, e], &mut p, &mut c)
         };

@@ -300,22 +300,31 @@ mod tests {
         ColumnSpec { name: "e", unit: "J/kg", ghost: false, state: true, mirror: Mirror::Same },
     ];
 
-    /// Rows at `cells` moved by `moves`, exchanged; then each patch's rows as (cell, id, v).
-    fn seen(layout: &Layout<1>, cells: &[(i64, i64)], depth: i64) -> Vec<Vec<(i64, u64, f64)>> {
+    /// A row's cell, id and `v`, as a patch sees it.
+    type Seen<const D: usize> = ([i64; D], u64, f64);
+
+    /// Rows at cells, moved by moves and exchanged; then each patch's rows in canonical order.
+    fn seen<const D: usize>(
+        layout: &Layout<D>,
+        rows: &[([i64; D], [i64; D])],
+        depth: i64,
+    ) -> Vec<Vec<Seen<D>>> {
         let count = layout.patches().len();
-        let mut blocks: Vec<Block<1>> = (0..count).map(|_| Block::new(&SPECS)).collect();
-        for (id, (cell, _)) in cells.iter().enumerate() {
-            let p = layout.patch_of([*cell]);
-            blocks[p].push(id as u64, [*cell as i32], &[id as f64 + 1.0, 0.5]);
+        let mut blocks: Vec<Block<D>> = (0..count).map(|_| Block::new(&SPECS)).collect();
+        for (id, (cell, _)) in rows.iter().enumerate() {
+            let p = layout.patch_of(*cell);
+            blocks[p].push(id as u64, cell.map(|c| c as i32), &[id as f64 + 1.0, 0.5]);
         }
         let mut exchange = RowExchange::new(layout, 0, depth, 1);
         for round in 0..2 {
             for block in &mut blocks {
                 block.drop_ghosts();
                 for row in 0..block.own() {
-                    let by = if round == 0 { 0 } else { cells[block.ids[row] as usize].1 };
-                    let to = layout.wrap_cell([block.cells[row][0] as i64 + by]).unwrap();
-                    block.cells[row] = [to[0] as i32];
+                    let by =
+                        rows[block.ids[row] as usize].1.map(|m| if round == 0 { 0 } else { m });
+                    let from = block.cells[row].map(i64::from);
+                    let to = layout.wrap_cell(std::array::from_fn(|a| from[a] + by[a])).unwrap();
+                    block.cells[row] = to.map(|c| c as i32);
                 }
             }
             exchange.run(&Serial, &mut blocks).unwrap();
@@ -325,39 +334,59 @@ mod tests {
             .map(|b| {
                 let mut runs = Vec::new();
                 b.runs(&mut runs);
-                runs.into_iter()
-                    .flatten()
-                    .map(|r| (b.cells[r][0] as i64, b.ids[r], b.columns[0][r]))
-                    .collect()
+                let row = |r: usize| (b.cells[r].map(i64::from), b.ids[r], b.columns[0][r]);
+                runs.into_iter().flatten().map(row).collect()
             })
             .collect()
     }
 
+    const KINDS: [[Side; 2]; 4] = [
+        [Side::Open, Side::Open],
+        [Side::Mirror, Side::Open],
+        [Side::Wrap, Side::Wrap],
+        [Side::Mirror, Side::Mirror],
+    ];
+
+    /// A patch of a cut domain sees the rows that the whole domain sees there, in order.
+    fn check<const D: usize>(
+        domain: IndexBox<D>,
+        sides: [[Side; 2]; D],
+        parts: [usize; D],
+        rows: &[([i64; D], [i64; D])],
+        depth: i64,
+    ) {
+        let cut = Layout::new(domain, sides, parts);
+        let all = &seen(&Layout::new(domain, sides, [1; D]), rows, depth)[0];
+        for (patch, got) in cut.patches().iter().zip(seen(&cut, rows, depth)) {
+            let halo = patch.grow(depth);
+            let expected: Vec<_> = all.iter().filter(|r| halo.contains(r.0)).copied().collect();
+            assert_eq!(got, expected, "{patch:?}");
+        }
+    }
+
     proptest! {
-        /// A patch of a cut domain sees the rows that the whole domain sees there, in order.
         #[test]
-        fn a_cut_domain_sees_what_the_whole_sees(
+        fn a_cut_line_sees_what_the_whole_sees(
             rows in prop::collection::vec((1i64..23, -1i64..=1), 1..30),
             parts in 1usize..13,
             depth in 1i64..5,
             kind in 0usize..4,
         ) {
-            let sides = [
-                [Side::Open, Side::Open],
-                [Side::Mirror, Side::Open],
-                [Side::Wrap, Side::Wrap],
-                [Side::Mirror, Side::Mirror],
-            ][kind];
-            let domain = IndexBox::new([0], [24]);
-            let whole = Layout::new(domain, [sides], [1]);
-            let cut = Layout::new(domain, [sides], [parts]);
-            let all = &seen(&whole, &rows, depth)[0];
-            for (patch, got) in cut.patches().iter().zip(seen(&cut, &rows, depth)) {
-                let halo = patch.grow(depth);
-                let expected: Vec<_> =
-                    all.iter().filter(|r| halo.contains([r.0])).copied().collect();
-                prop_assert_eq!(&got, &expected);
-            }
+            let rows: Vec<_> = rows.iter().map(|r| ([r.0], [r.1])).collect();
+            check(IndexBox::new([0], [24]), [KINDS[kind]], [parts], &rows, depth);
+        }
+
+        #[test]
+        fn a_cut_plane_sees_what_the_whole_sees(
+            rows in prop::collection::vec(((1i64..11, 1i64..8), (-1i64..=1, -1i64..=1)), 1..30),
+            parts in (1usize..6, 1usize..5),
+            depth in 1i64..4,
+            kinds in (0usize..4, 0usize..4),
+        ) {
+            let rows: Vec<_> =
+                rows.iter().map(|r| ([r.0.0, r.0.1], [r.1.0, r.1.1])).collect();
+            let sides = [KINDS[kinds.0], KINDS[kinds.1]];
+            check(IndexBox::new([0, 0], [12, 9]), sides, [parts.0, parts.1], &rows, depth);
         }
     }
 
