@@ -2,7 +2,7 @@
 //! domain interpolation: Sadeghirad, Brannon & Burghardt 2011). In one dimension the corners are
 //! the particle's ends, a deformed length apart.
 
-use super::{Extent, Shape, Weights};
+use super::{Extent, Shape, Weights, floor};
 
 /// Hat functions from the ends of the deforming particle.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +18,7 @@ impl Shape for Cpdi {
     #[inline(always)]
     fn weights<const K: usize>(fraction: f64, length: f64) -> Weights<K> {
         let (lower, upper) = (fraction - 0.5 * length, fraction + 0.5 * length);
-        let (first, last) = (lower.floor(), upper.floor());
+        let (first, last) = (floor(lower), floor(upper));
         let (a, b) = (lower - first, upper - last);
         let inverse = 1.0 / length;
         let mut w = Weights::none(first as i32);

@@ -2,7 +2,7 @@
 //! generalized interpolation material point method with particles of constant size; lengths up
 //! to one cell).
 
-use super::{Extent, Shape, Weights};
+use super::{Extent, Shape, Weights, floor};
 
 /// Hat functions averaged over the undeformed particle.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +32,7 @@ impl Shape for Gimp {
     #[inline(always)]
     fn weights<const K: usize>(fraction: f64, length: f64) -> Weights<K> {
         let (lower, upper) = (fraction - 0.5 * length, fraction + 0.5 * length);
-        let mut w = Weights::none(lower.floor() as i32);
+        let mut w = Weights::none(floor(lower) as i32);
         let inverse = 1.0 / length;
         for k in 0..K {
             let node = (w.first + k as i32) as f64;

@@ -58,11 +58,19 @@ pub enum Extent {
     Current,
 }
 
+/// The greatest whole number not above `x`, for |x| < 2^31 (beyond, that limit). The library's
+/// own is a call where the processor's instruction cannot be taken for granted.
+#[inline(always)]
+pub(crate) fn floor(x: f64) -> f64 {
+    let toward_zero = x as i32 as f64;
+    if toward_zero > x { toward_zero - 1.0 } else { toward_zero }
+}
+
 /// The three quadratic B-splines at `x` and the first of their nodes. Their knots lie midway
 /// between nodes.
 #[inline(always)]
 fn quadratic(x: f64) -> (i32, [f64; 3]) {
-    let first = (x - 0.5).floor();
+    let first = floor(x - 0.5);
     let t = x - 0.5 - first;
     let r = 1.0 - t;
     (first as i32, [0.5 * r * r, 0.5 + t * r, 0.5 * t * t])
@@ -107,6 +115,13 @@ mod tests {
         check::<BsplineQuadratic>(true);
         check::<BsplineCubic>(true);
         check::<CpdiBsplineQuadratic>(true);
+    }
+
+    #[test]
+    fn floor_is_the_librarys() {
+        for x in [-3.5, -3.0, -0.2, -0.0, 0.0, 0.9, 1.0, 7.3, -1e-300, 2e9, -2e9] {
+            assert_eq!(floor(x), x.floor(), "{x}");
+        }
     }
 
     #[test]

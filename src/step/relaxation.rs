@@ -26,32 +26,26 @@ impl Stepper {
     /// Nodal pressure and the last term of its series, halos included. Collective between
     /// neighbours.
     pub(super) fn project_pressure<C: Comm + ?Sized>(&self, world: &mut World<'_, C>) {
-        let [_, _, sum, term, scratch] = self.fields.relaxation;
+        let [_, inverse, sum, term, scratch] = self.fields.relaxation;
         world.each(|patch| {
             fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper) {
                 s.scatter_pressure::<K>(patch);
             }
             with_width!(patch.stencils.width, go(patch, self));
         });
-        world.refresh(&[(term, Parity::Even)]);
-        world.each(|patch| {
-            let [sum, term] = patch.nodes.fields_mut([sum, term]);
-            sum.copy_from_slice(term);
-        });
-        for _ in 1..ORDER {
-            world.each(|patch| {
-                let inverse = self.fields.relaxation[1];
-                let [inverse, x, y] = patch.nodes.fields_mut([inverse, term, scratch]);
-                patch.compliance_band.product(x, patch.active.clone(), y);
-                for i in patch.active.clone() {
-                    x[i] -= inverse[i] * y[i];
-                }
-            });
+        for l in 0..ORDER {
             world.refresh(&[(term, Parity::Even)]);
             world.each(|patch| {
-                let [sum, term] = patch.nodes.fields_mut([sum, term]);
-                for (sum, term) in sum.iter_mut().zip(term) {
-                    *sum += *term;
+                let [sum, x, inverse, y] = patch.nodes.fields_mut([sum, term, inverse, scratch]);
+                match l {
+                    0 => sum.copy_from_slice(x),
+                    _ => sum.iter_mut().zip(x.iter()).for_each(|(sum, term)| *sum += *term),
+                }
+                if l + 1 < ORDER {
+                    patch.compliance_band.product(x, patch.active.clone(), y);
+                    for i in patch.active.clone() {
+                        x[i] -= inverse[i] * y[i];
+                    }
                 }
             });
         }

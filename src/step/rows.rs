@@ -6,7 +6,7 @@ use super::Stepper;
 use crate::constitutive::{MidStep, VolumeChange};
 use crate::patch::{Fault, Patch};
 use crate::scene::Side;
-use crate::shape::Extent;
+use crate::shape::{Extent, floor};
 
 /// Ranges of rows of one body.
 fn bodies(column: &[f64]) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
@@ -37,7 +37,7 @@ impl Stepper {
             fraction.resize(n, 0.0);
             for r in 0..n {
                 let place = (x[r] + ahead * v[r] - self.lower) * self.inverse_cell;
-                let cell = place.floor();
+                let cell = floor(place);
                 fraction[r] = place - cell;
                 outside |= !(cell >= 0.0 && cell < self.cells as f64);
                 cells[r] = [cell as i32];

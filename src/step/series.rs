@@ -52,44 +52,50 @@ impl Stepper {
     /// v' = v + dt b. Collective between neighbours.
     pub(super) fn solve_velocity<C: Comm + ?Sized>(&self, world: &mut World<'_, C>, dt: f64) {
         let f = &self.fields;
-        world.refresh(&[(f.inverse, Parity::Even), (f.lumped, ODD), (f.acceleration, ODD)]);
-        if self.edge_mask.is_some() {
-            world.refresh(&[(f.volume, Parity::Even)]);
-        }
-        world.each(|patch| copy(patch, f.lumped, f.velocity));
-        if let Scheme::Series { order, force } = self.scheme {
-            let term = f.scratch2;
-            world.each(|patch| {
-                copy(patch, f.lumped, f.remainder);
-                copy(patch, f.acceleration, term);
-            });
-            for _ in 1..order {
-                world.each(|patch| {
-                    apply_k(self, patch, f.remainder);
-                    if force {
-                        self.mask(patch, term);
-                        apply_k(self, patch, term);
-                    }
-                });
-                match force {
-                    true => world.refresh(&[(f.remainder, ODD), (term, ODD)]),
-                    false => world.refresh(&[(f.remainder, ODD)]),
-                }
-                world.each(|patch| {
-                    accumulate(patch, f.velocity, f.remainder);
-                    if force {
-                        accumulate(patch, f.acceleration, term);
-                    }
-                });
+        let mut sums = vec![(f.inverse, Parity::Even), (f.lumped, ODD), (f.acceleration, ODD)];
+        sums.extend(self.edge_mask.map(|_| (f.volume, Parity::Even)));
+        world.refresh(&sums);
+        let (order, force) = match self.scheme {
+            Scheme::Series { order, force } => (order, force),
+            Scheme::Blend(_) | Scheme::Affine => (1, false),
+        };
+        let term = f.scratch2;
+        // each phase ends with the next term, which the exchange then completes
+        let next_term = |patch: &mut Patch<1>| {
+            apply_k(self, patch, f.remainder);
+            if force {
+                self.mask(patch, term);
+                apply_k(self, patch, term);
             }
-        }
-        world.each(|patch| {
+        };
+        let advance = |patch: &mut Patch<1>| {
             let [v, b, star] =
                 patch.nodes.fields_mut([f.velocity, f.acceleration, f.velocity_star]);
             for i in 0..v.len() {
                 star[i] = v[i] + dt * b[i];
             }
+        };
+        world.each(|patch| {
+            copy(patch, f.lumped, f.velocity);
+            if matches!(self.scheme, Scheme::Series { .. }) {
+                copy(patch, f.lumped, f.remainder);
+                copy(patch, f.acceleration, term);
+            }
+            if order > 1 { next_term(patch) } else { advance(patch) }
         });
+        for l in 1..order {
+            match force {
+                true => world.refresh(&[(f.remainder, ODD), (term, ODD)]),
+                false => world.refresh(&[(f.remainder, ODD)]),
+            }
+            world.each(|patch| {
+                accumulate(patch, f.velocity, f.remainder);
+                if force {
+                    accumulate(patch, f.acceleration, term);
+                }
+                if l + 1 < order { next_term(patch) } else { advance(patch) }
+            });
+        }
     }
 
     /// The velocity w with which f.w is the exact change of kinetic energy, so that the work
@@ -114,17 +120,19 @@ impl Stepper {
                         w[i] = 0.5 * (lumped[i] + inverse[i] * y[i]);
                     }
                 });
-                world.refresh(&[(f.scratch2, ODD)]);
-                world.each(|patch| copy(patch, f.scratch2, f.work));
-                if force {
-                    for _ in 1..order {
-                        world.each(|patch| {
+                let terms = if force { order } else { 1 };
+                for l in 0..terms {
+                    world.refresh(&[(f.scratch2, ODD)]);
+                    world.each(|patch| {
+                        match l {
+                            0 => copy(patch, f.scratch2, f.work),
+                            _ => accumulate(patch, f.work, f.scratch2),
+                        }
+                        if l + 1 < terms {
                             apply_k(self, patch, f.scratch2);
                             self.mask(patch, f.scratch2);
-                        });
-                        world.refresh(&[(f.scratch2, ODD)]);
-                        world.each(|patch| accumulate(patch, f.work, f.scratch2));
-                    }
+                        }
+                    });
                 }
             }
             Scheme::Blend(a) => {
