@@ -89,8 +89,11 @@ pub struct Patch<const D: usize> {
     pub compliance_band: Band,
     /// Runs of rows in canonical order.
     pub runs: Vec<Range<usize>>,
-    /// Nodes that hold material, of those owned.
+    /// Nodes that hold material, of those that the patch computes: its own, and with deep ghosts
+    /// those about it.
     pub active: Range<usize>,
+    /// How far beyond its own nodes it computes [nodes].
+    pub deeper: i64,
     /// What it tells of its step.
     pub told: Told,
     /// What has left by an outflow.
@@ -100,24 +103,18 @@ pub struct Patch<const D: usize> {
 }
 
 impl<const D: usize> Patch<D> {
-    /// The patch `index` of `layout`, with `block`'s rows and `fields` nodal arrays with a halo
-    /// of `depth` nodes.
-    pub fn new(
-        layout: &Layout<D>,
-        index: usize,
-        block: Block<D>,
-        depth: i64,
-        fields: usize,
-    ) -> Self {
+    /// The patch `index` of `layout`, with `block`'s rows and no nodal fields yet.
+    pub fn new(layout: &Layout<D>, index: usize, block: Block<D>) -> Self {
         Patch {
             cells: layout.patches()[index],
             block,
-            nodes: NodeArrays::new(layout, index, depth, fields),
+            nodes: NodeArrays::new(layout, index, 0, 0),
             stencils: Stencils::default(),
             band: Band::default(),
             compliance_band: Band::default(),
             runs: Vec::new(),
             active: 0..0,
+            deeper: 0,
             told: Told::default(),
             left: Left::default(),
             reach_length: f64::INFINITY,
@@ -160,11 +157,11 @@ impl Patch<1> {
         self.find_active(K);
     }
 
-    /// The owned nodes that any row touches, as a range of the patch's arrays.
+    /// The nodes to compute that any row touches, as a range of the patch's arrays.
     fn find_active(&mut self, width: usize) {
         let lower = self.nodes.nodes.lower[0];
-        let owned = (self.nodes.owned.lower[0].max(lower) - lower) as usize
-            ..(self.nodes.owned.upper[0].min(self.nodes.nodes.upper[0]) - lower) as usize;
+        let own = self.nodes.owned.grow(self.deeper).intersect(&self.nodes.nodes);
+        let owned = (own.lower[0] - lower) as usize..(own.upper[0] - lower) as usize;
         let first = self.stencils.first.iter().min().map_or(owned.end, |&f| f as usize);
         let last = self.stencils.first.iter().max().map_or(0, |&f| f as usize + width);
         let start = owned.start.max(first);

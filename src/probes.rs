@@ -102,7 +102,7 @@ impl Probes {
     }
 
     /// Takes a row if one is due: at the first step's end past each interval. Collective.
-    pub fn sample<C: Comm + ?Sized>(&mut self, simulation: &Simulation<'_, C>) {
+    pub fn sample<C: Comm>(&mut self, simulation: &Simulation<'_, C>) {
         let time = simulation.time();
         if time < self.due as f64 * self.interval {
             return;

@@ -124,7 +124,7 @@ struct Recorded {
 }
 
 /// Steps to the end, recording on the way. Collective.
-fn step_to_end<C: Comm + ?Sized>(
+fn step_to_end<C: Comm>(
     simulation: &mut Simulation<'_, C>,
     scene: &CheckedScene,
     comm: &C,
@@ -168,7 +168,7 @@ fn step_to_end<C: Comm + ?Sized>(
 }
 
 /// Runs a scene and writes its results; returns the final table at rank 0. Collective.
-pub fn run<C: Comm + ?Sized>(
+pub fn run<C: Comm>(
     comm: &C,
     scene: &CheckedScene,
     options: &Options,

@@ -12,6 +12,7 @@ use sha2::{Digest, Sha256};
 use crate::output::{ParticleTable, TableColumn};
 use crate::particles::{self, Columns};
 use crate::patch::{Left, Patch};
+use crate::scene::FilterHalo;
 use crate::scene::{CheckedScene, Side};
 use crate::step::{PhaseTimes, Reach, Stepper, World};
 
@@ -85,13 +86,16 @@ pub struct Followed {
 }
 
 /// A run in memory.
-pub struct Simulation<'a, C: Comm + ?Sized> {
+pub struct Simulation<'a, C: Comm> {
     comm: &'a C,
     scene: &'a CheckedScene,
     stepper: Stepper,
     layout: Layout<1>,
     patches: Vec<Patch<1>>,
-    reach: Reach,
+    /// Known once the particles' lengths are.
+    reach: Option<Reach>,
+    filter: FilterHalo,
+    threads: usize,
     rows: RowExchange<1>,
     nodes: NodeExchange<1>,
     pool: Option<rayon::ThreadPool>,
@@ -150,7 +154,7 @@ fn count_particles(scene: &CheckedScene, layout: &Layout<1>) -> Vec<u64> {
     counts
 }
 
-impl<'a, C: Comm + ?Sized> Simulation<'a, C> {
+impl<'a, C: Comm> Simulation<'a, C> {
     /// Makes the particles of `scene`. Collective.
     pub fn new(scene: &'a CheckedScene, comm: &'a C, threads: usize) -> Result<Self, RunError> {
         let stepper = Stepper::new(scene);
@@ -173,11 +177,11 @@ impl<'a, C: Comm + ?Sized> Simulation<'a, C> {
             .map(|(b, c)| (b.extent.upper[0] - b.extent.lower[0]) / c.lattice[0] as f64)
             .fold(0.0, f64::max)
             / scene.cell_size[0];
-        let reach = stepper.reach(longest).unwrap_or(Reach { nodes: 4 });
-        let patches =
-            layout.patches_of(comm.rank()).into_iter().zip(blocks).map(|(p, block)| {
-                Patch::new(&layout, p, block, reach.depth(), stepper.fields.count)
-            });
+        let patches = layout
+            .patches_of(comm.rank())
+            .into_iter()
+            .zip(blocks)
+            .map(|(p, block)| Patch::new(&layout, p, block));
         let pool = (threads > 1).then(|| {
             rayon::ThreadPoolBuilder::new()
                 .num_threads(threads)
@@ -188,11 +192,13 @@ impl<'a, C: Comm + ?Sized> Simulation<'a, C> {
             comm,
             scene,
             patches: patches.collect(),
-            rows: RowExchange::new(&layout, comm.rank(), reach.cells(), 1),
-            nodes: NodeExchange::new(&layout, comm.rank(), reach.halo()),
+            rows: RowExchange::new(&layout, comm.rank(), 1, 1),
+            nodes: NodeExchange::new(&layout, comm.rank(), 1),
             stepper,
             layout,
-            reach,
+            reach: None,
+            filter: FilterHalo::Exchange,
+            threads,
             pool,
             times: PhaseTimes::default(),
             grid_velocity,
@@ -206,12 +212,14 @@ impl<'a, C: Comm + ?Sized> Simulation<'a, C> {
         Ok(simulation)
     }
 
-    fn with_world<R>(&mut self, call: impl FnOnce(&Stepper, &mut World<'_, C>) -> R) -> R {
+    fn with_world<R>(&mut self, call: impl FnOnce(&Stepper, &mut World<'_>) -> R) -> R {
         let mut world = World {
             comm: self.comm,
+            layout: &self.layout,
             patches: &mut self.patches,
             rows: &mut self.rows,
             nodes: &mut self.nodes,
+            filter: self.filter,
             pool: self.pool.as_ref(),
             times: &mut self.times,
         };
@@ -281,15 +289,24 @@ impl<'a, C: Comm + ?Sized> Simulation<'a, C> {
                 ),
             });
         };
-        if reach != self.reach {
-            self.reach = reach;
-            let rank = self.comm.rank();
-            self.rows = RowExchange::new(&self.layout, rank, reach.cells(), 1);
+        if self.reach != Some(reach) {
+            self.reach = Some(reach);
+            let narrowest = self.layout.patches().iter().map(|p| p.extent(0)).min().unwrap_or(0);
+            let workers = self.comm.size() * self.threads;
+            let wanted = self.scene.scene.decomposition.as_ref().and_then(|d| d.filter_halo);
+            self.filter = wanted.unwrap_or_else(|| FilterHalo::choose(reach, narrowest, workers));
+            let deeper = match self.filter {
+                FilterHalo::Exchange => 0,
+                FilterHalo::Deep => reach.deeper(),
+            };
+            let (rank, ghosts) = (self.comm.rank(), reach.cells() + deeper);
+            self.rows = RowExchange::new(&self.layout, rank, ghosts, 1);
             self.nodes = NodeExchange::new(&self.layout, rank, reach.halo());
             let mine = self.layout.patches_of(rank);
             for (patch, index) in self.patches.iter_mut().zip(mine) {
-                patch.nodes =
-                    NodeArrays::new(&self.layout, index, reach.depth(), self.stepper.fields.count);
+                let (depth, fields) = (reach.depth(ghosts), self.stepper.fields.count);
+                patch.nodes = NodeArrays::new(&self.layout, index, depth, fields);
+                patch.deeper = deeper;
             }
         }
         let limit = self.stepper.longest_within(reach);

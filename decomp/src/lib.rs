@@ -29,7 +29,7 @@ pub use balance::{assign_patches, choose_cuts};
 pub use comm::{Comm, Serial};
 pub use index_box::IndexBox;
 pub use layout::{Image, Layout, Side};
-pub use nodes::{NodeArrays, NodeExchange, Parity};
+pub use nodes::{NodeArrays, NodeExchange, Parity, fold_mirrors};
 pub use reduce::{ExactSum, exact_sums};
 pub use rows::{RowError, RowExchange, gather_rows};
 pub use table::{Block, ColumnSpec, Mirror};

@@ -235,6 +235,56 @@ fn sign<const D: usize>(value: f64, parity: Parity, image: &Image<D>) -> f64 {
     }
 }
 
+/// Fills the nodes of one patch beyond the mirrors of the domain from its own nodes before them:
+/// what [`NodeExchange::refresh`] does there, for a patch that holds all it needs.
+pub fn fold_mirrors<const D: usize>(
+    layout: &Layout<D>,
+    arrays: &mut NodeArrays<D>,
+    fields: &[(usize, Parity)],
+) {
+    for axis in 0..D {
+        let domain = layout.domain();
+        // between two mirrors an image may need another image first
+        let turns = arrays.nodes.extent(axis) / domain.extent(axis).max(1) + 1;
+        let sides = (0..turns).flat_map(|_| layout.sides()[axis].iter().enumerate());
+        for (end, side) in sides {
+            if *side != Side::Mirror {
+                continue;
+            }
+            let mut beyond = arrays.nodes;
+            let at = match end {
+                0 => {
+                    beyond.upper[axis] = beyond.upper[axis].min(domain.lower[axis]);
+                    domain.lower[axis]
+                }
+                _ => {
+                    beyond.lower[axis] = beyond.lower[axis].max(domain.upper[axis] + 1);
+                    domain.upper[axis]
+                }
+            };
+            if beyond.is_empty() {
+                continue;
+            }
+            let mut image = Image::IDENTITY;
+            (image.flip[axis], image.shift[axis]) = (true, 2 * at);
+            for &(field, parity) in fields {
+                for node in beyond.iter() {
+                    let source = image.source_node(node);
+                    if arrays.nodes.contains(source) {
+                        let value = arrays.fields[field][arrays.nodes.flat(source)];
+                        arrays.fields[field][arrays.nodes.flat(node)] = sign(value, parity, &image);
+                    }
+                }
+            }
+        }
+    }
+    for &(field, parity) in fields {
+        if let Parity::Odd(axis) = parity {
+            zero_on_mirrors(layout, arrays, field, axis);
+        }
+    }
+}
+
 /// Sets a field that is odd across `axis` to zero on the mirrors of that axis.
 fn zero_on_mirrors<const D: usize>(
     layout: &Layout<D>,

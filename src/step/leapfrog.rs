@@ -2,7 +2,7 @@
 //! stress updated last (USL), first (USF) or last from the velocity mapped again (MUSL; all
 //! three: Bardenhagen 2002, "Energy conservation error in the material point method").
 
-use decomp::{Comm, RowError};
+use decomp::RowError;
 
 use super::{Stepper, World};
 use crate::patch::Patch;
@@ -13,11 +13,7 @@ impl Stepper {
     ///
     /// Stress first and modified last send the rows a second time, for what a ghost carries has
     /// changed within the step.
-    pub(super) fn advance_leapfrog<C: Comm + ?Sized>(
-        &self,
-        world: &mut World<'_, C>,
-        dt: f64,
-    ) -> Result<(), RowError> {
+    pub(super) fn advance_leapfrog(&self, world: &mut World<'_>, dt: f64) -> Result<(), RowError> {
         let star = self.fields.velocity_star;
         world.each(|patch| {
             patch.block.drop_ghosts();
@@ -25,48 +21,53 @@ impl Stepper {
             self.locate(patch, 0.0, self.columns.jacobian);
         });
         world.exchange_rows()?;
-        world.each(|patch| {
-            self.find_weights(patch);
-            self.scatter_motion(patch);
-        });
         if self.stress_update == StressUpdate::First {
-            world.each(|patch| self.divide_by_mass(patch));
-            self.filter_velocity(world);
-            world.each(|patch| {
-                self.gather_gradient(patch, star);
-                self.update_stress(patch, dt);
-                self.current_stress(patch);
-            });
-            world.exchange_rows()?;
-            world.each(|patch| self.scatter_motion(patch));
-        }
-        world.each(|patch| {
-            self.scatter_force(patch);
-            self.divide_by_mass(patch);
-        });
-        self.solve_velocity(world, dt);
-        world.each(|patch| {
-            self.gather_velocity(patch);
-            self.move_rows(patch, dt);
-        });
-        match self.stress_update {
-            StressUpdate::Last => world.each(|patch| {
-                self.gather_gradient(patch, star);
-                self.update_stress(patch, dt);
-            }),
-            StressUpdate::ModifiedLast => {
-                world.exchange_rows()?;
-                world.each(|patch| {
+            world.nodal(|nodal| {
+                nodal.each(|patch| {
+                    self.find_weights(patch);
                     self.scatter_motion(patch);
                     self.divide_by_mass(patch);
                 });
-                self.filter_velocity(world);
-                world.each(|patch| {
+                self.filter_velocity(nodal);
+                nodal.each(|patch| {
+                    self.gather_gradient(patch, star);
+                    self.update_stress(patch, dt);
+                    self.current_stress(patch);
+                });
+            });
+            world.exchange_rows()?;
+        }
+        let last = self.stress_update == StressUpdate::Last;
+        world.nodal(|nodal| {
+            nodal.each(|patch| {
+                self.find_weights(patch);
+                self.scatter_motion(patch);
+                self.scatter_force(patch);
+                self.divide_by_mass(patch);
+            });
+            self.solve_velocity(nodal, dt);
+            nodal.each(|patch| {
+                self.gather_velocity(patch);
+                self.move_rows(patch, dt);
+                if last {
+                    self.gather_gradient(patch, star);
+                    self.update_stress(patch, dt);
+                }
+            });
+        });
+        if self.stress_update == StressUpdate::ModifiedLast {
+            world.exchange_rows()?;
+            world.nodal(|nodal| {
+                nodal.each(|patch| {
+                    self.scatter_motion(patch);
+                    self.divide_by_mass(patch);
+                });
+                self.filter_velocity(nodal);
+                nodal.each(|patch| {
                     self.gather_gradient(patch, star);
                     self.update_stress(patch, dt);
                 });
-            }
-            StressUpdate::First => {}
+            });
         }
         world.each(|patch| self.refresh(patch));
         Ok(())

@@ -12,15 +12,15 @@
 //! With w of [`Stepper::solve_work`] and the filter's heat, kinetic and internal energy add up
 //! to rounding.
 
-use decomp::{Comm, RowError};
+use decomp::RowError;
 
 use super::{Stepper, World};
 
 impl Stepper {
     /// One step; `relax` is the rate of pressure relaxation if this step has it. Collective.
-    pub(super) fn advance_midpoint<C: Comm + ?Sized>(
+    pub(super) fn advance_midpoint(
         &self,
-        world: &mut World<'_, C>,
+        world: &mut World<'_>,
         dt: f64,
         relax: Option<f64>,
     ) -> Result<(), RowError> {
@@ -33,35 +33,34 @@ impl Stepper {
             self.locate(patch, 0.5 * dt, mid);
         });
         world.exchange_rows()?;
-        world.each(|patch| {
-            self.find_weights(patch);
-            self.scatter_motion(patch);
-            self.scatter_force(patch);
-            self.divide_by_mass(patch);
-        });
-        self.solve_velocity(world, dt);
-        if self.compatible {
-            self.solve_work(world);
-        }
-        if relax.is_some() {
-            self.project_pressure(world);
-        }
-        world.each(|patch| {
-            self.gather_midpoint(patch, dt);
-            if let Some(rate) = relax {
-                self.relax_pressure(patch, rate);
+        world.nodal(|nodal| {
+            nodal.each(|patch| {
+                self.find_weights(patch);
+                self.scatter_motion(patch);
+                self.scatter_force(patch);
+                self.divide_by_mass(patch);
+            });
+            self.solve_velocity(nodal, dt);
+            if self.compatible {
+                self.solve_work(nodal);
             }
-            self.refresh(patch);
+            if relax.is_some() {
+                self.project_pressure(nodal);
+            }
+            nodal.each(|patch| {
+                self.gather_midpoint(patch, dt);
+                if let Some(rate) = relax {
+                    self.relax_pressure(patch, rate);
+                }
+                self.refresh(patch);
+            });
         });
         Ok(())
     }
 
     /// The gradient of the starting velocity, which the first step needs: a step of no length
     /// that moves nothing. Collective.
-    pub(super) fn prime_gradient<C: Comm + ?Sized>(
-        &self,
-        world: &mut World<'_, C>,
-    ) -> Result<(), RowError> {
+    pub(super) fn prime_gradient(&self, world: &mut World<'_>) -> Result<(), RowError> {
         let jacobian = self.columns.jacobian;
         world.each(|patch| {
             self.current_stress(patch);
@@ -74,13 +73,15 @@ impl Stepper {
             }
         });
         world.exchange_rows()?;
-        world.each(|patch| {
-            self.find_weights(patch);
-            self.scatter_motion(patch);
-            self.divide_by_mass(patch);
+        world.nodal(|nodal| {
+            nodal.each(|patch| {
+                self.find_weights(patch);
+                self.scatter_motion(patch);
+                self.divide_by_mass(patch);
+            });
+            self.solve_velocity(nodal, 0.0);
+            nodal.each(|patch| self.gather_gradient(patch, self.fields.velocity_star));
         });
-        self.solve_velocity(world, 0.0);
-        world.each(|patch| self.gather_gradient(patch, self.fields.velocity_star));
         Ok(())
     }
 }

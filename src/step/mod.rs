@@ -7,15 +7,17 @@
 mod gather;
 mod leapfrog;
 mod midpoint;
+mod reach;
 mod relaxation;
 mod rows;
 mod scatter;
 mod series;
 mod world;
 
-pub use world::{PhaseTimes, World};
+pub use reach::Reach;
+pub use world::{Nodal, PhaseTimes, World};
 
-use decomp::{Comm, Parity};
+use decomp::Parity;
 
 use crate::constitutive::{self, Model};
 use crate::grid::Fields;
@@ -103,30 +105,6 @@ use with_width;
 /// Most nodes along one direction that a particle may touch.
 const MOST_NODES: usize = 18;
 
-/// How far particles reach, which decides how deep ghosts and halos are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Reach {
-    /// Nodes that the longest particle may touch.
-    pub nodes: usize,
-}
-
-impl Reach {
-    /// Cells from which particles reach a patch's nodes.
-    pub fn cells(&self) -> i64 {
-        self.nodes.div_ceil(2) as i64
-    }
-
-    /// Depth of the halo in which a patch needs other owners' nodal values.
-    pub fn halo(&self) -> i64 {
-        (2 * self.cells() - 1).max(2)
-    }
-
-    /// Depth of the nodal arrays, so that a product with the mass matrix never leaves them.
-    pub fn depth(&self) -> i64 {
-        self.halo() + MOST_NODES.min(self.nodes.max(4)) as i64
-    }
-}
-
 /// How much longer a particle may be at the middle of a step than at its start.
 const STRETCH: f64 = 1.25;
 
@@ -181,7 +159,21 @@ impl Stepper {
             _ => length,
         };
         let nodes = with_shape!(self.shape, 4usize, nodes(length));
-        (nodes <= MOST_NODES).then_some(Reach { nodes })
+        (nodes <= MOST_NODES).then_some(Reach { nodes, products: self.products() })
+    }
+
+    /// Products with a matrix that lie between the particles' sums and what they take back.
+    fn products(&self) -> usize {
+        let own = match self.scheme {
+            Scheme::Series { order, force } => {
+                let work = if force { order } else { 1 };
+                order - 1 + if self.compatible { work } else { 0 }
+            }
+            Scheme::Blend(_) if self.compatible => 1,
+            Scheme::Blend(_) | Scheme::Affine => 0,
+        };
+        let relaxed = self.relaxation.map_or(0, |_| relaxation::ORDER - 1);
+        own.max(relaxed) as usize
     }
 
     /// The longest particle [cells] that `reach` is deep enough for.
@@ -206,10 +198,7 @@ impl Stepper {
 
     /// Makes the starting state whole: pressure, sound speed and, where the scheme needs it, the
     /// gradient of the starting velocity. Collective.
-    pub fn prime<C: Comm + ?Sized>(
-        &self,
-        world: &mut World<'_, C>,
-    ) -> Result<(), decomp::RowError> {
+    pub fn prime(&self, world: &mut World<'_>) -> Result<(), decomp::RowError> {
         world.each(|patch| self.refresh(patch));
         if self.stepping == Stepping::Midpoint {
             self.prime_gradient(world)?;
@@ -219,9 +208,9 @@ impl Stepper {
     }
 
     /// Advances all patches by `dt` [s]; `step` numbers the steps from 1. Collective.
-    pub fn advance<C: Comm + ?Sized>(
+    pub fn advance(
         &self,
-        world: &mut World<'_, C>,
+        world: &mut World<'_>,
         dt: f64,
         step: u64,
     ) -> Result<(), decomp::RowError> {

@@ -13,29 +13,29 @@
 //! Volume and energy are kept exactly, and a material interface is no special case. p is the
 //! pressure at the middle of the step.
 
-use decomp::{Comm, Parity};
+use decomp::Parity;
 
-use super::{MOST_NODES, Stepper, World, with_width};
+use super::{MOST_NODES, Nodal, Stepper, with_width};
 use crate::patch::Patch;
 use crate::transfer::{add, dot, window};
 
 /// Terms of the projection's series.
-const ORDER: u32 = 4;
+pub(super) const ORDER: u32 = 4;
 
 impl Stepper {
     /// Nodal pressure and the last term of its series, halos included. Collective between
     /// neighbours.
-    pub(super) fn project_pressure<C: Comm + ?Sized>(&self, world: &mut World<'_, C>) {
+    pub(super) fn project_pressure(&self, nodal: &mut Nodal<'_>) {
         let [_, inverse, sum, term, scratch] = self.fields.relaxation;
-        world.each(|patch| {
+        nodal.each(|patch| {
             fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper) {
                 s.scatter_pressure::<K>(patch);
             }
             with_width!(patch.stencils.width, go(patch, self));
         });
         for l in 0..ORDER {
-            world.refresh(&[(term, Parity::Even)]);
-            world.each(|patch| {
+            nodal.refresh(&[(term, Parity::Even)]);
+            nodal.each(|patch| {
                 let [sum, x, inverse, y] = patch.nodes.fields_mut([sum, term, inverse, scratch]);
                 match l {
                     0 => sum.copy_from_slice(x),

@@ -5,9 +5,9 @@
 //! approximates (m^-1 M)^-1 (Nairn & Hammerquist 2021). Each product needs the finished values
 //! of its neighbours' nodes, which the owners send; sums never cross a border.
 
-use decomp::{Comm, Parity};
+use decomp::Parity;
 
-use super::{ODD, Stepper, World};
+use super::{Nodal, ODD, Stepper};
 use crate::patch::Patch;
 use crate::transfer::Scheme;
 
@@ -50,11 +50,11 @@ impl Stepper {
     /// From lumped velocity and force to velocity, acceleration and end-of-step velocity, halos
     /// included: v = sum_(l<k) K^l vL, b = sum_(l<k) t_l with t_0 = f/m and t_l = K chi t_(l-1),
     /// v' = v + dt b. Collective between neighbours.
-    pub(super) fn solve_velocity<C: Comm + ?Sized>(&self, world: &mut World<'_, C>, dt: f64) {
+    pub(super) fn solve_velocity(&self, nodal: &mut Nodal<'_>, dt: f64) {
         let f = &self.fields;
         let mut sums = vec![(f.inverse, Parity::Even), (f.lumped, ODD), (f.acceleration, ODD)];
         sums.extend(self.edge_mask.map(|_| (f.volume, Parity::Even)));
-        world.refresh(&sums);
+        nodal.refresh(&sums);
         let (order, force) = match self.scheme {
             Scheme::Series { order, force } => (order, force),
             Scheme::Blend(_) | Scheme::Affine => (1, false),
@@ -75,7 +75,7 @@ impl Stepper {
                 star[i] = v[i] + dt * b[i];
             }
         };
-        world.each(|patch| {
+        nodal.each(|patch| {
             copy(patch, f.lumped, f.velocity);
             if matches!(self.scheme, Scheme::Series { .. }) {
                 copy(patch, f.lumped, f.remainder);
@@ -85,10 +85,10 @@ impl Stepper {
         });
         for l in 1..order {
             match force {
-                true => world.refresh(&[(f.remainder, ODD), (term, ODD)]),
-                false => world.refresh(&[(f.remainder, ODD)]),
+                true => nodal.refresh(&[(f.remainder, ODD), (term, ODD)]),
+                false => nodal.refresh(&[(f.remainder, ODD)]),
             }
-            world.each(|patch| {
+            nodal.each(|patch| {
                 accumulate(patch, f.velocity, f.remainder);
                 if force {
                     accumulate(patch, f.acceleration, term);
@@ -103,11 +103,11 @@ impl Stepper {
     ///
     /// Series: w = sum_(l<k) (chi K)^l (vL + A v')/2 (l = 0 alone where the force is lumped);
     /// blend: w = a vL + A ((1 - a) vL + dt b/2); A = m^-1 M.
-    pub(super) fn solve_work<C: Comm + ?Sized>(&self, world: &mut World<'_, C>) {
+    pub(super) fn solve_work(&self, nodal: &mut Nodal<'_>) {
         let f = &self.fields;
         match self.scheme {
             Scheme::Series { order, force } => {
-                world.each(|patch| {
+                nodal.each(|patch| {
                     let [inverse, star, lumped, y, w] = patch.nodes.fields_mut([
                         f.inverse,
                         f.velocity_star,
@@ -122,8 +122,8 @@ impl Stepper {
                 });
                 let terms = if force { order } else { 1 };
                 for l in 0..terms {
-                    world.refresh(&[(f.scratch2, ODD)]);
-                    world.each(|patch| {
+                    nodal.refresh(&[(f.scratch2, ODD)]);
+                    nodal.each(|patch| {
                         match l {
                             0 => copy(patch, f.scratch2, f.work),
                             _ => accumulate(patch, f.work, f.scratch2),
@@ -136,7 +136,7 @@ impl Stepper {
                 }
             }
             Scheme::Blend(a) => {
-                world.each(|patch| {
+                nodal.each(|patch| {
                     let [lumped, star, x] =
                         patch.nodes.fields_mut([f.lumped, f.velocity_star, f.scratch2]);
                     for i in 0..x.len() {
@@ -150,7 +150,7 @@ impl Stepper {
                         w[i] = a * lumped[i] + inverse[i] * y[i];
                     }
                 });
-                world.refresh(&[(f.work, ODD)]);
+                nodal.refresh(&[(f.work, ODD)]);
             }
             Scheme::Affine => unreachable!("the scene check refuses compatible energy with APIC"),
         }
@@ -158,8 +158,8 @@ impl Stepper {
 
     /// Lumped velocity through the series, halos included, for velocities that were mapped
     /// again within a step. Collective between neighbours.
-    pub(super) fn filter_velocity<C: Comm + ?Sized>(&self, world: &mut World<'_, C>) {
+    pub(super) fn filter_velocity(&self, nodal: &mut Nodal<'_>) {
         // no force: the acceleration's sums are zero
-        self.solve_velocity(world, 0.0);
+        self.solve_velocity(nodal, 0.0);
     }
 }

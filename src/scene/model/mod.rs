@@ -31,6 +31,9 @@ pub struct Scene {
     pub time: Time,
     /// The scheme.
     pub method: Method,
+    /// How the work is shared; it changes no bit of the results.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub decomposition: Option<Decomposition>,
     /// Materials by name.
     pub materials: BTreeMap<String, Material>,
     /// Bodies; their order numbers the particles.
@@ -65,6 +68,27 @@ pub struct Domain {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1)))]
     pub patches: Option<Vec<usize>>,
+}
+
+/// How the work is shared.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Decomposition {
+    /// How filters that reach over several cells get what lies beyond a patch; absent: the
+    /// cheaper for the patches at hand.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub filter_halo: Option<FilterHalo>,
+}
+
+/// How a filter that reaches over several cells gets what lies beyond a patch. The bits are the
+/// same; the cost is not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FilterHalo {
+    /// The owners send finished nodal values after each product.
+    Exchange,
+    /// Ghosts come from so far that each patch computes them for itself.
+    Deep,
 }
 
 /// Edge of a cell [m].
