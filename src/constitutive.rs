@@ -67,6 +67,9 @@ pub trait Model: Send + Sync {
 
     /// The specific internal energy at which the material at rest is at `pressure` [J/kg].
     fn energy_at(&self, pressure: f64) -> f64;
+
+    /// Sound speed of the material at its density and `pressure` [m/s].
+    fn sound_speed_at(&self, pressure: f64) -> f64;
 }
 
 /// The model of a material of a scene.
@@ -173,6 +176,10 @@ impl<E: EquationOfState> Model for Point<E> {
 
     fn energy_at(&self, pressure: f64) -> f64 {
         self.0.energy_at(1.0, pressure)
+    }
+
+    fn sound_speed_at(&self, pressure: f64) -> f64 {
+        self.0.sound_speed_squared(1.0, pressure).max(0.0).sqrt()
     }
 }
 

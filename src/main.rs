@@ -123,9 +123,11 @@ fn run_scene<C: Comm>(comm: &C, args: &RunArgs, started: Instant) -> Outcome<()>
         Ok(_) => Ok(()),
         Err(Failure::Run(RunError::Elsewhere)) => Err((FAILED, String::new())),
         // all ranks know of a particle's fault, and rank 0 tells it
-        Err(error @ Failure::Run(RunError::Particle { .. } | RunError::TimeStep { .. })) => {
-            Err((FAILED, if comm.rank() == 0 { error.to_string() } else { String::new() }))
-        }
+        Err(
+            error @ Failure::Run(
+                RunError::Particle { .. } | RunError::TimeStep { .. } | RunError::TooLong { .. },
+            ),
+        ) => Err((FAILED, if comm.rank() == 0 { error.to_string() } else { String::new() })),
         Err(error) => {
             eprintln!("error: {error}");
             comm.abort(i32::from(FAILED))

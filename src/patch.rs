@@ -47,6 +47,10 @@ pub struct Told {
 /// A state that ends the run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
+    /// When in the step it was found.
+    pub phase: Phase,
+    /// Cell of the particle.
+    pub cell: i64,
     /// Id of the particle.
     pub id: u64,
     /// Its position [m].
@@ -57,7 +61,26 @@ pub struct Fault {
     pub what: String,
 }
 
-/// What has left a patch's part of the domain by an outflow, in the grid's frame.
+/// When in a step a fault is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// As the rows are brought to the middle of the step.
+    Start,
+    /// As their cells are found.
+    Locate,
+    /// As the step's end is looked at.
+    End,
+}
+
+impl Fault {
+    /// Which of a step's faults comes first, in a way that does not depend on the layout: by
+    /// phase, then in canonical order.
+    pub fn order(&self) -> [u64; 3] {
+        [self.phase as u64, (self.cell - i64::from(i32::MIN)) as u64, self.id]
+    }
+}
+
+/// What has left by an outflow; a patch counts in the grid's frame, the run in the scene's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Left {
     /// Number of particles.

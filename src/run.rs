@@ -186,6 +186,8 @@ pub fn run<C: Comm>(
     }
     let seconds = |rank: &[u64], k: usize| f64::from_bits(rank[k]);
     let loop_cpu: f64 = spent.iter().map(|r| seconds(r, 0)).sum();
+    // a run shorter than the clock's tick has no CPU time
+    let loop_cpu = if loop_cpu > 0.0 { loop_cpu } else { loop_wall_seconds };
     let others_cpu: f64 = spent.iter().skip(1).map(|r| seconds(r, 1)).sum();
 
     // a run is worth its files even where no exact solution can be had
@@ -226,7 +228,7 @@ pub fn run<C: Comm>(
         wall_seconds: options.started.elapsed().as_secs_f64(),
         loop_wall_seconds,
         cpu_seconds: user_cpu_seconds() + others_cpu,
-        particle_steps_per_cpu_second: particle_steps / loop_cpu.max(1e-9),
+        particle_steps_per_cpu_second: particle_steps / loop_cpu,
         phase_seconds: phases.map(|(name, s)| (name.to_string(), *s)).collect(),
         energy,
         momentum,
@@ -311,15 +313,16 @@ fn balance(
 ) -> (Energy, Momentum, Option<Outflow>) {
     let rigid = |s: &Side| matches!(s, Side::Symmetry | Side::Wall | Side::Velocity(_));
     let sides = sides(scene);
-    let mut impulse = 0.0 - left.momentum;
-    if sides.iter().any(rigid) {
-        impulse = end.momentum - start.momentum;
-    }
+    let walls = match sides.iter().any(rigid) {
+        true => end.momentum + left.momentum - start.momentum,
+        false => 0.0,
+    };
     let piston = sides.iter().find_map(|s| match s {
         Side::Velocity(v) => Some(*v),
         _ => None,
     });
-    let work = piston.unwrap_or(0.0) * impulse + (0.0 - (left.kinetic + left.internal));
+    let impulse = walls - left.momentum;
+    let work = piston.unwrap_or(0.0) * walls - (left.kinetic + left.internal);
     let energy = Energy::new([start.kinetic, end.kinetic], [start.internal, end.internal], work);
     let momentum =
         Momentum::new(&[start.momentum], &[end.momentum], &[impulse], start.absolute_momentum);

@@ -49,6 +49,18 @@ pub enum RunError {
         /// The step [s].
         dt: f64,
     },
+    /// The run would never end.
+    #[error(
+        "time.end = {end:?}: beyond {steps:.0e} steps of {dt:.3e} s; allowed: a shorter time.end or a larger time.courant"
+    )]
+    TooLong {
+        /// End of the run [s].
+        end: f64,
+        /// The first step [s].
+        dt: f64,
+        /// Most steps.
+        steps: f64,
+    },
     /// A row was lost by the decomposition.
     #[error(transparent)]
     Row(#[from] RowError),
@@ -128,6 +140,9 @@ fn grid_velocity(scene: &CheckedScene) -> f64 {
         .unwrap_or(0.0)
 }
 
+/// Steps that no run comes to the end of.
+const MOST_STEPS: f64 = 1e12;
+
 /// Patches narrower than this only cost.
 const LEAST_CELLS: usize = 16;
 
@@ -177,14 +192,15 @@ impl<'a, C: Comm> Simulation<'a, C> {
             .map(|(b, c)| (b.extent.upper[0] - b.extent.lower[0]) / c.lattice[0] as f64)
             .fold(0.0, f64::max)
             / scene.cell_size[0];
+        let busy = threads.min(blocks.len());
         let patches = layout
             .patches_of(comm.rank())
             .into_iter()
             .zip(blocks)
             .map(|(p, block)| Patch::new(&layout, p, block));
-        let pool = (threads > 1).then(|| {
+        let pool = (busy > 1).then(|| {
             rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
+                .num_threads(busy)
                 .build()
                 .expect("the system gives threads")
         });
@@ -206,7 +222,7 @@ impl<'a, C: Comm> Simulation<'a, C> {
             step: 0,
             dt: 0.0,
         };
-        simulation.check_reach(longest)?;
+        simulation.follow_reach(longest);
         simulation.with_world(|stepper, world| stepper.prime(world))?;
         simulation.agree()?;
         Ok(simulation)
@@ -272,23 +288,13 @@ impl<'a, C: Comm> Simulation<'a, C> {
             return Err(self.gather_fault());
         }
         self.dt = self.scene.scene.time.courant * told[0];
-        self.check_reach(-told[1])
+        self.follow_reach(-told[1]);
+        Ok(())
     }
 
     /// Makes ghosts and halos as deep as the longest particle needs. Alike on all ranks.
-    fn check_reach(&mut self, longest: f64) -> Result<(), RunError> {
-        let Some(reach) = self.stepper.reach(longest) else {
-            return Err(RunError::Particle {
-                id: 0,
-                body: "any".into(),
-                position: f64::NAN,
-                time: self.time,
-                step: self.step,
-                what: format!(
-                    "a particle has been stretched over {longest:.1} cells, further than this shape function reaches; use more particles a cell or smaller steps"
-                ),
-            });
-        };
+    fn follow_reach(&mut self, longest: f64) {
+        let reach = self.stepper.reach(longest).expect("a longer particle is a fault");
         if self.reach != Some(reach) {
             self.reach = Some(reach);
             let narrowest = self.layout.patches().iter().map(|p| p.extent(0)).min().unwrap_or(0);
@@ -311,26 +317,26 @@ impl<'a, C: Comm> Simulation<'a, C> {
         }
         let limit = self.stepper.longest_within(reach);
         self.patches.iter_mut().for_each(|p| p.reach_length = limit);
-        Ok(())
     }
 
-    /// The fault of the lowest particle id, at rank 0. Collective.
+    /// The step's first fault, the same for any layout, at rank 0. Collective.
     fn gather_fault(&self) -> RunError {
-        let mine = self.patches.iter().filter_map(|p| p.told.fault.as_ref()).min_by_key(|f| f.id);
+        let faults = self.patches.iter().filter_map(|p| p.told.fault.as_ref());
         let mut words = Vec::new();
-        if let Some(fault) = mine {
-            words.extend([fault.id, fault.position.to_bits(), fault.body as u64]);
+        if let Some(fault) = faults.min_by_key(|f| f.order()) {
+            words.extend(fault.order());
+            words.extend([fault.position.to_bits(), fault.body as u64]);
             words.extend(fault.what.bytes().map(u64::from));
         }
         let all = self.comm.gather(&words);
-        match all.iter().filter(|w| !w.is_empty()).min_by_key(|w| w[0]) {
+        match all.iter().filter(|w| !w.is_empty()).min_by_key(|w| &w[..3]) {
             Some(w) => RunError::Particle {
-                id: w[0],
-                body: self.scene.scene.bodies[w[2] as usize].name.clone(),
-                position: f64::from_bits(w[1]) + self.grid_velocity * self.time,
+                id: w[2],
+                body: self.scene.scene.bodies[w[4] as usize].name.clone(),
+                position: f64::from_bits(w[3]) + self.grid_velocity * self.time,
                 time: self.time,
                 step: self.step,
-                what: String::from_utf8_lossy(&w[3..].iter().map(|&b| b as u8).collect::<Vec<_>>())
+                what: String::from_utf8_lossy(&w[5..].iter().map(|&b| b as u8).collect::<Vec<_>>())
                     .into_owned(),
             },
             None => RunError::Elsewhere,
@@ -345,8 +351,12 @@ impl<'a, C: Comm> Simulation<'a, C> {
         // a remainder below rounding of the time is no step of its own
         let meets = stable * (1.0 + 1e-9) >= left;
         let dt = if meets { left } else { stable };
-        if dt < 1e-9 * self.scene.scene.time.end / self.scene.cells[0] as f64 && !meets {
-            return Err(RunError::TimeStep { time: self.time, step: self.step, dt });
+        let (end, step) = (self.scene.scene.time.end, self.step);
+        if dt * MOST_STEPS < end && !meets {
+            return Err(match step {
+                0 => RunError::TooLong { end, dt, steps: MOST_STEPS },
+                _ => RunError::TimeStep { time: self.time, step, dt },
+            });
         }
         self.step += 1;
         let step = self.step;
@@ -376,13 +386,15 @@ impl<'a, C: Comm> Simulation<'a, C> {
         Totals { mass, momentum, absolute_momentum, kinetic, internal }
     }
 
-    /// What has left by outflows, in the frame of the grid. Collective.
+    /// What has left by outflows, in the frame of the scene. Collective.
     pub fn left(&self) -> Left {
         let [count, mass, momentum, kinetic, internal] =
             exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
+                let v = self.grid_velocity;
                 for left in self.patches.iter().map(|p| p.left) {
-                    let terms =
-                        [left.count as f64, left.mass, left.momentum, left.kinetic, left.internal];
+                    let momentum = left.momentum + v * left.mass;
+                    let kinetic = left.kinetic + v * (left.momentum + 0.5 * v * left.mass);
+                    let terms = [left.count as f64, left.mass, momentum, kinetic, left.internal];
                     terms.iter().enumerate().for_each(|(k, t)| add(k, *t));
                 }
             });

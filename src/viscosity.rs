@@ -71,6 +71,10 @@ pub fn christensen(velocity: &[f64], inverse_mass: &[f64], node: usize) -> f64 {
     least.clamp(0.0, 1.0)
 }
 
+/// Weight above which a particle touches a node: well above rounding, for a particle whose edge
+/// is just at the end of a node's function must not see the node or not by a bit.
+const TOUCHES: f64 = 1e-3;
+
 /// phi = clamp(2 min_i D_i/D_p, 0, 1) over the nodes i that a particle touches, D_i by central
 /// differences of the nodal velocity: a form for any dimension.
 #[inline(always)]
@@ -87,7 +91,7 @@ pub fn nodal<const K: usize>(
     }
     let mut least = f64::INFINITY;
     for (k, &value) in values.iter().enumerate() {
-        if value > 0.0 {
+        if value > TOUCHES {
             let i = first + k;
             let known = inverse_mass[i - 1] > 0.0 && inverse_mass[i + 1] > 0.0;
             let d =

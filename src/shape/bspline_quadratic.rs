@@ -16,8 +16,7 @@ impl Shape for BsplineQuadratic {
 
     #[inline(always)]
     fn weights<const K: usize>(fraction: f64, _length: f64) -> Weights<K> {
-        let (first, values) = quadratic(fraction);
-        let t = fraction - 0.5 - first as f64;
+        let (first, t, values) = quadratic(fraction);
         let mut w = Weights::none(first);
         w.values[..3].copy_from_slice(&values);
         w.gradients[..3].copy_from_slice(&[t - 1.0, 1.0 - 2.0 * t, t]);

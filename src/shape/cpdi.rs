@@ -2,7 +2,7 @@
 //! domain interpolation: Sadeghirad, Brannon & Burghardt 2011). In one dimension the corners are
 //! the particle's ends, a deformed length apart.
 
-use super::{Extent, Shape, Weights, floor};
+use super::{Extent, Shape, Weights, split};
 
 /// Hat functions from the ends of the deforming particle.
 #[derive(Clone, Copy, Debug)]
@@ -17,9 +17,8 @@ impl Shape for Cpdi {
 
     #[inline(always)]
     fn weights<const K: usize>(fraction: f64, length: f64) -> Weights<K> {
-        let (lower, upper) = (fraction - 0.5 * length, fraction + 0.5 * length);
-        let (first, last) = (floor(lower), floor(upper));
-        let (a, b) = (lower - first, upper - last);
+        let (first, a) = split(fraction - 0.5 * length);
+        let (last, b) = split(fraction + 0.5 * length);
         let inverse = 1.0 / length;
         let mut w = Weights::none(first as i32);
         // nodes of the upper end, from the first node of the lower end

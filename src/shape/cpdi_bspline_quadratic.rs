@@ -21,9 +21,9 @@ impl Shape for CpdiBsplineQuadratic {
     #[inline(always)]
     fn weights<const K: usize>(fraction: f64, length: f64) -> Weights<K> {
         let half = 0.5 * length;
-        let (first, lower) = quadratic(fraction - half);
-        let (middle, centre) = quadratic(fraction);
-        let (last, upper) = quadratic(fraction + half);
+        let (first, _, lower) = quadratic(fraction - half);
+        let (middle, _, centre) = quadratic(fraction);
+        let (last, _, upper) = quadratic(fraction + half);
         let (c, u) = ((middle - first) as usize, (last - first) as usize);
         let (sixth, inverse) = (1.0 / 6.0, 1.0 / length);
         let mut w = Weights::none(first);

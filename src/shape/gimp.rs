@@ -1,8 +1,7 @@
 //! Hat functions averaged over the particle's undeformed length (Bardenhagen & Kober 2004, the
-//! generalized interpolation material point method with particles of constant size; lengths up
-//! to one cell).
+//! generalized interpolation material point method with particles of constant size).
 
-use super::{Extent, Shape, Weights, floor};
+use super::{Extent, Shape, Weights, split};
 
 /// Hat functions averaged over the undeformed particle.
 #[derive(Clone, Copy, Debug)]
@@ -31,9 +30,12 @@ impl Shape for Gimp {
 
     #[inline(always)]
     fn weights<const K: usize>(fraction: f64, length: f64) -> Weights<K> {
-        let (lower, upper) = (fraction - 0.5 * length, fraction + 0.5 * length);
-        let mut w = Weights::none(floor(lower) as i32);
-        let inverse = 1.0 / length;
+        let (first, a) = split(fraction - 0.5 * length);
+        let (last, b) = split(fraction + 0.5 * length);
+        let (lower, upper) = (first + a, last + b);
+        let mut w = Weights::none(first as i32);
+        // of the length between them, so that the values sum to 1
+        let inverse = 1.0 / (upper - lower);
         for k in 0..K {
             let node = (w.first + k as i32) as f64;
             w.values[k] = (integral(upper - node) - integral(lower - node)) * inverse;

@@ -59,6 +59,10 @@ pub struct Stepper {
     sides: [Side; 2],
     /// Mass below which a node counts as empty [kg].
     empty_mass: f64,
+    /// Nodal speed below which a node counts as at rest [m/s].
+    still_speed: f64,
+    /// Nodal pressure below which a node counts as free of stress [Pa].
+    still_pressure: f64,
 }
 
 /// Calls `$call` with the type of a shape function and a number of nodes known at compile time,
@@ -67,7 +71,7 @@ macro_rules! with_shape {
     ($kind:expr, $nodes:expr, $call:ident ( $($arg:expr),* )) => {
         match $kind {
             ShapeKind::Linear => $call::<shape::Linear, 2>($($arg),*),
-            ShapeKind::Gimp => $call::<shape::Gimp, 3>($($arg),*),
+            ShapeKind::Gimp => with_shape!(@wide $call, shape::Gimp, $nodes, $($arg),*),
             ShapeKind::Cpdi => with_shape!(@wide $call, shape::Cpdi, $nodes, $($arg),*),
             ShapeKind::BsplineQuadratic => $call::<shape::BsplineQuadratic, 3>($($arg),*),
             ShapeKind::BsplineCubic => $call::<shape::BsplineCubic, 4>($($arg),*),
@@ -118,6 +122,11 @@ impl Stepper {
         let bodies = &scene.scene.bodies;
         let materials = &scene.scene.materials;
         let cell = scene.cell_size[0];
+        let models: Vec<Box<dyn Model>> =
+            bodies.iter().map(|b| constitutive::build(&materials[&b.material])).collect();
+        let fastest = (bodies.iter().zip(&models).zip(&scene.bodies))
+            .map(|((b, m), c)| m.sound_speed_at(b.pressure).max(c.velocity[0].abs()))
+            .fold(0.0, f64::max);
         let densest = bodies.iter().map(|b| materials[&b.material].density).fold(0.0, f64::max);
         Stepper {
             columns: Columns::new(scene),
@@ -130,7 +139,7 @@ impl Stepper {
             relaxation: method.pressure_relaxation,
             edge_mask: method.edge_mask,
             viscosity: viscosity.map(|v| Viscosity::new(v, cell)),
-            models: bodies.iter().map(|b| constitutive::build(&materials[&b.material])).collect(),
+            models,
             shape: method.shape,
             cell,
             inverse_cell: 1.0 / cell,
@@ -139,6 +148,10 @@ impl Stepper {
             sides,
             // what such a node holds is below rounding of its neighbours
             empty_mass: densest * cell * 2f64.powi(-90),
+            // far ahead of a wave values would fall until they are denormal, which costs time and
+            // loses bits; this far below all speeds of the scene nothing is lost
+            still_speed: fastest * 2f64.powi(-100),
+            still_pressure: densest * fastest * fastest * 2f64.powi(-100),
         }
     }
 
@@ -182,6 +195,11 @@ impl Stepper {
             S::nodes(0.01)
         }
         (reach.nodes + 1 - with_shape!(self.shape, 4usize, nodes())) as f64
+    }
+
+    /// The longest particle [cells] that any reach is deep enough for, with room to stretch.
+    fn longest_ever(&self) -> f64 {
+        self.longest_within(Reach { nodes: MOST_NODES, products: 0 }) / STRETCH
     }
 
     fn extent(&self) -> Extent {

@@ -75,7 +75,8 @@ impl Stepper {
         patch.compliance_band.finish();
         for i in patch.active.clone() {
             inverse[i] = if weight[i] > 0.0 { 1.0 / weight[i] } else { 0.0 };
-            term[i] *= inverse[i];
+            let pressure = term[i] * inverse[i];
+            term[i] = if pressure.abs() < self.still_pressure { 0.0 } else { pressure };
         }
     }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::Stepper;
 use crate::constitutive::{MidStep, VolumeChange};
-use crate::patch::{Fault, Patch};
+use crate::patch::{Fault, Patch, Phase};
 use crate::scene::Side;
 use crate::shape::{Extent, floor};
 
@@ -73,7 +73,12 @@ impl Stepper {
                 Side::Outflow => *keep = false,
                 _ => {
                     let name = ["lower", "upper"][side];
-                    self.fault(patch, row, format!("it leaves the domain by its {name} side"));
+                    self.fault(
+                        patch,
+                        Phase::Locate,
+                        row,
+                        format!("it leaves the domain by its {name} side"),
+                    );
                     // it stays within the arrays until the run ends
                     patch.block.cells[row] = [cell.clamp(0, self.cells - 1) as i32];
                     patch.block.columns[self.columns.fraction][row] = 0.5;
@@ -112,7 +117,7 @@ impl Stepper {
             && (0..j_mid.len()).any(|r| volume0[r] * j_mid[r] > limit);
         if torn {
             let row = (0..j_mid.len()).find(|&r| volume0[r] * j_mid[r] > limit).unwrap_or(0);
-            self.fault(patch, row, "it is torn apart within one step".into());
+            self.fault(patch, Phase::Start, row, "it is torn apart within one step".into());
         }
     }
 
@@ -257,6 +262,17 @@ impl Stepper {
         };
         patch.told.time_step = if fastest > 0.0 { self.cell / fastest } else { f64::INFINITY };
         patch.told.length = longest * self.inverse_cell;
+        let limit = self.longest_ever() * self.cell;
+        if found.is_none() && longest > limit && self.extent() == Extent::Current {
+            let row = (0..j.len()).find(|&r| volume0[r] * j[r] > limit).unwrap_or(0);
+            let cells = longest * self.inverse_cell;
+            found = Some((
+                row,
+                format!(
+                    "it has been stretched over {cells:.1} cells, further than its shape function reaches; more particles a cell stretch less"
+                ),
+            ));
+        }
         if found.is_none() && lost {
             let row = v.iter().zip(d).position(|(v, d)| !v.is_finite() || !d.is_finite());
             found = Some((row.unwrap_or(0), "its velocity is not a number".into()));
@@ -264,17 +280,23 @@ impl Stepper {
         patch.block.columns[c.pressure] = pressure;
         patch.block.columns[c.sound_speed] = speed;
         if let Some((row, what)) = found {
-            self.fault(patch, row, what);
+            self.fault(patch, Phase::End, row, what);
         }
     }
 
-    fn fault(&self, patch: &mut Patch<1>, row: usize, what: String) {
+    /// Notes a fault, if it comes before those that are known.
+    fn fault(&self, patch: &mut Patch<1>, phase: Phase, row: usize, what: String) {
         let block = &patch.block;
-        patch.told.fault.get_or_insert(Fault {
+        let fault = Fault {
+            phase,
+            cell: i64::from(block.cells[row][0]),
             id: block.ids[row],
             position: block.columns[self.columns.position][row],
             body: block.columns[self.columns.body][row] as usize,
             what,
-        });
+        };
+        if patch.told.fault.as_ref().is_none_or(|known| fault.order() < known.order()) {
+            patch.told.fault = Some(fault);
+        }
     }
 }

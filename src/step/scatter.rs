@@ -110,16 +110,21 @@ impl Stepper {
         with_width!(patch.stencils.width, go(patch, self));
     }
 
-    /// Lumped velocity and acceleration of the owned nodes from their sums.
+    /// Lumped velocity and acceleration of the owned nodes from their sums; those too small to
+    /// matter are cut to zero.
     pub(super) fn divide_by_mass(&self, patch: &mut Patch<1>) {
         let f = &self.fields;
         let [mass, inverse, lumped, acceleration] =
             patch.nodes.fields_mut([f.mass, f.inverse, f.lumped, f.acceleration]);
         inverse.fill(0.0);
+        let still = self.still_speed;
+        // brings a node to the still speed while the fastest wave passes a cell
+        let slow = still * still * 2f64.powi(100) * self.inverse_cell;
+        let cut = |value: f64, least: f64| if value.abs() < least { 0.0 } else { value };
         for i in patch.active.clone() {
             inverse[i] = if mass[i] > self.empty_mass { 1.0 / mass[i] } else { 0.0 };
-            lumped[i] *= inverse[i];
-            acceleration[i] *= inverse[i];
+            lumped[i] = cut(lumped[i] * inverse[i], still);
+            acceleration[i] = cut(acceleration[i] * inverse[i], slow);
         }
     }
 }

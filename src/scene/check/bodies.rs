@@ -145,7 +145,7 @@ fn lattice(body: &Body, path: &str, cell_size: &[f64]) -> Result<Vec<usize>, Fau
         let count = (cells * body.particles_per_cell[d] as f64).round();
         if count < 1.0 {
             let reason = format!(
-                "no particle: the body is {cells} cells long, less than half a particle's size; \
+                "no particle: the body is {cells:?} cells long, less than half a particle's size; \
                  allowed: a longer box, a smaller domain.cell_size or more particles_per_cell"
             );
             return Err(Fault::new(format!("{path}.box"), extent, reason));

@@ -148,7 +148,7 @@ fn check_impact(checked: &CheckedScene, impact: &Impact) -> Result<(), Fault> {
         checked.scene.bodies[impact.body].name.as_str()
     };
     let reason = format!(
-        "an impact on {against} at {} m/s compresses {} past {chi:.4}, the lesser of 0.95 and \
+        "an impact on {against} at {:?} m/s compresses {} past {chi:.4}, the lesser of 0.95 and \
          0.95/s; allowed: at most {most:.0} m/s",
         impact.speed, checked.scene.bodies[weaker].material
     );

@@ -1,0 +1,143 @@
+//! Arguments: overrides, threads, help, and those that are refused.
+
+use std::process::Command;
+
+use serde_json::json;
+
+use crate::home::{Home, names};
+use crate::scenes::short;
+
+#[test]
+fn overrides_reach_every_place() {
+    let mut scene = short();
+    scene.as_object_mut().unwrap().remove("artificial_viscosity");
+    let home = Home::with(&scene);
+    let sets = [
+        "domain.patches=[8]",
+        "artificial_viscosity.linear=0.2",
+        "artificial_viscosity.quadratic=2",
+        "bodies.flyer.velocity=[500]",
+        "bodies.1.velocity=[-25.5]",
+        "bodies[1].particles_per_cell[0]=3",
+        "title=a plate, = and \"all\"",
+        "method.shape=cpdi",
+        "method.transfer={\"fmpm\": 4}",
+        "boundary.x_lower=\"outflow\"",
+    ];
+    let args: Vec<_> = sets.iter().flat_map(|set| ["--set", set]).collect();
+    let run = home.run("run", &args);
+    let scene = &run.summary["scene"];
+    assert_eq!(scene["domain"]["patches"], json!([8]));
+    assert_eq!(scene["artificial_viscosity"]["linear"], 0.2);
+    assert_eq!(scene["artificial_viscosity"]["quadratic"], 2.0);
+    assert_eq!(scene["bodies"][0]["velocity"], json!([500.0]));
+    assert_eq!(scene["bodies"][1]["velocity"], json!([-25.5]));
+    assert_eq!(scene["title"], "a plate, = and \"all\"");
+    assert_eq!(scene["method"]["shape"], "cpdi");
+    assert_eq!(scene["method"]["transfer"], json!({"fmpm": 4}));
+    assert_eq!(scene["boundary"]["x_lower"], "outflow");
+    assert_eq!(run.count("particles"), 100 + 450);
+    assert_eq!(run.summary["title"], "a plate, = and \"all\"");
+    // the file is as it was
+    assert_eq!(names(home.path()), ["run", "scene.json"]);
+}
+
+#[test]
+fn the_scene_is_checked_after_all_overrides() {
+    let home = Home::with(&short());
+    // each alone would be refused
+    let sets = ["--set", "time.end=1e-9", "--set", "output.profiles.times=[1e-9]"];
+    assert_eq!(home.run("run", &sets).summary["profiles"][0]["time"], 1e-9);
+    // the later one holds
+    let sets = ["--set", "time.courant=2", "--set", "time.courant=0.5"];
+    assert_eq!(home.run("run", &sets).summary["scene"]["time"]["courant"], 0.5);
+}
+
+#[test]
+fn what_cannot_be_understood_is_refused() {
+    let home = Home::with(&short());
+    let before = home.contents();
+    let refused = |args: &[&str], fragments: &[&str]| {
+        let all = ["scene.json"].into_iter().chain(args.to_vec());
+        home.call(all).end().failed(fragments);
+        assert_eq!(home.contents(), before);
+    };
+    refused(&["--threads", "0"], &["--threads", "0"]);
+    refused(&["--threads", "abc"], &["--threads", "abc"]);
+    refused(&["--threads", "-1"], &["-1"]);
+    refused(&["--threads", "1.5"], &["--threads", "1.5"]);
+    refused(&["--fast"], &["--fast"]);
+    refused(&["--output"], &["--output"]);
+    refused(&["second.json"], &["second.json"]);
+    refused(&["--set", "time.end"], &["--set", "time.end", "PATH=VALUE"]);
+    refused(&["--set", "=1"], &["--set", "PATH=VALUE"]);
+    refused(&["--set", "bodies.flier.velocity=[1]"], &["bodies", "flier", "did you mean flyer"]);
+    refused(&["--set", "bodies.7.velocity=[1]"], &["bodies", "7", "flyer"]);
+    refused(&["--set", "tiem.end=1"], &["tiem", "did you mean time"]);
+    refused(&["--set", "method.shape=spline"], &["method.shape", "spline", "cpdi"]);
+    let out = home.call(["shema"]).end();
+    out.failed(&["shema"]);
+}
+
+#[test]
+fn help_and_version_are_told() {
+    let home = Home::new();
+    let help = home.call(["--help"]).end().succeeded();
+    for word in ["mpirun -n 2 flyer-mpm", "--set", "--output", "--threads", "--keep", "--quiet"] {
+        assert!(help.contains(word), "no {word} in: {help}");
+    }
+    for word in ["hugoniot", "check", "schema", "compare", "summary.json"] {
+        assert!(help.contains(word), "no {word} in: {help}");
+    }
+    let version = home.call(["--version"]).end().succeeded();
+    assert_eq!(version.trim(), format!("flyer-mpm {}", env!("CARGO_PKG_VERSION")));
+    for command in ["hugoniot", "check", "schema", "compare"] {
+        home.call([command, "--help"]).end().succeeded();
+    }
+    assert!(names(home.path()).is_empty());
+}
+
+#[test]
+fn an_example_in_the_help_stands_on_a_line_of_its_own() {
+    let help = Home::new().call(["--help"]).end().succeeded();
+    let examples = help.lines().filter(|line| line.matches("inputs/flyer.json").count() == 1);
+    assert_eq!(examples.count(), 2, "{help}");
+}
+
+#[test]
+fn without_arguments_it_says_how_it_is_used() {
+    let home = Home::new();
+    let out = home.call([]).end();
+    assert!(!out.status.success());
+    assert!(out.stderr.contains("Usage:") && out.stderr.contains("SCENE.json"), "{}", out.stderr);
+    assert!(!out.stderr.contains("panicked"), "{}", out.stderr);
+    assert!(names(home.path()).is_empty());
+}
+
+#[test]
+fn quiet_says_nothing_and_else_a_table_stands_at_the_end() {
+    let home = Home::with(&short());
+    let out = home.call(["scene.json", "--quiet"]).end();
+    assert_eq!((out.stdout.as_str(), out.stderr.as_str()), ("", ""));
+    let out = home.call(["scene.json"]).end();
+    assert!(out.stderr.contains("400 particles") && out.stderr.contains("(chosen)"));
+    let table = out.succeeded();
+    for word in ["L1", "energy", "momentum", "steps", "seconds", "output/scene"] {
+        assert!(table.contains(word), "no {word} in: {table}");
+    }
+    let out = home.call(["scene.json", "--set", "domain.patches=[4]"]).end();
+    assert!(!out.stderr.contains("(chosen)"), "{}", out.stderr);
+}
+
+#[test]
+fn no_environment_is_needed() {
+    let home = Home::with(&short());
+    let mut program = Command::new(env!("CARGO_BIN_EXE_flyer-mpm"));
+    let status = program
+        .env_clear()
+        .current_dir(home.path())
+        .args(["scene.json", "--quiet", "--threads", "2", "--set", "output.pictures=true"])
+        .status();
+    assert!(status.unwrap().success());
+    assert_eq!(home.results("output/scene").count("ranks"), 1);
+}

@@ -1,0 +1,16 @@
+//! The command line and the files as a contract, checked from outside: the built program is
+//! started in temporary folders, plain and by mpirun, each time under a limit.
+
+mod bad_input;
+mod command_line;
+mod commands;
+mod home;
+mod outputs;
+mod pictures;
+mod program;
+mod replacing;
+mod scenes;
+mod steps;
+
+#[cfg(feature = "mpi")]
+mod ranks;

@@ -1,0 +1,217 @@
+//! The files of a run: their places, names, columns and types.
+
+use serde_json::{Value, json};
+
+use crate::home::{Home, column, names};
+use crate::scenes::{short, whole};
+
+const HEADER: &str = "x,pressure,velocity,density,specific_internal_energy,\
+                      artificial_viscosity,material";
+
+#[test]
+fn results_go_beside_the_callers_folder_by_the_scenes_name() {
+    let home = Home::new();
+    home.write("scenes/my.plate.json", &short().to_string());
+    home.write("here/note.txt", "");
+    let out = crate::program::Call::new(&home.at("here"), ["../scenes/my.plate.json"]).end();
+    assert!(out.succeeded().contains("output/my.plate"));
+    assert_eq!(names(&home.at("here/output")), ["my.plate"]);
+    assert_eq!(home.results("here/output/my.plate").count("particles"), 400);
+    assert_eq!(names(&home.at("scenes")), ["my.plate.json"]);
+}
+
+#[test]
+fn an_output_folder_is_made_with_its_parents() {
+    let home = Home::with(&short());
+    home.run("a/b/c", &[]);
+    home.run("a/b/../d/", &[]);
+    assert_eq!(names(&home.at("a")), ["b", "d"]);
+    assert_eq!(names(&home.at("a/b")), ["c"]);
+    assert_eq!(names(home.path()), ["a", "scene.json"]);
+}
+
+/// Asserts that `value` has every key, each of the type that its letter says: `n`umber, `c`ount,
+/// `t`ext, `o`bject, `a`rray, or `?` for a number or null.
+#[track_caller]
+fn has(value: &Value, keys: &[(&str, char)]) {
+    for (key, letter) in keys {
+        let found = value.get(key).unwrap_or_else(|| panic!("no {key} in {value}"));
+        let fits = match letter {
+            'n' => found.is_number(),
+            'c' => found.is_u64(),
+            't' => found.as_str().is_some_and(|t| !t.is_empty()),
+            'o' => found.is_object(),
+            'a' => found.is_array(),
+            _ => found.is_number() || found.is_null(),
+        };
+        assert!(fits, "{key} = {found} is not of type {letter}");
+    }
+}
+
+#[test]
+fn the_summary_has_its_fields() {
+    let run = Home::with(&whole()).run("run", &["--threads", "2", "--set", "domain.patches=[3]"]);
+    let summary = &run.summary;
+    has(summary, &[("title", 't'), ("version", 't'), ("scene", 'o')]);
+    has(summary, &["ranks", "threads", "particles", "cells", "steps"].map(|key| (key, 'c')));
+    has(summary, &["wall_seconds", "loop_wall_seconds", "cpu_seconds"].map(|key| (key, 'n')));
+    has(summary, &[("particle_steps_per_cpu_second", 'n'), ("phase_seconds", 'o')]);
+    has(summary, &[("patches", 'a'), ("profiles", 'a'), ("energy", 'o'), ("momentum", 'o')]);
+    assert_eq!(summary["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(["ranks", "threads", "particles", "cells"].map(|k| run.count(k)), [1, 2, 400, 300]);
+    assert_eq!(summary["patches"], json!([3]));
+    assert!(summary["wall_seconds"].as_f64() >= summary["loop_wall_seconds"].as_f64());
+    for key in ["total_start", "total_end", "boundary_work"] {
+        has(&summary["energy"], &[(key, 'n')]);
+    }
+    assert!(summary["energy"]["drift"].as_f64().unwrap().abs() < 1e-12);
+    for key in ["start", "end", "boundary_impulse"] {
+        assert!(summary["momentum"][key][0].is_number(), "{}", summary["momentum"]);
+    }
+    assert!(summary["momentum"]["drift"].as_f64().unwrap().abs() < 1e-12);
+    // the scene as it ran: overrides and defaults are in it
+    assert_eq!(summary["scene"]["domain"]["patches"], json!([3]));
+    assert_eq!(summary["scene"]["method"]["stress_update"], "last");
+}
+
+#[test]
+fn a_profile_in_the_summary_has_its_fields() {
+    let run = Home::with(&whole()).run("run", &[]);
+    let profiles = run.summary["profiles"].as_array().unwrap();
+    let times: Vec<_> = profiles.iter().map(|p| p["time"].as_f64().unwrap()).collect();
+    assert_eq!(times, [5e-8, 1e-7], "to the bit what the scene asks for");
+    for profile in profiles {
+        has(profile, &[("file", 't'), ("errors", 'o'), ("errors_cell", 'o')]);
+        let digest = profile["state_sha256"].as_str().unwrap();
+        assert!(digest.len() == 64 && digest.bytes().all(|b| b.is_ascii_hexdigit()), "{digest}");
+        for errors in [&profile["errors"], &profile["errors_cell"]] {
+            has(errors, &["l1", "l2", "e1_cells"].map(|key| (key, 'n')));
+            has(errors, &["plateau", "noise", "plateau_4"].map(|key| (key, '?')));
+            has(errors, &["shock_position_cells", "rise_cells", "overshoot"].map(|k| (k, '?')));
+            has(errors, &["density_plateau", "energy_plateau"].map(|key| (key, '?')));
+        }
+        assert!(profile["errors"]["plateau"].is_number(), "the first plateau stands by then");
+        assert!(profile["errors"]["plateau_4"].is_null(), "the second one is still to come");
+    }
+    assert_ne!(profiles[0]["file"], profiles[1]["file"]);
+    assert_ne!(profiles[0]["state_sha256"], profiles[1]["state_sha256"]);
+}
+
+#[test]
+fn without_a_reference_there_are_no_errors() {
+    let mut scene = short();
+    scene.as_object_mut().unwrap().remove("reference");
+    let run = Home::with(&scene).run("run", &[]);
+    assert_eq!(run.summary["profiles"][0]["errors"], Value::Null);
+    assert_eq!(run.summary["profiles"][0]["errors_cell"], Value::Null);
+}
+
+/// Significant digits of a number's text.
+fn digits(number: &str) -> String {
+    let mantissa = number.split(['e', 'E']).next().unwrap();
+    let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
+    digits.trim_start_matches('0').trim_end_matches('0').to_string()
+}
+
+#[test]
+fn a_profile_is_every_particle_sorted_in_shortest_numbers() {
+    let run = Home::with(&whole()).run("run", &[]);
+    for k in 0..2 {
+        let csv = run.profile(k);
+        assert_eq!(csv.lines().next(), Some(HEADER));
+        assert!(csv.ends_with('\n') && !csv.contains(['#', '\r', ' ']));
+        let x = column(csv, "x");
+        assert_eq!(x.len() as u64, run.count("particles"));
+        assert!(x.windows(2).all(|pair| pair[0] < pair[1]));
+        for row in csv.lines().skip(1) {
+            let fields: Vec<_> = row.split(',').collect();
+            assert_eq!(fields.len(), 7, "{row}");
+            assert!(["copper", "aluminium"].contains(&fields[6]), "{row}");
+            for field in &fields[..6] {
+                let value: f64 = field.parse().unwrap();
+                // {:e} prints the fewest digits that give the double back
+                assert_eq!(digits(field), digits(&format!("{value:e}")), "{field}");
+            }
+        }
+        assert_eq!(csv.lines().filter(|row| row.ends_with(",copper")).count(), 100);
+    }
+}
+
+#[test]
+fn pressure_stands_without_artificial_viscosity() {
+    let run = Home::with(&whole()).run("run", &["--set", "output.pictures=false"]);
+    let csv = run.profile(1);
+    let [pressure, density, energy, viscosity] =
+        ["pressure", "density", "specific_internal_energy", "artificial_viscosity"]
+            .map(|name| column(csv, name));
+    assert!(viscosity.iter().any(|&q| q > 1e8), "in the shock");
+    // the equation of state at the density and energy beside it, in the target
+    for (i, row) in csv.lines().skip(1).enumerate().filter(|(_, r)| r.ends_with("aluminium")) {
+        let chi: f64 = 1.0 - 2785.0 / density[i];
+        let squeezed = chi.max(0.0);
+        let slope = 2785.0 * 5386.0_f64.powi(2) / (1.0 - 1.339 * squeezed).powi(2);
+        let expected = slope * chi * (1.0 - 1.05 * squeezed) + 2.1 * 2785.0 * energy[i];
+        assert!((pressure[i] - expected).abs() < 10.0, "{row}, not {expected}");
+    }
+    // none where the scene has none
+    let mut scene = short();
+    scene.as_object_mut().unwrap().remove("artificial_viscosity");
+    let run = Home::with(&scene).run("run", &[]);
+    assert!(column(run.profile(0), "artificial_viscosity").iter().all(|&q| q == 0.0));
+}
+
+#[test]
+fn histories_follow_surfaces_and_tracers() {
+    let mut scene = short();
+    scene["output"]["histories"] = json!({
+        "interval": 1e-9,
+        "tracers": [{"name": "gauge", "body": "target", "at": [1e-5]}]
+    });
+    let run = Home::with(&scene).run("run", &[]);
+    let header: Vec<_> = run.text("histories.csv").lines().next().unwrap().split(',').collect();
+    for name in ["time", "dt", "kinetic_energy", "internal_energy", "total_energy", "momentum"] {
+        assert!(header.contains(&name), "{header:?}");
+    }
+    for probe in ["interface", "free_surface", "gauge"] {
+        for what in ["x", "velocity", "pressure"] {
+            assert!(header.contains(&format!("{probe}_{what}").as_str()), "{header:?}");
+        }
+    }
+    let time = run.history("time");
+    assert!(time.windows(2).all(|pair| pair[0] < pair[1]));
+    assert_eq!((time[0], *time.last().unwrap()), (0.0, 1e-8));
+    assert!((9..=12).contains(&time.len()), "{time:?}");
+    assert!((run.history("gauge_x")[0] - 1e-5).abs() <= 2.5e-6, "the nearest particle");
+    assert!(*run.history("interface_velocity").last().unwrap() > 500.0);
+    assert!(run.history("free_surface_x").iter().all(|&x| (x / 1.5e-3 - 1.0).abs() < 1e-6));
+    let energy = run.history("total_energy");
+    assert!(energy.iter().all(|e| (e / energy[0] - 1.0).abs() < 1e-12));
+}
+
+#[test]
+fn outputs_that_are_not_asked_for_are_left_out() {
+    let home = Home::with(&whole());
+    let extensions = |set: &str| {
+        let run = home.run("run", &["--set", set]);
+        let mut found: Vec<_> =
+            run.names().iter().map(|n| n.rsplit('.').next().unwrap().to_string()).collect();
+        found.sort();
+        found.dedup();
+        (found, run)
+    };
+    assert_eq!(extensions("output.pictures=false").0, ["csv", "hdf5", "json"]);
+    assert_eq!(extensions("output.hdf5=false").0, ["csv", "json", "png", "svg"]);
+    let (_, run) = extensions("output.histories=null");
+    assert!(run.names().iter().all(|name| !name.starts_with("histories")));
+    let run = Home::with(&short()).run("run", &[]);
+    let file = run.summary["profiles"][0]["file"].as_str().unwrap();
+    assert_eq!(run.names(), [file, "summary.json"]);
+}
+
+#[test]
+fn hdf5_is_written() {
+    let run = Home::with(&whole()).run("run", &["--set", "output.pictures=false"]);
+    let bytes = run.bytes("results.hdf5");
+    assert!(bytes.starts_with(b"\x89HDF\r\n\x1a\n"));
+    assert!(bytes.windows(6).any(|w| w == b"VTKHDF"));
+}

@@ -1,0 +1,136 @@
+//! Several ranks: the same bits, and no rank left behind when one fails.
+
+use std::fs;
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+
+use crate::home::{Home, Results};
+use crate::program::signal;
+use crate::scenes::{mirrored_stray, short, stray};
+
+/// Runs `scene.json` on this many ranks.
+#[track_caller]
+fn on(home: &Home, ranks: usize, args: &[&str]) -> Results {
+    let output = format!("on_{ranks}");
+    let args = ["scene.json", "--quiet", "--output", &output].into_iter().chain(args.to_vec());
+    assert_eq!(home.call(args).ranks(ranks).end().succeeded(), "");
+    let results = home.results(&output);
+    assert_eq!(results.count("ranks"), ranks as u64);
+    results
+}
+
+#[test]
+fn any_layout_gives_the_same_bits() {
+    let home = Home::with(&short());
+    let alone = home.run("alone", &[]);
+    for patches in ["1", "5", "16"] {
+        for threads in ["1", "2"] {
+            let set = format!("domain.patches=[{patches}]");
+            let run = on(&home, 2, &["--set", &set, "--threads", threads]);
+            assert_eq!(run.states(), alone.states(), "{patches} patches, {threads} threads");
+            assert_eq!(run.summary["threads"].to_string(), threads);
+            assert_eq!(run.summary["patches"].to_string(), format!("[{patches}]"));
+        }
+    }
+}
+
+#[test]
+fn a_rank_may_own_no_patch() {
+    let home = Home::with(&short());
+    let alone = home.run("alone", &[]);
+    assert_eq!(on(&home, 3, &["--set", "domain.patches=[1]"]).states(), alone.states());
+}
+
+#[test]
+fn every_output_is_written_once() {
+    let home = Home::with(&crate::scenes::whole());
+    let alone = home.run("alone", &[]);
+    let run = on(&home, 2, &[]);
+    assert_eq!(run.names(), alone.names());
+    assert_eq!(run.states(), alone.states());
+    assert_eq!(run.text("histories.csv"), alone.text("histories.csv"));
+    // errors and totals hold nothing of the layout either
+    for key in ["energy", "momentum", "steps", "particles"] {
+        assert_eq!(run.summary[key], alone.summary[key], "{key}");
+    }
+    assert_eq!(run.summary["profiles"], alone.summary["profiles"]);
+}
+
+/// A fault in the patch of one rank alone, once the first and once the second.
+#[test]
+fn a_fault_of_one_rank_ends_all() {
+    for scene in [stray(), mirrored_stray()] {
+        let home = Home::with(&short());
+        home.run("output/scene", &[]);
+        home.write("scene.json", &scene.to_string());
+        let before = home.contents();
+        let alone = home.call(["scene.json", "--quiet"]).end();
+        let args = ["scene.json", "--quiet", "--set", "domain.patches=[2]"];
+        let run = home.call(args).ranks(2).start();
+        let since = Instant::now();
+        let out = run.end();
+        assert!(since.elapsed() < Duration::from_secs(20), "{:?}", since.elapsed());
+        out.failed(&["particle ", " of body `target` at x = ", "leaves the domain"]);
+        assert!(out.stderr.contains(alone.stderr.trim()), "{} is not {}", out.stderr, alone.stderr);
+        assert_eq!(home.contents(), before);
+    }
+}
+
+#[test]
+fn arguments_are_judged_once() {
+    let home = Home::with(&short());
+    let help = home.call(["--help"]).ranks(2).end().succeeded();
+    assert_eq!(help.matches("Usage:").count(), 1);
+    home.call(["scene.json", "--threads", "0"]).ranks(2).end().failed(&["--threads"]);
+    let schema = home.call(["schema"]).ranks(2).end().succeeded();
+    assert!(serde_json::from_str::<Value>(&schema).is_ok());
+    home.call(["compare", "a", "b"]).ranks(2).end().failed(&["a/summary.json"]);
+}
+
+/// The ranks that mpirun has started: processes of our program below it.
+fn ranks_of(mpirun: u32) -> Vec<u32> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir("/proc").unwrap().flatten() {
+        let Ok(stat) = fs::read_to_string(entry.path().join("stat")) else { continue };
+        let Some((before, after)) = stat.rsplit_once(") ") else { continue };
+        let parent = after.split(' ').nth(1).and_then(|p| p.parse::<u32>().ok());
+        if parent == Some(mpirun) && before.contains("(flyer-mpm") {
+            found.extend(before.split(' ').next().and_then(|p| p.parse::<u32>().ok()));
+        }
+    }
+    found.sort_unstable();
+    found
+}
+
+#[test]
+fn a_rank_that_is_lost_ends_all() {
+    let mut long = short();
+    long["domain"]["cell_size"] = json!(1e-6);
+    long["time"]["end"] = json!(1e-6);
+    for victim in 0..2 {
+        let home = Home::with(&short());
+        home.run("output/scene", &[]);
+        home.write("scene.json", &long.to_string());
+        let before = home.contents();
+        let mut run = home.call(["scene.json", "--quiet"]).ranks(2).start();
+        let since = Instant::now();
+        while ranks_of(run.id()).len() < 2 && since.elapsed() < Duration::from_secs(20) {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        // well into the time loop
+        std::thread::sleep(Duration::from_millis(1500));
+        assert!(run.runs(), "the scene is too short for this test");
+        let ranks = ranks_of(run.id());
+        assert_eq!(ranks.len(), 2);
+        signal("-KILL", ranks[victim]);
+        let killed = Instant::now();
+        let out = run.end();
+        assert!(killed.elapsed() < Duration::from_secs(10), "{:?}", killed.elapsed());
+        assert!(!out.status.success());
+        assert_eq!(out.stdout, "");
+        let alive = |rank: &u32| fs::exists(format!("/proc/{rank}/exe")).unwrap_or(true);
+        assert!(!ranks.iter().any(alive), "a rank lives on");
+        assert_eq!(home.contents(), before);
+    }
+}

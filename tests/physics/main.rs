@@ -1,0 +1,16 @@
+//! The physics of whole runs: exact solutions, conservation, symmetries, the same bits for any
+//! layout, and every option and scheme.
+//!
+//! Runs are made in process, through the library.
+
+mod accuracy;
+mod bits;
+mod conservation;
+mod hard;
+mod invariance;
+mod options;
+mod schemes;
+mod sides;
+mod times;
+mod tools;
+mod units;
