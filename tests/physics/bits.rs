@@ -20,6 +20,28 @@ fn same_end(value: &Value, what: &str) -> Result<String, String> {
     whole
 }
 
+#[test]
+fn filters_from_messages_and_from_deep_ghosts() {
+    let sides = [json!({}), json!({"x_lower": "wall", "x_upper": "symmetry"})];
+    for (method, boundary) in [json!({"fmpm": 6}), json!({"xpic": 3})].iter().zip(sides) {
+        let mut value = small_midpoint("cpdi_bspline_quadratic", method);
+        value["boundary"] = boundary;
+        let digest = |halo: &str, patches: usize| {
+            let layout = json!({
+                "decomposition": {"filter_halo": halo},
+                "domain": {"patches": [patches]},
+            });
+            run_scene(&checked(&with(&value, &layout)), 2).unwrap().digest
+        };
+        let whole = digest("exchange", 1);
+        for patches in [1, 3, 16, 120] {
+            for halo in ["exchange", "deep"] {
+                assert_eq!(digest(halo, patches), whole, "{method}: {halo}, {patches} patches");
+            }
+        }
+    }
+}
+
 /// The same, for scenes that run to their end.
 #[track_caller]
 fn same(value: &Value, what: &str) {
