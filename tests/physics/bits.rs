@@ -22,9 +22,14 @@ fn same_end(value: &Value, what: &str) -> Result<String, String> {
 
 #[test]
 fn filters_from_messages_and_from_deep_ghosts() {
-    let sides = [json!({}), json!({"x_lower": "wall", "x_upper": "symmetry"})];
+    let sides = [json!({}), json!({"x_upper": "symmetry"})];
     for (method, boundary) in [json!({"fmpm": 6}), json!({"xpic": 3})].iter().zip(sides) {
         let mut value = small_midpoint("cpdi_bspline_quadratic", method);
+        if boundary != json!({}) {
+            // a wall behind the target, so that the filters are mirrored there
+            value["domain"]["upper"] = json!([0.0002]);
+            value["bodies"][1]["box"]["upper"] = json!([0.0002]);
+        }
         value["boundary"] = boundary;
         let digest = |halo: &str, patches: usize| {
             let layout = json!({
@@ -34,7 +39,7 @@ fn filters_from_messages_and_from_deep_ghosts() {
             run_scene(&checked(&with(&value, &layout)), 2).unwrap().digest
         };
         let whole = digest("exchange", 1);
-        for patches in [1, 3, 16, 120] {
+        for patches in [1, 3, 16, 40] {
             for halo in ["exchange", "deep"] {
                 assert_eq!(digest(halo, patches), whole, "{method}: {halo}, {patches} patches");
             }
