@@ -3,7 +3,8 @@
 //! Which columns there are follows from what the scene names: an effect that it does not name
 //! has none.
 
-use decomp::{Block, ColumnSpec, Layout, Mirror};
+use decomp::{Block, ColumnSpec, IndexBox, Layout, Mirror};
+use nalgebra::SVector;
 
 use crate::scene::{CheckedScene, Stepping, Transfer};
 
@@ -97,6 +98,20 @@ impl Columns {
     }
 }
 
+/// Centres of the equal boxes that `counts` of them in each direction cut a box into; the first
+/// direction runs fastest.
+fn lattice<const D: usize>(
+    lower: SVector<f64, D>,
+    upper: SVector<f64, D>,
+    counts: [usize; D],
+) -> impl Iterator<Item = SVector<f64, D>> {
+    let size = upper - lower;
+    IndexBox::new([0; D], counts.map(|n| n as i64)).iter().map(move |k| {
+        let share = |a: usize| (2 * k[a] + 1) as f64 / (2 * counts[a]) as f64;
+        lower + size.component_mul(&SVector::from_fn(|a, _| share(a)))
+    })
+}
+
 /// Fills the bodies with particles, keeping those whose patch is on `rank`: a block a patch of
 /// the rank. Ids number the particles of all bodies in order, whatever the layout. Velocities
 /// are those seen from a grid that travels at `grid_velocity` [m/s].
@@ -120,11 +135,12 @@ pub fn fill(
     let mut id = 0u64;
     for (number, (body, checked)) in scene.scene.bodies.iter().zip(&scene.bodies).enumerate() {
         let material = &scene.scene.materials[&body.material];
-        let (lower, upper) = (body.extent.lower[0], body.extent.upper[0]);
-        let count = checked.lattice[0];
-        let length = (upper - lower) / count as f64;
-        for k in 0..count {
-            let x = lower + (upper - lower) * ((2 * k + 1) as f64 / (2 * count) as f64);
+        let lower = SVector::from([body.extent.lower[0]]);
+        let upper = SVector::from([body.extent.upper[0]]);
+        let counts = [checked.lattice[0]];
+        let length = (upper - lower)[0] / counts[0] as f64;
+        for centre in lattice(lower, upper, counts) {
+            let x = centre[0];
             let cell = cell_of(scene, x);
             let patch = layout.wrap_cell([cell]).map(|c| layout.patch_of(c));
             if let Some(block) = patch.and_then(|p| place[p]) {
@@ -150,4 +166,19 @@ pub fn fill(
 /// The cell of a place.
 pub fn cell_of(scene: &CheckedScene, x: f64) -> i64 {
     ((x - scene.scene.domain.lower[0]) * (1.0 / scene.cell_size[0])).floor() as i64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lattice_has_the_centres_of_its_boxes() {
+        let lower = SVector::from([-1.0, 0.0]);
+        let places: Vec<_> = lattice(lower, SVector::from([1.0, 3.0]), [2, 3]).collect();
+        assert_eq!(places.len(), 6);
+        assert_eq!(places[0], SVector::from([-0.5, 0.5]));
+        assert_eq!(places[1], SVector::from([0.5, 0.5]));
+        assert_eq!(places[5], SVector::from([0.5, 2.5]));
+    }
 }

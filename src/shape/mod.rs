@@ -1,4 +1,5 @@
-//! Shape functions: one file a function, one line a function in [`with_shape`](crate::step).
+//! Shape functions: one file a function, one line a function in `with_shape` of
+//! [`crate::step`].
 //!
 //! A shape function gives a particle weights on the nodes about it. Lengths are in cells: a
 //! particle lies at `fraction` in [0, 1) of its cell and is `length` long. Knows no materials,

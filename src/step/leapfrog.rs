@@ -23,11 +23,7 @@ impl Stepper {
         world.exchange_rows()?;
         if self.stress_update == StressUpdate::First {
             world.nodal(|nodal| {
-                nodal.each(|patch| {
-                    self.find_weights(patch);
-                    self.scatter_motion(patch);
-                    self.divide_by_mass(patch);
-                });
+                nodal.each(|patch| self.scatter(patch, false));
                 self.filter_velocity(nodal);
                 nodal.each(|patch| {
                     self.gather_gradient(patch, star);
@@ -39,12 +35,7 @@ impl Stepper {
         }
         let last = self.stress_update == StressUpdate::Last;
         world.nodal(|nodal| {
-            nodal.each(|patch| {
-                self.find_weights(patch);
-                self.scatter_motion(patch);
-                self.scatter_force(patch);
-                self.divide_by_mass(patch);
-            });
+            nodal.each(|patch| self.scatter(patch, true));
             self.solve_velocity(nodal, dt);
             nodal.each(|patch| {
                 self.gather_velocity(patch);

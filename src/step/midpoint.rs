@@ -34,12 +34,7 @@ impl Stepper {
         });
         world.exchange_rows()?;
         world.nodal(|nodal| {
-            nodal.each(|patch| {
-                self.find_weights(patch);
-                self.scatter_motion(patch);
-                self.scatter_force(patch);
-                self.divide_by_mass(patch);
-            });
+            nodal.each(|patch| self.scatter(patch, true));
             self.solve_velocity(nodal, dt);
             if self.compatible {
                 self.solve_work(nodal);
@@ -74,11 +69,7 @@ impl Stepper {
         });
         world.exchange_rows()?;
         world.nodal(|nodal| {
-            nodal.each(|patch| {
-                self.find_weights(patch);
-                self.scatter_motion(patch);
-                self.divide_by_mass(patch);
-            });
+            nodal.each(|patch| self.scatter(patch, false));
             self.solve_velocity(nodal, 0.0);
             nodal.each(|patch| self.gather_gradient(patch, self.fields.velocity_star));
         });

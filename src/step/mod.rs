@@ -4,14 +4,14 @@
 //! [`midpoint`] or [`leapfrog`]. Physics and messages meet in [`World`], which calls a phase on
 //! every patch and the exchanges between phases.
 
-mod gather;
-mod leapfrog;
-mod midpoint;
+pub mod gather;
+pub mod leapfrog;
+pub mod midpoint;
 mod reach;
-mod relaxation;
+pub mod relaxation;
 mod rows;
-mod scatter;
-mod series;
+pub mod scatter;
+pub mod series;
 mod world;
 
 pub use reach::Reach;

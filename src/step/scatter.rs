@@ -6,6 +6,17 @@ use crate::patch::Patch;
 use crate::transfer::{Scheme, add};
 
 impl Stepper {
+    /// All sums of a patch at new places of its rows, with or without the force, and the lumped
+    /// velocity and acceleration from them.
+    pub(super) fn scatter(&self, patch: &mut Patch<1>, force: bool) {
+        self.find_weights(patch);
+        self.scatter_motion(patch);
+        if force {
+            self.scatter_force(patch);
+        }
+        self.divide_by_mass(patch);
+    }
+
     /// Whether the scheme needs the mass matrix.
     pub(super) fn needs_matrix(&self) -> bool {
         match self.scheme {

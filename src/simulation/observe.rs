@@ -1,0 +1,193 @@
+//! What a run tells of its particles: sums, tables, what is followed.
+
+use decomp::{Comm, exact_sums, gather_rows};
+use sha2::{Digest, Sha256};
+
+use super::Simulation;
+use crate::output::{ParticleTable, TableColumn};
+use crate::patch::Left;
+
+/// Sums over all particles, to the same bits for any layout.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Totals {
+    /// Mass [kg].
+    pub mass: f64,
+    /// Momentum [kg m/s].
+    pub momentum: f64,
+    /// Sum of m |v| [kg m/s].
+    pub absolute_momentum: f64,
+    /// Kinetic energy [J].
+    pub kinetic: f64,
+    /// Internal energy [J].
+    pub internal: f64,
+}
+
+/// What a particle that is followed tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Followed {
+    /// Its position [m].
+    pub position: f64,
+    /// Its velocity [m/s].
+    pub velocity: f64,
+    /// Its pressure [Pa].
+    pub pressure: f64,
+    /// Half of its length [m].
+    pub half_length: f64,
+}
+
+impl<C: Comm> Simulation<'_, C> {
+    /// Sums over all particles in the frame of the scene. Collective.
+    pub fn totals(&self) -> Totals {
+        let c = &self.stepper.columns;
+        let [mass, momentum, absolute_momentum, kinetic, internal] =
+            exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
+                for patch in &self.patches {
+                    let column = |k: usize| &patch.block.columns[k];
+                    let (m, v, e) = (column(c.mass), column(c.velocity), column(c.energy));
+                    for r in 0..patch.block.own() {
+                        let v = v[r] + self.grid_velocity;
+                        add(0, m[r]);
+                        add(1, m[r] * v);
+                        add(2, m[r] * v.abs());
+                        add(3, 0.5 * m[r] * v * v);
+                        add(4, m[r] * e[r]);
+                    }
+                }
+            });
+        Totals { mass, momentum, absolute_momentum, kinetic, internal }
+    }
+
+    /// What has left by outflows, in the frame of the scene. Collective.
+    pub fn left(&self) -> Left {
+        let [count, mass, momentum, kinetic, internal] =
+            exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
+                let v = self.grid_velocity;
+                for left in self.patches.iter().map(|p| p.left) {
+                    let momentum = left.momentum + v * left.mass;
+                    let kinetic = left.kinetic + v * (left.momentum + 0.5 * v * left.mass);
+                    let terms = [left.count as f64, left.mass, momentum, kinetic, left.internal];
+                    terms.iter().enumerate().for_each(|(k, t)| add(k, *t));
+                }
+            });
+        Left { count: count as u64, mass, momentum, kinetic, internal }
+    }
+
+    /// All particles and the digest of the whole state, every bit in order of id, at rank 0;
+    /// nothing elsewhere. Collective.
+    pub fn gather(&self) -> Option<(ParticleTable, String)> {
+        let c = &self.stepper.columns;
+        let state = c.state();
+        let (ids, columns) = gather_rows(self.comm, self.patches.iter().map(|p| &p.block), &state);
+        if self.comm.rank() != 0 {
+            return None;
+        }
+        let mut digest = Sha256::new();
+        let mut bytes = Vec::with_capacity(8 * (columns.len() + 1));
+        for (row, id) in ids.iter().enumerate() {
+            bytes.clear();
+            bytes.extend(id.to_le_bytes());
+            columns.iter().for_each(|c| bytes.extend(c[row].to_le_bytes()));
+            digest.update(&bytes);
+        }
+        let digest = digest.finalize().iter().map(|b| format!("{b:02x}")).collect();
+        let column = |k: usize| &columns[state.iter().position(|&s| s == k).expect("state")];
+        Some((self.table(&ids, column), digest))
+    }
+
+    fn table<'b>(&self, ids: &[u64], column: impl Fn(usize) -> &'b Vec<f64>) -> ParticleTable {
+        let c = &self.stepper.columns;
+        let shift = self.grid_velocity * self.time;
+        let x: Vec<f64> = column(c.position).iter().map(|x| x + shift).collect();
+        let mut order: Vec<usize> = (0..ids.len()).collect();
+        order.sort_by(|&a, &b| x[a].total_cmp(&x[b]).then(ids[a].cmp(&ids[b])));
+        let pick = |f: &dyn Fn(usize) -> f64| order.iter().map(|&r| f(r)).collect::<Vec<f64>>();
+        let named = |name: &str, unit: &str, values| TableColumn {
+            name: name.into(),
+            unit: unit.into(),
+            values,
+        };
+        let (m, v0, j) = (column(c.mass), column(c.volume0), column(c.jacobian));
+        let q = c.viscosity.map(&column);
+        let columns = vec![
+            named("x", "m", pick(&|r| x[r])),
+            named("pressure", "Pa", pick(&|r| column(c.pressure)[r])),
+            named("velocity", "m/s", pick(&|r| column(c.velocity)[r] + self.grid_velocity)),
+            named("density", "kg/m3", pick(&|r| m[r] / (v0[r] * j[r]))),
+            named("specific_internal_energy", "J/kg", pick(&|r| column(c.energy)[r])),
+            named("artificial_viscosity", "Pa", pick(&|r| q.map_or(0.0, |q| q[r]))),
+        ];
+        let body: Vec<u32> = order.iter().map(|&r| column(c.body)[r] as u32).collect();
+        ParticleTable {
+            time: self.time,
+            dimension: 1,
+            ids: order.iter().map(|&r| ids[r]).collect(),
+            material: body.iter().map(|&b| self.scene.bodies[b as usize].material as u32).collect(),
+            materials: self.scene.scene.materials.keys().cloned().collect(),
+            body,
+            columns,
+        }
+    }
+
+    /// The particles of the ids in `wanted` (in order) at rank 0; `None` for one that has left.
+    /// Nothing elsewhere. Collective.
+    pub fn follow(&self, wanted: &[u64]) -> Vec<Option<Followed>> {
+        let c = &self.stepper.columns;
+        let shift = self.grid_velocity * self.time;
+        let mut words = Vec::new();
+        for patch in &self.patches {
+            let column = |k: usize, r: usize| patch.block.columns[k][r];
+            for row in 0..patch.block.own() {
+                let id = patch.block.ids[row];
+                if !wanted.contains(&id) {
+                    continue;
+                }
+                let half = 0.5 * column(c.volume0, row) * column(c.jacobian, row);
+                words.push(id);
+                words.push((column(c.position, row) + shift).to_bits());
+                words.push((column(c.velocity, row) + self.grid_velocity).to_bits());
+                words.push(column(c.pressure, row).to_bits());
+                words.push(half.to_bits());
+            }
+        }
+        let all = self.comm.gather(&words);
+        if self.comm.rank() != 0 {
+            return Vec::new();
+        }
+        let rows: Vec<&[u64]> = all.iter().flat_map(|w| w.chunks(5)).collect();
+        wanted
+            .iter()
+            .map(|id| {
+                rows.iter().find(|w| w[0] == *id).map(|w| Followed {
+                    position: f64::from_bits(w[1]),
+                    velocity: f64::from_bits(w[2]),
+                    pressure: f64::from_bits(w[3]),
+                    half_length: f64::from_bits(w[4]),
+                })
+            })
+            .collect()
+    }
+
+    /// Position and pressure of every `stride`th particle by id, sorted by x, at rank 0; empty
+    /// elsewhere. Collective.
+    pub fn sample_pressure(&self, stride: u64) -> Vec<(f64, f64)> {
+        let c = &self.stepper.columns;
+        let shift = self.grid_velocity * self.time;
+        let mut words = Vec::new();
+        for patch in &self.patches {
+            for row in 0..patch.block.own() {
+                if patch.block.ids[row].is_multiple_of(stride) {
+                    words.push((patch.block.columns[c.position][row] + shift).to_bits());
+                    words.push(patch.block.columns[c.pressure][row].to_bits());
+                }
+            }
+        }
+        let all = self.comm.gather(&words);
+        let mut points: Vec<(f64, f64)> = all
+            .iter()
+            .flat_map(|w| w.chunks(2))
+            .map(|w| (f64::from_bits(w[0]), f64::from_bits(w[1])))
+            .collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points
+    }
+}
