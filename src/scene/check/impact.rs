@@ -147,10 +147,15 @@ fn check_impact(checked: &CheckedScene, impact: &Impact) -> Result<(), Fault> {
     } else {
         checked.scene.bodies[impact.body].name.as_str()
     };
+    // a number of hundreds of digits is no help
+    let speed = match impact.speed {
+        speed if speed < 1e9 => format!("{speed}"),
+        speed => format!("{speed:e}"),
+    };
     let reason = format!(
-        "an impact on {against} at {:?} m/s compresses {} past {chi:.4}, the lesser of 0.95 and \
+        "an impact on {against} at {speed} m/s compresses {} past {chi:.4}, the lesser of 0.95 and \
          0.95/s; allowed: at most {most:.0} m/s",
-        impact.speed, checked.scene.bodies[weaker].material
+        checked.scene.bodies[weaker].material
     );
     let path = join(&join("bodies", &checked.scene.bodies[moving].name), "velocity");
     Err(Fault::new(path, &checked.bodies[moving].velocity, reason))
