@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use decomp::{Block, IndexBox, Layout, NodeArrays};
+use decomp::{Block, Layout, NodeArrays};
 
 use crate::grid::Band;
 use crate::shape::{Shape, Weights};
@@ -98,8 +98,6 @@ pub struct Left {
 /// One patch. Its layout is that of `D` directions; the physics is one-dimensional so far.
 #[derive(Clone, Debug)]
 pub struct Patch<const D: usize> {
-    /// Its cells.
-    pub cells: IndexBox<D>,
     /// Its rows.
     pub block: Block<D>,
     /// Its nodes.
@@ -129,7 +127,6 @@ impl<const D: usize> Patch<D> {
     /// The patch `index` of `layout`, with `block`'s rows and no nodal fields yet.
     pub fn new(layout: &Layout<D>, index: usize, block: Block<D>) -> Self {
         Patch {
-            cells: layout.patches()[index],
             block,
             nodes: NodeArrays::new(layout, index, 0, 0),
             stencils: Stencils::default(),

@@ -4,7 +4,8 @@
 
 use crate::exact::{
     Accuracy, Chain, Errors, ExactError, GasState, Impact, ImpactBody, Plate, Profile, Riemann,
-    Sample, Solution, Tracer, WallImpact, WallMaterial, cell_average, score, score_density,
+    Sample, Solution, Tracer, WallImpact, WallMaterial, cell_average, interface_errors, score,
+    score_density,
 };
 use crate::material::MieGruneisen;
 use crate::output::ParticleTable;
@@ -184,7 +185,12 @@ impl Reference {
         let judge = |samples: &[Sample]| match self {
             Reference::Impact(all) => {
                 let marks = all.solution.snapshots[k].landmarks.as_ref()?;
-                Some(score(samples, &exact, marks, h))
+                let mut errors = score(samples, &exact, marks, h);
+                if let Some((density, energy)) = interface_errors(samples, &exact, marks, h) {
+                    errors.density_interface = Some(density);
+                    errors.energy_interface = Some(energy);
+                }
+                Some(errors)
             }
             Reference::Wall { solution, .. } => {
                 Some(score(samples, &exact, &solution.landmarks(time)?, h))

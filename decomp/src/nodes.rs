@@ -150,11 +150,6 @@ impl<const D: usize> NodeExchange<D> {
         plan
     }
 
-    /// Whether there is nothing to do on any rank.
-    pub fn is_idle(&self) -> bool {
-        self.local.is_empty() && self.sends.is_empty() && self.receives.is_empty()
-    }
-
     /// Fills the halos of `fields` with the owners' values, and sets fields that are odd in a
     /// mirror to zero on it. `patches` are this rank's, in order. Collective between neighbours.
     pub fn refresh<'a, C: Comm + ?Sized>(

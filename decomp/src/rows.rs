@@ -36,7 +36,6 @@ struct Route<const D: usize> {
 #[derive(Clone, Debug)]
 pub struct RowExchange<const D: usize> {
     layout: Layout<D>,
-    rank: usize,
     depth: i64,
     /// For each patch of this rank, who may need its rows.
     routes: Vec<Vec<Route<D>>>,
@@ -57,7 +56,6 @@ impl<const D: usize> RowExchange<D> {
         let images = layout.images(depth + travel);
         let mut exchange = RowExchange {
             layout: layout.clone(),
-            rank,
             depth,
             routes: Vec::new(),
             send_ranks: Vec::new(),
@@ -106,11 +104,6 @@ impl<const D: usize> RowExchange<D> {
         }
         exchange.messages = vec![Vec::new(); exchange.send_ranks.len()];
         exchange
-    }
-
-    /// How many cells away ghosts come from.
-    pub fn depth(&self) -> i64 {
-        self.depth
     }
 
     /// Hands over the rows that have moved and renews all ghosts. `blocks` are this rank's, in
@@ -199,11 +192,6 @@ impl<const D: usize> RowExchange<D> {
             block.retain(&keep);
         }
         Ok(())
-    }
-
-    /// This rank.
-    pub fn rank(&self) -> usize {
-        self.rank
     }
 }
 

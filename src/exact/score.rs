@@ -52,6 +52,11 @@ pub struct Errors {
     pub energy_plateau: Option<f64>,
     /// int |rho - rho_exact| dx [kg/m2], for Riemann problems.
     pub density_l1: Option<f64>,
+    /// Greatest error of density within ten cells of the interface, fraction of rho2: faults of
+    /// the energy show here, not in the pressure.
+    pub density_interface: Option<f64>,
+    /// Greatest error of specific internal energy there, fraction of e2.
+    pub energy_interface: Option<f64>,
 }
 
 /// Replaces the particles in each cell of the grid (cells of size `h`, one face at `origin`) by

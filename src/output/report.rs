@@ -6,7 +6,7 @@ use std::path::Path;
 use super::summary::{ProfileSummary, Summary};
 
 /// Errors of a profile by name, with a heading and whether they are shown in per cent.
-const ERRORS: [(&str, &str, bool); 11] = [
+const ERRORS: [(&str, &str, bool); 13] = [
     ("l1", "L1 %", true),
     ("l2", "L2 %", true),
     ("e1_cells", "E1 cells", false),
@@ -18,6 +18,8 @@ const ERRORS: [(&str, &str, bool); 11] = [
     ("plateau_4", "plateau 4 %", true),
     ("density_plateau", "density %", true),
     ("energy_plateau", "energy %", true),
+    ("density_interface", "interface density %", true),
+    ("energy_interface", "energy %", true),
 ];
 
 /// Each time's errors, energy, momentum, steps, seconds, and where the files are, as aligned text.

@@ -245,11 +245,6 @@ impl<'a, C: Comm> Simulation<'a, C> {
         &self.stepper.columns
     }
 
-    /// Own particles on this rank.
-    pub fn particles_here(&self) -> usize {
-        self.patches.iter().map(|p| p.block.own()).sum()
-    }
-
     /// The longest stable step over all ranks, and the verdict on all ranks' faults. Collective.
     fn agree(&mut self) -> Result<(), RunError> {
         let faulty = self.patches.iter().any(|p| p.told.fault.is_some());
