@@ -38,13 +38,25 @@ impl Profile {
         }
         panel.notes.clone_from(&self.notes);
         panel.close_up = self.close_up;
-        let title = format!("{}, t = {}", self.title, microseconds(self.time));
+        let title = format!("{}, t = {}", self.title, readable(self.time));
         Figure::new(title, Axis::linear("Position", "m").tight()).panel(panel)
     }
 }
 
-/// A time in microseconds, without needless digits.
-fn microseconds(time: f64) -> String {
-    let text = format!("{:.4}", time * 1e6);
-    format!("{} µs", text.trim_end_matches('0').trim_end_matches('.'))
+/// A time in microseconds, or in seconds where those would be many, without needless digits.
+fn readable(time: f64) -> String {
+    let (scale, unit) = if time < 1e-2 { (1e6, "µs") } else { (1.0, "s") };
+    let text = format!("{:.4}", time * scale);
+    format!("{} {unit}", text.trim_end_matches('0').trim_end_matches('.'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_in_a_unit_that_suits_them() {
+        assert_eq!(readable(5e-7), "0.5 µs");
+        assert_eq!(readable(0.2), "0.2 s");
+    }
 }
