@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use decomp::{Block, Layout, NodeArrays};
 
+use crate::clock::Watch;
 use crate::grid::Band;
 use crate::shape::{Shape, Weights};
 
@@ -80,19 +81,17 @@ impl Fault {
     }
 }
 
-/// What has left by an outflow; a patch counts in the grid's frame, the run in the scene's.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Left {
-    /// Number of particles.
-    pub count: u64,
+/// A particle that has left by an outflow, as seen in the grid's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Departed {
+    /// Its id.
+    pub id: u64,
     /// Mass [kg].
     pub mass: f64,
-    /// Momentum [kg m/s].
-    pub momentum: f64,
-    /// Kinetic energy [J].
-    pub kinetic: f64,
-    /// Internal energy [J].
-    pub internal: f64,
+    /// Velocity [m/s].
+    pub velocity: f64,
+    /// Specific internal energy [J/kg].
+    pub energy: f64,
 }
 
 /// One patch. Its layout is that of `D` directions; the physics is one-dimensional so far.
@@ -117,10 +116,44 @@ pub struct Patch<const D: usize> {
     pub deeper: i64,
     /// What it tells of its step.
     pub told: Told,
-    /// What has left by an outflow.
-    pub left: Left,
+    /// Particles that have left in this step.
+    pub departed: Vec<Departed>,
     /// Longest particle that ghosts and halos are deep enough for [cells].
     pub reach_length: f64,
+    /// Whether it sleeps.
+    pub rest: Rest,
+    /// Its clock.
+    pub watch: Watch,
+}
+
+/// The sleep of a patch at rest that no wave has reached: a step would change none of its bits.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Rest {
+    /// Steps computed in a row with nothing near that moves.
+    settled: u32,
+    /// Whether this step leaves it out.
+    asleep: bool,
+}
+
+impl Rest {
+    /// Whether this step leaves the patch out.
+    pub fn asleep(&self) -> bool {
+        self.asleep
+    }
+
+    /// Takes note of whether anything near may change the patch in this step. After `needed`
+    /// steps without, all that a step computes for it, nodal values included, has become what
+    /// the next one would compute again. Tells whether the patch has just fallen asleep.
+    fn note(&mut self, stirred: bool, needed: u32) -> bool {
+        if stirred {
+            *self = Rest::default();
+            return false;
+        }
+        let falls_asleep = !self.asleep && self.settled >= needed;
+        self.asleep |= falls_asleep;
+        self.settled += 1;
+        falls_asleep
+    }
 }
 
 impl<const D: usize> Patch<D> {
@@ -136,8 +169,41 @@ impl<const D: usize> Patch<D> {
             active: 0..0,
             deeper: 0,
             told: Told::default(),
-            left: Left::default(),
+            departed: Vec::new(),
             reach_length: f64::INFINITY,
+            rest: Rest::default(),
+            watch: Watch::default(),
+        }
+    }
+}
+
+impl<const D: usize> Patch<D> {
+    /// Gives it arrays of `fields` nodal values with halos of `depth` nodes, of which it computes
+    /// those up to `deeper` beyond its own.
+    pub fn set_arrays(
+        &mut self,
+        layout: &Layout<D>,
+        index: usize,
+        depth: i64,
+        deeper: i64,
+        fields: usize,
+    ) {
+        self.nodes = NodeArrays::new(layout, index, depth, fields);
+        self.deeper = deeper;
+        // what it held for its sleep is gone
+        self.rest = Rest::default();
+    }
+
+    /// Lets it sleep or wakes it, once it is known what moves near it. A patch that falls asleep
+    /// keeps the nodal fields of `kept`, the masses, and holds zeros in the others, as if it had
+    /// computed them.
+    pub fn settle(&mut self, needed: u32, kept: &[usize]) {
+        if self.rest.note(self.block.stirred, needed) {
+            for (k, field) in self.nodes.fields.iter_mut().enumerate() {
+                if !kept.contains(&k) {
+                    field.fill(0.0);
+                }
+            }
         }
     }
 }
@@ -186,6 +252,12 @@ impl Patch<1> {
         let last = self.stencils.first.iter().max().map_or(0, |&f| f as usize + width);
         let start = owned.start.max(first);
         self.active = start..owned.end.min(last).max(start);
+    }
+}
+
+impl<const D: usize> AsMut<Watch> for Patch<D> {
+    fn as_mut(&mut self) -> &mut Watch {
+        &mut self.watch
     }
 }
 

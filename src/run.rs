@@ -214,7 +214,6 @@ pub fn run<C: Comm>(
     let (energy, momentum, outflow) = balance(scene, &start, &end, &left);
     let particle_steps = scene.particles as f64 * simulation.steps() as f64;
     let layout = simulation.layout();
-    let phases = simulation.phase_seconds().0.iter();
     let summary = Summary {
         title: scene.scene.title.clone(),
         version: env!("CARGO_PKG_VERSION").into(),
@@ -229,7 +228,7 @@ pub fn run<C: Comm>(
         loop_wall_seconds,
         cpu_seconds: user_cpu_seconds() + others_cpu,
         particle_steps_per_cpu_second: particle_steps / loop_cpu,
-        phase_seconds: phases.map(|(name, s)| (name.to_string(), *s)).collect(),
+        phase_seconds: Default::default(),
         energy,
         momentum,
         outflow,
@@ -309,7 +308,7 @@ fn balance(
     scene: &CheckedScene,
     start: &Totals,
     end: &Totals,
-    left: &crate::patch::Left,
+    left: &crate::simulation::Left,
 ) -> (Energy, Momentum, Option<Outflow>) {
     let rigid = |s: &Side| matches!(s, Side::Symmetry | Side::Wall | Side::Velocity(_));
     let sides = sides(scene);

@@ -12,6 +12,12 @@ pub fn add<const K: usize>(field: &mut [f64], first: usize, terms: [f64; K]) {
     }
 }
 
+/// `value`, or zero if it is smaller than `least`.
+#[inline(always)]
+pub fn cut(value: f64, least: f64) -> f64 {
+    if value.abs() < least { 0.0 } else { value }
+}
+
 /// The nodes of `field` from `first` on.
 #[inline(always)]
 pub fn window<const K: usize>(field: &[f64], first: usize) -> &[f64; K] {

@@ -1,22 +1,65 @@
 //! Which rank has which patch, and how many patches to cut.
 
-/// Deals patches to ranks in order, so that each rank's share of `weights` is as even as whole
-/// patches allow. A rank may get none.
-pub fn assign_patches(weights: &[u64], ranks: usize) -> Vec<usize> {
-    let total: u128 = weights.iter().map(|&w| w as u128).sum();
-    let even = total == 0;
-    let total = if even { weights.len() as u128 } else { total };
-    let mut before = 0u128;
-    weights
-        .iter()
-        .map(|&w| {
-            let w = if even { 1 } else { w as u128 };
-            // by the middle of the patch's stretch of the whole
-            let rank = (2 * before + w) * ranks as u128 / (2 * total);
-            before += w;
-            (rank as usize).min(ranks - 1)
-        })
-        .collect()
+/// Deals patches to ranks in stretches of `order` (patches along a curve), so that the busiest
+/// rank's sum of `weights` is as small as whole patches in that order allow. A rank may get
+/// none. Returns the rank of each patch.
+///
+/// The least bottleneck is found by bisection (chains on chains: Pinar & Aykanat 2004). Within
+/// it, stretches end as near as they can to even shares, so that weights that change a little
+/// move few patches.
+pub fn assign_patches(weights: &[u64], order: &[usize], ranks: usize) -> Vec<usize> {
+    debug_assert_eq!(weights.len(), order.len(), "one place a patch");
+    // patches without any weight are spread as if all had the same
+    let even = weights.iter().all(|&w| w == 0);
+    let weights: Vec<u128> =
+        order.iter().map(|&p| if even { 1 } else { u128::from(weights[p]) }).collect();
+    let total: u128 = weights.iter().sum();
+    let heaviest = weights.iter().copied().max().unwrap_or(0);
+    let (mut low, mut high) = (heaviest.max(total.div_ceil(ranks as u128)), total);
+    while low < high {
+        let middle = low + (high - low) / 2;
+        if ranks_from(&weights, middle)[0] <= ranks { high = middle } else { low = middle + 1 }
+    }
+    let needed = ranks_from(&weights, low);
+    let mut of = vec![0; weights.len()];
+    let (mut rank, mut load, mut before) = (0, 0, 0);
+    for (k, &p) in order.iter().enumerate() {
+        let w = weights[k];
+        // even shares, by the middle of the patch's stretch of the whole
+        let wanted = ((2 * before + w) * ranks as u128 / (2 * total)) as usize;
+        let later_ranks_suffice = needed[k] < ranks - rank;
+        if load + w > low || (wanted > rank && later_ranks_suffice) {
+            (rank, load) = (rank + 1, 0);
+        }
+        of[p] = rank;
+        load += w;
+        before += w;
+    }
+    of
+}
+
+/// For each place the number of ranks that the weights from there on fill up to `limit`.
+fn ranks_from(weights: &[u128], limit: u128) -> Vec<usize> {
+    let mut needed = vec![0; weights.len() + 1];
+    let (mut end, mut load) = (weights.len(), 0);
+    for k in (0..weights.len()).rev() {
+        load += weights[k];
+        while load > limit {
+            end -= 1;
+            load -= weights[end];
+        }
+        needed[k] = 1 + needed[end];
+    }
+    needed
+}
+
+/// The largest sum of `weights` over the patches of one rank.
+pub fn busiest_share(weights: &[u64], ranks_of: &[usize], ranks: usize) -> u64 {
+    let mut loads = vec![0; ranks];
+    for (&w, &rank) in weights.iter().zip(ranks_of) {
+        loads[rank] += w;
+    }
+    loads.into_iter().max().unwrap_or(0)
 }
 
 /// A number of patches in each direction with at least one for each of `workers`, none narrower
@@ -36,13 +79,47 @@ pub fn choose_cuts<const D: usize>(cells: [usize; D], workers: usize, least: usi
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    fn line(weights: &[u64], ranks: usize) -> Vec<usize> {
+        let order: Vec<usize> = (0..weights.len()).collect();
+        assign_patches(weights, &order, ranks)
+    }
 
     #[test]
     fn shares_follow_the_weights() {
-        assert_eq!(assign_patches(&[1, 1, 1, 1], 2), [0, 0, 1, 1]);
-        assert_eq!(assign_patches(&[0, 0, 9, 9, 0], 2), [0, 0, 0, 1, 1]);
-        assert_eq!(assign_patches(&[0, 0], 2), [0, 1]);
-        assert_eq!(assign_patches(&[5], 3), [1]);
+        assert_eq!(line(&[1, 1, 1, 1], 2), [0, 0, 1, 1]);
+        assert_eq!(line(&[0, 0, 9, 9, 0], 2), [0, 0, 0, 1, 1]);
+        assert_eq!(line(&[0, 0], 2), [0, 1]);
+        assert_eq!(line(&[5], 3).len(), 1);
+        // the middle of the heavy patch lies before the middle of the whole
+        assert_eq!(line(&[5, 3, 3, 3], 2), [0, 0, 1, 1]);
+        assert_eq!(assign_patches(&[1, 5, 1, 5], &[0, 2, 1, 3], 3), [0, 1, 0, 2]);
+    }
+
+    /// The least bottleneck by trying every way to cut.
+    fn best(weights: &[u64], ranks: usize) -> u64 {
+        if ranks == 1 {
+            return weights.iter().sum();
+        }
+        (0..=weights.len())
+            .map(|k| weights[..k].iter().sum::<u64>().max(best(&weights[k..], ranks - 1)))
+            .min()
+            .unwrap()
+    }
+
+    proptest! {
+        #[test]
+        fn no_other_cuts_are_better(
+            weights in prop::collection::vec(0u64..30, 1..9),
+            ranks in 1usize..5,
+        ) {
+            let of = line(&weights, ranks);
+            prop_assert!(of.windows(2).all(|w| w[0] <= w[1]) && of.iter().all(|&r| r < ranks));
+            if weights.iter().any(|&w| w > 0) {
+                prop_assert_eq!(busiest_share(&weights, &of, ranks), best(&weights, ranks));
+            }
+        }
     }
 
     #[test]

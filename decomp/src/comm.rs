@@ -15,7 +15,13 @@ pub trait Comm {
 
     /// Sends each `(rank, words)` and receives one message from each rank of `from` (in that
     /// order) into `received`. Every send must be met by a receive on the other side.
-    fn exchange(&self, sends: &[(usize, &[u64])], from: &[usize], received: &mut Vec<Vec<u64>>);
+    fn exchange(
+        &self,
+        sends: &[(usize, &[u64])],
+        from: &[usize],
+        received: &mut Vec<Vec<u64>>,
+        meanwhile: &mut dyn FnMut(),
+    );
 
     /// Least of each value over the ranks. Collective.
     fn min(&self, values: &mut [f64]);
@@ -28,10 +34,10 @@ pub trait Comm {
         let mut all = Vec::new();
         if self.rank() == 0 {
             let from: Vec<usize> = (1..self.size()).collect();
-            self.exchange(&[], &from, &mut all);
+            self.exchange(&[], &from, &mut all, &mut || {});
             all.insert(0, words.to_vec());
         } else {
-            self.exchange(&[(0, words)], &[], &mut all);
+            self.exchange(&[(0, words)], &[], &mut all, &mut || {});
         }
         all
     }
@@ -47,18 +53,39 @@ pub trait Comm {
                 u64::from_le_bytes(word)
             }));
             let sends: Vec<(usize, &[u64])> = (1..self.size()).map(|r| (r, &words[..])).collect();
-            self.exchange(&sends, &[], &mut received);
+            self.exchange(&sends, &[], &mut received, &mut || {});
             return bytes;
         }
-        self.exchange(&[], &[0], &mut received);
+        self.exchange(&[], &[0], &mut received, &mut || {});
         let (length, words) = received[0].split_first().expect("a broadcast has its length");
         let mut out: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
         out.truncate(*length as usize);
         out
     }
 
+    /// What this rank has sent and how long it has waited.
+    fn traffic(&self) -> Traffic {
+        Traffic::default()
+    }
+
+    /// Tells whoever asks that this rank lives.
+    fn heartbeat(&self) {}
+
     /// Ends all ranks with `code`, from this one alone.
     fn abort(&self, code: i32) -> !;
+}
+
+/// What a rank has sent and how long it has waited.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Traffic {
+    /// Messages sent to another rank.
+    pub messages: u64,
+    /// Their bytes.
+    pub bytes: u64,
+    /// Reductions over all ranks.
+    pub reductions: u64,
+    /// Seconds of waiting for others.
+    pub waited: f64,
 }
 
 /// One rank, no messages.
@@ -74,8 +101,15 @@ impl Comm for Serial {
         1
     }
 
-    fn exchange(&self, sends: &[(usize, &[u64])], from: &[usize], received: &mut Vec<Vec<u64>>) {
+    fn exchange(
+        &self,
+        sends: &[(usize, &[u64])],
+        from: &[usize],
+        received: &mut Vec<Vec<u64>>,
+        meanwhile: &mut dyn FnMut(),
+    ) {
         debug_assert!(sends.is_empty() && from.is_empty(), "one rank has nobody to talk to");
+        meanwhile();
         received.clear();
     }
 

@@ -40,6 +40,20 @@ impl<const D: usize> Image<D> {
         })
     }
 
+    /// The cells that appear in `b`.
+    pub fn source_cells(&self, b: &IndexBox<D>) -> IndexBox<D> {
+        IndexBox {
+            lower: std::array::from_fn(|a| match self.flip[a] {
+                true => self.shift[a] - b.upper[a],
+                false => b.lower[a] - self.shift[a],
+            }),
+            upper: std::array::from_fn(|a| match self.flip[a] {
+                true => self.shift[a] - b.lower[a],
+                false => b.upper[a] - self.shift[a],
+            }),
+        }
+    }
+
     /// The node that appears at `i`.
     pub fn source_node(&self, i: [i64; D]) -> [i64; D] {
         std::array::from_fn(
@@ -154,6 +168,31 @@ impl<const D: usize> Layout<D> {
         at
     }
 
+    /// The patches that hold a cell of `b`, in order.
+    pub fn patches_in(&self, b: &IndexBox<D>) -> impl Iterator<Item = usize> + use<D> {
+        let b = b.intersect(&self.domain);
+        let parts: [usize; D] = std::array::from_fn(|a| self.cuts[a].len() - 1);
+        let first = |a: usize, c: i64| self.cuts[a].partition_point(|&cut| cut <= c) as i64 - 1;
+        let range = match b.is_empty() {
+            true => IndexBox::new([0; D], [0; D]),
+            false => IndexBox::new(
+                std::array::from_fn(|a| first(a, b.lower[a])),
+                std::array::from_fn(|a| first(a, b.upper[a] - 1) + 1),
+            ),
+        };
+        range.iter().map(move |k| (0..D).rev().fold(0, |at, a| at * parts[a] + k[a] as usize))
+    }
+
+    /// Number of patches in each direction.
+    pub fn parts(&self) -> [usize; D] {
+        std::array::from_fn(|a| self.cuts[a].len() - 1)
+    }
+
+    /// The rank of each patch.
+    pub fn ranks(&self) -> &[usize] {
+        &self.ranks
+    }
+
     /// The nodes that `patch` owns: those at its cells' lower corners, at an upper side the last
     /// ones too, and at an open side `depth` more beyond it.
     pub fn owned_nodes(&self, patch: usize, depth: i64) -> IndexBox<D> {
@@ -252,6 +291,21 @@ mod tests {
     }
 
     #[test]
+    fn patches_in_a_box_are_those_that_meet_it() {
+        let layout = Layout::new(IndexBox::new([-3, 2], [8, 9]), [[Side::Open; 2]; 2], [3, 2]);
+        for (lower, upper) in
+            [([-9, -9], [20, 20]), ([0, 3], [5, 4]), ([4, 4], [4, 9]), ([-3, 8], [8, 9])]
+        {
+            let b = IndexBox::new(lower, upper);
+            let met: Vec<usize> = layout.patches_in(&b).collect();
+            let all = layout.patches().iter().enumerate();
+            let expected: Vec<usize> =
+                all.filter(|(_, p)| !p.intersect(&b).is_empty()).map(|(k, _)| k).collect();
+            assert_eq!(met, expected, "{b:?}");
+        }
+    }
+
+    #[test]
     fn an_image_of_a_box_is_the_box_of_the_images() {
         let image = Image { flip: [true, false], shift: [6, -4] };
         let b = IndexBox::new([1, 2], [4, 7]);
@@ -261,5 +315,6 @@ mod tests {
             assert_eq!(image.source_node(image.node(i)), i);
         }
         assert_eq!(image.nodes(&b).count(), b.count());
+        assert_eq!(image.source_cells(&image.cells(&b)), b);
     }
 }

@@ -9,6 +9,9 @@
 //!   a neighbouring rank.
 //! - [`NodeExchange`] gives each patch finished values of nodes that other patches own.
 //!
+//! Both let the caller compute while messages fly. [`assign_patches`] deals patches to ranks
+//! along a space-filling curve by their weights, and [`relocate`] moves whole patches.
+//!
 //! Rows stand in canonical order, by global cell and then by id, so every patch that sums
 //! particle terms into a node adds the same terms in the same order: any layout and any number of
 //! ranks or threads gives the same bits.
@@ -18,18 +21,22 @@
 
 mod balance;
 pub mod comm;
+mod curve;
 mod index_box;
 mod layout;
 mod nodes;
 mod reduce;
+mod relocate;
 mod rows;
 mod table;
 
-pub use balance::{assign_patches, choose_cuts};
-pub use comm::{Comm, Serial};
+pub use balance::{assign_patches, busiest_share, choose_cuts};
+pub use comm::{Comm, Serial, Traffic};
+pub use curve::curve_order;
 pub use index_box::IndexBox;
 pub use layout::{Image, Layout, Side};
 pub use nodes::{NodeArrays, NodeExchange, Parity, fold_mirrors};
 pub use reduce::{ExactSum, exact_sums};
-pub use rows::{RowError, RowExchange, gather_rows};
+pub use relocate::{Census, Moved, relocate};
+pub use rows::{RowError, RowExchange, RowReach, gather_rows};
 pub use table::{Block, ColumnSpec, Mirror};

@@ -1,5 +1,6 @@
 //! Nodal values, and finished values from the patch that owns a node.
 
+use crate::rows::with_sends;
 use crate::{Comm, Image, IndexBox, Layout, Side};
 
 /// How a nodal field behaves in a mirror.
@@ -71,14 +72,15 @@ pub(crate) fn leave_out_mirror<const D: usize>(
     }
 }
 
-/// One stretch of nodes that one patch takes from another (or from itself, across a side).
+/// Nodes that one patch takes from another (or from itself, across a side).
 #[derive(Clone, Debug)]
 struct Copy<const D: usize> {
+    /// Places of the patches in their ranks' lists; of another rank's patch none.
     from: usize,
     to: usize,
-    /// At the taker.
-    nodes: IndexBox<D>,
-    image: Image<D>,
+    flip: [bool; D],
+    /// Places in the giver's and the taker's arrays.
+    nodes: Vec<(u32, u32)>,
 }
 
 /// Who takes which nodes from whom.
@@ -88,75 +90,106 @@ pub struct NodeExchange<const D: usize> {
     /// Between patches of this rank.
     local: Vec<Copy<D>>,
     /// To each rank, by rank.
-    sends: Vec<(usize, Vec<Copy<D>>)>,
+    sends: Vec<Vec<Copy<D>>>,
+    send_ranks: Vec<usize>,
     /// From each rank, by rank.
-    receives: Vec<(usize, Vec<Copy<D>>)>,
-    /// Place of each patch in this rank's list.
-    place: Vec<Option<usize>>,
+    receives: Vec<Vec<Copy<D>>>,
+    receive_ranks: Vec<usize>,
+    /// For each patch of this rank, whether it takes nothing from other ranks.
+    inner: Vec<bool>,
     messages: Vec<Vec<u64>>,
     received: Vec<Vec<u64>>,
 }
 
 impl<const D: usize> NodeExchange<D> {
-    /// The exchange for halos of `depth` nodes, on `rank`.
-    pub fn new(layout: &Layout<D>, rank: usize, depth: i64) -> Self {
+    /// The exchange on `rank` for halos of `halo` nodes, in arrays with `depth` nodes about each
+    /// patch's cells.
+    pub fn new(layout: &Layout<D>, rank: usize, halo: i64, depth: i64) -> Self {
+        let patches = layout.patches_of(rank);
+        let mut place = vec![usize::MAX; layout.patches().len()];
+        patches.iter().enumerate().for_each(|(k, &p)| place[p] = k);
         let mut plan = NodeExchange {
             layout: layout.clone(),
             local: Vec::new(),
             sends: Vec::new(),
+            send_ranks: Vec::new(),
             receives: Vec::new(),
-            place: vec![None; layout.patches().len()],
+            receive_ranks: Vec::new(),
+            inner: vec![true; patches.len()],
             messages: Vec::new(),
             received: Vec::new(),
         };
-        for (k, p) in layout.patches_of(rank).into_iter().enumerate() {
-            plan.place[p] = Some(k);
+        let images = layout.images(halo);
+        let halo_of = |patch: usize| with_corners(layout.patches()[patch].grow(halo));
+        let arrays_of = |patch: usize| with_corners(layout.patches()[patch].grow(depth));
+        // patches that own a node of the halo have a cell within one more
+        let mut pairs: Vec<(usize, usize)> = Vec::new();
+        for &mine in &patches {
+            let near = layout.patches()[mine].grow(halo + 1);
+            for image in &images {
+                let givers = layout.patches_in(&image.source_cells(&near).grow(halo));
+                pairs.extend(givers.map(|giver| (mine, giver)));
+                let takers = layout.patches_in(&image.cells(&near).grow(halo));
+                pairs.extend(takers.map(|taker| (taker, mine)));
+            }
         }
-        let images = layout.images(depth);
-        let count = layout.patches().len();
-        for to in 0..count {
-            let taker = layout.rank_of(to);
-            let mut halo = layout.patches()[to].grow(depth);
-            halo.upper = halo.upper.map(|u| u + 1);
-            for from in 0..count {
-                let giver = layout.rank_of(from);
-                if taker != rank && giver != rank {
+        // in the same order on both sides
+        pairs.sort_unstable();
+        pairs.dedup();
+        for (to, from) in pairs {
+            let (taker, giver) = (layout.rank_of(to), layout.rank_of(from));
+            for image in &images {
+                if from == to && *image == Image::IDENTITY {
                     continue;
                 }
-                for image in &images {
-                    if from == to && *image == Image::IDENTITY {
-                        continue;
-                    }
-                    let mut owned = layout.owned_nodes(from, depth);
-                    leave_out_mirror(layout, image, &mut owned);
-                    let nodes = image.nodes(&owned).intersect(&halo);
-                    if owned.is_empty() || nodes.is_empty() {
-                        continue;
-                    }
-                    let copy = Copy { from, to, nodes, image: *image };
-                    if taker == giver {
-                        plan.local.push(copy);
-                    } else if giver == rank {
-                        add(&mut plan.sends, taker, copy);
-                    } else {
-                        add(&mut plan.receives, giver, copy);
-                    }
+                let mut owned = layout.owned_nodes(from, halo);
+                leave_out_mirror(layout, image, &mut owned);
+                let nodes = image.nodes(&owned).intersect(&halo_of(to));
+                if owned.is_empty() || nodes.is_empty() {
+                    continue;
+                }
+                let (giving, taking) = (arrays_of(from), arrays_of(to));
+                let nodes = nodes
+                    .iter()
+                    .map(|n| (giving.flat(image.source_node(n)) as u32, taking.flat(n) as u32));
+                let copy = Copy {
+                    from: place[from],
+                    to: place[to],
+                    flip: image.flip,
+                    nodes: nodes.collect(),
+                };
+                if taker == giver {
+                    plan.local.push(copy);
+                } else if giver == rank {
+                    add(&mut plan.send_ranks, &mut plan.sends, taker, copy);
+                } else {
+                    plan.inner[place[to]] = false;
+                    add(&mut plan.receive_ranks, &mut plan.receives, giver, copy);
                 }
             }
         }
-        plan.sends.sort_by_key(|s| s.0);
-        plan.receives.sort_by_key(|r| r.0);
         plan.messages = vec![Vec::new(); plan.sends.len()];
+        plan.received = vec![Vec::new(); plan.receives.len()];
         plan
     }
 
+    /// For each patch of this rank, whether it takes nothing from other ranks.
+    pub fn inner(&self) -> &[bool] {
+        &self.inner
+    }
+
     /// Fills the halos of `fields` with the owners' values, and sets fields that are odd in a
-    /// mirror to zero on it. `patches` are this rank's, in order. Collective between neighbours.
-    pub fn refresh<'a, C: Comm + ?Sized>(
+    /// mirror to zero on it. `patches` are this rank's, in order.
+    ///
+    /// `meanwhile` is called once, with all patches, while messages are on their way: the halos
+    /// of those that are [`inner`](Self::inner) are filled by then, and it may change them.
+    /// Collective between neighbours.
+    pub fn refresh<C: Comm + ?Sized, P: AsMut<NodeArrays<D>>>(
         &mut self,
         comm: &C,
-        patches: &mut [impl AsMut<NodeArrays<D>> + 'a],
+        patches: &mut [P],
         fields: &[(usize, Parity)],
+        meanwhile: &mut dyn FnMut(&mut [P]),
     ) {
         for &(field, parity) in fields {
             if let Parity::Odd(axis) = parity {
@@ -165,50 +198,39 @@ impl<const D: usize> NodeExchange<D> {
                 }
             }
         }
-        for ((_, copies), message) in self.sends.iter().zip(&mut self.messages) {
+        for (copies, message) in self.sends.iter().zip(&mut self.messages) {
             message.clear();
             for copy in copies {
-                let from = self.place[copy.from].expect("a patch of this rank");
-                let arrays = patches[from].as_mut();
+                let arrays = patches[copy.from].as_mut();
                 for &(field, parity) in fields {
-                    let values = &arrays.fields[field];
-                    for node in copy.nodes.iter() {
-                        let value = values[arrays.nodes.flat(copy.image.source_node(node))];
-                        message.push(sign(value, parity, &copy.image).to_bits());
-                    }
+                    let (values, sign) = (&arrays.fields[field], sign(parity, &copy.flip));
+                    message
+                        .extend(copy.nodes.iter().map(|n| (sign * values[n.0 as usize]).to_bits()));
                 }
             }
         }
-        for copy in &self.local {
-            let from = self.place[copy.from].expect("a patch of this rank");
-            let to = self.place[copy.to].expect("a patch of this rank");
-            for &(field, parity) in fields {
-                for node in copy.nodes.iter() {
-                    let giver = patches[from].as_mut();
-                    let at = giver.nodes.flat(copy.image.source_node(node));
-                    let value = sign(giver.fields[field][at], parity, &copy.image);
-                    let taker = patches[to].as_mut();
-                    let at = taker.nodes.flat(node);
-                    taker.fields[field][at] = value;
-                }
+        let local = &self.local;
+        let mut on_this_rank = || {
+            for copy in local {
+                copy_fields(patches, copy, fields);
             }
+            meanwhile(patches);
+        };
+        if self.sends.is_empty() && self.receives.is_empty() {
+            on_this_rank();
+        } else {
+            with_sends(&self.send_ranks, &self.messages, |sends| {
+                comm.exchange(sends, &self.receive_ranks, &mut self.received, &mut on_this_rank)
+            });
         }
-        if !self.sends.is_empty() || !self.receives.is_empty() {
-            let sends: Vec<(usize, &[u64])> =
-                self.sends.iter().zip(&self.messages).map(|(s, m)| (s.0, &m[..])).collect();
-            let from: Vec<usize> = self.receives.iter().map(|r| r.0).collect();
-            comm.exchange(&sends, &from, &mut self.received);
-        }
-        for ((_, copies), message) in self.receives.iter().zip(&self.received) {
+        for (copies, message) in self.receives.iter().zip(&self.received) {
             let mut words = message.iter();
             for copy in copies {
-                let to = self.place[copy.to].expect("a patch of this rank");
-                let arrays = patches[to].as_mut();
+                let arrays = patches[copy.to].as_mut();
                 for &(field, _) in fields {
-                    for node in copy.nodes.iter() {
-                        let word = words.next().expect("the giver sends what the taker expects");
-                        let at = arrays.nodes.flat(node);
-                        arrays.fields[field][at] = f64::from_bits(*word);
+                    let values = &mut arrays.fields[field];
+                    for (node, word) in copy.nodes.iter().zip(&mut words) {
+                        values[node.1 as usize] = f64::from_bits(*word);
                     }
                 }
             }
@@ -216,17 +238,59 @@ impl<const D: usize> NodeExchange<D> {
     }
 }
 
-fn add<const D: usize>(list: &mut Vec<(usize, Vec<Copy<D>>)>, rank: usize, copy: Copy<D>) {
-    match list.iter_mut().find(|(r, _)| *r == rank) {
-        Some((_, copies)) => copies.push(copy),
-        None => list.push((rank, vec![copy])),
+/// The nodes at the corners of a box of cells.
+fn with_corners<const D: usize>(mut cells: IndexBox<D>) -> IndexBox<D> {
+    cells.upper = cells.upper.map(|u| u + 1);
+    cells
+}
+
+/// Copies between two patches of this rank, or within one.
+fn copy_fields<const D: usize>(
+    patches: &mut [impl AsMut<NodeArrays<D>>],
+    copy: &Copy<D>,
+    fields: &[(usize, Parity)],
+) {
+    if copy.from == copy.to {
+        let arrays = patches[copy.to].as_mut();
+        for &(field, parity) in fields {
+            let (values, sign) = (&mut arrays.fields[field], sign(parity, &copy.flip));
+            for &(from, to) in &copy.nodes {
+                values[to as usize] = sign * values[from as usize];
+            }
+        }
+        return;
+    }
+    let [giver, taker] = patches.get_disjoint_mut([copy.from, copy.to]).expect("they differ");
+    let (giver, taker) = (giver.as_mut(), taker.as_mut());
+    for &(field, parity) in fields {
+        let sign = sign(parity, &copy.flip);
+        let (from, to) = (&giver.fields[field], &mut taker.fields[field]);
+        for &(f, t) in &copy.nodes {
+            to[t as usize] = sign * from[f as usize];
+        }
     }
 }
 
-fn sign<const D: usize>(value: f64, parity: Parity, image: &Image<D>) -> f64 {
+fn add<const D: usize>(
+    ranks: &mut Vec<usize>,
+    lists: &mut Vec<Vec<Copy<D>>>,
+    rank: usize,
+    copy: Copy<D>,
+) {
+    let at = ranks.partition_point(|&r| r < rank);
+    if ranks.get(at) != Some(&rank) {
+        ranks.insert(at, rank);
+        lists.insert(at, Vec::new());
+    }
+    lists[at].push(copy);
+}
+
+/// What a field of this parity is multiplied by in an image: exact, and -0 for 0 in a mirror as
+/// negation gives it.
+fn sign<const D: usize>(parity: Parity, flip: &[bool; D]) -> f64 {
     match parity {
-        Parity::Odd(axis) if image.flip[axis] => -value,
-        _ => value,
+        Parity::Odd(axis) if flip[axis] => -1.0,
+        _ => 1.0,
     }
 }
 
@@ -267,7 +331,8 @@ pub fn fold_mirrors<const D: usize>(
                     let source = image.source_node(node);
                     if arrays.nodes.contains(source) {
                         let value = arrays.fields[field][arrays.nodes.flat(source)];
-                        arrays.fields[field][arrays.nodes.flat(node)] = sign(value, parity, &image);
+                        arrays.fields[field][arrays.nodes.flat(node)] =
+                            sign(parity, &image.flip) * value;
                     }
                 }
             }
@@ -317,7 +382,7 @@ mod tests {
 
     fn check(sides: [Side; 2], parts: usize, exact: impl Fn(i64) -> f64, parity: Parity) {
         let layout = Layout::new(IndexBox::new([0], [10]), [sides], [parts]);
-        let mut exchange = NodeExchange::new(&layout, 0, 4);
+        let mut exchange = NodeExchange::new(&layout, 0, 4, 4);
         let mut patches: Vec<_> = (0..parts).map(|p| NodeArrays::new(&layout, p, 4, 1)).collect();
         for arrays in &mut patches {
             for node in arrays.owned.iter() {
@@ -325,7 +390,7 @@ mod tests {
                 arrays.fields[0][at] = exact(node[0]);
             }
         }
-        exchange.refresh(&Serial, &mut patches, &[(0, parity)]);
+        exchange.refresh(&Serial, &mut patches, &[(0, parity)], &mut |_| {});
         for arrays in &patches {
             for node in arrays.nodes.iter() {
                 let got = arrays.fields[0][arrays.nodes.flat(node)];

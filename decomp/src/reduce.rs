@@ -33,6 +33,27 @@ impl ExactSum {
         self.total += (term * self.inverse).round_ties_even() as i128;
     }
 
+    /// Turns each of `sums` into that over all ranks. Collective.
+    pub fn over_ranks<C: Comm + ?Sized>(comm: &C, sums: &mut [ExactSum]) {
+        // limbs of 32 bits leave room for 2^31 ranks
+        let mut limbs: Vec<i64> = sums
+            .iter()
+            .flat_map(|s| {
+                let t = s.total;
+                [
+                    t as u32 as i64,
+                    (t >> 32) as u32 as i64,
+                    (t >> 64) as u32 as i64,
+                    (t >> 96) as i64,
+                ]
+            })
+            .collect();
+        comm.sum(&mut limbs);
+        for (sum, limb) in sums.iter_mut().zip(limbs.chunks(4)) {
+            sum.total = limb.iter().rev().fold(0, |high, &l| (high << 32) + l as i128);
+        }
+    }
+
     /// The sum so far.
     pub fn value(&self) -> f64 {
         self.total as f64 * self.quantum
@@ -52,18 +73,7 @@ pub fn exact_sums<C: Comm + ?Sized, const N: usize>(
     comm.min(&mut largest);
     let mut sums = largest.map(|l| ExactSum::new(-l));
     terms(&mut |k, term| sums[k].add(term));
-    // limbs of 32 bits leave room for 2^31 ranks
-    let mut limbs: Vec<i64> = sums
-        .iter()
-        .flat_map(|s| {
-            let t = s.total;
-            [t as u32 as i64, (t >> 32) as u32 as i64, (t >> 64) as u32 as i64, (t >> 96) as i64]
-        })
-        .collect();
-    comm.sum(&mut limbs);
-    for (sum, limb) in sums.iter_mut().zip(limbs.chunks(4)) {
-        sum.total = limb.iter().rev().fold(0, |high, &l| (high << 32) + l as i128);
-    }
+    ExactSum::over_ranks(comm, &mut sums);
     sums.map(|s| s.value())
 }
 

@@ -1,6 +1,6 @@
 //! Ghost rows and migration, in one message a neighbouring rank.
 
-use crate::{Block, Comm, Image, Layout};
+use crate::{Block, Comm, Image, IndexBox, Layout};
 
 /// A row that cannot be handed on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -19,134 +19,229 @@ pub enum RowError {
     },
 }
 
+/// How far rows are seen and move, in cells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RowReach {
+    /// Ghosts come from this far about a patch.
+    pub depth: i64,
+    /// Most that a row moves between two exchanges.
+    pub travel: i64,
+    /// A patch is stirred by active cells this far about it; `None`: always.
+    pub notice: Option<i64>,
+}
+
 /// A way in which rows of one patch appear at another.
 #[derive(Clone, Debug)]
 struct Route<const D: usize> {
     to: usize,
-    /// Of the taker's list of messages, or `None` on this rank.
-    message: Option<usize>,
+    taker: Taker,
+    /// The taker's cells, those with ghosts about them, and those whose activity stirs it.
+    home: IndexBox<D>,
+    halo: IndexBox<D>,
+    near: IndexBox<D>,
     images: Vec<Image<D>>,
 }
 
+/// Where a route's words go.
+#[derive(Clone, Copy, Debug)]
+enum Taker {
+    /// To a message, by its place in the list of messages.
+    Message(usize),
+    /// To a patch of this rank that hears of no other rank.
+    Inner,
+    /// To a patch of this rank that does.
+    Border,
+}
+
+/// What a stretch of words in a message is.
+const GHOST: u64 = 0;
+const OWN: u64 = 1;
+const STIR: u64 = 2;
+
 /// Who gives rows to whom, for ghosts up to a given number of cells away.
 ///
-/// One exchange does both: it hands over own rows whose cell now belongs to another patch, and
-/// copies rows to every patch within reach of them. Copies beyond a mirror or a joined side are
-/// images: their cell is the image's, their columns change as declared.
+/// One exchange does three things: it hands over own rows whose cell now belongs to another
+/// patch, copies rows to every patch within reach of them, and tells patches near active cells
+/// that they are stirred. Copies beyond a mirror or a joined side are images: their cell is the
+/// image's, their columns change as declared.
 #[derive(Clone, Debug)]
 pub struct RowExchange<const D: usize> {
-    layout: Layout<D>,
-    depth: i64,
+    reach: RowReach,
+    patches: Vec<usize>,
+    homes: Vec<IndexBox<D>>,
     /// For each patch of this rank, who may need its rows.
     routes: Vec<Vec<Route<D>>>,
+    /// For each patch of this rank, whether it hears of no other rank.
+    inner: Vec<bool>,
+    /// Place of each patch in this rank's list.
+    place: Vec<usize>,
     send_ranks: Vec<usize>,
     receive_ranks: Vec<usize>,
-    patches: Vec<usize>,
     messages: Vec<Vec<u64>>,
     received: Vec<Vec<u64>>,
-    local: Vec<u64>,
+    to_inner: Vec<u64>,
+    to_border: Vec<u64>,
     row: Vec<f64>,
+    gone: Vec<usize>,
+    migrated: u64,
 }
 
 impl<const D: usize> RowExchange<D> {
-    /// The exchange on `rank` with ghosts from `depth` cells about each patch. Between two calls
-    /// of `run` a row may move by up to `travel` cells.
-    pub fn new(layout: &Layout<D>, rank: usize, depth: i64, travel: i64) -> Self {
-        let count = layout.patches().len();
-        let images = layout.images(depth + travel);
-        let mut exchange = RowExchange {
-            layout: layout.clone(),
-            depth,
-            routes: Vec::new(),
-            send_ranks: Vec::new(),
-            receive_ranks: Vec::new(),
-            patches: layout.patches_of(rank),
-            messages: Vec::new(),
-            received: Vec::new(),
-            local: Vec::new(),
+    /// The exchange on `rank`.
+    pub fn new(layout: &Layout<D>, rank: usize, reach: RowReach) -> Self {
+        let RowReach { depth, travel, notice } = reach;
+        let seen = depth.max(notice.unwrap_or(0));
+        let images = layout.images(seen + travel);
+        let patches = layout.patches_of(rank);
+        let mut place = vec![usize::MAX; layout.patches().len()];
+        patches.iter().enumerate().for_each(|(k, &p)| place[p] = k);
+        let boxes = layout.patches();
+
+        // a patch is inner if no patch of another rank has a way to it
+        let mut receive_ranks = Vec::new();
+        let mut inner = vec![true; patches.len()];
+        for (k, &to) in patches.iter().enumerate() {
+            let halo = boxes[to].grow(seen);
+            for image in &images {
+                for from in layout.patches_in(&image.source_cells(&halo).grow(travel)) {
+                    let giver = layout.rank_of(from);
+                    if giver != rank {
+                        inner[k] = false;
+                        receive_ranks.push(giver);
+                    }
+                }
+            }
+        }
+        let mut routes = Vec::new();
+        let mut send_ranks = Vec::new();
+        for &from in &patches {
+            let reachable = boxes[from].grow(travel);
+            let mut takers: Vec<usize> = images
+                .iter()
+                .flat_map(|image| layout.patches_in(&image.cells(&reachable).grow(seen)))
+                .collect();
+            takers.sort_unstable();
+            takers.dedup();
+            let route = |to: usize| {
+                let halo = boxes[to].grow(depth);
+                let near = boxes[to].grow(notice.unwrap_or(-1));
+                let sees = boxes[to].grow(seen);
+                let taker = match place[to] {
+                    usize::MAX => Taker::Message(layout.rank_of(to)),
+                    k if inner[k] => Taker::Inner,
+                    _ => Taker::Border,
+                };
+                // a row that has crossed a joined side carries a cell at the other end already
+                let meets = |t: &&Image<D>| !t.cells(layout.domain()).intersect(&sees).is_empty();
+                let images = images.iter().filter(meets).copied().collect();
+                Route { to, taker, home: boxes[to], halo, near, images }
+            };
+            let from_here: Vec<Route<D>> = takers.into_iter().map(route).collect();
+            send_ranks.extend(from_here.iter().filter_map(|r| match r.taker {
+                Taker::Message(rank) => Some(rank),
+                _ => None,
+            }));
+            routes.push(from_here);
+        }
+        for ranks in [&mut send_ranks, &mut receive_ranks] {
+            ranks.sort_unstable();
+            ranks.dedup();
+        }
+        for route in routes.iter_mut().flatten() {
+            if let Taker::Message(rank) = &mut route.taker {
+                *rank = send_ranks.binary_search(rank).expect("a rank with a route");
+            }
+        }
+        RowExchange {
+            reach,
+            homes: patches.iter().map(|&p| boxes[p]).collect(),
+            patches,
+            routes,
+            inner,
+            place,
+            messages: vec![Vec::new(); send_ranks.len()],
+            received: vec![Vec::new(); receive_ranks.len()],
+            send_ranks,
+            receive_ranks,
+            to_inner: Vec::new(),
+            to_border: Vec::new(),
             row: Vec::new(),
-        };
-        for from in 0..count {
-            let giver = layout.rank_of(from);
-            let reachable = layout.patches()[from].grow(travel);
-            let mut routes = Vec::new();
-            for to in 0..count {
-                let taker = layout.rank_of(to);
-                if giver != rank && taker != rank {
-                    continue;
-                }
-                let halo = layout.patches()[to].grow(depth);
-                if !images.iter().any(|t| !t.cells(&reachable).intersect(&halo).is_empty()) {
-                    continue;
-                }
-                if giver == rank && taker != rank && !exchange.send_ranks.contains(&taker) {
-                    exchange.send_ranks.push(taker);
-                }
-                if taker == rank && giver != rank && !exchange.receive_ranks.contains(&giver) {
-                    exchange.receive_ranks.push(giver);
-                }
-                let images = images
-                    .iter()
-                    .filter(|t| !t.cells(layout.domain()).intersect(&halo).is_empty())
-                    .copied()
-                    .collect();
-                routes.push(Route { to, message: None, images });
-            }
-            if giver == rank {
-                exchange.routes.push(routes);
-            }
+            gone: Vec::new(),
+            migrated: 0,
         }
-        exchange.send_ranks.sort_unstable();
-        exchange.receive_ranks.sort_unstable();
-        for route in exchange.routes.iter_mut().flatten() {
-            let taker = layout.rank_of(route.to);
-            route.message = exchange.send_ranks.iter().position(|&r| r == taker);
-        }
-        exchange.messages = vec![Vec::new(); exchange.send_ranks.len()];
-        exchange
     }
 
-    /// Hands over the rows that have moved and renews all ghosts. `blocks` are this rank's, in
+    /// Rows that this rank's patches have handed over since the last call.
+    pub fn take_migrated(&mut self) -> u64 {
+        std::mem::take(&mut self.migrated)
+    }
+
+    /// For each patch of this rank, whether it hears of no other rank.
+    pub fn inner(&self) -> &[bool] {
+        &self.inner
+    }
+
+    /// Hands over the rows that have moved and renews all ghosts. `patches` are this rank's, in
     /// order; their rows carry their new cells, within the domain. Afterwards each block is in
-    /// canonical order. Collective between neighbours.
-    pub fn run<'a, C: Comm + ?Sized>(
+    /// canonical order.
+    ///
+    /// `meanwhile` is called once, with all patches, while messages are on their way: those that
+    /// are [`inner`](Self::inner) are whole by then. Collective between neighbours.
+    pub fn run<C: Comm + ?Sized, P: AsMut<Block<D>>>(
         &mut self,
         comm: &C,
-        blocks: &mut [impl AsMut<Block<D>> + 'a],
+        patches: &mut [P],
+        meanwhile: &mut dyn FnMut(&mut [P]),
     ) -> Result<(), RowError> {
-        for message in &mut self.messages {
-            message.clear();
-        }
-        self.local.clear();
-        for (k, block) in blocks.iter_mut().enumerate() {
-            let block = block.as_mut();
+        self.messages.iter_mut().for_each(Vec::clear);
+        self.to_inner.clear();
+        self.to_border.clear();
+        for (k, patch) in patches.iter_mut().enumerate() {
+            let block = patch.as_mut();
             block.drop_ghosts();
+            block.stirred = self.reach.notice.is_none() || !block.active.is_empty();
             self.give(k, block)?;
         }
-        let sends: Vec<(usize, &[u64])> =
-            self.send_ranks.iter().zip(&self.messages).map(|(&r, m)| (r, &m[..])).collect();
-        comm_exchange(comm, &sends, &self.receive_ranks, &mut self.received);
-        // own rows first, then ghosts: a block keeps them apart
-        for ghosts in [false, true] {
-            for words in std::iter::once(&self.local).chain(&self.received) {
-                take(&self.patches, words, blocks, ghosts, &mut self.row);
-            }
-            for block in blocks.iter_mut() {
-                let block = block.as_mut();
-                if ghosts { block.sort_ghosts() } else { block.sort_own() }
-            }
+        let RowExchange { place, inner, row, received, .. } = self;
+        let mut on_this_rank = || {
+            let words = std::slice::from_ref(&self.to_inner);
+            settle(place, words, patches, inner, true, row);
+            meanwhile(patches);
+        };
+        if self.send_ranks.is_empty() && self.receive_ranks.is_empty() {
+            on_this_rank();
+        } else {
+            with_sends(&self.send_ranks, &self.messages, |sends| {
+                comm.exchange(sends, &self.receive_ranks, received, &mut on_this_rank)
+            });
         }
+        // this rank's own words stand with those of the others
+        received.push(std::mem::take(&mut self.to_border));
+        settle(place, received, patches, inner, false, row);
+        self.to_border = received.pop().expect("it was pushed");
         Ok(())
     }
 
     /// Packs what others need of `block` and takes out what is no longer its own.
     fn give(&mut self, k: usize, block: &mut Block<D>) -> Result<(), RowError> {
-        let patch = self.patches[k];
-        let home = self.layout.patches()[patch];
+        let home = self.homes[k];
         // cells that nobody else can see
-        let inner = home.grow(-self.depth);
-        let mut gone = 0;
-        let mut keep = Vec::new();
+        let inner = home.grow(-self.reach.depth);
+        self.gone.clear();
+        if self.reach.notice.is_some() && !block.active.is_empty() {
+            for route in &self.routes[k] {
+                let stirs =
+                    |t: &Image<D>| !t.cells(&block.active).intersect(&route.near).is_empty();
+                if route.to != self.patches[k] && route.images.iter().any(stirs) {
+                    let out = match route.taker {
+                        Taker::Message(m) => &mut self.messages[m],
+                        Taker::Inner => &mut self.to_inner,
+                        Taker::Border => &mut self.to_border,
+                    };
+                    out.push((route.to as u64) << 2 | STIR);
+                }
+            }
+        }
         for row in 0..block.own() {
             let cell = block.cells[row].map(i64::from);
             if inner.contains(cell) {
@@ -155,56 +250,73 @@ impl<const D: usize> RowExchange<D> {
             let stays = home.contains(cell);
             let mut owned = stays;
             for route in &self.routes[k] {
-                let box_of_taker = self.layout.patches()[route.to];
-                let halo = box_of_taker.grow(self.depth);
                 for image in &route.images {
                     let at = image.cell(cell);
-                    if !halo.contains(at) {
+                    if !route.halo.contains(at) {
                         continue;
                     }
                     let original = *image == Image::IDENTITY;
-                    let own = original && box_of_taker.contains(at);
-                    if original && route.to == patch && own {
+                    let own = original && route.home.contains(at);
+                    if own && route.to == self.patches[k] {
                         continue;
                     }
                     owned |= own;
-                    let out = match route.message {
-                        Some(m) => &mut self.messages[m],
-                        None => &mut self.local,
+                    let out = match route.taker {
+                        Taker::Message(m) => &mut self.messages[m],
+                        Taker::Inner => &mut self.to_inner,
+                        Taker::Border => &mut self.to_border,
                     };
                     pack(out, block, row, route.to, at, own, image);
                 }
             }
             if !owned {
-                return Err(RowError::MovedTooFar {
-                    id: block.ids[row],
-                    patch,
-                    cell: cell.to_vec(),
-                });
+                let (id, patch) = (block.ids[row], self.patches[k]);
+                return Err(RowError::MovedTooFar { id, patch, cell: cell.to_vec() });
             }
             if !stays {
-                keep.resize(block.own(), true);
-                keep[row] = false;
-                gone += 1;
+                self.gone.push(row);
             }
         }
-        if gone > 0 {
-            block.retain(&keep);
+        if !self.gone.is_empty() {
+            self.migrated += self.gone.len() as u64;
+            block.remove(&self.gone);
         }
         Ok(())
     }
 }
 
-fn comm_exchange<C: Comm + ?Sized>(
-    comm: &C,
-    sends: &[(usize, &[u64])],
-    from: &[usize],
-    received: &mut Vec<Vec<u64>>,
+/// Most neighbouring ranks whose list of messages is made without allocating.
+const NEIGHBOURS: usize = 16;
+
+/// Calls `exchange` with each rank and its message.
+pub(crate) fn with_sends(
+    ranks: &[usize],
+    messages: &[Vec<u64>],
+    exchange: impl FnOnce(&[(usize, &[u64])]),
 ) {
-    if sends.is_empty() && from.is_empty() {
-        received.clear();
-    } else {
-        comm.exchange(sends, from, received);
+    let pairs = ranks.iter().zip(messages).map(|(&r, m)| (r, &m[..]));
+    let sends: smallvec::SmallVec<[(usize, &[u64]); NEIGHBOURS]> = pairs.collect();
+    exchange(&sends);
+}
+
+/// Adds the rows of messages to their blocks and brings the blocks that are (or are not) inner
+/// into canonical order: own rows first, then ghosts, for a block keeps them apart.
+fn settle<const D: usize>(
+    place: &[usize],
+    messages: &[Vec<u64>],
+    patches: &mut [impl AsMut<Block<D>>],
+    inner: &[bool],
+    which: bool,
+    row: &mut Vec<f64>,
+) {
+    for ghosts in [false, true] {
+        for words in messages {
+            take(place, words, patches, ghosts, row);
+        }
+        for (patch, _) in patches.iter_mut().zip(inner).filter(|(_, i)| **i == which) {
+            let block = patch.as_mut();
+            if ghosts { block.sort_ghosts() } else { block.sort_own() }
+        }
     }
 }
 
@@ -218,7 +330,7 @@ fn pack<const D: usize>(
     own: bool,
     image: &Image<D>,
 ) {
-    out.push((to as u64) << 1 | u64::from(own));
+    out.push((to as u64) << 2 | if own { OWN } else { GHOST });
     out.push(block.ids[row]);
     out.extend(cell.map(|c| c as u64));
     for (spec, column) in block.specs().iter().zip(&block.columns) {
@@ -229,19 +341,24 @@ fn pack<const D: usize>(
 }
 
 /// Adds the rows of a message to their blocks: ghosts, or those that moved.
-fn take<'a, const D: usize>(
-    patches: &[usize],
+fn take<const D: usize>(
+    place: &[usize],
     words: &[u64],
-    blocks: &mut [impl AsMut<Block<D>> + 'a],
+    patches: &mut [impl AsMut<Block<D>>],
     ghosts: bool,
     row: &mut Vec<f64>,
 ) {
     let mut at = 0;
     while at < words.len() {
-        let (to, own) = ((words[at] >> 1) as usize, words[at] & 1 == 1);
-        let place = patches.iter().position(|&p| p == to).expect("a patch of this rank");
-        let block = blocks[place].as_mut();
-        let columns = block.specs().iter().filter(|s| own || s.ghost).count();
+        let (to, kind) = ((words[at] >> 2) as usize, words[at] & 3);
+        let block = patches[place[to]].as_mut();
+        if kind == STIR {
+            block.stirred = true;
+            at += 1;
+            continue;
+        }
+        let own = kind == OWN;
+        let columns = if own { block.specs().len() } else { block.ghost_columns() };
         let start = at + 2 + D;
         if own != ghosts {
             let id = words[at + 1];
@@ -303,7 +420,8 @@ mod tests {
             let p = layout.patch_of(*cell);
             blocks[p].push(id as u64, cell.map(|c| c as i32), &[id as f64 + 1.0, 0.5]);
         }
-        let mut exchange = RowExchange::new(layout, 0, depth, 1);
+        let reach = RowReach { depth, travel: 1, notice: None };
+        let mut exchange = RowExchange::new(layout, 0, reach);
         for round in 0..2 {
             for block in &mut blocks {
                 block.drop_ghosts();
@@ -315,7 +433,7 @@ mod tests {
                     block.cells[row] = to.map(|c| c as i32);
                 }
             }
-            exchange.run(&Serial, &mut blocks).unwrap();
+            exchange.run(&Serial, &mut blocks, &mut |_| {}).unwrap();
         }
         blocks
             .iter()
@@ -383,7 +501,9 @@ mod tests {
         let layout = Layout::new(IndexBox::new([0], [40]), [[Side::Open; 2]], [10]);
         let mut blocks: Vec<Block<1>> = (0..10).map(|_| Block::new(&SPECS)).collect();
         blocks[0].push(5, [30], &[0.0, 0.0]);
-        let error = RowExchange::new(&layout, 0, 2, 1).run(&Serial, &mut blocks).unwrap_err();
+        let reach = RowReach { depth: 2, travel: 1, notice: None };
+        let mut exchange = RowExchange::new(&layout, 0, reach);
+        let error = exchange.run(&Serial, &mut blocks, &mut |_| {}).unwrap_err();
         assert!(error.to_string().contains("particle 5"), "{error}");
     }
 }

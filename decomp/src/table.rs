@@ -1,5 +1,7 @@
 //! Rows of particles: ids, cells, and declared columns of `f64`.
 
+use crate::IndexBox;
+
 /// What becomes of a column's value in a mirror.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mirror {
@@ -49,7 +51,13 @@ pub struct Block<const D: usize> {
     pub cells: Vec<[i32; D]>,
     /// The columns, as declared.
     pub columns: Vec<Vec<f64>>,
+    /// The cells whose rows may change in this step; the exchange of rows tells the patches
+    /// nearby.
+    pub active: IndexBox<D>,
+    /// Whether active cells, its own or others', are near enough to change a row of this block.
+    pub stirred: bool,
     specs: Vec<ColumnSpec>,
+    ghost_columns: usize,
     own: usize,
 }
 
@@ -60,7 +68,10 @@ impl<const D: usize> Block<D> {
             ids: Vec::new(),
             cells: Vec::new(),
             columns: specs.iter().map(|_| Vec::new()).collect(),
+            active: IndexBox::new([0; D], [0; D]),
+            stirred: true,
             specs: specs.to_vec(),
+            ghost_columns: specs.iter().filter(|s| s.ghost).count(),
             own: 0,
         }
     }
@@ -68,6 +79,11 @@ impl<const D: usize> Block<D> {
     /// The declarations of the columns.
     pub fn specs(&self) -> &[ColumnSpec] {
         &self.specs
+    }
+
+    /// Number of columns that ghosts have.
+    pub(crate) fn ghost_columns(&self) -> usize {
+        self.ghost_columns
     }
 
     /// Number of own rows.
@@ -119,25 +135,13 @@ impl<const D: usize> Block<D> {
         }
     }
 
-    /// Keeps the own rows for which `keep` says so. There must be no ghosts.
-    pub fn retain(&mut self, keep: &[bool]) {
+    /// Takes out the own rows of `gone`, which ascend. There must be no ghosts.
+    pub fn remove(&mut self, gone: &[usize]) {
         debug_assert_eq!(self.rows(), self.own);
-        let mut at = 0;
-        self.ids.retain(|_| {
-            at += 1;
-            keep[at - 1]
-        });
-        at = 0;
-        self.cells.retain(|_| {
-            at += 1;
-            keep[at - 1]
-        });
+        take_out(&mut self.ids, gone);
+        take_out(&mut self.cells, gone);
         for column in &mut self.columns {
-            at = 0;
-            column.retain(|_| {
-                at += 1;
-                keep[at - 1]
-            });
+            take_out(column, gone);
         }
         self.own = self.ids.len();
     }
@@ -159,8 +163,19 @@ impl<const D: usize> Block<D> {
     }
 
     fn sort(&mut self, from: usize, to: usize) {
-        // most steps leave the order as it was
-        if (from + 1..to).all(|r| self.key(r - 1) <= self.key(r)) {
+        // most steps leave the order as it was, or move few rows
+        let misplaced = (from + 1..to).filter(|&r| self.key(r - 1) > self.key(r)).count();
+        if misplaced == 0 {
+            return;
+        }
+        if misplaced <= FEW {
+            for row in from + 1..to {
+                if self.key(row - 1) > self.key(row) {
+                    let key = self.key(row);
+                    let place = from + partition_point(from, row, |r| self.key(r) < key);
+                    self.rotate(place, row, to);
+                }
+            }
             return;
         }
         let mut order: Vec<usize> = (from..to).collect();
@@ -170,6 +185,17 @@ impl<const D: usize> Block<D> {
         for column in &mut self.columns {
             if column.len() >= to {
                 permute(column, from, &order);
+            }
+        }
+    }
+
+    /// Brings `row` to `place` before it; columns shorter than `all` have no such rows.
+    fn rotate(&mut self, place: usize, row: usize, all: usize) {
+        self.ids[place..=row].rotate_right(1);
+        self.cells[place..=row].rotate_right(1);
+        for column in &mut self.columns {
+            if column.len() >= all {
+                column[place..=row].rotate_right(1);
             }
         }
     }
@@ -218,6 +244,21 @@ fn partition_point(from: usize, to: usize, below: impl Fn(usize) -> bool) -> usi
     lo - from
 }
 
+/// Rows out of place that are cheaper brought back one by one than sorted with all others.
+const FEW: usize = 8;
+
+/// Takes the elements at `gone`, which ascend, out of `values`; shorter lists have none there.
+fn take_out<T: Copy>(values: &mut Vec<T>, gone: &[usize]) {
+    let Some(&first) = gone.first().filter(|&&g| g < values.len()) else { return };
+    let mut to = first;
+    for (k, &g) in gone.iter().enumerate() {
+        let next = gone.get(k + 1).copied().unwrap_or(values.len()).min(values.len());
+        values.copy_within(g + 1..next, to);
+        to += next - (g + 1);
+    }
+    values.truncate(to);
+}
+
 fn permute<T: Copy>(values: &mut [T], from: usize, order: &[usize]) {
     let sorted: Vec<T> = order.iter().map(|&r| values[r]).collect();
     values[from..from + sorted.len()].copy_from_slice(&sorted);
@@ -243,6 +284,39 @@ mod tests {
         assert_eq!(block.ids, [8, 3, 7, 9]);
         assert_eq!(block.columns[0], [8.0, 3.0, 7.0, 9.0]);
         assert_eq!(block.columns[1], [80.0, 30.0, 70.0, 90.0]);
+    }
+
+    #[test]
+    fn rows_out_of_place_come_back_few_or_many() {
+        for moved in [1, 3, 40] {
+            let mut block = Block::<1>::new(&SPECS);
+            for id in 0..100 {
+                let cell = if id % (100 / moved) == 7 % (100 / moved) {
+                    100 - id as i32
+                } else {
+                    id as i32
+                };
+                block.push(id, [cell], &[id as f64, cell as f64]);
+            }
+            block.sort_own();
+            for r in 0..100 {
+                assert!(r == 0 || block.key(r - 1) < block.key(r));
+                assert_eq!(block.columns[0][r], block.ids[r] as f64);
+                assert_eq!(block.columns[1][r], block.cells[r][0] as f64);
+            }
+        }
+    }
+
+    #[test]
+    fn rows_are_taken_out() {
+        for gone in [&[][..], &[0], &[4], &[0, 1, 4], &[1, 2, 3], &[0, 1, 2, 3, 4]] {
+            let mut block = Block::<1>::new(&SPECS);
+            (0..5).for_each(|id| block.push(id, [id as i32], &[id as f64, 0.5]));
+            block.remove(gone);
+            let left: Vec<u64> = (0..5).filter(|i| !gone.contains(&(*i as usize))).collect();
+            assert_eq!((block.own(), &block.ids), (left.len(), &left));
+            assert!(block.columns[0].iter().zip(&left).all(|(c, i)| *c == *i as f64));
+        }
     }
 
     #[test]

@@ -3,19 +3,28 @@
 //! A value, without globals: several can live in one process. Files and pictures are made
 //! elsewhere from what it tells.
 
+mod balance;
+mod books;
 mod observe;
 
+pub use books::{Left, Tally};
 pub use observe::{Followed, Totals};
 
+use std::ops::Range;
+use std::time::Instant;
+
 use decomp::{
-    Comm, IndexBox, Layout, NodeArrays, NodeExchange, RowError, RowExchange, assign_patches,
-    choose_cuts,
+    Census, Comm, IndexBox, Layout, NodeExchange, RowError, RowExchange, RowReach, assign_patches,
+    choose_cuts, curve_order,
 };
 
+use crate::clock::{Activity, Clock};
 use crate::particles::{self, Columns};
 use crate::patch::Patch;
 use crate::scene::{CheckedScene, FilterHalo, Side};
-use crate::step::{PhaseTimes, Reach, Stepper, World};
+use crate::step::{Reach, Sleep, Stepper, World};
+
+use books::{CENSUS_EVERY, Outflow};
 
 /// Why a run ended before its time.
 #[derive(Debug, thiserror::Error)]
@@ -65,6 +74,20 @@ pub enum RunError {
     /// A row was lost by the decomposition.
     #[error(transparent)]
     Row(#[from] RowError),
+    /// Particles were lost or doubled between patches: a fault of this program.
+    #[error(
+        "time {time:.6e} s, step {step}: {now} particles where {before} should be, or others than those; please report this scene and its layout"
+    )]
+    Lost {
+        /// Time [s].
+        time: f64,
+        /// Number of the step.
+        step: u64,
+        /// Number of particles that there should be.
+        before: u64,
+        /// Number that there are.
+        now: u64,
+    },
     /// Another rank tells.
     #[error("another rank has failed")]
     Elsewhere,
@@ -76,19 +99,39 @@ pub struct Simulation<'a, C: Comm> {
     scene: &'a CheckedScene,
     stepper: Stepper,
     layout: Layout<1>,
+    /// Patches along the curve by which they are dealt.
+    order: Vec<usize>,
     patches: Vec<Patch<1>>,
     /// Known once the particles' lengths are.
     reach: Option<Reach>,
-    filter: FilterHalo,
+    plan: Plan,
+    sleep: Option<Sleep>,
     threads: usize,
-    rows: RowExchange<1>,
-    nodes: NodeExchange<1>,
     pool: Option<rayon::ThreadPool>,
-    times: PhaseTimes,
+    clock: Clock,
+    /// Steps of which a timeline is kept.
+    traced: Range<u64>,
+    tally: Tally,
+    /// All particles at the start.
+    census: Census,
+    outflow: Outflow,
     grid_velocity: f64,
     time: f64,
     step: u64,
     dt: f64,
+}
+
+/// Who exchanges what with whom, for one reach and one assignment of patches.
+struct Plan {
+    rows: RowExchange<1>,
+    nodes: NodeExchange<1>,
+    inner_rows: Vec<bool>,
+    inner_nodes: Vec<bool>,
+    filter: FilterHalo,
+    /// Depth of ghosts about a patch [cells].
+    ghosts: i64,
+    /// How far beyond its own nodes a patch computes.
+    deeper: i64,
 }
 
 /// What the side of a scene is to the decomposition.
@@ -119,13 +162,38 @@ const MOST_STEPS: f64 = 1e12;
 /// Patches narrower than this only cost.
 const LEAST_CELLS: usize = 16;
 
-/// The number of patches for a scene on so many ranks and threads: the scene's own, or one for
-/// each thread of each rank unless they would be too narrow.
+/// Patches of about this many cells sleep and wake with little lost at their ends, for one
+/// worker.
+const SLEEPING_CELLS: usize = 64;
+
+/// Patches for each of several workers that sleep and wake, or move, ...
+const PATCHES_A_WORKER: usize = 8;
+
+/// ... as long as they are at least this wide: with others comes more work at their ends.
+const SHARED_CELLS: usize = 256;
+
+/// The number of patches for a scene on so many ranks and threads: the scene's own, or at least
+/// one for each thread of each rank unless they would be too narrow, and several where patches
+/// may sleep.
 pub fn patch_counts(scene: &CheckedScene, ranks: usize, threads: usize) -> Vec<usize> {
-    match &scene.scene.domain.patches {
-        Some(patches) => patches.clone(),
-        None => choose_cuts([scene.cells[0]], ranks * threads, LEAST_CELLS).to_vec(),
+    if let Some(patches) = &scene.scene.domain.patches {
+        return patches.clone();
     }
+    let (cells, workers) = ([scene.cells[0]], ranks * threads);
+    let wanted = match workers {
+        _ if !may_sleep(scene) => workers,
+        1 => (cells[0] / SLEEPING_CELLS).max(1),
+        _ => (cells[0] / SHARED_CELLS).clamp(workers, PATCHES_A_WORKER * workers),
+    };
+    choose_cuts(cells, wanted, LEAST_CELLS).to_vec()
+}
+
+/// Whether a body is at rest and free of stress, so that patches can sleep.
+fn may_sleep(scene: &CheckedScene) -> bool {
+    let mut bodies = scene.scene.bodies.iter().zip(&scene.bodies);
+    let velocity = grid_velocity(scene);
+    scene.scene.decomposition.skip_quiet
+        && bodies.any(|(b, c)| c.velocity[0] == velocity && b.pressure == 0.0)
 }
 
 /// Particles in each patch, counted without making them.
@@ -142,15 +210,49 @@ fn count_particles(scene: &CheckedScene, layout: &Layout<1>) -> Vec<u64> {
     counts
 }
 
+impl Plan {
+    fn new(
+        scene: &CheckedScene,
+        stepper: &Stepper,
+        layout: &Layout<1>,
+        reach: Reach,
+        rank: usize,
+        workers: usize,
+    ) -> Self {
+        let options = &scene.scene.decomposition;
+        let narrowest = layout.patches().iter().map(|p| p.extent(0)).min().unwrap_or(0);
+        let choose = || FilterHalo::choose(reach, narrowest, workers);
+        let filter = options.filter_halo.unwrap_or_else(choose);
+        let deeper = match filter {
+            FilterHalo::Exchange => 0,
+            FilterHalo::Deep => reach.deeper(),
+        };
+        let ghosts = reach.cells() + deeper;
+        let notice = options.skip_quiet.then(|| stepper.notice(reach));
+        let rows = RowExchange::new(layout, rank, RowReach { depth: ghosts, travel: 1, notice });
+        let nodes = NodeExchange::new(layout, rank, reach.halo(), reach.depth(ghosts));
+        Plan {
+            inner_rows: rows.inner().to_vec(),
+            inner_nodes: nodes.inner().to_vec(),
+            rows,
+            nodes,
+            filter,
+            ghosts,
+            deeper,
+        }
+    }
+}
+
 impl<'a, C: Comm> Simulation<'a, C> {
-    /// Makes the particles of `scene`. Collective.
+    /// Makes the particles of `scene`, to be run by `threads` threads on each rank. Collective.
     pub fn new(scene: &'a CheckedScene, comm: &'a C, threads: usize) -> Result<Self, RunError> {
         let stepper = Stepper::new(scene);
         let cuts = patch_counts(scene, comm.size(), threads);
         let domain = IndexBox::new([0], [scene.cells[0] as i64]);
         let layout = Layout::new(domain, [sides(scene).map(decomp_side)], [cuts[0]]);
+        let order = curve_order(layout.parts());
         let weights = count_particles(scene, &layout);
-        let layout = layout.with_ranks(assign_patches(&weights, comm.size()));
+        let layout = layout.with_ranks(assign_patches(&weights, &order, comm.size()));
         let grid_velocity = grid_velocity(scene);
         let energies = stepper.starting_energies(scene);
         let blocks = particles::fill(
@@ -165,37 +267,39 @@ impl<'a, C: Comm> Simulation<'a, C> {
             .map(|(b, c)| (b.extent.upper[0] - b.extent.lower[0]) / c.lattice[0] as f64)
             .fold(0.0, f64::max)
             / scene.cell_size[0];
-        let busy = threads.min(blocks.len());
-        let patches = layout
-            .patches_of(comm.rank())
-            .into_iter()
-            .zip(blocks)
-            .map(|(p, block)| Patch::new(&layout, p, block));
-        let pool = (busy > 1).then(|| {
+        let reach = stepper.reach(longest).expect("a longer particle is a fault");
+        let workers = comm.size() * threads;
+        let pool = (threads > 1 && layout.patches().len() > 1).then(|| {
             rayon::ThreadPoolBuilder::new()
-                .num_threads(busy)
+                .num_threads(threads)
                 .build()
                 .expect("the system gives threads")
         });
+        let patches = layout.patches_of(comm.rank()).into_iter().zip(blocks);
         let mut simulation = Simulation {
             comm,
             scene,
-            patches: patches.collect(),
-            rows: RowExchange::new(&layout, comm.rank(), 1, 1),
-            nodes: NodeExchange::new(&layout, comm.rank(), 1),
+            patches: patches.map(|(p, block)| Patch::new(&layout, p, block)).collect(),
+            plan: Plan::new(scene, &stepper, &layout, reach, comm.rank(), workers),
+            sleep: scene.scene.decomposition.skip_quiet.then(|| stepper.sleep()),
+            outflow: Outflow::new(scene, grid_velocity),
             stepper,
             layout,
+            order,
             reach: None,
-            filter: FilterHalo::Exchange,
             threads,
             pool,
-            times: PhaseTimes::default(),
+            clock: Clock::new(),
+            traced: 0..0,
+            tally: Tally::default(),
+            census: Census::default(),
             grid_velocity,
             time: 0.0,
             step: 0,
             dt: 0.0,
         };
         simulation.follow_reach(longest);
+        simulation.census = simulation.count();
         simulation.with_world(|stepper, world| stepper.prime(world))?;
         simulation.agree()?;
         Ok(simulation)
@@ -206,11 +310,15 @@ impl<'a, C: Comm> Simulation<'a, C> {
             comm: self.comm,
             layout: &self.layout,
             patches: &mut self.patches,
-            rows: &mut self.rows,
-            nodes: &mut self.nodes,
-            filter: self.filter,
+            rows: &mut self.plan.rows,
+            nodes: &mut self.plan.nodes,
+            inner_rows: &self.plan.inner_rows,
+            inner_nodes: &self.plan.inner_nodes,
+            filter: self.plan.filter,
+            overlap: self.scene.scene.decomposition.overlap,
+            sleep: self.sleep,
             pool: self.pool.as_ref(),
-            times: &mut self.times,
+            clock: &mut self.clock,
         };
         call(&self.stepper, &mut world)
     }
@@ -235,9 +343,19 @@ impl<'a, C: Comm> Simulation<'a, C> {
         &self.layout
     }
 
-    /// Seconds spent in each phase on this rank.
-    pub fn phase_seconds(&self) -> &PhaseTimes {
-        &self.times
+    /// Keeps a timeline of the steps in `steps`, numbered from 1.
+    pub fn trace(&mut self, steps: Range<u64>) {
+        self.traced = steps;
+    }
+
+    /// Where the time of this rank went.
+    pub fn clock(&mut self) -> &mut Clock {
+        &mut self.clock
+    }
+
+    /// How filters get what lies beyond a patch.
+    pub fn filter_halo(&self) -> FilterHalo {
+        self.plan.filter
     }
 
     /// The columns of a particle.
@@ -245,13 +363,22 @@ impl<'a, C: Comm> Simulation<'a, C> {
         &self.stepper.columns
     }
 
-    /// The longest stable step over all ranks, and the verdict on all ranks' faults. Collective.
+    /// The longest stable step over all ranks, the verdict on all ranks' faults, and what the
+    /// busiest rank computed. Collective.
     fn agree(&mut self) -> Result<(), RunError> {
+        let start = Instant::now();
         let faulty = self.patches.iter().any(|p| p.told.fault.is_some());
         let shortest = self.patches.iter().map(|p| p.told.time_step).fold(f64::INFINITY, f64::min);
         let longest = self.patches.iter().map(|p| p.told.length).fold(0.0, f64::max);
-        let mut told = [shortest, -longest, if faulty { -1.0 } else { 0.0 }];
+        let computed = self.count_step();
+        let mut told = [shortest, -longest, if faulty { -1.0 } else { 0.0 }, -(computed as f64)];
+        let waited = self.comm.traffic().waited;
         self.comm.min(&mut told);
+        let waited = self.comm.traffic().waited - waited;
+        self.clock.event("agree", start);
+        self.clock.add(Activity::Wait, waited);
+        self.clock.add_since(Activity::Exchange, start, waited);
+        self.tally.busiest_particle_steps += -told[3] as u64;
         if told[2] < 0.0 {
             return Err(self.gather_fault());
         }
@@ -265,26 +392,23 @@ impl<'a, C: Comm> Simulation<'a, C> {
         let reach = self.stepper.reach(longest).expect("a longer particle is a fault");
         if self.reach != Some(reach) {
             self.reach = Some(reach);
-            let narrowest = self.layout.patches().iter().map(|p| p.extent(0)).min().unwrap_or(0);
-            let workers = self.comm.size() * self.threads;
-            let wanted = self.scene.scene.decomposition.as_ref().and_then(|d| d.filter_halo);
-            self.filter = wanted.unwrap_or_else(|| FilterHalo::choose(reach, narrowest, workers));
-            let deeper = match self.filter {
-                FilterHalo::Exchange => 0,
-                FilterHalo::Deep => reach.deeper(),
-            };
-            let (rank, ghosts) = (self.comm.rank(), reach.cells() + deeper);
-            self.rows = RowExchange::new(&self.layout, rank, ghosts, 1);
-            self.nodes = NodeExchange::new(&self.layout, rank, reach.halo());
-            let mine = self.layout.patches_of(rank);
+            self.make_plan(reach);
+            let fields = self.stepper.fields.count;
+            let mine = self.layout.patches_of(self.comm.rank());
+            let (depth, deeper) = (reach.depth(self.plan.ghosts), self.plan.deeper);
             for (patch, index) in self.patches.iter_mut().zip(mine) {
-                let (depth, fields) = (reach.depth(ghosts), self.stepper.fields.count);
-                patch.nodes = NodeArrays::new(&self.layout, index, depth, fields);
-                patch.deeper = deeper;
+                patch.set_arrays(&self.layout, index, depth, deeper, fields);
             }
         }
         let limit = self.stepper.longest_within(reach);
         self.patches.iter_mut().for_each(|p| p.reach_length = limit);
+    }
+
+    /// Finds anew who exchanges what with whom.
+    fn make_plan(&mut self, reach: Reach) {
+        self.tally.migrated += self.plan.rows.take_migrated();
+        let (rank, workers) = (self.comm.rank(), self.comm.size() * self.threads);
+        self.plan = Plan::new(self.scene, &self.stepper, &self.layout, reach, rank, workers);
     }
 
     /// The step's first fault, the same for any layout, at rank 0. Collective.
@@ -328,8 +452,19 @@ impl<'a, C: Comm> Simulation<'a, C> {
         }
         self.step += 1;
         let step = self.step;
+        let sampled = self.samples(step);
+        self.clock.start_step(step, self.traced.contains(&step), sampled);
         self.with_world(|stepper, world| stepper.advance(world, dt, step))?;
+        if sampled {
+            self.patches.iter_mut().for_each(|p| p.watch.end_step());
+        }
+        self.outflow.take(&mut self.patches);
         self.time = if meets { until } else { self.time + dt };
-        self.agree()
+        self.agree()?;
+        if step.is_multiple_of(CENSUS_EVERY) || self.time >= end {
+            self.check_census()?;
+        }
+        self.balance();
+        Ok(())
     }
 }

@@ -5,7 +5,6 @@ use sha2::{Digest, Sha256};
 
 use super::Simulation;
 use crate::output::{ParticleTable, TableColumn};
-use crate::patch::Left;
 
 /// Sums over all particles, to the same bits for any layout.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -55,21 +54,6 @@ impl<C: Comm> Simulation<'_, C> {
                 }
             });
         Totals { mass, momentum, absolute_momentum, kinetic, internal }
-    }
-
-    /// What has left by outflows, in the frame of the scene. Collective.
-    pub fn left(&self) -> Left {
-        let [count, mass, momentum, kinetic, internal] =
-            exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
-                let v = self.grid_velocity;
-                for left in self.patches.iter().map(|p| p.left) {
-                    let momentum = left.momentum + v * left.mass;
-                    let kinetic = left.kinetic + v * (left.momentum + 0.5 * v * left.mass);
-                    let terms = [left.count as f64, left.mass, momentum, kinetic, left.internal];
-                    terms.iter().enumerate().for_each(|(k, t)| add(k, *t));
-                }
-            });
-        Left { count: count as u64, mass, momentum, kinetic, internal }
     }
 
     /// All particles and the digest of the whole state, every bit in order of id, at rank 0;

@@ -15,29 +15,28 @@ impl Stepper {
     /// changed within the step.
     pub(super) fn advance_leapfrog(&self, world: &mut World<'_>, dt: f64) -> Result<(), RowError> {
         let star = self.fields.velocity_star;
-        world.each(|patch| {
+        world.each("start", |patch| {
             patch.block.drop_ghosts();
             self.current_stress(patch);
             self.locate(patch, 0.0, self.columns.jacobian);
+            self.find_active(patch);
         });
-        world.exchange_rows()?;
         if self.stress_update == StressUpdate::First {
-            world.nodal(|nodal| {
-                nodal.each(|patch| self.scatter(patch, false));
+            world.exchange_rows(|nodal| {
+                nodal.each("scatter", |patch| self.scatter(patch, false));
                 self.filter_velocity(nodal);
-                nodal.each(|patch| {
+                nodal.each("update stress", |patch| {
                     self.gather_gradient(patch, star);
                     self.update_stress(patch, dt);
                     self.current_stress(patch);
                 });
-            });
-            world.exchange_rows()?;
+            })?;
         }
         let last = self.stress_update == StressUpdate::Last;
-        world.nodal(|nodal| {
-            nodal.each(|patch| self.scatter(patch, true));
+        world.exchange_rows(|nodal| {
+            nodal.each("scatter", |patch| self.scatter(patch, true));
             self.solve_velocity(nodal, dt);
-            nodal.each(|patch| {
+            nodal.each("gather", |patch| {
                 self.gather_velocity(patch);
                 self.move_rows(patch, dt);
                 if last {
@@ -45,22 +44,21 @@ impl Stepper {
                     self.update_stress(patch, dt);
                 }
             });
-        });
+        })?;
         if self.stress_update == StressUpdate::ModifiedLast {
-            world.exchange_rows()?;
-            world.nodal(|nodal| {
-                nodal.each(|patch| {
+            world.exchange_rows(|nodal| {
+                nodal.each("scatter again", |patch| {
                     self.scatter_motion(patch);
                     self.divide_by_mass(patch);
                 });
                 self.filter_velocity(nodal);
-                nodal.each(|patch| {
+                nodal.each("update stress", |patch| {
                     self.gather_gradient(patch, star);
                     self.update_stress(patch, dt);
                 });
-            });
+            })?;
         }
-        world.each(|patch| self.refresh(patch));
+        world.each("refresh", |patch| self.refresh(patch));
         Ok(())
     }
 

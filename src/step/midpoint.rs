@@ -25,16 +25,16 @@ impl Stepper {
         relax: Option<f64>,
     ) -> Result<(), RowError> {
         let mid = self.columns.jacobian_mid.expect("mid-point stepping has the column");
-        world.each(|patch| {
+        world.each("start", |patch| {
             patch.block.drop_ghosts();
             self.half_step_volume(patch, dt);
             self.find_viscosity(patch, mid);
             self.mid_step_stress(patch, relax.is_some());
             self.locate(patch, 0.5 * dt, mid);
+            self.find_active(patch);
         });
-        world.exchange_rows()?;
-        world.nodal(|nodal| {
-            nodal.each(|patch| self.scatter(patch, true));
+        world.exchange_rows(|nodal| {
+            nodal.each("scatter", |patch| self.scatter(patch, true));
             self.solve_velocity(nodal, dt);
             if self.compatible {
                 self.solve_work(nodal);
@@ -42,22 +42,21 @@ impl Stepper {
             if relax.is_some() {
                 self.project_pressure(nodal);
             }
-            nodal.each(|patch| {
+            nodal.each("gather", |patch| {
                 self.gather_midpoint(patch, dt);
                 if let Some(rate) = relax {
                     self.relax_pressure(patch, rate);
                 }
                 self.refresh(patch);
             });
-        });
-        Ok(())
+        })
     }
 
     /// The gradient of the starting velocity, which the first step needs: a step of no length
     /// that moves nothing. Collective.
     pub(super) fn prime_gradient(&self, world: &mut World<'_>) -> Result<(), RowError> {
         let jacobian = self.columns.jacobian;
-        world.each(|patch| {
+        world.each("start", |patch| {
             self.current_stress(patch);
             self.locate(patch, 0.0, jacobian);
             // ghosts carry every declared column
@@ -67,12 +66,12 @@ impl Stepper {
                 }
             }
         });
-        world.exchange_rows()?;
-        world.nodal(|nodal| {
-            nodal.each(|patch| self.scatter(patch, false));
+        world.exchange_rows(|nodal| {
+            nodal.each("scatter", |patch| self.scatter(patch, false));
             self.solve_velocity(nodal, 0.0);
-            nodal.each(|patch| self.gather_gradient(patch, self.fields.velocity_star));
-        });
-        Ok(())
+            nodal.each("gather", |patch| {
+                self.gather_gradient(patch, self.fields.velocity_star);
+            });
+        })
     }
 }

@@ -15,7 +15,7 @@ pub mod series;
 mod world;
 
 pub use reach::Reach;
-pub use world::{Nodal, PhaseTimes, World};
+pub use world::{Nodal, Sleep, World};
 
 use decomp::Parity;
 
@@ -61,9 +61,15 @@ pub struct Stepper {
     empty_mass: f64,
     /// Nodal speed below which a node counts as at rest [m/s].
     still_speed: f64,
+    /// Acceleration that brings a node to that speed while the fastest wave passes a cell [m/s2].
+    still_acceleration: f64,
     /// Nodal pressure below which a node counts as free of stress [Pa].
     still_pressure: f64,
 }
+
+/// Share of a scene's fastest speed at which a nodal velocity counts as none; accelerations and
+/// pressures go with it. Alike everywhere, whatever sleeps.
+const STILL: f64 = 1.0 / (1u64 << 50) as f64;
 
 /// Calls `$call` with the type of a shape function and a number of nodes known at compile time,
 /// at least `$nodes`. One line a shape function.
@@ -148,10 +154,11 @@ impl Stepper {
             sides,
             // what such a node holds is below rounding of its neighbours
             empty_mass: densest * cell * 2f64.powi(-90),
-            // far ahead of a wave values would fall until they are denormal, which costs time and
-            // loses bits; this far below all speeds of the scene nothing is lost
-            still_speed: fastest * 2f64.powi(-100),
-            still_pressure: densest * fastest * fastest * 2f64.powi(-100),
+            // far ahead of a wave values would fall and fall, until they are denormal; at this
+            // share of the scene's speeds they are below rounding of what is behind it
+            still_speed: fastest * STILL,
+            still_acceleration: fastest * fastest * STILL / cell,
+            still_pressure: densest * fastest * fastest * STILL,
         }
     }
 
@@ -189,6 +196,33 @@ impl Stepper {
         own.max(relaxed) as usize
     }
 
+    /// How far about moving material a step may change a row by `reach` [cells]: the filters' and
+    /// the pressure projection's terms spread velocity and pressure, in each of a step's passes
+    /// over the grid. What does the work spreads further, but on material without stress it does
+    /// none.
+    pub fn notice(&self, reach: Reach) -> i64 {
+        let order = match self.scheme {
+            Scheme::Series { order, .. } => order,
+            Scheme::Blend(_) | Scheme::Affine => 1,
+        };
+        let order = order.max(self.relaxation.map_or(0, |_| relaxation::ORDER));
+        let pass = reach.cells() + i64::from(order) * (reach.nodes as i64 - 1) + 2;
+        match (self.stepping, self.stress_update) {
+            (Stepping::Midpoint, _) | (_, StressUpdate::Last) => pass,
+            _ => 2 * pass,
+        }
+    }
+
+    /// When patches may sleep: once everything that a step computes has been computed at rest,
+    /// pressure relaxation included.
+    pub fn sleep(&self) -> Sleep {
+        let f = &self.fields;
+        Sleep {
+            needed: 1 + self.relaxation.map_or(0, |r| r.interval),
+            kept: [f.mass, f.inverse, f.volume, f.relaxation[0]],
+        }
+    }
+
     /// The longest particle [cells] that `reach` is deep enough for.
     pub fn longest_within(&self, reach: Reach) -> f64 {
         fn nodes<S: Shape, const K: usize>() -> usize {
@@ -217,10 +251,10 @@ impl Stepper {
     /// Makes the starting state whole: pressure, sound speed and, where the scheme needs it, the
     /// gradient of the starting velocity. Collective.
     pub fn prime(&self, world: &mut World<'_>) -> Result<(), decomp::RowError> {
-        world.each(|patch| self.refresh(patch));
+        world.each("refresh", |patch| self.refresh(patch));
         if self.stepping == Stepping::Midpoint {
             self.prime_gradient(world)?;
-            world.each(|patch| self.refresh(patch));
+            world.each("refresh", |patch| self.refresh(patch));
         }
         Ok(())
     }

@@ -17,7 +17,7 @@ use decomp::Parity;
 
 use super::{MOST_NODES, Nodal, Stepper, with_width};
 use crate::patch::Patch;
-use crate::transfer::{add, dot, window};
+use crate::transfer::{add, cut, dot, window};
 
 /// Terms of the projection's series.
 pub(super) const ORDER: u32 = 4;
@@ -27,7 +27,7 @@ impl Stepper {
     /// neighbours.
     pub(super) fn project_pressure(&self, nodal: &mut Nodal<'_>) {
         let [_, inverse, sum, term, scratch] = self.fields.relaxation;
-        nodal.each(|patch| {
+        nodal.each("scatter pressure", |patch| {
             fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper) {
                 s.scatter_pressure::<K>(patch);
             }
@@ -35,7 +35,7 @@ impl Stepper {
         });
         for l in 0..ORDER {
             nodal.refresh(&[(term, Parity::Even)]);
-            nodal.each(|patch| {
+            nodal.each("project pressure", |patch| {
                 let [sum, x, inverse, y] = patch.nodes.fields_mut([sum, term, inverse, scratch]);
                 match l {
                     0 => sum.copy_from_slice(x),
@@ -75,8 +75,7 @@ impl Stepper {
         patch.compliance_band.finish();
         for i in patch.active.clone() {
             inverse[i] = if weight[i] > 0.0 { 1.0 / weight[i] } else { 0.0 };
-            let pressure = term[i] * inverse[i];
-            term[i] = if pressure.abs() < self.still_pressure { 0.0 } else { pressure };
+            term[i] = cut(term[i] * inverse[i], self.still_pressure);
         }
     }
 

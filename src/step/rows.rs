@@ -2,9 +2,11 @@
 
 use std::ops::Range;
 
+use decomp::IndexBox;
+
 use super::Stepper;
 use crate::constitutive::{MidStep, VolumeChange};
-use crate::patch::{Fault, Patch, Phase};
+use crate::patch::{Departed, Fault, Patch, Phase};
 use crate::scene::Side;
 use crate::shape::{Extent, floor};
 
@@ -87,16 +89,17 @@ impl Stepper {
         }
         if keep.contains(&false) {
             let c = &self.columns;
-            for row in (0..keep.len()).filter(|&r| !keep[r]) {
+            let gone: Vec<usize> = (0..keep.len()).filter(|&r| !keep[r]).collect();
+            for &row in &gone {
                 let column = |k: usize| patch.block.columns[k][row];
-                let (m, v) = (column(c.mass), column(c.velocity));
-                patch.left.count += 1;
-                patch.left.mass += m;
-                patch.left.momentum += m * v;
-                patch.left.kinetic += 0.5 * m * v * v;
-                patch.left.internal += m * column(c.energy);
+                patch.departed.push(Departed {
+                    id: patch.block.ids[row],
+                    mass: column(c.mass),
+                    velocity: column(c.velocity),
+                    energy: column(c.energy),
+                });
             }
-            patch.block.retain(&keep);
+            patch.block.remove(&gone);
         }
     }
 
@@ -182,6 +185,35 @@ impl Stepper {
             patch.block.columns[pressure] = p;
             patch.block.columns[compliance] = w;
         }
+    }
+
+    /// The cells of the own rows that are not at rest, once their stress is known: a row is at
+    /// rest where velocity, its gradients and stress are zero, so that it pushes nothing.
+    pub(super) fn find_active(&self, patch: &mut Patch<1>) {
+        let c = &self.columns;
+        let n = patch.block.own();
+        let column = |k: usize| &patch.block.columns[k][..n];
+        let (v, d, s) = (column(c.velocity), column(c.gradient), column(c.stress_volume));
+        let (affine, pressure) = (c.affine.map(column), c.pressure_mid.map(column));
+        let moves = |r: usize| {
+            v[r] != 0.0
+                || d[r] != 0.0
+                || s[r] != 0.0
+                || affine.is_some_and(|a| a[r] != 0.0)
+                || pressure.is_some_and(|p| p[r] != 0.0)
+        };
+        // rows from the first to the last that moves: those between mostly do
+        let first = (0..n).find(|&r| moves(r));
+        let last = (0..n).rev().find(|&r| moves(r));
+        patch.block.active = match first.zip(last) {
+            None => IndexBox::new([0], [0]),
+            Some((first, last)) => {
+                let cells = patch.block.cells[first..=last].iter().map(|c| i64::from(c[0]));
+                let (lower, upper) =
+                    cells.fold((i64::MAX, i64::MIN), |(l, u), c| (l.min(c), u.max(c)));
+                IndexBox::new([lower], [upper + 1])
+            }
+        };
     }
 
     /// (p + q) V from the columns of pressure and viscosity, into its own.

@@ -3,7 +3,7 @@
 
 use super::{MOST_NODES, Stepper, with_width};
 use crate::patch::Patch;
-use crate::transfer::{Scheme, add};
+use crate::transfer::{Scheme, add, cut};
 
 impl Stepper {
     /// All sums of a patch at new places of its rows, with or without the force, and the lumped
@@ -129,9 +129,7 @@ impl Stepper {
             patch.nodes.fields_mut([f.mass, f.inverse, f.lumped, f.acceleration]);
         inverse.fill(0.0);
         let still = self.still_speed;
-        // brings a node to the still speed while the fastest wave passes a cell
-        let slow = still * still * 2f64.powi(100) * self.inverse_cell;
-        let cut = |value: f64, least: f64| if value.abs() < least { 0.0 } else { value };
+        let slow = self.still_acceleration;
         for i in patch.active.clone() {
             inverse[i] = if mass[i] > self.empty_mass { 1.0 / mass[i] } else { 0.0 };
             lumped[i] = cut(lumped[i] * inverse[i], still);

@@ -9,7 +9,7 @@ use decomp::Parity;
 
 use super::{Nodal, ODD, Stepper};
 use crate::patch::Patch;
-use crate::transfer::Scheme;
+use crate::transfer::{Scheme, cut};
 
 /// field[i] -= m^-1 (M x)[i] for the owned nodes, x the field itself: field = K field.
 fn apply_k(s: &Stepper, patch: &mut Patch<1>, field: usize) {
@@ -52,9 +52,9 @@ impl Stepper {
     /// v' = v + dt b. Collective between neighbours.
     pub(super) fn solve_velocity(&self, nodal: &mut Nodal<'_>, dt: f64) {
         let f = &self.fields;
-        let mut sums = vec![(f.inverse, Parity::Even), (f.lumped, ODD), (f.acceleration, ODD)];
-        sums.extend(self.edge_mask.map(|_| (f.volume, Parity::Even)));
-        nodal.refresh(&sums);
+        let volume = (f.volume, Parity::Even);
+        let sums = [(f.inverse, Parity::Even), (f.lumped, ODD), (f.acceleration, ODD), volume];
+        nodal.refresh(if self.edge_mask.is_some() { &sums } else { &sums[..3] });
         let (order, force) = match self.scheme {
             Scheme::Series { order, force } => (order, force),
             Scheme::Blend(_) | Scheme::Affine => (1, false),
@@ -72,10 +72,11 @@ impl Stepper {
             let [v, b, star] =
                 patch.nodes.fields_mut([f.velocity, f.acceleration, f.velocity_star]);
             for i in 0..v.len() {
-                star[i] = v[i] + dt * b[i];
+                v[i] = cut(v[i], self.still_speed);
+                star[i] = cut(v[i] + dt * b[i], self.still_speed);
             }
         };
-        nodal.each(|patch| {
+        nodal.each("start series", |patch| {
             copy(patch, f.lumped, f.velocity);
             if matches!(self.scheme, Scheme::Series { .. }) {
                 copy(patch, f.lumped, f.remainder);
@@ -88,7 +89,7 @@ impl Stepper {
                 true => nodal.refresh(&[(f.remainder, ODD), (term, ODD)]),
                 false => nodal.refresh(&[(f.remainder, ODD)]),
             }
-            nodal.each(|patch| {
+            nodal.each("series", |patch| {
                 accumulate(patch, f.velocity, f.remainder);
                 if force {
                     accumulate(patch, f.acceleration, term);
@@ -107,7 +108,7 @@ impl Stepper {
         let f = &self.fields;
         match self.scheme {
             Scheme::Series { order, force } => {
-                nodal.each(|patch| {
+                nodal.each("start work", |patch| {
                     let [inverse, star, lumped, y, w] = patch.nodes.fields_mut([
                         f.inverse,
                         f.velocity_star,
@@ -123,7 +124,7 @@ impl Stepper {
                 let terms = if force { order } else { 1 };
                 for l in 0..terms {
                     nodal.refresh(&[(f.scratch2, ODD)]);
-                    nodal.each(|patch| {
+                    nodal.each("work", |patch| {
                         match l {
                             0 => copy(patch, f.scratch2, f.work),
                             _ => accumulate(patch, f.work, f.scratch2),
@@ -136,7 +137,7 @@ impl Stepper {
                 }
             }
             Scheme::Blend(a) => {
-                nodal.each(|patch| {
+                nodal.each("work", |patch| {
                     let [lumped, star, x] =
                         patch.nodes.fields_mut([f.lumped, f.velocity_star, f.scratch2]);
                     for i in 0..x.len() {

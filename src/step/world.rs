@@ -1,26 +1,18 @@
 //! The patches of a rank and the exchanges between them: where physics and `decomp` meet.
+//!
+//! An exchange and the phase after it are one call: the phase runs on inner patches, which hear
+//! of no other rank, while messages to and from the others are on their way.
 
-use std::collections::BTreeMap;
 use std::time::Instant;
 
 use decomp::{Comm, Layout, NodeExchange, Parity, RowError, RowExchange, fold_mirrors};
 use rayon::prelude::*;
 
+use crate::clock::{Activity, Clock, Watcher};
 use crate::patch::Patch;
 use crate::scene::FilterHalo;
 
-/// Seconds spent in each phase.
-#[derive(Clone, Debug, Default)]
-pub struct PhaseTimes(pub BTreeMap<&'static str, f64>);
-
-impl PhaseTimes {
-    /// Adds what has passed since `start` to a phase.
-    pub fn add(&mut self, phase: &'static str, start: Instant) {
-        *self.0.entry(phase).or_default() += start.elapsed().as_secs_f64();
-    }
-}
-
-/// The patches of this rank and the way to the others.
+/// The patches of this rank and the way to the others, for one step.
 pub struct World<'a> {
     /// The ranks.
     pub comm: &'a dyn Comm,
@@ -32,98 +24,265 @@ pub struct World<'a> {
     pub rows: &'a mut RowExchange<1>,
     /// Finished nodal values.
     pub nodes: &'a mut NodeExchange<1>,
+    /// Which patches hear of no other rank as rows are exchanged.
+    pub inner_rows: &'a [bool],
+    /// Which patches hear of no other rank as nodal values are.
+    pub inner_nodes: &'a [bool],
     /// How filters get what lies beyond a patch.
     pub filter: FilterHalo,
+    /// Whether inner patches are computed while messages fly.
+    pub overlap: bool,
+    /// When patches sleep; `None`: never.
+    pub sleep: Option<Sleep>,
     /// Threads over patches; `None`: this thread alone.
     pub pool: Option<&'a rayon::ThreadPool>,
-    /// Where the time went.
-    pub times: &'a mut PhaseTimes,
+    /// Where the time goes.
+    pub clock: &'a mut Clock,
 }
 
-/// Runs a phase on every patch.
+/// When a patch at rest may sleep.
+#[derive(Clone, Copy, Debug)]
+pub struct Sleep {
+    /// Steps without anything near that moves after which a step computes nothing new.
+    pub needed: u32,
+    /// Nodal fields that are not zero at rest.
+    pub kept: [usize; 4],
+}
+
+/// Which patches a phase runs on.
+#[derive(Clone, Copy)]
+enum Which<'a> {
+    All,
+    /// Those that are inner, or those that are not.
+    Inner(&'a [bool], bool),
+}
+
+/// Runs a phase on every patch of `which` that is awake.
 fn for_each(
     pool: Option<&rayon::ThreadPool>,
     patches: &mut [Patch<1>],
+    which: Which<'_>,
     phase: impl Fn(&mut Patch<1>) + Send + Sync,
 ) {
+    let wanted = |k: usize, patch: &Patch<1>| {
+        !patch.rest.asleep()
+            && match which {
+                Which::All => true,
+                Which::Inner(inner, is) => inner[k] == is,
+            }
+    };
+    let run = |(k, patch): (usize, &mut Patch<1>)| {
+        if wanted(k, patch) {
+            phase(patch);
+        }
+    };
     match pool {
-        Some(pool) => pool.install(|| patches.par_iter_mut().for_each(phase)),
-        None => patches.iter_mut().for_each(phase),
+        Some(pool) => pool.install(|| patches.par_iter_mut().enumerate().for_each(run)),
+        None => patches.iter_mut().enumerate().for_each(run),
     }
 }
 
 impl World<'_> {
-    /// Runs a phase on every patch.
-    pub fn each(&mut self, phase: impl Fn(&mut Patch<1>) + Send + Sync) {
+    /// Runs a phase on every patch that is awake.
+    pub fn each(&mut self, name: &'static str, phase: impl Fn(&mut Patch<1>) + Send + Sync) {
         let start = Instant::now();
-        for_each(self.pool, self.patches, phase);
-        self.times.add("compute", start);
+        let watcher = self.clock.watcher();
+        for_each(self.pool, self.patches, Which::All, |p| watcher.time(name, p, &phase));
+        self.clock.add_since(Activity::Compute, start, 0.0);
     }
 
-    /// The step's exchange of rows: migration and ghosts. Collective between neighbours.
-    pub fn exchange_rows(&mut self) -> Result<(), RowError> {
-        let start = Instant::now();
-        let result = self.rows.run(self.comm, self.patches);
-        self.times.add("rows", start);
+    /// The step's exchange of rows, migration and ghosts, and the phases after it up to the next,
+    /// which see nodal values beyond their patch: once for all patches, with messages, or for
+    /// each patch by itself where its ghosts are deep enough. Patches fall asleep and wake by the
+    /// first exchange of a step. Collective between neighbours.
+    pub fn exchange_rows(
+        &mut self,
+        phases: impl Fn(&mut Nodal<'_>) + Send + Sync,
+    ) -> Result<(), RowError> {
+        let sleep = self.sleep.take();
+        let settle = move |patch: &mut Patch<1>| {
+            if let Some(sleep) = &sleep {
+                patch.settle(sleep.needed, &sleep.kept);
+            }
+        };
+        match self.filter {
+            FilterHalo::Exchange => {
+                let mut nodal = Nodal {
+                    patches: self.patches,
+                    pool: self.pool,
+                    watcher: self.clock.watcher(),
+                    halo: Halo::Exchange {
+                        ranks: Ranks { comm: self.comm, overlap: self.overlap, clock: self.clock },
+                        inner_rows: self.inner_rows,
+                        inner_nodes: self.inner_nodes,
+                        rows: Some((self.rows, &settle)),
+                        plan: self.nodes,
+                        failed: None,
+                    },
+                    pending: None,
+                };
+                phases(&mut nodal);
+                match nodal.halo {
+                    Halo::Exchange { failed: Some(error), .. } => Err(error),
+                    _ => Ok(()),
+                }
+            }
+            FilterHalo::Deep => {
+                let (layout, watcher) = (self.layout, self.clock.watcher());
+                let alone = |patch: &mut Patch<1>| {
+                    let patches = std::slice::from_mut(patch);
+                    let halo = Halo::Deep(layout);
+                    phases(&mut Nodal { patches, pool: None, watcher, halo, pending: None });
+                };
+                let mut ranks = Ranks { comm: self.comm, overlap: self.overlap, clock: self.clock };
+                let inner = self.inner_rows;
+                ranks.exchange_rows(self.patches, self.rows, inner, self.pool, &settle, &alone)
+            }
+        }
+    }
+}
+
+/// The other ranks, and what computing overlaps with their messages.
+struct Ranks<'a> {
+    comm: &'a dyn Comm,
+    overlap: bool,
+    clock: &'a mut Clock,
+}
+
+impl Ranks<'_> {
+    /// Exchanges rows and runs a phase on every patch.
+    fn exchange_rows(
+        &mut self,
+        patches: &mut [Patch<1>],
+        rows: &mut RowExchange<1>,
+        inner: &[bool],
+        pool: Option<&rayon::ThreadPool>,
+        settle: &(dyn Fn(&mut Patch<1>) + Sync),
+        phase: &(impl Fn(&mut Patch<1>) + Send + Sync),
+    ) -> Result<(), RowError> {
+        let mut result = Ok(());
+        self.around(
+            "exchange rows",
+            patches,
+            pool,
+            inner,
+            |comm, patches, meanwhile| result = rows.run(comm, patches, meanwhile),
+            &|patch| settle(patch),
+            phase,
+        );
         result
     }
 
-    /// Runs the phases between two exchanges of rows, which see nodal values beyond their patch:
-    /// once for all patches, with messages, or for each patch by itself where its ghosts are deep
-    /// enough. Collective between neighbours.
-    pub fn nodal(&mut self, phases: impl Fn(&mut Nodal<'_>) + Send + Sync) {
-        match self.filter {
-            FilterHalo::Exchange => phases(&mut Nodal {
-                patches: self.patches,
-                halo: Halo::Exchange { comm: self.comm, plan: self.nodes, times: self.times },
-                pool: self.pool,
-            }),
-            FilterHalo::Deep => {
-                let layout = self.layout;
-                self.each(|patch| {
-                    let patches = std::slice::from_mut(patch);
-                    phases(&mut Nodal { patches, halo: Halo::Deep(layout), pool: None });
-                });
+    /// Runs `exchange` and `phase` on every patch, on the inner ones within the exchange; `ready`
+    /// is called on each patch before its phase, asleep or not.
+    #[allow(clippy::too_many_arguments)]
+    fn around(
+        &mut self,
+        name: &'static str,
+        patches: &mut [Patch<1>],
+        pool: Option<&rayon::ThreadPool>,
+        inner: &[bool],
+        exchange: impl FnOnce(&dyn Comm, &mut [Patch<1>], &mut dyn FnMut(&mut [Patch<1>])),
+        ready: &dyn Fn(&mut Patch<1>),
+        phase: &(impl Fn(&mut Patch<1>) + Send + Sync),
+    ) {
+        let mut computed = 0.0;
+        let mut compute = |patches: &mut [Patch<1>], is: bool| {
+            let start = Instant::now();
+            for (patch, _) in patches.iter_mut().zip(inner).filter(|(_, i)| **i == is) {
+                ready(patch);
             }
+            for_each(pool, patches, Which::Inner(inner, is), phase);
+            computed += start.elapsed().as_secs_f64();
+        };
+        let start = Instant::now();
+        let waited = self.comm.traffic().waited;
+        let overlap = self.overlap;
+        exchange(self.comm, patches, &mut |patches| {
+            if overlap {
+                compute(patches, true);
+            }
+        });
+        self.clock.event(name, start);
+        if !overlap {
+            compute(patches, true);
         }
+        compute(patches, false);
+        let waited = self.comm.traffic().waited - waited;
+        self.clock.add(Activity::Compute, computed);
+        self.clock.add(Activity::Wait, waited);
+        self.clock.add_since(Activity::Exchange, start, computed + waited);
+        self.comm.heartbeat();
     }
 }
 
 /// Patches whose phases follow each other with nodal values in between.
 pub struct Nodal<'a> {
     patches: &'a mut [Patch<1>],
-    halo: Halo<'a>,
     pool: Option<&'a rayon::ThreadPool>,
+    watcher: Watcher,
+    halo: Halo<'a>,
+    /// Fields to be made whole before the next phase.
+    pending: Option<smallvec::SmallVec<[(usize, Parity); 4]>>,
 }
 
 enum Halo<'a> {
-    Exchange { comm: &'a dyn Comm, plan: &'a mut NodeExchange<1>, times: &'a mut PhaseTimes },
+    Exchange {
+        ranks: Ranks<'a>,
+        inner_rows: &'a [bool],
+        inner_nodes: &'a [bool],
+        /// The rows to be exchanged before the first phase.
+        rows: Option<(&'a mut RowExchange<1>, &'a (dyn Fn(&mut Patch<1>) + Sync))>,
+        plan: &'a mut NodeExchange<1>,
+        failed: Option<RowError>,
+    },
     Deep(&'a Layout<1>),
 }
 
 impl Nodal<'_> {
-    /// Runs a phase on every patch.
-    pub fn each(&mut self, phase: impl Fn(&mut Patch<1>) + Send + Sync) {
-        let start = Instant::now();
-        for_each(self.pool, self.patches, phase);
-        if let Halo::Exchange { times, .. } = &mut self.halo {
-            times.add("compute", start);
-        }
-    }
-
-    /// Makes nodal values whole beyond the patches. Collective between neighbours.
-    pub fn refresh(&mut self, fields: &[(usize, Parity)]) {
+    /// Runs a phase on every patch that is awake, once the values it needs are there.
+    pub fn each(&mut self, name: &'static str, phase: impl Fn(&mut Patch<1>) + Send + Sync) {
+        let watcher = self.watcher;
+        let timed = |patch: &mut Patch<1>| watcher.time(name, patch, &phase);
+        let fields = self.pending.take();
         match &mut self.halo {
-            Halo::Exchange { comm, plan, times } => {
-                let start = Instant::now();
-                plan.refresh(*comm, self.patches, fields);
-                times.add("nodes", start);
-            }
             Halo::Deep(layout) => {
                 for patch in self.patches.iter_mut() {
-                    fold_mirrors(layout, &mut patch.nodes, fields);
+                    if let Some(fields) = &fields {
+                        fold_mirrors(layout, &mut patch.nodes, fields);
+                    }
+                    timed(patch);
+                }
+            }
+            // the run ends on such a failure
+            Halo::Exchange { failed: Some(_), .. } => {}
+            Halo::Exchange { ranks, inner_rows, inner_nodes, rows, plan, failed } => {
+                if let Some((rows, settle)) = rows.take() {
+                    let (patches, pool) = (&mut *self.patches, self.pool);
+                    *failed =
+                        ranks.exchange_rows(patches, rows, inner_rows, pool, settle, &timed).err();
+                } else if let Some(fields) = &fields {
+                    ranks.around(
+                        "exchange nodes",
+                        self.patches,
+                        self.pool,
+                        inner_nodes,
+                        |comm, patches, then| plan.refresh(comm, patches, fields, then),
+                        &|_| {},
+                        &timed,
+                    );
+                } else {
+                    let start = Instant::now();
+                    for_each(self.pool, self.patches, Which::All, timed);
+                    ranks.clock.add_since(Activity::Compute, start, 0.0);
                 }
             }
         }
+    }
+
+    /// Makes nodal values whole beyond the patches before the next phase.
+    pub fn refresh(&mut self, fields: &[(usize, Parity)]) {
+        debug_assert!(self.pending.is_none(), "a phase comes between two exchanges");
+        self.pending = Some(fields.into());
     }
 }

@@ -98,7 +98,13 @@ impl Comm for Mpi {
         self.world.size() as usize
     }
 
-    fn exchange(&self, sends: &[(usize, &[u64])], from: &[usize], received: &mut Vec<Vec<u64>>) {
+    fn exchange(
+        &self,
+        sends: &[(usize, &[u64])],
+        from: &[usize],
+        received: &mut Vec<Vec<u64>>,
+        meanwhile: &mut dyn FnMut(),
+    ) {
         received.resize_with(from.len(), Vec::new);
         mpi::request::scope(|scope| {
             let requests: Vec<_> = sends
@@ -107,6 +113,7 @@ impl Comm for Mpi {
                     self.world.process_at_rank(*to as i32).immediate_send(scope, *words)
                 })
                 .collect();
+            meanwhile();
             for (source, words) in from.iter().zip(received.iter_mut()) {
                 let process = self.world.process_at_rank(*source as i32);
                 let mut found = None;

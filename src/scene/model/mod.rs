@@ -32,8 +32,8 @@ pub struct Scene {
     /// The scheme.
     pub method: Method,
     /// How the work is shared; it changes no bit of the results.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub decomposition: Option<Decomposition>,
+    #[serde(default)]
+    pub decomposition: Decomposition,
     /// Materials by name.
     pub materials: BTreeMap<String, Material>,
     /// Bodies; their order numbers the particles.
@@ -71,13 +71,60 @@ pub struct Domain {
 }
 
 /// How the work is shared.
-#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Decomposition {
+    /// Moving patches between ranks so that none waits for the busiest.
+    pub balance: Balance,
+    /// Compute the inner patches of a rank while messages to its outer ones are on their way.
+    pub overlap: bool,
+    /// Leave out patches at rest that no wave has reached.
+    pub skip_quiet: bool,
+    /// Threads a rank; `--threads` wins.
+    #[schemars(range(min = 1, max = 1024))]
+    pub threads: usize,
     /// How filters that reach over several cells get what lies beyond a patch; absent: the
     /// cheaper for the patches at hand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub filter_halo: Option<FilterHalo>,
+}
+
+impl Default for Decomposition {
+    fn default() -> Self {
+        Decomposition {
+            balance: Balance::default(),
+            overlap: true,
+            skip_quiet: true,
+            threads: 1,
+            filter_halo: None,
+        }
+    }
+}
+
+/// When patches move between ranks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Balance {
+    /// Steps between two looks at the ranks' loads; 0: patches stay where they start.
+    pub every: u64,
+    /// What counts as a patch's load.
+    pub cost: BalanceCost,
+}
+
+impl Default for Balance {
+    fn default() -> Self {
+        Balance { every: 50, cost: BalanceCost::Time }
+    }
+}
+
+/// What counts as a patch's load.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BalanceCost {
+    /// The time that its phases take, measured and smoothed.
+    Time,
+    /// The particles that it computes: where patches go is then the same in every run.
+    Particles,
 }
 
 /// How a filter that reaches over several cells gets what lies beyond a patch. The bits are the

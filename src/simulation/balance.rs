@@ -1,0 +1,112 @@
+//! Patches move between ranks so that none waits for the busiest.
+
+use std::time::Instant;
+
+use decomp::{Comm, assign_patches, busiest_share, relocate};
+
+use super::Simulation;
+use crate::clock::Activity;
+use crate::patch::Patch;
+use crate::scene::BalanceCost;
+
+/// Steps between two in which the patches' cost is measured: looking at the clock is not free.
+const SAMPLE_EVERY: u64 = 5;
+
+/// Handing a particle to another rank costs as much as this many steps of it: it is packed, sent
+/// and unpacked with all its columns, and its patch starts anew.
+const MOVE_COST: u64 = 4;
+
+/// A gain smaller than this share of the busiest rank's load is noise.
+const WORTH: f64 = 0.03;
+
+impl<C: Comm> Simulation<'_, C> {
+    /// Whether the cost of patches is measured in `step`.
+    pub(super) fn samples(&self, step: u64) -> bool {
+        let balance = self.scene.scene.decomposition.balance;
+        self.may_balance()
+            && balance.cost == BalanceCost::Time
+            && step.is_multiple_of(SAMPLE_EVERY.min(balance.every))
+    }
+
+    fn may_balance(&self) -> bool {
+        let every = self.scene.scene.decomposition.balance.every;
+        every > 0 && self.comm.size() > 1 && self.layout.patches().len() > 1
+    }
+
+    /// Moves patches if a step asks for it and what is gained until the next look exceeds what
+    /// moving costs. Collective.
+    pub(super) fn balance(&mut self) {
+        let every = self.scene.scene.decomposition.balance.every;
+        if !self.may_balance() || !self.step.is_multiple_of(every) {
+            return;
+        }
+        let start = Instant::now();
+        let waited = self.comm.traffic().waited;
+        let (costs, rows) = self.gather_costs();
+        let ranks = self.comm.size();
+        let wanted = assign_patches(&costs, &self.order, ranks);
+        let now = busiest_share(&costs, self.layout.ranks(), ranks);
+        let then = busiest_share(&costs, &wanted, ranks);
+        let moved: u64 = (0..rows.len())
+            .filter(|&p| wanted[p] != self.layout.rank_of(p))
+            .map(|p| rows[p].max(1))
+            .sum();
+        let mean = costs.iter().sum::<u64>() as f64 / rows.iter().sum::<u64>().max(1) as f64;
+        let gain = (now - then.min(now)) as f64;
+        let pays = gain * every as f64 > (MOVE_COST * moved) as f64 * mean;
+        let waited = self.comm.traffic().waited - waited;
+        self.clock.event("balance", start);
+        self.clock.add(Activity::Wait, waited);
+        self.clock.add_since(Activity::Balance, start, waited);
+        if pays && gain > WORTH * now as f64 {
+            self.move_patches(wanted);
+        }
+    }
+
+    /// Cost and number of particles of every patch, on every rank. Collective.
+    fn gather_costs(&self) -> (Vec<u64>, Vec<u64>) {
+        let by_time = self.scene.scene.decomposition.balance.cost == BalanceCost::Time;
+        let count = self.layout.patches().len();
+        let mut told = vec![0; 2 * count];
+        let mine = self.layout.patches_of(self.comm.rank());
+        for (patch, index) in self.patches.iter().zip(mine) {
+            let rows = patch.block.own() as i64;
+            let computed = if patch.rest.asleep() { 0 } else { rows };
+            // nanoseconds, so that a patch that was measured once has a cost
+            let measured = patch.watch.cost.map_or(computed, |c| (c * 1e9) as i64);
+            told[index] = if by_time { measured } else { computed };
+            told[count + index] = rows;
+        }
+        self.comm.sum(&mut told);
+        let mut told = told.into_iter().map(|t| t as u64);
+        (told.by_ref().take(count).collect(), told.collect())
+    }
+
+    fn move_patches(&mut self, ranks: Vec<usize>) {
+        let start = Instant::now();
+        let waited = self.comm.traffic().waited;
+        let reach = self.reach.expect("known since the start");
+        let new = self.layout.clone().with_ranks(ranks);
+        let (depth, deeper) = (reach.depth(self.plan.ghosts), self.plan.deeper);
+        let fields = self.stepper.fields.count;
+        let limit = self.stepper.longest_within(reach);
+        let patches = std::mem::take(&mut self.patches);
+        let specs = &self.stepper.columns.specs;
+        let (patches, moved) =
+            relocate(self.comm, &self.layout, &new, patches, specs, |index, block| {
+                let mut patch = Patch::new(&new, index, block);
+                patch.set_arrays(&new, index, depth, deeper, fields);
+                patch.reach_length = limit;
+                patch
+            });
+        self.patches = patches;
+        self.layout = new;
+        self.make_plan(reach);
+        self.tally.balances += 1;
+        self.tally.patches_moved += moved.patches;
+        let waited = self.comm.traffic().waited - waited;
+        self.clock.event("move patches", start);
+        self.clock.add(Activity::Wait, waited);
+        self.clock.add_since(Activity::Migrate, start, waited);
+    }
+}

@@ -1,0 +1,140 @@
+//! What a run counts: work done and left out, particles moved and departed, and the census that
+//! shows that none is lost or doubled.
+
+use decomp::{Census, Comm, ExactSum};
+
+use super::{RunError, Simulation};
+use crate::patch::Patch;
+use crate::scene::CheckedScene;
+
+/// Steps between two counts of all particles: so rare that they cost nothing that shows.
+pub(super) const CENSUS_EVERY: u64 = 100;
+
+/// What a rank has counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Particles times steps that this rank has computed.
+    pub particle_steps: u64,
+    /// Particles times steps that this rank's sleeping patches left out.
+    pub skipped_particle_steps: u64,
+    /// Sum over steps of what the busiest rank computed, alike on all ranks.
+    pub busiest_particle_steps: u64,
+    /// Times that patches moved, alike on all ranks.
+    pub balances: u64,
+    /// Patches that this rank gave away.
+    pub patches_moved: u64,
+    /// Particles that passed from a patch of this rank to another patch.
+    pub migrated: u64,
+}
+
+/// What has left by outflows, in the frame of the scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Left {
+    /// Number of particles.
+    pub count: u64,
+    /// Mass [kg].
+    pub mass: f64,
+    /// Momentum [kg m/s].
+    pub momentum: f64,
+    /// Kinetic energy [J].
+    pub kinetic: f64,
+    /// Internal energy [J].
+    pub internal: f64,
+}
+
+/// What has left by outflows of this rank's patches: sums that do not depend on who counted.
+#[derive(Clone, Debug)]
+pub(super) struct Outflow {
+    census: Census,
+    /// Mass, momentum, kinetic and internal energy.
+    sums: [ExactSum; 4],
+    grid_velocity: f64,
+}
+
+impl Outflow {
+    /// Nothing so far. The sums' resolution is chosen by the scene: 2^-80 of a particle at some
+    /// times the fastest speed of the start, with room for 2^46 of that.
+    pub fn new(scene: &CheckedScene, grid_velocity: f64) -> Self {
+        let bodies = || scene.scene.bodies.iter().zip(&scene.bodies);
+        let mass = bodies()
+            .map(|(b, c)| {
+                let size = b.extent.upper.iter().zip(&b.extent.lower).map(|(u, l)| u - l);
+                let density = scene.scene.materials[&b.material].density;
+                density * size.product::<f64>() / c.particles as f64
+            })
+            .fold(0.0, f64::max);
+        let speed = bodies().map(|(_, c)| c.velocity[0].abs()).fold(1e3, f64::max) * 1e3;
+        let largest = [mass, mass * speed, mass * speed * speed, mass * speed * speed];
+        Outflow { census: Census::default(), sums: largest.map(ExactSum::new), grid_velocity }
+    }
+
+    /// Books what has left in a step.
+    pub fn take(&mut self, patches: &mut [Patch<1>]) {
+        for gone in patches.iter_mut().flat_map(|p| p.departed.drain(..)) {
+            let (m, v) = (gone.mass, gone.velocity + self.grid_velocity);
+            self.census.add(gone.id, m);
+            let terms = [m, m * v, 0.5 * m * v * v, m * gone.energy];
+            self.sums.iter_mut().zip(terms).for_each(|(sum, term)| sum.add(term));
+        }
+    }
+}
+
+impl<C: Comm> Simulation<'_, C> {
+    /// Counts what the step computed and left out; returns the particles computed.
+    pub(super) fn count_step(&mut self) -> u64 {
+        let (mut computed, mut skipped) = (0, 0);
+        for patch in &self.patches {
+            let rows = patch.block.own() as u64;
+            if patch.rest.asleep() { skipped += rows } else { computed += rows }
+        }
+        if self.step == 0 {
+            return 0;
+        }
+        self.tally.particle_steps += computed;
+        self.tally.skipped_particle_steps += skipped;
+        computed
+    }
+
+    /// What this rank has counted so far.
+    pub fn tally(&mut self) -> Tally {
+        self.tally.migrated += self.plan.rows.take_migrated();
+        self.tally
+    }
+
+    /// The particles of this rank.
+    pub fn particles(&self) -> u64 {
+        self.patches.iter().map(|p| p.block.own() as u64).sum()
+    }
+
+    /// What has left by outflows. Collective.
+    pub fn left(&self) -> Left {
+        let mut sums = self.outflow.sums.clone();
+        ExactSum::over_ranks(self.comm, &mut sums);
+        let [mass, momentum, kinetic, internal] = sums.map(|s| s.value());
+        let count = self.outflow.census.over_ranks(self.comm).rows;
+        Left { count, mass, momentum, kinetic, internal }
+    }
+
+    /// The particles of all ranks, those that have left among them: their ids and masses never
+    /// change. Collective.
+    pub(super) fn count(&self) -> Census {
+        let mass = self.stepper.columns.mass;
+        let mut census = self.outflow.census;
+        for block in self.patches.iter().map(|p| &p.block) {
+            for (id, m) in block.ids[..block.own()].iter().zip(&block.columns[mass]) {
+                census.add(*id, *m);
+            }
+        }
+        census.over_ranks(self.comm)
+    }
+
+    /// Ends the run if a particle was lost, doubled or has changed its mass. Collective.
+    pub(super) fn check_census(&self) -> Result<(), RunError> {
+        let now = self.count();
+        if now == self.census {
+            return Ok(());
+        }
+        let (before, now) = (self.census.rows, now.rows);
+        Err(RunError::Lost { time: self.time, step: self.step, before, now })
+    }
+}
