@@ -33,10 +33,14 @@ pub fn figure(study: &Study) -> Figure {
         let (x, y): (Vec<f64>, Vec<f64>) = of.map(|row| (row.workers as f64, row.speed_up)).unzip();
         let look = Style { mark: Some(7.0), ..Style::line_and_marks(Color::palette(index)) };
         let (name, look) = match threads {
-            1 => ("ranks of 1 thread".into(), look),
-            n => (format!("ranks of {n} threads"), look.hollow()),
+            1 => ("ranks × 1".into(), look),
+            n => (format!("ranks × {n}"), look.hollow()),
         };
         panel = panel.series(Series::new(name, Points::new(x, y), look));
+    }
+    panel = panel.note(format!("median of {}", study.repeats));
+    if rows.iter().any(|row| row.oversubscribed) {
+        panel = panel.note("over: more workers than cores");
     }
     let x = Axis::log("Workers: ranks × threads", "").ticks(ticks);
     Figure::new(format!("{title}: {}", study.title), x).panel(panel).bars(bars(&rows))

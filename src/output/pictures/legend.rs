@@ -53,7 +53,8 @@ fn swatch(canvas: &mut Canvas, style: &Style, x: f64, y: f64) {
         canvas.fill(rect, DARKEST, 1.0);
     }
     if let Some(stroke) = style.stroke {
-        let inset = if style.outlined { 5.0 } else { 0.0 };
+        // A broad line's round ends reach beyond it.
+        let inset = if style.outlined { 5.0 } else { (0.5 * style.width - 1.5).max(0.0) };
         canvas.line(&[(x + inset, y), (end - inset, y)], style.width, style.color, stroke);
     }
     if let Some(radius) = style.mark {
