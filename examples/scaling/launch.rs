@@ -34,8 +34,11 @@ impl Job {
         let output = started(&mut command)?;
         if !output.status.success() {
             let text = String::from_utf8_lossy(&output.stderr);
-            let line = text.lines().find(|l| !l.trim().is_empty()).unwrap_or("no message");
-            return Err(format!("{ranks} ranks x {threads} threads, {}: {line}", output.status));
+            return Err(format!(
+                "{ranks} ranks x {threads} threads, {}: {}",
+                output.status,
+                first_words(&text)
+            ));
         }
         RunSummary::read(folder)
     }
@@ -58,9 +61,31 @@ fn started(command: &mut Command) -> Result<Output, String> {
     command.output().map_err(|e| format!("cannot start {command:?}: {e}"))
 }
 
+/// What a failed run says: the program's own line, else mpirun's first that is no rule.
+fn first_words(text: &str) -> &str {
+    let own = text.lines().find_map(|line| line.strip_prefix("error: "));
+    let other = || text.lines().find(|line| line.contains(char::is_alphabetic));
+    own.or_else(other).unwrap_or("no message").trim()
+}
+
 /// The release build of the program.
 fn program() -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR")
         .map_or(Path::new(env!("CARGO_MANIFEST_DIR")).join("target"), PathBuf::from);
     target.join("release/flyer-mpm")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_run_is_told_by_its_own_line() {
+        assert_eq!(
+            first_words("warning: thin\nerror: a particle has left\n"),
+            "a particle has left"
+        );
+        assert_eq!(first_words("-----\nmpirun has detected\n"), "mpirun has detected");
+        assert_eq!(first_words("\n"), "no message");
+    }
 }

@@ -23,10 +23,11 @@ pub fn figure(study: &Study) -> Figure {
     let ideal = Style::line(Color::GRAY).stroke(Stroke::Dashed).width(2.0);
     panel = panel.series(Series::new("ideal", Points::new(ends, ends), ideal));
     if study.cores < most {
-        let cores = [study.cores as f64; 2];
+        // Up to the ideal line.
+        let cores = study.cores as f64;
         let look = Style::line(Color::BLACK).stroke(Stroke::Dotted).width(1.5);
         let name = format!("{} cores", study.cores);
-        panel = panel.series(Series::new(name, Points::new(cores, ends), look));
+        panel = panel.series(Series::new(name, Points::new([cores; 2], [1.0, cores]), look));
     }
     for (index, threads) in threads(&rows).into_iter().enumerate() {
         let of = rows.iter().filter(|row| row.threads == threads);
