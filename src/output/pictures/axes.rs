@@ -30,12 +30,7 @@ pub(super) fn grid(canvas: &mut Canvas, area: &Rect, x: &Ruler, y: &Ruler) {
 
 /// The frame with its ticks, and the numbers and the label of the upright axis.
 pub(super) fn frame(canvas: &mut Canvas, area: &Rect, x: &Ruler, y: &Ruler, label: f64) {
-    outline(canvas, area, 1.5);
-    for tick in &x.ticks {
-        let length = if tick.text.is_empty() { 0.5 * TICK } else { TICK };
-        let at = area.left + tick.at * area.width();
-        canvas.line(&[(at, area.bottom), (at, area.bottom + length)], 1.5, INK, Stroke::Solid);
-    }
+    floor(canvas, area, x);
     for tick in &y.ticks {
         let length = if tick.text.is_empty() { 0.5 * TICK } else { TICK };
         let at = area.bottom - tick.at * area.height();
@@ -44,6 +39,16 @@ pub(super) fn frame(canvas: &mut Canvas, area: &Rect, x: &Ruler, y: &Ruler, labe
         canvas.text(&tick.text, place, TICK_EM, Align::Right, INK);
     }
     upright(canvas, &y.label, label, area);
+}
+
+/// The frame with the ticks of the x axis.
+pub(super) fn floor(canvas: &mut Canvas, area: &Rect, x: &Ruler) {
+    outline(canvas, area, 1.5);
+    for tick in &x.ticks {
+        let length = if tick.text.is_empty() { 0.5 * TICK } else { TICK };
+        let at = area.left + tick.at * area.width();
+        canvas.line(&[(at, area.bottom), (at, area.bottom + length)], 1.5, INK, Stroke::Solid);
+    }
 }
 
 /// A rectangle's border.

@@ -133,6 +133,14 @@ impl Canvas {
         }
     }
 
+    /// Draws a round mark, or a ring.
+    pub fn mark(&mut self, at: Place, radius: f64, color: Color, hollow: bool) {
+        self.shapes.push(Shape::Dot { at, radius, color });
+        if hollow {
+            self.shapes.push(Shape::Dot { at, radius: 0.55 * radius, color: Color::WHITE });
+        }
+    }
+
     /// Fills a rectangle.
     pub fn fill(&mut self, rect: Rect, color: Color, opacity: f64) {
         self.shapes.push(Shape::Fill { rect, color, opacity });

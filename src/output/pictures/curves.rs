@@ -1,6 +1,6 @@
 //! Series as lines and marks inside a panel.
 
-use super::canvas::{Canvas, Place, Rect, Shape};
+use super::canvas::{Canvas, Place, Rect};
 use super::color::Color;
 use super::figure::{Points, Scale, Series};
 use super::occupancy::Occupancy;
@@ -65,7 +65,7 @@ pub(super) fn draw(
     let marked = runs.iter().filter(|run| style.mark.is_some() || lone(run)).flatten();
     for &at in marked.filter(|at| area.grown(0.5).contains(**at)) {
         occupancy.add_point(at);
-        canvas.shapes.push(Shape::Dot { at, radius, color: style.color });
+        canvas.mark(at, radius, style.color, style.hollow);
     }
 }
 

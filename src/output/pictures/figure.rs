@@ -1,5 +1,6 @@
 //! The description of a figure: panels of series over one x axis. SI units throughout.
 
+use super::bars::Bars;
 use super::color::Color;
 use super::color_map::ColorMap;
 
@@ -12,12 +13,19 @@ pub struct Figure {
     pub x: Axis,
     /// Panels from top to bottom.
     pub panels: Vec<Panel>,
+    /// Bars that take the right half of the page; not beside a colour map.
+    pub bars: Option<Bars>,
 }
 
 impl Figure {
     /// A figure without panels.
     pub fn new(title: impl Into<String>, x: Axis) -> Self {
-        Self { title: title.into(), x, panels: Vec::new() }
+        Self { title: title.into(), x, panels: Vec::new(), bars: None }
+    }
+
+    /// Puts bars beside the panels.
+    pub fn bars(self, bars: Bars) -> Self {
+        Self { bars: Some(bars), ..self }
     }
 
     /// Adds a panel below the others.
@@ -87,13 +95,16 @@ pub struct Axis {
     pub range: Option<(f64, f64)>,
     /// Room left beyond the data at each end, as a fraction of their range.
     pub margin: f64,
+    /// Values that are numbered, in `unit`; round ones where it is empty.
+    pub ticks: Vec<f64>,
 }
 
 impl Axis {
     /// An evenly spaced axis from the data's least to their greatest value and a little more.
     pub fn linear(label: impl Into<String>, unit: impl Into<String>) -> Self {
         let (label, unit) = (label.into(), unit.into());
-        Self { label, unit, scale: Scale::Linear, range: None, margin: 0.05 }
+        let ticks = Vec::new();
+        Self { label, unit, scale: Scale::Linear, range: None, margin: 0.05, ticks }
     }
 
     /// A logarithmic axis.
@@ -105,6 +116,11 @@ impl Axis {
     /// ascending.
     pub fn range(self, low: f64, high: f64) -> Self {
         Self { range: Some((low, high)), ..self }
+    }
+
+    /// The axis with numbers at these values alone, as far as they lie on it.
+    pub fn ticks(self, ticks: impl Into<Vec<f64>>) -> Self {
+        Self { ticks: ticks.into(), ..self }
     }
 
     /// The axis without room beyond the data.
@@ -169,6 +185,8 @@ pub struct Style {
     pub width: f64,
     /// Radius of round marks \[pixel\]; absent: line only.
     pub mark: Option<f64>,
+    /// Whether marks are rings.
+    pub hollow: bool,
     /// Whether the line gets a dark border, to be seen on a colour map.
     pub outlined: bool,
 }
@@ -176,7 +194,8 @@ pub struct Style {
 impl Style {
     /// An unbroken line.
     pub fn line(color: Color) -> Self {
-        Self { color, stroke: Some(Stroke::Solid), width: 2.5, mark: None, outlined: false }
+        let stroke = Some(Stroke::Solid);
+        Self { color, stroke, width: 2.5, mark: None, hollow: false, outlined: false }
     }
 
     /// Marks without a line.
@@ -192,6 +211,11 @@ impl Style {
     /// The same with another pattern.
     pub fn stroke(self, stroke: Stroke) -> Self {
         Self { stroke: Some(stroke), ..self }
+    }
+
+    /// The same with rings for marks.
+    pub fn hollow(self) -> Self {
+        Self { hollow: true, ..self }
     }
 
     /// The same with another width of line.

@@ -15,6 +15,8 @@ use super::ticks::{Ruler, drawable};
 
 const TITLE_EM: f64 = 25.0;
 const BAR: f64 = 26.0;
+/// Room between panels and the bars beside them.
+const GUTTER: f64 = 40.0;
 const FAINT: Color = Color(0x77, 0x77, 0x7c);
 
 /// Lays a figure out.
@@ -23,7 +25,12 @@ pub(super) fn lay_out(figure: &Figure) -> Result<Canvas, PictureError> {
     let mut canvas = Canvas { title: figure.title.clone(), ..Canvas::default() };
     let areas = areas(figure);
     let top = MARGIN + TITLE_EM + 6.0;
-    let legend_end = legend::draw(&mut canvas, figure, areas.left, WIDTH - MARGIN, top);
+    let names = legend::entries(figure);
+    let mut legend_end = legend::draw(&mut canvas, &names, (areas.left, right_edge(figure)), top);
+    let beside = (right_edge(figure) + GUTTER, WIDTH - MARGIN);
+    if let Some(bars) = &figure.bars {
+        legend_end = legend_end.max(bars.draw_legend(&mut canvas, beside, top));
+    }
     title(&mut canvas, &figure.title, areas.left);
 
     let x = Ruler::new(&figure.x, x_values(figure), wanted(areas.right - areas.left, 120.0));
@@ -36,6 +43,9 @@ pub(super) fn lay_out(figure: &Figure) -> Result<Canvas, PictureError> {
         if index + 1 == panels.len() {
             axes::x_numbers(&mut canvas, area, &x);
         }
+    }
+    if let Some(bars) = &figure.bars {
+        bars.draw(&mut canvas, beside, (legend_end + 16.0, bottom));
     }
     Ok(canvas)
 }
@@ -70,6 +80,11 @@ struct Areas {
     label: f64,
 }
 
+/// Where the panels and what belongs to them end.
+fn right_edge(figure: &Figure) -> f64 {
+    if figure.bars.is_some() { 0.5 * (WIDTH - GUTTER) } else { WIDTH - MARGIN }
+}
+
 fn areas(figure: &Figure) -> Areas {
     let height = 0.7 * HEIGHT / figure.panels.len().max(1) as f64;
     let rulers = figure.panels.iter().map(|panel| y_ruler(figure, panel, height));
@@ -81,7 +96,7 @@ fn areas(figure: &Figure) -> Areas {
         .map(|map| 24.0 + BAR + TICK + 8.0 + widest(&bar_ruler(map, height)) + 14.0 + LABEL_EM);
     Areas {
         left: MARGIN + LABEL_EM + 14.0 + numbers + 6.0 + TICK,
-        right: WIDTH - MARGIN - bars.fold(0.0, f64::max),
+        right: right_edge(figure) - bars.fold(0.0, f64::max),
         label: MARGIN + 0.75 * LABEL_EM,
     }
 }

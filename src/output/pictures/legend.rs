@@ -1,6 +1,6 @@
 //! The legend: names of the series in rows under the title, where they cover no data.
 
-use super::canvas::{Align, Canvas, Rect, Shape};
+use super::canvas::{Align, Canvas, Rect};
 use super::color::Color;
 use super::color_map::DARKEST;
 use super::figure::{Figure, Style};
@@ -11,9 +11,14 @@ const ROW: f64 = 30.0;
 const SWATCH: f64 = 46.0;
 const SPACE: f64 = 34.0;
 
-/// Draws the legend from `top` downwards between `left` and `right`; returns where it ends.
-pub(super) fn draw(canvas: &mut Canvas, figure: &Figure, left: f64, right: f64, top: f64) -> f64 {
-    let entries = entries(figure);
+/// Draws names with their looks from `top` downwards between `left` and `right`; returns where
+/// they end.
+pub(super) fn draw(
+    canvas: &mut Canvas,
+    entries: &[(&str, &Style)],
+    (left, right): (f64, f64),
+    top: f64,
+) -> f64 {
     if entries.is_empty() {
         return top;
     }
@@ -30,8 +35,8 @@ pub(super) fn draw(canvas: &mut Canvas, figure: &Figure, left: f64, right: f64, 
     y + 0.5 * ROW
 }
 
-/// Names with their first look, in the order of drawing.
-fn entries(figure: &Figure) -> Vec<(&str, &Style)> {
+/// Names of a figure's series with their first look, in the order of drawing.
+pub(super) fn entries(figure: &Figure) -> Vec<(&str, &Style)> {
     let mut entries: Vec<(&str, &Style)> = Vec::new();
     for series in figure.panels.iter().flat_map(|panel| &panel.series) {
         if !series.name.is_empty() && entries.iter().all(|(name, _)| *name != series.name) {
@@ -48,14 +53,15 @@ fn swatch(canvas: &mut Canvas, style: &Style, x: f64, y: f64) {
         canvas.fill(rect, DARKEST, 1.0);
     }
     if let Some(stroke) = style.stroke {
-        let inset = if style.outlined { 5.0 } else { 0.0 };
+        // A broad line's round ends reach beyond it.
+        let inset = if style.outlined { 5.0 } else { (0.5 * style.width - 1.5).max(0.0) };
         canvas.line(&[(x + inset, y), (end - inset, y)], style.width, style.color, stroke);
     }
     if let Some(radius) = style.mark {
         let places: &[f64] = if style.stroke.is_some() { &[0.5] } else { &[0.2, 0.5, 0.8] };
         for share in places {
             let at = (x + share * SWATCH, y);
-            canvas.shapes.push(Shape::Dot { at, radius, color: style.color });
+            canvas.mark(at, radius, style.color, style.hollow);
         }
     }
 }

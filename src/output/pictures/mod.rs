@@ -4,7 +4,7 @@
 //! - [`Hugoniot`], [`Profile`], [`WaveDiagram`], [`Histories`] hold the data of the document's
 //!   figures and turn themselves into a [`Figure`]; other studies describe a [`Figure`] directly.
 //! - `layout` turns a figure into shapes on a page, with `ticks` (ends, units, round numbers),
-//!   `legend`, `curves` (beyond 5000 points thinned, see `thin`) and `annotations`.
+//!   `legend`, `curves` (beyond 5000 points thinned, see `thin`), `annotations` and `bars`.
 //! - `paint` draws the shapes through `plotters` into a bitmap and into SVG text.
 //!
 //! All numbers come in SI; axes choose readable units (mm, us, GPa). Values that are not finite
@@ -16,6 +16,7 @@
 
 mod annotations;
 mod axes;
+mod bars;
 mod canvas;
 mod color;
 mod color_map;
@@ -39,6 +40,7 @@ mod tests;
 
 use std::path::{Path, PathBuf};
 
+pub use bars::{Bar, Bars, Part};
 pub use color::Color;
 pub use figure::{Axis, Figure, Label, Panel, Points, Scale, Series, Stroke, Style};
 pub use histories::{Histories, History, HistoryPanel};

@@ -113,6 +113,32 @@ fn odd_data_are_drawn_as_far_as_they_go() {
 }
 
 #[test]
+fn bars_stand_beside_the_panels() {
+    let part = |name: &str, index| Part { name: name.into(), color: Color::palette(index) };
+    let bar = |label: &str, values: &[f64]| Bar { label: label.into(), values: values.into() };
+    let bars = Bars {
+        label: "Share of time".into(),
+        unit: "%".into(),
+        parts: vec![part("compute", 0), part("wait", 1)],
+        bars: vec![
+            bar("1 rank", &[75.0, 25.0]),
+            bar("2 ranks", &[f64::NAN, -1.0]),
+            bar("4 ranks", &[]),
+        ],
+    };
+    let points = Points::new([1.0, 2.0], [1.0, 1.9]);
+    let look = Style::line_and_marks(Color::RED).hollow();
+    let panel = Panel::new(Axis::log("Speed-up", "")).series(Series::new("ranks", points, look));
+    let (png, svg) = drawn(&Figure::new("Bars", Axis::log("Workers", "")).panel(panel).bars(bars));
+    for text in ["Share of time (%)", "compute", "wait", "2 ranks", ">\n75\n<", "no data"] {
+        assert!(svg.contains(text), "{text} is missing");
+    }
+    let blue = |p: &[u8]| p == [0x1f, 0x6f, 0xb4];
+    assert!(count(&png, [620, 120, 1180, 700], blue) > 5000);
+    assert_eq!(count(&png, [0, 120, 580, 700], blue), 0);
+}
+
+#[test]
 fn columns_of_unequal_length_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let mut bad = profile();

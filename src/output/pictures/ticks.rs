@@ -55,6 +55,7 @@ impl Ruler {
             if unit.is_empty() { axis.label.clone() } else { format!("{} ({unit})", axis.label) };
         let mut ruler = Self { label, ticks: Vec::new(), low, high, scale };
         ruler.ticks = match scale {
+            _ if !axis.ticks.is_empty() => ruler.ticks_given(&axis.ticks, factor),
             Scale::Linear => ruler.ticks_linear(factor, wanted),
             Scale::Log => ruler.ticks_log(wanted),
         };
@@ -80,6 +81,11 @@ impl Ruler {
 
     fn tick(&self, value: f64, text: String) -> Option<Tick> {
         self.place(value).map(|at| Tick { at: at.clamp(0.0, 1.0), text })
+    }
+
+    fn ticks_given(&self, values: &[f64], factor: f64) -> Vec<Tick> {
+        let inside = values.iter().filter(|v| (self.low..=self.high).contains(*v));
+        inside.filter_map(|&v| self.tick(v, with_minus(&(v / factor).to_string()))).collect()
     }
 
     fn ticks_linear(&self, factor: f64, wanted: usize) -> Vec<Tick> {
@@ -273,6 +279,12 @@ mod tests {
         );
         let axis = Axis::linear("Drift", "").tight();
         assert_eq!(numbers(&axis, &[0.0, 3e-13]).0, "Drift (10⁻¹³)");
+    }
+
+    #[test]
+    fn numbers_can_be_given() {
+        let axis = Axis::log("Workers", "").ticks([0.5, 1.0, 2.0, 4.0, 8.0]);
+        assert_eq!(numbers(&axis, &[1.0, 4.0]).1.join(" "), "1 2 4");
     }
 
     #[test]

@@ -1,0 +1,103 @@
+//! The files of a study: a CSV, the same numbers as JSON, a picture.
+
+use std::fs;
+use std::path::Path;
+
+use flyer_mpm::output::pictures;
+
+use crate::arguments::Kind;
+use crate::picture;
+use crate::study::Study;
+
+/// What the columns of the CSV mean.
+const COLUMNS: &str = "\
+# One row a configuration: medians over the repeats, which were run in turn.
+# ranks, threads, workers = ranks * threads; skip_quiet: what is quiet was skipped.
+# oversubscribed: more workers than cores; binding: core, none, oversubscribed.
+# patches, particles, steps of the run.
+# wall_seconds, _min, _max: wall time of the time loop [s]; cpu_seconds: user CPU time of all
+#   ranks, set-up and files included [s].
+# worker_seconds_per_particle_step = wall_seconds * workers / (particles * steps) [s].
+# efficiency: that number of 1 x 1, with the same skip_quiet, over the row's; speed_up: efficiency
+#   times workers.
+# compute, exchange, migrate, balance, wait, output, rest: shares of the wall time of all ranks.
+# bytes_per_step, messages_per_step: sent by all ranks; imbalance: work of the busiest rank over
+#   the mean; skipped: share of particle-steps. Empty where the program does not count it.
+";
+
+/// Writes everything into `folder`.
+pub fn write(study: &Study, folder: &Path) -> Result<(), String> {
+    let save = |name: &str, bytes: &[u8]| {
+        let path = folder.join(name);
+        fs::write(&path, bytes).map_err(|e| format!("{}: {e}", path.display()))
+    };
+    save(&format!("{}.csv", study.kind.name()), &table(study)?)?;
+    let json = serde_json::to_string_pretty(study).map_err(|e| e.to_string())? + "\n";
+    save("scaling.json", json.as_bytes())?;
+    pictures::draw(&picture::figure(study), &folder.join("scaling")).map_err(|e| e.to_string())?;
+    Ok(())
+}
+
+/// The CSV, with what it is in comments.
+fn table(study: &Study) -> Result<Vec<u8>, String> {
+    let fixed = match study.kind {
+        Kind::Strong => "the same scene on every row",
+        Kind::Weak => "cell size and end divided by workers: particles a worker and steps are kept",
+    };
+    let head = format!(
+        "# {}: {fixed}\n# scene: {} ({}), --set {:?}\n# machine: {} cores, {}\n# repeats: {}\n",
+        study.kind.name(),
+        study.title,
+        study.scene.display(),
+        study.sets,
+        study.cores,
+        study.processor,
+        study.repeats,
+    );
+    let mut writer = csv::Writer::from_writer((head + COLUMNS).into_bytes());
+    for row in &study.rows {
+        writer.serialize(row).map_err(|e| e.to_string())?;
+    }
+    writer.into_inner().map_err(|e| e.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::row::Row;
+    use crate::row::tests::measured;
+
+    #[test]
+    fn all_files_hold_the_rows() {
+        let (job, runs) = measured(1, &[1.0], false);
+        let rows = vec![Row::new(&job, &runs, None)];
+        let study = Study {
+            kind: Kind::Weak,
+            title: "Flyer".into(),
+            scene: "flyer.json".into(),
+            sets: vec!["time.end=1e-7".into()],
+            repeats: 1,
+            cores: 2,
+            processor: "unknown".into(),
+            rows,
+        };
+        let folder = tempfile::tempdir().unwrap();
+        write(&study, folder.path()).unwrap();
+        let path = folder.path().join("weak_scaling.csv");
+        let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(path).unwrap();
+        let names = reader.headers().unwrap().clone();
+        // Every column is explained.
+        for name in &names {
+            let stem = name.trim_start_matches("wall_seconds");
+            assert!(COLUMNS.contains(stem), "{name}");
+        }
+        let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+        let compute = names.iter().position(|name| name == "compute").unwrap();
+        assert_eq!((rows.len(), &rows[0][0], &rows[0][compute]), (1, "1", ""));
+        let text = fs::read_to_string(folder.path().join("scaling.json")).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert_eq!((&json["kind"], &json["rows"][0]["ranks"]), (&"weak".into(), &1.into()));
+        assert!(folder.path().join("scaling.png").exists());
+        assert!(folder.path().join("scaling.svg").exists());
+    }
+}
