@@ -63,9 +63,18 @@ pub struct RunArgs {
     #[arg(long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// Threads a rank.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = threads)]
-    pub threads: usize,
+    /// Threads a rank [default: decomposition.threads of the scene, else 1].
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub threads: Option<usize>,
+
+    /// Write a timeline of phases, ranks and patches in Chrome's trace format (Perfetto opens
+    /// it).
+    #[arg(long, value_name = "FILE")]
+    pub trace: Option<PathBuf>,
+
+    /// Steps of the timeline, first and last; each takes some kilobytes a patch.
+    #[arg(long, value_name = "A..B", default_value = "1..200", value_parser = steps, requires = "trace")]
+    pub trace_steps: std::ops::Range<u64>,
 
     /// Refuse to replace an earlier result.
     #[arg(long)]
@@ -114,6 +123,15 @@ pub enum Command {
         #[arg(value_name = "RUN")]
         second: PathBuf,
     },
+}
+
+/// Steps A to B, both included, as a range.
+fn steps(text: &str) -> Result<std::ops::Range<u64>, String> {
+    let ends = text.split_once("..").and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
+    match ends {
+        Some((a, b)) if 1 <= a && a <= b && b < u64::MAX => Ok(a..b + 1),
+        _ => Err("two steps such as 1..200 are allowed".into()),
+    }
 }
 
 fn threads(text: &str) -> Result<usize, String> {

@@ -1,5 +1,6 @@
 //! flyer-mpm: impact and shock waves by the material point method.
 
+pub mod accounts;
 pub mod clock;
 pub mod constitutive;
 pub mod exact;

@@ -110,11 +110,18 @@ fn run_scene<C: Comm>(comm: &C, args: &RunArgs, started: Instant) -> Outcome<()>
             scene::parse(&bytes, &args.scene.display().to_string(), &args.set).map_err(bad)?
         }
     };
+    let threads = args.threads.unwrap_or(checked.scene.decomposition.threads);
     if comm.rank() == 0 && !args.quiet {
-        announce(comm, &checked, args.threads);
+        announce(comm, &checked, threads);
     }
-    let options =
-        Options { output, keep: args.keep, quiet: args.quiet, threads: args.threads, started };
+    let options = Options {
+        output,
+        keep: args.keep,
+        quiet: args.quiet,
+        threads,
+        trace: args.trace.clone().map(|file| (file, args.trace_steps.clone())),
+        started,
+    };
     match run(comm, &checked, &options) {
         Ok(Some(report)) if !args.quiet => {
             say(&report);
@@ -125,7 +132,10 @@ fn run_scene<C: Comm>(comm: &C, args: &RunArgs, started: Instant) -> Outcome<()>
         // all ranks know of a particle's fault, and rank 0 tells it
         Err(
             error @ Failure::Run(
-                RunError::Particle { .. } | RunError::TimeStep { .. } | RunError::TooLong { .. },
+                RunError::Particle { .. }
+                | RunError::TimeStep { .. }
+                | RunError::TooLong { .. }
+                | RunError::Lost { .. },
             ),
         ) => Err((FAILED, if comm.rank() == 0 { error.to_string() } else { String::new() })),
         Err(error) => {

@@ -3,6 +3,7 @@
 //! Every rank steps; rank 0 gathers, scores and writes.
 
 use std::io::IsTerminal;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -10,6 +11,8 @@ use decomp::Comm;
 use indicatif::{ProgressBar, ProgressStyle};
 use nix::sys::resource::{UsageWho, getrusage};
 
+use crate::accounts;
+use crate::clock::Activity;
 use crate::figures::{self, PressureRow};
 use crate::output::csv::{profile_names, write_profile};
 use crate::output::folder::OutputFolder;
@@ -17,6 +20,7 @@ use crate::output::histories::{HISTORIES_FILE, Histories};
 use crate::output::pictures::PictureError;
 use crate::output::report::report;
 use crate::output::summary::{Energy, Momentum, Outflow, ProfileSummary, Summary};
+use crate::output::trace::write_trace;
 use crate::output::vtkhdf::{RESULTS_FILE, RunInfo, write_vtkhdf};
 use crate::output::{OutputError, ParticleTable};
 use crate::probes::Probes;
@@ -49,6 +53,8 @@ pub struct Options {
     pub quiet: bool,
     /// Threads a rank.
     pub threads: usize,
+    /// Where to write a timeline, and of which steps.
+    pub trace: Option<(PathBuf, Range<u64>)>,
     /// When the process started.
     pub started: Instant,
 }
@@ -141,6 +147,7 @@ fn step_to_end<C: Comm>(
     let mut due_profile = 0;
     loop {
         let time = simulation.time();
+        let (start, waited) = (Instant::now(), comm.traffic().waited);
         if let Some(probes) = &mut probes {
             probes.sample(simulation);
         }
@@ -155,6 +162,9 @@ fn step_to_end<C: Comm>(
             due_profile += 1;
             recorded.tables.extend(simulation.gather());
         }
+        let waited = comm.traffic().waited - waited;
+        simulation.clock().add(Activity::Wait, waited);
+        simulation.clock().add_since(Activity::Output, start, waited);
         if time >= end {
             break;
         }
@@ -175,15 +185,32 @@ pub fn run<C: Comm>(
 ) -> Result<Option<String>, Failure> {
     let mut simulation = Simulation::new(scene, comm, options.threads)?;
     let start = simulation.totals();
+    if let Some((_, steps)) = &options.trace {
+        simulation.trace(steps.clone());
+    }
+    let before = comm.traffic();
     let (loop_start, loop_cpu) = (Instant::now(), user_cpu_seconds());
     let recorded = step_to_end(&mut simulation, scene, comm, options.quiet)?;
     let loop_wall_seconds = loop_start.elapsed().as_secs_f64();
     let loop_cpu = user_cpu_seconds() - loop_cpu;
     let (end, left) = (simulation.totals(), simulation.left());
-    let spent = comm.gather(&[loop_cpu.to_bits(), user_cpu_seconds().to_bits()]);
-    if comm.rank() != 0 {
-        return Ok(None);
+    let sharing = &scene.scene.decomposition;
+    let decomposition = accounts::decomposition(
+        comm,
+        &mut simulation,
+        sharing,
+        loop_wall_seconds,
+        loop_cpu,
+        before,
+    );
+    if let Some((path, _)) = &options.trace {
+        let events = accounts::timeline(comm, &mut simulation);
+        if comm.rank() == 0 {
+            write_trace(path, &events)?;
+        }
     }
+    let spent = comm.gather(&[loop_cpu.to_bits(), user_cpu_seconds().to_bits()]);
+    let Some(decomposition) = decomposition else { return Ok(None) };
     let seconds = |rank: &[u64], k: usize| f64::from_bits(rank[k]);
     let loop_cpu: f64 = spent.iter().map(|r| seconds(r, 0)).sum();
     // a run shorter than the clock's tick has no CPU time
@@ -228,7 +255,8 @@ pub fn run<C: Comm>(
         loop_wall_seconds,
         cpu_seconds: user_cpu_seconds() + others_cpu,
         particle_steps_per_cpu_second: particle_steps / loop_cpu,
-        phase_seconds: Default::default(),
+        phase_seconds: decomposition.seconds(),
+        decomposition,
         energy,
         momentum,
         outflow,

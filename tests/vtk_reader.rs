@@ -6,9 +6,11 @@ use std::path::Path;
 use std::process::Command;
 use std::sync::Mutex;
 
+use flyer_mpm::output::decomposition::DecompositionSummary;
 use flyer_mpm::output::summary::{Energy, Momentum, ProfileSummary, Summary};
 use flyer_mpm::output::vtkhdf::{RESULTS_FILE, RunInfo, write_vtkhdf};
 use flyer_mpm::output::{ParticleTable, TableColumn, csv};
+use flyer_mpm::scene::{Decomposition, FilterHalo};
 use serde_json::json;
 
 /// One test at a time: a process that is started while another thread writes HDF5 inherits that
@@ -81,6 +83,14 @@ fn write_run(folder: &Path, tables: &[ParticleTable]) {
         cpu_seconds: 0.0,
         particle_steps_per_cpu_second: 0.0,
         phase_seconds: [].into(),
+        decomposition: DecompositionSummary::new(
+            FilterHalo::Deep,
+            &Decomposition::default(),
+            1,
+            0,
+            0,
+            Vec::new(),
+        ),
         energy: Energy::new([0.0; 2], [0.0; 2], 0.0),
         momentum: Momentum::new(&[0.0], &[0.0], &[0.0], 0.0),
         outflow: None,

@@ -29,6 +29,7 @@ mod reduce;
 mod relocate;
 mod rows;
 mod table;
+mod words;
 
 pub use balance::{assign_patches, busiest_share, choose_cuts};
 pub use comm::{Comm, Serial, Traffic};
@@ -40,3 +41,4 @@ pub use reduce::{ExactSum, exact_sums};
 pub use relocate::{Census, Moved, relocate};
 pub use rows::{RowError, RowExchange, RowReach, gather_rows};
 pub use table::{Block, ColumnSpec, Mirror};
+pub use words::{bytes_of, words_of};

@@ -3,6 +3,7 @@
 
 pub mod compare;
 pub mod csv;
+pub mod decomposition;
 pub mod error;
 pub mod folder;
 pub mod histories;
@@ -10,6 +11,7 @@ pub mod pictures;
 pub mod report;
 pub mod summary;
 mod table;
+pub mod trace;
 pub mod vtkhdf;
 
 pub use error::OutputError;

@@ -7,6 +7,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::decomposition::DecompositionSummary;
 use super::error::OutputError;
 
 /// Name of the file in the folder of results.
@@ -41,8 +42,10 @@ pub struct Summary {
     pub cpu_seconds: f64,
     /// Particles times steps over the CPU time of the time loop, all ranks \[1/s\].
     pub particle_steps_per_cpu_second: f64,
-    /// CPU or wall time of each phase by name, as the simulation counts it \[s\].
+    /// Wall time of the time loop by what the ranks did, summed over them \[s\].
     pub phase_seconds: BTreeMap<String, f64>,
+    /// What sharing the work has cost.
+    pub decomposition: DecompositionSummary,
     /// Energy.
     pub energy: Energy,
     /// Momentum.
@@ -193,6 +196,37 @@ pub(super) mod tests {
     use serde_json::json;
 
     use super::*;
+    use crate::output::decomposition::RankSummary;
+    use crate::scene::FilterHalo;
+
+    /// Two ranks.
+    fn decomposition() -> DecompositionSummary {
+        let rank = |rank, particle_steps| RankSummary {
+            rank,
+            patches: 2,
+            particles: 850,
+            particle_steps,
+            particle_steps_skipped: 500,
+            seconds: [("compute", 0.6), ("wait", 0.1)].map(|(n, s)| (n.to_owned(), s)).into(),
+            cpu_seconds: 0.7,
+            bytes: 26_120_000,
+            messages: 5224,
+            particles_migrated: 7,
+            patches_moved: rank as u64,
+        };
+        let options = crate::scene::Decomposition::default();
+        let ranks = vec![rank(0, 2000), rank(1, 1000)];
+        DecompositionSummary::new(FilterHalo::Deep, &options, 2612, 1800, 1, ranks)
+    }
+
+    #[test]
+    fn ranks_add_up() {
+        let all = decomposition();
+        assert_eq!((all.particle_steps_computed, all.particle_steps_skipped), (3000, 1000));
+        assert_eq!((all.imbalance, all.patches_moved, all.particles_migrated), (1.2, 1, 14));
+        assert_eq!((all.bytes_per_step, all.messages_per_step), (20_000.0, 4.0));
+        assert_eq!(all.seconds()["compute"], 1.2);
+    }
 
     /// A summary with two profiles, the first of them scored.
     pub(in super::super) fn example() -> Summary {
@@ -217,7 +251,8 @@ pub(super) mod tests {
             loop_wall_seconds: 0.75,
             cpu_seconds: 2.0,
             particle_steps_per_cpu_second: 5.9e6,
-            phase_seconds: [("transfer".to_owned(), 0.5)].into(),
+            phase_seconds: [("compute".to_owned(), 0.5)].into(),
+            decomposition: decomposition(),
             energy: Energy::new([10.0, 4.0], [0.0, 7.0], 0.5),
             momentum: Momentum::new(&[8.0], &[8.0], &[0.0], 8.0),
             outflow: None,

@@ -90,6 +90,8 @@ impl<C: Comm> Simulation<'_, C> {
         let (depth, deeper) = (reach.depth(self.plan.ghosts), self.plan.deeper);
         let fields = self.stepper.fields.count;
         let limit = self.stepper.longest_within(reach);
+        // the timeline of a patch stays with the rank that computed it
+        self.given_events = self.take_patch_events();
         let patches = std::mem::take(&mut self.patches);
         let specs = &self.stepper.columns.specs;
         let (patches, moved) =

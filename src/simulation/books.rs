@@ -4,6 +4,7 @@
 use decomp::{Census, Comm, ExactSum};
 
 use super::{RunError, Simulation};
+use crate::clock::Event;
 use crate::patch::Patch;
 use crate::scene::CheckedScene;
 
@@ -99,6 +100,17 @@ impl<C: Comm> Simulation<'_, C> {
     pub fn tally(&mut self) -> Tally {
         self.tally.migrated += self.plan.rows.take_migrated();
         self.tally
+    }
+
+    /// What patches did on the timeline, with the patch's number: those of this rank, and those
+    /// that it gave away.
+    pub fn take_patch_events(&mut self) -> Vec<(usize, Event)> {
+        let mine = self.layout.patches_of(self.comm.rank());
+        for (patch, index) in self.patches.iter_mut().zip(mine) {
+            let events = patch.watch.events.drain(..);
+            self.given_events.extend(events.map(|e| (index, e)));
+        }
+        std::mem::take(&mut self.given_events)
     }
 
     /// The particles of this rank.

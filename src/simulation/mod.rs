@@ -18,7 +18,7 @@ use decomp::{
     choose_cuts, curve_order,
 };
 
-use crate::clock::{Activity, Clock};
+use crate::clock::{Activity, Clock, Event};
 use crate::particles::{self, Columns};
 use crate::patch::Patch;
 use crate::scene::{CheckedScene, FilterHalo, Side};
@@ -109,6 +109,8 @@ pub struct Simulation<'a, C: Comm> {
     threads: usize,
     pool: Option<rayon::ThreadPool>,
     clock: Clock,
+    /// Events of patches that other ranks have now.
+    given_events: Vec<(usize, Event)>,
     /// Steps of which a timeline is kept.
     traced: Range<u64>,
     tally: Tally,
@@ -290,6 +292,7 @@ impl<'a, C: Comm> Simulation<'a, C> {
             threads,
             pool,
             clock: Clock::new(),
+            given_events: Vec::new(),
             traced: 0..0,
             tally: Tally::default(),
             census: Census::default(),
@@ -302,6 +305,8 @@ impl<'a, C: Comm> Simulation<'a, C> {
         simulation.census = simulation.count();
         simulation.with_world(|stepper, world| stepper.prime(world))?;
         simulation.agree()?;
+        // all ranks start their clocks together
+        simulation.clock = Clock::new();
         Ok(simulation)
     }
 

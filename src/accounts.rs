@@ -1,0 +1,72 @@
+//! The ranks' accounts of a run, brought together at rank 0.
+
+use decomp::{Comm, Traffic, bytes_of, words_of};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::clock::{Activity, Event};
+use crate::output::decomposition::{DecompositionSummary, RankSummary};
+use crate::output::trace::TraceEvent;
+use crate::simulation::Simulation;
+
+/// Each rank's value at rank 0, by rank; nothing elsewhere. Collective.
+fn gather<C: Comm, T: Serialize + DeserializeOwned>(comm: &C, value: &T) -> Vec<T> {
+    let text = serde_json::to_vec(value).expect("accounts are plain data");
+    let all = comm.gather(&words_of(&text));
+    let read = |words: &Vec<u64>| serde_json::from_slice(&bytes_of(words));
+    all.iter().map(|w| read(w).expect("a rank sends what it serialized")).collect()
+}
+
+/// What the ranks did in a time loop of `wall` and `cpu` seconds on this rank, in which it sent
+/// what is between `before` and now; at rank 0. Collective.
+pub fn decomposition<C: Comm>(
+    comm: &C,
+    simulation: &mut Simulation<'_, C>,
+    options: &crate::scene::Decomposition,
+    wall: f64,
+    cpu: f64,
+    before: Traffic,
+) -> Option<DecompositionSummary> {
+    let (traffic, tally) = (comm.traffic(), simulation.tally());
+    let spent = simulation.clock().seconds;
+    let named = Activity::ALL.iter().zip(spent).map(|(a, s)| (a.name().to_string(), s));
+    let rest = ("rest".to_string(), (wall - spent.iter().sum::<f64>()).max(0.0));
+    let mine = RankSummary {
+        rank: comm.rank(),
+        patches: simulation.layout().patches_of(comm.rank()).len(),
+        particles: simulation.particles(),
+        particle_steps: tally.particle_steps,
+        particle_steps_skipped: tally.skipped_particle_steps,
+        seconds: named.chain([rest]).collect(),
+        cpu_seconds: cpu,
+        bytes: traffic.bytes - before.bytes,
+        messages: traffic.messages - before.messages,
+        particles_migrated: tally.migrated,
+        patches_moved: tally.patches_moved,
+    };
+    let ranks = gather(comm, &mine);
+    (comm.rank() == 0).then(|| {
+        let (steps, halo) = (simulation.steps(), simulation.filter_halo());
+        let (busiest, balances) = (tally.busiest_particle_steps, tally.balances);
+        DecompositionSummary::new(halo, options, steps, busiest, balances, ranks)
+    })
+}
+
+/// The timelines of all ranks at rank 0; empty elsewhere. Collective.
+pub fn timeline<C: Comm>(comm: &C, simulation: &mut Simulation<'_, C>) -> Vec<TraceEvent> {
+    let rank = comm.rank();
+    let line = |tid: usize, event: Event| TraceEvent {
+        name: event.name.to_string(),
+        pid: rank,
+        tid,
+        step: event.step,
+        ts: event.start as f64 * 1e-3,
+        dur: event.length as f64 * 1e-3,
+    };
+    let mut mine: Vec<TraceEvent> =
+        simulation.clock().events.drain(..).map(|e| line(0, e)).collect();
+    for (patch, event) in simulation.take_patch_events() {
+        mine.push(line(patch + 1, event));
+    }
+    gather(comm, &mine).into_iter().flatten().collect()
+}
