@@ -67,6 +67,11 @@ pub struct RunArgs {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = threads)]
     pub threads: usize,
 
+    /// Ends the run, and names the rank, when a rank gives no sign of life for so long while others
+    /// wait for it.
+    #[arg(long, value_name = "SECONDS", default_value_t = 300.0, value_parser = seconds)]
+    pub stall_timeout: f64,
+
     /// Refuse to replace an earlier result.
     #[arg(long)]
     pub keep: bool,
@@ -114,6 +119,13 @@ pub enum Command {
         #[arg(value_name = "RUN")]
         second: PathBuf,
     },
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(s) if (1e-3..=1e9).contains(&s) => Ok(s),
+        _ => Err("a number from 0.001 to 1e9 is allowed".into()),
+    }
 }
 
 fn threads(text: &str) -> Result<usize, String> {

@@ -26,7 +26,7 @@ mod rows;
 mod table;
 
 pub use balance::{assign_patches, choose_cuts};
-pub use comm::{Comm, Serial};
+pub use comm::{Comm, Serial, Traffic};
 pub use index_box::IndexBox;
 pub use layout::{Image, Layout, Side};
 pub use nodes::{NodeArrays, NodeExchange, Parity, fold_mirrors};

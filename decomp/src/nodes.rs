@@ -197,7 +197,7 @@ impl<const D: usize> NodeExchange<D> {
             let sends: Vec<(usize, &[u64])> =
                 self.sends.iter().zip(&self.messages).map(|(s, m)| (s.0, &m[..])).collect();
             let from: Vec<usize> = self.receives.iter().map(|r| r.0).collect();
-            comm.exchange(&sends, &from, &mut self.received);
+            comm.exchange(&sends, &from, &mut self.received, &mut || {});
         }
         for ((_, copies), message) in self.receives.iter().zip(&self.received) {
             let mut words = message.iter();

@@ -204,7 +204,7 @@ fn comm_exchange<C: Comm + ?Sized>(
     if sends.is_empty() && from.is_empty() {
         received.clear();
     } else {
-        comm.exchange(sends, from, received);
+        comm.exchange(sends, from, received, &mut || {});
     }
 }
 
