@@ -55,8 +55,8 @@ pub trait Comm {
     fn traffic(&self) -> Traffic;
 
     /// Shows the others that this rank makes progress: to be called now and then by a rank that
-    /// computes or writes files for long while others may wait for it. Costs one look for a
-    /// message.
+    /// computes or writes files for long while others may wait for it. Costs a glance at the
+    /// clock, or at most a look for a message.
     fn heartbeat(&self) {}
 
     /// How long ranks wait for one that gives no sign of life: the time between two exchanges,

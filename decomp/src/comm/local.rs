@@ -102,6 +102,7 @@ impl LocalRank {
     /// Combines the ranks' values at rank 0, in the order of ranks, and gives them to all.
     fn reduce(&self, values: &mut [u64], combine: impl Fn(u64, u64) -> u64) {
         self.watch.count_reduction();
+        self.watch.heartbeat();
         if self.rank != 0 {
             self.send(0, values.to_vec());
             values.copy_from_slice(&self.receive(0));
@@ -134,6 +135,7 @@ impl Comm for LocalRank {
     ) {
         self.watch.count_sends(sends);
         sends.iter().for_each(|(to, words)| self.send(*to, words.to_vec()));
+        self.watch.heartbeat();
         meanwhile();
         received.clear();
         received.extend(from.iter().map(|&source| self.receive(source)));

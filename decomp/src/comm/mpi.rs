@@ -110,6 +110,7 @@ impl Mpi {
         mine.extend_from_slice(values);
         mpi::request::scope(|scope| {
             let request = self.world.immediate_all_reduce_into(scope, &mine[..], values, op);
+            self.watch.heartbeat();
             self.wait_request(Awaited::All, request);
         });
     }
@@ -141,6 +142,7 @@ impl Comm for Mpi {
                     (*to, process.immediate_send(scope, *words))
                 })
                 .collect();
+            self.watch.heartbeat();
             meanwhile();
             for (source, words) in from.iter().zip(received.iter_mut()) {
                 self.receive(*source, words);

@@ -2,8 +2,8 @@
 //! waits in vain. Knows neither MPI nor threads.
 //!
 //! A rank whose wait nears its limit asks the ranks that it waits for whether they live. A rank
-//! answers while it waits itself, or at a heartbeat, and tells whom it waits for; these are asked
-//! in turn. One that does not answer hangs, and is named. When all have answered and none of them
+//! answers while it waits itself and at each exchange, reduction or heartbeat, and tells whom it
+//! waits for; these are asked in turn. One that does not answer hangs, and is named. When all have answered and none of them
 //! computes or has come further since the round of questions before, they wait for each other for
 //! ever. Otherwise the wait goes on with a fresh clock.
 //!
@@ -76,13 +76,15 @@ impl Awaited {
     }
 }
 
-/// How far a rank has come: finished waits and heartbeats, and whom it waits for.
+/// How far a rank has come: finished waits and signs of life, and whom it waits for.
 type State = (u64, Awaited);
 
 /// A rank's waits, what it has sent, and its answers to others.
 pub(crate) struct Watch<C> {
     control: C,
     timeout: Cell<Duration>,
+    /// When it last looked for questions.
+    looked: Cell<Instant>,
     finished: Cell<u64>,
     awaits: Cell<Awaited>,
     /// Number of the last question, so that late answers are known as such.
@@ -97,6 +99,7 @@ impl<C: Control> Watch<C> {
         Watch {
             control,
             timeout: Cell::new(STALL_TIMEOUT),
+            looked: Cell::new(Instant::now()),
             finished: Cell::new(0),
             awaits: Cell::new(Awaited::Nobody),
             questions: Cell::new(0),
@@ -134,10 +137,20 @@ impl<C: Control> Watch<C> {
         self.traffic.set(Traffic { reductions: traffic.reductions + 1, ..traffic });
     }
 
-    /// Shows that this rank has come further, and answers questions.
+    /// Time that a rank has to answer.
+    fn grace(&self) -> Duration {
+        GRACE.min(self.timeout.get() / 2)
+    }
+
+    /// Shows that this rank has come further, and answers questions if it has not looked for any
+    /// for a while: mostly this costs a glance at the clock.
     pub fn heartbeat(&self) {
         self.finished.set(self.finished.get() + 1);
-        self.answer(&mut BTreeMap::new());
+        let now = Instant::now();
+        if now - self.looked.get() >= self.grace() / 16 {
+            self.looked.set(now);
+            self.answer(&mut BTreeMap::new());
+        }
     }
 
     /// Waits for `awaited` until `done`, looking again and again; gives way to others after a
@@ -234,8 +247,7 @@ impl Inquiry {
     }
 
     fn go_on<C: Control>(&mut self, watch: &Watch<C>) {
-        let timeout = watch.timeout.get();
-        let grace = GRACE.min(timeout / 2);
+        let (timeout, grace) = (watch.timeout.get(), watch.grace());
         let now = Instant::now();
         self.clock += (now - self.seen).min(grace / 4);
         self.seen = now;
