@@ -76,6 +76,11 @@ pub struct RunArgs {
     #[arg(long, value_name = "A..B", default_value = "1..200", value_parser = steps, requires = "trace")]
     pub trace_steps: std::ops::Range<u64>,
 
+    /// Ends the run, and names the rank, when a rank gives no sign of life for so long while others
+    /// wait for it.
+    #[arg(long, value_name = "SECONDS", default_value_t = 300.0, value_parser = seconds)]
+    pub stall_timeout: f64,
+
     /// Refuse to replace an earlier result.
     #[arg(long)]
     pub keep: bool,
@@ -131,6 +136,13 @@ fn steps(text: &str) -> Result<std::ops::Range<u64>, String> {
     match ends {
         Some((a, b)) if 1 <= a && a <= b && b < u64::MAX => Ok(a..b + 1),
         _ => Err("two steps such as 1..200 are allowed".into()),
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(s) if (1e-3..=1e9).contains(&s) => Ok(s),
+        _ => Err("a number from 0.001 to 1e9 is allowed".into()),
     }
 }
 

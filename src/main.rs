@@ -9,7 +9,7 @@ mod describe;
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::Parser;
 use cli::{Cli, Command, RunArgs, SceneArgs};
@@ -88,6 +88,7 @@ fn read_scene(args: &SceneArgs) -> Outcome<(Vec<u8>, CheckedScene)> {
 }
 
 fn run_scene<C: Comm>(comm: &C, args: &RunArgs, started: Instant) -> Outcome<()> {
+    comm.set_stall_timeout(Duration::from_secs_f64(args.stall_timeout));
     let output = args.output.clone().unwrap_or_else(|| default_folder(&args.scene));
     // rank 0 looks at everything that a run could fail on before it sends the scene on
     let mine = match comm.rank() {

@@ -223,20 +223,23 @@ pub fn run<C: Comm>(
         warnings.push(format!("no exact solution: {error}"));
         None
     });
+    // the others wait for this rank at their end
+    comm.heartbeat();
     let folder = OutputFolder::create(&options.output, options.keep)?;
-    let profiles = write_profiles(scene, reference.as_ref(), &recorded, &folder)?;
+    let profiles = write_profiles(comm, scene, reference.as_ref(), &recorded, &folder)?;
     let as_run = serde_json::to_value(&scene.scene).expect("a scene is plain data");
     if scene.scene.output.hdf5 {
         let bodies: Vec<String> = scene.scene.bodies.iter().map(|b| b.name.clone()).collect();
         let info = RunInfo { title: &scene.scene.title, scene: &as_run, bodies: &bodies };
         let tables: Vec<ParticleTable> = recorded.tables.iter().map(|t| t.0.clone()).collect();
         write_vtkhdf(&folder.file(RESULTS_FILE), &tables, &info)?;
+        comm.heartbeat();
     }
     if let Some(histories) = &recorded.histories {
         histories.write(&folder.file(HISTORIES_FILE))?;
     }
     if scene.scene.output.pictures {
-        draw(scene, reference.as_ref(), &recorded, &profiles, &folder)?;
+        draw(comm, scene, reference.as_ref(), &recorded, &profiles, &folder)?;
     }
     let (energy, momentum, outflow) = balance(scene, &start, &end, &left);
     let particle_steps = scene.particles as f64 * simulation.steps() as f64;
@@ -269,7 +272,8 @@ pub fn run<C: Comm>(
 }
 
 /// Writes each profile and scores it.
-fn write_profiles(
+fn write_profiles<C: Comm>(
+    comm: &C,
     scene: &CheckedScene,
     reference: Option<&Reference>,
     recorded: &Recorded,
@@ -292,12 +296,14 @@ fn write_profiles(
             errors,
             errors_cell,
         });
+        comm.heartbeat();
     }
     Ok(profiles)
 }
 
 /// All pictures of a run.
-fn draw(
+fn draw<C: Comm>(
+    comm: &C,
     scene: &CheckedScene,
     reference: Option<&Reference>,
     recorded: &Recorded,
@@ -319,9 +325,11 @@ fn draw(
         let stem = Path::new(&profile.file).with_extension("");
         let stem = stem.to_string_lossy().replace("profile", "figure_4");
         figures::draw_profile(scene, reference, k, table, notes, &folder.file(&stem))?;
+        comm.heartbeat();
     }
     let title = format!("{}: pressure and wave paths", scene.scene.title);
     figures::draw_waves(&title, &recorded.waves, reference, &folder.file("x_t_diagram"))?;
+    comm.heartbeat();
     if let Some(histories) = &recorded.histories {
         figures::draw_histories(scene, histories, reference, &folder.file("histories"))?;
     }

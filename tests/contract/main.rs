@@ -14,3 +14,5 @@ mod steps;
 
 #[cfg(feature = "mpi")]
 mod ranks;
+#[cfg(feature = "mpi")]
+mod stalls;

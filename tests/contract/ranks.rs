@@ -89,7 +89,7 @@ fn arguments_are_judged_once() {
 }
 
 /// The ranks that mpirun has started: processes of our program below it.
-fn ranks_of(mpirun: u32) -> Vec<u32> {
+pub fn ranks_of(mpirun: u32) -> Vec<u32> {
     let mut found = Vec::new();
     for entry in fs::read_dir("/proc").unwrap().flatten() {
         let Ok(stat) = fs::read_to_string(entry.path().join("stat")) else { continue };

@@ -1,23 +1,35 @@
 //! Ranks over MPI: the only file that names it.
 
-use std::time::{Duration, Instant};
+use std::cell::RefCell;
+use std::time::Duration;
 
 use mpi::collective::SystemOperation;
 use mpi::environment::Universe;
 use mpi::point_to_point::{Destination, Source};
 use mpi::request::{Request, Scope};
 use mpi::topology::{Communicator, SimpleCommunicator};
-use mpi::traits::CommunicatorCollectives;
+use mpi::traits::{CommunicatorCollectives, Equivalence};
+use smallvec::SmallVec;
 
-use super::Comm;
+use super::watch::{Awaited, Control, Watch};
+use super::{Comm, Traffic};
 
-/// How long a rank waits for another before it takes it for lost.
-const DEADLINE: Duration = Duration::from_secs(300);
+/// Exit code of a run that a rank has ended because another hangs.
+const STALLED: i32 = 7;
+
+/// Messages that an exchange sends without asking for memory.
+const INLINE: usize = 16;
 
 /// The ranks that a launcher such as `mpirun` has started.
+///
+/// To drop it is collective: all ranks wait for each other, and then end MPI.
 pub struct Mpi {
     world: SimpleCommunicator,
-    // finalizes MPI when dropped
+    watch: Watch<Channel>,
+    /// This rank's part of a reduction; kept.
+    floats: RefCell<Vec<f64>>,
+    integers: RefCell<Vec<i64>>,
+    // finalizes MPI when dropped, after everything above
     _universe: Universe,
 }
 
@@ -35,56 +47,71 @@ impl Mpi {
     /// A panic on one rank must not leave the others waiting for ever, as MPI's own finalizing
     /// would: from here on it ends them all.
     pub fn start() -> Option<Self> {
-        let (universe, _) = mpi::initialize_with_threading(mpi::Threading::Funneled)?;
+        let (mut universe, _) = mpi::initialize_with_threading(mpi::Threading::Funneled)?;
         let report = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |info| {
             report(info);
             SimpleCommunicator::world().abort(101)
         }));
-        Some(Mpi { world: universe.world(), _universe: universe })
+        let world = universe.world();
+        // room for a question to every rank and an answer to each of theirs, many times over
+        universe.set_buffer_size((64 + world.size() as usize) << 10);
+        let watch = Watch::new(Channel(world.duplicate()));
+        Some(Mpi {
+            world,
+            watch,
+            floats: RefCell::default(),
+            integers: RefCell::default(),
+            _universe: universe,
+        })
     }
 
-    /// Waits until `done`, looking again and again; gives way to others after a short while.
-    fn wait_until(&self, what: impl Fn() -> String, mut done: impl FnMut() -> bool) {
-        let mut start = None;
-        for look in 0u64.. {
-            if done() {
-                return;
-            }
-            if look > 2000 {
-                std::thread::yield_now();
-                let waited = start.get_or_insert_with(Instant::now).elapsed();
-                if waited > DEADLINE {
-                    let (rank, s) = (self.rank(), waited.as_secs());
-                    eprintln!(
-                        "error: rank {rank} has waited {s} s for {}: it hangs or was lost",
-                        what()
-                    );
-                    self.abort(7);
-                }
-            }
-        }
-    }
-
-    fn wait_request<'a, D: ?Sized, S: Scope<'a>>(&self, what: &str, request: Request<'a, D, S>) {
+    fn wait_request<'a, D: ?Sized, S: Scope<'a>>(
+        &self,
+        awaited: Awaited,
+        request: Request<'a, D, S>,
+    ) {
         let mut pending = Some(request);
-        self.wait_until(
-            || what.to_string(),
-            || match pending.take().map(Request::test) {
-                Some(Err(again)) => {
-                    pending = Some(again);
-                    false
-                }
-                _ => true,
-            },
-        );
+        self.watch.wait(awaited, || match pending.take().map(Request::test) {
+            Some(Err(again)) => {
+                pending = Some(again);
+                false
+            }
+            _ => true,
+        });
     }
 
-    fn reduce<T: mpi::traits::Equivalence + Copy>(&self, values: &mut [T], op: SystemOperation) {
-        let mine = values.to_vec();
+    /// Receives one message; a long one may take its time after its beginning has come.
+    fn receive(&self, source: usize, words: &mut Vec<u64>) {
+        let process = self.world.process_at_rank(source as i32);
+        let mut found = None;
+        self.watch.wait(Awaited::Rank(source), || {
+            found = process.immediate_matched_probe();
+            found.is_some()
+        });
+        let (message, status) = found.expect("the wait ends with a message");
+        words.clear();
+        words.resize(status.count(u64::equivalent_datatype()) as usize, 0);
+        mpi::request::scope(|scope| {
+            let request = message.immediate_matched_receive_into(scope, &mut words[..]);
+            self.wait_request(Awaited::Rank(source), request);
+        });
+    }
+
+    fn reduce<T: Equivalence + Copy>(
+        &self,
+        values: &mut [T],
+        mine: &RefCell<Vec<T>>,
+        op: SystemOperation,
+    ) {
+        self.watch.count_reduction();
+        let mut mine = mine.borrow_mut();
+        mine.clear();
+        mine.extend_from_slice(values);
         mpi::request::scope(|scope| {
             let request = self.world.immediate_all_reduce_into(scope, &mine[..], values, op);
-            self.wait_request("a reduction over all ranks", request);
+            self.watch.heartbeat();
+            self.wait_request(Awaited::All, request);
         });
     }
 }
@@ -106,45 +133,87 @@ impl Comm for Mpi {
         meanwhile: &mut dyn FnMut(),
     ) {
         received.resize_with(from.len(), Vec::new);
+        self.watch.count_sends(sends);
         mpi::request::scope(|scope| {
-            let requests: Vec<_> = sends
+            let requests: SmallVec<[_; INLINE]> = sends
                 .iter()
                 .map(|(to, words)| {
-                    self.world.process_at_rank(*to as i32).immediate_send(scope, *words)
+                    let process = self.world.process_at_rank(*to as i32);
+                    (*to, process.immediate_send(scope, *words))
                 })
                 .collect();
+            self.watch.heartbeat();
             meanwhile();
             for (source, words) in from.iter().zip(received.iter_mut()) {
-                let process = self.world.process_at_rank(*source as i32);
-                let mut found = None;
-                self.wait_until(
-                    || format!("rank {source}"),
-                    || {
-                        found = process.immediate_matched_probe();
-                        found.is_some()
-                    },
-                );
-                let (message, status) = found.expect("the wait ends with a message");
-                let count = status.count(<u64 as mpi::traits::Equivalence>::equivalent_datatype());
-                words.clear();
-                words.resize(count as usize, 0);
-                message.matched_receive_into(&mut words[..]);
+                self.receive(*source, words);
             }
-            for request in requests {
-                self.wait_request("a message to be taken", request);
+            for (to, request) in requests {
+                self.wait_request(Awaited::Rank(to), request);
             }
         });
     }
 
     fn min(&self, values: &mut [f64]) {
-        self.reduce(values, SystemOperation::min());
+        self.reduce(values, &self.floats, SystemOperation::min());
     }
 
     fn sum(&self, values: &mut [i64]) {
-        self.reduce(values, SystemOperation::sum());
+        self.reduce(values, &self.integers, SystemOperation::sum());
+    }
+
+    fn traffic(&self) -> Traffic {
+        self.watch.traffic()
+    }
+
+    fn heartbeat(&self) {
+        self.watch.heartbeat();
+    }
+
+    fn set_stall_timeout(&self, timeout: Duration) {
+        self.watch.set_timeout(timeout);
     }
 
     fn abort(&self, code: i32) -> ! {
         self.world.abort(code)
+    }
+}
+
+impl Drop for Mpi {
+    fn drop(&mut self) {
+        // MPI's own finalizing would wait for ever for a rank that hangs. Twice: a rank may have
+        // been stopped after it had joined the first one
+        for _ in 0..2 {
+            self.wait_request(Awaited::All, self.world.immediate_barrier());
+        }
+    }
+}
+
+/// Questions and answers, on a communicator of their own.
+struct Channel(SimpleCommunicator);
+
+impl Control for Channel {
+    fn rank(&self) -> usize {
+        self.0.rank() as usize
+    }
+
+    fn size(&self) -> usize {
+        self.0.size() as usize
+    }
+
+    fn send(&self, to: usize, words: &[u64]) {
+        self.0.process_at_rank(to as i32).buffered_send(words);
+    }
+
+    fn receive(&self, words: &mut Vec<u64>) -> Option<usize> {
+        let (message, status) = self.0.any_process().immediate_matched_probe()?;
+        words.clear();
+        words.resize(status.count(u64::equivalent_datatype()) as usize, 0);
+        message.matched_receive_into(&mut words[..]);
+        Some(status.source_rank() as usize)
+    }
+
+    fn end(&self, why: &str) -> ! {
+        eprintln!("error: {why}");
+        self.0.abort(STALLED)
     }
 }

@@ -1,0 +1,260 @@
+//! The same patches, dealt to any number of ranks.
+
+use std::collections::BTreeMap;
+
+use decomp::comm::local::run_ranks;
+use decomp::{
+    Block, ColumnSpec, Comm, IndexBox, Layout, Mirror, NodeArrays, NodeExchange, Parity,
+    RowExchange, RowReach, Serial, Side, exact_sums, gather_rows, relocate,
+};
+use proptest::prelude::*;
+
+const SPECS: [ColumnSpec; 2] = [
+    ColumnSpec { name: "v", unit: "m/s", ghost: true, state: true, mirror: Mirror::Negate(0) },
+    ColumnSpec { name: "e", unit: "J/kg", ghost: false, state: true, mirror: Mirror::Same },
+];
+
+const KINDS: [[Side; 2]; 4] = [
+    [Side::Open, Side::Open],
+    [Side::Mirror, Side::Open],
+    [Side::Wrap, Side::Wrap],
+    [Side::Mirror, Side::Mirror],
+];
+
+/// A row's first cell and its move.
+type Row<const D: usize> = ([i64; D], [i64; D]);
+
+/// What each patch holds, by patch.
+type Held<T> = BTreeMap<usize, T>;
+
+/// Whether it is stirred, own rows, cells, ids and columns of a block, in its own order.
+type Table<const D: usize> = (bool, usize, Vec<[i32; D]>, Vec<u64>, Vec<Vec<u64>>);
+
+/// What `body` tells of the patches of each rank, put together.
+fn on_ranks<T: Send>(size: usize, body: impl Fn(&dyn Comm) -> Held<T> + Sync) -> Held<T> {
+    run_ranks(size, |comm| body(comm)).into_iter().flatten().collect()
+}
+
+/// The same patches on ranks 0 to `size - 1`, dealt at random.
+fn deal<const D: usize>(layout: &Layout<D>, size: usize, seed: &[usize]) -> Layout<D> {
+    let ranks = (0..layout.patches().len()).map(|p| seed[p % seed.len()] % size).collect();
+    layout.clone().with_ranks(ranks)
+}
+
+/// Rows at cells, moved by their moves and exchanged, and what each patch then holds.
+fn rows_held<const D: usize>(
+    comm: &dyn Comm,
+    layout: &Layout<D>,
+    rows: &[Row<D>],
+    (depth, notice): (i64, i64),
+) -> Held<Table<D>> {
+    let mine = layout.patches_of(comm.rank());
+    let mut blocks: Vec<Block<D>> = mine.iter().map(|_| Block::new(&SPECS)).collect();
+    for (id, (cell, _)) in rows.iter().enumerate() {
+        if let Some(k) = mine.iter().position(|&p| p == layout.patch_of(*cell)) {
+            blocks[k].push(id as u64, cell.map(|c| c as i32), &[id as f64 + 1.0, 0.5]);
+        }
+    }
+    let reach = RowReach { depth, travel: 1, notice: Some(notice) };
+    let mut exchange = RowExchange::new(layout, comm.rank(), reach);
+    for round in 0..3 {
+        for block in &mut blocks {
+            block.drop_ghosts();
+            for row in 0..block.own() {
+                let by = rows[block.ids[row] as usize].1.map(|m| if round == 0 { 0 } else { m });
+                let from = block.cells[row].map(i64::from);
+                let to = layout.wrap_cell(std::array::from_fn(|a| from[a] + by[a]));
+                block.cells[row] = to.unwrap_or(from).map(|c| c as i32);
+            }
+        }
+        // patches are active where their first row is
+        for block in &mut blocks {
+            block.active = match block.cells.first() {
+                Some(c) => IndexBox::new(c.map(i64::from), c.map(|c| i64::from(c) + 1)),
+                None => IndexBox::new([0; D], [0; D]),
+            };
+        }
+        let inner = exchange.inner().to_vec();
+        let mut early = Vec::new();
+        exchange
+            .run(comm, &mut blocks, &mut |blocks| {
+                let inner = blocks.iter().zip(&inner).filter(|(_, i)| **i);
+                early = inner.map(|(b, _)| (b.stirred, b.ids.clone())).collect();
+            })
+            .unwrap();
+        // inner patches are whole while messages fly
+        let late = blocks.iter().zip(&inner).filter(|(_, i)| **i);
+        let late: Vec<_> = late.map(|(b, _)| (b.stirred, b.ids.clone())).collect();
+        assert_eq!(early, late);
+    }
+    let table = |b: Block<D>| {
+        let bits = |c: &Vec<f64>| c.iter().map(|v| v.to_bits()).collect();
+        let columns = b.columns.iter().map(bits).collect();
+        (b.stirred, b.own(), b.cells.clone(), b.ids.clone(), columns)
+    };
+    mine.into_iter().zip(blocks.into_iter().map(table)).collect()
+}
+
+/// Some value of a node.
+fn value(node: i64, field: usize) -> f64 {
+    (node as f64 + 0.1 * field as f64).sin()
+}
+
+/// Random owners' values, and what each patch then holds of all.
+fn nodes_held(comm: &dyn Comm, layout: &Layout<1>, depth: i64) -> Held<Vec<Vec<u64>>> {
+    let mine = layout.patches_of(comm.rank());
+    let mut patches: Vec<_> = mine.iter().map(|&p| NodeArrays::new(layout, p, depth, 2)).collect();
+    for arrays in &mut patches {
+        for node in arrays.owned.iter() {
+            let at = arrays.nodes.flat(node);
+            for field in 0..2 {
+                arrays.fields[field][at] = value(node[0], field);
+            }
+        }
+    }
+    let mut exchange = NodeExchange::new(layout, comm.rank(), depth, depth);
+    for _ in 0..2 {
+        let fields = [(0, Parity::Even), (1, Parity::Odd(0))];
+        exchange.refresh(comm, &mut patches, &fields, &mut |_| {});
+    }
+    let bits = |arrays: NodeArrays<1>| {
+        let field = |f: &Vec<f64>| f.iter().map(|v| v.to_bits()).collect();
+        arrays.fields.iter().map(field).collect()
+    };
+    mine.into_iter().zip(patches.into_iter().map(bits)).collect()
+}
+
+fn check_rows<const D: usize>(
+    layout: Layout<D>,
+    rows: &[Row<D>],
+    reach: (i64, i64),
+    size: usize,
+    seed: &[usize],
+) {
+    let alone = rows_held(&Serial, &layout, rows, reach);
+    let dealt = deal(&layout, size, seed);
+    assert_eq!(on_ranks(size, |comm| rows_held(comm, &dealt, rows, reach)), alone);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn ranks_on_a_line_hold_the_rows_of_one(
+        rows in prop::collection::vec((1i64..23, -1i64..=1), 1..30),
+        parts in 1usize..13,
+        depth in 1i64..5,
+        notice in 0i64..9,
+        kind in 0usize..4,
+        size in 1usize..=5,
+        seed in prop::collection::vec(0usize..60, 12),
+    ) {
+        let rows: Vec<_> = rows.iter().map(|r| ([r.0], [r.1])).collect();
+        let layout = Layout::new(IndexBox::new([0], [24]), [KINDS[kind]], [parts]);
+        check_rows(layout, &rows, (depth, notice), size, &seed);
+    }
+
+    #[test]
+    fn ranks_on_a_plane_hold_the_rows_of_one(
+        rows in prop::collection::vec(((1i64..11, 1i64..8), (-1i64..=1, -1i64..=1)), 1..30),
+        parts in (1usize..6, 1usize..5),
+        depth in 1i64..4,
+        notice in 0i64..7,
+        kinds in (0usize..4, 0usize..4),
+        size in 1usize..=5,
+        seed in prop::collection::vec(0usize..60, 20),
+    ) {
+        let rows: Vec<_> = rows.iter().map(|r| ([r.0.0, r.0.1], [r.1.0, r.1.1])).collect();
+        let sides = [KINDS[kinds.0], KINDS[kinds.1]];
+        let layout = Layout::new(IndexBox::new([0, 0], [12, 9]), sides, [parts.0, parts.1]);
+        check_rows(layout, &rows, (depth, notice), size, &seed);
+    }
+
+    #[test]
+    fn ranks_hold_the_nodes_of_one(
+        parts in 1usize..11,
+        depth in 1i64..5,
+        kind in 0usize..4,
+        size in 1usize..=5,
+        seed in prop::collection::vec(0usize..60, 10),
+    ) {
+        let layout = Layout::new(IndexBox::new([0], [10]), [KINDS[kind]], [parts]);
+        let alone = nodes_held(&Serial, &layout, depth);
+        let dealt = deal(&layout, size, &seed);
+        prop_assert_eq!(on_ranks(size, |comm| nodes_held(comm, &dealt, depth)), alone);
+    }
+
+    #[test]
+    fn ranks_sum_to_the_bits_of_one(
+        terms in prop::collection::vec((-1e20f64..1e20, 0usize..60), 1..60),
+        size in 1usize..=5,
+    ) {
+        let sums = |comm: &dyn Comm| {
+            let mine: Vec<f64> =
+                terms.iter().filter(|t| t.1 % comm.size() == comm.rank()).map(|t| t.0).collect();
+            exact_sums::<_, 2>(comm, |add| {
+                mine.iter().for_each(|&x| {
+                    add(0, x);
+                    add(1, 1e-30 * x * x);
+                })
+            })
+            .map(f64::to_bits)
+        };
+        let alone = sums(&Serial);
+        prop_assert_eq!(run_ranks(size, |comm| sums(comm)), vec![alone; size]);
+    }
+}
+
+/// Patches that move from one dealing to another hold what they would had they been dealt so.
+#[test]
+fn patches_move_with_all_their_rows() {
+    let layout = Layout::new(IndexBox::new([0], [24]), [KINDS[0]], [7]);
+    for size in 1..=5 {
+        let deals: Vec<Layout<1>> =
+            (0..4).map(|k| deal(&layout, size, &[k, 3 * k + 1, 4, 2 * k])).collect();
+        let held = run_ranks(size, |comm| {
+            let mine = deals[0].patches_of(comm.rank());
+            let mut blocks: Vec<Block<1>> = mine
+                .into_iter()
+                .map(|p| {
+                    let mut block = Block::new(&SPECS);
+                    let ids = (0..24).filter(|&id| layout.patch_of([id]) == p);
+                    ids.for_each(|id| block.push(id as u64, [id as i32], &[id as f64, -1.5]));
+                    block
+                })
+                .collect();
+            let mut given = 0;
+            for pair in deals.windows(2) {
+                let (moved, told) =
+                    relocate(comm, &pair[0], &pair[1], blocks, &SPECS, |_, block| block);
+                (blocks, given) = (moved, given + told.rows);
+            }
+            let last = deals[3].patches_of(comm.rank());
+            (last.into_iter().zip(blocks).collect::<Vec<_>>(), given)
+        });
+        for (patch, block) in held.iter().flat_map(|h| &h.0) {
+            let ids: Vec<u64> =
+                (0..24).filter(|&i| layout.patch_of([i as i64]) == *patch).collect();
+            assert_eq!((&block.ids, block.own()), (&ids, ids.len()));
+            assert!(block.columns[0].iter().zip(&ids).all(|(c, i)| *c == *i as f64));
+            assert!(block.columns[1].iter().all(|c| *c == -1.5));
+        }
+        assert_eq!(held.iter().map(|h| h.0.len()).sum::<usize>(), 7);
+        assert_eq!(held.iter().any(|h| h.1 > 0), size > 1);
+    }
+}
+
+#[test]
+fn rows_are_gathered_at_rank_0_by_id() {
+    let gathered = run_ranks(3, |comm| {
+        let mut block = Block::<1>::new(&SPECS);
+        for id in (0..10).filter(|id| id % 3 == 2 - comm.rank() as u64) {
+            block.push(id, [id as i32], &[id as f64, 0.5 * id as f64]);
+        }
+        gather_rows(comm, std::iter::once(&block), &[1])
+    });
+    let (ids, columns) = &gathered[0];
+    assert_eq!(*ids, (0..10).collect::<Vec<u64>>());
+    assert_eq!(columns[0], (0..10).map(|id| 0.5 * id as f64).collect::<Vec<_>>());
+    assert!(gathered[1..].iter().all(|(ids, _)| ids.is_empty()));
+}

@@ -1,0 +1,96 @@
+//! A rank that is stopped: the others name it and end, itself included, wherever they wait.
+
+use std::fs;
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+
+use crate::home::Home;
+use crate::program::{Started, signal};
+use crate::ranks::ranks_of;
+use crate::scenes::{short, whole};
+
+/// Processes of the ranks, by rank, once all have started.
+fn processes(run: &mut Started, size: usize) -> Vec<u32> {
+    let since = Instant::now();
+    let number = |process: &u32| {
+        let environment = fs::read(format!("/proc/{process}/environ")).unwrap_or_default();
+        let mut entries = environment.split(|&b| b == 0);
+        let rank = entries.find_map(|e| e.strip_prefix(b"OMPI_COMM_WORLD_RANK="));
+        rank.and_then(|r| std::str::from_utf8(r).ok()?.parse::<usize>().ok())
+    };
+    loop {
+        let mut found: Vec<u32> =
+            ranks_of(run.id()).into_iter().filter(|p| number(p).is_some()).collect();
+        if found.len() == size {
+            found.sort_by_key(number);
+            return found;
+        }
+        assert!(run.runs() && since.elapsed() < Duration::from_secs(20), "{found:?}");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+/// Asserts that the run ends soon, names `victim` alone, and that no rank lives on.
+#[track_caller]
+fn names(run: Started, victim: usize, ranks: &[u32], seconds: u64) {
+    let stopped = Instant::now();
+    let out = run.end();
+    assert!(stopped.elapsed() < Duration::from_secs(seconds + 10), "{:?}", stopped.elapsed());
+    let told = format!("error: rank {victim} has made no progress for {seconds} s: it hangs");
+    out.failed(&[&told]);
+    assert_eq!(out.status.code(), Some(7));
+    let alive = |rank: &u32| fs::exists(format!("/proc/{rank}/exe")).unwrap_or(true);
+    assert!(!ranks.iter().any(alive), "a rank lives on");
+}
+
+fn long() -> Value {
+    let mut scene = short();
+    scene["domain"]["cell_size"] = json!(1e-6);
+    scene["time"]["end"] = json!(1e-6);
+    scene
+}
+
+/// In the time loop others wait for it in an exchange or in a reduction, or for one that does.
+#[test]
+fn a_rank_that_is_stopped_is_named() {
+    for victim in 0..3 {
+        let home = Home::with(&short());
+        home.run("output/scene", &[]);
+        home.write("scene.json", &long().to_string());
+        let before = home.contents();
+        let args = ["scene.json", "--quiet", "--stall-timeout", "5"];
+        let mut run = home.call(args).ranks(3).start();
+        let ranks = processes(&mut run, 3);
+        // well into the time loop
+        std::thread::sleep(Duration::from_millis(1500));
+        assert!(run.runs(), "the scene is too short for this test");
+        signal("-STOP", ranks[victim]);
+        names(run, victim, &ranks, 5);
+        assert_eq!(home.contents(), before);
+    }
+}
+
+/// Whether the first profile stands in the folder of results that is being written.
+fn writes(home: &Home) -> bool {
+    let folders = fs::read_dir(home.at("output")).into_iter().flatten().flatten();
+    let mut files = folders.flat_map(|f| fs::read_dir(f.path())).flatten().flatten();
+    files.any(|file| file.file_name().to_string_lossy().starts_with("profile_"))
+}
+
+/// While rank 0 writes its files, all others wait for it at their end.
+#[test]
+fn a_rank_that_is_stopped_at_the_end_is_named() {
+    for victim in 0..2 {
+        let home = Home::with(&whole());
+        let args = ["scene.json", "--quiet", "--stall-timeout", "2"];
+        let mut run = home.call(args).ranks(2).start();
+        let ranks = processes(&mut run, 2);
+        let since = Instant::now();
+        while !writes(&home) {
+            assert!(run.runs() && since.elapsed() < Duration::from_secs(20), "no output");
+        }
+        signal("-STOP", ranks[victim]);
+        names(run, victim, &ranks, 2);
+    }
+}
