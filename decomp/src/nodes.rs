@@ -79,8 +79,50 @@ struct Copy<const D: usize> {
     from: usize,
     to: usize,
     flip: [bool; D],
-    /// Places in the giver's and the taker's arrays.
-    nodes: Vec<(u32, u32)>,
+    runs: Vec<Run>,
+}
+
+/// Nodes that follow each other in the giver's and the taker's arrays.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    from: u32,
+    to: u32,
+    length: u32,
+    /// Whether the giver's are taken backwards, from the last (at `from`) on.
+    reversed: bool,
+}
+
+impl Run {
+    /// Places in the giver's array, in the order in which they are taken.
+    fn sources(self) -> impl Iterator<Item = usize> {
+        let place = move |k: u32| if self.reversed { self.from - k } else { self.from + k };
+        (0..self.length).map(move |k| place(k) as usize)
+    }
+
+    /// Places in the taker's array.
+    fn targets(self) -> std::ops::Range<usize> {
+        self.to as usize..(self.to + self.length) as usize
+    }
+}
+
+/// Pairs of places as runs.
+fn runs(pairs: impl Iterator<Item = (u32, u32)>, reversed: bool) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    for (from, to) in pairs {
+        if let Some(last) = runs.last_mut() {
+            let next = if reversed {
+                last.from.checked_sub(last.length)
+            } else {
+                Some(last.from + last.length)
+            };
+            if next == Some(from) && last.to + last.length == to {
+                last.length += 1;
+                continue;
+            }
+        }
+        runs.push(Run { from, to, length: 1, reversed });
+    }
+    runs
 }
 
 /// Who takes which nodes from whom.
@@ -156,7 +198,7 @@ impl<const D: usize> NodeExchange<D> {
                     from: place[from],
                     to: place[to],
                     flip: image.flip,
-                    nodes: nodes.collect(),
+                    runs: runs(nodes, image.flip[0]),
                 };
                 if taker == giver {
                     plan.local.push(copy);
@@ -192,7 +234,9 @@ impl<const D: usize> NodeExchange<D> {
         meanwhile: &mut dyn FnMut(&mut [P]),
     ) {
         for &(field, parity) in fields {
-            if let Parity::Odd(axis) = parity {
+            if let Parity::Odd(axis) = parity
+                && self.layout.sides()[axis].contains(&Side::Mirror)
+            {
                 for arrays in patches.iter_mut() {
                     zero_on_mirrors(&self.layout, arrays.as_mut(), field, axis);
                 }
@@ -204,8 +248,8 @@ impl<const D: usize> NodeExchange<D> {
                 let arrays = patches[copy.from].as_mut();
                 for &(field, parity) in fields {
                     let (values, sign) = (&arrays.fields[field], sign(parity, &copy.flip));
-                    message
-                        .extend(copy.nodes.iter().map(|n| (sign * values[n.0 as usize]).to_bits()));
+                    let sources = copy.runs.iter().flat_map(|r| r.sources());
+                    message.extend(sources.map(|n| (sign * values[n]).to_bits()));
                 }
             }
         }
@@ -229,8 +273,10 @@ impl<const D: usize> NodeExchange<D> {
                 let arrays = patches[copy.to].as_mut();
                 for &(field, _) in fields {
                     let values = &mut arrays.fields[field];
-                    for (node, word) in copy.nodes.iter().zip(&mut words) {
-                        values[node.1 as usize] = f64::from_bits(*word);
+                    for run in &copy.runs {
+                        for (value, word) in values[run.targets()].iter_mut().zip(&mut words) {
+                            *value = f64::from_bits(*word);
+                        }
                     }
                 }
             }
@@ -254,8 +300,10 @@ fn copy_fields<const D: usize>(
         let arrays = patches[copy.to].as_mut();
         for &(field, parity) in fields {
             let (values, sign) = (&mut arrays.fields[field], sign(parity, &copy.flip));
-            for &(from, to) in &copy.nodes {
-                values[to as usize] = sign * values[from as usize];
+            for run in &copy.runs {
+                for (from, to) in run.sources().zip(run.targets()) {
+                    values[to] = sign * values[from];
+                }
             }
         }
         return;
@@ -265,8 +313,14 @@ fn copy_fields<const D: usize>(
     for &(field, parity) in fields {
         let sign = sign(parity, &copy.flip);
         let (from, to) = (&giver.fields[field], &mut taker.fields[field]);
-        for &(f, t) in &copy.nodes {
-            to[t as usize] = sign * from[f as usize];
+        for run in &copy.runs {
+            let taken = &mut to[run.targets()];
+            if run.reversed || sign != 1.0 {
+                taken.iter_mut().zip(run.sources()).for_each(|(t, f)| *t = sign * from[f]);
+            } else {
+                let start = run.from as usize;
+                taken.copy_from_slice(&from[start..start + run.length as usize]);
+            }
         }
     }
 }

@@ -333,10 +333,11 @@ fn pack<const D: usize>(
     out.push((to as u64) << 2 | if own { OWN } else { GHOST });
     out.push(block.ids[row]);
     out.extend(cell.map(|c| c as u64));
-    for (spec, column) in block.specs().iter().zip(&block.columns) {
-        if own || spec.ghost {
-            out.push(spec.image(column[row], &image.flip).to_bits());
-        }
+    let word = |c: usize| block.specs()[c].image(block.columns[c][row], &image.flip).to_bits();
+    if own {
+        out.extend((0..block.columns.len()).map(word));
+    } else {
+        out.extend(block.ghost_columns().iter().map(|&c| word(c)));
     }
 }
 
@@ -358,7 +359,7 @@ fn take<const D: usize>(
             continue;
         }
         let own = kind == OWN;
-        let columns = if own { block.specs().len() } else { block.ghost_columns() };
+        let columns = if own { block.specs().len() } else { block.ghost_columns().len() };
         let start = at + 2 + D;
         if own != ghosts {
             let id = words[at + 1];

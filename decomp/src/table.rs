@@ -57,7 +57,8 @@ pub struct Block<const D: usize> {
     /// Whether active cells, its own or others', are near enough to change a row of this block.
     pub stirred: bool,
     specs: Vec<ColumnSpec>,
-    ghost_columns: usize,
+    /// Columns that ghosts have.
+    ghost_columns: Vec<usize>,
     own: usize,
 }
 
@@ -71,7 +72,7 @@ impl<const D: usize> Block<D> {
             active: IndexBox::new([0; D], [0; D]),
             stirred: true,
             specs: specs.to_vec(),
-            ghost_columns: specs.iter().filter(|s| s.ghost).count(),
+            ghost_columns: (0..specs.len()).filter(|&c| specs[c].ghost).collect(),
             own: 0,
         }
     }
@@ -81,9 +82,9 @@ impl<const D: usize> Block<D> {
         &self.specs
     }
 
-    /// Number of columns that ghosts have.
-    pub(crate) fn ghost_columns(&self) -> usize {
-        self.ghost_columns
+    /// The columns that ghosts have.
+    pub(crate) fn ghost_columns(&self) -> &[usize] {
+        &self.ghost_columns
     }
 
     /// Number of own rows.
@@ -129,9 +130,8 @@ impl<const D: usize> Block<D> {
     pub(crate) fn push_ghost(&mut self, id: u64, cell: [i32; D], values: &[f64]) {
         self.ids.push(id);
         self.cells.push(cell);
-        let ghosts = self.specs.iter().zip(&mut self.columns).filter(|(s, _)| s.ghost);
-        for ((_, column), value) in ghosts.zip(values) {
-            column.push(*value);
+        for (&c, value) in self.ghost_columns.iter().zip(values) {
+            self.columns[c].push(*value);
         }
     }
 

@@ -283,7 +283,7 @@ impl<'a, C: Comm> Simulation<'a, C> {
             scene,
             patches: patches.map(|(p, block)| Patch::new(&layout, p, block)).collect(),
             plan: Plan::new(scene, &stepper, &layout, reach, comm.rank(), workers),
-            sleep: scene.scene.decomposition.skip_quiet.then(|| stepper.sleep()),
+            sleep: stepper.sleep(),
             outflow: Outflow::new(scene, grid_velocity),
             stepper,
             layout,

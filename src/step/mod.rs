@@ -57,6 +57,8 @@ pub struct Stepper {
     lower: f64,
     cells: i64,
     sides: [Side; 2],
+    /// Whether patches at rest are left out.
+    may_sleep: bool,
     /// Mass below which a node counts as empty [kg].
     empty_mass: f64,
     /// Nodal speed below which a node counts as at rest [m/s].
@@ -152,6 +154,7 @@ impl Stepper {
             lower: scene.scene.domain.lower[0],
             cells: scene.cells[0] as i64,
             sides,
+            may_sleep: scene.scene.decomposition.skip_quiet,
             // what such a node holds is below rounding of its neighbours
             empty_mass: densest * cell * 2f64.powi(-90),
             // far ahead of a wave values would fall and fall, until they are denormal; at this
@@ -213,14 +216,14 @@ impl Stepper {
         }
     }
 
-    /// When patches may sleep: once everything that a step computes has been computed at rest,
+    /// When patches may sleep, if they may: once everything that a step computes has been computed at rest,
     /// pressure relaxation included.
-    pub fn sleep(&self) -> Sleep {
+    pub fn sleep(&self) -> Option<Sleep> {
         let f = &self.fields;
-        Sleep {
+        self.may_sleep.then(|| Sleep {
             needed: 1 + self.relaxation.map_or(0, |r| r.interval),
-            kept: [f.mass, f.inverse, f.volume, f.relaxation[0]],
-        }
+            kept: [f.mass, f.inverse, f.volume, f.relaxation[0], f.relaxation[1]],
+        })
     }
 
     /// The longest particle [cells] that `reach` is deep enough for.

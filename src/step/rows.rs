@@ -190,6 +190,9 @@ impl Stepper {
     /// The cells of the own rows that are not at rest, once their stress is known: a row is at
     /// rest where velocity, its gradients and stress are zero, so that it pushes nothing.
     pub(super) fn find_active(&self, patch: &mut Patch<1>) {
+        if !self.may_sleep {
+            return;
+        }
         let c = &self.columns;
         let n = patch.block.own();
         let column = |k: usize| &patch.block.columns[k][..n];
@@ -203,11 +206,10 @@ impl Stepper {
                 || pressure.is_some_and(|p| p[r] != 0.0)
         };
         // rows from the first to the last that moves: those between mostly do
-        let first = (0..n).find(|&r| moves(r));
-        let last = (0..n).rev().find(|&r| moves(r));
-        patch.block.active = match first.zip(last) {
+        patch.block.active = match (0..n).find(|&r| moves(r)) {
             None => IndexBox::new([0], [0]),
-            Some((first, last)) => {
+            Some(first) => {
+                let last = (first..n).rev().find(|&r| moves(r)).unwrap_or(first);
                 let cells = patch.block.cells[first..=last].iter().map(|c| i64::from(c[0]));
                 let (lower, upper) =
                     cells.fold((i64::MAX, i64::MIN), |(l, u), c| (l.min(c), u.max(c)));

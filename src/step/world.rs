@@ -46,7 +46,7 @@ pub struct Sleep {
     /// Steps without anything near that moves after which a step computes nothing new.
     pub needed: u32,
     /// Nodal fields that are not zero at rest.
-    pub kept: [usize; 4],
+    pub kept: [usize; 5],
 }
 
 /// Which patches a phase runs on.
