@@ -71,7 +71,8 @@ fn a_rank_that_is_stopped_is_named() {
     }
 }
 
-/// It is asked whether it lives while it is stopped, and answers in time.
+/// It is asked whether it lives while it is stopped, and goes on before the time is over; its late
+/// answer does no harm.
 #[test]
 fn a_rank_that_goes_on_is_waited_for() {
     let mut scene = long();
