@@ -83,7 +83,8 @@ fn what_cannot_be_understood_is_refused() {
 fn help_and_version_are_told() {
     let home = Home::new();
     let help = home.call(["--help"]).end().succeeded();
-    for word in ["mpirun -n 2 flyer-mpm", "--set", "--output", "--threads", "--keep", "--quiet"] {
+    let options = ["--set", "--output", "--threads", "--stall-timeout", "--keep", "--quiet"];
+    for word in ["mpirun -n 2 flyer-mpm"].into_iter().chain(options) {
         assert!(help.contains(word), "no {word} in: {help}");
     }
     for word in ["hugoniot", "check", "schema", "compare", "summary.json"] {

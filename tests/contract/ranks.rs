@@ -83,6 +83,11 @@ fn arguments_are_judged_once() {
     let help = home.call(["--help"]).ranks(2).end().succeeded();
     assert_eq!(help.matches("Usage:").count(), 1);
     home.call(["scene.json", "--threads", "0"]).ranks(2).end().failed(&["--threads"]);
+    for wrong in ["0", "-1", "nan", "soon"] {
+        let args = ["scene.json".to_string(), format!("--stall-timeout={wrong}")];
+        let args = args.iter().map(String::as_str);
+        home.call(args).ranks(2).end().failed(&["--stall-timeout", "from 0.001 to 1e9"]);
+    }
     let schema = home.call(["schema"]).ranks(2).end().succeeded();
     assert!(serde_json::from_str::<Value>(&schema).is_ok());
     home.call(["compare", "a", "b"]).ranks(2).end().failed(&["a/summary.json"]);

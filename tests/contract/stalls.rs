@@ -1,4 +1,4 @@
-//! A rank that is stopped: the others name it and end, itself included, wherever they wait.
+//! A rank that is stopped: the others name it and all end, wherever they wait for it.
 
 use std::fs;
 use std::time::{Duration, Instant};
@@ -69,6 +69,25 @@ fn a_rank_that_is_stopped_is_named() {
         names(run, victim, &ranks, 5);
         assert_eq!(home.contents(), before);
     }
+}
+
+/// It is asked whether it lives while it is stopped, and goes on before the time is over; its late
+/// answer does no harm.
+#[test]
+fn a_rank_that_goes_on_is_waited_for() {
+    let mut scene = long();
+    scene["time"]["end"] = json!(2e-7);
+    let home = Home::with(&scene);
+    let args = ["scene.json", "--quiet", "--stall-timeout", "5"];
+    let mut run = home.call(args).ranks(3).start();
+    let ranks = processes(&mut run, 3);
+    std::thread::sleep(Duration::from_millis(500));
+    assert!(run.runs(), "the scene is too short for this test");
+    signal("-STOP", ranks[1]);
+    std::thread::sleep(Duration::from_millis(3500));
+    assert!(run.runs(), "the run ends without a rank");
+    signal("-CONT", ranks[1]);
+    assert_eq!(run.end().succeeded(), "");
 }
 
 /// Whether the first profile stands in the folder of results that is being written.
