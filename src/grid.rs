@@ -109,10 +109,29 @@ impl Band {
 
     /// y = M x on the nodes `range`, which must lie at least the band's width from the ends.
     pub fn product(&self, x: &[f64], range: std::ops::Range<usize>, y: &mut [f64]) {
+        self.each_product(x, range, y, |product, _| product);
+    }
+
+    /// y = x - d M x on the nodes `range`, d a diagonal matrix: one term of a series from the one
+    /// before it.
+    pub fn next_term(&self, x: &[f64], d: &[f64], range: std::ops::Range<usize>, y: &mut [f64]) {
+        let (x_here, d) = (&x[range.clone()], &d[range.clone()]);
+        self.each_product(x, range, y, |product, i| x_here[i] - d[i] * product);
+    }
+
+    /// y = f((M x)_i, i) on the nodes of `range`, i counted from its start.
+    #[inline(always)]
+    fn each_product(
+        &self,
+        x: &[f64],
+        range: std::ops::Range<usize>,
+        y: &mut [f64],
+        f: impl Fn(f64, usize) -> f64,
+    ) {
         let (from, to) = (range.start, range.end);
         match self.width {
-            3 => self.product_of::<3>(x, from, to, y),
-            4 => self.product_of::<4>(x, from, to, y),
+            3 => self.product_of::<3>(x, from, to, y, f),
+            4 => self.product_of::<4>(x, from, to, y, f),
             _ => {
                 for i in range {
                     let mut sum = self.diagonals[0][i] * x[i];
@@ -120,14 +139,22 @@ impl Band {
                         sum += self.diagonals[d][i] * x[i + d];
                         sum += self.diagonals[d][i - d] * x[i - d];
                     }
-                    y[i] = sum;
+                    y[i] = f(sum, i - from);
                 }
             }
         }
     }
 
     /// The same sums in the same order, with the width known so that they run in vectors.
-    fn product_of<const W: usize>(&self, x: &[f64], from: usize, to: usize, y: &mut [f64]) {
+    #[inline(always)]
+    fn product_of<const W: usize>(
+        &self,
+        x: &[f64],
+        from: usize,
+        to: usize,
+        y: &mut [f64],
+        f: impl Fn(f64, usize) -> f64,
+    ) {
         if from >= to {
             return;
         }
@@ -145,7 +172,7 @@ impl Band {
                 sum += above[d].0[i] * above[d].1[i];
                 sum += below[d].0[i] * below[d].1[i];
             }
-            y[i] = sum;
+            y[i] = f(sum, i);
         }
     }
 }

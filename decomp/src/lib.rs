@@ -28,6 +28,7 @@ mod nodes;
 mod reduce;
 mod relocate;
 mod rows;
+mod stretch;
 mod table;
 mod words;
 

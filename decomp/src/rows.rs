@@ -1,5 +1,6 @@
 //! Ghost rows and migration, in one message a neighbouring rank.
 
+use crate::stretch::{put_rows, put_stir, take};
 use crate::{Block, Comm, Image, IndexBox, Layout};
 
 /// A row that cannot be handed on.
@@ -39,7 +40,8 @@ struct Route<const D: usize> {
     home: IndexBox<D>,
     halo: IndexBox<D>,
     near: IndexBox<D>,
-    images: Vec<Image<D>>,
+    /// Each with the rows to give as ghosts and those to hand over.
+    images: Vec<(Image<D>, [Vec<u32>; 2])>,
 }
 
 /// Where a route's words go.
@@ -52,11 +54,6 @@ enum Taker {
     /// To a patch of this rank that does.
     Border,
 }
-
-/// What a stretch of words in a message is.
-const GHOST: u64 = 0;
-const OWN: u64 = 1;
-const STIR: u64 = 2;
 
 /// Who gives rows to whom, for ghosts up to a given number of cells away.
 ///
@@ -81,7 +78,6 @@ pub struct RowExchange<const D: usize> {
     received: Vec<Vec<u64>>,
     to_inner: Vec<u64>,
     to_border: Vec<u64>,
-    row: Vec<f64>,
     gone: Vec<usize>,
     migrated: u64,
 }
@@ -133,8 +129,8 @@ impl<const D: usize> RowExchange<D> {
                 };
                 // a row that has crossed a joined side carries a cell at the other end already
                 let meets = |t: &&Image<D>| !t.cells(layout.domain()).intersect(&sees).is_empty();
-                let images = images.iter().filter(meets).copied().collect();
-                Route { to, taker, home: boxes[to], halo, near, images }
+                let images = images.iter().filter(meets).map(|&t| (t, Default::default()));
+                Route { to, taker, home: boxes[to], halo, near, images: images.collect() }
             };
             let from_here: Vec<Route<D>> = takers.into_iter().map(route).collect();
             send_ranks.extend(from_here.iter().filter_map(|r| match r.taker {
@@ -165,7 +161,6 @@ impl<const D: usize> RowExchange<D> {
             receive_ranks,
             to_inner: Vec::new(),
             to_border: Vec::new(),
-            row: Vec::new(),
             gone: Vec::new(),
             migrated: 0,
         }
@@ -202,10 +197,10 @@ impl<const D: usize> RowExchange<D> {
             block.stirred = self.reach.notice.is_none() || !block.active.is_empty();
             self.give(k, block)?;
         }
-        let RowExchange { place, inner, row, received, .. } = self;
+        let RowExchange { place, inner, received, .. } = self;
         let mut on_this_rank = || {
             let words = std::slice::from_ref(&self.to_inner);
-            settle(place, words, patches, inner, true, row);
+            settle(place, words, patches, inner, true);
             meanwhile(patches);
         };
         if self.send_ranks.is_empty() && self.receive_ranks.is_empty() {
@@ -217,7 +212,7 @@ impl<const D: usize> RowExchange<D> {
         }
         // this rank's own words stand with those of the others
         received.push(std::mem::take(&mut self.to_border));
-        settle(place, received, patches, inner, false, row);
+        settle(place, received, patches, inner, false);
         self.to_border = received.pop().expect("it was pushed");
         Ok(())
     }
@@ -228,20 +223,8 @@ impl<const D: usize> RowExchange<D> {
         // cells that nobody else can see
         let inner = home.grow(-self.reach.depth);
         self.gone.clear();
-        if self.reach.notice.is_some() && !block.active.is_empty() {
-            for route in &self.routes[k] {
-                let stirs =
-                    |t: &Image<D>| !t.cells(&block.active).intersect(&route.near).is_empty();
-                if route.to != self.patches[k] && route.images.iter().any(stirs) {
-                    let out = match route.taker {
-                        Taker::Message(m) => &mut self.messages[m],
-                        Taker::Inner => &mut self.to_inner,
-                        Taker::Border => &mut self.to_border,
-                    };
-                    out.push((route.to as u64) << 2 | STIR);
-                }
-            }
-        }
+        let RowExchange { routes, messages, to_inner, to_border, .. } = self;
+        let (routes, patch) = (&mut routes[k], self.patches[k]);
         for row in 0..block.own() {
             let cell = block.cells[row].map(i64::from);
             if inner.contains(cell) {
@@ -249,32 +232,44 @@ impl<const D: usize> RowExchange<D> {
             }
             let stays = home.contains(cell);
             let mut owned = stays;
-            for route in &self.routes[k] {
-                for image in &route.images {
+            for route in routes.iter_mut() {
+                for (image, [ghosts, movers]) in &mut route.images {
                     let at = image.cell(cell);
                     if !route.halo.contains(at) {
                         continue;
                     }
-                    let original = *image == Image::IDENTITY;
-                    let own = original && route.home.contains(at);
-                    if own && route.to == self.patches[k] {
+                    let own = *image == Image::IDENTITY && route.home.contains(at);
+                    if own && route.to == patch {
                         continue;
                     }
                     owned |= own;
-                    let out = match route.taker {
-                        Taker::Message(m) => &mut self.messages[m],
-                        Taker::Inner => &mut self.to_inner,
-                        Taker::Border => &mut self.to_border,
-                    };
-                    pack(out, block, row, route.to, at, own, image);
+                    if own { movers.push(row as u32) } else { ghosts.push(row as u32) }
                 }
             }
             if !owned {
-                let (id, patch) = (block.ids[row], self.patches[k]);
+                let id = block.ids[row];
                 return Err(RowError::MovedTooFar { id, patch, cell: cell.to_vec() });
             }
             if !stays {
                 self.gone.push(row);
+            }
+        }
+        let stirs = self.reach.notice.is_some() && !block.active.is_empty();
+        for route in routes.iter_mut() {
+            let out = match route.taker {
+                Taker::Message(m) => &mut messages[m],
+                Taker::Inner => &mut *to_inner,
+                Taker::Border => &mut *to_border,
+            };
+            let near = |t: &Image<D>| !t.cells(&block.active).intersect(&route.near).is_empty();
+            if stirs && route.to != patch && route.images.iter().any(|(t, _)| near(t)) {
+                put_stir(out, route.to);
+            }
+            for (image, [ghosts, movers]) in &mut route.images {
+                put_rows(out, block, movers, route.to, true, image);
+                put_rows(out, block, ghosts, route.to, false, image);
+                movers.clear();
+                ghosts.clear();
             }
         }
         if !self.gone.is_empty() {
@@ -307,68 +302,15 @@ fn settle<const D: usize>(
     patches: &mut [impl AsMut<Block<D>>],
     inner: &[bool],
     which: bool,
-    row: &mut Vec<f64>,
 ) {
     for ghosts in [false, true] {
         for words in messages {
-            take(place, words, patches, ghosts, row);
+            take(place, words, patches, ghosts);
         }
         for (patch, _) in patches.iter_mut().zip(inner).filter(|(_, i)| **i == which) {
             let block = patch.as_mut();
             if ghosts { block.sort_ghosts() } else { block.sort_own() }
         }
-    }
-}
-
-/// A row in a message: patch and kind, id, cell, then its columns.
-fn pack<const D: usize>(
-    out: &mut Vec<u64>,
-    block: &Block<D>,
-    row: usize,
-    to: usize,
-    cell: [i64; D],
-    own: bool,
-    image: &Image<D>,
-) {
-    out.push((to as u64) << 2 | if own { OWN } else { GHOST });
-    out.push(block.ids[row]);
-    out.extend(cell.map(|c| c as u64));
-    let word = |c: usize| block.specs()[c].image(block.columns[c][row], &image.flip).to_bits();
-    if own {
-        out.extend((0..block.columns.len()).map(word));
-    } else {
-        out.extend(block.ghost_columns().iter().map(|&c| word(c)));
-    }
-}
-
-/// Adds the rows of a message to their blocks: ghosts, or those that moved.
-fn take<const D: usize>(
-    place: &[usize],
-    words: &[u64],
-    patches: &mut [impl AsMut<Block<D>>],
-    ghosts: bool,
-    row: &mut Vec<f64>,
-) {
-    let mut at = 0;
-    while at < words.len() {
-        let (to, kind) = ((words[at] >> 2) as usize, words[at] & 3);
-        let block = patches[place[to]].as_mut();
-        if kind == STIR {
-            block.stirred = true;
-            at += 1;
-            continue;
-        }
-        let own = kind == OWN;
-        let columns = if own { block.specs().len() } else { block.ghost_columns().len() };
-        let start = at + 2 + D;
-        if own != ghosts {
-            let id = words[at + 1];
-            let cell = std::array::from_fn(|a| words[at + 2 + a] as i64 as i32);
-            row.clear();
-            row.extend(words[start..start + columns].iter().map(|&w| f64::from_bits(w)));
-            if own { block.push(id, cell, row) } else { block.push_ghost(id, cell, row) }
-        }
-        at = start + columns;
     }
 }
 

@@ -126,12 +126,33 @@ impl<const D: usize> Block<D> {
         }
     }
 
-    /// Adds a ghost row; `values` gives the ghost columns in order.
-    pub(crate) fn push_ghost(&mut self, id: u64, cell: [i32; D], values: &[f64]) {
-        self.ids.push(id);
-        self.cells.push(cell);
-        for (&c, value) in self.ghost_columns.iter().zip(values) {
-            self.columns[c].push(*value);
+    /// Adds own rows; `columns` holds one stretch of words a column. Order is restored by `sort`.
+    pub(crate) fn extend_own(
+        &mut self,
+        ids: &[u64],
+        cells: impl Iterator<Item = [i32; D]>,
+        columns: &[u64],
+    ) {
+        debug_assert_eq!(self.rows(), self.own, "own rows go before ghosts");
+        self.ids.extend_from_slice(ids);
+        self.cells.extend(cells);
+        for (column, words) in self.columns.iter_mut().zip(columns.chunks_exact(ids.len())) {
+            column.extend(words.iter().map(|&w| f64::from_bits(w)));
+        }
+        self.own += ids.len();
+    }
+
+    /// Adds ghosts; `columns` holds one stretch of words a ghost column.
+    pub(crate) fn extend_ghosts(
+        &mut self,
+        ids: &[u64],
+        cells: impl Iterator<Item = [i32; D]>,
+        columns: &[u64],
+    ) {
+        self.ids.extend_from_slice(ids);
+        self.cells.extend(cells);
+        for (&c, words) in self.ghost_columns.iter().zip(columns.chunks_exact(ids.len())) {
+            self.columns[c].extend(words.iter().map(|&w| f64::from_bits(w)));
         }
     }
 
@@ -325,9 +346,8 @@ mod tests {
         for (id, x, y) in [(1, 2, 0), (2, 3, 0), (3, 2, 1), (4, 3, 1)] {
             block.push(id, [x, y], &[0.0, 0.0]);
         }
-        for (id, x, y) in [(5, 1, 0), (6, 4, 0), (7, 1, 1)] {
-            block.push_ghost(id, [x, y], &[0.0]);
-        }
+        let cells = [[1, 0], [4, 0], [1, 1]].into_iter();
+        block.extend_ghosts(&[5, 6, 7], cells, &[0; 3]);
         let mut runs = Vec::new();
         block.runs(&mut runs);
         let ids: Vec<u64> = runs.iter().cloned().flatten().map(|r| block.ids[r]).collect();

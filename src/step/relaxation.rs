@@ -42,24 +42,24 @@ impl Stepper {
                     _ => sum.iter_mut().zip(x.iter()).for_each(|(sum, term)| *sum += *term),
                 }
                 if l + 1 < ORDER {
-                    patch.compliance_band.product(x, patch.active.clone(), y);
-                    for i in patch.active.clone() {
-                        x[i] -= inverse[i] * y[i];
-                    }
+                    patch.compliance_band.next_term(x, inverse, patch.active.clone(), y);
+                    patch.nodes.fields.swap(term, scratch);
                 }
             });
         }
     }
 
     fn scatter_pressure<const K: usize>(&self, patch: &mut Patch<1>) {
-        let [weight, inverse, _, term, _] = self.fields.relaxation;
+        let [weight, inverse, _, term, scratch] = self.fields.relaxation;
         let rows = patch.block.rows();
         let (Some(p), Some(w)) = (self.columns.pressure_mid, self.columns.compliance) else {
             return;
         };
         let (p, w) = (&patch.block.columns[p][..rows], &patch.block.columns[w][..rows]);
         patch.compliance_band.clear(patch.nodes.nodes.count(), K);
-        let [weight, inverse, term] = patch.nodes.fields_mut([weight, inverse, term]);
+        let [weight, inverse, term, scratch] =
+            patch.nodes.fields_mut([weight, inverse, term, scratch]);
+        scratch.fill(0.0);
         weight.fill(0.0);
         inverse.fill(0.0);
         term.fill(0.0);

@@ -30,7 +30,7 @@ impl Stepper {
     /// needs them.
     pub(super) fn scatter_motion(&self, patch: &mut Patch<1>) {
         let f = &self.fields;
-        for field in [f.mass, f.lumped, f.acceleration] {
+        for field in [f.mass, f.lumped, f.acceleration, f.scratch] {
             patch.nodes.fields[field].fill(0.0);
         }
         fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper) {

@@ -11,14 +11,14 @@ use super::{Nodal, ODD, Stepper};
 use crate::patch::Patch;
 use crate::transfer::{Scheme, cut};
 
-/// field[i] -= m^-1 (M x)[i] for the owned nodes, x the field itself: field = K field.
+/// field = K field on the nodes that the patch computes; beyond them it is what the next exchange
+/// makes of it.
 fn apply_k(s: &Stepper, patch: &mut Patch<1>, field: usize) {
     let f = &s.fields;
     let [inverse, x, y] = patch.nodes.fields_mut([f.inverse, field, f.scratch]);
-    patch.band.product(x, patch.active.clone(), y);
-    for i in patch.active.clone() {
-        x[i] -= inverse[i] * y[i];
-    }
+    patch.band.next_term(x, inverse, patch.active.clone(), y);
+    // nodes without material hold zeros in both
+    patch.nodes.fields.swap(field, f.scratch);
 }
 
 /// Adds one field to another.

@@ -1,0 +1,84 @@
+//! Stretches of rows in messages, column after column: made and read at the price of copying.
+
+use crate::{Block, Image};
+
+/// What a stretch is: ghosts, rows that change their patch, or word that a patch is stirred.
+const GHOST: u64 = 0;
+const OWN: u64 = 1;
+const STIR: u64 = 2;
+
+/// Tells patch `to` that it is stirred.
+pub(crate) fn put_stir(out: &mut Vec<u64>, to: usize) {
+    out.push((to as u64) << 2 | STIR);
+}
+
+/// Puts the rows of `block` at `rows`, as they appear in `image`, for patch `to`: as its own with
+/// all columns, or as ghosts. Patch and kind, number of rows, ids, cells, columns.
+pub(crate) fn put_rows<const D: usize>(
+    out: &mut Vec<u64>,
+    block: &Block<D>,
+    rows: &[u32],
+    to: usize,
+    own: bool,
+    image: &Image<D>,
+) {
+    if rows.is_empty() {
+        return;
+    }
+    out.extend([(to as u64) << 2 | if own { OWN } else { GHOST }, rows.len() as u64]);
+    out.extend(rows.iter().map(|&r| block.ids[r as usize]));
+    for &row in rows {
+        out.extend(image.cell(block.cells[row as usize].map(i64::from)).map(|c| c as u64));
+    }
+    let mirrored = image.flip.contains(&true);
+    let mut put = |c: usize| {
+        let (spec, column) = (&block.specs()[c], &block.columns[c][..]);
+        if mirrored {
+            let value = |r: u32| spec.image(column[r as usize], &image.flip);
+            out.extend(rows.iter().map(|&r| value(r).to_bits()));
+        } else {
+            out.extend(rows.iter().map(|&r| column[r as usize].to_bits()));
+        }
+    };
+    if own {
+        (0..block.columns.len()).for_each(put);
+    } else {
+        block.ghost_columns().iter().for_each(|&c| put(c));
+    }
+}
+
+/// Adds the rows of a message to their blocks: ghosts, or those that are their own now. `place`
+/// tells where each patch of this rank stands in `patches`.
+pub(crate) fn take<const D: usize>(
+    place: &[usize],
+    mut words: &[u64],
+    patches: &mut [impl AsMut<Block<D>>],
+    ghosts: bool,
+) {
+    while let Some((&head, rest)) = words.split_first() {
+        let (to, kind) = ((head >> 2) as usize, head & 3);
+        let block = patches[place[to]].as_mut();
+        words = rest;
+        if kind == STIR {
+            block.stirred = true;
+            continue;
+        }
+        let own = kind == OWN;
+        let rows = words[0] as usize;
+        let columns = if own { block.columns.len() } else { block.ghost_columns().len() };
+        let (stretch, rest) = words[1..].split_at(rows * (1 + D + columns));
+        words = rest;
+        if own != ghosts {
+            let (ids, stretch) = stretch.split_at(rows);
+            let (cells, columns) = stretch.split_at(rows * D);
+            let cells = cells
+                .chunks_exact(D)
+                .map(|c| std::array::from_fn::<i32, D, _>(|a| c[a] as i64 as i32));
+            if own {
+                block.extend_own(ids, cells, columns)
+            } else {
+                block.extend_ghosts(ids, cells, columns)
+            }
+        }
+    }
+}
