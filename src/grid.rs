@@ -29,9 +29,8 @@ pub struct Fields {
     pub scratch2: usize,
     /// Fraction of the node's volume that holds material [-], with an edge mask.
     pub volume: usize,
-    /// Relaxation: summed compliance and its inverse, the projected pressure, its series' term
-    /// and scratch.
-    pub relaxation: [usize; 5],
+    /// Relaxation: summed compliance and its inverse, the projected pressure, its series' term.
+    pub relaxation: [usize; 4],
     /// Number of fields.
     pub count: usize,
 }
@@ -46,7 +45,7 @@ impl Fields {
             at
         };
         let volume = add(1, masked);
-        let r = add(5, relaxed);
+        let r = add(4, relaxed);
         Fields {
             mass: 0,
             inverse: 1,
@@ -59,7 +58,7 @@ impl Fields {
             scratch: 8,
             scratch2: 9,
             volume,
-            relaxation: [r, r + 1, r + 2, r + 3, r + 4],
+            relaxation: [r, r + 1, r + 2, r + 3],
             count,
         }
     }

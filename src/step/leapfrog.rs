@@ -24,7 +24,8 @@ impl Stepper {
         if self.stress_update == StressUpdate::First {
             world.exchange_rows(|nodal| {
                 nodal.each("scatter", |patch| self.scatter(patch, false));
-                self.filter_velocity(nodal);
+                // no force yet: the acceleration's sums are zero
+                self.solve_velocity(nodal, 0.0, false);
                 nodal.each("update stress", |patch| {
                     self.gather_gradient(patch, star);
                     self.update_stress(patch, dt);
@@ -35,7 +36,7 @@ impl Stepper {
         let last = self.stress_update == StressUpdate::Last;
         world.exchange_rows(|nodal| {
             nodal.each("scatter", |patch| self.scatter(patch, true));
-            self.solve_velocity(nodal, dt);
+            self.solve_velocity(nodal, dt, false);
             nodal.each("gather", |patch| {
                 self.gather_velocity(patch);
                 self.move_rows(patch, dt);
@@ -50,8 +51,10 @@ impl Stepper {
                 nodal.each("scatter again", |patch| {
                     self.scatter_motion(patch);
                     self.divide_by_mass(patch);
+                    self.start_series(patch);
                 });
-                self.filter_velocity(nodal);
+                // no force yet: the acceleration's sums are zero
+                self.solve_velocity(nodal, 0.0, false);
                 nodal.each("update stress", |patch| {
                     self.gather_gradient(patch, star);
                     self.update_stress(patch, dt);

@@ -34,13 +34,15 @@ impl Stepper {
             self.find_active(patch);
         });
         world.exchange_rows(|nodal| {
-            nodal.each("scatter", |patch| self.scatter(patch, true));
-            self.solve_velocity(nodal, dt);
+            nodal.each("scatter", |patch| {
+                self.scatter(patch, true);
+                if relax.is_some() {
+                    self.start_pressure(patch);
+                }
+            });
+            self.solve_velocity(nodal, dt, relax.is_some());
             if self.compatible {
                 self.solve_work(nodal);
-            }
-            if relax.is_some() {
-                self.project_pressure(nodal);
             }
             nodal.each("gather", |patch| {
                 self.gather_midpoint(patch, dt);
@@ -68,7 +70,7 @@ impl Stepper {
         });
         world.exchange_rows(|nodal| {
             nodal.each("scatter", |patch| self.scatter(patch, false));
-            self.solve_velocity(nodal, 0.0);
+            self.solve_velocity(nodal, 0.0, false);
             nodal.each("gather", |patch| {
                 self.gather_gradient(patch, self.fields.velocity_star);
             });

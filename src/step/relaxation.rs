@@ -13,9 +13,7 @@
 //! Volume and energy are kept exactly, and a material interface is no special case. p is the
 //! pressure at the middle of the step.
 
-use decomp::Parity;
-
-use super::{MOST_NODES, Nodal, Stepper, with_width};
+use super::{MOST_NODES, Stepper, with_width};
 use crate::patch::Patch;
 use crate::transfer::{add, cut, dot, window};
 
@@ -23,43 +21,23 @@ use crate::transfer::{add, cut, dot, window};
 pub(super) const ORDER: u32 = 4;
 
 impl Stepper {
-    /// Nodal pressure and the last term of its series, halos included. Collective between
-    /// neighbours.
-    pub(super) fn project_pressure(&self, nodal: &mut Nodal<'_>) {
-        let [_, inverse, sum, term, scratch] = self.fields.relaxation;
-        nodal.each("scatter pressure", |patch| {
-            fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper) {
-                s.scatter_pressure::<K>(patch);
-            }
-            with_width!(patch.stencils.width, go(patch, self));
-        });
-        for l in 0..ORDER {
-            nodal.refresh(&[(term, Parity::Even)]);
-            nodal.each("project pressure", |patch| {
-                let [sum, x, inverse, y] = patch.nodes.fields_mut([sum, term, inverse, scratch]);
-                match l {
-                    0 => sum.copy_from_slice(x),
-                    _ => sum.iter_mut().zip(x.iter()).for_each(|(sum, term)| *sum += *term),
-                }
-                if l + 1 < ORDER {
-                    patch.compliance_band.next_term(x, inverse, patch.active.clone(), y);
-                    patch.nodes.fields.swap(term, scratch);
-                }
-            });
+    /// The first term of the pressure's series, P_L, on the nodes that the patch computes.
+    pub(super) fn start_pressure(&self, patch: &mut Patch<1>) {
+        fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper) {
+            s.scatter_pressure::<K>(patch);
         }
+        with_width!(patch.stencils.width, go(patch, self));
     }
 
     fn scatter_pressure<const K: usize>(&self, patch: &mut Patch<1>) {
-        let [weight, inverse, _, term, scratch] = self.fields.relaxation;
+        let [weight, inverse, _, term] = self.fields.relaxation;
         let rows = patch.block.rows();
         let (Some(p), Some(w)) = (self.columns.pressure_mid, self.columns.compliance) else {
             return;
         };
         let (p, w) = (&patch.block.columns[p][..rows], &patch.block.columns[w][..rows]);
         patch.compliance_band.clear(patch.nodes.nodes.count(), K);
-        let [weight, inverse, term, scratch] =
-            patch.nodes.fields_mut([weight, inverse, term, scratch]);
-        scratch.fill(0.0);
+        let [weight, inverse, term] = patch.nodes.fields_mut([weight, inverse, term]);
         weight.fill(0.0);
         inverse.fill(0.0);
         term.fill(0.0);
@@ -82,7 +60,7 @@ impl Stepper {
     /// Moves volume and energy of the own rows.
     pub(super) fn relax_pressure(&self, patch: &mut Patch<1>, rate: f64) {
         fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper, rate: f64) {
-            let [_, _, sum, term, _] = s.fields.relaxation;
+            let [_, _, sum, term] = s.fields.relaxation;
             let c = &s.columns;
             let (Some(p), Some(w)) = (c.pressure_mid, c.compliance) else { return };
             let (projected, last) = (&patch.nodes.fields[sum][..], &patch.nodes.fields[term][..]);

@@ -15,6 +15,7 @@ impl Stepper {
             self.scatter_force(patch);
         }
         self.divide_by_mass(patch);
+        self.start_series(patch);
     }
 
     /// Whether the scheme needs the mass matrix.

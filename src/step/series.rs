@@ -1,24 +1,44 @@
-//! The nodal equations: filtered velocity, acceleration through the full mass matrix, and the
-//! velocity whose gradient does the work.
+//! The nodal equations: filtered velocity, acceleration through the full mass matrix, projected
+//! pressure, and the velocity whose gradient does the work.
 //!
 //! With the lumped masses m_i, the mass matrix M and K = 1 - m^-1 M, the series sum_(l<k) K^l
 //! approximates (m^-1 M)^-1 (Nairn & Hammerquist 2021). Each product needs the finished values
-//! of its neighbours' nodes, which the owners send; sums never cross a border.
+//! of its neighbours' nodes, which the owners send; sums never cross a border. Series that do not
+//! need each other's results advance together, so that their terms travel together.
 
 use decomp::Parity;
+use smallvec::SmallVec;
 
-use super::{Nodal, ODD, Stepper};
+use super::{Nodal, ODD, Stepper, relaxation};
 use crate::patch::Patch;
 use crate::transfer::{Scheme, cut};
 
-/// field = K field on the nodes that the patch computes; beyond them it is what the next exchange
-/// makes of it.
-fn apply_k(s: &Stepper, patch: &mut Patch<1>, field: usize) {
-    let f = &s.fields;
-    let [inverse, x, y] = patch.nodes.fields_mut([f.inverse, field, f.scratch]);
-    patch.band.next_term(x, inverse, patch.active.clone(), y);
-    // nodes without material hold zeros in both
-    patch.nodes.fields.swap(field, f.scratch);
+/// A series sum_(l<order) t_l with t_l = K t_(l-1).
+#[derive(Clone, Copy)]
+struct Series {
+    /// The field that holds t_0 on the patch's own nodes, and in the end the last term.
+    term: usize,
+    /// The field of the sum.
+    sum: usize,
+    order: u32,
+    matrix: Matrix,
+    mask: Mask,
+    parity: Parity,
+}
+
+/// The matrix in K.
+#[derive(Clone, Copy)]
+enum Matrix {
+    Mass,
+    Compliance,
+}
+
+/// Where nodes with little material are taken out: t_l = K chi t_(l-1), or chi K t_(l-1).
+#[derive(Clone, Copy, PartialEq)]
+enum Mask {
+    No,
+    Before,
+    After,
 }
 
 /// Adds one field to another.
@@ -30,8 +50,10 @@ fn accumulate(patch: &mut Patch<1>, sum: usize, term: usize) {
 }
 
 fn copy(patch: &mut Patch<1>, from: usize, to: usize) {
-    let [from, to] = patch.nodes.fields_mut([from, to]);
-    to.copy_from_slice(from);
+    if from != to {
+        let [from, to] = patch.nodes.fields_mut([from, to]);
+        to.copy_from_slice(from);
+    }
 }
 
 impl Stepper {
@@ -47,55 +69,159 @@ impl Stepper {
         }
     }
 
-    /// From lumped velocity and force to velocity, acceleration and end-of-step velocity, halos
-    /// included: v = sum_(l<k) K^l vL, b = sum_(l<k) t_l with t_0 = f/m and t_l = K chi t_(l-1),
-    /// v' = v + dt b. Collective between neighbours.
-    pub(super) fn solve_velocity(&self, nodal: &mut Nodal<'_>, dt: f64) {
+    /// The next term of a series on the nodes that the patch computes; beyond them it is what the
+    /// next exchange makes of it.
+    fn next_term(&self, patch: &mut Patch<1>, series: &Series) {
+        if series.mask == Mask::Before {
+            self.mask(patch, series.term);
+        }
+        let (band, inverse) = match series.matrix {
+            Matrix::Mass => (&patch.band, self.fields.inverse),
+            Matrix::Compliance => (&patch.compliance_band, self.fields.relaxation[1]),
+        };
+        let scratch = self.fields.scratch;
+        let [inverse, x, y] = patch.nodes.fields_mut([inverse, series.term, scratch]);
+        band.next_term(x, inverse, patch.active.clone(), y);
+        // nodes without material hold zeros in both
+        patch.nodes.fields.swap(series.term, scratch);
+        if series.mask == Mask::After {
+            self.mask(patch, series.term);
+        }
+    }
+
+    /// Sums up `all` series, halos included, together with the halos of the fields `others`, and
+    /// then runs `last`. Collective between neighbours.
+    fn sum_series(
+        &self,
+        nodal: &mut Nodal<'_>,
+        name: &'static str,
+        others: &[(usize, Parity)],
+        all: &[Series],
+        last: impl Fn(&mut Patch<1>) + Send + Sync,
+    ) {
+        let rounds = all.iter().map(|s| s.order).max().unwrap_or(0);
+        for l in 0..rounds {
+            let going = || all.iter().filter(move |s| s.order > l);
+            let mut fields: SmallVec<[(usize, Parity); 6]> = SmallVec::new();
+            fields.extend(others.iter().copied().filter(|_| l == 0));
+            fields.extend(going().map(|s| (s.term, s.parity)));
+            nodal.refresh(&fields);
+            nodal.each(name, |patch| {
+                for series in going() {
+                    match l {
+                        0 => copy(patch, series.term, series.sum),
+                        _ => accumulate(patch, series.sum, series.term),
+                    }
+                    if l + 1 < series.order {
+                        self.next_term(patch, series);
+                    }
+                }
+                if l + 1 == rounds {
+                    last(patch);
+                }
+            });
+        }
+    }
+
+    /// The series of velocity and force: v = sum_(l<k) K^l vL; b = sum_(l<k) t_l with t_0 = f/m
+    /// and t_l = K chi t_(l-1), or b = f/m where the scheme lumps the force.
+    fn velocity_series(&self) -> [Series; 2] {
         let f = &self.fields;
-        let volume = (f.volume, Parity::Even);
-        let sums = [(f.inverse, Parity::Even), (f.lumped, ODD), (f.acceleration, ODD), volume];
-        nodal.refresh(if self.edge_mask.is_some() { &sums } else { &sums[..3] });
-        let (order, force) = match self.scheme {
-            Scheme::Series { order, force } => (order, force),
-            Scheme::Blend(_) | Scheme::Affine => (1, false),
+        let base = Series {
+            term: f.lumped,
+            sum: f.velocity,
+            order: 1,
+            matrix: Matrix::Mass,
+            mask: Mask::No,
+            parity: ODD,
         };
-        let term = f.scratch2;
-        // each phase ends with the next term, which the exchange then completes
-        let next_term = |patch: &mut Patch<1>| {
-            apply_k(self, patch, f.remainder);
-            if force {
-                self.mask(patch, term);
-                apply_k(self, patch, term);
+        let lumped_force = Series { term: f.acceleration, sum: f.acceleration, ..base };
+        match self.scheme {
+            Scheme::Series { order, force } => {
+                let velocity = Series { term: f.remainder, order, ..base };
+                let full = Series { term: f.scratch2, order, mask: Mask::Before, ..lumped_force };
+                [velocity, if force { full } else { lumped_force }]
             }
-        };
-        let advance = |patch: &mut Patch<1>| {
+            Scheme::Blend(_) | Scheme::Affine => [base, lumped_force],
+        }
+    }
+
+    /// The first terms of the series of velocity and force, from lumped velocity and f/m.
+    pub(super) fn start_series(&self, patch: &mut Patch<1>) {
+        let f = &self.fields;
+        let [velocity, force] = self.velocity_series();
+        copy(patch, f.lumped, velocity.term);
+        copy(patch, f.acceleration, force.term);
+    }
+
+    /// From the first terms of the series to velocity, acceleration and end-of-step velocity
+    /// v' = v + dt b, halos included, and with `relax` to the nodal pressure as well. Collective
+    /// between neighbours.
+    pub(super) fn solve_velocity(&self, nodal: &mut Nodal<'_>, dt: f64, relax: bool) {
+        let f = &self.fields;
+        let [velocity, force] = self.velocity_series();
+        let mut all: SmallVec<[Series; 3]> = [velocity, force].into_iter().collect();
+        if relax {
+            let [_, _, sum, term] = f.relaxation;
+            all.push(Series {
+                term,
+                sum,
+                order: relaxation::ORDER,
+                matrix: Matrix::Compliance,
+                mask: Mask::No,
+                parity: Parity::Even,
+            });
+        }
+        let others = [(f.inverse, Parity::Even), (f.volume, Parity::Even)];
+        let others = if self.edge_mask.is_some() { &others[..] } else { &others[..1] };
+        // pressure may have more terms than velocity
+        self.sum_series(nodal, "series", others, &all, |patch| {
             let [v, b, star] =
                 patch.nodes.fields_mut([f.velocity, f.acceleration, f.velocity_star]);
             for i in 0..v.len() {
                 v[i] = cut(v[i], self.still_speed);
                 star[i] = cut(v[i] + dt * b[i], self.still_speed);
             }
-        };
-        nodal.each("start series", |patch| {
-            copy(patch, f.lumped, f.velocity);
-            if matches!(self.scheme, Scheme::Series { .. }) {
-                copy(patch, f.lumped, f.remainder);
-                copy(patch, f.acceleration, term);
+            if self.compatible {
+                self.start_work(patch);
             }
-            if order > 1 { next_term(patch) } else { advance(patch) }
         });
-        for l in 1..order {
-            match force {
-                true => nodal.refresh(&[(f.remainder, ODD), (term, ODD)]),
-                false => nodal.refresh(&[(f.remainder, ODD)]),
-            }
-            nodal.each("series", |patch| {
-                accumulate(patch, f.velocity, f.remainder);
-                if force {
-                    accumulate(patch, f.acceleration, term);
+    }
+
+    /// What [`solve_work`](Self::solve_work) starts from, on the nodes that the patch computes:
+    /// (vL + A v')/2 with A = m^-1 M, or with a blend w itself.
+    fn start_work(&self, patch: &mut Patch<1>) {
+        let f = &self.fields;
+        match self.scheme {
+            Scheme::Series { .. } => {
+                let [inverse, star, lumped, y, w] = patch.nodes.fields_mut([
+                    f.inverse,
+                    f.velocity_star,
+                    f.lumped,
+                    f.scratch,
+                    f.scratch2,
+                ]);
+                patch.band.product(star, patch.active.clone(), y);
+                w.fill(0.0);
+                for i in patch.active.clone() {
+                    w[i] = 0.5 * (lumped[i] + inverse[i] * y[i]);
                 }
-                if l + 1 < order { next_term(patch) } else { advance(patch) }
-            });
+            }
+            Scheme::Blend(a) => {
+                let [lumped, star, x] =
+                    patch.nodes.fields_mut([f.lumped, f.velocity_star, f.scratch2]);
+                for i in 0..x.len() {
+                    x[i] = (1.0 - a) * lumped[i] + 0.5 * (star[i] - lumped[i]);
+                }
+                let [inverse, lumped, x, y, w] =
+                    patch.nodes.fields_mut([f.inverse, f.lumped, f.scratch2, f.scratch, f.work]);
+                patch.band.product(x, patch.active.clone(), y);
+                w.fill(0.0);
+                for i in patch.active.clone() {
+                    w[i] = a * lumped[i] + inverse[i] * y[i];
+                }
+            }
+            Scheme::Affine => unreachable!("the scene check refuses compatible energy with APIC"),
         }
     }
 
@@ -106,61 +232,20 @@ impl Stepper {
     /// blend: w = a vL + A ((1 - a) vL + dt b/2); A = m^-1 M.
     pub(super) fn solve_work(&self, nodal: &mut Nodal<'_>) {
         let f = &self.fields;
-        match self.scheme {
+        let base = Series {
+            term: f.work,
+            sum: f.work,
+            order: 1,
+            matrix: Matrix::Mass,
+            mask: Mask::After,
+            parity: ODD,
+        };
+        let series = match self.scheme {
             Scheme::Series { order, force } => {
-                nodal.each("start work", |patch| {
-                    let [inverse, star, lumped, y, w] = patch.nodes.fields_mut([
-                        f.inverse,
-                        f.velocity_star,
-                        f.lumped,
-                        f.scratch,
-                        f.scratch2,
-                    ]);
-                    patch.band.product(star, patch.active.clone(), y);
-                    for i in patch.active.clone() {
-                        w[i] = 0.5 * (lumped[i] + inverse[i] * y[i]);
-                    }
-                });
-                let terms = if force { order } else { 1 };
-                for l in 0..terms {
-                    nodal.refresh(&[(f.scratch2, ODD)]);
-                    nodal.each("work", |patch| {
-                        match l {
-                            0 => copy(patch, f.scratch2, f.work),
-                            _ => accumulate(patch, f.work, f.scratch2),
-                        }
-                        if l + 1 < terms {
-                            apply_k(self, patch, f.scratch2);
-                            self.mask(patch, f.scratch2);
-                        }
-                    });
-                }
+                Series { term: f.scratch2, order: if force { order } else { 1 }, ..base }
             }
-            Scheme::Blend(a) => {
-                nodal.each("work", |patch| {
-                    let [lumped, star, x] =
-                        patch.nodes.fields_mut([f.lumped, f.velocity_star, f.scratch2]);
-                    for i in 0..x.len() {
-                        x[i] = (1.0 - a) * lumped[i] + 0.5 * (star[i] - lumped[i]);
-                    }
-                    let [inverse, lumped, x, y, w] = patch
-                        .nodes
-                        .fields_mut([f.inverse, f.lumped, f.scratch2, f.scratch, f.work]);
-                    patch.band.product(x, patch.active.clone(), y);
-                    for i in patch.active.clone() {
-                        w[i] = a * lumped[i] + inverse[i] * y[i];
-                    }
-                });
-                nodal.refresh(&[(f.work, ODD)]);
-            }
-            Scheme::Affine => unreachable!("the scene check refuses compatible energy with APIC"),
-        }
-    }
-
-    /// Lumped velocity through the series, halos included, for velocities that were mapped
-    /// again within a step. Collective between neighbours.
-    pub(super) fn filter_velocity(&self, nodal: &mut Nodal<'_>) {
-        // no force: the acceleration's sums are zero
-        self.solve_velocity(nodal, 0.0);
+            Scheme::Blend(_) | Scheme::Affine => base,
+        };
+        self.sum_series(nodal, "work", &[], &[series], |_| {});
     }
 }

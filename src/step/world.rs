@@ -223,7 +223,7 @@ pub struct Nodal<'a> {
     watcher: Watcher,
     halo: Halo<'a>,
     /// Fields to be made whole before the next phase.
-    pending: Option<smallvec::SmallVec<[(usize, Parity); 4]>>,
+    pending: Option<smallvec::SmallVec<[(usize, Parity); 6]>>,
 }
 
 enum Halo<'a> {
