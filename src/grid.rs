@@ -98,7 +98,6 @@ impl Band {
         let (width, nodes) = (self.width, self.rows.len() / self.width);
         self.diagonals.resize_with(width, Vec::new);
         for (d, diagonal) in self.diagonals.iter_mut().enumerate() {
-            diagonal.clear();
             diagonal.resize(nodes, 0.0);
             for (value, row) in diagonal.iter_mut().zip(self.rows.chunks_exact(width)) {
                 *value = row[d];
@@ -116,6 +115,19 @@ impl Band {
     pub fn next_term(&self, x: &[f64], d: &[f64], range: std::ops::Range<usize>, y: &mut [f64]) {
         let (x_here, d) = (&x[range.clone()], &d[range.clone()]);
         self.each_product(x, range, y, |product, i| x_here[i] - d[i] * product);
+    }
+
+    /// y = t + x - d M x on the nodes `range`: a sum of a series and its next by Horner's rule.
+    pub fn next_sum(
+        &self,
+        x: &[f64],
+        d: &[f64],
+        t: &[f64],
+        range: std::ops::Range<usize>,
+        y: &mut [f64],
+    ) {
+        let (x_here, d, t) = (&x[range.clone()], &d[range.clone()], &t[range.clone()]);
+        self.each_product(x, range, y, |product, i| t[i] + (x_here[i] - d[i] * product));
     }
 
     /// y = f((M x)_i, i) on the nodes of `range`, i counted from its start.

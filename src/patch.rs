@@ -112,6 +112,10 @@ pub struct Patch<const D: usize> {
     /// Nodes that hold material, of those that the patch computes: its own, and with deep ghosts
     /// those about it.
     pub active: Range<usize>,
+    /// Nodes whose values its own rows or products on `active` may take.
+    pub span: Range<usize>,
+    /// Whether it sees a node with little material, which filters leave out.
+    pub has_edge: bool,
     /// How far beyond its own nodes it computes [nodes].
     pub deeper: i64,
     /// What it tells of its step.
@@ -167,6 +171,8 @@ impl<const D: usize> Patch<D> {
             compliance_band: Band::default(),
             runs: Vec::new(),
             active: 0..0,
+            span: 0..0,
+            has_edge: false,
             deeper: 0,
             told: Told::default(),
             departed: Vec::new(),
@@ -252,6 +258,8 @@ impl Patch<1> {
         let last = self.stencils.first.iter().max().map_or(0, |&f| f as usize + width);
         let start = owned.start.max(first);
         self.active = start..owned.end.min(last).max(start);
+        let (least, most) = (self.active.start.saturating_sub(width), self.active.end + width);
+        self.span = least..most.min(self.nodes.nodes.count());
     }
 }
 

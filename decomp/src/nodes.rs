@@ -284,6 +284,23 @@ impl<const D: usize> NodeExchange<D> {
     }
 }
 
+/// Copies a run. In one dimension it is a few nodes, which a call of memcpy would cost more than.
+fn copy_short(from: &[f64], to: &mut [f64]) {
+    fn of<const N: usize>(from: &[f64], to: &mut [f64]) {
+        let (from, to): (&[f64; N], &mut [f64; N]) =
+            (from.try_into().expect("N nodes"), to.try_into().expect("N nodes"));
+        *to = *from;
+    }
+    match from.len() {
+        1 => of::<1>(from, to),
+        2 => of::<2>(from, to),
+        3 => of::<3>(from, to),
+        4 => of::<4>(from, to),
+        5 => of::<5>(from, to),
+        _ => to.copy_from_slice(from),
+    }
+}
+
 /// The nodes at the corners of a box of cells.
 fn with_corners<const D: usize>(mut cells: IndexBox<D>) -> IndexBox<D> {
     cells.upper = cells.upper.map(|u| u + 1);
@@ -318,8 +335,7 @@ fn copy_fields<const D: usize>(
             if run.reversed || sign != 1.0 {
                 taken.iter_mut().zip(run.sources()).for_each(|(t, f)| *t = sign * from[f]);
             } else {
-                let start = run.from as usize;
-                taken.copy_from_slice(&from[start..start + run.length as usize]);
+                copy_short(&from[run.from as usize..][..taken.len()], taken);
             }
         }
     }

@@ -13,17 +13,35 @@ use super::{Nodal, ODD, Stepper, relaxation};
 use crate::patch::Patch;
 use crate::transfer::{Scheme, cut};
 
-/// A series sum_(l<order) t_l with t_l = K t_(l-1).
+/// A series s = sum_(l<order) t_l with t_l = K t_(l-1).
 #[derive(Clone, Copy)]
 struct Series {
-    /// The field that holds t_0 on the patch's own nodes, and in the end the last term.
-    term: usize,
-    /// The field of the sum.
+    /// The field of the sum; in the beginning t_0 on the patch's own nodes.
     sum: usize,
     order: u32,
+    way: Way,
     matrix: Matrix,
     mask: Mask,
     parity: Parity,
+}
+
+/// How a series is summed up.
+#[derive(Clone, Copy)]
+enum Way {
+    /// Term by term, the field in the end the last one: it is a result too.
+    Terms(usize),
+    /// By Horner's rule, s' = t_0 + K s, with t_0 kept in the field: one pass a term.
+    Horner(usize),
+}
+
+impl Series {
+    /// The field whose halo each round needs.
+    fn exchanged(&self) -> usize {
+        match self.way {
+            Way::Terms(term) => term,
+            Way::Horner(_) => self.sum,
+        }
+    }
 }
 
 /// The matrix in K.
@@ -43,8 +61,9 @@ enum Mask {
 
 /// Adds one field to another.
 fn accumulate(patch: &mut Patch<1>, sum: usize, term: usize) {
+    let span = patch.span.clone();
     let [sum, term] = patch.nodes.fields_mut([sum, term]);
-    for (sum, term) in sum.iter_mut().zip(term) {
+    for (sum, term) in sum[span.clone()].iter_mut().zip(&term[span]) {
         *sum += *term;
     }
 }
@@ -61,6 +80,9 @@ impl Stepper {
     /// node's volume is below the edge mask.
     fn mask(&self, patch: &mut Patch<1>, field: usize) {
         let Some(least) = self.edge_mask else { return };
+        if !patch.has_edge {
+            return;
+        }
         let [volume, values] = patch.nodes.fields_mut([self.fields.volume, field]);
         for (value, volume) in values.iter_mut().zip(volume) {
             if *volume < least {
@@ -69,23 +91,56 @@ impl Stepper {
         }
     }
 
-    /// The next term of a series on the nodes that the patch computes; beyond them it is what the
-    /// next exchange makes of it.
+    /// Notes whether a patch sees a node that the mask takes out: where none is, no field has to
+    /// be looked through. Nodes without material hold zeros anyway.
+    fn find_edge(&self, patch: &mut Patch<1>) {
+        let Some(least) = self.edge_mask else { return };
+        let [volume, inverse] = patch.nodes.fields_mut([self.fields.volume, self.fields.inverse]);
+        patch.has_edge = volume.iter().zip(inverse).any(|(v, i)| *v < least && *i > 0.0);
+    }
+
+    /// The next term of a series, or the sum with it, on the nodes that the patch computes;
+    /// beyond them it is what the next exchange makes of it.
     fn next_term(&self, patch: &mut Patch<1>, series: &Series) {
+        let field = series.exchanged();
         if series.mask == Mask::Before {
-            self.mask(patch, series.term);
+            self.mask(patch, field);
         }
         let (band, inverse) = match series.matrix {
             Matrix::Mass => (&patch.band, self.fields.inverse),
             Matrix::Compliance => (&patch.compliance_band, self.fields.relaxation[1]),
         };
-        let scratch = self.fields.scratch;
-        let [inverse, x, y] = patch.nodes.fields_mut([inverse, series.term, scratch]);
-        band.next_term(x, inverse, patch.active.clone(), y);
+        let (scratch, active) = (self.fields.scratch, patch.active.clone());
+        match series.way {
+            Way::Terms(term) => {
+                let [inverse, x, y] = patch.nodes.fields_mut([inverse, term, scratch]);
+                band.next_term(x, inverse, active, y);
+            }
+            Way::Horner(first) => {
+                let [inverse, x, first, y] =
+                    patch.nodes.fields_mut([inverse, series.sum, first, scratch]);
+                band.next_sum(x, inverse, first, active, y);
+            }
+        }
         // nodes without material hold zeros in both
-        patch.nodes.fields.swap(series.term, scratch);
+        patch.nodes.fields.swap(field, scratch);
         if series.mask == Mask::After {
-            self.mask(patch, series.term);
+            self.mask_product(patch, series);
+        }
+    }
+
+    /// Takes nodes with little material out of what a product has just made: of a sum by Horner's
+    /// rule t_0 stays.
+    fn mask_product(&self, patch: &mut Patch<1>, series: &Series) {
+        let (Some(least), Way::Horner(first)) = (self.edge_mask, series.way) else { return };
+        if !patch.has_edge {
+            return;
+        }
+        let [volume, sum, first] = patch.nodes.fields_mut([self.fields.volume, series.sum, first]);
+        for i in patch.active.clone() {
+            if volume[i] < least {
+                sum[i] = first[i];
+            }
         }
     }
 
@@ -104,13 +159,17 @@ impl Stepper {
             let going = || all.iter().filter(move |s| s.order > l);
             let mut fields: SmallVec<[(usize, Parity); 6]> = SmallVec::new();
             fields.extend(others.iter().copied().filter(|_| l == 0));
-            fields.extend(going().map(|s| (s.term, s.parity)));
+            fields.extend(going().map(|s| (s.exchanged(), s.parity)));
             nodal.refresh(&fields);
             nodal.each(name, |patch| {
+                if l == 0 && !others.is_empty() {
+                    self.find_edge(patch);
+                }
                 for series in going() {
-                    match l {
-                        0 => copy(patch, series.term, series.sum),
-                        _ => accumulate(patch, series.sum, series.term),
+                    match series.way {
+                        Way::Horner(_) => {}
+                        Way::Terms(term) if l == 0 => copy(patch, term, series.sum),
+                        Way::Terms(term) => accumulate(patch, series.sum, term),
                     }
                     if l + 1 < series.order {
                         self.next_term(patch, series);
@@ -127,31 +186,42 @@ impl Stepper {
     /// and t_l = K chi t_(l-1), or b = f/m where the scheme lumps the force.
     fn velocity_series(&self) -> [Series; 2] {
         let f = &self.fields;
-        let base = Series {
-            term: f.lumped,
+        let (order, force_order) = match self.scheme {
+            Scheme::Series { order, force } => (order, if force { order } else { 1 }),
+            Scheme::Blend(_) | Scheme::Affine => (1, 1),
+        };
+        let velocity = Series {
             sum: f.velocity,
-            order: 1,
+            order,
+            // the last term is what the filter's heat is counted from
+            way: match self.scheme {
+                Scheme::Series { .. } => Way::Terms(f.remainder),
+                Scheme::Blend(_) | Scheme::Affine => Way::Terms(f.lumped),
+            },
             matrix: Matrix::Mass,
             mask: Mask::No,
             parity: ODD,
         };
-        let lumped_force = Series { term: f.acceleration, sum: f.acceleration, ..base };
-        match self.scheme {
-            Scheme::Series { order, force } => {
-                let velocity = Series { term: f.remainder, order, ..base };
-                let full = Series { term: f.scratch2, order, mask: Mask::Before, ..lumped_force };
-                [velocity, if force { full } else { lumped_force }]
-            }
-            Scheme::Blend(_) | Scheme::Affine => [base, lumped_force],
-        }
+        let force = Series {
+            sum: f.acceleration,
+            order: force_order,
+            way: Way::Horner(f.scratch2),
+            mask: Mask::Before,
+            ..velocity
+        };
+        [velocity, force]
     }
 
     /// The first terms of the series of velocity and force, from lumped velocity and f/m.
     pub(super) fn start_series(&self, patch: &mut Patch<1>) {
         let f = &self.fields;
-        let [velocity, force] = self.velocity_series();
-        copy(patch, f.lumped, velocity.term);
-        copy(patch, f.acceleration, force.term);
+        for series in self.velocity_series() {
+            match series.way {
+                Way::Terms(term) => copy(patch, f.lumped, term),
+                Way::Horner(first) if series.order > 1 => copy(patch, series.sum, first),
+                Way::Horner(_) => {}
+            }
+        }
     }
 
     /// From the first terms of the series to velocity, acceleration and end-of-step velocity
@@ -164,9 +234,9 @@ impl Stepper {
         if relax {
             let [_, _, sum, term] = f.relaxation;
             all.push(Series {
-                term,
                 sum,
                 order: relaxation::ORDER,
+                way: Way::Terms(term),
                 matrix: Matrix::Compliance,
                 mask: Mask::No,
                 parity: Parity::Even,
@@ -176,8 +246,10 @@ impl Stepper {
         let others = if self.edge_mask.is_some() { &others[..] } else { &others[..1] };
         // pressure may have more terms than velocity
         self.sum_series(nodal, "series", others, &all, |patch| {
+            let span = patch.span.clone();
             let [v, b, star] =
                 patch.nodes.fields_mut([f.velocity, f.acceleration, f.velocity_star]);
+            let (v, b, star) = (&mut v[span.clone()], &b[span.clone()], &mut star[span]);
             for i in 0..v.len() {
                 v[i] = cut(v[i], self.still_speed);
                 star[i] = cut(v[i] + dt * b[i], self.still_speed);
@@ -194,17 +266,18 @@ impl Stepper {
         let f = &self.fields;
         match self.scheme {
             Scheme::Series { .. } => {
-                let [inverse, star, lumped, y, w] = patch.nodes.fields_mut([
+                let [inverse, star, lumped, w, first] = patch.nodes.fields_mut([
                     f.inverse,
                     f.velocity_star,
                     f.lumped,
-                    f.scratch,
+                    f.work,
                     f.scratch2,
                 ]);
-                patch.band.product(star, patch.active.clone(), y);
                 w.fill(0.0);
+                patch.band.product(star, patch.active.clone(), w);
                 for i in patch.active.clone() {
-                    w[i] = 0.5 * (lumped[i] + inverse[i] * y[i]);
+                    w[i] = 0.5 * (lumped[i] + inverse[i] * w[i]);
+                    first[i] = w[i];
                 }
             }
             Scheme::Blend(a) => {
@@ -231,20 +304,17 @@ impl Stepper {
     /// Series: w = sum_(l<k) (chi K)^l (vL + A v')/2 (l = 0 alone where the force is lumped);
     /// blend: w = a vL + A ((1 - a) vL + dt b/2); A = m^-1 M.
     pub(super) fn solve_work(&self, nodal: &mut Nodal<'_>) {
-        let f = &self.fields;
-        let base = Series {
-            term: f.work,
-            sum: f.work,
-            order: 1,
+        let order = match self.scheme {
+            Scheme::Series { order, force: true } => order,
+            _ => 1,
+        };
+        let series = Series {
+            sum: self.fields.work,
+            order,
+            way: Way::Horner(self.fields.scratch2),
             matrix: Matrix::Mass,
             mask: Mask::After,
             parity: ODD,
-        };
-        let series = match self.scheme {
-            Scheme::Series { order, force } => {
-                Series { term: f.scratch2, order: if force { order } else { 1 }, ..base }
-            }
-            Scheme::Blend(_) | Scheme::Affine => base,
         };
         self.sum_series(nodal, "work", &[], &[series], |_| {});
     }
