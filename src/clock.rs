@@ -152,24 +152,33 @@ impl Watcher {
     }
 }
 
-/// How much of a new measurement of a patch's cost counts.
-const SMOOTHING: f64 = 0.4;
+/// Measurements of which a patch's cost is the median: one that was disturbed counts for little.
+const MEASURED: usize = 9;
 
 /// The clock of a patch.
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
     /// Its events, while a timeline is kept.
     pub events: Vec<Event>,
-    /// Smoothed seconds a step; `None` until measured.
-    pub cost: Option<f64>,
     spent: f64,
+    /// Seconds of the steps measured last, the oldest overwritten first.
+    measured: [f64; MEASURED],
+    count: usize,
 }
 
 impl Watch {
-    /// Takes what the patch has spent in the step into its smoothed cost.
+    /// Ends a step that was measured.
     pub fn end_step(&mut self) {
-        let spent = std::mem::take(&mut self.spent);
-        self.cost = Some(self.cost.map_or(spent, |c| c + SMOOTHING * (spent - c)));
+        self.measured[self.count % MEASURED] = std::mem::take(&mut self.spent);
+        self.count += 1;
+    }
+
+    /// Seconds a step; `None` until measured.
+    pub fn cost(&self) -> Option<f64> {
+        let mut known = self.measured;
+        let known = &mut known[..self.count.min(MEASURED)];
+        known.sort_by(f64::total_cmp);
+        known.get(known.len() / 2).copied()
     }
 }
 
@@ -195,13 +204,22 @@ mod tests {
         assert_eq!((watch.events[0].name, watch.events[0].step), ("phase", 2));
         assert!(watch.events[0].length >= 2_000_000);
         watch.end_step();
-        assert!(watch.cost.unwrap() >= 2e-3 && watch.spent == 0.0);
+        assert!(watch.cost().unwrap() >= 2e-3 && watch.spent == 0.0);
     }
 
     #[test]
-    fn costs_are_smoothed() {
-        let mut watch = Watch { cost: Some(1.0), spent: 2.0, ..Watch::default() };
-        watch.end_step();
-        assert_eq!(watch.cost, Some(1.4));
+    fn a_cost_is_the_median_of_the_last_steps() {
+        let mut watch = Watch::default();
+        assert_eq!(watch.cost(), None);
+        for (spent, cost) in [(5.0, 5.0), (1.0, 5.0), (2.0, 2.0)] {
+            watch.spent = spent;
+            watch.end_step();
+            assert_eq!(watch.cost(), Some(cost));
+        }
+        for _ in 0..MEASURED {
+            watch.spent = 3.0;
+            watch.end_step();
+        }
+        assert_eq!(watch.cost(), Some(3.0));
     }
 }

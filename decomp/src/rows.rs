@@ -238,10 +238,12 @@ impl<const D: usize> RowExchange<D> {
                     if !route.halo.contains(at) {
                         continue;
                     }
-                    let own = *image == Image::IDENTITY && route.home.contains(at);
-                    if own && route.to == patch {
+                    // a row that stays needs no word; one that leaves may come back as a ghost
+                    let original = *image == Image::IDENTITY;
+                    if stays && original && route.to == patch {
                         continue;
                     }
+                    let own = original && route.home.contains(at);
                     owned |= own;
                     if own { movers.push(row as u32) } else { ghosts.push(row as u32) }
                 }

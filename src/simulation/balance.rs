@@ -73,7 +73,7 @@ impl<C: Comm> Simulation<'_, C> {
             let rows = patch.block.own() as i64;
             let computed = if patch.rest.asleep() { 0 } else { rows };
             // nanoseconds, so that a patch that was measured once has a cost
-            let measured = patch.watch.cost.map_or(computed, |c| (c * 1e9) as i64);
+            let measured = patch.watch.cost().map_or(computed, |c| (c * 1e9) as i64);
             told[index] = if by_time { measured } else { computed };
             told[count + index] = rows;
         }

@@ -212,6 +212,14 @@ fn count_particles(scene: &CheckedScene, layout: &Layout<1>) -> Vec<u64> {
     counts
 }
 
+/// Threads over patches, this one among them: it works instead of waiting for others to wake.
+/// A thread can belong to one such pool in its life, so that for a later run it stands beside.
+fn make_pool(threads: usize) -> rayon::ThreadPool {
+    let builder = || rayon::ThreadPoolBuilder::new().num_threads(threads);
+    let with_this = builder().use_current_thread().build();
+    with_this.or_else(|_| builder().build()).expect("the system gives threads")
+}
+
 impl Plan {
     fn new(
         scene: &CheckedScene,
@@ -271,12 +279,7 @@ impl<'a, C: Comm> Simulation<'a, C> {
             / scene.cell_size[0];
         let reach = stepper.reach(longest).expect("a longer particle is a fault");
         let workers = comm.size() * threads;
-        let pool = (threads > 1 && layout.patches().len() > 1).then(|| {
-            rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .expect("the system gives threads")
-        });
+        let pool = (threads > 1 && layout.patches().len() > 1).then(|| make_pool(threads));
         let patches = layout.patches_of(comm.rank()).into_iter().zip(blocks);
         let mut simulation = Simulation {
             comm,
