@@ -124,6 +124,8 @@ pub struct Patch<const D: usize> {
     pub departed: Vec<Departed>,
     /// Longest particle that ghosts and halos are deep enough for [cells].
     pub reach_length: f64,
+    /// A buffer of a value a row, kept from step to step.
+    pub kept: Vec<f64>,
     /// Whether it sleeps.
     pub rest: Rest,
     /// Its clock.
@@ -177,6 +179,7 @@ impl<const D: usize> Patch<D> {
             told: Told::default(),
             departed: Vec::new(),
             reach_length: f64::INFINITY,
+            kept: Vec::new(),
             rest: Rest::default(),
             watch: Watch::default(),
         }

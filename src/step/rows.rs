@@ -236,7 +236,9 @@ impl Stepper {
     /// Volume, viscosity, energy and pressure after `dt` at the divergence in its column.
     pub(super) fn update_stress(&self, patch: &mut Patch<1>, dt: f64) {
         let c = &self.columns;
-        let before = patch.block.columns[c.jacobian].clone();
+        let mut before = std::mem::take(&mut patch.kept);
+        before.clear();
+        before.extend_from_slice(&patch.block.columns[c.jacobian]);
         let [j, d] =
             patch.block.columns.get_disjoint_mut([c.jacobian, c.gradient]).expect("differ");
         for r in 0..before.len() {
@@ -259,6 +261,7 @@ impl Stepper {
         }
         patch.block.columns[c.pressure] = pressure;
         patch.block.columns[c.energy] = energy;
+        patch.kept = before;
     }
 
     /// Pressure, sound speed, and what the patch tells: time step, longest particle, faults.

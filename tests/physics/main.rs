@@ -10,6 +10,7 @@ mod hard;
 mod invariance;
 mod options;
 mod schemes;
+mod sharing;
 mod sides;
 mod times;
 mod tools;

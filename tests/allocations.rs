@@ -1,0 +1,55 @@
+//! A step in the steady state asks the system for no memory: buffers are kept.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use decomp::Serial;
+use flyer_mpm::scene;
+use flyer_mpm::simulation::Simulation;
+use serde_json::{Value, json};
+
+/// Counts what is asked for.
+struct Counting;
+
+static ASKED: AtomicU64 = AtomicU64::new(0);
+
+// SAFETY: every call is handed to the system's allocator as it is.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ASKED.fetch_add(1, Ordering::Relaxed);
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        ASKED.fetch_add(1, Ordering::Relaxed);
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Memory asked for in `steps` steps of a scene after as many to warm up.
+fn asked(value: &Value, steps: usize) -> u64 {
+    let checked = scene::parse(value.to_string().as_bytes(), "test.json", &[]).unwrap();
+    let mut simulation = Simulation::new(&checked, &Serial, 1).unwrap();
+    let end = checked.scene.time.end;
+    (0..steps).for_each(|_| simulation.advance(end).unwrap());
+    let before = ASKED.load(Ordering::Relaxed);
+    (0..steps).for_each(|_| simulation.advance(end).unwrap());
+    ASKED.load(Ordering::Relaxed) - before
+}
+
+#[test]
+fn steps_ask_for_no_memory() {
+    for name in ["flyer.json", "flyer_uintah.json"] {
+        let path = format!("{}/inputs/{name}", env!("CARGO_MANIFEST_DIR"));
+        let mut value: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
+        value["domain"]["patches"] = json!([7]);
+        assert_eq!(asked(&value, 300), 0, "{name}: in 300 steps");
+    }
+}
