@@ -86,8 +86,8 @@ fn long(table: &mut Table) {
             "domain.patches=[10]",
             "reference=null",
             "output.histories=null",
-            "time.end=300",
-            "output.profiles.times=[300]",
+            "time.end=480",
+            "output.profiles.times=[480]",
             r#"decomposition.balance={"every":20,"cost":"particles"}"#,
         ];
         let job = sets.into_iter().fold(Job::new("sod"), Job::set).ranks(ranks).watched();
