@@ -9,7 +9,4 @@ cd "$root"
 
 scripts/setup.sh
 cargo build --release --quiet --bin flyer-mpm --example check_flyer
-if [ "$(cores)" -lt 4 ]; then
-    export OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_mpi_yield_when_idle=1
-fi
 exec "${CARGO_TARGET_DIR:-target}/release/examples/check_flyer" "$@"

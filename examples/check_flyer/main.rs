@@ -4,8 +4,12 @@
 //! fewer layouts; names of sections to run them alone. Exit code 1 where a bound is missed.
 
 mod impacts;
+#[path = "../common/resident.rs"]
+mod resident;
+#[path = "../common/runs.rs"]
 mod runs;
 mod same_bits;
+#[path = "../common/table.rs"]
 mod table;
 
 use std::process::ExitCode;

@@ -33,8 +33,8 @@ impl<C: Comm> Simulation<'_, C> {
         every > 0 && self.comm.size() > 1 && self.layout.patches().len() > 1
     }
 
-    /// Moves patches if a step asks for it and what is gained until the next look exceeds what
-    /// moving costs. Collective.
+    /// Moves patches if a step asks for it and what was lost by not moving exceeds what moving
+    /// costs: however often it looks, it never loses more than twice what it must. Collective.
     pub(super) fn balance(&mut self) {
         let every = self.scene.scene.decomposition.balance.every;
         if !self.may_balance() || !self.step.is_multiple_of(every) {
@@ -53,12 +53,15 @@ impl<C: Comm> Simulation<'_, C> {
             .sum();
         let mean = costs.iter().sum::<u64>() as f64 / rows.iter().sum::<u64>().max(1) as f64;
         let gain = (now - then.min(now)) as f64;
-        let pays = gain * every as f64 > (MOVE_COST * moved) as f64 * mean;
+        let worth = gain > WORTH * now as f64;
+        self.forgone += if worth { gain * every as f64 } else { 0.0 };
+        let pays = self.forgone > (MOVE_COST * moved) as f64 * mean;
         let waited = self.comm.traffic().waited - waited;
         self.clock.event("balance", start);
         self.clock.add(Activity::Wait, waited);
         self.clock.add_since(Activity::Balance, start, waited);
-        if pays && gain > WORTH * now as f64 {
+        if worth && pays {
+            self.forgone = 0.0;
             self.move_patches(wanted);
         }
     }

@@ -114,6 +114,9 @@ pub struct Simulation<'a, C: Comm> {
     /// Steps of which a timeline is kept.
     traced: Range<u64>,
     tally: Tally,
+    /// What a better share of the patches would have gained since they last moved, alike on all
+    /// ranks [cost].
+    forgone: f64,
     /// All particles at the start.
     census: Census,
     outflow: Outflow,
@@ -298,6 +301,7 @@ impl<'a, C: Comm> Simulation<'a, C> {
             given_events: Vec::new(),
             traced: 0..0,
             tally: Tally::default(),
+            forgone: 0.0,
             census: Census::default(),
             grid_velocity,
             time: 0.0,

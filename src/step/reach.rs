@@ -32,7 +32,20 @@ impl Reach {
     /// Depth of the nodal arrays for ghosts from `ghosts` cells away, so that neither a ghost's
     /// stencil nor a product with the mass matrix ever leaves them.
     pub fn depth(&self, ghosts: i64) -> i64 {
-        ghosts + self.cells() - 1 + MOST_NODES.min(self.nodes.max(4)) as i64
+        let stencils = ghosts + self.cells() - 1 + self.nodes.max(4) as i64;
+        // at an open side the nodes that are computed end with the padded stencil of a particle
+        // in the last cell, and a product looks as far again
+        stencils.max(2 * self.padded_nodes() as i64 - 3)
+    }
+
+    /// Nodes that the stencil of the longest particle has room for, as `with_shape!` rounds them.
+    fn padded_nodes(&self) -> usize {
+        match self.nodes {
+            0..=4 => self.nodes,
+            5..=6 => 6,
+            7..=10 => 10,
+            _ => MOST_NODES,
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use crate::scenes::{small, small_leapfrog, small_midpoint};
 use crate::tools::{SHAPES, checked, ending, run_scene, shipped, transfers, with};
 
 const LAYOUTS: [(usize, usize); 4] = [(5, 1), (16, 2), (1, 2), (5, 2)];
@@ -55,38 +56,11 @@ fn same(value: &Value, what: &str) {
     }
 }
 
-/// A plate of 12 cells on 70 cells of target: within 0.05 us all waves are out.
-fn small(name: &str) -> Value {
-    let mut value = shipped(name);
-    value["domain"]["lower"] = json!([-0.0002]);
-    value["domain"]["upper"] = json!([0.001]);
-    value["bodies"][0]["box"]["lower"] = json!([-0.00012]);
-    value["bodies"][1]["box"]["upper"] = json!([0.0007]);
-    ending(&mut value, 5e-8);
-    value
-}
-
-/// `small` with mid-point steps and all that this transfer allows.
-fn small_midpoint(shape: &str, transfer: &Value) -> Value {
-    let mut value = small("flyer.json");
-    let (fmpm, plain) = (transfer.get("fmpm").is_some(), transfer == "apic");
-    value["method"]["shape"] = json!(shape);
-    value["method"]["transfer"] = transfer.clone();
-    value["method"]["filter_heat"] = json!(!plain && transfer != "flip");
-    value["method"]["energy"] = json!(if plain { "textbook" } else { "compatible" });
-    if !fmpm {
-        value["method"].as_object_mut().unwrap().remove("edge_mask");
-    }
-    value
-}
-
 #[test]
 fn each_shape_and_transfer_in_leapfrog() {
     for shape in SHAPES {
         for transfer in transfers() {
-            let method = json!({"shape": shape, "transfer": transfer});
-            let value = with(&small("flyer_uintah.json"), &json!({"method": method}));
-            same(&value, &format!("{shape} {transfer}"));
+            same(&small_leapfrog(shape, &transfer), &format!("{shape} {transfer}"));
         }
     }
 }

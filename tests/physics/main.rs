@@ -9,6 +9,8 @@ mod conservation;
 mod hard;
 mod invariance;
 mod options;
+#[path = "../common/scenes.rs"]
+mod scenes;
 mod schemes;
 mod sharing;
 mod sides;

@@ -11,9 +11,7 @@ use flyer_mpm::simulation::Left;
 use flyer_mpm::simulation::{Simulation, Totals};
 use serde_json::{Value, json};
 
-/// Shape functions, all of them.
-pub const SHAPES: [&str; 6] =
-    ["linear", "gimp", "cpdi", "bspline_quadratic", "bspline_cubic", "cpdi_bspline_quadratic"];
+pub use crate::scenes::{SHAPES, ending, shipped, with};
 
 /// Transfers, one or two of each kind.
 pub fn transfers() -> [Value; 8] {
@@ -39,43 +37,6 @@ pub fn inputs() -> Vec<PathBuf> {
     files
 }
 
-/// A shipped scene, to be edited; without histories.
-pub fn shipped(name: &str) -> Value {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs").join(name);
-    let mut value: Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
-    value["output"].as_object_mut().unwrap().remove("histories");
-    value
-}
-
-/// Puts `edit` into `value`: objects key by key, anything else as a whole; null takes a key out.
-/// A choice that is an object of one key, such as a transfer, is replaced as a whole.
-pub fn merge(value: &mut Value, edit: &Value) {
-    let Value::Object(edits) = edit else {
-        *value = edit.clone();
-        return;
-    };
-    if !value.is_object() {
-        *value = json!({});
-    }
-    let object = value.as_object_mut().unwrap();
-    for (key, edit) in edits {
-        if edit.is_null() {
-            object.remove(key);
-        } else if matches!(key.as_str(), "transfer" | "x_lower" | "x_upper" | "reference") {
-            object.insert(key.clone(), edit.clone());
-        } else {
-            merge(object.entry(key).or_insert(Value::Null), edit);
-        }
-    }
-}
-
-/// `value` with an edit.
-pub fn with(value: &Value, edit: &Value) -> Value {
-    let mut value = value.clone();
-    merge(&mut value, edit);
-    value
-}
-
 /// The standard problem or one like it, cut short: a target of 2 mm, ending after `end` [s].
 /// Nothing that happens to the waves until 0.3 us is changed by that.
 pub fn short(name: &str, end: f64) -> Value {
@@ -85,12 +46,6 @@ pub fn short(name: &str, end: f64) -> Value {
     value["bodies"][1]["box"]["upper"] = json!([0.0026]);
     ending(&mut value, end);
     value
-}
-
-/// Sets the end of a scene [s], with its one profile there.
-pub fn ending(value: &mut Value, end: f64) {
-    value["time"]["end"] = json!(end);
-    value["output"]["profiles"]["times"] = json!([end]);
 }
 
 /// A scene that must pass its check.

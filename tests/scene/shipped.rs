@@ -6,14 +6,18 @@ use serde_json::{Value, json};
 use super::{inputs, refused, shipped, tells, with};
 
 #[test]
-fn shipped_scenes_pass_without_a_warning() {
-    assert!(inputs().len() >= 7);
+fn shipped_scenes_pass() {
+    // made for layouts: without an exact solution, and their bodies start apart
+    const FOR_LAYOUTS: [&str; 2] = ["crossing.json", "quarter.json"];
+    assert!(inputs().len() >= 9);
     for path in inputs() {
         let name = path.file_name().unwrap().to_str().unwrap();
         let checked = with(name, &[]).unwrap();
-        assert_eq!(checked.warnings, [""; 0], "{name}");
+        let apart = checked.warnings.iter().filter(|w| w.contains("without contact")).count();
+        let expected = if name == "crossing.json" { 2 } else { 0 };
+        assert_eq!((apart, checked.warnings.len()), (expected, expected), "{:?}", checked.warnings);
         assert!(checked.scene.description.len() > 100, "{name} names its sources");
-        assert!(checked.scene.reference.is_some(), "{name}");
+        assert_eq!(checked.scene.reference.is_none(), FOR_LAYOUTS.contains(&name), "{name}");
     }
 }
 

@@ -4,6 +4,7 @@ use std::fmt::Display;
 
 /// How a figure is shown.
 #[derive(Clone, Copy)]
+#[allow(dead_code)] // each check has its own figures
 pub enum Show {
     /// A fraction in per cent.
     Percent,
@@ -13,6 +14,10 @@ pub enum Show {
     Tiny,
     /// Millions.
     Millions,
+    /// Seconds.
+    Seconds,
+    /// Bytes, in GiB.
+    Gib,
 }
 
 /// Counts the figures and those out of bounds.
@@ -85,5 +90,7 @@ fn shown(value: Option<f64>, show: Show) -> String {
         Show::Number => format!("{value:.4}"),
         Show::Tiny => format!("{value:.1e}"),
         Show::Millions => format!("{:.2} M", value * 1e-6),
+        Show::Seconds => format!("{value:.3} s"),
+        Show::Gib => format!("{:.3} GiB", value / 1073741824.0),
     }
 }

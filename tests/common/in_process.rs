@@ -1,0 +1,51 @@
+//! Runs on any layout within this process: ranks are threads, nothing is written.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use decomp::comm::local::run_ranks;
+use flyer_mpm::scene::{self, CheckedScene};
+use flyer_mpm::simulation::{RunError, Simulation};
+use serde_json::Value;
+
+use super::layouts::Layout;
+use super::scenes::with;
+
+/// What may not depend on the layout: digest of the last state, number of steps, and the sums that
+/// a run prints; or the message that it ends with.
+pub type End = Result<String, String>;
+
+/// The end of a scene on a layout. A scene that is refused is refused by all layouts.
+pub fn end_of(scene: &Value, layout: &Layout) -> End {
+    let scene = with(scene, &layout.keys());
+    let scene = scene::parse(scene.to_string().as_bytes(), "scene.json", &[])
+        .map_err(|error| error.to_string())?;
+    let ranks = || run_ranks(layout.ranks, |comm| run(&scene, comm, layout.threads));
+    let ends = catch_unwind(AssertUnwindSafe(ranks)).map_err(|fault| {
+        let text = fault.downcast_ref::<String>().map(String::as_str);
+        format!("panicked: {}", text.or(fault.downcast_ref().copied()).unwrap_or("?"))
+    })?;
+    let failed = ends.iter().filter(|end| end.is_err()).count();
+    assert!(failed == 0 || failed == ends.len(), "all ranks end alike: {ends:?}");
+    ends.into_iter().next().expect("rank 0").map_err(|error| error.to_string())
+}
+
+/// A rank's part; rank 0 tells of the end. Collective.
+fn run<C: decomp::Comm>(
+    scene: &CheckedScene,
+    comm: &C,
+    threads: usize,
+) -> Result<String, RunError> {
+    // a fault that one rank alone knows of ends all, as it ends the program
+    let alone = |error| match error {
+        RunError::Row(error) => panic!("{error}"),
+        error => error,
+    };
+    let mut simulation = Simulation::new(scene, comm, threads).map_err(alone)?;
+    let end = scene.scene.time.end;
+    while simulation.time() < end {
+        simulation.advance(end).map_err(alone)?;
+    }
+    let (totals, left, steps) = (simulation.totals(), simulation.left(), simulation.steps());
+    let digest = simulation.gather().map(|(_, digest)| digest);
+    Ok(format!("{}, {steps} steps, {totals:?}, {left:?}", digest.unwrap_or_default()))
+}

@@ -1,0 +1,83 @@
+//! Scenes to edit: shipped ones, cut small, with every scheme.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+/// Shape functions, all of them.
+pub const SHAPES: [&str; 6] =
+    ["linear", "gimp", "cpdi", "bspline_quadratic", "bspline_cubic", "cpdi_bspline_quadratic"];
+
+/// A shipped scene, to be edited; without histories.
+pub fn shipped(name: &str) -> Value {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs").join(name);
+    let mut value: Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
+    value["output"].as_object_mut().unwrap().remove("histories");
+    value
+}
+
+/// Puts `edit` into `value`: objects key by key, anything else as a whole; null takes a key out.
+/// A choice that is an object of one key, such as a transfer, is replaced as a whole.
+pub fn merge(value: &mut Value, edit: &Value) {
+    let Value::Object(edits) = edit else {
+        *value = edit.clone();
+        return;
+    };
+    if !value.is_object() {
+        *value = json!({});
+    }
+    let object = value.as_object_mut().unwrap();
+    for (key, edit) in edits {
+        if edit.is_null() {
+            object.remove(key);
+        } else if matches!(key.as_str(), "transfer" | "x_lower" | "x_upper" | "reference") {
+            object.insert(key.clone(), edit.clone());
+        } else {
+            merge(object.entry(key).or_insert(Value::Null), edit);
+        }
+    }
+}
+
+/// `value` with an edit.
+pub fn with(value: &Value, edit: &Value) -> Value {
+    let mut value = value.clone();
+    merge(&mut value, edit);
+    value
+}
+
+/// Sets the end of a scene [s], with its one profile there.
+pub fn ending(value: &mut Value, end: f64) {
+    value["time"]["end"] = json!(end);
+    value["output"]["profiles"]["times"] = json!([end]);
+}
+
+/// A plate of 12 cells on 70 cells of target: within 0.05 us all waves are out.
+pub fn small(name: &str) -> Value {
+    let mut value = shipped(name);
+    value["domain"]["lower"] = json!([-0.0002]);
+    value["domain"]["upper"] = json!([0.001]);
+    value["bodies"][0]["box"]["lower"] = json!([-0.00012]);
+    value["bodies"][1]["box"]["upper"] = json!([0.0007]);
+    ending(&mut value, 5e-8);
+    value
+}
+
+/// `small` with mid-point steps and all that this transfer allows.
+pub fn small_midpoint(shape: &str, transfer: &Value) -> Value {
+    let mut value = small("flyer.json");
+    let (fmpm, plain) = (transfer.get("fmpm").is_some(), transfer == "apic");
+    value["method"]["shape"] = json!(shape);
+    value["method"]["transfer"] = transfer.clone();
+    value["method"]["filter_heat"] = json!(!plain && transfer != "flip");
+    value["method"]["energy"] = json!(if plain { "textbook" } else { "compatible" });
+    if !fmpm {
+        value["method"].as_object_mut().unwrap().remove("edge_mask");
+    }
+    value
+}
+
+/// `small` with leapfrog steps.
+pub fn small_leapfrog(shape: &str, transfer: &Value) -> Value {
+    let method = json!({"shape": shape, "transfer": transfer});
+    with(&small("flyer_uintah.json"), &json!({"method": method}))
+}

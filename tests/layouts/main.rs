@@ -1,0 +1,16 @@
+//! Any layout, the same bits: ranks x patches x threads x balance x skipping x overlap x filter.
+//!
+//! Runs are made in process; ranks are threads. `scripts/check_decomposition.sh` does the same by
+//! mpirun, files and printed lines included.
+
+#[path = "../common/covering.rs"]
+mod covering;
+mod found;
+#[path = "../common/in_process.rs"]
+mod in_process;
+#[path = "../common/layouts.rs"]
+mod layouts;
+mod random;
+#[path = "../common/scenes.rs"]
+mod scenes;
+mod schemes;

@@ -1,0 +1,51 @@
+//! Every shape with every transfer, over layouts in which every pair of choices occurs.
+
+use serde_json::{Value, json};
+
+use crate::in_process::end_of;
+use crate::layouts::Layout;
+use crate::scenes::{SHAPES, ending, shipped, small_leapfrog, small_midpoint};
+
+/// Transfers, one of each kind.
+fn transfers() -> [Value; 6] {
+    let [xpic, fmpm] = [json!({"xpic": 3}), json!({"fmpm": 4})];
+    [json!("flip"), json!("pic"), json!("apic"), json!({"flip_pic": 0.9}), xpic, fmpm]
+}
+
+/// Each layout of the covering leaves what one patch of one rank leaves.
+#[track_caller]
+fn same(scene: &Value, what: &str) {
+    let whole = end_of(scene, &Layout::WHOLE);
+    assert!(whole.is_ok(), "{what}: {whole:?}");
+    for layout in Layout::covering() {
+        assert_eq!(end_of(scene, &layout), whole, "{what}: {layout}");
+    }
+}
+
+/// Each scheme meets all layouts of the covering.
+fn every_scheme(scene: impl Fn(&str, &Value) -> Value) {
+    for shape in SHAPES {
+        for transfer in transfers() {
+            let mut scene = scene(shape, &transfer);
+            ending(&mut scene, 3e-8);
+            same(&scene, &format!("{shape} {transfer}"));
+        }
+    }
+}
+
+#[test]
+fn each_scheme_in_leapfrog() {
+    every_scheme(small_leapfrog);
+}
+
+#[test]
+fn each_scheme_at_the_midpoint() {
+    every_scheme(small_midpoint);
+}
+
+#[test]
+fn bodies_that_cross_many_patches() {
+    let mut scene = shipped("crossing.json");
+    ending(&mut scene, 1.2e-7);
+    same(&scene, "crossing");
+}
