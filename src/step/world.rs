@@ -157,7 +157,7 @@ impl Ranks<'_> {
         rows: &mut RowExchange<1>,
         inner: &[bool],
         pool: Option<&rayon::ThreadPool>,
-        settle: &(dyn Fn(&mut Patch<1>) + Sync),
+        settle: Settle<'_>,
         phase: &(impl Fn(&mut Patch<1>) + Send + Sync),
     ) -> Result<(), RowError> {
         let mut result = Ok(());
@@ -226,13 +226,16 @@ pub struct Nodal<'a> {
     pending: Option<smallvec::SmallVec<[(usize, Parity); 6]>>,
 }
 
+/// Lets a patch sleep or wakes it, once its rows are there.
+type Settle<'a> = &'a (dyn Fn(&mut Patch<1>) + Sync);
+
 enum Halo<'a> {
     Exchange {
         ranks: Ranks<'a>,
         inner_rows: &'a [bool],
         inner_nodes: &'a [bool],
         /// The rows to be exchanged before the first phase.
-        rows: Option<(&'a mut RowExchange<1>, &'a (dyn Fn(&mut Patch<1>) + Sync))>,
+        rows: Option<(&'a mut RowExchange<1>, Settle<'a>)>,
         plan: &'a mut NodeExchange<1>,
         failed: Option<RowError>,
     },
