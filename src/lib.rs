@@ -17,5 +17,6 @@ pub mod scene;
 pub mod shape;
 pub mod simulation;
 pub mod step;
+pub mod threads;
 pub mod transfer;
 pub mod viscosity;

@@ -23,6 +23,7 @@ use crate::particles::{self, Columns};
 use crate::patch::Patch;
 use crate::scene::{CheckedScene, FilterHalo, Side};
 use crate::step::{Reach, Sleep, Stepper, World};
+use crate::threads::make_pool;
 
 use books::{CENSUS_EVERY, Outflow};
 
@@ -213,14 +214,6 @@ fn count_particles(scene: &CheckedScene, layout: &Layout<1>) -> Vec<u64> {
         }
     }
     counts
-}
-
-/// Threads over patches, this one among them: it works instead of waiting for others to wake.
-/// A thread can belong to one such pool in its life, so that for a later run it stands beside.
-fn make_pool(threads: usize) -> rayon::ThreadPool {
-    let builder = || rayon::ThreadPoolBuilder::new().num_threads(threads);
-    let with_this = builder().use_current_thread().build();
-    with_this.or_else(|_| builder().build()).expect("the system gives threads")
 }
 
 impl Plan {
