@@ -20,7 +20,7 @@ use crate::patch::Patch;
 use crate::transfer::{add, cut, dot, window};
 
 /// Terms of the projection's series.
-pub(super) const ORDER: u32 = 4;
+pub const ORDER: u32 = 4;
 
 impl Stepper {
     /// Nodal pressure and the last term of its series, halos included. Collective between
