@@ -8,7 +8,7 @@ use crate::model::Network;
 use crate::model::fit::{Sample, dot, fit};
 
 /// Lengths of the messages \[words of 8 bytes\].
-const WORDS: [usize; 6] = [1, 16, 64, 256, 1024, 8192];
+const WORDS: [usize; 6] = [1, 16, 64, 256, 1024, 2048];
 
 /// Exchanges of a batch, and batches of a length.
 const BATCH: usize = 20;

@@ -22,7 +22,7 @@ pub const SECONDS: f64 = 16.0;
 /// Shares of that: steps on one thread, on two, on all cores at once.
 const SHARES: [f64; 3] = [0.6, 0.2, 0.1];
 
-/// Sizes of caches that are tried \[B\]: the one with which the fit is best is taken.
+/// Sizes of caches that are tried \[B\]: the two with which the fit is best are taken.
 const CACHES: [f64; 9] = [0.25e6, 0.5e6, 1e6, 2e6, 4e6, 8e6, 16e6, 32e6, 64e6];
 
 /// Why there are no constants.
@@ -89,7 +89,7 @@ fn compute(scene: &CheckedScene, seconds: f64) -> Result<(Machine, Vec<Residual>
         return Err(CalibrateError::NothingRuns(scene.file.clone()));
     }
     let (coefficients, compute_quality) = best_cache(&alone);
-    let busy = samples::busy(&variants, cores.min(64), SHARES[2] * seconds, coefficients.cache);
+    let busy = samples::busy(&variants, cores.min(64), SHARES[2] * seconds, coefficients.cache[0]);
     let mut machine = Machine {
         format: crate::model::FORMAT,
         processor: processor(),
@@ -146,7 +146,8 @@ fn take(variants: &[Variant], seconds: f64) -> Vec<Measured<'_>> {
 
 /// The coefficients with that size of the cache with which whole steps are met best.
 fn best_cache(samples: &[Measured]) -> (Coefficients, Quality) {
-    let tried = CACHES.map(|cache| {
+    let pairs = CACHES.iter().flat_map(|&rows| CACHES.map(|patches| [rows, patches]));
+    let tried = pairs.map(|cache| {
         let compute: Fit<{ COMPUTE.len() }> = fit(&samples
             .iter()
             .map(|m| Sample { features: m.work(cache).compute, value: m.compute, whole: m.total })
@@ -165,7 +166,7 @@ fn best_cache(samples: &[Measured]) -> (Coefficients, Quality) {
             Quality { samples: samples.len(), rms: compute.rms, largest: compute.largest };
         (coefficients, quality)
     });
-    tried.into_iter().min_by(|a, b| a.1.rms.total_cmp(&b.1.rms)).expect("some sizes are tried")
+    tried.min_by(|a, b| a.1.rms.total_cmp(&b.1.rms)).expect("some sizes are tried")
 }
 
 /// What a step on several threads took beyond its computing, by how often threads part.

@@ -50,7 +50,7 @@ pub struct Measured<'a> {
 
 impl Measured<'_> {
     /// What its one rank does.
-    pub fn work(&self, cache: f64) -> RankWork {
+    pub fn work(&self, cache: [f64; 2]) -> RankWork {
         self.variant.work.rank_works(&self.share, cache)[0]
     }
 

@@ -10,8 +10,8 @@ use super::schedule::method_name;
 use crate::scene::CheckedScene;
 
 /// What computing is counted by, a step: own rows, those of them that do not stay in cache, ghost
-/// rows, nodes, patches.
-pub const COMPUTE: [&str; 5] = ["row", "cold row", "ghost row", "node", "patch"];
+/// rows, nodes, patches, those of them whose arrays do not stay in a nearer cache.
+pub const COMPUTE: [&str; 6] = ["row", "cold row", "ghost row", "node", "patch", "cold patch"];
 
 /// What packing, copying and unpacking is counted by, a step: rows looked at, ghost rows, halo
 /// nodes times fields, patches times exchanges, exchanges, and the step itself.
@@ -26,8 +26,9 @@ pub struct Coefficients {
     pub compute: [f64; COMPUTE.len()],
     /// Between them, in the order of [`SERIAL`] \[s\].
     pub serial: [f64; SERIAL.len()],
-    /// What one worker keeps near \[B\].
-    pub cache: f64,
+    /// What one worker keeps near: beyond the first its rows are cold, beyond the second its
+    /// patches \[B\].
+    pub cache: [f64; 2],
 }
 
 /// How much slower a core is while others are busy.
@@ -184,7 +185,8 @@ impl Machine {
         }
         let c = &self.coefficients;
         let numbers = c.compute.iter().chain(&c.serial).chain([
-            &c.cache,
+            &c.cache[0],
+            &c.cache[1],
             &self.busy.warm,
             &self.busy.cold,
             &self.fork_join,
@@ -254,9 +256,9 @@ pub(crate) mod tests {
             cores: 2,
             scheme: Scheme::of(&flyer(&[])),
             coefficients: Coefficients {
-                compute: [70e-9, 30e-9, 35e-9, 60e-9, 700e-9],
+                compute: [70e-9, 30e-9, 35e-9, 60e-9, 700e-9, 1e-6],
                 serial: [2e-9, 40e-9, 2e-9, 10e-9, 150e-9, 1e-6],
-                cache: 16e6,
+                cache: [16e6, 4e6],
             },
             busy: Busy { cores: 2, warm: 1.1, cold: 1.5 },
             fork_join: 3e-6,
@@ -294,7 +296,7 @@ pub(crate) mod tests {
     #[test]
     fn constants_belong_to_a_method() {
         let (machine, file) = (machine(), Path::new("m.json"));
-        machine.fits(&flyer(&["domain.cell_size=5e-6", "time.end=1e-7"]), file).unwrap();
+        machine.fits(&flyer(&["domain.cell_size=5e-6", "time.end=2e-6"]), file).unwrap();
         for set in ["method.shape=cpdi", "artificial_viscosity.limiter=null"] {
             let error = machine.fits(&flyer(&[set]), file).unwrap_err().to_string();
             assert!(error.contains("m.json: calibrated for `cpdi_bspline_quadratic, fmpm 6"));

@@ -168,13 +168,14 @@ impl Work {
         Share { ranks, threads, halo, patches: all, starts }
     }
 
-    /// What each rank that has patches does in a step; `cache` is what stays near a core \[B\].
-    pub fn rank_works(&self, share: &Share, cache: f64) -> Vec<RankWork> {
+    /// What each rank that has patches does in a step; `cache` is what stays near a
+    /// core, of rows and of patches \[B\].
+    pub fn rank_works(&self, share: &Share, cache: [f64; 2]) -> Vec<RankWork> {
         let count = share.starts.len() - 1;
         (0..count).map(|r| self.rank_work(share, r, cache)).collect()
     }
 
-    fn rank_work(&self, share: &Share, r: usize, cache: f64) -> RankWork {
+    fn rank_work(&self, share: &Share, r: usize, cache: [f64; 2]) -> RankWork {
         let mine = &share.patches[share.starts[r]..share.starts[r + 1]];
         let (first, last) = (mine[0].lower, mine[mine.len() - 1].upper);
         let (depth, schedule) = (self.depth(share.halo), &self.schedule);
@@ -197,8 +198,9 @@ impl Work {
         let ghosts: f64 = mine.iter().map(|p| p.ghosts).sum();
         // all rows are swept once a step at least, by each thread its part
         let threads = share.threads.min(mine.len()) as f64;
-        let cold = cold_share((rows + ghosts) / threads * self.row_bytes, cache);
-        let features = |p: &PatchWork| [p.rows, cold * p.rows, p.ghosts, p.nodes, 1.0];
+        let swept = (rows + ghosts) / threads * self.row_bytes;
+        let [cold, cold_patch] = cache.map(|cache| cold_share(swept, cache));
+        let features = |p: &PatchWork| [p.rows, cold * p.rows, p.ghosts, p.nodes, 1.0, cold_patch];
         let is_inner = |p: &PatchWork| foreign(p, seen) == [0.0; 2];
         let inner: Vec<_> = mine.iter().filter(|p| is_inner(p)).map(features).collect();
         let border: Vec<_> = mine.iter().filter(|p| !is_inner(p)).map(features).collect();
@@ -279,7 +281,8 @@ fn busiest<const N: usize>(patches: &[[f64; N]], threads: usize) -> [f64; N] {
     if threads <= 1 {
         return patches.iter().fold([0.0; N], |a, b| sum(&a, b));
     }
-    let load = |p: &[f64; N]| p[0] + p[N - 1];
+    // rows and ghosts, whatever they cost
+    let load = |p: &[f64; N]| p[0] + p[2];
     let mut sorted: Vec<&[f64; N]> = patches.iter().collect();
     sorted.sort_by(|a, b| load(b).total_cmp(&load(a)));
     let mut loads = vec![[0.0; N]; threads.min(patches.len().max(1))];

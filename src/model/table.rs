@@ -218,7 +218,8 @@ pub fn machine_table(machine: &Machine) -> String {
     }
     let mut text = format!("{}, {} cores\n", machine.processor, machine.cores);
     text += &aligned(&lines);
-    let _ = writeln!(text, "cache of a worker: {:.2} MB", c.cache * 1e-6);
+    let [rows, patches] = c.cache.map(|bytes| bytes * 1e-6);
+    let _ = writeln!(text, "cold beyond {rows:.2} MB of rows, patches beyond {patches:.2} MB");
     let busy = &machine.busy;
     let _ = writeln!(
         text,
@@ -243,6 +244,9 @@ pub fn machine_table(machine: &Machine) -> String {
 
 /// Three digits or more.
 pub(super) fn number(value: f64) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
     let digits = 2 - value.abs().max(1e-9).log10().floor().clamp(-6.0, 2.0) as i32;
     format!("{value:.*}", digits.max(0) as usize)
 }
@@ -282,7 +286,7 @@ mod tests {
     fn numbers_have_three_digits() {
         assert_eq!(
             [171.23, 1.2345, 0.012345, 12345.0, 0.0].map(number),
-            ["171", "1.23", "0.0123", "12345", "0.00000000000"]
+            ["171", "1.23", "0.0123", "12345", "0"]
         );
     }
 }

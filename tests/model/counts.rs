@@ -105,7 +105,7 @@ fn messages_and_bytes_are_those_that_are_sent() {
                 let work = Work::new(&scene);
                 let share = work.share(patches, 2, 1, halo);
                 let (mut messages, mut bytes) = (0.0, 0.0);
-                for rank in work.rank_works(&share, 1e6) {
+                for rank in work.rank_works(&share, [1e6; 2]) {
                     let s = &work.schedule;
                     let nodes = s.exchanges(halo) - s.row_exchanges;
                     messages += s.row_exchanges * rank.neighbours[0] + nodes * rank.neighbours[1];
