@@ -65,7 +65,8 @@ pub fn predict_with(
         let calls: f64 = (0..2).filter(|&x| rank.neighbours[x] > 0.0).map(|x| exchanges[x]).sum();
         let packing =
             slowing * dot(&rank.serial, &c.serial) + sent * network.overhead + calls * network.call;
-        let flight = flight(network, rank, exchanges, slowing * dot(&rank.inner, &c.compute));
+        let inner = if work.overlap { slowing * dot(&rank.inner, &c.compute) } else { 0.0 };
+        let flight = flight(network, rank, exchanges, inner);
         total.add(compute, packing, flight, sent, exchanges[0] * rank.bytes[0] + rank.bytes[1]);
     }
     let reduction = network.reduction(ranks);
@@ -113,11 +114,11 @@ impl Total {
 fn flight(network: &Network, rank: &RankWork, exchanges: [f64; 2], inner: f64) -> f64 {
     let count: f64 = exchanges.iter().sum();
     let mut waits = 0.0;
-    for x in 0..2 {
-        if rank.neighbours[x] > 0.0 && exchanges[x] > 0.0 {
-            let bytes = rank.bytes[x] / if x == 0 { 1.0 } else { exchanges[x] };
+    for (x, &times) in exchanges.iter().enumerate() {
+        if rank.neighbours[x] > 0.0 && times > 0.0 {
+            let bytes = rank.bytes[x] / if x == 0 { 1.0 } else { times };
             let alone = network.latency + bytes * network.seconds_per_byte;
-            waits += exchanges[x] * (alone - inner / count).max(0.0);
+            waits += times * (alone - inner / count).max(0.0);
         }
     }
     waits

@@ -22,6 +22,8 @@ pub struct Work {
     pub row_bytes: f64,
     /// Bytes of a ghost's row in a message \[B\].
     pub ghost_bytes: f64,
+    /// Whether inner patches are computed while messages are on their way.
+    pub overlap: bool,
     /// How far moving material is noticed \[cells\]; 0 if no patch sleeps.
     notice: f64,
     /// Whether loads are evened by cost.
@@ -90,6 +92,7 @@ impl Work {
             // patch and kind, id, cell, columns
             ghost_bytes: 8.0 * (3 + ghost_columns) as f64,
             notice: if options.skip_quiet { stepper.notice(reach) as f64 } else { 0.0 },
+            overlap: options.overlap,
             evened: options.balance.every > 0 && options.balance.cost == BalanceCost::Time,
             reach,
             terrain,
