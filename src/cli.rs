@@ -97,6 +97,39 @@ impl RunArgs {
     }
 }
 
+/// Where `calibrate` writes and `predict` reads.
+const MACHINE_FILE: &str = "output/machine.json";
+
+/// A prediction.
+#[derive(Clone, Debug, Args)]
+pub struct PredictArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+
+    /// Constants that `flyer-mpm calibrate` has measured with this scene's method.
+    #[arg(long, value_name = "FILE", default_value = MACHINE_FILE)]
+    pub machine: PathBuf,
+
+    /// Numbers of ranks; the table goes on to 100 000.
+    #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = ranks)]
+    pub ranks: Vec<usize>,
+
+    /// Threads a rank [default: decomposition.threads of the scene, else 1].
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub threads: Option<usize>,
+
+    /// The network between nodes: measured, shared-memory, hdr, slingshot11, 25gbe, 25gbe-tcp, or
+    /// latency and bandwidth such as 1.3e-6,25e9 [s, B/s].
+    #[arg(long, value_name = "NAME|LATENCY,BANDWIDTH", default_value = "hdr")]
+    pub network: String,
+
+    /// Hold predictions against this scaling.json of scripts/strong_scaling.sh instead, with the
+    /// study's overrides of the scene; may be repeated.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["ranks", "threads"])]
+    pub against: Vec<PathBuf>,
+}
+
 /// What else the program does.
 #[derive(Debug, Subcommand)]
 pub enum Command {
@@ -116,6 +149,29 @@ pub enum Command {
         #[command(flatten)]
         scene: SceneArgs,
     },
+    /// Measure what predictions need of this machine and a scene's method: seconds of a particle,
+    /// a ghost, a node and a patch, of threads that part and join, of a second busy core, and with
+    /// `mpirun -n 2 --bind-to none` of messages and reductions. Nothing else should run meanwhile.
+    Calibrate {
+        /// The scene: a JSON file whose method is measured [default: the flyer plate].
+        #[arg(value_name = "SCENE.json")]
+        scene: Option<PathBuf>,
+        /// Overrides a value of the scene; may be repeated.
+        #[arg(long, value_name = "PATH=VALUE")]
+        set: Vec<String>,
+        /// File of the constants.
+        #[arg(long, value_name = "FILE", default_value = MACHINE_FILE)]
+        output: PathBuf,
+        /// Time to take; less is less exact.
+        #[arg(long, value_name = "SECONDS", default_value_t = 16.0, value_parser = seconds)]
+        seconds: f64,
+        /// Print every sample of the fit.
+        #[arg(long)]
+        samples: bool,
+    },
+    /// Predict the time of a step and of the whole run on more ranks, and where that stops being
+    /// worth it, by the constants of `flyer-mpm calibrate`; no run.
+    Predict(PredictArgs),
     /// Print the JSON schema of a scene.
     Schema,
     /// Compare the results of two runs: norms, and the first particle and column that differ.
@@ -150,5 +206,12 @@ fn threads(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(n) if (1..=1024).contains(&n) => Ok(n),
         _ => Err("a whole number from 1 to 1024 is allowed".into()),
+    }
+}
+
+fn ranks(text: &str) -> Result<usize, String> {
+    match text.trim().parse() {
+        Ok(n) if (1..=1_000_000).contains(&n) => Ok(n),
+        _ => Err("a whole number from 1 to 1000000 is allowed".into()),
     }
 }

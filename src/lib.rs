@@ -1,12 +1,14 @@
 //! flyer-mpm: impact and shock waves by the material point method.
 
 pub mod accounts;
+pub mod calibrate;
 pub mod clock;
 pub mod constitutive;
 pub mod exact;
 pub mod figures;
 pub mod grid;
 pub mod material;
+pub mod model;
 pub mod output;
 pub mod particles;
 pub mod patch;

@@ -5,6 +5,7 @@
 
 mod cli;
 mod describe;
+mod forecast;
 
 use std::io::Write;
 use std::path::Path;
@@ -51,6 +52,10 @@ fn act<C: Comm>(comm: &C, started: Instant) -> ExitCode {
     };
     let outcome = match (cli.command, cli.run) {
         (None, Some(args)) => run_scene(comm, &args, started),
+        (Some(Command::Calibrate { scene, set, output, seconds, samples }), _) => {
+            let order = forecast::Order { scene, set, output, seconds, samples };
+            forecast::calibrate(comm, &order)
+        }
         // the rest is done by one rank
         _ if !first => Ok(()),
         (Some(command), _) => side_command(command),
@@ -183,6 +188,11 @@ fn side_command(command: Command) -> Outcome<()> {
             say(&describe::hugoniot(&checked, &output)?);
             Ok(())
         }
+        Command::Predict(args) => {
+            say(&forecast::predict(&args)?);
+            Ok(())
+        }
+        Command::Calibrate { .. } => unreachable!("all ranks calibrate"),
         Command::Compare { first, second } => {
             let comparison = compare(&first, &second).map_err(bad)?;
             say(&format!("{comparison}\n"));

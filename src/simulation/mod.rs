@@ -141,7 +141,7 @@ struct Plan {
 }
 
 /// What the side of a scene is to the decomposition.
-fn decomp_side(side: Side) -> decomp::Side {
+pub(crate) fn decomp_side(side: Side) -> decomp::Side {
     match side {
         Side::Free | Side::Outflow => decomp::Side::Open,
         Side::Symmetry | Side::Wall | Side::Velocity(_) => decomp::Side::Mirror,
@@ -166,7 +166,7 @@ fn grid_velocity(scene: &CheckedScene) -> f64 {
 const MOST_STEPS: f64 = 1e12;
 
 /// Patches narrower than this only cost.
-const LEAST_CELLS: usize = 16;
+pub(crate) const LEAST_CELLS: usize = 16;
 
 /// Patches of about this many cells sleep and wake with little lost at their ends, for one
 /// worker.

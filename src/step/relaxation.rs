@@ -18,7 +18,7 @@ use crate::patch::Patch;
 use crate::transfer::{add, cut, dot, window};
 
 /// Terms of the projection's series.
-pub(super) const ORDER: u32 = 4;
+pub const ORDER: u32 = 4;
 
 impl Stepper {
     /// The first term of the pressure's series, P_L, on the nodes that the patch computes.

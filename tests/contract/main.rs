@@ -4,6 +4,7 @@
 mod bad_input;
 mod command_line;
 mod commands;
+mod forecasts;
 mod home;
 mod outputs;
 mod pictures;

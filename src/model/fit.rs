@@ -1,0 +1,134 @@
+//! Least squares with relative weights and coefficients that are not negative.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Singular values below this share of the greatest count as none: what the samples cannot tell
+/// apart is shared between the coefficients, and predicts the same.
+const SINGULAR: f64 = 1e-6;
+
+/// A fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit<const N: usize> {
+    /// The coefficients, none negative.
+    pub coefficients: [f64; N],
+    /// Root of the mean square of the relative residuals \[-\].
+    pub rms: f64,
+    /// The greatest relative residual \[-\].
+    pub largest: f64,
+}
+
+/// What was counted and measured once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample<const N: usize> {
+    /// Counts.
+    pub features: [f64; N],
+    /// What was measured.
+    pub value: f64,
+    /// What a residual is held against: the value itself, or a whole of which it is a part.
+    pub whole: f64,
+}
+
+/// The coefficients c with the least sum of ((features.c - value) / whole)^2, none negative: where
+/// one comes out negative it is set to zero and the others are found anew. Samples whose whole is
+/// not positive are left out.
+pub fn fit<const N: usize>(samples: &[Sample<N>]) -> Fit<N> {
+    let used: Vec<&Sample<N>> = samples.iter().filter(|s| s.whole > 0.0).collect();
+    // a column that is never anything has no coefficient
+    let mut kept: Vec<usize> =
+        (0..N).filter(|&k| used.iter().any(|s| s.features[k] != 0.0)).collect();
+    let mut coefficients = [0.0; N];
+    while !kept.is_empty() && !used.is_empty() {
+        let found = solve(&used, &kept);
+        let worst = (0..kept.len()).min_by(|&a, &b| found[a].total_cmp(&found[b]));
+        match worst {
+            Some(k) if found[k] < 0.0 => {
+                kept.remove(k);
+            }
+            _ => {
+                kept.iter().zip(&found).for_each(|(&k, &c)| coefficients[k] = c);
+                break;
+            }
+        }
+    }
+    let residual = |s: &&Sample<N>| ((dot(&s.features, &coefficients) - s.value) / s.whole).abs();
+    let residuals = || used.iter().map(residual);
+    let square: f64 = residuals().map(|r| r * r).sum();
+    Fit {
+        coefficients,
+        rms: (square / used.len().max(1) as f64).sqrt(),
+        largest: residuals().fold(0.0, f64::max),
+    }
+}
+
+/// Sum of the products.
+pub fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// The coefficients of the columns `kept`, of either sign.
+fn solve<const N: usize>(samples: &[&Sample<N>], kept: &[usize]) -> Vec<f64> {
+    let entry = |i: usize, k: usize| samples[i].features[kept[k]] / samples[i].whole;
+    let mut matrix = DMatrix::from_fn(samples.len(), kept.len(), entry);
+    // columns of the same length, for the cut of singular values to mean something
+    let lengths: Vec<f64> =
+        (0..kept.len()).map(|k| matrix.column(k).norm().max(f64::MIN_POSITIVE)).collect();
+    for (mut column, length) in matrix.column_iter_mut().zip(&lengths) {
+        column /= *length;
+    }
+    let svd = matrix.svd(true, true);
+    let cut = SINGULAR * svd.singular_values.max();
+    let values = DVector::from_fn(samples.len(), |i, _| samples[i].value / samples[i].whole);
+    let found = svd.solve(&values, cut).expect("both sides of the decomposition were asked for");
+    found.iter().zip(&lengths).map(|(c, length)| c / length).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample<const N: usize>(features: [f64; N], value: f64) -> Sample<N> {
+        Sample { features, value, whole: value }
+    }
+
+    fn samples(c: [f64; 3], noise: f64) -> Vec<Sample<3>> {
+        (0..40)
+            .map(|k| {
+                let (rows, patches) = (10f64.powf(1.0 + 0.1 * f64::from(k)), f64::from(k % 7 + 1));
+                let features = [rows, patches, 1.0];
+                let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+                sample(features, dot(&features, &c) * (1.0 + sign * noise))
+            })
+            .collect()
+    }
+
+    #[test]
+    fn known_coefficients_are_found() {
+        let known = [5e-8, 2e-6, 1e-5];
+        let fit = fit(&samples(known, 0.0));
+        for (found, known) in fit.coefficients.iter().zip(known) {
+            assert!((found / known - 1.0).abs() < 1e-6, "{found} {known}");
+        }
+        assert!(fit.largest < 1e-9);
+    }
+
+    #[test]
+    fn noise_stays_as_large_as_it_is() {
+        let fit = fit(&samples([5e-8, 2e-6, 1e-5], 0.05));
+        assert!((fit.coefficients[0] / 5e-8 - 1.0).abs() < 0.05);
+        assert!(fit.rms > 0.02 && fit.largest < 0.1, "{fit:?}");
+    }
+
+    #[test]
+    fn none_is_negative() {
+        let fit = fit(&samples([5e-8, -1e-8, 1e-5], 0.0));
+        assert_eq!(fit.coefficients[1], 0.0);
+        assert!(fit.coefficients[0] > 0.0 && fit.coefficients[2] > 0.0);
+    }
+
+    #[test]
+    fn what_cannot_be_told_apart_still_predicts() {
+        let twice = |k| sample([f64::from(k), 2.0 * f64::from(k)], 3.0 * f64::from(k));
+        let samples: Vec<Sample<2>> = (1..9).map(twice).collect();
+        assert!((dot(&[10.0, 20.0], &fit(&samples).coefficients) - 30.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,198 @@
+//! What a step does, counted: phases, exchanges of rows and of nodal values.
+//!
+//! Written in the order of [`crate::step`]'s own phases, so that the two can be read side by side;
+//! a test holds the counts against the timeline of a real run.
+
+use crate::scene::{EnergyUpdate, FilterHalo, Method, Stepping, StressUpdate, Transfer};
+use crate::step::relaxation;
+use crate::transfer::Scheme;
+
+/// Counts of one step; fractions where something is done every few steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Schedule {
+    /// Exchanges of particle rows.
+    pub row_exchanges: f64,
+    /// Exchanges of nodal values, each after a product, if halos are exchanged; else none.
+    pub node_exchanges: f64,
+    /// Fields that those carry, summed over them.
+    pub node_fields: f64,
+    /// Phases over patches.
+    pub phases: f64,
+    /// Those of them that stand outside of an exchange of rows.
+    pub plain_phases: f64,
+}
+
+impl Schedule {
+    /// The average step of a method.
+    pub fn of(method: &Method) -> Self {
+        let with = Recorder::step(method, true);
+        match method.pressure_relaxation {
+            Some(r) if method.stepping == Stepping::Midpoint => {
+                let share = 1.0 / f64::from(r.interval.max(1));
+                with.times(share).plus(Recorder::step(method, false).times(1.0 - share))
+            }
+            _ => with,
+        }
+    }
+
+    /// Exchanges of a step between ranks.
+    pub fn exchanges(&self, halo: FilterHalo) -> f64 {
+        match halo {
+            FilterHalo::Exchange => self.row_exchanges + self.node_exchanges,
+            FilterHalo::Deep => self.row_exchanges,
+        }
+    }
+
+    /// How often the threads of a rank part and join in a step: once a phase, and twice where a
+    /// phase follows an exchange, for inner patches and for the others; deep ghosts let all phases
+    /// after an exchange of rows run as one.
+    pub fn forks(&self, halo: FilterHalo) -> f64 {
+        match halo {
+            FilterHalo::Exchange => self.phases + self.exchanges(halo),
+            FilterHalo::Deep => self.plain_phases + 2.0 * self.row_exchanges,
+        }
+    }
+
+    fn times(self, factor: f64) -> Self {
+        Schedule {
+            row_exchanges: self.row_exchanges * factor,
+            node_exchanges: self.node_exchanges * factor,
+            node_fields: self.node_fields * factor,
+            phases: self.phases * factor,
+            plain_phases: self.plain_phases * factor,
+        }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Schedule {
+            row_exchanges: self.row_exchanges + other.row_exchanges,
+            node_exchanges: self.node_exchanges + other.node_exchanges,
+            node_fields: self.node_fields + other.node_fields,
+            phases: self.phases + other.phases,
+            plain_phases: self.plain_phases + other.plain_phases,
+        }
+    }
+}
+
+/// Counts phases as [`crate::step::Nodal`] runs them: an exchange is asked for and done before the
+/// next phase.
+struct Recorder {
+    scheme: Scheme,
+    masked: bool,
+    counted: Schedule,
+    /// Fields of the exchange that is asked for; `None`: none.
+    pending: Option<usize>,
+}
+
+impl Recorder {
+    fn step(method: &Method, relaxes: bool) -> Schedule {
+        let mut step = Recorder {
+            scheme: method.transfer.into(),
+            masked: method.edge_mask.is_some(),
+            counted: Schedule::default(),
+            pending: None,
+        };
+        match method.stepping {
+            Stepping::Midpoint => step.midpoint(method, relaxes),
+            Stepping::Leapfrog => step.leapfrog(method.stress_update),
+        }
+        step.counted
+    }
+
+    fn midpoint(&mut self, method: &Method, relaxes: bool) {
+        self.plain(); // start
+        self.counted.row_exchanges += 1.0;
+        self.each(); // scatter
+        self.solve_velocity();
+        if method.energy == EnergyUpdate::Compatible {
+            self.solve_work();
+        }
+        if relaxes && method.pressure_relaxation.is_some() {
+            self.each(); // scatter pressure
+            for _ in 0..relaxation::ORDER {
+                self.refresh(1);
+                self.each(); // project pressure
+            }
+        }
+        self.each(); // gather
+    }
+
+    fn leapfrog(&mut self, stress: StressUpdate) {
+        self.plain(); // start
+        let passes = if stress == StressUpdate::Last { 1 } else { 2 };
+        for _ in 0..passes {
+            self.counted.row_exchanges += 1.0;
+            self.each(); // scatter
+            self.solve_velocity();
+            self.each(); // gather, or update stress
+        }
+        self.plain(); // refresh
+    }
+
+    fn solve_velocity(&mut self) {
+        self.refresh(if self.masked { 4 } else { 3 });
+        self.each(); // start series
+        if let Scheme::Series { order, force } = self.scheme {
+            for _ in 1..order {
+                self.refresh(if force { 2 } else { 1 });
+                self.each(); // series
+            }
+        }
+    }
+
+    fn solve_work(&mut self) {
+        match self.scheme {
+            Scheme::Series { order, force } => {
+                self.each(); // start work
+                for _ in 0..if force { order } else { 1 } {
+                    self.refresh(1);
+                    self.each(); // work
+                }
+            }
+            Scheme::Blend(_) | Scheme::Affine => {
+                self.each(); // work
+                self.refresh(1);
+            }
+        }
+    }
+
+    fn refresh(&mut self, fields: usize) {
+        self.pending = Some(fields);
+    }
+
+    fn each(&mut self) {
+        if let Some(fields) = self.pending.take() {
+            self.counted.node_exchanges += 1.0;
+            self.counted.node_fields += fields as f64;
+        }
+        self.counted.phases += 1.0;
+    }
+
+    fn plain(&mut self) {
+        self.counted.phases += 1.0;
+        self.counted.plain_phases += 1.0;
+    }
+}
+
+/// A method's name in a table, such as `cpdi, fmpm 4, midpoint`.
+pub fn method_name(method: &Method) -> String {
+    let text = |value: serde_json::Value| value.to_string().replace(['"', '{', '}'], "");
+    let of = |value: &dyn erased::Json| text(value.json());
+    let transfer = match method.transfer {
+        Transfer::Flip | Transfer::Pic | Transfer::Apic => of(&method.transfer),
+        _ => of(&method.transfer).replace(':', " "),
+    };
+    format!("{}, {transfer}, {}", of(&method.shape), of(&method.stepping))
+}
+
+mod erased {
+    pub trait Json {
+        fn json(&self) -> serde_json::Value;
+    }
+
+    impl<T: serde::Serialize> Json for T {
+        fn json(&self) -> serde_json::Value {
+            serde_json::to_value(self).unwrap_or_default()
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Where a scene's particles are, as numbers over cells: no particle is made.
+
+use decomp::Side;
+
+use crate::scene::CheckedScene;
+use crate::simulation::sides;
+
+/// A body: cells from `lower` to `upper` with particles evenly over them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Span {
+    lower: f64,
+    upper: f64,
+    particles_per_cell: f64,
+}
+
+/// The bodies over the cells of a domain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Terrain {
+    /// Cells of the domain.
+    pub cells: usize,
+    /// Particles of all bodies.
+    pub particles: f64,
+    /// Longest particle \[cells\].
+    pub longest: f64,
+    spans: Vec<Span>,
+    sides: [Side; 2],
+}
+
+impl Terrain {
+    /// The terrain of a scene at its start.
+    pub fn new(scene: &CheckedScene) -> Self {
+        let (origin, size) = (scene.scene.domain.lower[0], scene.cell_size[0]);
+        let spans: Vec<Span> = (scene.scene.bodies.iter().zip(&scene.bodies))
+            .map(|(body, checked)| {
+                let lower = (body.extent.lower[0] - origin) / size;
+                let upper = (body.extent.upper[0] - origin) / size;
+                let particles_per_cell = checked.lattice[0] as f64 / (upper - lower);
+                Span { lower, upper, particles_per_cell }
+            })
+            .collect();
+        Terrain {
+            cells: scene.cells[0],
+            particles: scene.particles as f64,
+            longest: spans.iter().map(|s| 1.0 / s.particles_per_cell).fold(0.0, f64::max),
+            spans,
+            sides: sides(scene).map(crate::simulation::decomp_side),
+        }
+    }
+
+    /// Sums over the cells from `lower` to `upper`, images beyond the sides included.
+    fn sum(&self, lower: f64, upper: f64, of: &dyn Fn(&Span) -> f64) -> f64 {
+        let end = self.cells as f64;
+        let within = |lower: f64, upper: f64| -> f64 {
+            let length = |s: &Span| (upper.min(s.upper) - lower.max(s.lower)).max(0.0);
+            self.spans.iter().map(|s| length(s) * of(s)).sum()
+        };
+        let mut sum = within(lower.max(0.0), upper.min(end));
+        if lower < 0.0 {
+            sum += match self.sides[0] {
+                Side::Open => 0.0,
+                Side::Mirror => within((-upper).max(0.0), -lower),
+                Side::Wrap => within(lower + end, (upper + end).min(end)),
+            };
+        }
+        if upper > end {
+            sum += match self.sides[1] {
+                Side::Open => 0.0,
+                Side::Mirror => within(2.0 * end - upper, (2.0 * end - lower).min(end)),
+                Side::Wrap => within((lower - end).max(0.0), upper - end),
+            };
+        }
+        sum
+    }
+
+    /// Particles in the cells from `lower` to `upper`.
+    pub fn particles_in(&self, lower: f64, upper: f64) -> f64 {
+        self.sum(lower, upper, &|s| s.particles_per_cell)
+    }
+
+    /// Cells with material from `lower` to `upper`.
+    pub fn filled_in(&self, lower: f64, upper: f64) -> f64 {
+        self.sum(lower, upper, &|_| 1.0)
+    }
+
+    /// Whether something lies beyond a side that another patch holds.
+    pub fn is_joined(&self) -> bool {
+        self.sides[0] == Side::Wrap
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn terrain(sides: [Side; 2]) -> Terrain {
+        let span = |lower, upper, particles_per_cell| Span { lower, upper, particles_per_cell };
+        let spans = vec![span(2.0, 6.0, 2.0), span(6.0, 18.0, 1.0)];
+        Terrain { cells: 20, particles: 20.0, longest: 1.0, spans, sides }
+    }
+
+    #[test]
+    fn particles_are_those_of_the_bodies_in_reach() {
+        let t = terrain([Side::Open; 2]);
+        assert_eq!((t.particles_in(0.0, 20.0), t.filled_in(0.0, 20.0)), (20.0, 16.0));
+        assert_eq!((t.particles_in(5.0, 8.0), t.particles_in(-9.0, 3.0)), (4.0, 2.0));
+    }
+
+    #[test]
+    fn images_count_beyond_mirrors_and_joints() {
+        let t = terrain([Side::Mirror; 2]);
+        assert_eq!((t.particles_in(-3.0, 0.0), t.particles_in(20.0, 25.0)), (2.0, 3.0));
+        let t = terrain([Side::Wrap; 2]);
+        assert_eq!((t.particles_in(-3.0, 0.0), t.particles_in(20.0, 25.0)), (1.0, 6.0));
+    }
+}

@@ -1,0 +1,3 @@
+//! The performance model's counts against what real steps do.
+
+mod counts;
