@@ -103,16 +103,9 @@ impl Recorder {
         self.plain(); // start
         self.counted.row_exchanges += 1.0;
         self.each(); // scatter
-        self.solve_velocity();
+        self.solve_velocity(relaxes && method.pressure_relaxation.is_some());
         if method.energy == EnergyUpdate::Compatible {
             self.solve_work();
-        }
-        if relaxes && method.pressure_relaxation.is_some() {
-            self.each(); // scatter pressure
-            for _ in 0..relaxation::ORDER {
-                self.refresh(1);
-                self.each(); // project pressure
-            }
         }
         self.each(); // gather
     }
@@ -123,36 +116,36 @@ impl Recorder {
         for _ in 0..passes {
             self.counted.row_exchanges += 1.0;
             self.each(); // scatter
-            self.solve_velocity();
+            self.solve_velocity(false);
             self.each(); // gather, or update stress
         }
         self.plain(); // refresh
     }
 
-    fn solve_velocity(&mut self) {
-        self.refresh(if self.masked { 4 } else { 3 });
-        self.each(); // start series
-        if let Scheme::Series { order, force } = self.scheme {
-            for _ in 1..order {
-                self.refresh(if force { 2 } else { 1 });
-                self.each(); // series
-            }
-        }
+    /// The series of velocity, force and, in a step that relaxes it, pressure advance together.
+    fn solve_velocity(&mut self, relaxes: bool) {
+        let (order, force) = match self.scheme {
+            Scheme::Series { order, force } => (order, if force { order } else { 1 }),
+            Scheme::Blend(_) | Scheme::Affine => (1, 1),
+        };
+        let pressure = if relaxes { relaxation::ORDER } else { 0 };
+        let others = if self.masked { 2 } else { 1 };
+        self.sum_series(&[order, force, pressure], others);
     }
 
     fn solve_work(&mut self) {
-        match self.scheme {
-            Scheme::Series { order, force } => {
-                self.each(); // start work
-                for _ in 0..if force { order } else { 1 } {
-                    self.refresh(1);
-                    self.each(); // work
-                }
-            }
-            Scheme::Blend(_) | Scheme::Affine => {
-                self.each(); // work
-                self.refresh(1);
-            }
+        let order = match self.scheme {
+            Scheme::Series { order, force: true } => order,
+            _ => 1,
+        };
+        self.sum_series(&[order], 0);
+    }
+
+    fn sum_series(&mut self, orders: &[u32], others: usize) {
+        for l in 0..orders.iter().copied().max().unwrap_or(0) {
+            let going = orders.iter().filter(|&&order| order > l).count();
+            self.refresh(going + if l == 0 { others } else { 0 });
+            self.each();
         }
     }
 
