@@ -168,6 +168,22 @@ impl<const D: usize> Layout<D> {
         at
     }
 
+    /// The cells whose rows a patch needs to sum up the nodes that it owns, where rows reach as
+    /// far as `depth` cells: nodes stand at lower corners of cells, so that above the patch one
+    /// cell less is needed than below it, unless the side of the domain is there, whose nodes it
+    /// owns too.
+    pub fn halo(&self, patch: usize, depth: i64) -> IndexBox<D> {
+        let home = &self.patches[patch];
+        let mut halo = home.grow(depth);
+        for a in 0..D {
+            let at_side = home.upper[a] == self.domain.upper[a];
+            if depth > 0 && (!at_side || self.sides[a][1] == Side::Wrap) {
+                halo.upper[a] -= 1;
+            }
+        }
+        halo
+    }
+
     /// The patches that hold a cell of `b`, in order.
     pub fn patches_in(&self, b: &IndexBox<D>) -> impl Iterator<Item = usize> + use<D> {
         let b = b.intersect(&self.domain);

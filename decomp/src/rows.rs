@@ -23,7 +23,7 @@ pub enum RowError {
 /// How far rows are seen and move, in cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RowReach {
-    /// Ghosts come from this far about a patch.
+    /// Ghosts come from this far about a patch, see [`Layout::halo`].
     pub depth: i64,
     /// Most that a row moves between two exchanges.
     pub travel: i64,
@@ -119,7 +119,7 @@ impl<const D: usize> RowExchange<D> {
             takers.sort_unstable();
             takers.dedup();
             let route = |to: usize| {
-                let halo = boxes[to].grow(depth);
+                let halo = layout.halo(to, depth);
                 let near = boxes[to].grow(notice.unwrap_or(-1));
                 let sees = boxes[to].grow(seen);
                 let taker = match place[to] {
@@ -408,10 +408,10 @@ mod tests {
     ) {
         let cut = Layout::new(domain, sides, parts);
         let all = &seen(&Layout::new(domain, sides, [1; D]), rows, depth)[0];
-        for (patch, got) in cut.patches().iter().zip(seen(&cut, rows, depth)) {
-            let halo = patch.grow(depth);
+        for (patch, got) in seen(&cut, rows, depth).into_iter().enumerate() {
+            let halo = cut.halo(patch, depth);
             let expected: Vec<_> = all.iter().filter(|r| halo.contains(r.0)).copied().collect();
-            assert_eq!(got, expected, "{patch:?}");
+            assert_eq!(got, expected, "patch {patch}");
         }
     }
 

@@ -49,7 +49,7 @@ impl Stepper {
         if self.stress_update == StressUpdate::ModifiedLast {
             world.exchange_rows(|nodal| {
                 nodal.each("scatter again", |patch| {
-                    self.scatter_motion(patch);
+                    self.scatter_rows(patch, false);
                     self.divide_by_mass(patch);
                     self.start_series(patch);
                 });

@@ -10,10 +10,7 @@ impl Stepper {
     /// velocity and acceleration from them.
     pub(super) fn scatter(&self, patch: &mut Patch<1>, force: bool) {
         self.find_weights(patch);
-        self.scatter_motion(patch);
-        if force {
-            self.scatter_force(patch);
-        }
+        self.scatter_rows(patch, force);
         self.divide_by_mass(patch);
         self.start_series(patch);
     }
@@ -27,38 +24,49 @@ impl Stepper {
         }
     }
 
-    /// Mass and momentum of the nodes, and the mass matrix and filled volume where the scheme
-    /// needs them.
-    pub(super) fn scatter_motion(&self, patch: &mut Patch<1>) {
-        let f = &self.fields;
+    /// Mass and momentum of the nodes, the mass matrix and the filled volume where the scheme
+    /// needs them, and with `force` the internal force f_i = sum_p (p + q) V G_i (pressure is
+    /// positive in compression, so it pushes along the gradient): all in one pass over the rows.
+    pub(super) fn scatter_rows(&self, patch: &mut Patch<1>, force: bool) {
+        fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper, force: bool) {
+            match (s.needs_matrix(), s.columns.affine) {
+                (true, None) => s.scatter_width::<K, true, false>(patch, force),
+                (false, None) => s.scatter_width::<K, false, false>(patch, force),
+                (true, Some(_)) => s.scatter_width::<K, true, true>(patch, force),
+                (false, Some(_)) => s.scatter_width::<K, false, true>(patch, force),
+            }
+        }
+        with_width!(patch.stencils.width, go(patch, self, force));
+    }
+
+    fn scatter_width<const K: usize, const MATRIX: bool, const AFFINE: bool>(
+        &self,
+        patch: &mut Patch<1>,
+        force: bool,
+    ) {
+        let (c, f) = (&self.columns, &self.fields);
         for field in [f.mass, f.lumped, f.acceleration, f.scratch] {
             patch.nodes.fields[field].fill(0.0);
         }
-        fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper) {
-            s.scatter_mass_momentum::<K>(patch);
-            if s.needs_matrix() {
-                s.scatter_matrix::<K>(patch);
-            }
-            if s.edge_mask.is_some() {
-                s.scatter_volume::<K>(patch);
-            }
+        if MATRIX {
+            patch.band.clear(patch.nodes.nodes.count(), K);
         }
-        with_width!(patch.stencils.width, go(patch, self));
-    }
-
-    fn scatter_mass_momentum<const K: usize>(&self, patch: &mut Patch<1>) {
-        let (c, f) = (&self.columns, &self.fields);
+        // the field leaves the list while the others are written
+        let mut volume = self.edge_mask.map(|_| std::mem::take(&mut patch.nodes.fields[f.volume]));
+        if let Some(volume) = &mut volume {
+            volume.fill(0.0);
+        }
         let rows = patch.block.rows();
-        let (mass, velocity) =
-            (&patch.block.columns[c.mass][..rows], &patch.block.columns[c.velocity][..rows]);
+        let column = |k: usize| &patch.block.columns[k][..rows];
+        let (mass, velocity, length) = (column(c.mass), column(c.velocity), column(c.length));
+        let stress = column(c.stress_volume);
+        let affine = c.affine.filter(|_| AFFINE).map(|a| (column(a), column(c.fraction)));
         let lower = patch.nodes.nodes.lower[0];
-        let [nodal_mass, momentum] = patch.nodes.fields_mut([f.mass, f.lumped]);
-        let affine = c
-            .affine
-            .map(|a| (&patch.block.columns[a][..rows], &patch.block.columns[c.fraction][..rows]));
+        let [nodal_mass, momentum, nodal_force] =
+            patch.nodes.fields_mut([f.mass, f.lumped, f.acceleration]);
         for run in &patch.runs {
             for r in run.clone() {
-                let (first, n, _) = patch.stencils.row::<K>(r);
+                let (first, n, g) = patch.stencils.row::<K>(r);
                 let m = mass[r];
                 let mv = m * velocity[r];
                 add(nodal_mass, first, n.map(|n| n * m));
@@ -74,52 +82,23 @@ impl Stepper {
                         add(momentum, first, terms);
                     }
                 }
-            }
-        }
-    }
-
-    fn scatter_matrix<const K: usize>(&self, patch: &mut Patch<1>) {
-        let rows = patch.block.rows();
-        let mass = &patch.block.columns[self.columns.mass][..rows];
-        let nodes = patch.nodes.nodes.count();
-        patch.band.clear(nodes, K);
-        for run in &patch.runs {
-            for r in run.clone() {
-                let (first, n, _) = patch.stencils.row::<K>(r);
-                patch.band.add(first, mass[r], n);
-            }
-        }
-        patch.band.finish();
-    }
-
-    fn scatter_volume<const K: usize>(&self, patch: &mut Patch<1>) {
-        let rows = patch.block.rows();
-        let length = &patch.block.columns[self.columns.length][..rows];
-        let volume = &mut patch.nodes.fields[self.fields.volume];
-        volume.fill(0.0);
-        for run in &patch.runs {
-            for r in run.clone() {
-                let (first, n, _) = patch.stencils.row::<K>(r);
-                add(volume, first, n.map(|n| n * length[r]));
-            }
-        }
-    }
-
-    /// Internal force f_i = sum_p (p + q) V G_i (pressure is positive in compression, so it
-    /// pushes along the gradient).
-    pub(super) fn scatter_force(&self, patch: &mut Patch<1>) {
-        fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper) {
-            let rows = patch.block.rows();
-            let stress = &patch.block.columns[s.columns.stress_volume][..rows];
-            let force = &mut patch.nodes.fields[s.fields.acceleration];
-            for run in &patch.runs {
-                for r in run.clone() {
-                    let (first, _, g) = patch.stencils.row::<K>(r);
-                    add(force, first, g.map(|g| g * stress[r]));
+                if MATRIX {
+                    patch.band.add(first, m, n);
+                }
+                if let Some(volume) = &mut volume {
+                    add(volume, first, n.map(|n| n * length[r]));
+                }
+                if force {
+                    add(nodal_force, first, g.map(|g| g * stress[r]));
                 }
             }
         }
-        with_width!(patch.stencils.width, go(patch, self));
+        if MATRIX {
+            patch.band.finish();
+        }
+        if let Some(volume) = volume {
+            patch.nodes.fields[f.volume] = volume;
+        }
     }
 
     /// Lumped velocity and acceleration of the owned nodes from their sums; those too small to
