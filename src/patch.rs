@@ -132,7 +132,8 @@ pub struct Patch<const D: usize> {
     pub watch: Watch,
 }
 
-/// The sleep of a patch at rest that no wave has reached: a step would change none of its bits.
+/// The sleep of a patch at rest that no wave has reached, or of one without rows: a step would
+/// change none of its bits.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rest {
     /// Steps computed in a row with nothing near that moves.
@@ -207,7 +208,9 @@ impl<const D: usize> Patch<D> {
     /// keeps the nodal fields of `kept`, the masses, and holds zeros in the others, as if it had
     /// computed them.
     pub fn settle(&mut self, needed: u32, kept: &[usize]) {
-        if self.rest.note(self.block.stirred, needed) {
+        // what moves nearby cannot change a patch that none of its rows reach
+        let stirred = self.block.stirred && self.block.rows() > 0;
+        if self.rest.note(stirred, needed) {
             for (k, field) in self.nodes.fields.iter_mut().enumerate() {
                 if !kept.contains(&k) {
                     field.fill(0.0);

@@ -106,7 +106,7 @@ pub struct Simulation<'a, C: Comm> {
     /// Known once the particles' lengths are.
     reach: Option<Reach>,
     plan: Plan,
-    sleep: Option<Sleep>,
+    sleep: Sleep,
     threads: usize,
     pool: Option<rayon::ThreadPool>,
     clock: Clock,
@@ -321,7 +321,7 @@ impl<'a, C: Comm> Simulation<'a, C> {
             inner_nodes: &self.plan.inner_nodes,
             filter: self.plan.filter,
             overlap: self.scene.scene.decomposition.overlap,
-            sleep: self.sleep,
+            sleep: Some(self.sleep),
             pool: self.pool.as_ref(),
             clock: &mut self.clock,
         };

@@ -216,14 +216,14 @@ impl Stepper {
         }
     }
 
-    /// When patches may sleep, if they may: once everything that a step computes has been computed at rest,
+    /// When patches may sleep: once everything that a step computes has been computed at rest,
     /// pressure relaxation included.
-    pub fn sleep(&self) -> Option<Sleep> {
+    pub fn sleep(&self) -> Sleep {
         let f = &self.fields;
-        self.may_sleep.then(|| Sleep {
+        Sleep {
             needed: 1 + self.relaxation.map_or(0, |r| r.interval),
             kept: [f.mass, f.inverse, f.volume, f.relaxation[0], f.relaxation[1]],
-        })
+        }
     }
 
     /// The longest particle [cells] that `reach` is deep enough for.

@@ -32,7 +32,7 @@ pub struct World<'a> {
     pub filter: FilterHalo,
     /// Whether inner patches are computed while messages fly.
     pub overlap: bool,
-    /// When patches sleep; `None`: never.
+    /// When patches sleep, until the step's first exchange of rows has seen to it.
     pub sleep: Option<Sleep>,
     /// Threads over patches; `None`: this thread alone.
     pub pool: Option<&'a rayon::ThreadPool>,
