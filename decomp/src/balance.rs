@@ -76,6 +76,31 @@ pub fn choose_cuts<const D: usize>(cells: [usize; D], workers: usize, least: usi
     cuts
 }
 
+/// Where to cut a line of cells into `parts` stretches of about equal weight, none narrower than
+/// `least` cells if that can be: the first cell of each stretch, and one past the last cell.
+/// `weights` are those of the cells.
+pub fn even_cuts(weights: &[u64], parts: usize, least: usize) -> Vec<i64> {
+    let cells = weights.len();
+    let least = least.min(cells / parts);
+    let total: u128 = weights.iter().map(|&w| u128::from(w)).sum();
+    let (mut cuts, mut cell, mut before) = (vec![0], 0, 0u128);
+    for k in 1..parts {
+        let (first, wanted) = (cuts[k - 1] as usize + least, total * k as u128);
+        let last = cells - (parts - k) * least;
+        while cell < last
+            && (cell < first
+                // the cell that holds the cut goes to the side that has less of it
+                || (2 * before + u128::from(weights[cell])) * parts as u128 <= 2 * wanted)
+        {
+            before += u128::from(weights[cell]);
+            cell += 1;
+        }
+        cuts.push(cell as i64);
+    }
+    cuts.push(cells as i64);
+    cuts
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -119,6 +144,30 @@ mod tests {
             if weights.iter().any(|&w| w > 0) {
                 prop_assert_eq!(busiest_share(&weights, &of, ranks), best(&weights, ranks));
             }
+        }
+    }
+
+    #[test]
+    fn even_cuts_halve_the_weight_and_keep_the_width() {
+        assert_eq!(even_cuts(&[1; 12], 3, 2), [0, 4, 8, 12]);
+        assert_eq!(even_cuts(&[0, 0, 0, 0, 2, 2, 2, 2], 2, 1), [0, 6, 8]);
+        assert_eq!(even_cuts(&[0, 0, 0, 0, 2, 2, 2, 2], 4, 2), [0, 2, 4, 6, 8]);
+        assert_eq!(even_cuts(&[9, 0, 0, 0], 2, 1), [0, 1, 4]);
+        assert_eq!(even_cuts(&[5, 5], 4, 3), [0, 1, 1, 2, 2]);
+    }
+
+    proptest! {
+        #[test]
+        fn even_cuts_ascend_and_respect_the_width(
+            weights in prop::collection::vec(0u64..9, 1..60),
+            parts in 1usize..8,
+            least in 0usize..9,
+        ) {
+            let cuts = even_cuts(&weights, parts, least);
+            prop_assert_eq!((cuts.len(), cuts[0]), (parts + 1, 0));
+            prop_assert_eq!(cuts[parts], weights.len() as i64);
+            let least = least.min(weights.len() / parts) as i64;
+            prop_assert!(cuts.windows(2).all(|w| w[1] - w[0] >= least));
         }
     }
 

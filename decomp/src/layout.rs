@@ -105,12 +105,21 @@ impl<const D: usize> Layout<D> {
     /// Cuts `domain` (a box of cells) into `parts` patches in each direction, all on rank 0.
     /// `sides[axis]` are the lower and the upper side.
     pub fn new(domain: IndexBox<D>, sides: [[Side; 2]; D], parts: [usize; D]) -> Self {
-        let patches = domain.tile(parts);
         let cuts = std::array::from_fn(|a| {
             (0..=parts[a] as i64)
                 .map(|k| domain.lower[a] + k * domain.extent(a) as i64 / parts[a] as i64)
                 .collect()
         });
+        Layout::with_cuts(domain, sides, cuts)
+    }
+
+    /// Cuts `domain` at the cells `cuts` in each direction, its ends among them, all on rank 0.
+    pub fn with_cuts(domain: IndexBox<D>, sides: [[Side; 2]; D], cuts: [Vec<i64>; D]) -> Self {
+        let parts = IndexBox::new([0; D], std::array::from_fn(|a| cuts[a].len() as i64 - 1));
+        let corner =
+            |k: [i64; D], more: i64| std::array::from_fn(|a| cuts[a][(k[a] + more) as usize]);
+        let patches: Vec<_> =
+            parts.iter().map(|k| IndexBox::new(corner(k, 0), corner(k, 1))).collect();
         let ranks = vec![0; patches.len()];
         Layout { domain, sides, patches, ranks, cuts }
     }

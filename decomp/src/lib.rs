@@ -32,7 +32,7 @@ mod stretch;
 mod table;
 mod words;
 
-pub use balance::{assign_patches, busiest_share, choose_cuts};
+pub use balance::{assign_patches, busiest_share, choose_cuts, even_cuts};
 pub use comm::{Comm, Serial, Traffic};
 pub use curve::curve_order;
 pub use index_box::IndexBox;

@@ -15,7 +15,7 @@ use std::time::Instant;
 
 use decomp::{
     Census, Comm, IndexBox, Layout, NodeExchange, RowError, RowExchange, RowReach, assign_patches,
-    choose_cuts, curve_order,
+    choose_cuts, curve_order, even_cuts,
 };
 
 use crate::clock::{Activity, Clock, Event};
@@ -202,18 +202,34 @@ fn may_sleep(scene: &CheckedScene) -> bool {
         && bodies.any(|(b, c)| c.velocity[0] == velocity && b.pressure == 0.0)
 }
 
-/// Particles in each patch, counted without making them.
-fn count_particles(scene: &CheckedScene, layout: &Layout<1>) -> Vec<u64> {
-    let mut counts = vec![0u64; layout.patches().len()];
-    for (body, checked) in scene.scene.bodies.iter().zip(&scene.bodies) {
-        let (lower, upper) = (body.extent.lower[0], body.extent.upper[0]);
-        for (count, patch) in counts.iter_mut().zip(layout.patches()) {
-            let x = |cell: i64| scene.scene.domain.lower[0] + cell as f64 * scene.cell_size[0];
-            let inside = (upper.min(x(patch.upper[0])) - lower.max(x(patch.lower[0]))).max(0.0);
-            *count += (inside / (upper - lower) * checked.lattice[0] as f64).round() as u64;
-        }
+/// Particles in the cells from `first` up to `last`, counted without making them.
+fn count_particles(scene: &CheckedScene, first: i64, last: i64) -> u64 {
+    let x = |cell: i64| scene.scene.domain.lower[0] + cell as f64 * scene.cell_size[0];
+    let bodies = scene.scene.bodies.iter().zip(&scene.bodies);
+    bodies
+        .map(|(body, checked)| {
+            let (lower, upper) = (body.extent.lower[0], body.extent.upper[0]);
+            let inside = (upper.min(x(last)) - lower.max(x(first))).max(0.0);
+            (inside / (upper - lower) * checked.lattice[0] as f64).round() as u64
+        })
+        .sum()
+}
+
+/// How much more a particle weighs than an empty cell as the domain is cut.
+const PARTICLE_WEIGHT: u64 = 4;
+
+/// The domain cut into patches: of equal width where the scene gives their number, else with
+/// about the same number of particles at the start.
+fn cut_domain(scene: &CheckedScene, ranks: usize, threads: usize) -> Layout<1> {
+    let parts = patch_counts(scene, ranks, threads)[0];
+    let cells = scene.cells[0] as i64;
+    let (domain, sides) = (IndexBox::new([0], [cells]), [sides(scene).map(decomp_side)]);
+    if scene.scene.domain.patches.is_some() || parts == 1 {
+        return Layout::new(domain, sides, [parts]);
     }
-    counts
+    let weight = |c: i64| 1 + PARTICLE_WEIGHT * count_particles(scene, c, c + 1);
+    let weights: Vec<u64> = (0..cells).map(weight).collect();
+    Layout::with_cuts(domain, sides, [even_cuts(&weights, parts, LEAST_CELLS)])
 }
 
 impl Plan {
@@ -253,11 +269,11 @@ impl<'a, C: Comm> Simulation<'a, C> {
     /// Makes the particles of `scene`, to be run by `threads` threads on each rank. Collective.
     pub fn new(scene: &'a CheckedScene, comm: &'a C, threads: usize) -> Result<Self, RunError> {
         let stepper = Stepper::new(scene);
-        let cuts = patch_counts(scene, comm.size(), threads);
-        let domain = IndexBox::new([0], [scene.cells[0] as i64]);
-        let layout = Layout::new(domain, [sides(scene).map(decomp_side)], [cuts[0]]);
+        let layout = cut_domain(scene, comm.size(), threads);
         let order = curve_order(layout.parts());
-        let weights = count_particles(scene, &layout);
+        let patches = layout.patches().iter();
+        let weights: Vec<u64> =
+            patches.map(|p| count_particles(scene, p.lower[0], p.upper[0])).collect();
         let layout = layout.with_ranks(assign_patches(&weights, &order, comm.size()));
         let grid_velocity = grid_velocity(scene);
         let energies = stepper.starting_energies(scene);
