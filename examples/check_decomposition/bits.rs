@@ -70,7 +70,7 @@ fn left_by(job: &Job, layout: &Layout) -> Result<Left, String> {
         Ok(bytes) => Ok((name, bytes)),
         Err(error) => Err(format!("{name}: {error}")),
     });
-    let of_layout = ["run", "seconds", "results"];
+    let of_layout = ["run", "seconds", "sharing", "results", "ranks", "rank"];
     let tells = |line: &&str| {
         line.split_whitespace().next().is_some_and(|first| !of_layout.contains(&first))
     };

@@ -3,7 +3,9 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use super::decomposition::DecompositionSummary;
 use super::summary::{ProfileSummary, Summary};
+use crate::clock::Activity;
 
 /// Errors of a profile by name, with a heading and whether they are shown in per cent.
 const ERRORS: [(&str, &str, bool); 13] = [
@@ -31,8 +33,35 @@ pub fn report(summary: &Summary, folder: &Path) -> String {
     if summary.profiles.iter().any(|p| p.errors.is_some()) {
         text += &table(&errors(&summary.profiles));
     }
+    if summary.ranks > 1 {
+        text += &table(&ranks(&summary.decomposition));
+    }
     text += &table(&facts(summary, folder));
     text
+}
+
+/// Most ranks that are listed; `summary.json` has all.
+const LISTED: usize = 16;
+
+/// One line a rank: where its time went, and what it sent.
+fn ranks(sharing: &DecompositionSummary) -> Vec<Vec<String>> {
+    let activities = || Activity::ALL.iter().map(|a| a.name());
+    let mut heading: Vec<String> = vec!["ranks".into(), "patches".into(), "particles".into()];
+    heading.extend(activities().map(|name| format!("{name} s")));
+    heading.extend(["messages", "bytes", "migrated"].map(String::from));
+    let mut lines = vec![heading];
+    for rank in sharing.ranks.iter().take(LISTED) {
+        let seconds = |name| rank.seconds.get(name).copied().unwrap_or(0.0);
+        let mut line = vec![
+            format!("rank {}", rank.rank),
+            rank.patches.to_string(),
+            rank.particles.to_string(),
+        ];
+        line.extend(activities().map(|name| format!("{:.3}", seconds(name))));
+        line.extend([rank.messages, rank.bytes, rank.particles_migrated].map(|n| n.to_string()));
+        lines.push(line);
+    }
+    lines
 }
 
 /// One line a profile; errors that no profile has are left out.
@@ -113,6 +142,21 @@ fn facts(summary: &Summary, folder: &Path) -> Vec<Vec<String>> {
             summary.particle_steps_per_cpu_second * 1e-6
         ),
     ));
+    let sharing = &summary.decomposition;
+    let all = sharing.particle_steps_computed + sharing.particle_steps_skipped;
+    let left_out = 100.0 * sharing.particle_steps_skipped as f64 / all.max(1) as f64;
+    let mut shared = format!("{left_out:.1} % of particle-steps left out at rest");
+    if summary.ranks > 1 {
+        shared += &format!(
+            ", imbalance {:.3}, {} patches moved, {} particles migrated, {:.1} messages and {:.0} bytes a step",
+            sharing.imbalance,
+            sharing.patches_moved,
+            sharing.particles_migrated,
+            sharing.messages_per_step,
+            sharing.bytes_per_step
+        );
+    }
+    facts.push(("sharing", shared));
     facts.push(("results", folder.display().to_string()));
     facts.into_iter().map(|(name, text)| vec![name.to_owned(), text]).collect()
 }
@@ -177,10 +221,14 @@ warning: linear shape functions ring across cells
   time     L1 %  plateau %  density l1
   0.5 us  0.890   -0.00100           -
   1 us     1.00          -       0.500
+  ranks   patches  particles  compute s  exchange s  wait s  migrate s  balance s  output s  messages     bytes  migrated
+  rank 0        2        850      0.600       0.000   0.100      0.000      0.000     0.000      5224  26120000         7
+  rank 1        2        850      0.600       0.000   0.100      0.000      0.000     0.000      5224  26120000         7
   energy    start 1.000000e1  end 1.100000e1 J/m2  boundaries 5.00e-1  drift 5.0e-2
   momentum  start 8.000000e0  end 8.000000e0 kg m/s/m2  boundaries 0.000000e0  drift 0.0e0
   run       1700 particles, 1000 cells, 2612 steps, 2 ranks x 1 threads, 4 patches
   seconds   1.250 in all, 0.750 in the time loop, 2.000 of CPU, 5.90 M particle-steps per CPU second
+  sharing   25.0 % of particle-steps left out at rest, imbalance 1.200, 1 patches moved, 14 particles migrated, 4.0 messages and 20000 bytes a step
   results   output/flyer
 ";
         assert_eq!(text, expected);

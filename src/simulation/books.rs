@@ -150,3 +150,43 @@ impl<C: Comm> Simulation<'_, C> {
         Err(RunError::Lost { time: self.time, step: self.step, before, now })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use decomp::Serial;
+
+    use super::*;
+    use crate::scene;
+
+    #[test]
+    fn particles_lost_doubled_or_changed_end_the_run() {
+        let text = include_bytes!("../../inputs/sod.json");
+        let sets = ["domain.patches=[4]".to_string()];
+        let scene = scene::parse(text, "sod.json", &sets).unwrap();
+        let faults: [fn(&mut Patch<1>); 3] = [
+            |patch| {
+                patch.block.drop_ghosts();
+                patch.block.remove(&[3]);
+            },
+            |patch| {
+                let row: Vec<f64> = patch.block.columns.iter().map(|c| c[0]).collect();
+                let (id, cell) = (patch.block.ids[0], patch.block.cells[0]);
+                patch.block.drop_ghosts();
+                patch.block.push(id, cell, &row);
+            },
+            |patch| {
+                let specs = patch.block.specs();
+                let mass = specs.iter().position(|s| s.name == "mass").unwrap();
+                patch.block.columns[mass][0] *= 1.0 + 1e-15;
+            },
+        ];
+        for fault in faults {
+            let mut simulation = Simulation::new(&scene, &Serial, 1).unwrap();
+            simulation.advance(scene.scene.time.end).unwrap();
+            assert!(simulation.check_census().is_ok());
+            fault(&mut simulation.patches[1]);
+            let error = simulation.check_census().unwrap_err();
+            assert!(matches!(error, RunError::Lost { step: 1, .. }), "{error}");
+        }
+    }
+}

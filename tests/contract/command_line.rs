@@ -130,6 +130,38 @@ fn quiet_says_nothing_and_else_a_table_stands_at_the_end() {
     assert!(!out.stderr.contains("(chosen)"), "{}", out.stderr);
 }
 
+/// A timeline in Chrome's format, of the steps that were asked for.
+#[test]
+fn a_timeline_is_written() {
+    let home = Home::with(&short());
+    let args = ["scene.json", "--quiet", "--trace", "line.json", "--trace-steps", "2..3"];
+    let patches = ["--set", "domain.patches=[4]", "--set", "decomposition.skip_quiet=false"];
+    home.call(args.into_iter().chain(patches)).end().succeeded();
+    let text = std::fs::read_to_string(home.path().join("line.json")).unwrap();
+    let trace: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let events = trace["traceEvents"].as_array().unwrap();
+    let all = |key: &str| {
+        let spans = events.iter().filter(|e| e["ph"] == "X");
+        let mut values: Vec<u64> =
+            spans.map(|e| e.get(key).unwrap_or(&e["args"][key]).as_u64().unwrap()).collect();
+        values.sort_unstable();
+        values.dedup();
+        values
+    };
+    assert_eq!(all("step"), [2, 3]);
+    assert_eq!(all("tid").last(), Some(&4), "patch 3 has a line");
+    let named = |name: &str| events.iter().any(|e| e["name"] == name);
+    assert!(["scatter", "gather", "exchange rows", "process_name"].into_iter().all(named));
+    for bad in ["0..3", "5..2", "x", "3"] {
+        let args = ["scene.json", "--trace", "line.json", "--trace-steps", bad];
+        let out = home.call(args).end();
+        assert_eq!(out.status.code(), Some(2));
+        assert!(out.stderr.contains("1..200"), "{}", out.stderr);
+    }
+    let out = home.call(["scene.json", "--trace-steps", "1..2"]).end();
+    assert!(!out.status.success() && out.stderr.contains("--trace"), "{}", out.stderr);
+}
+
 #[test]
 fn no_environment_is_needed() {
     let home = Home::with(&short());

@@ -57,6 +57,13 @@ fn the_summary_has_its_fields() {
     has(summary, &["wall_seconds", "loop_wall_seconds", "cpu_seconds"].map(|key| (key, 'n')));
     has(summary, &[("particle_steps_per_cpu_second", 'n'), ("phase_seconds", 'o')]);
     has(summary, &[("patches", 'a'), ("profiles", 'a'), ("energy", 'o'), ("momentum", 'o')]);
+    has(summary, &[("decomposition", 'o')]);
+    let sharing = &summary["decomposition"];
+    has(sharing, &[("imbalance", 'n'), ("bytes_per_step", 'n'), ("messages_per_step", 'n')]);
+    let counts = ["particle_steps_computed", "busiest_particle_steps", "particles_migrated"];
+    has(sharing, &counts.map(|key| (key, 'c')));
+    assert_eq!(sharing["ranks"][0]["particles"], 400);
+    assert!(sharing["ranks"][0]["seconds"]["compute"].as_f64() > Some(0.0));
     assert_eq!(summary["version"], env!("CARGO_PKG_VERSION"));
     assert_eq!(["ranks", "threads", "particles", "cells"].map(|k| run.count(k)), [1, 2, 400, 300]);
     assert_eq!(summary["patches"], json!([3]));
