@@ -40,7 +40,8 @@ pub struct Summary {
     pub loop_wall_seconds: f64,
     /// User CPU time of all ranks \[s\].
     pub cpu_seconds: f64,
-    /// Particles times steps over the CPU time of the time loop, all ranks \[1/s\].
+    /// Particles times steps, those left out at rest among them, over the CPU time of the time
+    /// loop, all ranks \[1/s\].
     pub particle_steps_per_cpu_second: f64,
     /// Wall time of the time loop by what the ranks did, summed over them \[s\].
     pub phase_seconds: BTreeMap<String, f64>,
