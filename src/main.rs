@@ -92,6 +92,14 @@ fn read_scene(args: &SceneArgs) -> Outcome<(Vec<u8>, CheckedScene)> {
     Ok((bytes, checked))
 }
 
+/// Whether a file can be written, found out before a run that would end with it.
+fn check_file(path: &Path) -> Outcome<()> {
+    let opened = std::fs::OpenOptions::new().create(true).append(true).open(path);
+    opened
+        .map(|_| ())
+        .map_err(|e| (BAD_INPUT, format!("{}: cannot write the file: {e}", path.display())))
+}
+
 fn run_scene<C: Comm>(comm: &C, args: &RunArgs, started: Instant) -> Outcome<()> {
     comm.set_stall_timeout(Duration::from_secs_f64(args.stall_timeout));
     let output = args.output.clone().unwrap_or_else(|| default_folder(&args.scene));
@@ -100,6 +108,9 @@ fn run_scene<C: Comm>(comm: &C, args: &RunArgs, started: Instant) -> Outcome<()>
         0 => read_scene(&args.scene()).and_then(|(bytes, checked)| {
             checked.check_memory(scene::available_memory()).map_err(bad)?;
             check_writable(&output, args.keep).map_err(bad)?;
+            if let Some(file) = &args.trace {
+                check_file(file)?;
+            }
             Ok((bytes, checked))
         }),
         _ => Err((BAD_INPUT, String::new())),

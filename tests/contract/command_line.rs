@@ -158,6 +158,10 @@ fn a_timeline_is_written() {
         assert_eq!(out.status.code(), Some(2));
         assert!(out.stderr.contains("1..200"), "{}", out.stderr);
     }
+    // found out before the run, not at its end
+    let out = home.call(["scene.json", "--quiet", "--trace", "none/line.json"]).end();
+    out.failed(&["none/line.json", "cannot write"]);
+    assert_eq!(out.status.code(), Some(2));
     let out = home.call(["scene.json", "--trace-steps", "1..2"]).end();
     assert!(!out.status.success() && out.stderr.contains("--trace"), "{}", out.stderr);
 }
