@@ -175,6 +175,7 @@ impl Ranks<'_> {
 
     /// Runs `exchange` and `phase` on every patch, on the inner ones within the exchange; `ready`
     /// is called on each patch before its phase, asleep or not.
+    // one place for the order of exchange and phase; a struct of its arguments would be used once
     #[allow(clippy::too_many_arguments)]
     fn around(
         &mut self,

@@ -13,6 +13,7 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_flyer-mpm");
 /// Several ranks that wait for each other are slow where cores are short, so they run alone.
 static CORES: RwLock<()> = RwLock::new(());
 
+// the guards are held for their drop, never read
 enum Turn {
     Shared(#[allow(dead_code)] RwLockReadGuard<'static, ()>),
     Alone(#[allow(dead_code)] RwLockWriteGuard<'static, ()>),
