@@ -13,7 +13,7 @@ pub struct Fields {
     pub inverse: usize,
     /// Lumped velocity vL [m/s]; momentum while it is being summed.
     pub lumped: usize,
-    /// Velocity at the start of the step, v [m/s].
+    /// Velocity at the start of the step, v [m/s]: without a filter the lumped one itself.
     pub velocity: usize,
     /// Velocity at the end of the step, v' [m/s].
     pub velocity_star: usize,
@@ -21,42 +21,46 @@ pub struct Fields {
     pub acceleration: usize,
     /// Velocity whose gradient does the work, w [m/s].
     pub work: usize,
-    /// K^(k-1) vL, the last term of the filter's series [m/s].
-    pub remainder: usize,
+    /// K^(k-1) vL, the last term of the filter's series [m/s]; with a filter.
+    pub remainder: Option<usize>,
     /// Scratch for a product.
     pub scratch: usize,
     /// Second scratch for a product.
     pub scratch2: usize,
     /// Fraction of the node's volume that holds material [-], with an edge mask.
     pub volume: usize,
-    /// Relaxation: summed compliance and its inverse, the projected pressure, its series' term.
+    /// Relaxation: summed compliance and its inverse, the projected pressure, and its first term,
+    /// in the end its last.
     pub relaxation: [usize; 4],
     /// Number of fields.
     pub count: usize,
 }
 
 impl Fields {
-    /// The fields for a scheme with or without an edge mask and pressure relaxation.
-    pub fn new(masked: bool, relaxed: bool) -> Self {
-        let mut count = 10;
+    /// The fields for a scheme with or without a filter, an edge mask and pressure relaxation.
+    pub fn new(filtered: bool, masked: bool, relaxed: bool) -> Self {
+        let mut count = 8;
         let mut add = |n: usize, wanted: bool| {
             let at = if wanted { count } else { usize::MAX / 2 };
             count += if wanted { n } else { 0 };
             at
         };
+        let lumped = 2;
+        let velocity = if filtered { add(1, true) } else { lumped };
+        let remainder = filtered.then(|| add(1, true));
         let volume = add(1, masked);
         let r = add(4, relaxed);
         Fields {
             mass: 0,
             inverse: 1,
-            lumped: 2,
-            velocity: 3,
-            velocity_star: 4,
-            acceleration: 5,
-            work: 6,
-            remainder: 7,
-            scratch: 8,
-            scratch2: 9,
+            lumped,
+            velocity,
+            velocity_star: 3,
+            acceleration: 4,
+            work: 5,
+            remainder,
+            scratch: 6,
+            scratch2: 7,
             volume,
             relaxation: [r, r + 1, r + 2, r + 3],
             count,
@@ -108,13 +112,6 @@ impl Band {
     /// y = M x on the nodes `range`, which must lie at least the band's width from the ends.
     pub fn product(&self, x: &[f64], range: std::ops::Range<usize>, y: &mut [f64]) {
         self.each_product(x, range, y, |product, _| product);
-    }
-
-    /// y = x - d M x on the nodes `range`, d a diagonal matrix: one term of a series from the one
-    /// before it.
-    pub fn next_term(&self, x: &[f64], d: &[f64], range: std::ops::Range<usize>, y: &mut [f64]) {
-        let (x_here, d) = (&x[range.clone()], &d[range.clone()]);
-        self.each_product(x, range, y, |product, i| x_here[i] - d[i] * product);
     }
 
     /// y = t + x - d M x on the nodes `range`: a sum of a series and its next by Horner's rule.

@@ -105,6 +105,15 @@ impl Run {
     }
 }
 
+/// A run between two patches of a rank that leaves values as they are.
+#[derive(Clone, Copy, Debug)]
+struct PlainRun {
+    /// Places of the patches in the rank's list.
+    from: u32,
+    to: u32,
+    run: Run,
+}
+
 /// Pairs of places as runs.
 fn runs(pairs: impl Iterator<Item = (u32, u32)>, reversed: bool) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
@@ -129,7 +138,9 @@ fn runs(pairs: impl Iterator<Item = (u32, u32)>, reversed: bool) -> Vec<Run> {
 #[derive(Clone, Debug)]
 pub struct NodeExchange<const D: usize> {
     layout: Layout<D>,
-    /// Between patches of this rank.
+    /// Between patches of this rank, those that leave values as they are.
+    plain: Vec<PlainRun>,
+    /// Between patches of this rank, or within one, all others.
     local: Vec<Copy<D>>,
     /// To each rank, by rank.
     sends: Vec<Vec<Copy<D>>>,
@@ -152,6 +163,7 @@ impl<const D: usize> NodeExchange<D> {
         patches.iter().enumerate().for_each(|(k, &p)| place[p] = k);
         let mut plan = NodeExchange {
             layout: layout.clone(),
+            plain: Vec::new(),
             local: Vec::new(),
             sends: Vec::new(),
             send_ranks: Vec::new(),
@@ -200,7 +212,10 @@ impl<const D: usize> NodeExchange<D> {
                     flip: image.flip,
                     runs: runs(nodes, image.flip[0]),
                 };
-                if taker == giver {
+                if taker == giver && from != to && !image.flip.contains(&true) {
+                    let (from, to) = (place[from] as u32, place[to] as u32);
+                    plan.plain.extend(copy.runs.iter().map(|&run| PlainRun { from, to, run }));
+                } else if taker == giver {
                     plan.local.push(copy);
                 } else if giver == rank {
                     add(&mut plan.send_ranks, &mut plan.sends, taker, copy);
@@ -210,6 +225,8 @@ impl<const D: usize> NodeExchange<D> {
                 }
             }
         }
+        // any order will do within a rank; alike ones in a row are cheaper than by turns
+        plan.plain.sort_by_key(|p| p.run.length);
         plan.messages = vec![Vec::new(); plan.sends.len()];
         plan.received = vec![Vec::new(); plan.receives.len()];
         plan
@@ -253,8 +270,9 @@ impl<const D: usize> NodeExchange<D> {
                 }
             }
         }
-        let local = &self.local;
+        let (plain, local) = (&self.plain, &self.local);
         let mut on_this_rank = || {
+            copy_plain(patches, plain, fields);
             for copy in local {
                 copy_fields(patches, copy, fields);
             }
@@ -284,20 +302,41 @@ impl<const D: usize> NodeExchange<D> {
     }
 }
 
-/// Copies a run. In one dimension it is a few nodes, which a call of memcpy would cost more than.
-fn copy_short(from: &[f64], to: &mut [f64]) {
-    fn of<const N: usize>(from: &[f64], to: &mut [f64]) {
-        let (from, to): (&[f64; N], &mut [f64; N]) =
-            (from.try_into().expect("N nodes"), to.try_into().expect("N nodes"));
-        *to = *from;
+/// Copies runs that are sorted by length. In one dimension they are a few nodes, which a call of
+/// memcpy each would cost more than.
+fn copy_plain<const D: usize>(
+    patches: &mut [impl AsMut<NodeArrays<D>>],
+    runs: &[PlainRun],
+    fields: &[(usize, Parity)],
+) {
+    for alike in runs.chunk_by(|a, b| a.run.length == b.run.length) {
+        match alike[0].run.length {
+            1 => copy_alike::<D, 1>(patches, alike, fields),
+            2 => copy_alike::<D, 2>(patches, alike, fields),
+            3 => copy_alike::<D, 3>(patches, alike, fields),
+            4 => copy_alike::<D, 4>(patches, alike, fields),
+            5 => copy_alike::<D, 5>(patches, alike, fields),
+            6 => copy_alike::<D, 6>(patches, alike, fields),
+            _ => copy_alike::<D, 0>(patches, alike, fields),
+        }
     }
-    match from.len() {
-        1 => of::<1>(from, to),
-        2 => of::<2>(from, to),
-        3 => of::<3>(from, to),
-        4 => of::<4>(from, to),
-        5 => of::<5>(from, to),
-        _ => to.copy_from_slice(from),
+}
+
+/// Copies runs of `N` nodes, or of any length for 0.
+fn copy_alike<const D: usize, const N: usize>(
+    patches: &mut [impl AsMut<NodeArrays<D>>],
+    runs: &[PlainRun],
+    fields: &[(usize, Parity)],
+) {
+    for &PlainRun { from, to, run } in runs {
+        let [giver, taker] =
+            patches.get_disjoint_mut([from as usize, to as usize]).expect("they differ");
+        let (giver, taker) = (giver.as_mut(), taker.as_mut());
+        let length = if N == 0 { run.length as usize } else { N };
+        for &(field, _) in fields {
+            let given = &giver.fields[field][run.from as usize..][..length];
+            taker.fields[field][run.to as usize..][..length].copy_from_slice(given);
+        }
     }
 }
 
@@ -331,12 +370,7 @@ fn copy_fields<const D: usize>(
         let sign = sign(parity, &copy.flip);
         let (from, to) = (&giver.fields[field], &mut taker.fields[field]);
         for run in &copy.runs {
-            let taken = &mut to[run.targets()];
-            if run.reversed || sign != 1.0 {
-                taken.iter_mut().zip(run.sources()).for_each(|(t, f)| *t = sign * from[f]);
-            } else {
-                copy_short(&from[run.from as usize..][..taken.len()], taken);
-            }
+            to[run.targets()].iter_mut().zip(run.sources()).for_each(|(t, f)| *t = sign * from[f]);
         }
     }
 }

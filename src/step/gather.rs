@@ -124,7 +124,7 @@ impl Stepper {
             let nodal = |k: usize| &patch.nodes.fields[k][..];
             let (lumped, start, star) =
                 (nodal(f.lumped), nodal(f.velocity), nodal(f.velocity_star));
-            let (remainder, work) = (nodal(f.remainder), nodal(f.work));
+            let (remainder, work) = (f.remainder.map(nodal), nodal(f.work));
             let mid = c.jacobian_mid.expect("mid-point stepping has the column");
             let [x, v, j, e, d, mass, j_mid, stress] = patch.block.columns_mut([
                 c.position,
@@ -144,7 +144,7 @@ impl Stepper {
                 let (new, heat) = match s.scheme {
                     Scheme::Series { .. } => {
                         let new = dot(values, v1);
-                        let heat = if s.filter_heat {
+                        let heat = if let Some(remainder) = remainder.filter(|_| s.filter_heat) {
                             let lost: &[f64; K] = window(remainder, first);
                             let both = std::array::from_fn(|k| lost[k] * mean[k]);
                             let rest = old - dot(values, v0);

@@ -136,10 +136,13 @@ impl Stepper {
             .map(|((b, m), c)| m.sound_speed_at(b.pressure).max(c.velocity[0].abs()))
             .fold(0.0, f64::max);
         let densest = bodies.iter().map(|b| materials[&b.material].density).fold(0.0, f64::max);
+        let scheme: Scheme = method.transfer.into();
+        let filtered = matches!(scheme, Scheme::Series { .. });
+        let relaxed = method.pressure_relaxation.is_some();
         Stepper {
             columns: Columns::new(scene),
-            fields: Fields::new(method.edge_mask.is_some(), method.pressure_relaxation.is_some()),
-            scheme: method.transfer.into(),
+            fields: Fields::new(filtered, method.edge_mask.is_some(), relaxed),
+            scheme,
             stepping: method.stepping,
             stress_update: method.stress_update,
             compatible: method.energy == EnergyUpdate::Compatible,

@@ -30,14 +30,14 @@ impl Stepper {
     }
 
     fn scatter_pressure<const K: usize>(&self, patch: &mut Patch<1>) {
-        let [weight, inverse, _, term] = self.fields.relaxation;
+        let [weight, inverse, sum, term] = self.fields.relaxation;
         let rows = patch.block.rows();
         let (Some(p), Some(w)) = (self.columns.pressure_mid, self.columns.compliance) else {
             return;
         };
         let (p, w) = (&patch.block.columns[p][..rows], &patch.block.columns[w][..rows]);
         patch.compliance_band.clear(patch.nodes.nodes.count(), K);
-        let [weight, inverse, term] = patch.nodes.fields_mut([weight, inverse, term]);
+        let [weight, inverse, sum, term] = patch.nodes.fields_mut([weight, inverse, sum, term]);
         weight.fill(0.0);
         inverse.fill(0.0);
         term.fill(0.0);
@@ -55,6 +55,7 @@ impl Stepper {
             inverse[i] = if weight[i] > 0.0 { 1.0 / weight[i] } else { 0.0 };
             term[i] = cut(term[i] * inverse[i], self.still_pressure);
         }
+        sum.copy_from_slice(term);
     }
 
     /// Moves volume and energy of the own rows.

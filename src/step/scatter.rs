@@ -45,7 +45,7 @@ impl Stepper {
         force: bool,
     ) {
         let (c, f) = (&self.columns, &self.fields);
-        for field in [f.mass, f.lumped, f.acceleration, f.scratch] {
+        for field in [f.mass, f.lumped, f.acceleration, f.scratch].into_iter().chain(f.remainder) {
             patch.nodes.fields[field].fill(0.0);
         }
         if MATRIX {

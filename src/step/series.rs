@@ -13,35 +13,20 @@ use super::{Nodal, ODD, Stepper, relaxation};
 use crate::patch::Patch;
 use crate::transfer::{Scheme, cut};
 
-/// A series s = sum_(l<order) t_l with t_l = K t_(l-1).
+/// A series s = sum_(l<order) t_l with t_l = K t_(l-1), summed up by Horner's rule,
+/// s' = t_0 + K s: one pass over the nodes a term.
 #[derive(Clone, Copy)]
 struct Series {
     /// The field of the sum; in the beginning t_0 on the patch's own nodes.
     sum: usize,
+    /// The field that keeps t_0.
+    first: usize,
+    /// Where the last term is wanted too, what the last product adds to the sum.
+    last: Option<usize>,
     order: u32,
-    way: Way,
     matrix: Matrix,
     mask: Mask,
     parity: Parity,
-}
-
-/// How a series is summed up.
-#[derive(Clone, Copy)]
-enum Way {
-    /// Term by term, the field in the end the last one: it is a result too.
-    Terms(usize),
-    /// By Horner's rule, s' = t_0 + K s, with t_0 kept in the field: one pass a term.
-    Horner(usize),
-}
-
-impl Series {
-    /// The field whose halo each round needs.
-    fn exchanged(&self) -> usize {
-        match self.way {
-            Way::Terms(term) => term,
-            Way::Horner(_) => self.sum,
-        }
-    }
 }
 
 /// The matrix in K.
@@ -59,12 +44,12 @@ enum Mask {
     After,
 }
 
-/// Adds one field to another.
-fn accumulate(patch: &mut Patch<1>, sum: usize, term: usize) {
+/// The last term of a series, from its sum and the sum before, which `last` holds.
+fn find_last(patch: &mut Patch<1>, sum: usize, last: usize) {
     let span = patch.span.clone();
-    let [sum, term] = patch.nodes.fields_mut([sum, term]);
-    for (sum, term) in sum[span.clone()].iter_mut().zip(&term[span]) {
-        *sum += *term;
+    let [sum, last] = patch.nodes.fields_mut([sum, last]);
+    for (sum, last) in sum[span.clone()].iter().zip(&mut last[span]) {
+        *last = sum - *last;
     }
 }
 
@@ -99,44 +84,35 @@ impl Stepper {
         patch.has_edge = volume.iter().zip(inverse).any(|(v, i)| *v < least && *i > 0.0);
     }
 
-    /// The next term of a series, or the sum with it, on the nodes that the patch computes;
-    /// beyond them it is what the next exchange makes of it.
-    fn next_term(&self, patch: &mut Patch<1>, series: &Series) {
-        let field = series.exchanged();
+    /// The sum of a series with one more term, on the nodes that the patch computes; beyond them
+    /// it is what the next exchange makes of it. `ends` tells that it is the last term.
+    fn next_sum(&self, patch: &mut Patch<1>, series: &Series, ends: bool) {
+        let Series { sum, first, .. } = *series;
         if series.mask == Mask::Before {
-            self.mask(patch, field);
+            self.mask(patch, sum);
         }
         let (band, inverse) = match series.matrix {
             Matrix::Mass => (&patch.band, self.fields.inverse),
             Matrix::Compliance => (&patch.compliance_band, self.fields.relaxation[1]),
         };
-        let (scratch, active) = (self.fields.scratch, patch.active.clone());
-        match series.way {
-            Way::Terms(term) => {
-                let [inverse, x, y] = patch.nodes.fields_mut([inverse, term, scratch]);
-                band.next_term(x, inverse, active, y);
-            }
-            Way::Horner(first) => {
-                let [inverse, x, first, y] =
-                    patch.nodes.fields_mut([inverse, series.sum, first, scratch]);
-                band.next_sum(x, inverse, first, active, y);
-            }
-        }
+        let scratch = self.fields.scratch;
+        let [inverse, x, t, y] = patch.nodes.fields_mut([inverse, sum, first, scratch]);
+        band.next_sum(x, inverse, t, patch.active.clone(), y);
         // nodes without material hold zeros in both
-        patch.nodes.fields.swap(field, scratch);
+        patch.nodes.fields.swap(sum, scratch);
         if series.mask == Mask::After {
             self.mask_product(patch, series);
         }
+        if let (true, Some(last)) = (ends, series.last) {
+            patch.nodes.fields.swap(scratch, last);
+        }
     }
 
-    /// Takes nodes with little material out of what a product has just made: of a sum by Horner's
-    /// rule t_0 stays.
+    /// Takes nodes with little material out of what a product has just made: t_0 stays.
     fn mask_product(&self, patch: &mut Patch<1>, series: &Series) {
-        let (Some(least), Way::Horner(first)) = (self.edge_mask, series.way) else { return };
-        if !patch.has_edge {
-            return;
-        }
-        let [volume, sum, first] = patch.nodes.fields_mut([self.fields.volume, series.sum, first]);
+        let Some(least) = self.edge_mask.filter(|_| patch.has_edge) else { return };
+        let [volume, sum, first] =
+            patch.nodes.fields_mut([self.fields.volume, series.sum, series.first]);
         for i in patch.active.clone() {
             if volume[i] < least {
                 sum[i] = first[i];
@@ -159,20 +135,17 @@ impl Stepper {
             let going = || all.iter().filter(move |s| s.order > l);
             let mut fields: SmallVec<[(usize, Parity); 6]> = SmallVec::new();
             fields.extend(others.iter().copied().filter(|_| l == 0));
-            fields.extend(going().map(|s| (s.exchanged(), s.parity)));
+            fields.extend(going().map(|s| (s.sum, s.parity)));
             nodal.refresh(&fields);
             nodal.each(name, |patch| {
                 if l == 0 && !others.is_empty() {
                     self.find_edge(patch);
                 }
                 for series in going() {
-                    match series.way {
-                        Way::Horner(_) => {}
-                        Way::Terms(term) if l == 0 => copy(patch, term, series.sum),
-                        Way::Terms(term) => accumulate(patch, series.sum, term),
-                    }
                     if l + 1 < series.order {
-                        self.next_term(patch, series);
+                        self.next_sum(patch, series, l + 2 == series.order);
+                    } else if let Some(last) = series.last {
+                        find_last(patch, series.sum, last);
                     }
                 }
                 if l + 1 == rounds {
@@ -192,20 +165,19 @@ impl Stepper {
         };
         let velocity = Series {
             sum: f.velocity,
+            first: f.lumped,
+            // what the filter's heat is counted from
+            last: f.remainder,
             order,
-            // the last term is what the filter's heat is counted from
-            way: match self.scheme {
-                Scheme::Series { .. } => Way::Terms(f.remainder),
-                Scheme::Blend(_) | Scheme::Affine => Way::Terms(f.lumped),
-            },
             matrix: Matrix::Mass,
             mask: Mask::No,
             parity: ODD,
         };
         let force = Series {
             sum: f.acceleration,
+            first: f.scratch2,
+            last: None,
             order: force_order,
-            way: Way::Horner(f.scratch2),
             mask: Mask::Before,
             ..velocity
         };
@@ -214,12 +186,11 @@ impl Stepper {
 
     /// The first terms of the series of velocity and force, from lumped velocity and f/m.
     pub(super) fn start_series(&self, patch: &mut Patch<1>) {
-        let f = &self.fields;
         for series in self.velocity_series() {
-            match series.way {
-                Way::Terms(term) => copy(patch, f.lumped, term),
-                Way::Horner(first) if series.order > 1 => copy(patch, series.sum, first),
-                Way::Horner(_) => {}
+            match series.sum == self.fields.velocity {
+                true => copy(patch, series.first, series.sum),
+                false if series.order > 1 => copy(patch, series.sum, series.first),
+                false => {}
             }
         }
     }
@@ -232,11 +203,12 @@ impl Stepper {
         let [velocity, force] = self.velocity_series();
         let mut all: SmallVec<[Series; 3]> = [velocity, force].into_iter().collect();
         if relax {
-            let [_, _, sum, term] = f.relaxation;
+            let [_, _, sum, first] = f.relaxation;
             all.push(Series {
                 sum,
+                first,
+                last: Some(first),
                 order: relaxation::ORDER,
-                way: Way::Terms(term),
                 matrix: Matrix::Compliance,
                 mask: Mask::No,
                 parity: Parity::Even,
@@ -311,7 +283,8 @@ impl Stepper {
         let series = Series {
             sum: self.fields.work,
             order,
-            way: Way::Horner(self.fields.scratch2),
+            first: self.fields.scratch2,
+            last: None,
             matrix: Matrix::Mass,
             mask: Mask::After,
             parity: ODD,
