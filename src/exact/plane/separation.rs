@@ -5,7 +5,7 @@
 //! not stick part there; the rest of the fan then runs into the flyer's face, now free, and the
 //! target's face moves on at the velocity of its own release to P = 0. The waves left in the
 //! flyer steepen and come to its face again and again, so the gap does not grow on a straight
-//! line.
+//! line. Holds until the plates meet again, if they ever do.
 //!
 //! Source of the states: the release isentropes of [`crate::exact::release`]; everything is read
 //! from front tracking ([`Impact::solve`]), whose snapshots also hold the profiles after parting.
