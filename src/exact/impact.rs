@@ -9,7 +9,9 @@
 use super::chain::{Chain, Plate};
 use super::profile::{History, HistoryPoint, Landmarks, Path, PathKind, Point, Profile};
 use super::release::Release;
-use super::tracking::{INTERFACE_RECORD, REAR_RECORD, Setup, Tracker};
+use super::tracking::{
+    FIRST_PROBE, FLYER_FACE_RECORD, INTERFACE_RECORD, REAR_RECORD, Setup, Tracker,
+};
 use super::{ExactError, finite};
 use crate::material::MieGruneisen;
 
@@ -69,6 +71,8 @@ pub struct Solution {
     pub snapshots: Vec<Snapshot>,
     /// The target's struck face.
     pub interface: History,
+    /// The flyer's face on the target: apart from it once the plates have parted.
+    pub flyer_face: History,
     /// The flyer's free rear.
     pub flyer_rear: History,
     /// The target's rear, as long as nothing has reached it.
@@ -251,6 +255,7 @@ impl Impact {
             p: 0.0,
         };
         let interface = self.history(&tracker, INTERFACE_RECORD, Plate::Target, 0.0);
+        let flyer_face = self.history(&tracker, FLYER_FACE_RECORD, Plate::Flyer, 0.0);
         let flyer_rear = self.history(&tracker, REAR_RECORD, Plate::Flyer, -thickness);
         let target_rear = History { points: vec![at_rest(0.0), at_rest(end)] };
         let lines = [
@@ -259,12 +264,14 @@ impl Impact {
             (&target_rear, Plate::Target, PathKind::FreeSurface),
         ];
         let paths = self.paths(&tracker, lines);
-        let of_probe =
-            |(k, &(plate, x)): (usize, &(Plate, f64))| self.history(&tracker, k + 2, plate, x);
+        let of_probe = |(k, &(plate, x)): (usize, &(Plate, f64))| {
+            self.history(&tracker, FIRST_PROBE + k, plate, x)
+        };
         Ok(Solution {
             snapshots: snapshots.into_iter().flatten().collect(),
             tracers: probes.iter().enumerate().map(of_probe).collect(),
             interface,
+            flyer_face,
             flyer_rear,
             target_rear,
             paths,

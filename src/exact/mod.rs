@@ -5,10 +5,12 @@
 //!   (`tracking` stands behind it: front tracking in Lagrangian coordinates);
 //! - [`release`]: the closed-form states and times of that solution, by release isentropes;
 //! - [`riemann`]: two ideal gases at a diaphragm; [`wall`]: one body run into a wall;
+//! - [`plane`]: references in two dimensions, and what a plate impact is there;
 //! - [`mod@score`]: how a computed profile is held against one of these.
 //!
-//! Knows materials, but no particles, grid, scene or files. One dimension, uniaxial strain,
-//! no strength, no heat conduction. SI units; pressure is positive in compression.
+//! Knows materials, but no particles, grid, scene or files. But for [`plane`], one dimension,
+//! uniaxial strain; no strength (but for [`plane::vortex`]), no heat conduction. SI units;
+//! pressure is positive in compression.
 
 pub mod chain;
 #[cfg(test)]
@@ -16,6 +18,7 @@ mod checks;
 mod collision;
 pub mod impact;
 mod isentrope;
+pub mod plane;
 pub mod profile;
 pub mod release;
 pub mod riemann;
@@ -27,6 +30,10 @@ mod wave;
 
 pub use chain::{Chain, ChainState, ChainWave, Plate, WaveKind};
 pub use impact::{Accuracy, Impact, ImpactBody, Snapshot, Solution, Tracer};
+pub use plane::{
+    Displaced, EdgeRelease, Gap, Gresho, MassPoint, Noh, PlanePoint, PlaneWave, Separation,
+    ShearLayer, ShearProfile, Symmetry, Turned, Vortex,
+};
 pub use profile::{History, HistoryPoint, Landmarks, Path, PathKind, Point, Profile};
 pub use release::Release;
 pub use riemann::{GasState, Riemann};

@@ -31,11 +31,13 @@ const APART: f64 = 5.0;
 type Bend<const N: usize> = (f64, [f64; N], [f64; N]);
 
 /// The smooth solution from `start` (values `first`) to `end`: corners, doubled where it jumps.
+/// The value numbered `measure` tells how strong a wave is: every wave must change it.
 pub(super) fn smooth<const N: usize>(
     start: f64,
     end: f64,
     first: [f64; N],
     steps: &[Step<N>],
+    measure: usize,
 ) -> Vec<(f64, [f64; N])> {
     let mut out = Vec::with_capacity(2 * steps.len() + 4);
     let (mut from, mut before) = (start, first);
@@ -43,7 +45,7 @@ pub(super) fn smooth<const N: usize>(
     loop {
         let length = rest.iter().position(|s| s.strong).unwrap_or(rest.len());
         let to = rest.get(length).map_or(end, |s| s.at);
-        segment([from, to], before, &rest[..length], &mut out);
+        segment([from, to], before, &rest[..length], measure, &mut out);
         match rest.get(length) {
             Some(strong) => (from, before, rest) = (strong.at, strong.after, &rest[length + 1..]),
             None => return out,
@@ -66,6 +68,7 @@ fn segment<const N: usize>(
     limits: [f64; 2],
     first: [f64; N],
     steps: &[Step<N>],
+    measure: usize,
     out: &mut Vec<(f64, [f64; N])>,
 ) {
     let mut value = first;
@@ -82,7 +85,7 @@ fn segment<const N: usize>(
             })
             .collect();
         for i in 0..own.len() {
-            spread(&own, i, limits, &mut bends, &mut value);
+            spread(&own, i, limits, measure, &mut bends, &mut value);
         }
     }
     bends.retain(|b| b.0 < limits[1]);
@@ -115,12 +118,13 @@ fn spread<const N: usize>(
     own: &[(&Step<N>, [f64; N])],
     i: usize,
     limits: [f64; 2],
+    measure: usize,
     bends: &mut Vec<Bend<N>>,
     start: &mut [f64; N],
 ) {
     let (step, jump) = &own[i];
     // contacts have no jump of pressure: theirs is told by the last of the values
-    let size = |j: &[f64; N]| if step.family == 1 { j[N - 1].abs() } else { j[0].abs() };
+    let size = |j: &[f64; N]| if step.family == 1 { j[N - 1].abs() } else { j[measure].abs() };
     if step.edge || jump.iter().all(|&j| j == 0.0) {
         return;
     }
@@ -221,7 +225,7 @@ mod tests {
     fn straight_waves_of_two_families_are_exact() {
         let mut parts = ramp(0, |x| x);
         parts.extend(ramp(2, |x| 1.3 + 0.61 * (x - 1.0)));
-        let out = smooth(0.0, 3.0, [0.0], &build(parts));
+        let out = smooth(0.0, 3.0, [0.0], &build(parts), 0);
         for k in 0..=60 {
             let x = 0.05 * k as f64;
             let want = (x - 1.0).clamp(0.0, 1.0) + ((x - 1.3) / 0.61).clamp(0.0, 1.0);
@@ -234,7 +238,7 @@ mod tests {
         // half a ramp, then a jump to 5 at x = 1.42
         let mut steps: Vec<_> = build(ramp(2, |x| x)).into_iter().filter(|s| s.at < 1.42).collect();
         steps.push(Step { strong: true, ..weak(1.42, 2, 5.0) });
-        let out = smooth(0.0, 2.0, [0.0], &steps);
+        let out = smooth(0.0, 2.0, [0.0], &steps, 0);
         for x in [0.5, 1.01, 1.2, 1.41999] {
             assert!((value(&out, x) - f64::max(x - 1.0, 0.0)).abs() < 1e-4, "{x}");
         }

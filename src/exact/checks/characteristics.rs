@@ -2,7 +2,8 @@
 //! its own a simple wave, so both Riemann invariants u +- I, I = int C dchi, are constant along
 //! their characteristics. The net is made of the fan's characteristics and of those that they
 //! send back from the interface. Valid until a wave in the flyer steepens into a shock, or the
-//! fan catches the target's shock.
+//! fan catches the target's shock. Where the pressure on the interface would fall below 0 the
+//! plates part, and the flyer's face is free from then on.
 
 use crate::exact::{Impact, Point, Profile};
 use crate::material::{EquationOfState, MieGruneisen};
@@ -20,11 +21,11 @@ pub(super) struct Isentrope {
 const ENTRIES: usize = 20_000;
 
 impl Isentrope {
-    /// From the state behind a shock of velocity jump `up` down to a little below p = 0.
+    /// From the state behind a shock of velocity jump `up` down to a tension of chi = -0.08.
     pub fn new(m: &MieGruneisen, up: f64) -> Isentrope {
         let us = m.c0 + m.s * up;
         let (top, e_top) = (up / us, 0.5 * up * up);
-        let d = -(top + 0.02) / ENTRIES as f64;
+        let d = -(top + 0.08) / ENTRIES as f64;
         let pressure = |chi: f64, e: f64| m.pressure(1.0 - chi, e);
         let speed = |chi: f64, p: f64| ((m.cold_slope(chi) + m.gamma0 * p) / m.rho0).sqrt();
         let mut out = Isentrope { chi: vec![], p: vec![], c: vec![], e: vec![], i: vec![] };
@@ -73,22 +74,35 @@ struct Node {
     c: f64,
 }
 
-/// The target's profiles at `times`, from `n` characteristics in the fan.
-pub fn target(impact: &Impact, times: &[f64], n: usize) -> Vec<Profile> {
+/// What the fan has made of the interface when one of its characteristics arrives there.
+#[derive(Clone, Copy)]
+pub struct Arrival {
+    /// Time [s].
+    pub t: f64,
+    /// Pressure that touching plates would have [Pa]; 0 once they are apart.
+    pub p: f64,
+    /// I in the target [m/s]: its face moves at u2 + I.
+    pub in_target: f64,
+    /// Velocity of the flyer's face [m/s].
+    pub flyer_face: f64,
+}
+
+/// The interface until `last`, from `n` characteristics in the fan.
+pub fn interface(impact: &Impact, last: f64, n: usize) -> Vec<Arrival> {
     let release = impact.release(4).unwrap();
-    let (flyer, rho0) = (impact.flyer.material, impact.target.material.rho0);
+    let flyer = impact.flyer.material;
     let (u2, l) = (release.states[0].u, impact.thickness());
     let in_flyer = Isentrope::new(&flyer, impact.speed - u2);
     let in_target = Isentrope::new(&impact.target.material, u2);
     let free = Isentrope::read(&in_flyer.p, &in_flyer.i, 0.0);
     let s0 = u2;
-    let last = times.iter().fold(0.0, |a: f64, &b| a.max(b));
+    let free_target = Isentrope::read(&in_target.p, &in_target.i, 0.0);
     let corner = |r: f64| Node { t: release.rear_time, x: -l, c: in_flyer.c(0.5 * (r - s0)) };
     // invariants of the left-going characteristics, and the points on the last right-going one
     let mut s: Vec<f64> = Vec::new();
     let mut row: Vec<Node> = Vec::new();
-    // what the interface sends into the target: time, I in the target
-    let mut sent: Vec<(f64, f64)> = Vec::new();
+    let mut arrivals: Vec<Arrival> = Vec::new();
+    let mut parted = false;
     for j in 0.. {
         let first = j as isize - n as isize - 1;
         let (r, mut node, from) = if first < 0 {
@@ -120,17 +134,35 @@ pub fn target(impact: &Impact, times: &[f64], n: usize) -> Vec<Profile> {
             let i_t = Isentrope::read(&in_target.p, &in_target.i, p);
             if r - i_f > u2 + i_t { low = p } else { high = p }
         }
-        let i_f = Isentrope::read(&in_flyer.p, &in_flyer.i, low);
+        let p = if parted { 0.0 } else { low };
+        parted |= low < 0.0;
+        let (i_f, in_target) = if parted {
+            (free, free_target)
+        } else {
+            let i_f = Isentrope::read(&in_flyer.p, &in_flyer.i, low);
+            (i_f, r - i_f - u2)
+        };
         let c = in_flyer.c(i_f);
         let t = node.t - node.x / (0.5 * (node.c + c));
         next.push(Node { t, x: 0.0, c });
         s.push(r - 2.0 * i_f);
         row = next;
-        sent.push((t, r - i_f - u2));
+        arrivals.push(Arrival { t, p, in_target, flyer_face: r - i_f });
         if t > last {
             break;
         }
     }
+    arrivals
+}
+
+/// The target's profiles at `times`, from `n` characteristics in the fan.
+pub fn target(impact: &Impact, times: &[f64], n: usize) -> Vec<Profile> {
+    let last = times.iter().fold(0.0, |a: f64, &b| a.max(b));
+    let sent: Vec<(f64, f64)> =
+        interface(impact, last, n).iter().map(|q| (q.t, q.in_target)).collect();
+    let release = impact.release(4).unwrap();
+    let (u2, rho0) = (release.states[0].u, impact.target.material.rho0);
+    let in_target = Isentrope::new(&impact.target.material, u2);
     let profile = |&time: &f64| {
         // Lagrangian place and I in the target, from the shock back
         let mut points = vec![(release.target_shock * time, 0.0)];

@@ -4,7 +4,7 @@ use super::super::ExactError;
 use super::super::collision::{Outgoing, collide, set_free};
 use super::super::wave::{State, jump};
 use super::sending::{Leaving, Trail};
-use super::{Front, INTERFACE_RECORD, Kind, NONE, REAR_RECORD, Record, Tracker};
+use super::{FLYER_FACE_RECORD, Front, INTERFACE_RECORD, Kind, NONE, REAR_RECORD, Record, Tracker};
 use crate::material::MieGruneisen;
 
 /// Two small fronts merge if together they are below this many quanta.
@@ -262,6 +262,7 @@ impl Tracker {
             self.fronts[i].right = right;
         }
         let before = self.fronts[i].prev;
+        let mut parted = false;
         let [place_l, place_r] = self.faces.x;
         if let Kind::Edge(kind) = came {
             if a.is_some() || !self.faces.open {
@@ -290,7 +291,9 @@ impl Tracker {
                 .ok_or(failed.clone())?;
                 if out.right_star.p < -1e-6 * self.quantum * self.setup.wavelets as f64 {
                     self.faces.open = true;
-                    self.separation_time.get_or_insert(self.time);
+                    parted = true;
+                    let t = self.parting_time(right.p, out.right_star.p);
+                    self.separation_time.get_or_insert(t);
                 } else {
                     waves =
                         Some((Some((out.left, out.left_star)), Some((out.right, out.right_star))));
@@ -322,13 +325,28 @@ impl Tracker {
                 self.send_right(i, &target, &right, 0.0, wave);
             }
         }
-        let star = self.fronts[i].right;
-        if b.is_some() || !self.faces.open || self.separation_time == Some(self.time) {
+        let [flyer_star, star] = self.facing();
+        let both = !self.faces.open || parted;
+        if b.is_some() || both {
             self.record(INTERFACE_RECORD, family, came, &star);
+        }
+        if a.is_some() || both {
+            self.record(FLYER_FACE_RECORD, family, came, &flyer_star);
         }
         self.foresee_closing();
         self.foresee_range(before, after);
         Ok(())
+    }
+
+    /// When the pressure on the interface reached 0, given that the front that comes now would
+    /// bring it from `before` to `after` < 0. The true pressure is half-way at each front.
+    fn parting_time(&self, before: f64, after: f64) -> f64 {
+        let now = 0.5 * (before + after);
+        let earlier = &self.records[INTERFACE_RECORD];
+        let [.., start, last] = earlier.as_slice() else { return self.time };
+        let then = 0.5 * (start.after[0] + last.after[0]);
+        let smooth = !last.strong && !last.edge && last.t < self.time && then > now;
+        if smooth { last.t + (self.time - last.t) * then / (then - now) } else { self.time }
     }
 
     /// When the plates, apart now, will meet again.

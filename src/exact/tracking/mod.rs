@@ -188,11 +188,12 @@ pub(super) struct Tracker {
     /// Interactions so far.
     pub events: usize,
     next_merge: usize,
-    /// Records of the interface (target's side), of the flyer's rear, and of the probes.
+    /// Records of the interface (target's side), of the flyer's rear, of the interface (flyer's
+    /// side), and of the probes.
     pub records: Vec<Vec<Record>>,
     /// Paths: plate, kind, corners of time and Eulerian place.
     pub paths: Vec<(Plate, PathKind, Vec<[f64; 2]>)>,
-    /// When the plates first parted [s].
+    /// When the plates first parted, between the fronts that the fan is split into [s].
     pub separation_time: Option<f64>,
     /// When a front reached the target's rear [s].
     pub ended: Option<f64>,
@@ -202,6 +203,10 @@ pub(super) struct Tracker {
 pub(super) const INTERFACE_RECORD: usize = 0;
 /// See [`INTERFACE_RECORD`].
 pub(super) const REAR_RECORD: usize = 1;
+/// See [`INTERFACE_RECORD`].
+pub(super) const FLYER_FACE_RECORD: usize = 2;
+/// Number of the first probe's record.
+pub(super) const FIRST_PROBE: usize = 3;
 
 impl Tracker {
     /// The moment of contact; `probes` are Lagrangian places in the plates.
@@ -230,7 +235,7 @@ impl Tracker {
             tolerance: 1e-12 * p2,
             events: 0,
             next_merge: 1000,
-            records: vec![Vec::new(); probes.len() + 2],
+            records: vec![Vec::new(); FIRST_PROBE + probes.len()],
             paths: Vec::new(),
             separation_time: None,
             ended: None,
@@ -256,7 +261,7 @@ impl Tracker {
             }
             // a little off the ends, so that the order in the row is beyond doubt
             let x = x.clamp(range.start() + least, range.end() - least);
-            fixed.push(Front::fixed(Kind::Probe(number + 2), x, state));
+            fixed.push(Front::fixed(Kind::Probe(FIRST_PROBE + number), x, state));
         }
         fixed.sort_by(|a, b| a.x.total_cmp(&b.x));
         for front in fixed {

@@ -45,7 +45,7 @@ impl Tracker {
             }
         }
         let first = first.unwrap_or_default();
-        let corners = smooth(ends[0], ends[1], first, &steps);
+        let corners = smooth(ends[0], ends[1], first, &steps, 0);
         // Eulerian place: the integral of rho0/rho = 1 - chi from the interface
         let [face_l, face_r] = self.faces();
         let rho0 = match plate {
@@ -95,6 +95,7 @@ impl Tracker {
                 after: r.after,
             })
             .collect();
-        smooth(0.0, self.time, first, &steps)
+        // by velocity: the pressure of a free surface does not change
+        smooth(0.0, self.time, first, &steps, 1)
     }
 }
