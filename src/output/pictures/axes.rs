@@ -1,6 +1,6 @@
 //! What stands around a panel: frame, ticks, numbers, labels.
 
-use super::canvas::{Align, Canvas, Rect, Shape, Text, WIDTH};
+use super::canvas::{Align, Canvas, Rect, Shape, Text};
 use super::color::Color;
 use super::figure::Stroke;
 use super::text;
@@ -61,7 +61,7 @@ pub(super) fn outline(canvas: &mut Canvas, area: &Rect, width: f64) {
 }
 
 /// An upright label at `x`, along the middle of `area`.
-fn upright(canvas: &mut Canvas, label: &str, x: f64, area: &Rect) {
+pub(super) fn upright(canvas: &mut Canvas, label: &str, x: f64, area: &Rect) {
     let width = text::width(label, LABEL_EM, false);
     let room = area.height() + 16.0;
     canvas.shapes.push(Shape::Text(Text {
@@ -84,18 +84,4 @@ pub(super) fn x_numbers(canvas: &mut Canvas, area: &Rect, x: &Ruler) {
     }
     let middle = 0.5 * (area.left + area.right);
     canvas.text(&x.label, (middle, base + LABEL_EM + 10.0), LABEL_EM, Align::Center, INK);
-}
-
-/// The frame, the numbers and the label of a colour bar, the latter against the page's right
-/// margin.
-pub(super) fn bar(canvas: &mut Canvas, bar: &Rect, colors: &Ruler) {
-    outline(canvas, bar, 1.5);
-    for tick in &colors.ticks {
-        let length = if tick.text.is_empty() { 0.5 * TICK } else { TICK };
-        let at = bar.bottom - tick.at * bar.height();
-        canvas.line(&[(bar.right, at), (bar.right + length, at)], 1.5, INK, Stroke::Solid);
-        let place = (bar.right + TICK + 6.0, at + 0.36 * TICK_EM);
-        canvas.text(&tick.text, place, TICK_EM, Align::Left, INK);
-    }
-    upright(canvas, &colors.label, WIDTH - MARGIN, bar);
 }

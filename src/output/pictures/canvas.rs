@@ -3,9 +3,9 @@
 use super::color::Color;
 use super::figure::Stroke;
 
-/// Width of every page \[pixel\].
+/// Width of most pages \[pixel\].
 pub(super) const WIDTH: f64 = 1200.0;
-/// Height of every page \[pixel\].
+/// Height of most pages \[pixel\].
 pub(super) const HEIGHT: f64 = 800.0;
 
 /// A place on the page.
@@ -97,6 +97,7 @@ pub(super) enum Shape {
     Line { points: Vec<Place>, width: f64, color: Color },
     Fill { rect: Rect, color: Color, opacity: f64 },
     Dot { at: Place, radius: f64, color: Color },
+    Polygon { corners: Vec<Place>, color: Color },
     Text(Text),
 }
 
@@ -110,14 +111,21 @@ pub(super) struct Image {
 }
 
 /// A page: images at the bottom, shapes over them in their order.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(super) struct Canvas {
     pub title: String,
+    /// Width and height in whole pixels.
+    pub size: (f64, f64),
     pub images: Vec<Image>,
     pub shapes: Vec<Shape>,
 }
 
 impl Canvas {
+    /// An empty page.
+    pub fn new(title: &str, size: (f64, f64)) -> Self {
+        Self { title: title.into(), size, images: Vec::new(), shapes: Vec::new() }
+    }
+
     /// Draws a line in a pattern.
     pub fn line(&mut self, points: &[Place], width: f64, color: Color, stroke: Stroke) {
         let (on, off) = match stroke {

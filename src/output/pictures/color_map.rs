@@ -2,6 +2,7 @@
 
 use super::canvas::{Image, Rect};
 use super::color::Color;
+use super::shades::Shades;
 use super::ticks::Ruler;
 use super::wave_diagram::Row;
 
@@ -44,15 +45,6 @@ impl ColorMap {
         }
         Image { rect, columns, rows, pixels }
     }
-
-    /// The colours from the lowest, at the bottom, to the highest.
-    pub fn bar(rect: Rect) -> Image {
-        // As many columns as pixels, lest viewers blur its sides.
-        let columns = rect.width().ceil().max(1.0) as usize;
-        let shades = (0..256).rev().map(|level| color(f64::from(level) / 255.0));
-        let pixels = shades.flat_map(|shade| std::iter::repeat_n(shade, columns)).collect();
-        Image { rect, columns, rows: 256, pixels }
-    }
 }
 
 /// Index of the row nearest in time; none beyond the first and last by more than half their
@@ -85,7 +77,7 @@ fn colors_of(row: &Row, columns: usize, x: &Ruler, colors: &Ruler) -> Vec<Color>
     let middle = gaps.len() / 2;
     let usual =
         if gaps.is_empty() { 0.0 } else { *gaps.select_nth_unstable_by(middle, f64::total_cmp).1 };
-    let shade = |p: f64| colors.place(p).map_or(NOTHING, color);
+    let shade = |p: f64| colors.place(p).map_or(NOTHING, |place| Shades::Sequential.color(place));
     let mut next = 0;
     let value = |column: usize| x.value((column as f64 + 0.5) / columns as f64);
     let pixel = (x.value(1.0) - x.value(0.0)) / columns as f64;
@@ -110,37 +102,6 @@ fn colors_of(row: &Row, columns: usize, x: &Ruler, colors: &Ruler) -> Vec<Color>
         .collect()
 }
 
-/// The colour map "viridis" (van der Walt and Smith 2015, CC0), even to the eye: every 1/16.
-const VIRIDIS: [Color; 17] = [
-    Color(68, 1, 84),
-    Color(72, 24, 106),
-    Color(71, 45, 123),
-    Color(66, 64, 134),
-    Color(59, 82, 139),
-    Color(51, 99, 141),
-    Color(44, 114, 142),
-    Color(38, 130, 142),
-    Color(33, 145, 140),
-    Color(31, 160, 136),
-    Color(40, 174, 128),
-    Color(63, 188, 115),
-    Color(94, 201, 98),
-    Color(132, 212, 75),
-    Color(173, 220, 48),
-    Color(216, 226, 25),
-    Color(253, 231, 37),
-];
-
-/// The lowest colour.
-pub(super) const DARKEST: Color = VIRIDIS[0];
-
-/// The colour of a fraction from 0 to 1.
-fn color(fraction: f64) -> Color {
-    let place = fraction.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
-    let below = (place as usize).min(VIRIDIS.len() - 2);
-    VIRIDIS[below].mix(VIRIDIS[below + 1], place - below as f64)
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::figure::Axis;
@@ -154,16 +115,8 @@ mod tests {
         let positions = vec![0.0, 0.5, 1.0, 1.5, 2.0, 8.0, 8.5, 9.0, 9.5, 10.0];
         let row = Row { time: 0.0, x: positions, pressure: vec![1.0; 10] };
         let shades = colors_of(&row, 100, &x, &colors);
-        assert_eq!(shades[5], color(1.0));
+        assert_eq!(shades[5], Shades::Sequential.color(1.0));
         assert_eq!(shades[50], NOTHING);
-        assert_eq!(shades[95], color(1.0));
-    }
-
-    #[test]
-    fn map_goes_from_dark_to_bright() {
-        let light =
-            |c: Color| 0.21 * f64::from(c.0) + 0.72 * f64::from(c.1) + 0.07 * f64::from(c.2);
-        let shades: Vec<f64> = (0..=64).map(|i| light(color(f64::from(i) / 64.0))).collect();
-        assert!(shades.windows(2).all(|pair| pair[0] < pair[1]));
+        assert_eq!(shades[95], Shades::Sequential.color(1.0));
     }
 }

@@ -3,6 +3,7 @@
 use super::bars::Bars;
 use super::color::Color;
 use super::color_map::ColorMap;
+use super::field::Field;
 
 /// A picture: a title and panels, one above the other, over a common x axis.
 #[derive(Debug, Clone)]
@@ -50,13 +51,15 @@ pub struct Panel {
     pub close_up: Option<(f64, f64)>,
     /// A colour map under the series.
     pub(super) map: Option<ColorMap>,
+    /// A field under the series, which then is all that the figure shows.
+    pub(super) field: Option<Field>,
 }
 
 impl Panel {
     /// An empty panel.
     pub fn new(y: Axis) -> Self {
         let (series, labels, notes) = (Vec::new(), Vec::new(), Vec::new());
-        Self { y, series, labels, notes, close_up: None, map: None }
+        Self { y, series, labels, notes, close_up: None, map: None, field: None }
     }
 
     /// Adds a series on top of the others.

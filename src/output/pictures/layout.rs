@@ -5,24 +5,29 @@ use super::annotations;
 use super::axes::{self, LABEL_EM, MARGIN, TICK, TICK_EM};
 use super::canvas::{Align, Canvas, HEIGHT, Place, Rect, Shape, Text, WIDTH};
 use super::color::Color;
+use super::color_bar::{self, ColorBar};
 use super::color_map::ColorMap;
 use super::curves::{self, place};
+use super::field_layout;
 use super::figure::{Axis, Figure, Panel, Points, Series};
 use super::legend;
 use super::occupancy::Occupancy;
+use super::shades::Shades;
 use super::text;
 use super::ticks::{Ruler, drawable};
 
-const TITLE_EM: f64 = 25.0;
-const BAR: f64 = 26.0;
+pub(super) const TITLE_EM: f64 = 25.0;
 /// Room between panels and the bars beside them.
 const GUTTER: f64 = 40.0;
-const FAINT: Color = Color(0x77, 0x77, 0x7c);
+pub(super) const FAINT: Color = Color(0x77, 0x77, 0x7c);
 
 /// Lays a figure out.
 pub(super) fn lay_out(figure: &Figure) -> Result<Canvas, PictureError> {
     check(figure)?;
-    let mut canvas = Canvas { title: figure.title.clone(), ..Canvas::default() };
+    if let Some((panel, field)) = figure.panels.iter().find_map(|p| Some((p, p.field.as_ref()?))) {
+        return field_layout::lay_out(figure, panel, field);
+    }
+    let mut canvas = Canvas::new(&figure.title, (WIDTH, HEIGHT));
     let areas = areas(figure);
     let top = MARGIN + TITLE_EM + 6.0;
     let names = legend::entries(figure);
@@ -88,21 +93,17 @@ fn right_edge(figure: &Figure) -> f64 {
 fn areas(figure: &Figure) -> Areas {
     let height = 0.7 * HEIGHT / figure.panels.len().max(1) as f64;
     let rulers = figure.panels.iter().map(|panel| y_ruler(figure, panel, height));
-    let numbers = rulers.map(|ruler| widest(&ruler)).fold(0.0, f64::max);
+    let numbers = rulers.map(|ruler| ruler.widest(TICK_EM)).fold(0.0, f64::max);
     let bars = figure
         .panels
         .iter()
         .filter_map(|panel| panel.map.as_ref())
-        .map(|map| 24.0 + BAR + TICK + 8.0 + widest(&bar_ruler(map, height)) + 14.0 + LABEL_EM);
+        .map(|map| color_bar::room_beside(&bar_ruler(map, height)));
     Areas {
         left: MARGIN + LABEL_EM + 14.0 + numbers + 6.0 + TICK,
         right: right_edge(figure) - bars.fold(0.0, f64::max),
         label: MARGIN + 0.75 * LABEL_EM,
     }
-}
-
-fn widest(ruler: &Ruler) -> f64 {
-    ruler.ticks.iter().map(|tick| text::width(&tick.text, TICK_EM, false)).fold(0.0, f64::max)
 }
 
 fn areas_of_panels(count: usize, areas: &Areas, top: f64, bottom: f64) -> Vec<Rect> {
@@ -176,12 +177,10 @@ fn draw_panel(
     let mut occupancy = Occupancy::new(*area);
     let below = canvas.shapes.len();
     if let Some(map) = &panel.map {
-        let left = area.right + 24.0;
-        let bar = Rect { left, right: left + BAR, ..*area };
         let colors = bar_ruler(map, area.height());
         canvas.images.push(map.image(*area, x, y, &colors));
-        canvas.images.push(ColorMap::bar(bar));
-        axes::bar(canvas, &bar, &colors);
+        let bar = ColorBar { shades: Shades::Sequential, under: false, over: false };
+        bar.draw_beside(canvas, area, &colors, WIDTH - MARGIN);
     } else {
         axes::grid(canvas, area, x, y);
     }

@@ -2,8 +2,8 @@
 
 use super::canvas::{Align, Canvas, Rect};
 use super::color::Color;
-use super::color_map::DARKEST;
 use super::figure::{Figure, Style};
+use super::shades::DARKEST;
 use super::text;
 
 const EM: f64 = 19.0;

@@ -3,6 +3,9 @@
 //! The pieces, from data to pixels:
 //! - [`Hugoniot`], [`Profile`], [`WaveDiagram`], [`Histories`] hold the data of the document's
 //!   figures and turn themselves into a [`Figure`]; other studies describe a [`Figure`] directly.
+//! - [`Field`] is a quantity over a plane, painted particle by particle or cell by cell through
+//!   `raster` on a page that suits the plane (`field_layout`), in colours after `limits`;
+//!   [`LineOut`] is a quantity along a line or a radius.
 //! - `layout` turns a figure into shapes on a page, with `ticks` (ends, units, round numbers),
 //!   `legend`, `curves` (beyond 5000 points thinned, see `thin`), `annotations` and `bars`.
 //! - `paint` draws the shapes through `plotters` into a bitmap and into SVG text.
@@ -17,18 +20,27 @@
 mod annotations;
 mod axes;
 mod bars;
+mod base64;
 mod canvas;
 mod color;
+mod color_bar;
 mod color_map;
 mod curves;
+mod field;
+mod field_layout;
+mod field_map;
 mod figure;
 mod histories;
 mod hugoniot;
 mod layout;
 mod legend;
+mod limits;
+mod line_out;
 mod occupancy;
 mod paint;
 mod profile;
+mod raster;
+mod shades;
 mod stroke;
 mod text;
 mod thin;
@@ -36,15 +48,20 @@ mod ticks;
 mod wave_diagram;
 
 #[cfg(test)]
+mod field_tests;
+#[cfg(test)]
 mod tests;
 
 use std::path::{Path, PathBuf};
 
 pub use bars::{Bar, Bars, Part};
 pub use color::Color;
+pub use field::{Cells, Direction, Field, FieldData, Mirror, Quantity, Tile};
 pub use figure::{Axis, Figure, Label, Panel, Points, Scale, Series, Stroke, Style};
 pub use histories::{Histories, History, HistoryPanel};
 pub use hugoniot::{Hugoniot, HugoniotCurve, State};
+pub use limits::Shading;
+pub use line_out::{LineOut, LineOutCurve, Look};
 pub use profile::Profile;
 pub use wave_diagram::{Row, WaveDiagram, WavePath};
 
@@ -63,6 +80,16 @@ pub enum PictureError {
         x: usize,
         /// Number of ordinates.
         y: usize,
+    },
+    /// A field has not one value a cell.
+    #[error("picture '{figure}': {cells} cells but {values} values")]
+    Cells {
+        /// Title of the figure.
+        figure: String,
+        /// Number of cells.
+        cells: usize,
+        /// Number of values.
+        values: usize,
     },
     /// The picture could not be written.
     #[error("cannot write picture {}: {source}", path.display())]

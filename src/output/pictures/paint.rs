@@ -14,7 +14,8 @@ use plotters::style::{
 };
 
 use super::PictureError;
-use super::canvas::{Align, Canvas, HEIGHT, Image, Place, Shape, Text, WIDTH};
+use super::base64::base64;
+use super::canvas::{Align, Canvas, Image, Place, Shape, Text};
 use super::color::Color;
 use super::stroke::Coverage;
 use super::text;
@@ -37,7 +38,7 @@ const BASE_PER_EM: f64 = 0.76;
 
 /// The page as PNG.
 pub(super) fn to_png(canvas: &Canvas) -> Result<Vec<u8>, PictureError> {
-    let (width, height) = size(BITMAP.scale);
+    let (width, height) = size(canvas, BITMAP.scale);
     let mut pixels = vec![255u8; 3 * (width * height) as usize];
     for image in &canvas.images {
         stretch(image, &mut pixels, width as usize);
@@ -53,7 +54,7 @@ pub(super) fn to_png(canvas: &Canvas) -> Result<Vec<u8>, PictureError> {
 
 /// The page as the text of an SVG file.
 pub(super) fn to_svg(canvas: &Canvas) -> Result<String, PictureError> {
-    let (width, height) = size(SVG.scale);
+    let (width, height) = size(canvas, SVG.scale);
     let mut drawn = String::new();
     {
         let mut backend = SVGBackend::with_string(&mut drawn, (width, height));
@@ -68,9 +69,11 @@ pub(super) fn to_svg(canvas: &Canvas) -> Result<String, PictureError> {
     // Writing to a string cannot fail.
     let _ = writeln!(
         svg,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{HEIGHT}\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" \
          viewBox=\"0 0 {width} {height}\" stroke-linejoin=\"round\">\n<title>{}</title>\n\
          <rect width=\"{width}\" height=\"{height}\" fill=\"#FFFFFF\"/>",
+        canvas.size.0,
+        canvas.size.1,
         escaped(&canvas.title)
     );
     for image in &canvas.images {
@@ -89,8 +92,8 @@ pub(super) fn to_svg(canvas: &Canvas) -> Result<String, PictureError> {
     Ok(svg)
 }
 
-fn size(scale: f64) -> (u32, u32) {
-    ((WIDTH * scale) as u32, (HEIGHT * scale) as u32)
+fn size(canvas: &Canvas, scale: f64) -> (u32, u32) {
+    ((canvas.size.0 * scale) as u32, (canvas.size.1 * scale) as u32)
 }
 
 fn refused(error: impl std::fmt::Display) -> PictureError {
@@ -134,6 +137,10 @@ fn paint_shape<B: DrawingBackend>(
         Shape::Dot { at, radius, color } => {
             let radius = whole(*radius).max(1) as u32;
             backend.draw_circle(units(*at), radius, &solid(*color, 1.0), true).map_err(refused)
+        }
+        Shape::Polygon { corners, color } => {
+            let corners: Vec<(i32, i32)> = corners.iter().map(|&at| units(at)).collect();
+            backend.fill_polygon(corners, &solid(*color, 1.0)).map_err(refused)
         }
         Shape::Text(text) => paint_text(backend, text, pen),
     }
@@ -255,32 +262,9 @@ fn escaped(text: &str) -> String {
     clean.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// Bytes as text (RFC 4648).
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len() * 4 / 3 + 4);
-    for three in bytes.chunks(3) {
-        let byte = |i: usize| u32::from(three.get(i).copied().unwrap_or(0));
-        let word = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for i in 0..4 {
-            let digit = DIGITS[(word >> (18 - 6 * i) & 63) as usize];
-            text.push(if i <= three.len() { char::from(digit) } else { '=' });
-        }
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn base64_pads() {
-        assert_eq!(
-            ["", "f", "fo", "foo", "foob"].map(|s| base64(s.as_bytes())),
-            ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg=="]
-        );
-    }
 
     #[test]
     fn halving_takes_the_mean() {

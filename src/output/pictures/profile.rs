@@ -44,7 +44,7 @@ impl Profile {
 }
 
 /// A time in microseconds, or in seconds where those would be many, without needless digits.
-fn readable(time: f64) -> String {
+pub(super) fn readable(time: f64) -> String {
     let (scale, unit) = if time < 1e-2 { (1e6, "µs") } else { (1.0, "s") };
     let text = format!("{:.4}", time * scale);
     format!("{} {unit}", text.trim_end_matches('0').trim_end_matches('.'))

@@ -14,7 +14,7 @@ fn decoded(path: &Path) -> (usize, usize, Vec<u8>) {
 }
 
 /// Draws and returns the bitmap and the SVG text.
-fn drawn(figure: &Figure) -> ((usize, usize, Vec<u8>), String) {
+pub(super) fn drawn(figure: &Figure) -> ((usize, usize, Vec<u8>), String) {
     let folder = tempfile::tempdir().unwrap();
     let files = draw(figure, &folder.path().join("a picture.of 0.5us")).unwrap();
     assert!(files.png.ends_with("a picture.of 0.5us.png"));
@@ -22,7 +22,7 @@ fn drawn(figure: &Figure) -> ((usize, usize, Vec<u8>), String) {
 }
 
 /// Number of pixels in a part of a bitmap for which `wanted` holds.
-fn count(
+pub(super) fn count(
     (width, _, pixels): &(usize, usize, Vec<u8>),
     [left, top, right, bottom]: [usize; 4],
     wanted: impl Fn(&[u8]) -> bool,

@@ -26,6 +26,21 @@ pub(super) fn width(text: &str, em: f64, bold: bool) -> f64 {
     place(text, em, bold, |_, _| ())
 }
 
+/// A text in lines that are at most `room` wide, as far as its words allow.
+pub(super) fn wrapped(text: &str, em: f64, bold: bool, room: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if width(&format!("{line} {word}"), em, bold) <= room => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.into()),
+        }
+    }
+    lines
+}
+
 /// Pixels of a text of nominal height `em`, which starts at the origin on its base line, y
 /// downwards: column, row and share (0 to 1) of each.
 pub(super) fn draw(text: &str, em: f64, bold: bool, mut pixel: impl FnMut(i32, i32, f64)) {
@@ -70,6 +85,16 @@ mod tests {
         for sign in "AZaz09µ−×⁻¹²³⁴⁹().,%°".chars() {
             assert!(font(false).glyph_id(sign).0 > 0 && font(true).glyph_id(sign).0 > 0, "{sign}");
         }
+    }
+
+    #[test]
+    fn long_text_is_wrapped_between_words() {
+        let text = "copper on aluminium at 1 km/s";
+        assert_eq!(wrapped(text, 20.0, false, 1e4), [text]);
+        let room = width("aluminium at", 20.0, false);
+        let lines = wrapped(text, 20.0, false, room);
+        assert_eq!(lines, ["copper on", "aluminium at", "1 km/s"]);
+        assert!(wrapped(" ", 20.0, true, 0.0).is_empty());
     }
 
     #[test]

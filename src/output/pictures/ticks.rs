@@ -34,6 +34,16 @@ pub(super) struct Ruler {
 impl Ruler {
     /// Makes `axis` concrete for `values`, with about `wanted` numbered ticks.
     pub fn new(axis: &Axis, values: impl Iterator<Item = f64>, wanted: usize) -> Self {
+        Self::with_size(axis, values, wanted, None)
+    }
+
+    /// The same, in the unit that suits values of this `size`; by default those of the axis.
+    pub fn with_size(
+        axis: &Axis,
+        values: impl Iterator<Item = f64>,
+        wanted: usize,
+        size: Option<f64>,
+    ) -> Self {
         let scale = axis.scale;
         let data = values.filter(|&v| drawable(v, scale)).fold(None, |range, v| match range {
             None => Some((v, v)),
@@ -48,7 +58,9 @@ impl Ruler {
             (None, Scale::Log) => ends_log(data, axis.margin),
         };
         let (unit, factor) = match scale {
-            Scale::Linear => readable_unit(&axis.unit, low.abs().max(high.abs())),
+            Scale::Linear => {
+                readable_unit(&axis.unit, size.unwrap_or_else(|| low.abs().max(high.abs())))
+            }
             Scale::Log => (axis.unit.clone(), 1.0),
         };
         let label =

@@ -1,0 +1,194 @@
+//! The page of a field: as large as equal scales in both directions make it.
+
+use super::PictureError;
+use super::axes::{self, INK, LABEL_EM, MARGIN, TICK, TICK_EM};
+use super::canvas::{Align, Canvas, Place, Rect, Shape, Text};
+use super::color::Color;
+use super::color_bar::{self, BAR, ColorBar};
+use super::curves::{self, place};
+use super::field::Field;
+use super::field_map::{self, Extent};
+use super::figure::{Axis, Figure, Panel};
+use super::layout::{FAINT, TITLE_EM};
+use super::legend;
+use super::limits::Limits;
+use super::occupancy::Occupancy;
+use super::text;
+use super::ticks::Ruler;
+
+/// Most room for the plane.
+const WIDEST: f64 = 980.0;
+const HIGHEST: f64 = 800.0;
+/// A plane that would be thinner is stretched.
+const THINNEST: f64 = 64.0;
+/// Least width of a page, for the title's sake.
+const NARROWEST: f64 = 620.0;
+/// The colour bar lies under a plane less high than this.
+const LOW: f64 = 240.0;
+const NOTE_EM: f64 = 18.0;
+/// Height of the numbers and the label under an axis.
+const UNDER: f64 = TICK + 5.0 + TICK_EM + LABEL_EM + 10.0 + 6.0;
+
+/// Lays a field out.
+pub(super) fn lay_out(
+    figure: &Figure,
+    panel: &Panel,
+    field: &Field,
+) -> Result<Canvas, PictureError> {
+    let tiles = field.tiles(&figure.title)?;
+    let extent = Extent::of(field, &tiles);
+    let shown = field_map::values(field, &tiles, &extent);
+    let empty = shown.is_empty();
+    let limits = Limits::of(shown, field.quantity.shading, field.quantity.limits);
+    let (size, stretch) = panel_size(&extent);
+    let is_low = size.1 < LOW;
+
+    let axis = Axis::linear(&field.quantity.label, &field.quantity.unit);
+    let axis = axis.range(limits.low, limits.high);
+    let colors = match is_low {
+        true => across(&axis, 0.6 * size.0, None),
+        false => upwards(&axis, size.1, None),
+    };
+    let ends = extent.lower.iter().chain(&extent.upper);
+    let farthest = ends.fold(0.0f64, |most, v| most.max(v.abs()));
+    // One unit for both directions, unless one is stretched.
+    let unit_of = stretch.is_none().then_some(farthest);
+    let x = across(&ranged(&figure.x, &extent, 0), size.0, unit_of);
+    let y = upwards(&ranged(&panel.y, &extent, 1), size.1, unit_of);
+
+    let left = MARGIN + LABEL_EM + 14.0 + y.widest(TICK_EM) + 6.0 + TICK;
+    let right = match is_low {
+        true => 0.5 * x.widest(TICK_EM),
+        false => color_bar::room_beside(&colors),
+    };
+    let content = (left + size.0 + right + MARGIN).ceil();
+    let width = content.max(NARROWEST);
+    let shift = (0.5 * (width - content)).floor();
+    let left = (left + shift).ceil();
+
+    let mut canvas = Canvas::new(&figure.title, (width, 0.0));
+    let head = if content < width { MARGIN } else { left };
+    let mut top = MARGIN + heading(&mut canvas, figure, head);
+    top += notes(&mut canvas, (figure, panel), stretch, head, top);
+    let names = legend::entries(figure);
+    top = legend::draw(&mut canvas, &names, (head, width - MARGIN), top);
+    let top = (top + 16.0).ceil();
+    let area = Rect { left, top, right: left + size.0, bottom: top + size.1 };
+
+    canvas.images.push(field_map::image(field, &tiles, area, &extent, (&colors, limits.shades)));
+    draw_series(&mut canvas, figure, panel, &area, (&x, &y));
+    if empty {
+        let middle = (0.5 * (area.left + area.right), 0.5 * (area.top + area.bottom));
+        canvas.text("no data", middle, LABEL_EM, Align::Center, FAINT);
+    }
+    axes::frame(&mut canvas, &area, &x, &y, MARGIN + 0.75 * LABEL_EM + shift);
+    axes::x_numbers(&mut canvas, &area, &x);
+    let bar = ColorBar { shades: limits.shades, under: limits.under, over: limits.over };
+    let mut bottom = area.bottom + UNDER;
+    if is_low {
+        // Shorter than the plane, lest it look like a part of it.
+        let inset = (0.18 * area.width()).round();
+        let (left, right) = (area.left + inset, area.right - inset);
+        let top = (bottom + 12.0).ceil();
+        let whole = Rect { left, right, top, bottom: top + BAR };
+        bar.draw_lying(&mut canvas, &whole, &colors);
+        bottom = whole.bottom + UNDER;
+    } else {
+        bar.draw_beside(&mut canvas, &area, &colors, width - MARGIN - shift);
+    }
+    canvas.size.1 = (bottom + MARGIN).ceil();
+    Ok(canvas)
+}
+
+/// Width and height of the plane on the page, in whole pixels, and how much more the second or the
+/// first direction is stretched than the other if it is.
+fn panel_size(extent: &Extent) -> ((f64, f64), Option<(usize, f64)>) {
+    let (x, y) = (extent.length(0), extent.length(1));
+    let scale = (WIDEST / x).min(HIGHEST / y);
+    let size = ((x * scale).round().max(THINNEST), (y * scale).round().max(THINNEST));
+    let stretch = |d: usize, length: f64| (length < THINNEST - 0.5).then(|| (d, THINNEST / length));
+    (size, stretch(0, x * scale).or(stretch(1, y * scale)))
+}
+
+fn ranged(axis: &Axis, extent: &Extent, d: usize) -> Axis {
+    axis.clone().range(extent.lower[d], extent.upper[d])
+}
+
+/// An axis with as many round numbers as stand beside each other.
+fn across(axis: &Axis, length: f64, size: Option<f64>) -> Ruler {
+    let most = ((length / 85.0) as usize).clamp(2, 9);
+    fitting(axis, most, size, |ruler| length / (ruler.widest(TICK_EM) + 14.0))
+}
+
+/// An axis with as many round numbers as stand above each other.
+fn upwards(axis: &Axis, length: f64, size: Option<f64>) -> Ruler {
+    fitting(axis, ((length / 62.0) as usize).clamp(2, 9), size, |_| length / (1.5 * TICK_EM))
+}
+
+/// The ruler with the most numbers, of which `room` fit on the axis' length.
+fn fitting(axis: &Axis, most: usize, size: Option<f64>, room: impl Fn(&Ruler) -> f64) -> Ruler {
+    let ruler = |wanted| Ruler::with_size(axis, std::iter::empty(), wanted, size);
+    let fits = |ruler: &Ruler| {
+        let places = ruler.ticks.iter().filter(|tick| !tick.text.is_empty()).map(|tick| tick.at);
+        let places: Vec<f64> = places.collect();
+        places.windows(2).all(|pair| (pair[1] - pair[0]) * room(ruler) >= 1.0)
+    };
+    (1..=most).rev().map(ruler).find(fits).unwrap_or_else(|| ruler(1))
+}
+
+/// The title in as many lines as it takes; returns their height.
+fn heading(canvas: &mut Canvas, figure: &Figure, left: f64) -> f64 {
+    let room = canvas.size.0 - MARGIN - left;
+    let lines = text::wrapped(&figure.title, TITLE_EM, true, room);
+    for (index, line) in lines.iter().enumerate() {
+        let width = text::width(line, TITLE_EM, true);
+        canvas.shapes.push(Shape::Text(Text {
+            text: line.clone(),
+            at: (left, MARGIN + (0.8 + 1.25 * index as f64) * TITLE_EM),
+            em: if width > room { TITLE_EM * room / width } else { TITLE_EM },
+            bold: true,
+            color: Color::BLACK,
+            align: Align::Left,
+            upright: false,
+        }));
+    }
+    1.25 * TITLE_EM * lines.len() as f64
+}
+
+/// The notes from `top` downwards; returns their height.
+fn notes(
+    canvas: &mut Canvas,
+    (figure, panel): (&Figure, &Panel),
+    stretch: Option<(usize, f64)>,
+    left: f64,
+    top: f64,
+) -> f64 {
+    let stretched = stretch.map(|(d, times)| {
+        let times = if times < 10.0 { format!("{times:.1}") } else { format!("{times:.0}") };
+        format!("{} stretched ×{times}", if d == 0 { &figure.x.label } else { &panel.y.label })
+    });
+    let all: Vec<&str> = panel.notes.iter().chain(&stretched).map(String::as_str).collect();
+    let room = canvas.size.0 - MARGIN - left;
+    let lines = text::wrapped(&all.join("; "), NOTE_EM, false, room);
+    for (index, line) in lines.iter().enumerate() {
+        let at = (left, top + (1.0 + 1.35 * index as f64) * NOTE_EM);
+        canvas.text(line, at, NOTE_EM, Align::Left, INK);
+    }
+    1.35 * NOTE_EM * lines.len() as f64
+}
+
+fn draw_series(
+    canvas: &mut Canvas,
+    figure: &Figure,
+    panel: &Panel,
+    area: &Rect,
+    (x, y): (&Ruler, &Ruler),
+) {
+    let mut occupancy = Occupancy::new(*area);
+    for series in &panel.series {
+        let runs = curves::runs(&series.points, figure.x.scale, panel.y.scale);
+        let places = |run: &Vec<_>| run.iter().filter_map(|p| place(area, x, y, *p)).collect();
+        let runs: Vec<Vec<Place>> = runs.iter().map(places).collect();
+        curves::draw(canvas, &mut occupancy, series, &runs, area);
+    }
+}
