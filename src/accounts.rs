@@ -19,9 +19,9 @@ fn gather<C: Comm, T: Serialize + DeserializeOwned>(comm: &C, value: &T) -> Vec<
 
 /// What the ranks did in a time loop of `wall` and `cpu` seconds on this rank, in which it sent
 /// what is between `before` and now; at rank 0. Collective.
-pub fn decomposition<C: Comm>(
+pub fn decomposition<C: Comm, const D: usize>(
     comm: &C,
-    simulation: &mut Simulation<'_, C>,
+    simulation: &mut Simulation<'_, C, D>,
     options: &crate::scene::Decomposition,
     wall: f64,
     cpu: f64,
@@ -53,7 +53,10 @@ pub fn decomposition<C: Comm>(
 }
 
 /// The timelines of all ranks at rank 0; empty elsewhere. Collective.
-pub fn timeline<C: Comm>(comm: &C, simulation: &mut Simulation<'_, C>) -> Vec<TraceEvent> {
+pub fn timeline<C: Comm, const D: usize>(
+    comm: &C,
+    simulation: &mut Simulation<'_, C, D>,
+) -> Vec<TraceEvent> {
     let rank = comm.rank();
     let line = |tid: usize, event: Event| TraceEvent {
         name: event.name.to_string(),

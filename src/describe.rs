@@ -17,7 +17,14 @@ use crate::{FAILED, Outcome, bad};
 
 /// Particles, cells, memory, first time step, steps and effects of a scene.
 pub fn check(scene: &CheckedScene) -> Result<String, RunError> {
-    let simulation = Simulation::new(scene, &Serial, 1)?;
+    match scene.dimension {
+        1 => check_in::<1>(scene),
+        _ => check_in::<2>(scene),
+    }
+}
+
+fn check_in<const D: usize>(scene: &CheckedScene) -> Result<String, RunError> {
+    let simulation = Simulation::<_, D>::new(scene, &Serial, 1)?;
     let dt = simulation.time_step().min(scene.scene.time.end);
     let mut text = String::new();
     let mut line = |name: &str, value: String| {

@@ -136,7 +136,7 @@ fn first_time_step(scene: &CheckedScene) -> Outcome<f64> {
     let failed = |e: &dyn std::fmt::Display| (FAILED, e.to_string());
     let coarser = coarsened(scene);
     let (scene, factor) = coarser.as_ref().map_or((scene, 1.0), |(s, f)| (s, *f));
-    let simulation = Simulation::new(scene, &Serial, 1).map_err(|e| failed(&e))?;
+    let simulation = Simulation::<_, 1>::new(scene, &Serial, 1).map_err(|e| failed(&e))?;
     Ok((simulation.time_step() / factor).min(scene.scene.time.end))
 }
 

@@ -2,7 +2,12 @@
 //!
 //! Knows no materials and no messages.
 
-/// Where each nodal field stands in a patch's arrays.
+use std::ops::Range;
+
+use crate::transfer::{Row, lines};
+
+/// Where each nodal field stands in a patch's arrays. A vector takes D fields that follow each
+/// other; its number is that of the first.
 ///
 /// Fields that a scheme has no use for have no array: their number is past the end.
 #[derive(Clone, Debug)]
@@ -11,22 +16,23 @@ pub struct Fields {
     pub mass: usize,
     /// 1/m_i, 0 where there is no mass [1/kg].
     pub inverse: usize,
-    /// Lumped velocity vL [m/s]; momentum while it is being summed.
+    /// Lumped velocity vL [m/s], a vector; momentum while it is being summed.
     pub lumped: usize,
-    /// Velocity at the start of the step, v [m/s]: without a filter the lumped one itself.
+    /// Velocity at the start of the step, v [m/s], a vector: without a filter the lumped one
+    /// itself.
     pub velocity: usize,
-    /// Velocity at the end of the step, v' [m/s].
+    /// Velocity at the end of the step, v' [m/s], a vector.
     pub velocity_star: usize,
-    /// Acceleration b [m/s2]; internal force while it is being summed.
+    /// Acceleration b [m/s2], a vector; internal force while it is being summed.
     pub acceleration: usize,
-    /// Velocity whose gradient does the work, w [m/s].
+    /// Velocity whose gradient does the work, w [m/s], a vector.
     pub work: usize,
-    /// K^(k-1) vL, the last term of the filter's series [m/s]; with a filter.
+    /// K^(k-1) vL, the last term of the filter's series [m/s], a vector; with a filter.
     pub remainder: Option<usize>,
     /// Scratch for a product.
     pub scratch: usize,
-    /// Second scratch for a product.
-    pub scratch2: usize,
+    /// First terms of the series of force and work, a vector.
+    pub first: usize,
     /// Fraction of the node's volume that holds material [-], with an edge mask.
     pub volume: usize,
     /// Relaxation: summed compliance and its inverse, the projected pressure, and its first term,
@@ -37,30 +43,33 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// The fields for a scheme with or without a filter, an edge mask and pressure relaxation.
-    pub fn new(filtered: bool, masked: bool, relaxed: bool) -> Self {
-        let mut count = 8;
+    /// The fields in `dimension` directions for a scheme with or without a filter, an edge mask
+    /// and pressure relaxation.
+    pub fn new(dimension: usize, filtered: bool, masked: bool, relaxed: bool) -> Self {
+        let mut count = 0;
         let mut add = |n: usize, wanted: bool| {
             let at = if wanted { count } else { usize::MAX / 2 };
             count += if wanted { n } else { 0 };
             at
         };
-        let lumped = 2;
-        let velocity = if filtered { add(1, true) } else { lumped };
-        let remainder = filtered.then(|| add(1, true));
+        let [mass, inverse, scratch] = [1; 3].map(|n| add(n, true));
+        let [lumped, velocity_star, acceleration, work, first] =
+            [dimension; 5].map(|n| add(n, true));
+        let velocity = if filtered { add(dimension, true) } else { lumped };
+        let remainder = filtered.then(|| add(dimension, true));
         let volume = add(1, masked);
         let r = add(4, relaxed);
         Fields {
-            mass: 0,
-            inverse: 1,
+            mass,
+            inverse,
             lumped,
             velocity,
-            velocity_star: 3,
-            acceleration: 4,
-            work: 5,
+            velocity_star,
+            acceleration,
+            work,
             remainder,
-            scratch: 6,
-            scratch2: 7,
+            scratch,
+            first,
             volume,
             relaxation: [r, r + 1, r + 2, r + 3],
             count,
@@ -69,60 +78,87 @@ impl Fields {
 }
 
 /// A symmetric matrix M_ij = sum_p m_p N_ip N_jp over the nodes of a patch, one diagonal after
-/// the other: diagonal d holds M_(i,i+d) at i.
+/// the other: a diagonal holds M_(i,i+offset) at i, for the offsets to nodes that come later.
 #[derive(Clone, Debug, Default)]
 pub struct Band {
     rows: Vec<f64>,
     diagonals: Vec<Vec<f64>>,
+    /// From a node to the other of each diagonal, in the patch's arrays.
+    offsets: Vec<usize>,
+    /// Nodes along one direction that a particle touches.
     width: usize,
 }
 
+/// Diagonals for windows of `width` nodes along each of `dimension` directions.
+const fn diagonals(width: usize, dimension: usize) -> usize {
+    (lines(2 * width - 1, dimension) * (2 * width - 1)).div_ceil(2)
+}
+
 impl Band {
-    /// Sets to zero over `nodes` nodes for particles that touch `width` nodes.
-    pub fn clear(&mut self, nodes: usize, width: usize) {
+    /// Sets to zero over `nodes` nodes for particles that touch `width` nodes along each of
+    /// `dimension` directions, in arrays whose lines are `stride` long.
+    pub fn clear(&mut self, nodes: usize, width: usize, dimension: usize, stride: usize) {
         self.width = width;
+        let count = diagonals(width, dimension);
         self.rows.clear();
-        self.rows.resize(nodes * width, 0.0);
+        self.rows.resize(nodes * count, 0.0);
+        let across = if dimension == 1 { 1 } else { width };
+        let place = |line: usize, k: usize| match line {
+            0 => k,
+            _ => line * stride + k + 1 - width,
+        };
+        self.offsets.clear();
+        for line in 0..across {
+            let length = if line == 0 { width } else { 2 * width - 1 };
+            self.offsets.extend((0..length).map(|k| place(line, k)));
+        }
+        debug_assert_eq!(self.offsets.len(), count);
     }
 
-    /// Adds one particle of mass `mass` with weights `values` from node `first` on.
+    /// Adds one particle of mass `mass`.
     #[inline(always)]
-    pub fn add<const K: usize>(&mut self, first: usize, mass: f64, values: &[f64; K]) {
-        let rows = &mut self.rows[first * K..(first + K) * K];
-        for i in 0..K {
-            let term = mass * values[i];
-            for d in 0..K - i {
-                rows[i * K + d] += term * values[i + d];
+    pub fn add<const K: usize, const D: usize>(&mut self, row: &Row<'_, K, D>, mass: f64) {
+        let count = const { diagonals(K, D) };
+        for line in 0..const { lines(K, D) } {
+            let from = row.first + line * row.stride;
+            let rows = &mut self.rows[from * count..(from + K) * count];
+            for i in 0..K {
+                let term = mass * row.values[line][i];
+                for k in i..K {
+                    rows[i * count + k - i] += term * row.values[line][k];
+                }
+                for other in line + 1..const { lines(K, D) } {
+                    let at = i * count + K + (other - line - 1) * (2 * K - 1) + K - 1 - i;
+                    let rows = &mut rows[at..at + K];
+                    for k in 0..K {
+                        rows[k] += term * row.values[other][k];
+                    }
+                }
             }
         }
     }
 
     /// Must be called once all particles are in.
     pub fn finish(&mut self) {
-        let (width, nodes) = (self.width, self.rows.len() / self.width);
-        self.diagonals.resize_with(width, Vec::new);
+        let count = self.offsets.len();
+        let nodes = self.rows.len() / count;
+        self.diagonals.resize_with(count, Vec::new);
         for (d, diagonal) in self.diagonals.iter_mut().enumerate() {
             diagonal.resize(nodes, 0.0);
-            for (value, row) in diagonal.iter_mut().zip(self.rows.chunks_exact(width)) {
+            for (value, row) in diagonal.iter_mut().zip(self.rows.chunks_exact(count)) {
                 *value = row[d];
             }
         }
     }
 
     /// y = M x on the nodes `range`, which must lie at least the band's width from the ends.
-    pub fn product(&self, x: &[f64], range: std::ops::Range<usize>, y: &mut [f64]) {
+    pub fn product(&self, x: &[f64], range: Range<usize>, y: &mut [f64]) {
         self.each_product(x, range, y, |product, _| product);
     }
 
-    /// y = t + x - d M x on the nodes `range`: a sum of a series and its next by Horner's rule.
-    pub fn next_sum(
-        &self,
-        x: &[f64],
-        d: &[f64],
-        t: &[f64],
-        range: std::ops::Range<usize>,
-        y: &mut [f64],
-    ) {
+    /// y = t + x - d M x on the nodes `range`, d a diagonal matrix: a sum of a series and its
+    /// next by Horner's rule.
+    pub fn next_sum(&self, x: &[f64], d: &[f64], t: &[f64], range: Range<usize>, y: &mut [f64]) {
         let (x_here, d, t) = (&x[range.clone()], &d[range.clone()], &t[range.clone()]);
         self.each_product(x, range, y, |product, i| t[i] + (x_here[i] - d[i] * product));
     }
@@ -132,28 +168,51 @@ impl Band {
     fn each_product(
         &self,
         x: &[f64],
-        range: std::ops::Range<usize>,
+        range: Range<usize>,
         y: &mut [f64],
         f: impl Fn(f64, usize) -> f64,
     ) {
         let (from, to) = (range.start, range.end);
-        match self.width {
+        match self.offsets.len() {
             3 => self.product_of::<3>(x, from, to, y, f),
             4 => self.product_of::<4>(x, from, to, y, f),
-            _ => {
-                for i in range {
-                    let mut sum = self.diagonals[0][i] * x[i];
-                    for d in 1..self.width {
-                        sum += self.diagonals[d][i] * x[i + d];
-                        sum += self.diagonals[d][i - d] * x[i - d];
-                    }
-                    y[i] = f(sum, i - from);
-                }
-            }
+            _ => self.product_by_diagonals(x, range, y, f),
         }
     }
 
-    /// The same sums in the same order, with the width known so that they run in vectors.
+    /// The same sums in the same order, a diagonal after the other: for many of them.
+    #[inline(always)]
+    fn product_by_diagonals(
+        &self,
+        x: &[f64],
+        range: Range<usize>,
+        y: &mut [f64],
+        f: impl Fn(f64, usize) -> f64,
+    ) {
+        let (from, to) = (range.start, range.end);
+        if from >= to {
+            return;
+        }
+        let sums = &mut y[range];
+        let n = sums.len();
+        let (main, centre) = (&self.diagonals[0][from..to], &x[from..to]);
+        for i in 0..n {
+            sums[i] = main[i] * centre[i];
+        }
+        for (diagonal, &o) in self.diagonals.iter().zip(&self.offsets).skip(1) {
+            let (above, x_above) = (&diagonal[from..to], &x[from + o..to + o]);
+            let (below, x_below) = (&diagonal[from - o..to - o], &x[from - o..to - o]);
+            for i in 0..n {
+                sums[i] += above[i] * x_above[i];
+                sums[i] += below[i] * x_below[i];
+            }
+        }
+        for (i, sum) in sums.iter_mut().enumerate() {
+            *sum = f(*sum, i);
+        }
+    }
+
+    /// The same sums in the same order, with few diagonals known so that they run in vectors.
     #[inline(always)]
     fn product_of<const W: usize>(
         &self,
@@ -189,28 +248,52 @@ impl Band {
 mod tests {
     use super::*;
 
-    #[test]
-    fn the_band_is_the_matrix_of_products() {
+    /// Particles: their first node, mass and values.
+    fn check<const K: usize, const D: usize>(
+        extent: [usize; 2],
+        particles: &[(usize, f64, Vec<[f64; K]>)],
+        inner: Range<usize>,
+    ) {
+        let nodes = extent[0] * extent[1];
         let mut band = Band::default();
-        band.clear(12, 3);
-        let particles =
-            [(3, 2.0, [0.2, 0.5, 0.3]), (4, 1.5, [0.1, 0.6, 0.3]), (3, 0.7, [0.0, 0.4, 0.6])];
-        let mut full = [[0.0; 12]; 12];
-        for (first, mass, values) in &particles {
-            band.add(*first, *mass, values);
-            for i in 0..3 {
-                for j in 0..3 {
-                    full[first + i][first + j] += mass * values[i] * values[j];
+        band.clear(nodes, K, D, extent[0]);
+        let mut full = vec![vec![0.0; nodes]; nodes];
+        for (first, mass, values) in particles {
+            let row: Row<'_, K, D> =
+                Row { first: *first, stride: extent[0], values, gradients: &[] };
+            band.add(&row, *mass);
+            let place = |l: usize, k: usize| first + l * extent[0] + k;
+            for (l, k) in (0..values.len()).flat_map(|l| (0..K).map(move |k| (l, k))) {
+                for (m, j) in (0..values.len()).flat_map(|m| (0..K).map(move |j| (m, j))) {
+                    full[place(l, k)][place(m, j)] += mass * values[l][k] * values[m][j];
                 }
             }
         }
         band.finish();
-        let x: Vec<f64> = (0..12).map(|i| (i * i) as f64).collect();
-        let mut y = vec![0.0; 12];
-        band.product(&x, 3..9, &mut y);
-        for i in 3..9 {
-            let exact: f64 = (0..12).map(|j| full[i][j] * x[j]).sum();
-            assert!((y[i] - exact).abs() < 1e-12 * exact.abs().max(1.0));
+        let x: Vec<f64> = (0..nodes).map(|i| (i * i % 17) as f64).collect();
+        let mut y = vec![0.0; nodes];
+        band.product(&x, inner.clone(), &mut y);
+        assert!(inner.clone().any(|i| y[i] != 0.0));
+        for i in inner {
+            let exact: f64 = (0..nodes).map(|j| full[i][j] * x[j]).sum();
+            assert!((y[i] - exact).abs() < 1e-12 * exact.abs().max(1.0), "{i}");
         }
+    }
+
+    #[test]
+    fn the_band_is_the_matrix_of_products() {
+        let particles = [
+            (3, 2.0, vec![[0.2, 0.5, 0.3]]),
+            (4, 1.5, vec![[0.1, 0.6, 0.3]]),
+            (3, 0.7, vec![[0.0, 0.4, 0.6]]),
+        ];
+        check::<3, 1>([12, 1], &particles, 3..9);
+    }
+
+    #[test]
+    fn in_a_plane_too() {
+        let lines = |a: f64| vec![[0.1, 0.2, 0.05], [a, 0.25, 0.1], [0.0, 0.07, 0.3 - a]];
+        let particles = [(40, 2.0, lines(0.1)), (41, 1.5, lines(0.2)), (52, 0.7, lines(0.05))];
+        check::<3, 2>([12, 9], &particles, 36..80);
     }
 }

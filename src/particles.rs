@@ -7,19 +7,21 @@ use decomp::{Block, ColumnSpec, IndexBox, Layout, Mirror};
 use nalgebra::SVector;
 
 use crate::scene::{CheckedScene, Stepping, Transfer};
+use crate::shape::Extent;
 
-/// Where each column stands in a block. Vectors take D columns.
+/// Where each column stands in a block. Vectors take D columns that follow each other, tensors
+/// D^2, row by row; their number is that of the first.
 #[derive(Clone, Debug)]
 pub struct Columns {
     /// The declarations, in order.
     pub specs: Vec<ColumnSpec>,
-    /// Position x [m].
+    /// Position x [m], a vector.
     pub position: usize,
-    /// Velocity [m/s].
+    /// Velocity [m/s], a vector.
     pub velocity: usize,
-    /// Mass [kg] (in 1-D per unit area, kg/m2).
+    /// Mass [kg] (in 1-D per unit area, kg/m2; in a plane per unit depth, kg/m).
     pub mass: usize,
-    /// Volume at J = 1 [m3] (in 1-D per unit area, m).
+    /// Volume at J = 1 [m3] (in 1-D per unit area, m; in a plane per unit depth, m2).
     pub volume0: usize,
     /// Volume ratio J = V/V0 [-].
     pub jacobian: usize,
@@ -37,12 +39,21 @@ pub struct Columns {
     pub viscosity: Option<usize>,
     /// What the limiter takes away, phi in [0, 1], with a limiter.
     pub limiter: Option<usize>,
-    /// Affine part of the velocity [1/s], with APIC.
+    /// Affine part of the velocity [1/s], a tensor, with APIC.
     pub affine: Option<usize>,
-    /// Place in the cell [cells], scratch.
+    /// Half lengths of the particle along each direction at the start [m], a vector, in a plane
+    /// for shape functions that look at its domain.
+    pub half_lengths: Option<usize>,
+    /// Deformation gradient F [-], a tensor, where the domain deforms.
+    pub deformation: Option<usize>,
+    /// Gradient of the velocity of the last step [1/s], a tensor, where the domain deforms.
+    pub velocity_gradient: Option<usize>,
+    /// Place in the cell [cells], a vector, scratch.
     pub fraction: usize,
-    /// Length for the shape function [cells], scratch.
-    pub length: usize,
+    /// Length for the shape function, in a plane half edges of the domain [cells], scratch.
+    pub domain: usize,
+    /// Volume [cells], scratch, with an edge mask: on a line the deformed length itself.
+    pub filled: Option<usize>,
     /// (p + q) V [J], scratch.
     pub stress_volume: usize,
     /// J at the middle of the step, scratch, with mid-point stepping.
@@ -57,37 +68,106 @@ impl Columns {
     /// The columns that `scene` calls for.
     pub fn new(scene: &CheckedScene) -> Self {
         let mut specs = Vec::new();
-        let mut add = |name, unit, ghost, state, mirror| {
-            specs.push(ColumnSpec { name, unit, ghost, state, mirror });
-            specs.len() - 1
-        };
+        // the first of columns that follow each other
+        let mut add_all =
+            |names: &[&'static str], unit, ghost, state, mirrors: &dyn Fn(usize) -> Mirror| {
+                let first = specs.len();
+                specs.extend(names.iter().enumerate().map(|(k, &name)| ColumnSpec {
+                    name,
+                    unit,
+                    ghost,
+                    state,
+                    mirror: mirrors(k),
+                }));
+                first
+            };
         let method = &scene.scene.method;
+        let plane = scene.dimension > 1;
+        let vector =
+            |names: &'static [&'static str; 3]| if plane { &names[1..] } else { &names[..1] };
+        let extent = Extent::of(method.shape);
         let midpoint = method.stepping == Stepping::Midpoint;
         let viscous = scene.scene.artificial_viscosity;
         let limited = viscous.is_some_and(|v| v.limiter.is_some());
         let relaxed = method.pressure_relaxation.is_some();
-        let same = Mirror::Same;
+        let same = |_: usize| Mirror::Same;
+        let of_vector = |a: usize| Mirror::Negate(a);
+        let of_tensor = |k: usize| if k % 3 == 0 { Mirror::Same } else { Mirror::NegatePair(0, 1) };
+        let domains: &[&str] = match (plane, extent) {
+            (false, _) => &["cell_length"],
+            (true, Extent::Point) => &[],
+            (true, Extent::Undeformed) => &["cell_width", "cell_height"],
+            (true, Extent::Current) => {
+                &["cell_edge1_x", "cell_edge1_y", "cell_edge2_x", "cell_edge2_y"]
+            }
+        };
+        let affine: &[&str] = match plane {
+            false => &["affine_velocity"],
+            true => &["affine_xx", "affine_xy", "affine_yx", "affine_yy"],
+        };
+        const DEFORMATION: [&str; 4] =
+            ["deformation_xx", "deformation_xy", "deformation_yx", "deformation_yy"];
+        const GRADIENT: [&str; 4] = [
+            "velocity_gradient_xx",
+            "velocity_gradient_xy",
+            "velocity_gradient_yx",
+            "velocity_gradient_yy",
+        ];
+        let deforms = plane && extent == Extent::Current;
+        let position = vector(&["position", "position_x", "position_y"]);
+        let velocity = vector(&["velocity", "velocity_x", "velocity_y"]);
+        let fraction = vector(&["cell_fraction", "cell_fraction_x", "cell_fraction_y"]);
+        let complement = |a: usize| Mirror::Complement(a);
+        let of_domain = |k: usize| if deforms { Mirror::Negate(k % 2) } else { Mirror::Same };
+        let mut add =
+            |name: &'static str, unit, ghost, state| add_all(&[name], unit, ghost, state, &same);
+        let [mass, volume0, jacobian, energy, body, gradient, sound_speed, pressure] = [
+            ("mass", "kg", true),
+            ("volume0", "m3", false),
+            ("jacobian", "", false),
+            ("specific_internal_energy", "J/kg", false),
+            ("body", "", false),
+            ("velocity_gradient", "1/s", false),
+            ("sound_speed", "m/s", false),
+            ("pressure", "Pa", false),
+        ]
+        .map(|(name, unit, ghost)| add(name, unit, ghost, true));
+        let viscosity = viscous.map(|_| add("artificial_viscosity", "Pa", false, true));
+        let limiter = limited.then(|| add("viscosity_limiter", "", false, true));
+        let stress_volume = add("stress_volume", "J", true, false);
+        let jacobian_mid = midpoint.then(|| add("jacobian_mid", "", false, false));
+        let pressure_mid = relaxed.then(|| add("pressure_mid", "Pa", true, false));
+        let compliance = relaxed.then(|| add("compliance", "m3/Pa", true, false));
+        let masked = method.edge_mask.is_some();
+        let is_length = !plane && extent == Extent::Current;
+        let filled = (masked && !is_length).then(|| add("cell_volume", "", true, false));
+        let domain = add_all(domains, "", true, false, &of_domain);
         Columns {
-            position: add("position", "m", false, true, same),
-            velocity: add("velocity", "m/s", true, true, Mirror::Negate(0)),
-            mass: add("mass", "kg", true, true, same),
-            volume0: add("volume0", "m3", false, true, same),
-            jacobian: add("jacobian", "", false, true, same),
-            energy: add("specific_internal_energy", "J/kg", false, true, same),
-            body: add("body", "", false, true, same),
-            gradient: add("velocity_gradient", "1/s", false, true, same),
-            sound_speed: add("sound_speed", "m/s", false, true, same),
-            pressure: add("pressure", "Pa", false, true, same),
-            viscosity: viscous.map(|_| add("artificial_viscosity", "Pa", false, true, same)),
-            limiter: limited.then(|| add("viscosity_limiter", "", false, true, same)),
+            filled: filled.or(masked.then_some(domain)),
+            domain,
+            position: add_all(position, "m", false, true, &same),
+            velocity: add_all(velocity, "m/s", true, true, &of_vector),
             affine: (method.transfer == Transfer::Apic)
-                .then(|| add("affine_velocity", "1/s", true, true, same)),
-            fraction: add("cell_fraction", "", true, false, Mirror::Complement(0)),
-            length: add("cell_length", "", true, false, same),
-            stress_volume: add("stress_volume", "J", true, false, same),
-            jacobian_mid: midpoint.then(|| add("jacobian_mid", "", false, false, same)),
-            pressure_mid: relaxed.then(|| add("pressure_mid", "Pa", true, false, same)),
-            compliance: relaxed.then(|| add("compliance", "m3/Pa", true, false, same)),
+                .then(|| add_all(affine, "1/s", true, true, &of_tensor)),
+            half_lengths: (plane && extent != Extent::Point)
+                .then(|| add_all(&["half_width", "half_height"], "m", false, true, &same)),
+            deformation: deforms.then(|| add_all(&DEFORMATION, "", false, true, &of_tensor)),
+            velocity_gradient: deforms.then(|| add_all(&GRADIENT, "1/s", false, true, &of_tensor)),
+            fraction: add_all(fraction, "", true, false, &complement),
+            mass,
+            volume0,
+            jacobian,
+            energy,
+            body,
+            gradient,
+            sound_speed,
+            pressure,
+            viscosity,
+            limiter,
+            stress_volume,
+            jacobian_mid,
+            pressure_mid,
+            compliance,
             specs,
         }
     }
@@ -117,16 +197,16 @@ fn lattice<const D: usize>(
 /// are those seen from a grid that travels at `grid_velocity` [m/s].
 ///
 /// A body's particles tile it: each has an equal share of its volume and mass to rounding.
-pub fn fill(
+pub fn fill<const D: usize>(
     scene: &CheckedScene,
     columns: &Columns,
-    layout: &Layout<1>,
+    layout: &Layout<D>,
     rank: usize,
-    grid_velocity: f64,
+    grid_velocity: [f64; D],
     energies: &[f64],
-) -> Vec<Block<1>> {
+) -> Vec<Block<D>> {
     let mine = layout.patches_of(rank);
-    let mut blocks: Vec<Block<1>> = mine.iter().map(|_| Block::new(&columns.specs)).collect();
+    let mut blocks: Vec<Block<D>> = mine.iter().map(|_| Block::new(&columns.specs)).collect();
     let mut place = vec![None; layout.patches().len()];
     for (k, &p) in mine.iter().enumerate() {
         place[p] = Some(k);
@@ -135,24 +215,32 @@ pub fn fill(
     let mut id = 0u64;
     for (number, (body, checked)) in scene.scene.bodies.iter().zip(&scene.bodies).enumerate() {
         let material = &scene.scene.materials[&body.material];
-        let lower = SVector::from([body.extent.lower[0]]);
-        let upper = SVector::from([body.extent.upper[0]]);
-        let counts = [checked.lattice[0]];
-        let length = (upper - lower)[0] / counts[0] as f64;
+        let lower = SVector::from(std::array::from_fn::<f64, D, _>(|a| body.extent.lower[a]));
+        let upper = SVector::from(std::array::from_fn::<f64, D, _>(|a| body.extent.upper[a]));
+        let counts = std::array::from_fn(|a| checked.lattice[a]);
+        let size: [f64; D] = std::array::from_fn(|a| (upper - lower)[a] / counts[a] as f64);
+        let volume: f64 = size.iter().product();
         for centre in lattice(lower, upper, counts) {
-            let x = centre[0];
-            let cell = cell_of(scene, x);
-            let patch = layout.wrap_cell([cell]).map(|c| layout.patch_of(c));
+            let cell = cell_of(scene, centre.into());
+            let patch = layout.wrap_cell(cell).map(|c| layout.patch_of(c));
             if let Some(block) = patch.and_then(|p| place[p]) {
                 row.fill(0.0);
-                row[columns.position] = x;
-                row[columns.velocity] = checked.velocity[0] - grid_velocity;
-                row[columns.mass] = material.density * length;
-                row[columns.volume0] = length;
+                for a in 0..D {
+                    row[columns.position + a] = centre[a];
+                    row[columns.velocity + a] = checked.velocity[a] - grid_velocity[a];
+                }
+                row[columns.mass] = material.density * volume;
+                row[columns.volume0] = volume;
                 row[columns.jacobian] = 1.0;
                 row[columns.energy] = energies[number];
                 row[columns.body] = number as f64;
-                blocks[block].push(id, [cell as i32], &row);
+                if let Some(half_lengths) = columns.half_lengths {
+                    (0..D).for_each(|a| row[half_lengths + a] = 0.5 * size[a]);
+                }
+                if let Some(deformation) = columns.deformation {
+                    (0..D).for_each(|a| row[deformation + (D + 1) * a] = 1.0);
+                }
+                blocks[block].push(id, cell.map(|c| c as i32), &row);
             }
             id += 1;
         }
@@ -164,8 +252,9 @@ pub fn fill(
 }
 
 /// The cell of a place.
-pub fn cell_of(scene: &CheckedScene, x: f64) -> i64 {
-    ((x - scene.scene.domain.lower[0]) * (1.0 / scene.cell_size[0])).floor() as i64
+pub fn cell_of<const D: usize>(scene: &CheckedScene, x: [f64; D]) -> [i64; D] {
+    let lower = &scene.scene.domain.lower;
+    std::array::from_fn(|a| ((x[a] - lower[a]) * (1.0 / scene.cell_size[a])).floor() as i64)
 }
 
 #[cfg(test)]

@@ -2,60 +2,65 @@
 
 use std::ops::Range;
 
-use decomp::{Block, Layout, NodeArrays};
+use decomp::{Block, IndexBox, Layout, NodeArrays};
 
 use crate::clock::Watch;
 use crate::grid::Band;
-use crate::shape::{Shape, Weights};
+use crate::shape::{Domain, Shape, Weights};
+use crate::transfer::{Row, lines};
 
-/// The weights of every row of a patch, ghosts too, `width` nodes each.
+/// The weights of every row of a patch, ghosts too, on windows of `width` nodes along each
+/// direction.
 #[derive(Clone, Debug, Default)]
 pub struct Stencils {
-    /// Nodes a row.
+    /// Nodes along one direction.
     pub width: usize,
+    /// From a line of nodes to the next in the patch's arrays.
+    pub stride: usize,
     /// First node of each row, in the patch's arrays.
     pub first: Vec<u32>,
-    /// Values, `width` a row.
+    /// Values, `width`^D a row.
     pub values: Vec<f64>,
-    /// Gradients [1/m], `width` a row.
+    /// Gradients [1/m], `width`^D a row for each direction.
     pub gradients: Vec<f64>,
 }
 
 impl Stencils {
     /// The weights of `row`.
     #[inline(always)]
-    pub fn row<const K: usize>(&self, row: usize) -> (usize, &[f64; K], &[f64; K]) {
-        let at = row * K..(row + 1) * K;
-        (
-            self.first[row] as usize,
-            self.values[at.clone()].try_into().expect("K values a row"),
-            self.gradients[at].try_into().expect("K gradients a row"),
-        )
+    pub fn row<const K: usize, const D: usize>(&self, row: usize) -> Row<'_, K, D> {
+        let nodes = const { K * lines(K, D) };
+        Row {
+            first: self.first[row] as usize,
+            stride: self.stride,
+            values: self.values[row * nodes..(row + 1) * nodes].as_chunks().0,
+            gradients: self.gradients[row * nodes * D..(row + 1) * nodes * D].as_chunks().0,
+        }
     }
 }
 
 /// What a patch tells of its step.
 #[derive(Clone, Debug, Default)]
-pub struct Told {
+pub struct Told<const D: usize> {
     /// Longest time step that its particles allow at a Courant number of 1 [s].
     pub time_step: f64,
-    /// Greatest length of a particle [cells].
+    /// Greatest extent of a particle along a direction [cells].
     pub length: f64,
     /// The first fault.
-    pub fault: Option<Fault>,
+    pub fault: Option<Fault<D>>,
 }
 
 /// A state that ends the run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Fault {
+pub struct Fault<const D: usize> {
     /// When in the step it was found.
     pub phase: Phase,
     /// Cell of the particle.
-    pub cell: i64,
+    pub cell: [i64; D],
     /// Id of the particle.
     pub id: u64,
     /// Its position [m].
-    pub position: f64,
+    pub position: [f64; D],
     /// Its body.
     pub body: usize,
     /// What is wrong with it.
@@ -73,28 +78,30 @@ pub enum Phase {
     End,
 }
 
-impl Fault {
+impl<const D: usize> Fault<D> {
     /// Which of a step's faults comes first, in a way that does not depend on the layout: by
     /// phase, then in canonical order.
-    pub fn order(&self) -> [u64; 3] {
-        [self.phase as u64, (self.cell - i64::from(i32::MIN)) as u64, self.id]
+    pub fn order(&self) -> [u64; 4] {
+        let place =
+            |a: usize| (self.cell.get(a).copied().unwrap_or(0) - i64::from(i32::MIN)) as u64;
+        [self.phase as u64, place(1), place(0), self.id]
     }
 }
 
 /// A particle that has left by an outflow, as seen in the grid's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Departed {
+pub struct Departed<const D: usize> {
     /// Its id.
     pub id: u64,
     /// Mass [kg].
     pub mass: f64,
     /// Velocity [m/s].
-    pub velocity: f64,
+    pub velocity: [f64; D],
     /// Specific internal energy [J/kg].
     pub energy: f64,
 }
 
-/// One patch. Its layout is that of `D` directions; the physics is one-dimensional so far.
+/// One patch.
 #[derive(Clone, Debug)]
 pub struct Patch<const D: usize> {
     /// Its rows.
@@ -111,17 +118,17 @@ pub struct Patch<const D: usize> {
     pub runs: Vec<Range<usize>>,
     /// Nodes that hold material, of those that the patch computes: its own, and with deep ghosts
     /// those about it.
-    pub active: Range<usize>,
+    pub active: IndexBox<D>,
     /// Nodes whose values its own rows or products on `active` may take.
-    pub span: Range<usize>,
+    pub span: IndexBox<D>,
     /// Whether it sees a node with little material, which filters leave out.
     pub has_edge: bool,
     /// How far beyond its own nodes it computes [nodes].
     pub deeper: i64,
     /// What it tells of its step.
-    pub told: Told,
+    pub told: Told<D>,
     /// Particles that have left in this step.
-    pub departed: Vec<Departed>,
+    pub departed: Vec<Departed<D>>,
     /// Longest particle that ghosts and halos are deep enough for [cells].
     pub reach_length: f64,
     /// A buffer of a value a row, kept from step to step.
@@ -173,8 +180,8 @@ impl<const D: usize> Patch<D> {
             band: Band::default(),
             compliance_band: Band::default(),
             runs: Vec::new(),
-            active: 0..0,
-            span: 0..0,
+            active: IndexBox::new([0; D], [0; D]),
+            span: IndexBox::new([0; D], [0; D]),
             has_edge: false,
             deeper: 0,
             told: Told::default(),
@@ -220,52 +227,100 @@ impl<const D: usize> Patch<D> {
     }
 }
 
-impl Patch<1> {
-    /// Computes the weights of all rows from the columns `fraction` and `length` [cells].
+impl<const D: usize> Patch<D> {
+    /// Places of the nodes that hold material and are computed, in the patch's arrays.
+    pub fn active_lines(&self) -> impl Iterator<Item = Range<usize>> + use<D> {
+        self.active.lines_in(&self.nodes.nodes)
+    }
+
+    /// Places of the nodes whose values its rows or products may take, in the patch's arrays.
+    pub fn span_lines(&self) -> impl Iterator<Item = Range<usize>> + use<D> {
+        self.span.lines_in(&self.nodes.nodes)
+    }
+
+    /// Computes the weights of all rows from the columns that start at `fraction` and at `domain`
+    /// [cells]; `inverse_cell` is 1/edge of a cell [1/m].
     pub fn find_weights<S: Shape, const K: usize>(
         &mut self,
         fraction: usize,
-        length: usize,
-        inverse_cell: f64,
+        domain: usize,
+        inverse_cell: [f64; D],
     ) {
         let rows = self.block.rows();
         let stencils = &mut self.stencils;
+        let nodes = const { K * lines(K, D) };
         stencils.width = K;
+        stencils.stride = self.nodes.nodes.extent(0);
         stencils.first.resize(rows, 0);
-        stencils.values.resize(rows * K, 0.0);
-        stencils.gradients.resize(rows * K, 0.0);
-        let lower = self.nodes.nodes.lower[0] as i32;
-        let (fractions, lengths) =
-            (&self.block.columns[fraction][..rows], &self.block.columns[length][..rows]);
+        stencils.values.resize(rows * nodes, 0.0);
+        stencils.gradients.resize(rows * nodes * D, 0.0);
+        let lower = self.nodes.nodes.lower.map(|l| l as i32);
+        let column = |k: usize| &self.block.columns[k][..rows];
         let cells = &self.block.cells[..rows];
+        let (mut least, mut most) = ([i32::MAX; D], [i32::MIN; D]);
         let out = stencils
             .first
             .iter_mut()
-            .zip(stencils.values.chunks_exact_mut(K))
-            .zip(stencils.gradients.chunks_exact_mut(K));
-        for (row, ((first, values), gradients)) in out.enumerate() {
-            let w: Weights<K> = S::weights(fractions[row], lengths[row]);
-            *first = (cells[row][0] + w.first - lower) as u32;
-            values.copy_from_slice(&w.values);
-            for (out, g) in gradients.iter_mut().zip(w.gradients) {
-                *out = g * inverse_cell;
+            .zip(stencils.values.chunks_exact_mut(nodes))
+            .zip(stencils.gradients.chunks_exact_mut(nodes * D));
+        if D == 1 {
+            let (fractions, lengths) = (column(fraction), column(domain));
+            for (row, ((first, values), gradients)) in out.enumerate() {
+                let w: Weights<K> = S::weights(fractions[row], lengths[row]);
+                let at = cells[row][0] + w.first - lower[0];
+                (least[0], most[0]) = (least[0].min(at), most[0].max(at));
+                *first = at as u32;
+                values.copy_from_slice(&w.values);
+                for (out, g) in gradients.iter_mut().zip(w.gradients) {
+                    *out = g * inverse_cell[0];
+                }
+            }
+        } else {
+            let fractions = [0, 1].map(|a| column(fraction + a));
+            let domains: [&[f64]; 4] = std::array::from_fn(|k| {
+                if k < S::EXTENT.plane_columns() { column(domain + k) } else { &[] }
+            });
+            let stride = stencils.stride as i32;
+            for (row, ((first, values), gradients)) in out.enumerate() {
+                let place = fractions.map(|f| f[row]);
+                let domain = Domain::from_columns(S::EXTENT, &domains, row);
+                let (gx, gy) = gradients.split_at_mut(nodes);
+                let mut lines = crate::shape::Plane {
+                    values: values.as_chunks_mut::<K>().0,
+                    gradients: [gx.as_chunks_mut::<K>().0, gy.as_chunks_mut::<K>().0],
+                };
+                let corner = S::plane(place, &domain, &mut lines);
+                let at: [i32; D] = std::array::from_fn(|a| cells[row][a] + corner[a] - lower[a]);
+                for a in 0..D {
+                    (least[a], most[a]) = (least[a].min(at[a]), most[a].max(at[a]));
+                }
+                *first = (at[0] + stride * at[D - 1]) as u32;
+                gx.iter_mut().for_each(|g| *g *= inverse_cell[0]);
+                gy.iter_mut().for_each(|g| *g *= inverse_cell[D - 1]);
             }
         }
         self.block.runs(&mut self.runs);
-        self.find_active(K);
+        self.find_active(K as i64, rows, least, most);
     }
 
-    /// The nodes to compute that any row touches, as a range of the patch's arrays.
-    fn find_active(&mut self, width: usize) {
-        let lower = self.nodes.nodes.lower[0];
-        let own = self.nodes.owned.grow(self.deeper).intersect(&self.nodes.nodes);
-        let owned = (own.lower[0] - lower) as usize..(own.upper[0] - lower) as usize;
-        let first = self.stencils.first.iter().min().map_or(owned.end, |&f| f as usize);
-        let last = self.stencils.first.iter().max().map_or(0, |&f| f as usize + width);
-        let start = owned.start.max(first);
-        self.active = start..owned.end.min(last).max(start);
-        let (least, most) = (self.active.start.saturating_sub(width), self.active.end + width);
-        self.span = least..most.min(self.nodes.nodes.count());
+    /// The nodes to compute that any row touches; windows of `width` nodes start between `least`
+    /// and `most`, counted from the arrays' first node.
+    fn find_active(&mut self, width: i64, rows: usize, least: [i32; D], most: [i32; D]) {
+        let all = self.nodes.nodes;
+        let own = self.nodes.owned.grow(self.deeper).intersect(&all);
+        let touched = IndexBox {
+            lower: std::array::from_fn(|a| all.lower[a] + i64::from(least[a])),
+            upper: std::array::from_fn(|a| all.lower[a] + i64::from(most[a]) + width),
+        };
+        self.active = match rows {
+            0 => IndexBox::new(own.lower, own.lower),
+            _ => {
+                let active = own.intersect(&touched);
+                let upper = std::array::from_fn(|a| active.upper[a].max(active.lower[a]));
+                IndexBox::new(active.lower, upper)
+            }
+        };
+        self.span = self.active.grow(width).intersect(&all);
     }
 }
 

@@ -56,7 +56,7 @@ impl Probes {
             probes.push(Probe { name: name.to_string(), parts });
         };
         match &scene.scene.reference {
-            Some(Reference::FlyerImpact(named)) => {
+            Some(Reference::FlyerImpact(named)) if scene.dimension == 1 => {
                 let number = |name: &str| bodies.iter().position(|b| b.name == name);
                 let (flyer, target) = (number(&named.flyer)?, number(&named.target)?);
                 let below = bodies[flyer].extent.lower[0] < bodies[target].extent.lower[0];
@@ -64,6 +64,7 @@ impl Probes {
                 add("free_surface", vec![end(target, below)]);
                 add("flyer_rear", vec![end(flyer, !below)]);
             }
+            _ if scene.dimension > 1 => {}
             _ => {
                 for (number, body) in bodies.iter().enumerate() {
                     add(&format!("{}_lower", body.name), vec![end(number, false)]);
@@ -74,10 +75,13 @@ impl Probes {
         let histories = scene.scene.output.histories.as_ref()?;
         for tracer in &histories.tracers {
             let number = bodies.iter().position(|b| b.name == tracer.body)?;
-            let extent = &bodies[number].extent;
-            let count = scene.bodies[number].lattice[0] as f64;
-            let share = (tracer.at[0] - extent.lower[0]) / (extent.upper[0] - extent.lower[0]);
-            let k = (share * count).floor().clamp(0.0, count - 1.0) as u64;
+            let (extent, lattice) = (&bodies[number].extent, &scene.bodies[number].lattice);
+            let along = |a: usize| {
+                let share = (tracer.at[a] - extent.lower[a]) / (extent.upper[a] - extent.lower[a]);
+                let count = lattice[a] as f64;
+                (share * count).floor().clamp(0.0, count - 1.0) as u64
+            };
+            let k = (0..scene.dimension).rev().fold(0, |k, a| k * lattice[a] as u64 + along(a));
             add(&tracer.name, vec![(ranges[number].0 + k, Part::Centre)]);
         }
         let mut columns: Vec<(String, String)> = [
@@ -86,13 +90,19 @@ impl Probes {
             ("kinetic_energy", "J"),
             ("internal_energy", "J"),
             ("total_energy", "J"),
-            ("momentum", "kg m/s"),
         ]
         .map(|(name, unit)| (name.to_string(), unit.to_string()))
         .into();
+        let (momenta, places, velocities): (&[&str], &[&str], &[&str]) = match scene.dimension {
+            1 => (&["momentum"], &["x"], &["velocity"]),
+            _ => (&["momentum_x", "momentum_y"], &["x", "y"], &["velocity_x", "velocity_y"]),
+        };
+        columns.extend(momenta.iter().map(|name| (name.to_string(), "kg m/s".to_string())));
         for probe in &probes {
-            for (what, unit) in [("x", "m"), ("velocity", "m/s"), ("pressure", "Pa")] {
-                columns.push((format!("{}_{what}", probe.name), unit.into()));
+            let units = [(places, "m"), (velocities, "m/s"), (&["pressure"], "Pa")];
+            for (names, unit) in units {
+                let of_probe = |what| (format!("{}_{what}", probe.name), unit.to_string());
+                columns.extend(names.iter().map(of_probe));
             }
         }
         let mut wanted: Vec<u64> = probes.iter().flat_map(|p| &p.parts).map(|p| p.0).collect();
@@ -102,7 +112,7 @@ impl Probes {
     }
 
     /// Takes a row if one is due: at the first step's end past each interval. Collective.
-    pub fn sample<C: Comm>(&mut self, simulation: &Simulation<'_, C>) {
+    pub fn sample<C: Comm, const D: usize>(&mut self, simulation: &Simulation<'_, C, D>) {
         let time = simulation.time();
         if time < self.due as f64 * self.interval {
             return;
@@ -119,20 +129,20 @@ impl Probes {
             totals.kinetic,
             totals.internal,
             totals.kinetic + totals.internal,
-            totals.momentum,
         ];
+        row.extend(totals.momentum);
         for probe in &self.probes {
             let parts = probe.parts.iter().map(|&(id, part)| {
                 let at = self.wanted.binary_search(&id).expect("a probe's particle is wanted");
                 followed[at].map(|f| place(&f, part))
             });
             // a particle that has left makes the field empty
-            let parts: Option<Vec<[f64; 3]>> = parts.collect();
+            let parts: Option<Vec<Vec<f64>>> = parts.collect();
             let mean = |k: usize| match &parts {
                 Some(parts) => parts.iter().map(|p| p[k]).sum::<f64>() / parts.len() as f64,
                 None => f64::NAN,
             };
-            row.extend([mean(0), mean(1), mean(2)]);
+            row.extend((0..2 * D + 1).map(mean));
         }
         self.histories.push(&row);
     }
@@ -144,11 +154,15 @@ impl Probes {
 }
 
 /// Position, velocity and pressure of a part.
-fn place(followed: &Followed, part: Part) -> [f64; 3] {
-    let x = match part {
-        Part::Lower => followed.position - followed.half_length,
-        Part::Centre => followed.position,
-        Part::Upper => followed.position + followed.half_length,
+fn place<const D: usize>(followed: &Followed<D>, part: Part) -> Vec<f64> {
+    let shift = match part {
+        Part::Lower => -followed.half_length,
+        Part::Centre => 0.0,
+        Part::Upper => followed.half_length,
     };
-    [x, followed.velocity, followed.pressure]
+    let mut values = followed.position.to_vec();
+    values[0] += shift;
+    values.extend(followed.velocity);
+    values.push(followed.pressure);
+    values
 }

@@ -26,7 +26,7 @@ use crate::output::{OutputError, ParticleTable};
 use crate::probes::Probes;
 use crate::reference::Reference;
 use crate::scene::{CheckedScene, Side};
-use crate::simulation::{RunError, Simulation, Totals, sides};
+use crate::simulation::{Left, RunError, Simulation, Totals};
 
 /// Why a run has no result.
 #[derive(Debug, thiserror::Error)]
@@ -130,8 +130,8 @@ struct Recorded {
 }
 
 /// Steps to the end, recording on the way. Collective.
-fn step_to_end<C: Comm>(
-    simulation: &mut Simulation<'_, C>,
+fn step_to_end<C: Comm, const D: usize>(
+    simulation: &mut Simulation<'_, C, D>,
     scene: &CheckedScene,
     comm: &C,
     quiet: bool,
@@ -142,7 +142,7 @@ fn step_to_end<C: Comm>(
     let mut probes = Probes::new(scene);
     let mut recorded = Recorded { tables: Vec::new(), waves: Vec::new(), histories: None };
     let stride = scene.particles.div_ceil(WAVE_POINTS).max(1);
-    let draws = scene.scene.output.pictures;
+    let draws = scene.scene.output.pictures && D == 1;
     let mut due_wave = 0;
     let mut due_profile = 0;
     loop {
@@ -183,7 +183,19 @@ pub fn run<C: Comm>(
     scene: &CheckedScene,
     options: &Options,
 ) -> Result<Option<String>, Failure> {
-    let mut simulation = Simulation::new(scene, comm, options.threads)?;
+    match scene.dimension {
+        1 => run_in::<C, 1>(comm, scene, options),
+        _ => run_in::<C, 2>(comm, scene, options),
+    }
+}
+
+/// A run in `D` directions.
+fn run_in<C: Comm, const D: usize>(
+    comm: &C,
+    scene: &CheckedScene,
+    options: &Options,
+) -> Result<Option<String>, Failure> {
+    let mut simulation = Simulation::<C, D>::new(scene, comm, options.threads)?;
     let start = simulation.totals();
     if let Some((_, steps)) = &options.trace {
         simulation.trace(steps.clone());
@@ -250,7 +262,7 @@ pub fn run<C: Comm>(
         scene: as_run,
         ranks: comm.size(),
         threads: options.threads,
-        patches: vec![layout.patches().len()],
+        patches: layout.parts().to_vec(),
         particles: scene.particles,
         cells: scene.cell_count(),
         steps: simulation.steps(),
@@ -340,31 +352,27 @@ fn draw<C: Comm>(
 ///
 /// A wall's impulse on the particles is what their momentum has changed by, for nothing else
 /// acts on them from outside; a piston's work is its velocity times its impulse.
-fn balance(
+fn balance<const D: usize>(
     scene: &CheckedScene,
-    start: &Totals,
-    end: &Totals,
-    left: &crate::simulation::Left,
+    start: &Totals<D>,
+    end: &Totals<D>,
+    left: &Left<D>,
 ) -> (Energy, Momentum, Option<Outflow>) {
     let rigid = |s: &Side| matches!(s, Side::Symmetry | Side::Wall | Side::Velocity(_));
-    let sides = sides(scene);
-    let walls = match sides.iter().any(rigid) {
-        true => end.momentum + left.momentum - start.momentum,
+    let sides = scene.sides::<D>();
+    let walls: [f64; D] = std::array::from_fn(|a| match sides[a].iter().any(rigid) {
+        true => end.momentum[a] + left.momentum[a] - start.momentum[a],
         false => 0.0,
-    };
-    let piston = sides.iter().find_map(|s| match s {
-        Side::Velocity(v) => Some(*v),
-        _ => None,
     });
-    let impulse = walls - left.momentum;
-    let work = piston.unwrap_or(0.0) * walls - (left.kinetic + left.internal);
+    let pistons = scene.grid_velocity::<D>();
+    let impulse: [f64; D] = std::array::from_fn(|a| walls[a] - left.momentum[a]);
+    let work = (0..D).map(|a| pistons[a] * walls[a]).sum::<f64>() - (left.kinetic + left.internal);
     let energy = Energy::new([start.kinetic, end.kinetic], [start.internal, end.internal], work);
-    let momentum =
-        Momentum::new(&[start.momentum], &[end.momentum], &[impulse], start.absolute_momentum);
-    let outflow = sides.contains(&Side::Outflow).then(|| Outflow {
+    let momentum = Momentum::new(&start.momentum, &end.momentum, &impulse, start.absolute_momentum);
+    let outflow = sides.as_flattened().contains(&Side::Outflow).then(|| Outflow {
         particles: left.count,
         mass: left.mass,
-        momentum: vec![left.momentum],
+        momentum: left.momentum.to_vec(),
         energy: left.kinetic + left.internal,
     });
     (energy, momentum, outflow)

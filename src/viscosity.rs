@@ -11,7 +11,7 @@
 //! 0 and 1, is what a limiter takes away where the velocity is smooth.
 
 use crate::scene::{ArtificialViscosity, LimitedTerms, Limiter};
-use crate::transfer::window;
+use crate::transfer::Row;
 
 /// The viscosity of a scene on its grid.
 #[derive(Clone, Copy, Debug)]
@@ -53,50 +53,97 @@ impl Viscosity {
     }
 }
 
-/// phi of Christensen (1990) for a particle in the cell above node `node`: with the gradients
-/// D_c of the nodal velocity over the cells, r = D_(c+-1)/D_c on both sides, phi = max(0, min(1,
-/// (rl + rr)/2, 2 rl, 2 rr)). Beyond the material's end r is 0: full viscosity.
+/// What a limiter sees of a patch's nodes.
+#[derive(Clone, Copy)]
+pub struct Nodes<'a, const D: usize> {
+    /// Components of the nodal velocity [m/s].
+    pub velocity: [&'a [f64]; D],
+    /// 1/m_i, 0 where there is no material.
+    pub inverse_mass: &'a [f64],
+    /// From a node to the next along each direction.
+    pub steps: [usize; D],
+    /// 1/edge of a cell [1/m].
+    pub inverse_cell: [f64; D],
+}
+
+/// phi of Christensen (1990) along one direction: with the gradients D_c over the cells, r =
+/// D_(c+-1)/D_c on both sides, phi = max(0, min(1, (rl + rr)/2, 2 rl, 2 rr)). `v` are the
+/// velocities of four nodes in a row about the cell; beyond the material's end r is 0.
 #[inline(always)]
-pub fn christensen(velocity: &[f64], inverse_mass: &[f64], node: usize) -> f64 {
-    let v: &[f64; 4] = window(velocity, node - 1);
-    let m: &[f64; 4] = window(inverse_mass, node - 1);
+fn christensen_line(v: [f64; 4], ends: [bool; 2]) -> f64 {
     let centre = v[2] - v[1];
     if centre == 0.0 {
         return 0.0;
     }
     // quotients, not a reciprocal: that of a denormal is infinite
-    let left = if m[0] > 0.0 { (v[1] - v[0]) / centre } else { 0.0 };
-    let right = if m[3] > 0.0 { (v[3] - v[2]) / centre } else { 0.0 };
+    let left = if ends[0] { (v[1] - v[0]) / centre } else { 0.0 };
+    let right = if ends[1] { (v[3] - v[2]) / centre } else { 0.0 };
     let least = (0.5 * (left + right)).min(2.0 * left).min(2.0 * right);
     least.clamp(0.0, 1.0)
+}
+
+/// phi of Christensen (1990) for a particle in the cell above node `node`. In a plane it is found
+/// along each direction, from that component of the velocity on both lines of the cell's nodes,
+/// and the mean of them is taken, weighted by how fast the cell is compressed along each.
+#[inline(always)]
+pub fn christensen<const D: usize>(nodes: &Nodes<'_, D>, node: usize) -> f64 {
+    let along = |axis: usize, from: usize| {
+        let (step, v) = (nodes.steps[axis], nodes.velocity[axis]);
+        let at = [from - step, from, from + step, from + 2 * step];
+        let ends = [at[0], at[3]].map(|i| nodes.inverse_mass[i] > 0.0);
+        (at.map(|i| v[i]), ends)
+    };
+    if D == 1 {
+        let (v, ends) = along(0, node);
+        return christensen_line(v, ends);
+    }
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for axis in 0..D {
+        let (a, a_ends) = along(axis, node);
+        let (b, b_ends) = along(axis, node + nodes.steps[1 - axis]);
+        let v: [f64; 4] = std::array::from_fn(|k| a[k] + b[k]);
+        let weight = (v[1] - v[2]).max(0.0) * nodes.inverse_cell[axis];
+        if weight > 0.0 {
+            let ends = [a_ends[0] && b_ends[0], a_ends[1] && b_ends[1]];
+            sum += weight * christensen_line(v, ends);
+            weights += weight;
+        }
+    }
+    if weights > 0.0 { sum / weights } else { 0.0 }
 }
 
 /// Weight above which a particle touches a node: well above rounding, for a particle whose edge
 /// is just at the end of a node's function must not see the node or not by a bit.
 const TOUCHES: f64 = 1e-3;
 
-/// phi = clamp(2 min_i D_i/D_p, 0, 1) over the nodes i that a particle touches, D_i by central
-/// differences of the nodal velocity: a form for any dimension.
+/// phi = clamp(2 min_i D_i/D_p, 0, 1) over the nodes i that a particle touches, D_i the
+/// divergence of the nodal velocity by central differences: a form for any dimension.
 #[inline(always)]
-pub fn nodal<const K: usize>(
-    velocity: &[f64],
-    inverse_mass: &[f64],
-    first: usize,
-    values: &[f64; K],
+pub fn nodal<const K: usize, const D: usize>(
+    nodes: &Nodes<'_, D>,
+    row: &Row<'_, K, D>,
     gradient: f64,
-    half_inverse_cell: f64,
 ) -> f64 {
     if gradient == 0.0 {
         return 0.0;
     }
     let mut least = f64::INFINITY;
-    for (k, &value) in values.iter().enumerate() {
-        if value > TOUCHES {
-            let i = first + k;
-            let known = inverse_mass[i - 1] > 0.0 && inverse_mass[i + 1] > 0.0;
-            let d =
-                if known { (velocity[i + 1] - velocity[i - 1]) * half_inverse_cell } else { 0.0 };
-            least = least.min(d / gradient);
+    for (line, values) in row.values.iter().enumerate() {
+        for (k, &value) in values.iter().enumerate() {
+            if value > TOUCHES {
+                let i = row.first + line * row.stride + k;
+                let mut divergence = 0.0;
+                for axis in 0..D {
+                    let (step, v) = (nodes.steps[axis], nodes.velocity[axis]);
+                    let known =
+                        nodes.inverse_mass[i - step] > 0.0 && nodes.inverse_mass[i + step] > 0.0;
+                    if known {
+                        divergence +=
+                            (v[i + step] - v[i - step]) * (0.5 * nodes.inverse_cell[axis]);
+                    }
+                }
+                least = least.min(divergence / gradient);
+            }
         }
     }
     (2.0 * least).clamp(0.0, 1.0)
@@ -129,14 +176,40 @@ mod tests {
         assert!(Viscosity::new(&V, 1e-5).q(3000.0, 6000.0, -2e6, 1.0) > 0.0);
     }
 
+    fn line<'a>(velocity: &'a [f64], ones: &'a [f64]) -> Nodes<'a, 1> {
+        Nodes { velocity: [velocity], inverse_mass: ones, steps: [1], inverse_cell: [1.0] }
+    }
+
     #[test]
     fn limiters_pass_linear_velocity_and_hold_at_a_jump() {
         let ones = [1.0; 6];
         let linear = [6.0, 5.0, 4.0, 3.0, 2.0, 1.0];
         let jump = [1.0, 1.0, 1.0, 0.0, 0.0, 0.0];
-        assert_eq!(christensen(&linear, &ones, 2), 1.0);
-        assert_eq!(christensen(&jump, &ones, 2), 0.0);
-        assert_eq!(nodal(&linear, &ones, 2, &[0.5, 0.5], -1.0, 0.5), 1.0);
-        assert_eq!(nodal(&jump, &ones, 1, &[0.2, 0.6, 0.2], -1.0, 0.5), 0.0);
+        assert_eq!(christensen(&line(&linear, &ones), 2), 1.0);
+        assert_eq!(christensen(&line(&jump, &ones), 2), 0.0);
+        let row = |first, values| Row::<'_, 3, 1> { first, stride: 6, values, gradients: &[] };
+        let (even, peaked) = ([[0.5, 0.5, 0.0]], [[0.2, 0.6, 0.2]]);
+        assert_eq!(nodal(&line(&linear, &ones), &row(2, &even), -1.0), 1.0);
+        assert_eq!(nodal(&line(&jump, &ones), &row(1, &peaked), -1.0), 0.0);
+    }
+
+    #[test]
+    fn in_a_plane_a_wave_along_an_axis_is_limited_as_on_a_line() {
+        let ones = [1.0; 36];
+        for v in [
+            [6.0, 5.0, 4.0, 3.0, 2.0, 1.0],
+            [1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
+            [9.0, 7.0, 4.0, 3.0, 2.0, 1.5],
+        ] {
+            let on_a_line = christensen(&line(&v, &ones), 2);
+            let wave: Vec<f64> = (0..36).map(|i| v[i % 6]).collect();
+            let turned: Vec<f64> = (0..36).map(|i| v[i / 6]).collect();
+            let rest = [0.0; 36];
+            for velocity in [[&wave[..], &rest], [&rest, &turned[..]]] {
+                let nodes =
+                    Nodes { velocity, inverse_mass: &ones, steps: [1, 6], inverse_cell: [1.0; 2] };
+                assert_eq!(christensen(&nodes, 14), on_a_line);
+            }
+        }
     }
 }

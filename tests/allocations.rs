@@ -36,7 +36,7 @@ static ALLOCATOR: Counting = Counting;
 /// Memory asked for in `steps` steps of a scene after as many to warm up.
 fn asked(value: &Value, steps: usize) -> u64 {
     let checked = scene::parse(value.to_string().as_bytes(), "test.json", &[]).unwrap();
-    let mut simulation = Simulation::new(&checked, &Serial, 1).unwrap();
+    let mut simulation = Simulation::<_, 1>::new(&checked, &Serial, 1).unwrap();
     let end = checked.scene.time.end;
     (0..steps).for_each(|_| simulation.advance(end).unwrap());
     let before = ASKED.load(Ordering::Relaxed);

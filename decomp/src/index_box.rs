@@ -73,6 +73,23 @@ impl<const D: usize> IndexBox<D> {
         at
     }
 
+    /// The places of this box in an array over `whole`, which must hold it: a range for each line
+    /// along the first direction.
+    pub fn lines_in(&self, whole: &Self) -> impl Iterator<Item = std::ops::Range<usize>> + use<D> {
+        let (this, whole) = (*self, *whole);
+        let length = this.extent(0);
+        let lines = if length == 0 { 0 } else { (1..D).map(|a| this.extent(a)).product() };
+        (0..lines).map(move |mut k| {
+            let mut start = this.lower;
+            for (a, start) in start.iter_mut().enumerate().skip(1) {
+                *start += (k % this.extent(a)) as i64;
+                k /= this.extent(a);
+            }
+            let at = whole.flat(start);
+            at..at + length
+        })
+    }
+
     /// All indices in the order of an array over this box.
     pub fn iter(&self) -> impl Iterator<Item = [i64; D]> + use<D> {
         let b = *self;
@@ -114,6 +131,14 @@ mod tests {
                 let holders = tiles.iter().filter(|t| t.contains(i)).count();
                 prop_assert_eq!(holders, usize::from(a.contains(i)));
             }
+        }
+
+        #[test]
+        fn lines_hold_the_places_of_a_box(a in boxes(), b in boxes()) {
+            let inner = a.intersect(&b);
+            let places: Vec<usize> = inner.lines_in(&a).flatten().collect();
+            let expected: Vec<usize> = inner.iter().map(|i| a.flat(i)).collect();
+            prop_assert_eq!(places, expected);
         }
 
         #[test]

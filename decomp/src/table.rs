@@ -9,6 +9,8 @@ pub enum Mirror {
     Same,
     /// It changes sign in a mirror across this axis: a component of a vector.
     Negate(usize),
+    /// It changes sign in a mirror across the one axis or the other, and twice in both: a shear.
+    NegatePair(usize, usize),
     /// v becomes 1 - v in a mirror across this axis: a place within a cell, in cells.
     Complement(usize),
 }
@@ -33,6 +35,7 @@ impl ColumnSpec {
     pub fn image(&self, value: f64, flip: &[bool]) -> f64 {
         match self.mirror {
             Mirror::Negate(a) if flip[a] => -value,
+            Mirror::NegatePair(a, b) if flip[a] != flip[b] => -value,
             Mirror::Complement(a) if flip[a] => 1.0 - value,
             _ => value,
         }

@@ -80,7 +80,7 @@ pub struct RankWork {
 impl Work {
     /// The work of a scene.
     pub fn new(scene: &CheckedScene) -> Self {
-        let (stepper, terrain) = (Stepper::new(scene), Terrain::new(scene));
+        let (stepper, terrain) = (Stepper::<1>::new(scene), Terrain::new(scene));
         let reach = stepper.reach(terrain.longest).expect("the scene check refuses longer ones");
         let columns = &stepper.columns.specs;
         let ghost_columns = columns.iter().filter(|c| c.ghost).count();

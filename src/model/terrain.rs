@@ -3,7 +3,6 @@
 use decomp::Side;
 
 use crate::scene::CheckedScene;
-use crate::simulation::sides;
 
 /// A body: cells from `lower` to `upper` with particles evenly over them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +42,7 @@ impl Terrain {
             particles: scene.particles as f64,
             longest: spans.iter().map(|s| 1.0 / s.particles_per_cell).fold(0.0, f64::max),
             spans,
-            sides: sides(scene).map(crate::simulation::decomp_side),
+            sides: scene.sides::<1>()[0].map(crate::simulation::decomp_side),
         }
     }
 

@@ -1,8 +1,20 @@
 //! Hat functions interpolated from the corners of the deforming particle (convected particle
 //! domain interpolation: Sadeghirad, Brannon & Burghardt 2011). In one dimension the corners are
 //! the particle's ends, a deformed length apart.
+//!
+//! In a plane values are the mean over the corners of the parallelogram, gradients by the
+//! trapezoidal rule along its edges, which is exact for what hat functions are interpolated to.
 
-use super::{Extent, Shape, Weights, split};
+use super::plane::{RulePoint, by_rule};
+use super::{Domain, Extent, Plane, Shape, Weights, split};
+
+/// The corners.
+const RULE: [RulePoint; 4] = {
+    const fn corner(s1: f64, s2: f64) -> RulePoint {
+        RulePoint { place: [s1, s2], value: 0.25, edge: 0.5 }
+    }
+    [corner(-1.0, -1.0), corner(1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0)]
+};
 
 /// Hat functions from the ends of the deforming particle.
 #[derive(Clone, Copy, Debug)]
@@ -43,5 +55,18 @@ impl Shape for Cpdi {
             w.gradients[k] = (from_upper - from_lower) * inverse;
         }
         w
+    }
+
+    #[inline(always)]
+    fn plane<const K: usize>(
+        fraction: [f64; 2],
+        domain: &Domain,
+        out: &mut Plane<'_, K>,
+    ) -> [i32; 2] {
+        let hats = |x: f64| {
+            let (first, t) = split(x);
+            (first as i32, [1.0 - t, t])
+        };
+        by_rule(fraction, domain, &RULE, hats, out)
     }
 }

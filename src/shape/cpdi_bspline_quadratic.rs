@@ -5,7 +5,29 @@
 //! phi(upper))/6, which keeps linear fields exact; gradients by the exact mean,
 //! (phi(upper) - phi(lower))/length. The same rule serves parallelograms in two dimensions.
 
-use super::{Extent, Shape, Weights, quadratic};
+use super::plane::{RulePoint, by_rule};
+use super::{Domain, Extent, Plane, Shape, Weights, quadratic};
+
+/// Simpson's rule over a parallelogram and along its edges.
+const RULE: [RulePoint; 9] = {
+    const fn corner(s1: f64, s2: f64) -> RulePoint {
+        RulePoint { place: [s1, s2], value: 1.0 / 36.0, edge: 1.0 / 6.0 }
+    }
+    const fn middle(s1: f64, s2: f64) -> RulePoint {
+        RulePoint { place: [s1, s2], value: 4.0 / 36.0, edge: 4.0 / 6.0 }
+    }
+    [
+        corner(-1.0, -1.0),
+        middle(0.0, -1.0),
+        corner(1.0, -1.0),
+        middle(-1.0, 0.0),
+        RulePoint { place: [0.0, 0.0], value: 16.0 / 36.0, edge: 0.0 },
+        middle(1.0, 0.0),
+        corner(-1.0, 1.0),
+        middle(0.0, 1.0),
+        corner(1.0, 1.0),
+    ]
+};
 
 /// Quadratic B-splines averaged over the deforming particle.
 #[derive(Clone, Copy, Debug)]
@@ -45,5 +67,18 @@ impl Shape for CpdiBsplineQuadratic {
             w.gradients[k] = (at_upper - at_lower) * inverse;
         }
         w
+    }
+
+    #[inline(always)]
+    fn plane<const K: usize>(
+        fraction: [f64; 2],
+        domain: &Domain,
+        out: &mut Plane<'_, K>,
+    ) -> [i32; 2] {
+        let splines = |x: f64| {
+            let (first, _, values) = quadratic(x);
+            (first, values)
+        };
+        by_rule(fraction, domain, &RULE, splines, out)
     }
 }

@@ -2,8 +2,8 @@
 //! [`crate::step`].
 //!
 //! A shape function gives a particle weights on the nodes about it. Lengths are in cells: a
-//! particle lies at `fraction` in [0, 1) of its cell and is `length` long. Knows no materials,
-//! no time, no messages.
+//! particle lies at `fraction` in [0, 1) of its cell and is `length` long, or in a plane covers
+//! its [`Domain`]. Knows no materials, no time, no messages.
 
 mod bspline_cubic;
 mod bspline_quadratic;
@@ -11,6 +11,7 @@ mod cpdi;
 mod cpdi_bspline_quadratic;
 mod gimp;
 mod linear;
+mod plane;
 
 pub use bspline_cubic::BsplineCubic;
 pub use bspline_quadratic::BsplineQuadratic;
@@ -18,6 +19,7 @@ pub use cpdi::Cpdi;
 pub use cpdi_bspline_quadratic::CpdiBsplineQuadratic;
 pub use gimp::Gimp;
 pub use linear::Linear;
+pub use plane::{Domain, Plane};
 
 /// Weights of one particle on a line of `K` nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,9 +48,31 @@ pub trait Shape: Copy + Send + Sync + 'static {
 
     /// The weights of a particle at `fraction` of its cell. `K` is at least `nodes(length)`.
     fn weights<const K: usize>(fraction: f64, length: f64) -> Weights<K>;
+
+    /// The weights in a plane of a particle at `fraction` of its cell, into `out`; returns the
+    /// first node, counted from the cell's lower one. `K` is at least `nodes` of the domain's
+    /// extent along either direction. By default the product of the weights along each direction.
+    #[inline(always)]
+    fn plane<const K: usize>(
+        fraction: [f64; 2],
+        domain: &Domain,
+        out: &mut Plane<'_, K>,
+    ) -> [i32; 2] {
+        let extent = domain.extent();
+        let x: Weights<K> = Self::weights(fraction[0], extent[0]);
+        let y: Weights<K> = Self::weights(fraction[1], extent[1]);
+        for l in 0..K {
+            for k in 0..K {
+                out.values[l][k] = x.values[k] * y.values[l];
+                out.gradients[0][l][k] = x.gradients[k] * y.values[l];
+                out.gradients[1][l][k] = x.values[k] * y.gradients[l];
+            }
+        }
+        [x.first, y.first]
+    }
 }
 
-/// Which length of the particle a shape function looks at.
+/// Which length of the particle, or which domain in a plane, a shape function looks at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// None.
@@ -57,6 +81,31 @@ pub enum Extent {
     Undeformed,
     /// The current one.
     Current,
+}
+
+impl Extent {
+    /// What the shape function `kind` looks at.
+    pub fn of(kind: crate::scene::ShapeKind) -> Self {
+        use crate::scene::ShapeKind;
+        match kind {
+            ShapeKind::Linear => Linear::EXTENT,
+            ShapeKind::Gimp => Gimp::EXTENT,
+            ShapeKind::Cpdi => Cpdi::EXTENT,
+            ShapeKind::BsplineQuadratic => BsplineQuadratic::EXTENT,
+            ShapeKind::BsplineCubic => BsplineCubic::EXTENT,
+            ShapeKind::CpdiBsplineQuadratic => CpdiBsplineQuadratic::EXTENT,
+        }
+    }
+
+    /// Columns that a particle's domain in a plane takes: nothing, the edges of its box, or the
+    /// two half edges of its parallelogram.
+    pub const fn plane_columns(self) -> usize {
+        match self {
+            Extent::Point => 0,
+            Extent::Undeformed => 2,
+            Extent::Current => 4,
+        }
+    }
 }
 
 /// The greatest whole number not above `x`, for |x| < 2^31 (beyond, that limit). The library's

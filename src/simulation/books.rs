@@ -29,14 +29,14 @@ pub struct Tally {
 }
 
 /// What has left by outflows, in the frame of the scene.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Left {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Left<const D: usize> {
     /// Number of particles.
     pub count: u64,
     /// Mass [kg].
     pub mass: f64,
     /// Momentum [kg m/s].
-    pub momentum: f64,
+    pub momentum: [f64; D],
     /// Kinetic energy [J].
     pub kinetic: f64,
     /// Internal energy [J].
@@ -45,17 +45,17 @@ pub struct Left {
 
 /// What has left by outflows of this rank's patches: sums that do not depend on who counted.
 #[derive(Clone, Debug)]
-pub(super) struct Outflow {
+pub(super) struct Outflow<const D: usize> {
     census: Census,
-    /// Mass, momentum, kinetic and internal energy.
-    sums: [ExactSum; 4],
-    grid_velocity: f64,
+    /// Mass, kinetic and internal energy, momentum.
+    sums: Vec<ExactSum>,
+    grid_velocity: [f64; D],
 }
 
-impl Outflow {
+impl<const D: usize> Outflow<D> {
     /// Nothing so far. The sums' resolution is chosen by the scene: 2^-80 of a particle at some
     /// times the fastest speed of the start, with room for 2^46 of that.
-    pub fn new(scene: &CheckedScene, grid_velocity: f64) -> Self {
+    pub fn new(scene: &CheckedScene, grid_velocity: [f64; D]) -> Self {
         let bodies = || scene.scene.bodies.iter().zip(&scene.bodies);
         let mass = bodies()
             .map(|(b, c)| {
@@ -64,23 +64,31 @@ impl Outflow {
                 density * size.product::<f64>() / c.particles as f64
             })
             .fold(0.0, f64::max);
-        let speed = bodies().map(|(_, c)| c.velocity[0].abs()).fold(1e3, f64::max) * 1e3;
-        let largest = [mass, mass * speed, mass * speed * speed, mass * speed * speed];
-        Outflow { census: Census::default(), sums: largest.map(ExactSum::new), grid_velocity }
+        let speed =
+            bodies().flat_map(|(_, c)| &c.velocity).fold(1e3, |s: f64, v| s.max(v.abs())) * 1e3;
+        let energy = mass * speed * speed;
+        let largest = [mass, energy, energy].into_iter().chain([mass * speed; D]);
+        Outflow {
+            census: Census::default(),
+            sums: largest.map(ExactSum::new).collect(),
+            grid_velocity,
+        }
     }
 
     /// Books what has left in a step.
-    pub fn take(&mut self, patches: &mut [Patch<1>]) {
+    pub fn take(&mut self, patches: &mut [Patch<D>]) {
         for gone in patches.iter_mut().flat_map(|p| p.departed.drain(..)) {
-            let (m, v) = (gone.mass, gone.velocity + self.grid_velocity);
+            let m = gone.mass;
+            let v: [f64; D] = std::array::from_fn(|a| gone.velocity[a] + self.grid_velocity[a]);
             self.census.add(gone.id, m);
-            let terms = [m, m * v, 0.5 * m * v * v, m * gone.energy];
+            let kinetic = 0.5 * m * v.iter().map(|v| v * v).sum::<f64>();
+            let terms = [m, kinetic, m * gone.energy].into_iter().chain(v.map(|v| m * v));
             self.sums.iter_mut().zip(terms).for_each(|(sum, term)| sum.add(term));
         }
     }
 }
 
-impl<C: Comm> Simulation<'_, C> {
+impl<C: Comm, const D: usize> Simulation<'_, C, D> {
     /// Counts what the step computed and left out; returns the particles computed.
     pub(super) fn count_step(&mut self) -> u64 {
         let (mut computed, mut skipped) = (0, 0);
@@ -119,12 +127,17 @@ impl<C: Comm> Simulation<'_, C> {
     }
 
     /// What has left by outflows. Collective.
-    pub fn left(&self) -> Left {
+    pub fn left(&self) -> Left<D> {
         let mut sums = self.outflow.sums.clone();
         ExactSum::over_ranks(self.comm, &mut sums);
-        let [mass, momentum, kinetic, internal] = sums.map(|s| s.value());
-        let count = self.outflow.census.over_ranks(self.comm).rows;
-        Left { count, mass, momentum, kinetic, internal }
+        let value = |k: usize| sums[k].value();
+        Left {
+            count: self.outflow.census.over_ranks(self.comm).rows,
+            mass: value(0),
+            kinetic: value(1),
+            internal: value(2),
+            momentum: std::array::from_fn(|a| value(3 + a)),
+        }
     }
 
     /// The particles of all ranks, those that have left among them: their ids and masses never
@@ -181,7 +194,7 @@ mod tests {
             },
         ];
         for fault in faults {
-            let mut simulation = Simulation::new(&scene, &Serial, 1).unwrap();
+            let mut simulation = Simulation::<_, 1>::new(&scene, &Serial, 1).unwrap();
             simulation.advance(scene.scene.time.end).unwrap();
             assert!(simulation.check_census().is_ok());
             fault(&mut simulation.patches[1]);

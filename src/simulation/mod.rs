@@ -31,16 +31,14 @@ use books::{CENSUS_EVERY, Outflow};
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// A particle's state is none that the run could go on from.
-    #[error(
-        "particle {id} of body `{body}` at x = {position:.6e} m, time {time:.6e} s, step {step}: {what}"
-    )]
+    #[error("particle {id} of body `{body}` at {position}, time {time:.6e} s, step {step}: {what}")]
     Particle {
         /// Its id.
         id: u64,
         /// Name of its body.
         body: String,
-        /// Its position [m].
-        position: f64,
+        /// Its position, in words.
+        position: String,
         /// Time [s].
         time: f64,
         /// Number of the step.
@@ -95,17 +93,17 @@ pub enum RunError {
 }
 
 /// A run in memory.
-pub struct Simulation<'a, C: Comm> {
+pub struct Simulation<'a, C: Comm, const D: usize> {
     comm: &'a C,
     scene: &'a CheckedScene,
-    stepper: Stepper,
-    layout: Layout<1>,
+    stepper: Stepper<D>,
+    layout: Layout<D>,
     /// Patches along the curve by which they are dealt.
     order: Vec<usize>,
-    patches: Vec<Patch<1>>,
+    patches: Vec<Patch<D>>,
     /// Known once the particles' lengths are.
     reach: Option<Reach>,
-    plan: Plan,
+    plan: Plan<D>,
     sleep: Sleep,
     threads: usize,
     pool: Option<rayon::ThreadPool>,
@@ -120,17 +118,17 @@ pub struct Simulation<'a, C: Comm> {
     forgone: f64,
     /// All particles at the start.
     census: Census,
-    outflow: Outflow,
-    grid_velocity: f64,
+    outflow: Outflow<D>,
+    grid_velocity: [f64; D],
     time: f64,
     step: u64,
     dt: f64,
 }
 
 /// Who exchanges what with whom, for one reach and one assignment of patches.
-struct Plan {
-    rows: RowExchange<1>,
-    nodes: NodeExchange<1>,
+struct Plan<const D: usize> {
+    rows: RowExchange<D>,
+    nodes: NodeExchange<D>,
     inner_rows: Vec<bool>,
     inner_nodes: Vec<bool>,
     filter: FilterHalo,
@@ -149,68 +147,70 @@ pub(crate) fn decomp_side(side: Side) -> decomp::Side {
     }
 }
 
-/// The sides of a scene.
-pub fn sides(scene: &CheckedScene) -> [Side; 2] {
-    scene.scene.boundary.as_ref().map_or([Side::Free; 2], |b| [b.x_lower, b.x_upper])
-}
-
-/// The velocity at which the grid travels with a piston [m/s].
-fn grid_velocity(scene: &CheckedScene) -> f64 {
-    sides(scene)
-        .iter()
-        .find_map(|s| if let Side::Velocity(v) = s { Some(*v) } else { None })
-        .unwrap_or(0.0)
-}
-
 /// Steps that no run comes to the end of.
 const MOST_STEPS: f64 = 1e12;
 
 /// Patches narrower than this only cost.
 pub(crate) const LEAST_CELLS: usize = 16;
 
-/// Patches of about this many cells sleep and wake with little lost at their ends, for one
-/// worker.
-const SLEEPING_CELLS: usize = 64;
+/// Patches of about this many cells along a direction sleep and wake with little lost at their
+/// ends, for one worker: on a line and in a plane, ...
+const SLEEPING_CELLS: [usize; 2] = [64, 32];
 
 /// Patches for each of several workers that sleep and wake, or move, ...
 const PATCHES_A_WORKER: usize = 8;
 
 /// ... as long as they are at least this wide: with others comes more work at their ends.
-const SHARED_CELLS: usize = 256;
+const SHARED_CELLS: [usize; 2] = [256, 64];
 
 /// The number of patches for a scene on so many ranks and threads: the scene's own, or at least
 /// one for each thread of each rank unless they would be too narrow, and several where patches
 /// may sleep.
 pub fn patch_counts(scene: &CheckedScene, ranks: usize, threads: usize) -> Vec<usize> {
-    if let Some(patches) = &scene.scene.domain.patches {
-        return patches.clone();
+    match scene.dimension {
+        1 => patch_parts::<1>(scene, ranks, threads).to_vec(),
+        _ => patch_parts::<2>(scene, ranks, threads).to_vec(),
     }
-    let (cells, workers) = ([scene.cells[0]], ranks * threads);
+}
+
+fn patch_parts<const D: usize>(scene: &CheckedScene, ranks: usize, threads: usize) -> [usize; D] {
+    if let Some(patches) = &scene.scene.domain.patches {
+        return std::array::from_fn(|a| patches[a]);
+    }
+    let cells: [usize; D] = std::array::from_fn(|a| scene.cells[a]);
+    let workers = ranks * threads;
+    let of_edge = |edge: [usize; 2]| cells.iter().map(|n| (n / edge[D - 1]).max(1)).product();
     let wanted = match workers {
-        _ if !may_sleep(scene) => workers,
-        1 => (cells[0] / SLEEPING_CELLS).max(1),
-        _ => (cells[0] / SHARED_CELLS).clamp(workers, PATCHES_A_WORKER * workers),
+        _ if !may_sleep::<D>(scene) => workers,
+        1 => of_edge(SLEEPING_CELLS),
+        _ => {
+            let several: usize = of_edge(SHARED_CELLS);
+            several.clamp(workers, PATCHES_A_WORKER * workers)
+        }
     };
-    choose_cuts(cells, wanted, LEAST_CELLS).to_vec()
+    choose_cuts(cells, wanted, LEAST_CELLS)
 }
 
 /// Whether a body is at rest and free of stress, so that patches can sleep.
-fn may_sleep(scene: &CheckedScene) -> bool {
+fn may_sleep<const D: usize>(scene: &CheckedScene) -> bool {
     let mut bodies = scene.scene.bodies.iter().zip(&scene.bodies);
-    let velocity = grid_velocity(scene);
+    let velocity = scene.grid_velocity::<D>();
     scene.scene.decomposition.skip_quiet
-        && bodies.any(|(b, c)| c.velocity[0] == velocity && b.pressure == 0.0)
+        && bodies.any(|(b, c)| c.velocity == velocity && b.pressure == 0.0)
 }
 
-/// Particles in the cells from `first` up to `last`, counted without making them.
-fn count_particles(scene: &CheckedScene, first: i64, last: i64) -> u64 {
-    let x = |cell: i64| scene.scene.domain.lower[0] + cell as f64 * scene.cell_size[0];
+/// Particles in the cells of `cells`, counted without making them.
+fn count_particles<const D: usize>(scene: &CheckedScene, cells: &IndexBox<D>) -> u64 {
+    let x = |a: usize, cell: i64| scene.scene.domain.lower[a] + cell as f64 * scene.cell_size[a];
     let bodies = scene.scene.bodies.iter().zip(&scene.bodies);
     bodies
         .map(|(body, checked)| {
-            let (lower, upper) = (body.extent.lower[0], body.extent.upper[0]);
-            let inside = (upper.min(x(last)) - lower.max(x(first))).max(0.0);
-            (inside / (upper - lower) * checked.lattice[0] as f64).round() as u64
+            let along = |a: usize| {
+                let (lower, upper) = (body.extent.lower[a], body.extent.upper[a]);
+                let inside = upper.min(x(a, cells.upper[a])) - lower.max(x(a, cells.lower[a]));
+                inside.max(0.0) / (upper - lower) * checked.lattice[a] as f64
+            };
+            (0..D).map(along).product::<f64>().round() as u64
         })
         .sum()
 }
@@ -219,30 +219,39 @@ fn count_particles(scene: &CheckedScene, first: i64, last: i64) -> u64 {
 const PARTICLE_WEIGHT: u64 = 4;
 
 /// The domain cut into patches: of equal width where the scene gives their number, else with
-/// about the same number of particles at the start.
-fn cut_domain(scene: &CheckedScene, ranks: usize, threads: usize) -> Layout<1> {
-    let parts = patch_counts(scene, ranks, threads)[0];
-    let cells = scene.cells[0] as i64;
-    let (domain, sides) = (IndexBox::new([0], [cells]), [sides(scene).map(decomp_side)]);
-    if scene.scene.domain.patches.is_some() || parts == 1 {
-        return Layout::new(domain, sides, [parts]);
+/// about the same number of particles at the start in each row and column of patches.
+fn cut_domain<const D: usize>(scene: &CheckedScene, ranks: usize, threads: usize) -> Layout<D> {
+    let parts = patch_parts::<D>(scene, ranks, threads);
+    let domain = IndexBox::new([0; D], std::array::from_fn(|a| scene.cells[a] as i64));
+    let sides = scene.sides::<D>().map(|ends| ends.map(decomp_side));
+    if scene.scene.domain.patches.is_some() || parts == [1; D] {
+        return Layout::new(domain, sides, parts);
     }
-    let weight = |c: i64| 1 + PARTICLE_WEIGHT * count_particles(scene, c, c + 1);
-    let weights: Vec<u64> = (0..cells).map(weight).collect();
-    Layout::with_cuts(domain, sides, [even_cuts(&weights, parts, LEAST_CELLS)])
+    let cuts = std::array::from_fn(|a| {
+        let across = domain.count() as u64 / scene.cells[a] as u64;
+        let weight = |c: i64| {
+            let mut slice = domain;
+            (slice.lower[a], slice.upper[a]) = (c, c + 1);
+            across + PARTICLE_WEIGHT * count_particles(scene, &slice)
+        };
+        let weights: Vec<u64> = (0..scene.cells[a] as i64).map(weight).collect();
+        even_cuts(&weights, parts[a], LEAST_CELLS)
+    });
+    Layout::with_cuts(domain, sides, cuts)
 }
 
-impl Plan {
+impl<const D: usize> Plan<D> {
     fn new(
         scene: &CheckedScene,
-        stepper: &Stepper,
-        layout: &Layout<1>,
+        stepper: &Stepper<D>,
+        layout: &Layout<D>,
         reach: Reach,
         rank: usize,
         workers: usize,
     ) -> Self {
         let options = &scene.scene.decomposition;
-        let narrowest = layout.patches().iter().map(|p| p.extent(0)).min().unwrap_or(0);
+        let extents = layout.patches().iter().flat_map(|p| (0..D).map(|a| p.extent(a)));
+        let narrowest = extents.min().unwrap_or(0);
         let choose = || FilterHalo::choose(reach, narrowest, workers);
         let filter = options.filter_halo.unwrap_or_else(choose);
         let deeper = match filter {
@@ -265,17 +274,16 @@ impl Plan {
     }
 }
 
-impl<'a, C: Comm> Simulation<'a, C> {
+impl<'a, C: Comm, const D: usize> Simulation<'a, C, D> {
     /// Makes the particles of `scene`, to be run by `threads` threads on each rank. Collective.
     pub fn new(scene: &'a CheckedScene, comm: &'a C, threads: usize) -> Result<Self, RunError> {
         let stepper = Stepper::new(scene);
         let layout = cut_domain(scene, comm.size(), threads);
         let order = curve_order(layout.parts());
-        let patches = layout.patches().iter();
         let weights: Vec<u64> =
-            patches.map(|p| count_particles(scene, p.lower[0], p.upper[0])).collect();
+            layout.patches().iter().map(|p| count_particles(scene, p)).collect();
         let layout = layout.with_ranks(assign_patches(&weights, &order, comm.size()));
-        let grid_velocity = grid_velocity(scene);
+        let grid_velocity = scene.grid_velocity();
         let energies = stepper.starting_energies(scene);
         let blocks = particles::fill(
             scene,
@@ -285,10 +293,7 @@ impl<'a, C: Comm> Simulation<'a, C> {
             grid_velocity,
             &energies,
         );
-        let longest = (scene.scene.bodies.iter().zip(&scene.bodies))
-            .map(|(b, c)| (b.extent.upper[0] - b.extent.lower[0]) / c.lattice[0] as f64)
-            .fold(0.0, f64::max)
-            / scene.cell_size[0];
+        let longest = stepper.longest_at_start(scene);
         let reach = stepper.reach(longest).expect("a longer particle is a fault");
         let workers = comm.size() * threads;
         let pool = (threads > 1 && layout.patches().len() > 1).then(|| make_pool(threads));
@@ -326,7 +331,7 @@ impl<'a, C: Comm> Simulation<'a, C> {
         Ok(simulation)
     }
 
-    fn with_world<R>(&mut self, call: impl FnOnce(&Stepper, &mut World<'_>) -> R) -> R {
+    fn with_world<R>(&mut self, call: impl FnOnce(&Stepper<D>, &mut World<'_, D>) -> R) -> R {
         let mut world = World {
             comm: self.comm,
             layout: &self.layout,
@@ -360,7 +365,7 @@ impl<'a, C: Comm> Simulation<'a, C> {
     }
 
     /// The patches and who has them.
-    pub fn layout(&self) -> &Layout<1> {
+    pub fn layout(&self) -> &Layout<D> {
         &self.layout
     }
 
@@ -434,25 +439,31 @@ impl<'a, C: Comm> Simulation<'a, C> {
 
     /// The step's first fault, the same for any layout, at rank 0. Collective.
     fn gather_fault(&self) -> RunError {
+        const KEYS: usize = 4;
         let faults = self.patches.iter().filter_map(|p| p.told.fault.as_ref());
         let mut words = Vec::new();
         if let Some(fault) = faults.min_by_key(|f| f.order()) {
-            words.extend(fault.order());
-            words.extend([fault.position.to_bits(), fault.body as u64]);
+            words.extend::<[u64; KEYS]>(fault.order());
+            words.push(fault.body as u64);
+            words.extend(fault.position.map(f64::to_bits));
             words.extend(fault.what.bytes().map(u64::from));
         }
         let all = self.comm.gather(&words);
-        match all.iter().filter(|w| !w.is_empty()).min_by_key(|w| &w[..3]) {
-            Some(w) => RunError::Particle {
-                id: w[2],
-                body: self.scene.scene.bodies[w[4] as usize].name.clone(),
-                position: f64::from_bits(w[3]) + self.grid_velocity * self.time,
-                time: self.time,
-                step: self.step,
-                what: String::from_utf8_lossy(&w[5..].iter().map(|&b| b as u8).collect::<Vec<_>>())
-                    .into_owned(),
-            },
-            None => RunError::Elsewhere,
+        let Some(w) = all.iter().filter(|w| !w.is_empty()).min_by_key(|w| &w[..KEYS]) else {
+            return RunError::Elsewhere;
+        };
+        let (place, what) = w[KEYS + 1..].split_at(D);
+        let x = |a: usize| f64::from_bits(place[a]) + self.grid_velocity[a] * self.time;
+        let names = ["x", "y"];
+        let place = (0..D).map(|a| format!("{} = {:.6e} m", names[a], x(a)));
+        RunError::Particle {
+            id: w[KEYS - 1],
+            body: self.scene.scene.bodies[w[KEYS] as usize].name.clone(),
+            position: place.collect::<Vec<_>>().join(", "),
+            time: self.time,
+            step: self.step,
+            what: String::from_utf8_lossy(&what.iter().map(|&b| b as u8).collect::<Vec<_>>())
+                .into_owned(),
         }
     }
 

@@ -7,12 +7,12 @@ use super::Simulation;
 use crate::output::{ParticleTable, TableColumn};
 
 /// Sums over all particles, to the same bits for any layout.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Totals {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Totals<const D: usize> {
     /// Mass [kg].
     pub mass: f64,
     /// Momentum [kg m/s].
-    pub momentum: f64,
+    pub momentum: [f64; D],
     /// Sum of m |v| [kg m/s].
     pub absolute_momentum: f64,
     /// Kinetic energy [J].
@@ -23,36 +23,41 @@ pub struct Totals {
 
 /// What a particle that is followed tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Followed {
+pub struct Followed<const D: usize> {
     /// Its position [m].
-    pub position: f64,
+    pub position: [f64; D],
     /// Its velocity [m/s].
-    pub velocity: f64,
+    pub velocity: [f64; D],
     /// Its pressure [Pa].
     pub pressure: f64,
-    /// Half of its length [m].
+    /// Half of its length [m]; in a plane that of a square of its volume.
     pub half_length: f64,
 }
 
-impl<C: Comm> Simulation<'_, C> {
+impl<C: Comm, const D: usize> Simulation<'_, C, D> {
     /// Sums over all particles in the frame of the scene. Collective.
-    pub fn totals(&self) -> Totals {
+    pub fn totals(&self) -> Totals<D> {
         let c = &self.stepper.columns;
-        let [mass, momentum, absolute_momentum, kinetic, internal] =
+        let [mass, absolute_momentum, kinetic, internal, x, y] =
             exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
                 for patch in &self.patches {
                     let column = |k: usize| &patch.block.columns[k];
-                    let (m, v, e) = (column(c.mass), column(c.velocity), column(c.energy));
+                    let (m, e) = (column(c.mass), column(c.energy));
                     for r in 0..patch.block.own() {
-                        let v = v[r] + self.grid_velocity;
+                        let v: [f64; D] = std::array::from_fn(|a| {
+                            column(c.velocity + a)[r] + self.grid_velocity[a]
+                        });
+                        let squared = v.iter().map(|v| v * v).sum::<f64>();
+                        let speed = if D == 1 { v[0].abs() } else { squared.sqrt() };
                         add(0, m[r]);
-                        add(1, m[r] * v);
-                        add(2, m[r] * v.abs());
-                        add(3, 0.5 * m[r] * v * v);
-                        add(4, m[r] * e[r]);
+                        add(1, m[r] * speed);
+                        add(2, 0.5 * m[r] * squared);
+                        add(3, m[r] * e[r]);
+                        (0..D).for_each(|a| add(4 + a, m[r] * v[a]));
                     }
                 }
             });
+        let momentum = std::array::from_fn(|a| [x, y][a]);
         Totals { mass, momentum, absolute_momentum, kinetic, internal }
     }
 
@@ -80,10 +85,13 @@ impl<C: Comm> Simulation<'_, C> {
 
     fn table<'b>(&self, ids: &[u64], column: impl Fn(usize) -> &'b Vec<f64>) -> ParticleTable {
         let c = &self.stepper.columns;
-        let shift = self.grid_velocity * self.time;
-        let x: Vec<f64> = column(c.position).iter().map(|x| x + shift).collect();
+        let moved = |a: usize| -> Vec<f64> {
+            let shift = self.grid_velocity[a] * self.time;
+            column(c.position + a).iter().map(|x| x + shift).collect()
+        };
+        let place: [Vec<f64>; D] = std::array::from_fn(moved);
         let mut order: Vec<usize> = (0..ids.len()).collect();
-        order.sort_by(|&a, &b| x[a].total_cmp(&x[b]).then(ids[a].cmp(&ids[b])));
+        order.sort_by(|&a, &b| place[0][a].total_cmp(&place[0][b]).then(ids[a].cmp(&ids[b])));
         let pick = |f: &dyn Fn(usize) -> f64| order.iter().map(|&r| f(r)).collect::<Vec<f64>>();
         let named = |name: &str, unit: &str, values| TableColumn {
             name: name.into(),
@@ -92,18 +100,27 @@ impl<C: Comm> Simulation<'_, C> {
         };
         let (m, v0, j) = (column(c.mass), column(c.volume0), column(c.jacobian));
         let q = c.viscosity.map(&column);
-        let columns = vec![
-            named("x", "m", pick(&|r| x[r])),
-            named("pressure", "Pa", pick(&|r| column(c.pressure)[r])),
-            named("velocity", "m/s", pick(&|r| column(c.velocity)[r] + self.grid_velocity)),
+        let coordinates = ["x", "y"].into_iter().zip(&place);
+        let mut columns: Vec<TableColumn> =
+            coordinates.map(|(name, x)| named(name, "m", pick(&|r| x[r]))).collect();
+        columns.push(named("pressure", "Pa", pick(&|r| column(c.pressure)[r])));
+        let names = if D == 1 { ["velocity", ""] } else { ["velocity_x", "velocity_y"] };
+        for (a, name) in names.into_iter().enumerate().take(D) {
+            let v = |r: usize| column(c.velocity + a)[r] + self.grid_velocity[a];
+            columns.push(named(name, "m/s", pick(&v)));
+        }
+        columns.extend([
             named("density", "kg/m3", pick(&|r| m[r] / (v0[r] * j[r]))),
             named("specific_internal_energy", "J/kg", pick(&|r| column(c.energy)[r])),
             named("artificial_viscosity", "Pa", pick(&|r| q.map_or(0.0, |q| q[r]))),
-        ];
+        ]);
+        if D > 1 {
+            columns.push(named("volume", "m3", pick(&|r| v0[r] * j[r])));
+        }
         let body: Vec<u32> = order.iter().map(|&r| column(c.body)[r] as u32).collect();
         ParticleTable {
             time: self.time,
-            dimension: 1,
+            dimension: D,
             ids: order.iter().map(|&r| ids[r]).collect(),
             material: body.iter().map(|&b| self.scene.bodies[b as usize].material as u32).collect(),
             materials: self.scene.scene.materials.keys().cloned().collect(),
@@ -114,9 +131,8 @@ impl<C: Comm> Simulation<'_, C> {
 
     /// The particles of the ids in `wanted` (in order) at rank 0; `None` for one that has left.
     /// Nothing elsewhere. Collective.
-    pub fn follow(&self, wanted: &[u64]) -> Vec<Option<Followed>> {
+    pub fn follow(&self, wanted: &[u64]) -> Vec<Option<Followed<D>>> {
         let c = &self.stepper.columns;
-        let shift = self.grid_velocity * self.time;
         let mut words = Vec::new();
         for patch in &self.patches {
             let column = |k: usize, r: usize| patch.block.columns[k][r];
@@ -125,27 +141,31 @@ impl<C: Comm> Simulation<'_, C> {
                 if !wanted.contains(&id) {
                     continue;
                 }
-                let half = 0.5 * column(c.volume0, row) * column(c.jacobian, row);
+                let volume = column(c.volume0, row) * column(c.jacobian, row);
+                let half = 0.5 * if D == 1 { volume } else { volume.sqrt() };
                 words.push(id);
-                words.push((column(c.position, row) + shift).to_bits());
-                words.push((column(c.velocity, row) + self.grid_velocity).to_bits());
-                words.push(column(c.pressure, row).to_bits());
-                words.push(half.to_bits());
+                for a in 0..D {
+                    let x = column(c.position + a, row) + self.grid_velocity[a] * self.time;
+                    let v = column(c.velocity + a, row) + self.grid_velocity[a];
+                    words.extend([x, v].map(f64::to_bits));
+                }
+                words.extend([column(c.pressure, row), half].map(f64::to_bits));
             }
         }
         let all = self.comm.gather(&words);
         if self.comm.rank() != 0 {
             return Vec::new();
         }
-        let rows: Vec<&[u64]> = all.iter().flat_map(|w| w.chunks(5)).collect();
+        let rows: Vec<&[u64]> = all.iter().flat_map(|w| w.chunks(3 + 2 * D)).collect();
+        let value = |w: &[u64], k: usize| f64::from_bits(w[k]);
         wanted
             .iter()
             .map(|id| {
                 rows.iter().find(|w| w[0] == *id).map(|w| Followed {
-                    position: f64::from_bits(w[1]),
-                    velocity: f64::from_bits(w[2]),
-                    pressure: f64::from_bits(w[3]),
-                    half_length: f64::from_bits(w[4]),
+                    position: std::array::from_fn(|a| value(w, 1 + 2 * a)),
+                    velocity: std::array::from_fn(|a| value(w, 2 + 2 * a)),
+                    pressure: value(w, 1 + 2 * D),
+                    half_length: value(w, 2 + 2 * D),
                 })
             })
             .collect()
@@ -155,7 +175,7 @@ impl<C: Comm> Simulation<'_, C> {
     /// elsewhere. Collective.
     pub fn sample_pressure(&self, stride: u64) -> Vec<(f64, f64)> {
         let c = &self.stepper.columns;
-        let shift = self.grid_velocity * self.time;
+        let shift = self.grid_velocity[0] * self.time;
         let mut words = Vec::new();
         for patch in &self.patches {
             for row in 0..patch.block.own() {

@@ -3,32 +3,39 @@
 use super::{MOST_NODES, Stepper, with_width};
 use crate::patch::Patch;
 use crate::scene::Limiter;
-use crate::transfer::{Scheme, dot, window};
-use crate::viscosity;
+use crate::transfer::{Row, Scheme};
+use crate::viscosity::{self, Nodes};
 
-impl Stepper {
-    /// New velocity of the own rows, and the velocity itself in the old rows' place:
-    /// v_p' by the scheme; returns nothing, writes the columns of velocity and affine part.
-    pub(super) fn gather_velocity(&self, patch: &mut Patch<1>) {
-        fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper) {
+/// The product of two lines of nodes.
+#[inline(always)]
+fn times<const K: usize>(a: &[f64; K], b: &[f64; K]) -> [f64; K] {
+    std::array::from_fn(|k| a[k] * b[k])
+}
+
+impl<const D: usize> Stepper<D> {
+    /// New velocity of the own rows by the scheme, and the affine part with it.
+    pub(super) fn gather_velocity(&self, patch: &mut Patch<D>) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
             let (c, f) = (&s.columns, &s.fields);
             let n = patch.block.own();
-            let lumped = &patch.nodes.fields[f.lumped][..];
-            let star = &patch.nodes.fields[f.velocity_star][..];
-            let velocity = &mut patch.block.columns[c.velocity][..n];
-            match s.scheme {
-                Scheme::Blend(a) => {
-                    for (r, v) in velocity.iter_mut().enumerate() {
-                        let (first, values, _) = patch.stencils.row::<K>(r);
-                        let old = dot(values, window(lumped, first));
-                        let new = dot(values, window(star, first));
-                        *v = a * *v + (1.0 - a) * old + (new - old);
+            for a in 0..D {
+                let lumped = &patch.nodes.fields[f.lumped + a][..];
+                let star = &patch.nodes.fields[f.velocity_star + a][..];
+                let velocity = &mut patch.block.columns[c.velocity + a][..n];
+                match s.scheme {
+                    Scheme::Blend(share) => {
+                        for (r, v) in velocity.iter_mut().enumerate() {
+                            let row = patch.stencils.row::<K, D>(r);
+                            let old = row.dot(row.values, lumped);
+                            let new = row.dot(row.values, star);
+                            *v = share * *v + (1.0 - share) * old + (new - old);
+                        }
                     }
-                }
-                Scheme::Series { .. } | Scheme::Affine => {
-                    for (r, v) in velocity.iter_mut().enumerate() {
-                        let (first, values, _) = patch.stencils.row::<K>(r);
-                        *v = dot(values, window(star, first));
+                    Scheme::Series { .. } | Scheme::Affine => {
+                        for (r, v) in velocity.iter_mut().enumerate() {
+                            let row = patch.stencils.row::<K, D>(r);
+                            *v = row.dot(row.values, star);
+                        }
                     }
                 }
             }
@@ -39,56 +46,86 @@ impl Stepper {
         with_width!(patch.stencils.width, go(patch, self));
     }
 
-    /// C = B/D with B = sum N v' (x_i - x_p) and D = sum N (x_i - x_p)^2 (Jiang et al. 2015).
-    fn gather_affine<const K: usize>(&self, patch: &mut Patch<1>, affine: usize) {
-        let lower = patch.nodes.nodes.lower[0];
-        let star = &patch.nodes.fields[self.fields.velocity_star][..];
-        let n = patch.block.own();
-        let [affine, fraction] = patch
-            .block
-            .columns
-            .get_disjoint_mut([affine, self.columns.fraction])
-            .expect("columns differ");
-        for r in 0..n {
-            let (first, values, gradients) = patch.stencils.row::<K>(r);
-            let offset =
-                (first as i64 + lower - patch.block.cells[r][0] as i64) as f64 - fraction[r];
-            let v: &[f64; K] = window(star, first);
-            let (mut b, mut d) = (0.0, 0.0);
-            for k in 0..K {
-                let apart = offset + k as f64;
-                b += values[k] * v[k] * apart;
-                d += values[k] * apart * apart;
+    /// C = B/D with B = sum N v' (x_i - x_p) and D = sum N (x_i - x_p)^2 along each direction
+    /// (Jiang et al. 2015).
+    fn gather_affine<const K: usize>(&self, patch: &mut Patch<D>, affine: usize) {
+        for r in 0..patch.block.own() {
+            let offset = self.offset(patch, r, patch.stencils.first[r] as usize);
+            let row = patch.stencils.row::<K, D>(r);
+            for b in 0..D {
+                let apart =
+                    |line: usize, k: usize| offset[b] + if b == 0 { k as f64 } else { line as f64 };
+                let square = |line: usize| std::array::from_fn(|k| apart(line, k) * apart(line, k));
+                let d = row.sum(row.values, square);
+                for a in 0..D {
+                    let star = &patch.nodes.fields[self.fields.velocity_star + a][..];
+                    let moment = |line: usize| {
+                        let v = row.line(star, line);
+                        std::array::from_fn(|k| v[k] * apart(line, k))
+                    };
+                    // on a node of hat functions both vanish, and their ratio tends to the gradient
+                    patch.block.columns[affine + D * a + b][r] = if d > 1e-9 {
+                        row.sum(row.values, moment) / d * self.inverse_cell[b]
+                    } else {
+                        row.dot(row.gradient(b), star)
+                    };
+                }
             }
-            // on a node of hat functions both vanish, and their ratio tends to the gradient
-            affine[r] = if d > 1e-9 { b / d * self.inverse_cell } else { dot(gradients, v) };
         }
     }
 
-    /// Divergence of `field` (a nodal velocity) at the own rows, and the limiter from it.
-    pub(super) fn gather_gradient(&self, patch: &mut Patch<1>, field: usize) {
-        fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper, field: usize) {
-            let n = patch.block.own();
-            let nodal = &patch.nodes.fields[field][..];
-            let gradient = &mut patch.block.columns[s.columns.gradient][..n];
+    /// Gradient of the velocity in the fields from `field` on at a row, as far as a scene needs it.
+    #[inline(always)]
+    fn tensor<const K: usize>(
+        &self,
+        patch: &Patch<D>,
+        row: &Row<'_, K, D>,
+        field: usize,
+    ) -> [[f64; D]; D] {
+        std::array::from_fn(|a| {
+            let nodal = &patch.nodes.fields[field + a][..];
+            std::array::from_fn(|b| row.dot(row.gradient(b), nodal))
+        })
+    }
+
+    /// Divergence of the nodal velocity in the fields from `field` on at the own rows, its whole
+    /// gradient where domains deform, and the limiter from it.
+    pub(super) fn gather_gradient(&self, patch: &mut Patch<D>, field: usize) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, field: usize) {
+            let column = s.columns.gradient;
+            let mut gradient = std::mem::take(&mut patch.block.columns[column]);
             for (r, d) in gradient.iter_mut().enumerate() {
-                let (first, _, g) = patch.stencils.row::<K>(r);
-                *d = dot(g, window(nodal, first));
+                let row = patch.stencils.row::<K, D>(r);
+                if let Some(whole) = s.columns.velocity_gradient {
+                    let l = s.tensor(patch, &row, field);
+                    *d = trace(&l);
+                    put(&mut patch.block.columns, whole, r, &l);
+                } else {
+                    let along = |a: usize| row.dot(row.gradient(a), &patch.nodes.fields[field + a]);
+                    *d = (1..D).fold(along(0), |sum, a| sum + along(a));
+                }
             }
+            patch.block.columns[column] = gradient;
             s.gather_limiter::<K>(patch, field);
         }
         with_width!(patch.stencils.width, go(patch, self, field));
     }
 
-    fn gather_limiter<const K: usize>(&self, patch: &mut Patch<1>, field: usize) {
+    fn gather_limiter<const K: usize>(&self, patch: &mut Patch<D>, field: usize) {
         let (Some(limiter), Some(column)) =
             (self.viscosity.and_then(|v| v.limiter), self.columns.limiter)
         else {
             return;
         };
-        let velocity = &patch.nodes.fields[field][..];
-        let inverse = &patch.nodes.fields[self.fields.inverse][..];
-        let lower = patch.nodes.nodes.lower[0];
+        let fields = &patch.nodes.fields;
+        let stride = patch.stencils.stride;
+        let nodes = Nodes {
+            velocity: std::array::from_fn::<&[f64], D, _>(|a| &fields[field + a]),
+            inverse_mass: &fields[self.fields.inverse],
+            steps: std::array::from_fn(|a| if a == 0 { 1 } else { stride }),
+            inverse_cell: self.inverse_cell,
+        };
+        let lower = patch.nodes.nodes.lower;
         let n = patch.block.own();
         let [phi, gradient] = patch
             .block
@@ -102,13 +139,14 @@ impl Stepper {
             } else {
                 match limiter {
                     Limiter::Christensen => {
-                        let node = (patch.block.cells[r][0] as i64 - lower) as usize;
-                        viscosity::christensen(velocity, inverse, node)
+                        let at =
+                            |a: usize| (i64::from(patch.block.cells[r][a]) - lower[a]) as usize;
+                        let node = (1..D).fold(at(0), |sum, a| sum + stride * at(a));
+                        viscosity::christensen(&nodes, node)
                     }
                     Limiter::Nodal => {
-                        let (first, values, _) = patch.stencils.row::<K>(r);
-                        let scale = 0.5 * self.inverse_cell;
-                        viscosity::nodal(velocity, inverse, first, values, gradient[r], scale)
+                        let row = patch.stencils.row::<K, D>(r);
+                        viscosity::nodal(&nodes, &row, gradient[r])
                     }
                 }
             };
@@ -116,74 +154,126 @@ impl Stepper {
     }
 
     /// All that the end of a mid-point step brings the own rows: volume and energy from the
-    /// gradients of the mean velocity and of w, the filter's heat, velocity and position.
-    pub(super) fn gather_midpoint(&self, patch: &mut Patch<1>, dt: f64) {
-        fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper, dt: f64) {
-            let (c, f) = (&s.columns, &s.fields);
-            let n = patch.block.own();
-            let nodal = |k: usize| &patch.nodes.fields[k][..];
-            let (lumped, start, star) =
-                (nodal(f.lumped), nodal(f.velocity), nodal(f.velocity_star));
-            let (remainder, work) = (f.remainder.map(nodal), nodal(f.work));
-            let mid = c.jacobian_mid.expect("mid-point stepping has the column");
-            let [x, v, j, e, d, mass, j_mid, stress] = patch.block.columns_mut([
-                c.position,
-                c.velocity,
-                c.jacobian,
-                c.energy,
-                c.gradient,
-                c.mass,
-                mid,
-                c.stress_volume,
-            ]);
-            for r in 0..n {
-                let (first, values, g) = patch.stencils.row::<K>(r);
-                let (v0, v1): (&[f64; K], &[f64; K]) = (window(start, first), window(star, first));
-                let mean: [f64; K] = std::array::from_fn(|k| 0.5 * (v0[k] + v1[k]));
-                let old = v[r];
-                let (new, heat) = match s.scheme {
-                    Scheme::Series { .. } => {
-                        let new = dot(values, v1);
-                        let heat = if let Some(remainder) = remainder.filter(|_| s.filter_heat) {
-                            let lost: &[f64; K] = window(remainder, first);
-                            let both = std::array::from_fn(|k| lost[k] * mean[k]);
-                            let rest = old - dot(values, v0);
-                            0.5 * rest * rest
-                                + (dot(values, &both) - dot(values, lost) * dot(values, &mean))
-                        } else {
-                            0.0
-                        };
-                        (new, heat)
-                    }
-                    Scheme::Blend(a) => {
-                        let vl: &[f64; K] = window(lumped, first);
-                        let on_grid = dot(values, vl);
-                        let change = dot(values, v1) - on_grid;
-                        let heat = if s.filter_heat {
-                            let square = std::array::from_fn(|k| vl[k] * vl[k]);
-                            let rest = old - on_grid;
-                            0.5 * (1.0 - a * a) * rest * rest
-                                + (1.0 - a) * (dot(values, &square) - on_grid * on_grid)
-                        } else {
-                            0.0
-                        };
-                        (a * old + (1.0 - a) * on_grid + change, heat)
-                    }
-                    Scheme::Affine => (dot(values, v1), 0.0),
-                };
-                let divergence = dot(g, &mean);
-                let working = if s.compatible { dot(g, window(work, first)) } else { divergence };
-                v[r] = new;
-                x[r] += 0.5 * dt * (old + new);
-                j[r] += dt * j_mid[r] * divergence;
-                e[r] += heat - stress[r] * dt * working / mass[r];
-                d[r] = dot(g, v1);
-            }
-            if let Some(affine) = c.affine {
+    /// gradients of the mean velocity and of w, the filter's heat, velocity, position, and domain.
+    pub(super) fn gather_midpoint(&self, patch: &mut Patch<D>, dt: f64) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, dt: f64) {
+            s.gather_rows::<K>(patch, dt);
+            if let Some(affine) = s.columns.affine {
                 s.gather_affine::<K>(patch, affine);
             }
-            s.gather_limiter::<K>(patch, f.velocity_star);
+            s.gather_limiter::<K>(patch, s.fields.velocity_star);
         }
         with_width!(patch.stencils.width, go(patch, self, dt));
+    }
+
+    fn gather_rows<const K: usize>(&self, patch: &mut Patch<D>, dt: f64) {
+        let (c, f) = (&self.columns, &self.fields);
+        let n = patch.block.own();
+        let fields = &patch.nodes.fields;
+        let vector = |k: usize| std::array::from_fn::<&[f64], D, _>(|a| &fields[k + a]);
+        let (lumped, start, star) = (vector(f.lumped), vector(f.velocity), vector(f.velocity_star));
+        let work = vector(f.work);
+        let remainder = f.remainder.filter(|_| self.filter_heat).map(vector);
+        // columns that are written leave the block while the others are read
+        let columns = &mut patch.block.columns;
+        let mut take = |k: usize| std::mem::take(&mut columns[k]);
+        let mut x: [Vec<f64>; D] = std::array::from_fn(|a| take(c.position + a));
+        let mut v: [Vec<f64>; D] = std::array::from_fn(|a| take(c.velocity + a));
+        let [mut j, mut e, mut d] = [c.jacobian, c.energy, c.gradient].map(take);
+        let column = |k: usize| &patch.block.columns[k][..n];
+        let mid = c.jacobian_mid.expect("mid-point stepping has the column");
+        let (mass, j_mid, stress) = (column(c.mass), column(mid), column(c.stress_volume));
+        for r in 0..n {
+            let row = patch.stencils.row::<K, D>(r);
+            let mean = |a: usize, line: usize| -> [f64; K] {
+                let (v0, v1) = (row.line(start[a], line), row.line(star[a], line));
+                std::array::from_fn(|k| 0.5 * (v0[k] + v1[k]))
+            };
+            let (mut heat, mut new) = (0.0, [0.0; D]);
+            for a in 0..D {
+                let old = v[a][r];
+                new[a] = row.dot(row.values, star[a]);
+                match self.scheme {
+                    Scheme::Series { .. } => {
+                        if let Some(lost) = remainder {
+                            let both = |l: usize| times(row.line(lost[a], l), &mean(a, l));
+                            let rest = old - row.dot(row.values, start[a]);
+                            heat += 0.5 * rest * rest
+                                + (row.sum(row.values, both)
+                                    - row.dot(row.values, lost[a])
+                                        * row.sum(row.values, |l| mean(a, l)));
+                        }
+                    }
+                    Scheme::Blend(share) => {
+                        let on_grid = row.dot(row.values, lumped[a]);
+                        let change = new[a] - on_grid;
+                        if self.filter_heat {
+                            let square =
+                                |l: usize| times(row.line(lumped[a], l), row.line(lumped[a], l));
+                            let rest = old - on_grid;
+                            heat += 0.5 * (1.0 - share * share) * rest * rest
+                                + (1.0 - share) * (row.sum(row.values, square) - on_grid * on_grid);
+                        }
+                        new[a] = share * old + (1.0 - share) * on_grid + change;
+                    }
+                    Scheme::Affine => {}
+                }
+            }
+            let along = |a: usize, of: &dyn Fn(usize) -> [f64; K]| row.sum(row.gradient(a), of);
+            let divergence = (0..D).map(|a| along(a, &|l| mean(a, l))).sum::<f64>();
+            let working = if self.compatible {
+                (0..D).map(|a| row.dot(row.gradient(a), work[a])).sum()
+            } else {
+                divergence
+            };
+            for a in 0..D {
+                x[a][r] += 0.5 * dt * (v[a][r] + new[a]);
+                v[a][r] = new[a];
+            }
+            j[r] += dt * j_mid[r] * divergence;
+            e[r] += heat - stress[r] * dt * working / mass[r];
+            d[r] = (0..D).map(|a| row.dot(row.gradient(a), star[a])).sum();
+        }
+        let columns = &mut patch.block.columns;
+        for (a, (x, v)) in x.into_iter().zip(v).enumerate() {
+            columns[c.position + a] = x;
+            columns[c.velocity + a] = v;
+        }
+        columns[c.jacobian] = j;
+        columns[c.energy] = e;
+        columns[c.gradient] = d;
+        if let Some(whole) = c.velocity_gradient {
+            self.deform_rows::<K>(patch, whole, dt);
+        }
+    }
+
+    /// The whole gradient of v' at the own rows, and their domains after the step with that of
+    /// the mean velocity.
+    fn deform_rows<const K: usize>(&self, patch: &mut Patch<D>, whole: usize, dt: f64) {
+        for r in 0..patch.block.own() {
+            let row = patch.stencils.row::<K, D>(r);
+            let start = self.tensor(patch, &row, self.fields.velocity);
+            let star = self.tensor(patch, &row, self.fields.velocity_star);
+            let mean =
+                std::array::from_fn(|a| std::array::from_fn(|b| 0.5 * (start[a][b] + star[a][b])));
+            put(&mut patch.block.columns, whole, r, &star);
+            self.deform(&mut patch.block.columns, r, &mean, dt);
+        }
+    }
+}
+
+/// Sum of the diagonal.
+#[inline(always)]
+fn trace<const D: usize>(tensor: &[[f64; D]; D]) -> f64 {
+    (1..D).fold(tensor[0][0], |sum, a| sum + tensor[a][a])
+}
+
+/// Writes a tensor into its columns from `first` on.
+#[inline(always)]
+fn put<const D: usize>(columns: &mut [Vec<f64>], first: usize, row: usize, tensor: &[[f64; D]; D]) {
+    for a in 0..D {
+        for b in 0..D {
+            columns[first + D * a + b][row] = tensor[a][b];
+        }
     }
 }

@@ -8,12 +8,16 @@ use super::{Stepper, World};
 use crate::patch::Patch;
 use crate::scene::StressUpdate;
 
-impl Stepper {
+impl<const D: usize> Stepper<D> {
     /// One step. Collective.
     ///
     /// Stress first and modified last send the rows a second time, for what a ghost carries has
     /// changed within the step.
-    pub(super) fn advance_leapfrog(&self, world: &mut World<'_>, dt: f64) -> Result<(), RowError> {
+    pub(super) fn advance_leapfrog(
+        &self,
+        world: &mut World<'_, D>,
+        dt: f64,
+    ) -> Result<(), RowError> {
         let star = self.fields.velocity_star;
         world.each("start", |patch| {
             patch.block.drop_ghosts();
@@ -66,16 +70,17 @@ impl Stepper {
     }
 
     /// x += dt N v'.
-    fn move_rows(&self, patch: &mut Patch<1>, dt: f64) {
+    fn move_rows(&self, patch: &mut Patch<D>, dt: f64) {
         use super::{MOST_NODES, with_width};
-        use crate::transfer::{dot, window};
-        fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper, dt: f64) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, dt: f64) {
             let n = patch.block.own();
-            let star = &patch.nodes.fields[s.fields.velocity_star][..];
-            let x = &mut patch.block.columns[s.columns.position][..n];
-            for (r, x) in x.iter_mut().enumerate() {
-                let (first, values, _) = patch.stencils.row::<K>(r);
-                *x += dt * dot(values, window(star, first));
+            for a in 0..D {
+                let star = &patch.nodes.fields[s.fields.velocity_star + a][..];
+                let x = &mut patch.block.columns[s.columns.position + a][..n];
+                for (r, x) in x.iter_mut().enumerate() {
+                    let row = patch.stencils.row::<K, D>(r);
+                    *x += dt * row.dot(row.values, star);
+                }
             }
         }
         with_width!(patch.stencils.width, go(patch, self, dt));

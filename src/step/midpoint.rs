@@ -16,11 +16,11 @@ use decomp::RowError;
 
 use super::{Stepper, World};
 
-impl Stepper {
+impl<const D: usize> Stepper<D> {
     /// One step; `relax` is the rate of pressure relaxation if this step has it. Collective.
     pub(super) fn advance_midpoint(
         &self,
-        world: &mut World<'_>,
+        world: &mut World<'_, D>,
         dt: f64,
         relax: Option<f64>,
     ) -> Result<(), RowError> {
@@ -56,7 +56,7 @@ impl Stepper {
 
     /// The gradient of the starting velocity, which the first step needs: a step of no length
     /// that moves nothing. Collective.
-    pub(super) fn prime_gradient(&self, world: &mut World<'_>) -> Result<(), RowError> {
+    pub(super) fn prime_gradient(&self, world: &mut World<'_, D>) -> Result<(), RowError> {
         let jacobian = self.columns.jacobian;
         world.each("start", |patch| {
             self.current_stress(patch);

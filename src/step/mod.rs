@@ -17,8 +17,6 @@ mod world;
 pub use reach::Reach;
 pub use world::{Nodal, Sleep, World};
 
-use decomp::Parity;
-
 use crate::constitutive::{self, Model};
 use crate::grid::Fields;
 use crate::particles::Columns;
@@ -30,11 +28,8 @@ use crate::shape::{self, Extent, Shape};
 use crate::transfer::Scheme;
 use crate::viscosity::Viscosity;
 
-/// Velocity components change sign in a mirror.
-const ODD: Parity = Parity::Odd(0);
-
 /// What a scene chose, made ready for stepping.
-pub struct Stepper {
+pub struct Stepper<const D: usize> {
     /// Where the columns stand.
     pub columns: Columns,
     /// Where the nodal fields stand.
@@ -50,13 +45,15 @@ pub struct Stepper {
     /// One a body.
     models: Vec<Box<dyn Model>>,
     shape: ShapeKind,
-    /// Edge of a cell [m] and its inverse.
-    cell: f64,
-    inverse_cell: f64,
+    /// Edges of a cell [m] and their inverse.
+    cell: [f64; D],
+    inverse_cell: [f64; D],
     /// Lower corner of the domain [m] and its number of cells.
-    lower: f64,
-    cells: i64,
-    sides: [Side; 2],
+    lower: [f64; D],
+    cells: [i64; D],
+    sides: [[Side; 2]; D],
+    /// Longest half diagonal of a particle's domain [cells], with a limit.
+    domain_limit: Option<f64>,
     /// Whether patches at rest are left out.
     may_sleep: bool,
     /// Mass below which a node counts as empty [kg].
@@ -73,16 +70,16 @@ pub struct Stepper {
 /// pressures go with it. Alike everywhere, whatever sleeps.
 const STILL: f64 = 1.0 / (1u64 << 50) as f64;
 
-/// Calls `$call` with the type of a shape function and a number of nodes known at compile time,
-/// at least `$nodes`. One line a shape function.
+/// Calls `$call` with the type of a shape function, a number of nodes known at compile time, at
+/// least `$nodes`, and the dimension. One line a shape function.
 macro_rules! with_shape {
     ($kind:expr, $nodes:expr, $call:ident ( $($arg:expr),* )) => {
         match $kind {
-            ShapeKind::Linear => $call::<shape::Linear, 2>($($arg),*),
+            ShapeKind::Linear => $call::<shape::Linear, 2, D>($($arg),*),
             ShapeKind::Gimp => with_shape!(@wide $call, shape::Gimp, $nodes, $($arg),*),
             ShapeKind::Cpdi => with_shape!(@wide $call, shape::Cpdi, $nodes, $($arg),*),
-            ShapeKind::BsplineQuadratic => $call::<shape::BsplineQuadratic, 3>($($arg),*),
-            ShapeKind::BsplineCubic => $call::<shape::BsplineCubic, 4>($($arg),*),
+            ShapeKind::BsplineQuadratic => $call::<shape::BsplineQuadratic, 3, D>($($arg),*),
+            ShapeKind::BsplineCubic => $call::<shape::BsplineCubic, 4, D>($($arg),*),
             ShapeKind::CpdiBsplineQuadratic => {
                 with_shape!(@wide $call, shape::CpdiBsplineQuadratic, $nodes, $($arg),*)
             }
@@ -90,25 +87,25 @@ macro_rules! with_shape {
     };
     (@wide $call:ident, $shape:ty, $nodes:expr, $($arg:expr),*) => {
         match $nodes {
-            0..=3 => $call::<$shape, 3>($($arg),*),
-            4 => $call::<$shape, 4>($($arg),*),
-            5..=6 => $call::<$shape, 6>($($arg),*),
-            7..=10 => $call::<$shape, 10>($($arg),*),
-            _ => $call::<$shape, MOST_NODES>($($arg),*),
+            0..=3 => $call::<$shape, 3, D>($($arg),*),
+            4 => $call::<$shape, 4, D>($($arg),*),
+            5..=6 => $call::<$shape, 6, D>($($arg),*),
+            7..=10 => $call::<$shape, 10, D>($($arg),*),
+            _ => $call::<$shape, MOST_NODES, D>($($arg),*),
         }
     };
 }
 
-/// Calls `$call` with the width of a patch's stencils known at compile time.
+/// Calls `$call` with the width of a patch's stencils known at compile time, and the dimension.
 macro_rules! with_width {
     ($width:expr, $call:ident ( $($arg:expr),* )) => {
         match $width {
-            0..=2 => $call::<2>($($arg),*),
-            3 => $call::<3>($($arg),*),
-            4 => $call::<4>($($arg),*),
-            6 => $call::<6>($($arg),*),
-            10 => $call::<10>($($arg),*),
-            _ => $call::<MOST_NODES>($($arg),*),
+            0..=2 => $call::<2, D>($($arg),*),
+            3 => $call::<3, D>($($arg),*),
+            4 => $call::<4, D>($($arg),*),
+            6 => $call::<6, D>($($arg),*),
+            10 => $call::<10, D>($($arg),*),
+            _ => $call::<MOST_NODES, D>($($arg),*),
         }
     };
 }
@@ -120,28 +117,33 @@ const MOST_NODES: usize = 18;
 /// How much longer a particle may be at the middle of a step than at its start.
 const STRETCH: f64 = 1.25;
 
-impl Stepper {
+impl<const D: usize> Stepper<D> {
     /// What `scene` chose.
     pub fn new(scene: &CheckedScene) -> Self {
         let method = &scene.scene.method;
         let viscosity = scene.scene.artificial_viscosity.as_ref();
-        let sides =
-            scene.scene.boundary.as_ref().map_or([Side::Free; 2], |b| [b.x_lower, b.x_upper]);
         let bodies = &scene.scene.bodies;
         let materials = &scene.scene.materials;
-        let cell = scene.cell_size[0];
+        let cell: [f64; D] = std::array::from_fn(|a| scene.cell_size[a]);
+        let volume: f64 = cell.iter().product();
+        let smallest = cell.iter().copied().fold(f64::INFINITY, f64::min);
         let models: Vec<Box<dyn Model>> =
             bodies.iter().map(|b| constitutive::build(&materials[&b.material])).collect();
         let fastest = (bodies.iter().zip(&models).zip(&scene.bodies))
-            .map(|((b, m), c)| m.sound_speed_at(b.pressure).max(c.velocity[0].abs()))
+            .map(|((b, m), c)| m.sound_speed_at(b.pressure).max(norm(&c.velocity)))
             .fold(0.0, f64::max);
         let densest = bodies.iter().map(|b| materials[&b.material].density).fold(0.0, f64::max);
+        // what a cell's edge is to viscosity: exact where all are the same
+        let edge = match cell.iter().all(|&h| h == cell[0]) {
+            true => cell[0],
+            false => volume.powf(1.0 / D as f64),
+        };
         let scheme: Scheme = method.transfer.into();
         let filtered = matches!(scheme, Scheme::Series { .. });
         let relaxed = method.pressure_relaxation.is_some();
         Stepper {
             columns: Columns::new(scene),
-            fields: Fields::new(filtered, method.edge_mask.is_some(), relaxed),
+            fields: Fields::new(D, filtered, method.edge_mask.is_some(), relaxed),
             scheme,
             stepping: method.stepping,
             stress_update: method.stress_update,
@@ -149,21 +151,22 @@ impl Stepper {
             filter_heat: method.filter_heat,
             relaxation: method.pressure_relaxation,
             edge_mask: method.edge_mask,
-            viscosity: viscosity.map(|v| Viscosity::new(v, cell)),
+            viscosity: viscosity.map(|v| Viscosity::new(v, edge)),
             models,
             shape: method.shape,
             cell,
-            inverse_cell: 1.0 / cell,
-            lower: scene.scene.domain.lower[0],
-            cells: scene.cells[0] as i64,
-            sides,
+            inverse_cell: cell.map(|h| 1.0 / h),
+            lower: std::array::from_fn(|a| scene.scene.domain.lower[a]),
+            cells: std::array::from_fn(|a| scene.cells[a] as i64),
+            sides: scene.sides(),
+            domain_limit: method.domain_limit,
             may_sleep: scene.scene.decomposition.skip_quiet,
             // what such a node holds is below rounding of its neighbours
-            empty_mass: densest * cell * 2f64.powi(-90),
+            empty_mass: densest * volume * 2f64.powi(-90),
             // far ahead of a wave values would fall and fall, until they are denormal; at this
             // share of the scene's speeds they are below rounding of what is behind it
             still_speed: fastest * STILL,
-            still_acceleration: fastest * fastest * STILL / cell,
+            still_acceleration: fastest * fastest * STILL / smallest,
             still_pressure: densest * fastest * fastest * STILL,
         }
     }
@@ -174,10 +177,20 @@ impl Stepper {
         bodies.zip(&self.models).map(|(b, m)| m.energy_at(b.pressure)).collect()
     }
 
+    /// The greatest extent along a direction of the particles that `scene` starts with [cells].
+    pub fn longest_at_start(&self, scene: &CheckedScene) -> f64 {
+        let bodies = scene.scene.bodies.iter().zip(&scene.bodies);
+        let lengths = bodies.flat_map(|(b, c)| {
+            let edge = |a: usize| (b.extent.upper[a] - b.extent.lower[a]) / c.lattice[a] as f64;
+            (0..D).map(move |a| edge(a) / scene.cell_size[a])
+        });
+        lengths.fold(0.0, f64::max)
+    }
+
     /// The reach of particles up to `length` long [cells], with room to stretch in a step; `None`
     /// if they are longer than any stencil.
     pub fn reach(&self, length: f64) -> Option<Reach> {
-        fn nodes<S: Shape, const K: usize>(length: f64) -> usize {
+        fn nodes<S: Shape, const K: usize, const D: usize>(length: f64) -> usize {
             S::nodes(length)
         }
         let length = match self.extent() {
@@ -231,7 +244,7 @@ impl Stepper {
 
     /// The longest particle [cells] that `reach` is deep enough for.
     pub fn longest_within(&self, reach: Reach) -> f64 {
-        fn nodes<S: Shape, const K: usize>() -> usize {
+        fn nodes<S: Shape, const K: usize, const D: usize>() -> usize {
             S::nodes(0.01)
         }
         (reach.nodes + 1 - with_shape!(self.shape, 4usize, nodes())) as f64
@@ -243,10 +256,7 @@ impl Stepper {
     }
 
     fn extent(&self) -> Extent {
-        fn extent<S: Shape, const K: usize>() -> Extent {
-            S::EXTENT
-        }
-        with_shape!(self.shape, 4usize, extent())
+        Extent::of(self.shape)
     }
 
     /// Whether step number `step` (from 1) relaxes the pressure.
@@ -256,7 +266,7 @@ impl Stepper {
 
     /// Makes the starting state whole: pressure, sound speed and, where the scheme needs it, the
     /// gradient of the starting velocity. Collective.
-    pub fn prime(&self, world: &mut World<'_>) -> Result<(), decomp::RowError> {
+    pub fn prime(&self, world: &mut World<'_, D>) -> Result<(), decomp::RowError> {
         world.each("refresh", |patch| self.refresh(patch));
         if self.stepping == Stepping::Midpoint {
             self.prime_gradient(world)?;
@@ -268,7 +278,7 @@ impl Stepper {
     /// Advances all patches by `dt` [s]; `step` numbers the steps from 1. Collective.
     pub fn advance(
         &self,
-        world: &mut World<'_>,
+        world: &mut World<'_, D>,
         dt: f64,
         step: u64,
     ) -> Result<(), decomp::RowError> {
@@ -279,16 +289,41 @@ impl Stepper {
     }
 
     /// Weights of all rows of a patch, as wide as its longest row needs.
-    fn find_weights(&self, patch: &mut Patch<1>) {
-        fn find<S: Shape, const K: usize>(patch: &mut Patch<1>, s: &Stepper) {
-            patch.find_weights::<S, K>(s.columns.fraction, s.columns.length, s.inverse_cell)
+    fn find_weights(&self, patch: &mut Patch<D>) {
+        fn find<S: Shape, const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
+            patch.find_weights::<S, K>(s.columns.fraction, s.columns.domain, s.inverse_cell)
         }
-        fn nodes<S: Shape, const K: usize>(length: f64) -> usize {
+        fn nodes<S: Shape, const K: usize, const D: usize>(length: f64) -> usize {
             S::nodes(length)
         }
-        let lengths = &patch.block.columns[self.columns.length];
-        let longest = lengths.iter().copied().fold(0.0, f64::max);
-        let width = with_shape!(self.shape, 4usize, nodes(longest));
+        let width = with_shape!(self.shape, 4usize, nodes(self.longest(&patch.block)));
         with_shape!(self.shape, width, find(patch, self));
+    }
+
+    /// The greatest extent along a direction of the domains of all rows of a patch [cells].
+    fn longest(&self, block: &decomp::Block<D>) -> f64 {
+        let column = |k: usize| &block.columns[self.columns.domain + k][..];
+        let greatest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+        match (D, self.extent()) {
+            (1, _) => greatest(column(0)),
+            (_, Extent::Point) => 0.0,
+            (_, Extent::Undeformed) => greatest(column(0)).max(greatest(column(1))),
+            (_, Extent::Current) => {
+                let along = |a: usize| {
+                    let edges = column(a).iter().zip(column(a + 2));
+                    edges.fold(0.0f64, |l, (r1, r2)| l.max(2.0 * (r1.abs() + r2.abs())))
+                };
+                along(0).max(along(1))
+            }
+        }
+    }
+}
+
+/// Length of a vector; exact along an axis.
+#[inline(always)]
+fn norm(v: &[f64]) -> f64 {
+    match v {
+        [x] => x.abs(),
+        _ => v.iter().map(|x| x * x).sum::<f64>().sqrt(),
     }
 }

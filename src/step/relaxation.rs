@@ -15,43 +15,45 @@
 
 use super::{MOST_NODES, Stepper, with_width};
 use crate::patch::Patch;
-use crate::transfer::{add, cut, dot, window};
+use crate::transfer::cut;
 
 /// Terms of the projection's series.
 pub const ORDER: u32 = 4;
 
-impl Stepper {
+impl<const D: usize> Stepper<D> {
     /// The first term of the pressure's series, P_L, on the nodes that the patch computes.
-    pub(super) fn start_pressure(&self, patch: &mut Patch<1>) {
-        fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper) {
+    pub(super) fn start_pressure(&self, patch: &mut Patch<D>) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
             s.scatter_pressure::<K>(patch);
         }
         with_width!(patch.stencils.width, go(patch, self));
     }
 
-    fn scatter_pressure<const K: usize>(&self, patch: &mut Patch<1>) {
+    fn scatter_pressure<const K: usize>(&self, patch: &mut Patch<D>) {
         let [weight, inverse, sum, term] = self.fields.relaxation;
         let rows = patch.block.rows();
         let (Some(p), Some(w)) = (self.columns.pressure_mid, self.columns.compliance) else {
             return;
         };
         let (p, w) = (&patch.block.columns[p][..rows], &patch.block.columns[w][..rows]);
-        patch.compliance_band.clear(patch.nodes.nodes.count(), K);
+        let (nodes, stride) = (patch.nodes.nodes.count(), patch.nodes.nodes.extent(0));
+        patch.compliance_band.clear(nodes, K, D, stride);
+        let lines = patch.active_lines();
         let [weight, inverse, sum, term] = patch.nodes.fields_mut([weight, inverse, sum, term]);
         weight.fill(0.0);
         inverse.fill(0.0);
         term.fill(0.0);
         for run in &patch.runs {
             for r in run.clone() {
-                let (first, n, _) = patch.stencils.row::<K>(r);
+                let row = patch.stencils.row::<K, D>(r);
                 let wp = w[r] * p[r];
-                add(weight, first, n.map(|n| n * w[r]));
-                add(term, first, n.map(|n| n * wp));
-                patch.compliance_band.add(first, w[r], n);
+                row.add(weight, row.values, |n| n * w[r]);
+                row.add(term, row.values, |n| n * wp);
+                patch.compliance_band.add(&row, w[r]);
             }
         }
         patch.compliance_band.finish();
-        for i in patch.active.clone() {
+        for i in lines.flatten() {
             inverse[i] = if weight[i] > 0.0 { 1.0 / weight[i] } else { 0.0 };
             term[i] = cut(term[i] * inverse[i], self.still_pressure);
         }
@@ -59,8 +61,8 @@ impl Stepper {
     }
 
     /// Moves volume and energy of the own rows.
-    pub(super) fn relax_pressure(&self, patch: &mut Patch<1>, rate: f64) {
-        fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper, rate: f64) {
+    pub(super) fn relax_pressure(&self, patch: &mut Patch<D>, rate: f64) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, rate: f64) {
             let [_, _, sum, term] = s.fields.relaxation;
             let c = &s.columns;
             let (Some(p), Some(w)) = (c.pressure_mid, c.compliance) else { return };
@@ -69,16 +71,17 @@ impl Stepper {
             let [j, e, mass, volume0, p, w] =
                 patch.block.columns_mut([c.jacobian, c.energy, c.mass, c.volume0, p, w]);
             for r in 0..n {
-                let (first, values, _) = patch.stencils.row::<K>(r);
-                let (nodal, u): (&[f64; K], &[f64; K]) =
-                    (window(projected, first), window(last, first));
-                let mean = dot(values, nodal);
-                let both = std::array::from_fn(|k| u[k] * nodal[k]);
+                let row = patch.stencils.row::<K, D>(r);
+                let mean = row.dot(row.values, projected);
+                let product = row.sum(row.values, |line| {
+                    let (u, nodal) = (row.line(last, line), row.line(projected, line));
+                    std::array::from_fn(|k| u[k] * nodal[k])
+                });
                 let share = rate * w[r];
                 let dv = share * (p[r] - mean);
                 j[r] += dv / volume0[r];
                 e[r] +=
-                    (share * (dot(values, &both) - dot(values, u) * mean) - mean * dv) / mass[r];
+                    (share * (product - row.dot(row.values, last) * mean) - mean * dv) / mass[r];
             }
         }
         with_width!(patch.stencils.width, go(patch, self, rate));

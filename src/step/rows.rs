@@ -8,7 +8,7 @@ use super::Stepper;
 use crate::constitutive::{MidStep, VolumeChange};
 use crate::patch::{Departed, Fault, Patch, Phase};
 use crate::scene::Side;
-use crate::shape::{Extent, floor};
+use crate::shape::{Domain, Extent, floor};
 
 /// Ranges of rows of one body.
 fn bodies(column: &[f64]) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
@@ -21,70 +21,202 @@ fn bodies(column: &[f64]) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
     })
 }
 
-impl Stepper {
-    /// Finds the cell of each own row at x + `ahead` v, its place in it, and its length for the
+impl<const D: usize> Stepper<D> {
+    /// Finds the cell of each own row at x + `ahead` v, its place in it, and its domain for the
     /// shape function at volume ratio `jacobian` (a column). Rows beyond an open side leave.
-    pub(super) fn locate(&self, patch: &mut Patch<1>, ahead: f64, jacobian: usize) {
+    pub(super) fn locate(&self, patch: &mut Patch<D>, ahead: f64, jacobian: usize) {
         patch.block.drop_ghosts();
         let c = &self.columns;
         let n = patch.block.own();
         let mut outside = false;
-        {
+        for a in 0..D {
             let cells = &mut patch.block.cells;
             let [x, v, fraction] = patch
                 .block
                 .columns
-                .get_disjoint_mut([c.position, c.velocity, c.fraction])
+                .get_disjoint_mut([c.position + a, c.velocity + a, c.fraction + a])
                 .expect("columns differ");
             fraction.resize(n, 0.0);
+            let (lower, inverse, count) =
+                (self.lower[a], self.inverse_cell[a], self.cells[a] as f64);
             for r in 0..n {
-                let place = (x[r] + ahead * v[r] - self.lower) * self.inverse_cell;
+                let place = (x[r] + ahead * v[r] - lower) * inverse;
                 let cell = floor(place);
                 fraction[r] = place - cell;
-                outside |= !(cell >= 0.0 && cell < self.cells as f64);
-                cells[r] = [cell as i32];
+                outside |= !(cell >= 0.0 && cell < count);
+                cells[r][a] = cell as i32;
             }
         }
-        let scale = self.inverse_cell;
-        let [volume0, j, length] =
-            patch.block.columns.get_disjoint_mut([c.volume0, jacobian, c.length]).expect("differ");
-        length.resize(n, 0.0);
-        match self.extent() {
-            Extent::Current => (0..n).for_each(|r| length[r] = volume0[r] * j[r] * scale),
-            Extent::Undeformed => (0..n).for_each(|r| length[r] = volume0[r] * scale),
-            Extent::Point => {}
-        }
+        self.find_domains(patch, ahead, jacobian);
         if outside {
             self.leave(patch);
         }
     }
 
+    /// The own rows' domains [cells] at volume ratio `jacobian` (a column), and the volume that
+    /// they fill where an edge mask asks for it.
+    fn find_domains(&self, patch: &mut Patch<D>, ahead: f64, jacobian: usize) {
+        let c = &self.columns;
+        let n = patch.block.own();
+        let scale: f64 = self.inverse_cell.iter().product();
+        let filled = c.filled.filter(|&k| k != c.domain);
+        for k in filled.into_iter().chain((D == 1).then_some(c.domain)) {
+            let [volume0, j, out] = patch
+                .block
+                .columns
+                .get_disjoint_mut([c.volume0, jacobian, k])
+                .expect("columns differ");
+            out.resize(n, 0.0);
+            match self.extent() {
+                Extent::Undeformed if k == c.domain => {
+                    (0..n).for_each(|r| out[r] = volume0[r] * scale);
+                }
+                Extent::Point if k == c.domain => {}
+                _ => (0..n).for_each(|r| out[r] = volume0[r] * j[r] * scale),
+            }
+        }
+        match (c.half_lengths, c.deformation) {
+            (Some(half_lengths), Some(deformation)) => {
+                self.find_parallelograms(patch, half_lengths, deformation, ahead, jacobian);
+            }
+            (Some(half_lengths), None) => {
+                for a in 0..D {
+                    let [half, out] = patch
+                        .block
+                        .columns
+                        .get_disjoint_mut([half_lengths + a, c.domain + a])
+                        .expect("differ");
+                    out.clear();
+                    out.extend(half.iter().map(|h| 2.0 * h * self.inverse_cell[a]));
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// The own rows' parallelograms [cells] `ahead` of their state in time, with the area of
+    /// their volume, and as long as the scene lets them be.
+    fn find_parallelograms(
+        &self,
+        patch: &mut Patch<D>,
+        half_lengths: usize,
+        deformation: usize,
+        ahead: f64,
+        jacobian: usize,
+    ) {
+        let c = &self.columns;
+        let whole = c.velocity_gradient.expect("a domain that deforms has the column");
+        let n = patch.block.own();
+        for k in 0..4 {
+            patch.block.columns[c.domain + k].resize(n, 0.0);
+        }
+        let limit = patch.reach_length;
+        let mut torn = None;
+        let columns = &mut patch.block.columns;
+        for r in 0..n {
+            let tensor =
+                |first: usize| -> [f64; 4] { std::array::from_fn(|k| columns[first + k][r]) };
+            let (l, f) = (tensor(whole), tensor(deformation));
+            let f: [f64; 4] = std::array::from_fn(|k| {
+                let (a, b) = (k / 2, k % 2);
+                f[k] + ahead * (l[2 * a] * f[b] + l[2 * a + 1] * f[2 + b])
+            });
+            let half = [columns[half_lengths][r], columns[half_lengths + 1][r]];
+            let volume = columns[c.volume0][r] * columns[jacobian][r];
+            let domain = self.domain(f, half, volume);
+            let extent = domain.extent();
+            if torn.is_none() && extent[0].max(extent[1]) > limit {
+                torn = Some(r);
+            }
+            let [a, b] = domain.half_edges;
+            for (k, value) in [a[0], a[1], b[0], b[1]].into_iter().enumerate() {
+                columns[c.domain + k][r] = value;
+            }
+        }
+        if let Some(row) = torn {
+            self.fault(patch, Phase::Start, row, "it is torn apart within one step".into());
+        }
+    }
+
+    /// The parallelogram [cells] of a particle with deformation gradient `f`, half lengths at the
+    /// start [m] and the area of `volume`.
+    ///
+    /// What F and J differ by, the relaxation's share of the volume and rounding of the time
+    /// step, goes to the directions that have been strained, with the squares of their strains:
+    /// what is compressed along one direction alone keeps its width, as on a line.
+    #[inline(always)]
+    fn domain(&self, f: [f64; 4], half: [f64; 2], volume: f64) -> Domain {
+        let [xx, xy, yx, yy] = f;
+        let determinant = xx * yy - xy * yx;
+        let q = volume / (4.0 * half[0] * half[1] * determinant);
+        // E = (F F^T - 1)/2 and its square
+        let (ex, ey, es) = (
+            0.5 * (xx * xx + xy * xy - 1.0),
+            0.5 * (yx * yx + yy * yy - 1.0),
+            0.5 * (xx * yx + xy * yy),
+        );
+        let (sx, sy, ss) = (ex * ex + es * es, ey * ey + es * es, es * (ex + ey));
+        let trace = sx + sy;
+        let share = if trace > 0.0 { (q - 1.0) / trace } else { 0.0 };
+        let (ax, ay, axy) = (1.0 + share * sx, 1.0 + share * sy, share * ss);
+        let rest = (q / (ax * ay - axy * axy)).sqrt();
+        let edge = |x: f64, y: f64, half: f64| {
+            let scale = rest * half;
+            [
+                scale * (ax * x + axy * y) * self.inverse_cell[0],
+                scale * (axy * x + ay * y) * self.inverse_cell[D - 1],
+            ]
+        };
+        let domain = Domain { half_edges: [edge(xx, yx, half[0]), edge(xy, yy, half[1])] };
+        match self.domain_limit {
+            Some(limit) => domain.limited(limit),
+            None => domain,
+        }
+    }
+
+    /// The deformation gradient of a row after `dt` at the gradient `l` of the velocity, by
+    /// Cayley's form (1 - dt/2 l)^-1 (1 + dt/2 l) F, which turns without stretching.
+    #[inline(always)]
+    pub(super) fn deform(&self, columns: &mut [Vec<f64>], row: usize, l: &[[f64; D]; D], dt: f64) {
+        let Some(deformation) = self.columns.deformation else { return };
+        let half = 0.5 * dt;
+        let [xx, xy, yx, yy] =
+            [l[0][0], l[0][D - 1], l[D - 1][0], l[D - 1][D - 1]].map(|l| half * l);
+        let inverse = 1.0 / ((1.0 - xx) * (1.0 - yy) - xy * yx);
+        for k in [deformation, deformation + 1] {
+            let (x, y) = (columns[k][row], columns[k + 2][row]);
+            let (x, y) = (x + xx * x + xy * y, y + yx * x + yy * y);
+            columns[k][row] = inverse * ((1.0 - yy) * x + xy * y);
+            columns[k + 2][row] = inverse * (yx * x + (1.0 - xx) * y);
+        }
+    }
+
     /// Wraps rows across joined sides, books those that leave by an outflow, faults the others.
-    fn leave(&self, patch: &mut Patch<1>) {
+    fn leave(&self, patch: &mut Patch<D>) {
+        const NAMES: [[&str; 2]; 2] = [["lower", "upper"], ["lower y", "upper y"]];
         let mut keep = vec![true; patch.block.own()];
         for (row, keep) in keep.iter_mut().enumerate() {
-            let cell = patch.block.cells[row][0] as i64;
-            if (0..self.cells).contains(&cell) {
-                continue;
-            }
-            let side = if cell < 0 { 0 } else { 1 };
-            match self.sides[side] {
-                Side::Periodic => {
-                    patch.block.cells[row] = [cell.rem_euclid(self.cells) as i32];
+            for a in 0..D {
+                let cell = i64::from(patch.block.cells[row][a]);
+                if (0..self.cells[a]).contains(&cell) {
+                    continue;
                 }
-                Side::Outflow => *keep = false,
-                _ => {
-                    let name = ["lower", "upper"][side];
-                    self.fault(
-                        patch,
-                        Phase::Locate,
-                        row,
-                        format!("it leaves the domain by its {name} side"),
-                    );
-                    // it stays within the arrays until the run ends
-                    patch.block.cells[row] = [cell.clamp(0, self.cells - 1) as i32];
-                    patch.block.columns[self.columns.fraction][row] = 0.5;
+                let side = usize::from(cell >= 0);
+                match self.sides[a][side] {
+                    Side::Periodic => {
+                        patch.block.cells[row][a] = cell.rem_euclid(self.cells[a]) as i32;
+                        continue;
+                    }
+                    Side::Outflow => *keep = false,
+                    _ => {
+                        let name = NAMES[a][side];
+                        let what = format!("it leaves the domain by its {name} side");
+                        self.fault(patch, Phase::Locate, row, what);
+                    }
                 }
+                // it stays within the arrays until it is taken out or the run ends
+                patch.block.cells[row][a] = cell.clamp(0, self.cells[a] - 1) as i32;
+                patch.block.columns[self.columns.fraction + a][row] = 0.5;
             }
         }
         if keep.contains(&false) {
@@ -95,7 +227,7 @@ impl Stepper {
                 patch.departed.push(Departed {
                     id: patch.block.ids[row],
                     mass: column(c.mass),
-                    velocity: column(c.velocity),
+                    velocity: std::array::from_fn(|a| column(c.velocity + a)),
                     energy: column(c.energy),
                 });
             }
@@ -104,7 +236,7 @@ impl Stepper {
     }
 
     /// Volume ratio at the middle of the step, J_h = J (1 + dt/2 D).
-    pub(super) fn half_step_volume(&self, patch: &mut Patch<1>, dt: f64) {
+    pub(super) fn half_step_volume(&self, patch: &mut Patch<D>, dt: f64) {
         let c = &self.columns;
         let mid = c.jacobian_mid.expect("mid-point stepping has the column");
         let [j, d, j_mid] =
@@ -113,19 +245,19 @@ impl Stepper {
         for r in 0..j.len() {
             j_mid[r] = j[r] * (1.0 + 0.5 * dt * d[r]);
         }
+        if D > 1 || self.extent() != Extent::Current {
+            return;
+        }
         let volume0 = &patch.block.columns[c.volume0];
         let j_mid = &patch.block.columns[mid];
-        let limit = patch.reach_length * self.cell;
-        let torn = self.extent() == Extent::Current
-            && (0..j_mid.len()).any(|r| volume0[r] * j_mid[r] > limit);
-        if torn {
-            let row = (0..j_mid.len()).find(|&r| volume0[r] * j_mid[r] > limit).unwrap_or(0);
+        let limit = patch.reach_length * self.cell[0];
+        if let Some(row) = (0..j_mid.len()).find(|&r| volume0[r] * j_mid[r] > limit) {
             self.fault(patch, Phase::Start, row, "it is torn apart within one step".into());
         }
     }
 
     /// q of own rows at volume ratio `jacobian` (a column), into its column.
-    pub(super) fn find_viscosity(&self, patch: &mut Patch<1>, jacobian: usize) {
+    pub(super) fn find_viscosity(&self, patch: &mut Patch<D>, jacobian: usize) {
         let (Some(viscosity), Some(q)) = (&self.viscosity, self.columns.viscosity) else { return };
         let c = &self.columns;
         let mut out = std::mem::take(&mut patch.block.columns[q]);
@@ -150,7 +282,7 @@ impl Stepper {
     }
 
     /// Stress at the middle of the step, and compliance if the step relaxes the pressure.
-    pub(super) fn mid_step_stress(&self, patch: &mut Patch<1>, relax: bool) {
+    pub(super) fn mid_step_stress(&self, patch: &mut Patch<D>, relax: bool) {
         let c = &self.columns;
         let n = patch.block.own();
         let mid = c.jacobian_mid.expect("mid-point stepping has the column");
@@ -189,37 +321,38 @@ impl Stepper {
 
     /// The cells of the own rows that are not at rest, once their stress is known: a row is at
     /// rest where velocity, its gradients and stress are zero, so that it pushes nothing.
-    pub(super) fn find_active(&self, patch: &mut Patch<1>) {
+    pub(super) fn find_active(&self, patch: &mut Patch<D>) {
         if !self.may_sleep {
             return;
         }
         let c = &self.columns;
         let n = patch.block.own();
         let column = |k: usize| &patch.block.columns[k][..n];
-        let (v, d, s) = (column(c.velocity), column(c.gradient), column(c.stress_volume));
-        let (affine, pressure) = (c.affine.map(column), c.pressure_mid.map(column));
-        let moves = |r: usize| {
-            v[r] != 0.0
-                || d[r] != 0.0
-                || s[r] != 0.0
-                || affine.is_some_and(|a| a[r] != 0.0)
-                || pressure.is_some_and(|p| p[r] != 0.0)
-        };
+        let tensors = c.affine.into_iter().chain(c.velocity_gradient).flat_map(|k| k..k + D * D);
+        let vector = c.velocity..c.velocity + D;
+        let scalars = [c.gradient, c.stress_volume].into_iter().chain(c.pressure_mid);
+        let watched: smallvec::SmallVec<[&[f64]; 16]> =
+            vector.chain(scalars).chain(tensors).map(column).collect();
+        let moves = |r: usize| watched.iter().any(|column| column[r] != 0.0);
         // rows from the first to the last that moves: those between mostly do
         patch.block.active = match (0..n).find(|&r| moves(r)) {
-            None => IndexBox::new([0], [0]),
+            None => IndexBox::new([0; D], [0; D]),
             Some(first) => {
                 let last = (first..n).rev().find(|&r| moves(r)).unwrap_or(first);
-                let cells = patch.block.cells[first..=last].iter().map(|c| i64::from(c[0]));
-                let (lower, upper) =
-                    cells.fold((i64::MAX, i64::MIN), |(l, u), c| (l.min(c), u.max(c)));
-                IndexBox::new([lower], [upper + 1])
+                let (mut lower, mut upper) = ([i64::MAX; D], [i64::MIN; D]);
+                for cell in &patch.block.cells[first..=last] {
+                    for a in 0..D {
+                        lower[a] = lower[a].min(i64::from(cell[a]));
+                        upper[a] = upper[a].max(i64::from(cell[a]) + 1);
+                    }
+                }
+                IndexBox::new(lower, upper)
             }
         };
     }
 
     /// (p + q) V from the columns of pressure and viscosity, into its own.
-    pub(super) fn current_stress(&self, patch: &mut Patch<1>) {
+    pub(super) fn current_stress(&self, patch: &mut Patch<D>) {
         let c = &self.columns;
         let n = patch.block.own();
         let mut stress = std::mem::take(&mut patch.block.columns[c.stress_volume]);
@@ -234,7 +367,7 @@ impl Stepper {
     }
 
     /// Volume, viscosity, energy and pressure after `dt` at the divergence in its column.
-    pub(super) fn update_stress(&self, patch: &mut Patch<1>, dt: f64) {
+    pub(super) fn update_stress(&self, patch: &mut Patch<D>, dt: f64) {
         let c = &self.columns;
         let mut before = std::mem::take(&mut patch.kept);
         before.clear();
@@ -265,7 +398,7 @@ impl Stepper {
     }
 
     /// Pressure, sound speed, and what the patch tells: time step, longest particle, faults.
-    pub(super) fn refresh(&self, patch: &mut Patch<1>) {
+    pub(super) fn refresh(&self, patch: &mut Patch<D>) {
         let c = &self.columns;
         let mut pressure = std::mem::take(&mut patch.block.columns[c.pressure]);
         let mut speed = std::mem::take(&mut patch.block.columns[c.sound_speed]);
@@ -282,27 +415,27 @@ impl Stepper {
                 found = Some((rows.start + row, what));
             }
         }
-        let (v, d) = (column(c.velocity), column(c.gradient));
+        let velocity: [&[f64]; D] = std::array::from_fn(|a| &column(c.velocity + a)[..]);
+        let d = column(c.gradient);
+        // the most cells that a signal or particle passes along a direction in a second [1/s]
         let mut fastest = 0.0f64;
         let mut lost = false;
         for r in 0..speed.len() {
             let added = self.viscosity.map_or(0.0, |q| q.speed(speed[r], d[r]));
-            let total = speed[r] + v[r].abs() + added;
-            fastest = fastest.max(total);
-            // max() passes over NaN
-            lost |= total.is_nan();
+            for a in 0..D {
+                let total = speed[r] + velocity[a][r].abs() + added;
+                let rate = if D == 1 { total } else { total * self.inverse_cell[a] };
+                fastest = fastest.max(rate);
+                // max() passes over NaN
+                lost |= total.is_nan();
+            }
         }
-        let (volume0, j) = (column(c.volume0), column(c.jacobian));
-        let longest = match self.extent() {
-            Extent::Current => (0..j.len()).fold(0.0f64, |l, r| l.max(volume0[r] * j[r])),
-            _ => volume0.iter().copied().fold(0.0, f64::max),
-        };
-        patch.told.time_step = if fastest > 0.0 { self.cell / fastest } else { f64::INFINITY };
-        patch.told.length = longest * self.inverse_cell;
-        let limit = self.longest_ever() * self.cell;
-        if found.is_none() && longest > limit && self.extent() == Extent::Current {
-            let row = (0..j.len()).find(|&r| volume0[r] * j[r] > limit).unwrap_or(0);
-            let cells = longest * self.inverse_cell;
+        let edge = if D == 1 { self.cell[0] } else { 1.0 };
+        patch.told.time_step = if fastest > 0.0 { edge / fastest } else { f64::INFINITY };
+        patch.told.length = self.longest_row(&patch.block).1;
+        let limit = self.longest_ever();
+        if found.is_none() && patch.told.length > limit && self.extent() == Extent::Current {
+            let (row, cells) = self.longest_row(&patch.block);
             found = Some((
                 row,
                 format!(
@@ -311,7 +444,9 @@ impl Stepper {
             ));
         }
         if found.is_none() && lost {
-            let row = v.iter().zip(d).position(|(v, d)| !v.is_finite() || !d.is_finite());
+            let finite =
+                |r: &usize| velocity.iter().all(|v| v[*r].is_finite()) && d[*r].is_finite();
+            let row = (0..d.len()).find(|r| !finite(r));
             found = Some((row.unwrap_or(0), "its velocity is not a number".into()));
         }
         patch.block.columns[c.pressure] = pressure;
@@ -321,14 +456,40 @@ impl Stepper {
         }
     }
 
+    /// The own row with the greatest extent along a direction, and that extent [cells].
+    fn longest_row(&self, block: &decomp::Block<D>) -> (usize, f64) {
+        let c = &self.columns;
+        let column = |k: usize| &block.columns[k][..block.own()];
+        let (volume0, j) = (column(c.volume0), column(c.jacobian));
+        let length = |r: usize| match (self.extent(), c.half_lengths, c.deformation) {
+            (Extent::Current, None, _) => volume0[r] * j[r] * self.inverse_cell[0],
+            (_, None, _) if D == 1 => volume0[r] * self.inverse_cell[0],
+            (_, Some(half), Some(f)) => {
+                let f = std::array::from_fn(|k| column(f + k)[r]);
+                let half = [column(half)[r], column(half + 1)[r]];
+                let extent = self.domain(f, half, volume0[r] * j[r]).extent();
+                extent[0].max(extent[1])
+            }
+            (_, Some(half), None) => {
+                let lengths = (0..D).map(|a| 2.0 * column(half + a)[r] * self.inverse_cell[a]);
+                lengths.fold(0.0, f64::max)
+            }
+            _ => 0.0,
+        };
+        (0..block.own()).fold((0, 0.0), |longest, r| {
+            let length = length(r);
+            if length > longest.1 { (r, length) } else { longest }
+        })
+    }
+
     /// Notes a fault, if it comes before those that are known.
-    fn fault(&self, patch: &mut Patch<1>, phase: Phase, row: usize, what: String) {
+    fn fault(&self, patch: &mut Patch<D>, phase: Phase, row: usize, what: String) {
         let block = &patch.block;
         let fault = Fault {
             phase,
-            cell: i64::from(block.cells[row][0]),
+            cell: block.cells[row].map(i64::from),
             id: block.ids[row],
-            position: block.columns[self.columns.position][row],
+            position: std::array::from_fn(|a| block.columns[self.columns.position + a][row]),
             body: block.columns[self.columns.body][row] as usize,
             what,
         };

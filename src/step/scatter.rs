@@ -3,12 +3,12 @@
 
 use super::{MOST_NODES, Stepper, with_width};
 use crate::patch::Patch;
-use crate::transfer::{Scheme, add, cut};
+use crate::transfer::{Scheme, cut, lines};
 
-impl Stepper {
+impl<const D: usize> Stepper<D> {
     /// All sums of a patch at new places of its rows, with or without the force, and the lumped
     /// velocity and acceleration from them.
-    pub(super) fn scatter(&self, patch: &mut Patch<1>, force: bool) {
+    pub(super) fn scatter(&self, patch: &mut Patch<D>, force: bool) {
         self.find_weights(patch);
         self.scatter_rows(patch, force);
         self.divide_by_mass(patch);
@@ -27,8 +27,8 @@ impl Stepper {
     /// Mass and momentum of the nodes, the mass matrix and the filled volume where the scheme
     /// needs them, and with `force` the internal force f_i = sum_p (p + q) V G_i (pressure is
     /// positive in compression, so it pushes along the gradient): all in one pass over the rows.
-    pub(super) fn scatter_rows(&self, patch: &mut Patch<1>, force: bool) {
-        fn go<const K: usize>(patch: &mut Patch<1>, s: &Stepper, force: bool) {
+    pub(super) fn scatter_rows(&self, patch: &mut Patch<D>, force: bool) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, force: bool) {
             match (s.needs_matrix(), s.columns.affine) {
                 (true, None) => s.scatter_width::<K, true, false>(patch, force),
                 (false, None) => s.scatter_width::<K, false, false>(patch, force),
@@ -41,79 +41,136 @@ impl Stepper {
 
     fn scatter_width<const K: usize, const MATRIX: bool, const AFFINE: bool>(
         &self,
-        patch: &mut Patch<1>,
+        patch: &mut Patch<D>,
         force: bool,
     ) {
         let (c, f) = (&self.columns, &self.fields);
-        for field in [f.mass, f.lumped, f.acceleration, f.scratch].into_iter().chain(f.remainder) {
+        let scalars = [f.mass, f.scratch];
+        let vectors = [f.lumped, f.acceleration].into_iter().chain(f.remainder);
+        let components = vectors.flat_map(|v| v..v + D);
+        for field in scalars.into_iter().chain(components) {
             patch.nodes.fields[field].fill(0.0);
         }
         if MATRIX {
-            patch.band.clear(patch.nodes.nodes.count(), K);
+            patch.band.clear(patch.nodes.nodes.count(), K, D, patch.nodes.nodes.extent(0));
         }
-        // the field leaves the list while the others are written
-        let mut volume = self.edge_mask.map(|_| std::mem::take(&mut patch.nodes.fields[f.volume]));
+        // fields leave the list while the others are read and written
+        let mut take = |k: usize| std::mem::take(&mut patch.nodes.fields[k]);
+        let mut volume = self.edge_mask.map(|_| take(f.volume));
+        let mut nodal_mass = take(f.mass);
+        let mut momentum: [Vec<f64>; D] = std::array::from_fn(|a| take(f.lumped + a));
+        let mut nodal_force: [Vec<f64>; D] = std::array::from_fn(|a| take(f.acceleration + a));
         if let Some(volume) = &mut volume {
             volume.fill(0.0);
         }
         let rows = patch.block.rows();
         let column = |k: usize| &patch.block.columns[k][..rows];
-        let (mass, velocity, length) = (column(c.mass), column(c.velocity), column(c.length));
+        let vector = |k: usize| -> [&[f64]; D] { std::array::from_fn(|a| column(k + a)) };
+        let (mass, velocity) = (column(c.mass), vector(c.velocity));
         let stress = column(c.stress_volume);
-        let affine = c.affine.filter(|_| AFFINE).map(|a| (column(a), column(c.fraction)));
-        let lower = patch.nodes.nodes.lower[0];
-        let [nodal_mass, momentum, nodal_force] =
-            patch.nodes.fields_mut([f.mass, f.lumped, f.acceleration]);
+        let filled = c.filled.map_or(&[][..], column);
+        let affine = c.affine.filter(|_| AFFINE);
         for run in &patch.runs {
             for r in run.clone() {
-                let (first, n, g) = patch.stencils.row::<K>(r);
+                let row = patch.stencils.row::<K, D>(r);
                 let m = mass[r];
-                let mv = m * velocity[r];
-                add(nodal_mass, first, n.map(|n| n * m));
+                row.add(&mut nodal_mass, row.values, |n| n * m);
                 match affine {
-                    None => add(momentum, first, n.map(|n| n * mv)),
-                    Some((affine, fraction)) => {
+                    None => {
+                        for a in 0..D {
+                            let mv = m * velocity[a][r];
+                            row.add(&mut momentum[a], row.values, |n| n * mv);
+                        }
+                    }
+                    Some(affine) => {
                         // m N (v + C (x_i - x_p))
-                        let offset = (first as i64 + lower - patch.block.cells[r][0] as i64) as f64
-                            - fraction[r];
-                        let mc = m * affine[r] * self.cell;
-                        let terms: [f64; K] =
-                            std::array::from_fn(|k| n[k] * (mv + mc * (offset + k as f64)));
-                        add(momentum, first, terms);
+                        let offset = self.offset(patch, r, row.first);
+                        for a in 0..D {
+                            let mv = m * velocity[a][r];
+                            let mc: [f64; D] = std::array::from_fn(|b| {
+                                m * column(affine + D * a + b)[r] * self.cell[b]
+                            });
+                            for line in 0..const { lines(K, D) } {
+                                let across = if D == 1 {
+                                    mv
+                                } else {
+                                    mv + mc[D - 1] * (offset[D - 1] + line as f64)
+                                };
+                                let n = &row.values[line];
+                                let at = row.first + line * row.stride;
+                                for k in 0..K {
+                                    momentum[a][at + k] +=
+                                        n[k] * (across + mc[0] * (offset[0] + k as f64));
+                                }
+                            }
+                        }
                     }
                 }
                 if MATRIX {
-                    patch.band.add(first, m, n);
+                    patch.band.add(&row, m);
                 }
                 if let Some(volume) = &mut volume {
-                    add(volume, first, n.map(|n| n * length[r]));
+                    let filled = filled[r];
+                    row.add(volume, row.values, |n| n * filled);
                 }
                 if force {
-                    add(nodal_force, first, g.map(|g| g * stress[r]));
+                    let s = stress[r];
+                    for a in 0..D {
+                        row.add(&mut nodal_force[a], row.gradient(a), |g| g * s);
+                    }
                 }
             }
         }
         if MATRIX {
             patch.band.finish();
         }
-        if let Some(volume) = volume {
-            patch.nodes.fields[f.volume] = volume;
+        let fields = &mut patch.nodes.fields;
+        fields[f.mass] = nodal_mass;
+        for (a, (momentum, force)) in momentum.into_iter().zip(nodal_force).enumerate() {
+            fields[f.lumped + a] = momentum;
+            fields[f.acceleration + a] = force;
         }
+        if let Some(volume) = volume {
+            fields[f.volume] = volume;
+        }
+    }
+
+    /// Where the window of `row` from node `first` on starts, seen from the row [cells].
+    #[inline(always)]
+    pub(super) fn offset(&self, patch: &Patch<D>, row: usize, first: usize) -> [f64; D] {
+        let (nodes, cell) = (&patch.nodes.nodes, patch.block.cells[row]);
+        let stride = patch.stencils.stride;
+        std::array::from_fn(|a| {
+            let at = match (D, a) {
+                (1, _) => first,
+                (_, 0) => first % stride,
+                _ => first / stride,
+            };
+            let fraction = patch.block.columns[self.columns.fraction + a][row];
+            (at as i64 + nodes.lower[a] - i64::from(cell[a])) as f64 - fraction
+        })
     }
 
     /// Lumped velocity and acceleration of the owned nodes from their sums; those too small to
     /// matter are cut to zero.
-    pub(super) fn divide_by_mass(&self, patch: &mut Patch<1>) {
+    pub(super) fn divide_by_mass(&self, patch: &mut Patch<D>) {
         let f = &self.fields;
-        let [mass, inverse, lumped, acceleration] =
-            patch.nodes.fields_mut([f.mass, f.inverse, f.lumped, f.acceleration]);
-        inverse.fill(0.0);
-        let still = self.still_speed;
-        let slow = self.still_acceleration;
-        for i in patch.active.clone() {
-            inverse[i] = if mass[i] > self.empty_mass { 1.0 / mass[i] } else { 0.0 };
-            lumped[i] = cut(lumped[i] * inverse[i], still);
-            acceleration[i] = cut(acceleration[i] * inverse[i], slow);
+        let lines = patch.active_lines();
+        patch.nodes.fields[f.inverse].fill(0.0);
+        let (still, slow) = (self.still_speed, self.still_acceleration);
+        for line in lines {
+            let [mass, inverse] = patch.nodes.fields_mut([f.mass, f.inverse]);
+            for i in line.clone() {
+                inverse[i] = if mass[i] > self.empty_mass { 1.0 / mass[i] } else { 0.0 };
+            }
+            for a in 0..D {
+                let [inverse, lumped, acceleration] =
+                    patch.nodes.fields_mut([f.inverse, f.lumped + a, f.acceleration + a]);
+                for i in line.clone() {
+                    lumped[i] = cut(lumped[i] * inverse[i], still);
+                    acceleration[i] = cut(acceleration[i] * inverse[i], slow);
+                }
+            }
         }
     }
 }

@@ -9,7 +9,7 @@
 use decomp::Parity;
 use smallvec::SmallVec;
 
-use super::{Nodal, ODD, Stepper, relaxation};
+use super::{Nodal, Stepper, relaxation};
 use crate::patch::Patch;
 use crate::transfer::{Scheme, cut};
 
@@ -45,25 +45,26 @@ enum Mask {
 }
 
 /// The last term of a series, from its sum and the sum before, which `last` holds.
-fn find_last(patch: &mut Patch<1>, sum: usize, last: usize) {
-    let span = patch.span.clone();
-    let [sum, last] = patch.nodes.fields_mut([sum, last]);
-    for (sum, last) in sum[span.clone()].iter().zip(&mut last[span]) {
-        *last = sum - *last;
+fn find_last<const D: usize>(patch: &mut Patch<D>, sum: usize, last: usize) {
+    for span in patch.span_lines() {
+        let [sum, last] = patch.nodes.fields_mut([sum, last]);
+        for (sum, last) in sum[span.clone()].iter().zip(&mut last[span]) {
+            *last = sum - *last;
+        }
     }
 }
 
-fn copy(patch: &mut Patch<1>, from: usize, to: usize) {
+fn copy<const D: usize>(patch: &mut Patch<D>, from: usize, to: usize) {
     if from != to {
         let [from, to] = patch.nodes.fields_mut([from, to]);
         to.copy_from_slice(from);
     }
 }
 
-impl Stepper {
+impl<const D: usize> Stepper<D> {
     /// Takes nodes with little material out of a field: chi = 0 where the filled fraction of the
     /// node's volume is below the edge mask.
-    fn mask(&self, patch: &mut Patch<1>, field: usize) {
+    fn mask(&self, patch: &mut Patch<D>, field: usize) {
         let Some(least) = self.edge_mask else { return };
         if !patch.has_edge {
             return;
@@ -78,7 +79,7 @@ impl Stepper {
 
     /// Notes whether a patch sees a node that the mask takes out: where none is, no field has to
     /// be looked through. Nodes without material hold zeros anyway.
-    fn find_edge(&self, patch: &mut Patch<1>) {
+    fn find_edge(&self, patch: &mut Patch<D>) {
         let Some(least) = self.edge_mask else { return };
         let [volume, inverse] = patch.nodes.fields_mut([self.fields.volume, self.fields.inverse]);
         patch.has_edge = volume.iter().zip(inverse).any(|(v, i)| *v < least && *i > 0.0);
@@ -86,7 +87,7 @@ impl Stepper {
 
     /// The sum of a series with one more term, on the nodes that the patch computes; beyond them
     /// it is what the next exchange makes of it. `ends` tells that it is the last term.
-    fn next_sum(&self, patch: &mut Patch<1>, series: &Series, ends: bool) {
+    fn next_sum(&self, patch: &mut Patch<D>, series: &Series, ends: bool) {
         let Series { sum, first, .. } = *series;
         if series.mask == Mask::Before {
             self.mask(patch, sum);
@@ -96,8 +97,9 @@ impl Stepper {
             Matrix::Compliance => (&patch.compliance_band, self.fields.relaxation[1]),
         };
         let scratch = self.fields.scratch;
+        let lines = patch.active_lines();
         let [inverse, x, t, y] = patch.nodes.fields_mut([inverse, sum, first, scratch]);
-        band.next_sum(x, inverse, t, patch.active.clone(), y);
+        lines.for_each(|line| band.next_sum(x, inverse, t, line, y));
         // nodes without material hold zeros in both
         patch.nodes.fields.swap(sum, scratch);
         if series.mask == Mask::After {
@@ -109,11 +111,12 @@ impl Stepper {
     }
 
     /// Takes nodes with little material out of what a product has just made: t_0 stays.
-    fn mask_product(&self, patch: &mut Patch<1>, series: &Series) {
+    fn mask_product(&self, patch: &mut Patch<D>, series: &Series) {
         let Some(least) = self.edge_mask.filter(|_| patch.has_edge) else { return };
+        let lines = patch.active_lines();
         let [volume, sum, first] =
             patch.nodes.fields_mut([self.fields.volume, series.sum, series.first]);
-        for i in patch.active.clone() {
+        for i in lines.flatten() {
             if volume[i] < least {
                 sum[i] = first[i];
             }
@@ -124,16 +127,16 @@ impl Stepper {
     /// then runs `last`. Collective between neighbours.
     fn sum_series(
         &self,
-        nodal: &mut Nodal<'_>,
+        nodal: &mut Nodal<'_, D>,
         name: &'static str,
         others: &[(usize, Parity)],
         all: &[Series],
-        last: impl Fn(&mut Patch<1>) + Send + Sync,
+        last: impl Fn(&mut Patch<D>) + Send + Sync,
     ) {
         let rounds = all.iter().map(|s| s.order).max().unwrap_or(0);
         for l in 0..rounds {
             let going = || all.iter().filter(move |s| s.order > l);
-            let mut fields: SmallVec<[(usize, Parity); 6]> = SmallVec::new();
+            let mut fields: SmallVec<[(usize, Parity); 8]> = SmallVec::new();
             fields.extend(others.iter().copied().filter(|_| l == 0));
             fields.extend(going().map(|s| (s.sum, s.parity)));
             nodal.refresh(&fields);
@@ -155,27 +158,27 @@ impl Stepper {
         }
     }
 
-    /// The series of velocity and force: v = sum_(l<k) K^l vL; b = sum_(l<k) t_l with t_0 = f/m
-    /// and t_l = K chi t_(l-1), or b = f/m where the scheme lumps the force.
-    fn velocity_series(&self) -> [Series; 2] {
+    /// The series of a component of velocity and force: v = sum_(l<k) K^l vL; b = sum_(l<k) t_l
+    /// with t_0 = f/m and t_l = K chi t_(l-1), or b = f/m where the scheme lumps the force.
+    fn velocity_series(&self, axis: usize) -> [Series; 2] {
         let f = &self.fields;
         let (order, force_order) = match self.scheme {
             Scheme::Series { order, force } => (order, if force { order } else { 1 }),
             Scheme::Blend(_) | Scheme::Affine => (1, 1),
         };
         let velocity = Series {
-            sum: f.velocity,
-            first: f.lumped,
+            sum: f.velocity + axis,
+            first: f.lumped + axis,
             // what the filter's heat is counted from
-            last: f.remainder,
+            last: f.remainder.map(|r| r + axis),
             order,
             matrix: Matrix::Mass,
             mask: Mask::No,
-            parity: ODD,
+            parity: Parity::Odd(axis),
         };
         let force = Series {
-            sum: f.acceleration,
-            first: f.scratch2,
+            sum: f.acceleration + axis,
+            first: f.first + axis,
             last: None,
             order: force_order,
             mask: Mask::Before,
@@ -185,12 +188,12 @@ impl Stepper {
     }
 
     /// The first terms of the series of velocity and force, from lumped velocity and f/m.
-    pub(super) fn start_series(&self, patch: &mut Patch<1>) {
-        for series in self.velocity_series() {
-            match series.sum == self.fields.velocity {
-                true => copy(patch, series.first, series.sum),
-                false if series.order > 1 => copy(patch, series.sum, series.first),
-                false => {}
+    pub(super) fn start_series(&self, patch: &mut Patch<D>) {
+        for axis in 0..D {
+            let [velocity, force] = self.velocity_series(axis);
+            copy(patch, velocity.first, velocity.sum);
+            if force.order > 1 {
+                copy(patch, force.sum, force.first);
             }
         }
     }
@@ -198,10 +201,10 @@ impl Stepper {
     /// From the first terms of the series to velocity, acceleration and end-of-step velocity
     /// v' = v + dt b, halos included, and with `relax` to the nodal pressure as well. Collective
     /// between neighbours.
-    pub(super) fn solve_velocity(&self, nodal: &mut Nodal<'_>, dt: f64, relax: bool) {
+    pub(super) fn solve_velocity(&self, nodal: &mut Nodal<'_, D>, dt: f64, relax: bool) {
         let f = &self.fields;
-        let [velocity, force] = self.velocity_series();
-        let mut all: SmallVec<[Series; 3]> = [velocity, force].into_iter().collect();
+        let mut all: SmallVec<[Series; 5]> =
+            (0..D).flat_map(|axis| self.velocity_series(axis)).collect();
         if relax {
             let [_, _, sum, first] = f.relaxation;
             all.push(Series {
@@ -218,52 +221,68 @@ impl Stepper {
         let others = if self.edge_mask.is_some() { &others[..] } else { &others[..1] };
         // pressure may have more terms than velocity
         self.sum_series(nodal, "series", others, &all, |patch| {
-            let span = patch.span.clone();
-            let [v, b, star] =
-                patch.nodes.fields_mut([f.velocity, f.acceleration, f.velocity_star]);
-            let (v, b, star) = (&mut v[span.clone()], &b[span.clone()], &mut star[span]);
-            for i in 0..v.len() {
-                v[i] = cut(v[i], self.still_speed);
-                star[i] = cut(v[i] + dt * b[i], self.still_speed);
+            let still = self.still_speed;
+            for span in patch.span_lines() {
+                for a in 0..D {
+                    let [v, b, star] = patch.nodes.fields_mut([
+                        f.velocity + a,
+                        f.acceleration + a,
+                        f.velocity_star + a,
+                    ]);
+                    let (v, b, star) =
+                        (&mut v[span.clone()], &b[span.clone()], &mut star[span.clone()]);
+                    for i in 0..v.len() {
+                        v[i] = cut(v[i], still);
+                        star[i] = cut(v[i] + dt * b[i], still);
+                    }
+                }
             }
             if self.compatible {
-                self.start_work(patch);
+                (0..D).for_each(|axis| self.start_work(patch, axis));
             }
         });
     }
 
     /// What [`solve_work`](Self::solve_work) starts from, on the nodes that the patch computes:
     /// (vL + A v')/2 with A = m^-1 M, or with a blend w itself.
-    fn start_work(&self, patch: &mut Patch<1>) {
+    fn start_work(&self, patch: &mut Patch<D>, axis: usize) {
         let f = &self.fields;
+        let (star, lumped) = (f.velocity_star + axis, f.lumped + axis);
+        let (work, first) = (f.work + axis, f.first + axis);
+        let lines = || patch.active.lines_in(&patch.nodes.nodes);
         match self.scheme {
             Scheme::Series { .. } => {
-                let [inverse, star, lumped, w, first] = patch.nodes.fields_mut([
-                    f.inverse,
-                    f.velocity_star,
-                    f.lumped,
-                    f.work,
-                    f.scratch2,
-                ]);
+                let lines = lines();
+                let [inverse, star, lumped, w, first] =
+                    patch.nodes.fields_mut([f.inverse, star, lumped, work, first]);
                 w.fill(0.0);
-                patch.band.product(star, patch.active.clone(), w);
-                for i in patch.active.clone() {
-                    w[i] = 0.5 * (lumped[i] + inverse[i] * w[i]);
-                    first[i] = w[i];
+                for line in lines {
+                    patch.band.product(star, line.clone(), w);
+                    for i in line {
+                        w[i] = 0.5 * (lumped[i] + inverse[i] * w[i]);
+                        first[i] = w[i];
+                    }
                 }
             }
             Scheme::Blend(a) => {
-                let [lumped, star, x] =
-                    patch.nodes.fields_mut([f.lumped, f.velocity_star, f.scratch2]);
+                let lines = lines();
+                let [lumped, star, x] = patch.nodes.fields_mut([lumped, star, first]);
                 for i in 0..x.len() {
                     x[i] = (1.0 - a) * lumped[i] + 0.5 * (star[i] - lumped[i]);
                 }
-                let [inverse, lumped, x, y, w] =
-                    patch.nodes.fields_mut([f.inverse, f.lumped, f.scratch2, f.scratch, f.work]);
-                patch.band.product(x, patch.active.clone(), y);
+                let [inverse, lumped, x, y, w] = patch.nodes.fields_mut([
+                    f.inverse,
+                    f.lumped + axis,
+                    f.first + axis,
+                    f.scratch,
+                    work,
+                ]);
                 w.fill(0.0);
-                for i in patch.active.clone() {
-                    w[i] = a * lumped[i] + inverse[i] * y[i];
+                for line in lines {
+                    patch.band.product(x, line.clone(), y);
+                    for i in line {
+                        w[i] = a * lumped[i] + inverse[i] * y[i];
+                    }
                 }
             }
             Scheme::Affine => unreachable!("the scene check refuses compatible energy with APIC"),
@@ -275,20 +294,20 @@ impl Stepper {
     ///
     /// Series: w = sum_(l<k) (chi K)^l (vL + A v')/2 (l = 0 alone where the force is lumped);
     /// blend: w = a vL + A ((1 - a) vL + dt b/2); A = m^-1 M.
-    pub(super) fn solve_work(&self, nodal: &mut Nodal<'_>) {
+    pub(super) fn solve_work(&self, nodal: &mut Nodal<'_, D>) {
         let order = match self.scheme {
             Scheme::Series { order, force: true } => order,
             _ => 1,
         };
-        let series = Series {
-            sum: self.fields.work,
-            order,
-            first: self.fields.scratch2,
+        let series: [Series; D] = std::array::from_fn(|axis| Series {
+            sum: self.fields.work + axis,
+            first: self.fields.first + axis,
             last: None,
+            order,
             matrix: Matrix::Mass,
             mask: Mask::After,
-            parity: ODD,
-        };
-        self.sum_series(nodal, "work", &[], &[series], |_| {});
+            parity: Parity::Odd(axis),
+        });
+        self.sum_series(nodal, "work", &[], &series, |_| {});
     }
 }

@@ -13,17 +13,17 @@ use crate::patch::Patch;
 use crate::scene::FilterHalo;
 
 /// The patches of this rank and the way to the others, for one step.
-pub struct World<'a> {
+pub struct World<'a, const D: usize> {
     /// The ranks.
     pub comm: &'a dyn Comm,
     /// The patches of all ranks.
-    pub layout: &'a Layout<1>,
+    pub layout: &'a Layout<D>,
     /// This rank's patches.
-    pub patches: &'a mut [Patch<1>],
+    pub patches: &'a mut [Patch<D>],
     /// Ghosts and migration.
-    pub rows: &'a mut RowExchange<1>,
+    pub rows: &'a mut RowExchange<D>,
     /// Finished nodal values.
-    pub nodes: &'a mut NodeExchange<1>,
+    pub nodes: &'a mut NodeExchange<D>,
     /// Which patches hear of no other rank as rows are exchanged.
     pub inner_rows: &'a [bool],
     /// Which patches hear of no other rank as nodal values are.
@@ -58,20 +58,20 @@ enum Which<'a> {
 }
 
 /// Runs a phase on every patch of `which` that is awake.
-fn for_each(
+fn for_each<const D: usize>(
     pool: Option<&rayon::ThreadPool>,
-    patches: &mut [Patch<1>],
+    patches: &mut [Patch<D>],
     which: Which<'_>,
-    phase: impl Fn(&mut Patch<1>) + Send + Sync,
+    phase: impl Fn(&mut Patch<D>) + Send + Sync,
 ) {
-    let wanted = |k: usize, patch: &Patch<1>| {
+    let wanted = |k: usize, patch: &Patch<D>| {
         !patch.rest.asleep()
             && match which {
                 Which::All => true,
                 Which::Inner(inner, is) => inner[k] == is,
             }
     };
-    let run = |(k, patch): (usize, &mut Patch<1>)| {
+    let run = |(k, patch): (usize, &mut Patch<D>)| {
         if wanted(k, patch) {
             phase(patch);
         }
@@ -82,9 +82,9 @@ fn for_each(
     }
 }
 
-impl World<'_> {
+impl<const D: usize> World<'_, D> {
     /// Runs a phase on every patch that is awake.
-    pub fn each(&mut self, name: &'static str, phase: impl Fn(&mut Patch<1>) + Send + Sync) {
+    pub fn each(&mut self, name: &'static str, phase: impl Fn(&mut Patch<D>) + Send + Sync) {
         let start = Instant::now();
         let watcher = self.clock.watcher();
         for_each(self.pool, self.patches, Which::All, |p| watcher.time(name, p, &phase));
@@ -97,10 +97,10 @@ impl World<'_> {
     /// first exchange of a step. Collective between neighbours.
     pub fn exchange_rows(
         &mut self,
-        phases: impl Fn(&mut Nodal<'_>) + Send + Sync,
+        phases: impl Fn(&mut Nodal<'_, D>) + Send + Sync,
     ) -> Result<(), RowError> {
         let sleep = self.sleep.take();
-        let settle = move |patch: &mut Patch<1>| {
+        let settle = move |patch: &mut Patch<D>| {
             if let Some(sleep) = &sleep {
                 patch.settle(sleep.needed, &sleep.kept);
             }
@@ -129,7 +129,7 @@ impl World<'_> {
             }
             FilterHalo::Deep => {
                 let (layout, watcher) = (self.layout, self.clock.watcher());
-                let alone = |patch: &mut Patch<1>| {
+                let alone = |patch: &mut Patch<D>| {
                     let patches = std::slice::from_mut(patch);
                     let halo = Halo::Deep(layout);
                     phases(&mut Nodal { patches, pool: None, watcher, halo, pending: None });
@@ -151,14 +151,14 @@ struct Ranks<'a> {
 
 impl Ranks<'_> {
     /// Exchanges rows and runs a phase on every patch.
-    fn exchange_rows(
+    fn exchange_rows<const D: usize>(
         &mut self,
-        patches: &mut [Patch<1>],
-        rows: &mut RowExchange<1>,
+        patches: &mut [Patch<D>],
+        rows: &mut RowExchange<D>,
         inner: &[bool],
         pool: Option<&rayon::ThreadPool>,
-        settle: Settle<'_>,
-        phase: &(impl Fn(&mut Patch<1>) + Send + Sync),
+        settle: Settle<'_, D>,
+        phase: &(impl Fn(&mut Patch<D>) + Send + Sync),
     ) -> Result<(), RowError> {
         let mut result = Ok(());
         self.around(
@@ -177,18 +177,18 @@ impl Ranks<'_> {
     /// is called on each patch before its phase, asleep or not.
     // one place for the order of exchange and phase; a struct of its arguments would be used once
     #[allow(clippy::too_many_arguments)]
-    fn around(
+    fn around<const D: usize>(
         &mut self,
         name: &'static str,
-        patches: &mut [Patch<1>],
+        patches: &mut [Patch<D>],
         pool: Option<&rayon::ThreadPool>,
         inner: &[bool],
-        exchange: impl FnOnce(&dyn Comm, &mut [Patch<1>], &mut dyn FnMut(&mut [Patch<1>])),
-        ready: &dyn Fn(&mut Patch<1>),
-        phase: &(impl Fn(&mut Patch<1>) + Send + Sync),
+        exchange: impl FnOnce(&dyn Comm, &mut [Patch<D>], &mut dyn FnMut(&mut [Patch<D>])),
+        ready: &dyn Fn(&mut Patch<D>),
+        phase: &(impl Fn(&mut Patch<D>) + Send + Sync),
     ) {
         let mut computed = 0.0;
-        let mut compute = |patches: &mut [Patch<1>], is: bool| {
+        let mut compute = |patches: &mut [Patch<D>], is: bool| {
             let start = Instant::now();
             for (patch, _) in patches.iter_mut().zip(inner).filter(|(_, i)| **i == is) {
                 ready(patch);
@@ -218,36 +218,36 @@ impl Ranks<'_> {
 }
 
 /// Patches whose phases follow each other with nodal values in between.
-pub struct Nodal<'a> {
-    patches: &'a mut [Patch<1>],
+pub struct Nodal<'a, const D: usize> {
+    patches: &'a mut [Patch<D>],
     pool: Option<&'a rayon::ThreadPool>,
     watcher: Watcher,
-    halo: Halo<'a>,
+    halo: Halo<'a, D>,
     /// Fields to be made whole before the next phase.
-    pending: Option<smallvec::SmallVec<[(usize, Parity); 6]>>,
+    pending: Option<smallvec::SmallVec<[(usize, Parity); 8]>>,
 }
 
 /// Lets a patch sleep or wakes it, once its rows are there.
-type Settle<'a> = &'a (dyn Fn(&mut Patch<1>) + Sync);
+type Settle<'a, const D: usize> = &'a (dyn Fn(&mut Patch<D>) + Sync);
 
-enum Halo<'a> {
+enum Halo<'a, const D: usize> {
     Exchange {
         ranks: Ranks<'a>,
         inner_rows: &'a [bool],
         inner_nodes: &'a [bool],
         /// The rows to be exchanged before the first phase.
-        rows: Option<(&'a mut RowExchange<1>, Settle<'a>)>,
-        plan: &'a mut NodeExchange<1>,
+        rows: Option<(&'a mut RowExchange<D>, Settle<'a, D>)>,
+        plan: &'a mut NodeExchange<D>,
         failed: Option<RowError>,
     },
-    Deep(&'a Layout<1>),
+    Deep(&'a Layout<D>),
 }
 
-impl Nodal<'_> {
+impl<const D: usize> Nodal<'_, D> {
     /// Runs a phase on every patch that is awake, once the values it needs are there.
-    pub fn each(&mut self, name: &'static str, phase: impl Fn(&mut Patch<1>) + Send + Sync) {
+    pub fn each(&mut self, name: &'static str, phase: impl Fn(&mut Patch<D>) + Send + Sync) {
         let watcher = self.watcher;
-        let timed = |patch: &mut Patch<1>| watcher.time(name, patch, &phase);
+        let timed = |patch: &mut Patch<D>| watcher.time(name, patch, &phase);
         let fields = self.pending.take();
         match &mut self.halo {
             Halo::Deep(layout) => {

@@ -40,7 +40,7 @@ fn run<C: decomp::Comm>(
         RunError::Row(error) => panic!("{error}"),
         error => error,
     };
-    let mut simulation = Simulation::new(scene, comm, threads).map_err(alone)?;
+    let mut simulation = Simulation::<_, 1>::new(scene, comm, threads).map_err(alone)?;
     let end = scene.scene.time.end;
     while simulation.time() < end {
         simulation.advance(end).map_err(alone)?;

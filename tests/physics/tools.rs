@@ -64,11 +64,11 @@ pub struct Outcome {
     /// Digest of the state at the end.
     pub digest: String,
     /// Sums at the start.
-    pub start: Totals,
+    pub start: Totals<1>,
     /// Sums at the end.
-    pub end: Totals,
+    pub end: Totals<1>,
     /// What has left by outflows.
-    pub left: Left,
+    pub left: Left<1>,
 }
 
 impl Outcome {
@@ -80,7 +80,7 @@ impl Outcome {
 
     /// Change of momentum over sum m |v| at the start.
     pub fn momentum_drift(&self) -> f64 {
-        (self.end.momentum - self.start.momentum) / self.start.absolute_momentum
+        (self.end.momentum[0] - self.start.momentum[0]) / self.start.absolute_momentum
     }
 
     /// The particles at the last profile time.
@@ -92,7 +92,7 @@ impl Outcome {
 /// Runs a checked scene to its end.
 pub fn run_scene(scene: &CheckedScene, threads: usize) -> Result<Outcome, String> {
     let mut simulation =
-        Simulation::new(scene, &Serial, threads).map_err(|e| format!("at set-up: {e}"))?;
+        Simulation::<_, 1>::new(scene, &Serial, threads).map_err(|e| format!("at set-up: {e}"))?;
     let start = simulation.totals();
     let mut tables = Vec::new();
     for &time in &scene.profile_times {

@@ -66,23 +66,39 @@ fn rigid_velocity(side: Side) -> Option<f64> {
 
 pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
     let Some(boundary) = &scene.boundary else { return Ok(()) };
-    let (lower, upper) = (boundary.x_lower, boundary.x_upper);
+    let y = [("boundary.y_lower", boundary.y_lower), ("boundary.y_upper", boundary.y_upper)];
+    if scene.domain.lower.len() == 1 {
+        for (path, side) in y {
+            if let Some(side) = side {
+                let reason = "a side along y, but domain.lower has 1 number, which is the \
+                              dimension of the scene; allowed: boundary.x_lower and \
+                              boundary.x_upper";
+                return Err(Fault::new(path, side, reason));
+            }
+        }
+    }
+    check_axis(["boundary.x_lower", "boundary.x_upper"], [boundary.x_lower, boundary.x_upper])?;
+    check_axis(y.map(|(path, _)| path), y.map(|(_, side)| side.unwrap_or_default()))
+}
+
+/// The two sides along one direction.
+fn check_axis([path, other_path]: [&str; 2], [lower, upper]: [Side; 2]) -> Result<(), Fault> {
     let other = serde_json::json!(upper);
     if (lower == Side::Periodic) != (upper == Side::Periodic) {
         let reason = format!(
-            "cannot stand opposite boundary.x_upper = {other}; allowed: \"periodic\" on both \
-             sides or on neither"
+            "cannot stand opposite {other_path} = {other}; allowed: \"periodic\" on both sides or \
+             on neither"
         );
-        return Err(Fault::new("boundary.x_lower", lower, reason));
+        return Err(Fault::new(path, lower, reason));
     }
     match (rigid_velocity(lower), rigid_velocity(upper)) {
         (Some(a), Some(b)) if a != b => {
             let reason = format!(
-                "cannot stand opposite boundary.x_upper = {other}, since the grid travels with a \
+                "cannot stand opposite {other_path} = {other}, since the grid travels with a \
                  piston; allowed: the same velocity on both sides (a wall and a plane of symmetry \
                  are at rest), \"free\" or \"outflow\""
             );
-            Err(Fault::new("boundary.x_lower", lower, reason))
+            Err(Fault::new(path, lower, reason))
         }
         _ => Ok(()),
     }

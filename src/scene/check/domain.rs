@@ -33,13 +33,8 @@ pub(super) fn check(domain: &Domain) -> Result<Grid, Fault> {
     if let Some(patches) = &domain.patches {
         check_length("domain.patches", patches, dimension)?;
     }
-    if dimension != 1 {
-        let reason = if dimension == 2 {
-            "two dimensions are not built yet; allowed: one number, give one number here and in \
-             every other array"
-        } else {
-            "more than two dimensions; allowed: one number"
-        };
+    if dimension > 2 {
+        let reason = "more than two dimensions; allowed: one number or two";
         return Err(Fault::new("domain.lower", &domain.lower, reason));
     }
     check_box("domain", &domain.lower, &domain.upper)?;

@@ -27,6 +27,15 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Fau
                       leave both out, or artificial_viscosity.limiter \"christensen\" or \"nodal\"";
         return Err(Fault::new("artificial_viscosity.limited", viscosity.limited, reason));
     }
+    if let Some(limit) = method.domain_limit {
+        let deforms = matches!(method.shape, ShapeKind::Cpdi | ShapeKind::CpdiBsplineQuadratic);
+        if scene.domain.lower.len() == 1 || !deforms {
+            let reason = "says nothing: no particle has a parallelogram; allowed: to leave it \
+                          out, or two dimensions and method.shape \"cpdi\" or \
+                          \"cpdi_bspline_quadratic\"";
+            return Err(Fault::new("method.domain_limit", limit, reason));
+        }
+    }
     if method.shape == ShapeKind::Linear {
         warnings.push(
             "method.shape = \"linear\": inaccurate, since forces jump when a particle passes into \

@@ -14,7 +14,7 @@ mod reference;
 use serde::Serialize;
 
 use super::errors::{Fault, one_line};
-use super::model::{Material, Scene};
+use super::model::{Material, Scene, Side};
 
 pub use bodies::CheckedBody;
 pub use boundary::Wall;
@@ -69,11 +69,29 @@ impl CheckedScene {
         memory::check_counts(&checked)?;
         output::check_tracers(&checked)?;
         reference::check(&mut checked)?;
-        impact::check(&mut checked)?;
+        if dimension == 1 {
+            impact::check(&mut checked)?;
+        }
         for warning in &mut checked.warnings {
             *warning = one_line(warning);
         }
         Ok(checked)
+    }
+
+    /// What stands at the sides, along each of `D` directions.
+    pub fn sides<const D: usize>(&self) -> [[Side; 2]; D] {
+        let boundary = self.scene.boundary.unwrap_or_default();
+        let y = [boundary.y_lower, boundary.y_upper].map(Option::unwrap_or_default);
+        let all = [[boundary.x_lower, boundary.x_upper], y];
+        std::array::from_fn(|a| all[a])
+    }
+
+    /// The velocity at which the grid travels with a piston [m/s], in the scene's directions.
+    pub fn grid_velocity<const D: usize>(&self) -> [f64; D] {
+        self.sides::<D>().map(|ends| {
+            let piston = |s: &Side| if let Side::Velocity(v) = s { Some(*v) } else { None };
+            ends.iter().find_map(piston).unwrap_or(0.0)
+        })
     }
 
     /// The material of body `i`.

@@ -32,6 +32,11 @@ pub struct Method {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0), extend("exclusiveMaximum" = 1.0))]
     pub edge_mask: Option<f64>,
+    /// Longest half diagonal that a particle's domain keeps in a plane [cells], for shape
+    /// functions over a domain that deforms; absent: no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 8.0), extend("exclusiveMinimum" = 0.0))]
+    pub domain_limit: Option<f64>,
 }
 
 /// Shape functions.

@@ -168,13 +168,19 @@ fn default_courant() -> f64 {
 }
 
 /// The sides of the domain; one left out is free.
-#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Boundary {
     /// Side at the lower end of x.
     pub x_lower: Side,
     /// Side at the upper end of x.
     pub x_upper: Side,
+    /// Side at the lower end of y, in a plane.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub y_lower: Option<Side>,
+    /// Side at the upper end of y, in a plane.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub y_upper: Option<Side>,
 }
 
 /// What stands at one side of the domain.
