@@ -31,6 +31,9 @@ impl RegionFault {
 /// Greatest length or coordinate: its fourth power is still a number.
 const GREATEST: f64 = 1e60;
 
+/// Least length, likewise.
+const LEAST: f64 = 1e-60;
+
 /// A polygon thinner than this, over its length, has no area but rounding.
 const THIN: f64 = 1e-12;
 
@@ -181,10 +184,10 @@ fn number(value: f64, path: &str) -> Result<f64, RegionFault> {
 }
 
 fn length(value: f64, path: &str) -> Result<f64, RegionFault> {
-    if value > 0.0 && 1.0 / value <= GREATEST || value.is_nan() {
+    if value >= LEAST || value.is_nan() {
         return number(value, path);
     }
-    let reason = format!("no length; allowed: above 0, at least {:e}", 1.0 / GREATEST);
+    let reason = format!("no length; allowed: above 0, at least {LEAST:e}");
     Err(RegionFault::new(path, value, reason))
 }
 

@@ -64,14 +64,6 @@ impl Ellipse {
         [-w, w, -top, top].map(|dx| self.centre[0] + dx)
     }
 
-    /// Whether a point lies in it.
-    pub fn contains(&self, [x, y]: Point) -> bool {
-        let dx = x - self.centre[0];
-        let (u, v) =
-            (dx / self.half_width, (y - self.centre[1] - self.skew * dx) / self.half_height);
-        u * u + v * v <= 1.0
-    }
-
     /// Where a line crosses it: with y = yc + L + m X on the line,
     /// (L + (m - k) X)^2 = h^2 (1 - X^2/w^2).
     pub fn meet_line(&self, line: &Line) -> Places {

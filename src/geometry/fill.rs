@@ -132,6 +132,9 @@ fn cut(shape: &Shape, lattice: &Lattice) -> Vec<Cut> {
     for column in first..last {
         let x = [lattice.side(0, column), lattice.side(0, column + 1)];
         let pieces = shape.pieces_in(x);
+        if pieces.is_empty() {
+            continue;
+        }
         let rows_of = |piece: &super::piece::Piece| {
             let x = [x[0].max(piece.x[0]), x[1].min(piece.x[1])];
             lattice.reach(1, piece.range_y(x))
@@ -140,7 +143,7 @@ fn cut(shape: &Shape, lattice: &Lattice) -> Vec<Cut> {
         for [from, to] in pieces.iter().map(rows_of) {
             (bottom, top) = (bottom.min(from), top.max(to));
         }
-        let mut rows = vec![Moments::default(); (top.saturating_sub(bottom)).max(0) as usize];
+        let mut rows = vec![Moments::default(); (top - bottom) as usize];
         for piece in pieces {
             let [from, to] = rows_of(piece);
             for row in from..to {

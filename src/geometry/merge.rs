@@ -14,6 +14,7 @@ pub(super) const SLIVER: f64 = 0.02;
 /// Thickness, over a tile's edge, of the boxes that find what two tiles share of an edge.
 const THICKNESS: f64 = 1e-6;
 
+/// Steps to neighbours: in y, then in x.
 const FACES: [[i64; 2]; 4] = [[-1, 0], [0, -1], [0, 1], [1, 0]];
 const CORNERS: [[i64; 2]; 4] = [[-1, -1], [-1, 1], [1, -1], [1, 1]];
 
@@ -29,8 +30,8 @@ struct Merger<'a> {
 }
 
 /// Merges each sliver, the least first, into the neighbour with which it shares most of an edge,
-/// or failing that into one across a gap or a corner, the greatest. One that has no neighbour
-/// stays. `cuts` are in the order of their index; areas and moments are added exactly.
+/// of several the nearest; failing that into one across a gap or a corner. One that has no
+/// neighbour stays. `cuts` are in the order of their index; areas and moments are added exactly.
 pub(super) fn merge(shape: &Shape, lattice: &Lattice, cuts: &mut Vec<Cut>) {
     let size = lattice.size();
     let least = SLIVER * size[0] * size[1];
@@ -85,7 +86,7 @@ impl Merger<'_> {
     }
 
     /// The neighbour of `tile`, which consists of `members`, that shares most of an edge with it;
-    /// of several the greatest, then the first.
+    /// of several the nearest, lest a row of slivers become one.
     fn neighbour(&self, tile: usize, members: &[usize]) -> Option<usize> {
         for (steps, touching) in [(FACES, true), (CORNERS, false)] {
             let mut best: Option<(f64, f64, usize)> = None;
@@ -101,9 +102,9 @@ impl Merger<'_> {
                         continue;
                     }
                     let shared = if touching { self.shared(index, step) } else { 0.0 };
-                    let area = self.cuts[target].moments.area;
-                    if best.is_none_or(|(s, a, _)| (shared, area) > (s, a)) {
-                        best = Some((shared, area, target));
+                    let near = -self.distance(tile, target);
+                    if best.is_none_or(|(s, n, _)| (shared, near) > (s, n)) {
+                        best = Some((shared, near, target));
                     }
                 }
             }
@@ -114,8 +115,18 @@ impl Merger<'_> {
         None
     }
 
-    /// Length of the edge [m] between a tile and its neighbour on both sides of which the shape
-    /// lies, from what lies in a thin box on each side.
+    /// Distance between the centroids of two tiles [m].
+    fn distance(&self, a: usize, b: usize) -> f64 {
+        let place = |cut: &Cut| {
+            let (centre, from) = (self.lattice.centre(cut.index), cut.moments.centroid());
+            [centre[0] + from[0], centre[1] + from[1]]
+        };
+        let (a, b) = (place(&self.cuts[a]), place(&self.cuts[b]));
+        (a[0] - b[0]).hypot(a[1] - b[1])
+    }
+
+    /// Share, to a thousandth, of the edge between a tile and its neighbour on both sides of which
+    /// the shape lies, from what lies in a thin box on each side.
     fn shared(&self, index: [i64; 2], step: [i64; 2]) -> f64 {
         let (centre, size) = (self.lattice.centre(index), self.lattice.size());
         let side = |inner: f64, outer: f64| {
@@ -129,7 +140,7 @@ impl Merger<'_> {
             let [lower, upper] = [f64::min, f64::max].map(|f| [f(a[0], b[0]), f(a[1], b[1])]);
             self.shape.overlap(&Trapezium::upright(lower, upper), centre).area
         };
-        let direction = if step[0] == 0 { 0 } else { 1 };
-        side(-THICKNESS, 0.0).min(side(0.0, THICKNESS)) / (THICKNESS * size[direction])
+        let both = side(-THICKNESS, 0.0).min(side(0.0, THICKNESS));
+        (1e3 * both / (THICKNESS * size[0] * size[1])).round()
     }
 }

@@ -5,13 +5,11 @@ use super::build::{self, RegionFault};
 use super::moments::Moments;
 use super::piece::{Piece, Trapezium};
 use super::pieces::{NoPieces, pieces};
-use super::solid::Solid;
 use crate::scene::Region;
 
 /// A region that is bounded and has an area.
 #[derive(Clone, Debug)]
 pub struct Shape {
-    solid: Solid,
     pieces: Vec<Piece>,
     bounds: [Point; 2],
     own_box: Option<[Point; 2]>,
@@ -41,12 +39,14 @@ impl Shape {
             _ => None,
         };
         let bounds = own_box.unwrap_or_else(|| bounds(&pieces));
-        Ok(Shape { solid, pieces, bounds, own_box })
+        Ok(Shape { pieces, bounds, own_box })
     }
 
-    /// Whether a point [m] lies in it; of its border, some points do and some do not.
-    pub fn contains(&self, point: [f64; 2]) -> bool {
-        self.solid.contains(point)
+    /// Whether a point [m] lies in it or, to rounding, on its border.
+    pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
+        let start = self.pieces.partition_point(|p| p.x[1] < x);
+        let mut pieces = self.pieces[start..].iter().take_while(|p| p.x[0] <= x);
+        pieces.any(|p| p.lower.y(x) <= y && y <= p.upper.y(x))
     }
 
     /// Lower and upper corner [m] of the smallest box around it.

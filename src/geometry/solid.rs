@@ -78,19 +78,6 @@ impl Outline {
         Outline::HalfPlane { point, normal, line }
     }
 
-    fn contains(&self, point: Point) -> bool {
-        match self {
-            Outline::Polygon(_) => {
-                let below = |p: &&Passage| p.y <= point[1];
-                self.section(point[0]).iter().filter(below).count() % 2 == 1
-            }
-            Outline::Ellipse(ellipse) => ellipse.contains(point),
-            Outline::HalfPlane { point: at, normal, .. } => {
-                (0..2).map(|d| (point[d] - at[d]) * normal[d]).sum::<f64>() <= 0.0
-            }
-        }
-    }
-
     /// Passages of the vertical line at `x` [m], in order of y.
     fn section(&self, x: f64) -> Vec<Passage> {
         let through = |curve: Curve| Passage { y: curve.y(x), curve: Some(curve) };
@@ -124,18 +111,6 @@ impl Outline {
 }
 
 impl Solid {
-    /// Whether a point lies in it. Of the border either may be told.
-    pub fn contains(&self, point: Point) -> bool {
-        match self {
-            Solid::Outline(outline) => outline.contains(point),
-            Solid::Joined(operation, parts) => {
-                let mut parts = parts.iter().map(|part| part.contains(point));
-                let first = parts.next().unwrap_or(false);
-                parts.fold(first, |a, b| operation.inside(a, b))
-            }
-        }
-    }
-
     /// Passages of the vertical line at `x` [m], in order of y: in and out by turns.
     pub fn section(&self, x: f64) -> Vec<Passage> {
         match self {

@@ -100,3 +100,55 @@ pub struct Rotation {
     /// The region that is turned.
     pub of: Box<Region>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    fn examples() -> Vec<Value> {
+        let disk = json!({"disk": {"centre": [0.0, 0.0], "radius": 1.0}});
+        vec![
+            json!({"box": {"lower": [0.0, 0.0], "upper": [1.0, 2.0]}}),
+            json!({"ellipse": {"centre": [0.0, 0.0], "radii": [1.0, 2.0]}}),
+            json!({"polygon": {"vertices": [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]}}),
+            json!({"annulus": {"centre": [0.0, 0.0], "inner": 1.0, "outer": 2.0}}),
+            json!({"half_plane": {"point": [0.0, 0.0], "normal": [1.0, 0.0]}}),
+            json!({"union": [disk, {"intersection": [disk, disk]}]}),
+            json!({"difference": [disk, disk, disk]}),
+            json!({"rotation": {"angle": 30.0, "about": [0.0, 0.0], "of": disk}}),
+            disk,
+        ]
+    }
+
+    #[test]
+    fn regions_are_read_and_written_as_they_stand() {
+        for json in examples() {
+            let region: Region = serde_json::from_value(json.clone()).unwrap();
+            assert_eq!(serde_json::to_value(&region).unwrap(), json);
+        }
+    }
+
+    #[test]
+    fn the_schema_allows_them_and_no_others() {
+        let schema = schemars::schema_for!(Region).to_value();
+        let validator = jsonschema::validator_for(&schema).unwrap();
+        for json in examples() {
+            assert!(validator.is_valid(&json), "{json}");
+        }
+        for json in [
+            json!({"sphere": {"centre": [0.0, 0.0], "radius": 1.0}}),
+            json!({"disk": {"centre": [0.0, 0.0], "radius": 0.0}}),
+            json!({"disk": {"centre": [0.0, 0.0], "radius": 1.0, "height": 1.0}}),
+            json!({"union": []}),
+            json!({"union": [{"difference": []}]}),
+            json!({"rotation": {"angle": 1.0, "about": [0.0, 0.0]}}),
+            json!({"disk": {"centre": [0.0, 0.0], "radius": 1.0}, "union": []}),
+        ] {
+            assert!(!validator.is_valid(&json), "{json}");
+            let read = serde_json::from_value::<Region>(json.clone());
+            let by_value = ["radius\":0.0", "[]"].iter().any(|v| json.to_string().contains(v));
+            assert!(by_value || read.is_err(), "{json}");
+        }
+    }
+}
