@@ -6,6 +6,7 @@
 mod matter;
 mod method;
 mod output;
+mod region;
 
 use std::collections::BTreeMap;
 
@@ -15,6 +16,7 @@ use serde::{Deserialize, Serialize};
 pub use matter::*;
 pub use method::*;
 pub use output::*;
+pub use region::*;
 
 /// A scene: everything that a run is told.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
