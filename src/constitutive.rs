@@ -3,8 +3,39 @@
 //!
 //! Knows no grid, no messages, no dimension.
 
-use crate::material::{EquationOfState, IdealGas, Linear, MieGruneisen};
+mod solid;
+
+pub use solid::{PlaneStrain, Solid, Strain, TensorRows};
+
+use crate::material::{EquationOfState, Hencky, IdealGas, Lame, Linear, MieGruneisen, NeoHookean};
 use crate::scene::{Eos, Material};
+
+/// What a body is made of, as the step sees it.
+pub enum Matter {
+    /// Bears pressure alone.
+    Fluid(Box<dyn Model>),
+    /// Bears shear too.
+    Solid(Box<dyn Solid>),
+}
+
+impl Matter {
+    /// Sound speed of the material at its density and `pressure` [m/s].
+    pub fn sound_speed_at(&self, pressure: f64) -> f64 {
+        match self {
+            Matter::Fluid(model) => model.sound_speed_at(pressure),
+            Matter::Solid(solid) => solid.sound_speed_at_rest(),
+        }
+    }
+
+    /// The specific internal energy at which the material at rest is at `pressure` [J/kg]; none
+    /// in a solid, which starts without stress.
+    pub fn energy_at(&self, pressure: f64) -> f64 {
+        match self {
+            Matter::Fluid(model) => model.energy_at(pressure),
+            Matter::Solid(_) => 0.0,
+        }
+    }
+}
 
 /// Rows at the middle of a step; see [`Model::mid_step`].
 pub struct MidStep<'a> {
@@ -44,7 +75,7 @@ pub struct VolumeChange<'a> {
     pub energy: &'a mut [f64],
 }
 
-/// A material, as the step sees it.
+/// A fluid, as the step sees it.
 pub trait Model: Send + Sync {
     /// Stress at the middle of the step, with the energy that the half-step's work gives:
     /// p = (f + g (e - q dv))/(1 + g dv) from e_mid = e - (p + q) dv, dv the change of specific
@@ -73,13 +104,21 @@ pub trait Model: Send + Sync {
 }
 
 /// The model of a material of a scene.
-pub fn build(material: &Material) -> Box<dyn Model> {
+pub fn build(material: &Material) -> Matter {
     let rho0 = material.density;
     match material.eos {
         Eos::MieGruneisen { c0, s, gamma0 } => {
-            Box::new(Point(MieGruneisen { rho0, c0, s, gamma0 }))
+            Matter::Fluid(Box::new(Point(MieGruneisen { rho0, c0, s, gamma0 })))
         }
-        Eos::IdealGas { gamma } => Box::new(Point(IdealGas { rho0, gamma })),
+        Eos::IdealGas { gamma } => Matter::Fluid(Box::new(Point(IdealGas { rho0, gamma }))),
+        Eos::LinearElastic { youngs_modulus, poissons_ratio } => {
+            let lame = Lame::new(youngs_modulus, poissons_ratio);
+            Matter::Solid(Box::new(solid::Loops(Hencky { rho0, lame })))
+        }
+        Eos::NeoHookean { youngs_modulus, poissons_ratio } => {
+            let lame = Lame::new(youngs_modulus, poissons_ratio);
+            Matter::Solid(Box::new(solid::Loops(NeoHookean { rho0, lame })))
+        }
     }
 }
 

@@ -46,18 +46,25 @@ pub struct Columns {
     /// Half lengths of the particle along each direction at the start [m], a vector, in a plane
     /// for shape functions that look at its domain.
     pub half_lengths: Option<usize>,
-    /// Deformation gradient F [-], a tensor, where the domain deforms.
+    /// Deformation gradient F [-], a tensor, in a plane where the domain deforms or a body is a
+    /// solid.
     pub deformation: Option<usize>,
-    /// Gradient of the velocity of the last step [1/s], a tensor, where the domain deforms.
+    /// Gradient of the velocity of the last step [1/s], a tensor, where there is a deformation.
     pub velocity_gradient: Option<usize>,
+    /// Cauchy stress without artificial viscosity [Pa], positive in tension, where a body is a
+    /// solid: xx, and in a plane yy and xy.
+    pub stress: Option<usize>,
     /// Place in the cell [cells], a vector, scratch.
     pub fraction: usize,
     /// Length for the shape function, in a plane half edges of the domain [cells], scratch.
     pub domain: usize,
     /// Volume [cells], scratch, with an edge mask: on a line the deformed length itself.
     pub filled: Option<usize>,
-    /// (p + q) V [J], scratch.
+    /// (p + q) V [J], scratch. Where a body is a solid and in a plane, the tensor (q - sigma) V:
+    /// xx, yy, xy, and about an axis zz.
     pub stress_volume: usize,
+    /// Components of it.
+    pub stress_volumes: usize,
     /// J at the middle of the step, scratch, with mid-point stepping.
     pub jacobian_mid: Option<usize>,
     /// Pressure at the middle of the step [Pa], scratch, with pressure relaxation.
@@ -95,6 +102,7 @@ impl Columns {
         let same = |_: usize| Mirror::Same;
         let of_vector = |a: usize| Mirror::Negate(a);
         let of_tensor = |k: usize| if k % 3 == 0 { Mirror::Same } else { Mirror::NegatePair(0, 1) };
+        let of_stress = |k: usize| if k == 2 { Mirror::NegatePair(0, 1) } else { Mirror::Same };
         let domains: &[&str] = match (plane, extent) {
             (false, _) => &["cell_length"],
             (true, Extent::Point) => &[],
@@ -115,7 +123,12 @@ impl Columns {
             "velocity_gradient_yx",
             "velocity_gradient_yy",
         ];
+        const STRESS: [&str; 3] = ["stress_xx", "stress_yy", "stress_xy"];
+        const STRESS_VOLUME: [&str; 4] =
+            ["stress_volume_xx", "stress_volume_yy", "stress_volume_xy", "stress_volume_zz"];
         let deforms = plane && extent == Extent::Current;
+        let solids = scene.has_solids();
+        let strained = deforms || (plane && solids);
         let position = vector(&["position", "position_x", "position_y"]);
         let velocity = vector(&["velocity", "velocity_x", "velocity_y"]);
         let fraction = vector(&["cell_fraction", "cell_fraction_x", "cell_fraction_y"]);
@@ -136,7 +149,14 @@ impl Columns {
         .map(|(name, unit, ghost)| add(name, unit, ghost, true));
         let viscosity = viscous.map(|_| add("artificial_viscosity", "Pa", false, true));
         let limiter = limited.then(|| add("viscosity_limiter", "", false, true));
-        let stress_volume = add("stress_volume", "J", true, false);
+        let components = match (plane && solids, scene.axisymmetric()) {
+            (false, _) => &["stress_volume"][..],
+            (true, false) => &STRESS_VOLUME[..3],
+            (true, true) => &STRESS_VOLUME,
+        };
+        let stress_volume = add_all(components, "J", true, false, &of_stress);
+        let mut add =
+            |name: &'static str, unit, ghost, state| add_all(&[name], unit, ghost, state, &same);
         let jacobian_mid = midpoint.then(|| add("jacobian_mid", "", false, false));
         let pressure_mid = relaxed.then(|| add("pressure_mid", "Pa", true, false));
         let compliance = relaxed.then(|| add("compliance", "m3/Pa", true, false));
@@ -153,8 +173,12 @@ impl Columns {
                 .then(|| add_all(affine, "1/s", true, true, &of_tensor)),
             half_lengths: (plane && extent != Extent::Point)
                 .then(|| add_all(&["half_width", "half_height"], "m", false, true, &same)),
-            deformation: deforms.then(|| add_all(&DEFORMATION, "", false, true, &of_tensor)),
-            velocity_gradient: deforms.then(|| add_all(&GRADIENT, "1/s", false, true, &of_tensor)),
+            deformation: strained.then(|| add_all(&DEFORMATION, "", false, true, &of_tensor)),
+            velocity_gradient: strained.then(|| add_all(&GRADIENT, "1/s", false, true, &of_tensor)),
+            stress: solids.then(|| {
+                let names = if plane { &STRESS[..] } else { &STRESS[..1] };
+                add_all(names, "Pa", false, true, &of_stress)
+            }),
             fraction: add_all(fraction, "", true, false, &complement),
             mass,
             volume0,
@@ -167,6 +191,7 @@ impl Columns {
             viscosity,
             limiter,
             stress_volume,
+            stress_volumes: components.len(),
             jacobian_mid,
             pressure_mid,
             compliance,

@@ -137,6 +137,7 @@ impl Reference {
                         let e = state.p / ((gamma - 1.0) * state.rho);
                         WallMaterial::IdealGas { gamma, rho: state.rho, e }
                     }
+                    _ => unreachable!("the check has refused other equations of state"),
                 };
                 let solution = WallImpact::new(
                     material,

@@ -2,15 +2,21 @@
 //!
 //! Knows neither particles, grid nor dimension: a model sees scalars alone.
 //!
-//! Every model here is linear in the specific internal energy,
+//! Every fluid here is linear in the specific internal energy,
 //! p = f(J) + g(J) e, with J = V/V0 = rho0/rho the volume ratio. That is what lets the
-//! mid-point rule for the energy be solved in closed form.
+//! mid-point rule for the energy be solved in closed form. [`elastic`] solids bear shear.
 
+pub mod elastic;
+mod hencky;
 mod ideal_gas;
 mod mie_gruneisen;
+mod neo_hookean;
 
+pub use elastic::{Deformation, ElasticSolid, Lame, Symmetric};
+pub use hencky::Hencky;
 pub use ideal_gas::IdealGas;
 pub use mie_gruneisen::MieGruneisen;
+pub use neo_hookean::NeoHookean;
 
 /// What an equation of state tells of one state: p = cold + energy_factor * e.
 #[derive(Clone, Copy, Debug, PartialEq)]

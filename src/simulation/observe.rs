@@ -114,6 +114,20 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             named("specific_internal_energy", "J/kg", pick(&|r| column(c.energy)[r])),
             named("artificial_viscosity", "Pa", pick(&|r| q.map_or(0.0, |q| q[r]))),
         ]);
+        if let Some(stress) = c.stress {
+            let names = ["stress_xx", "stress_yy", "stress_xy"];
+            let count = if D == 1 { 1 } else { 3 };
+            let of = |k: usize, r: usize| column(stress + k)[r];
+            for (k, name) in names.into_iter().enumerate().take(count) {
+                columns.push(named(name, "Pa", pick(&|r| of(k, r))));
+            }
+            // across, the trace leaves what is not in the plane; on a line half of it
+            let across = |r: usize| {
+                let rest = -3.0 * column(c.pressure)[r] - of(0, r);
+                if D == 1 { 0.5 * rest } else { rest - of(1, r) }
+            };
+            columns.push(named("stress_zz", "Pa", pick(&across)));
+        }
         if D > 1 {
             columns.push(named("volume", "m3", pick(&|r| v0[r] * j[r])));
         }

@@ -176,7 +176,10 @@ impl<const D: usize> Stepper<D> {
     /// gradients of the mean velocity and of w, the filter's heat, velocity, position, and domain.
     pub(super) fn gather_midpoint(&self, patch: &mut Patch<D>, dt: f64) {
         fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, dt: f64) {
-            s.gather_rows::<K>(patch, dt);
+            match s.tensor_stress() {
+                false => s.gather_rows::<K, false>(patch, dt),
+                true => s.gather_rows::<K, true>(patch, dt),
+            }
             if let Some(affine) = s.columns.affine {
                 s.gather_affine::<K>(patch, affine);
             }
@@ -185,7 +188,7 @@ impl<const D: usize> Stepper<D> {
         with_width!(patch.stencils.width, go(patch, self, dt));
     }
 
-    fn gather_rows<const K: usize>(&self, patch: &mut Patch<D>, dt: f64) {
+    fn gather_rows<const K: usize, const TENSOR: bool>(&self, patch: &mut Patch<D>, dt: f64) {
         let (c, f) = (&self.columns, &self.fields);
         let n = patch.block.own();
         let fields = &patch.nodes.fields;
@@ -240,18 +243,27 @@ impl<const D: usize> Stepper<D> {
             }
             let divergence = (0..D).map(|a| row.sum(row.gradient(a), |l| mean(a, l))).sum();
             let divergence = self.with_hoop(patch, &row, r, divergence, |l| mean(0, l));
-            let working = if self.compatible {
-                let plane = (0..D).map(|a| row.dot(row.gradient(a), work[a])).sum();
-                self.with_hoop(patch, &row, r, plane, |l| *row.line(work[0], l))
+            let work_done = if TENSOR {
+                let of = |a: usize, line: usize| match self.compatible {
+                    true => *row.line(work[a], line),
+                    false => mean(a, line),
+                };
+                dt * self.stress_power(patch, &row, r, of)
             } else {
-                divergence
+                let working = if self.compatible {
+                    let plane = (0..D).map(|a| row.dot(row.gradient(a), work[a])).sum();
+                    self.with_hoop(patch, &row, r, plane, |l| *row.line(work[0], l))
+                } else {
+                    divergence
+                };
+                stress[r] * dt * working
             };
             for a in 0..D {
                 x[a][r] += 0.5 * dt * (v[a][r] + new[a]);
                 v[a][r] = new[a];
             }
             j[r] += dt * j_mid[r] * divergence;
-            e[r] += heat - stress[r] * dt * working / mass[r];
+            e[r] += heat - work_done / mass[r];
             let end = (0..D).map(|a| row.dot(row.gradient(a), star[a])).sum();
             d[r] = self.with_hoop(patch, &row, r, end, |l| *row.line(star[0], l));
         }

@@ -30,6 +30,7 @@ impl<const D: usize> Stepper<D> {
             self.half_step_volume(patch, dt);
             self.find_viscosity(patch, mid);
             self.mid_step_stress(patch, relax.is_some());
+            self.find_solid_stress(patch, 0.5 * dt, mid);
             self.locate(patch, 0.5 * dt, mid);
             self.find_active(patch);
         });

@@ -12,12 +12,13 @@ pub mod relaxation;
 mod rows;
 pub mod scatter;
 pub mod series;
+mod solid;
 mod world;
 
 pub use reach::Reach;
 pub use world::{Nodal, Sleep, World};
 
-use crate::constitutive::{self, Model};
+use crate::constitutive::{self, Matter};
 use crate::grid::Fields;
 use crate::particles::Columns;
 use crate::patch::Patch;
@@ -43,7 +44,7 @@ pub struct Stepper<const D: usize> {
     edge_mask: Option<f64>,
     viscosity: Option<Viscosity>,
     /// One a body.
-    models: Vec<Box<dyn Model>>,
+    models: Vec<Matter>,
     shape: ShapeKind,
     /// Edges of a cell [m] and their inverse.
     cell: [f64; D],
@@ -129,7 +130,7 @@ impl<const D: usize> Stepper<D> {
         let cell: [f64; D] = std::array::from_fn(|a| scene.cell_size[a]);
         let volume: f64 = cell.iter().product();
         let smallest = cell.iter().copied().fold(f64::INFINITY, f64::min);
-        let models: Vec<Box<dyn Model>> =
+        let models: Vec<Matter> =
             bodies.iter().map(|b| constitutive::build(&materials[&b.material])).collect();
         let fastest = (bodies.iter().zip(&models).zip(&scene.bodies))
             .map(|((b, m), c)| m.sound_speed_at(b.pressure).max(norm(&c.velocity)))

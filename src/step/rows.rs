@@ -5,13 +5,13 @@ use std::ops::Range;
 use decomp::IndexBox;
 
 use super::Stepper;
-use crate::constitutive::{MidStep, VolumeChange};
+use crate::constitutive::{Matter, MidStep, VolumeChange};
 use crate::patch::{Departed, Fault, Patch, Phase};
 use crate::scene::Side;
 use crate::shape::{Domain, Extent, floor};
 
 /// Ranges of rows of one body.
-fn bodies(column: &[f64]) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
+pub(super) fn bodies(column: &[f64]) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
     let mut at = 0;
     std::iter::from_fn(move || {
         let body = *column.get(at)?;
@@ -83,7 +83,7 @@ impl<const D: usize> Stepper<D> {
                 .expect("columns differ");
             (0..n).for_each(|r| out[r] /= x[r] + ahead * v[r]);
         }
-        match (c.half_lengths, c.deformation) {
+        match (c.half_lengths, c.deformation.filter(|_| self.extent() == Extent::Current)) {
             (Some(half_lengths), Some(deformation)) => {
                 self.find_parallelograms(patch, half_lengths, deformation, ahead, jacobian);
             }
@@ -204,6 +204,23 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
+    /// The deformation of the own rows after a leapfrog step, (1 + dt L) F: what the places within
+    /// a particle move by as it does, at the velocity of the step's end about its start.
+    fn deform_forward(&self, patch: &mut Patch<D>, dt: f64) {
+        let (Some(f), Some(l)) = (self.columns.deformation, self.columns.velocity_gradient) else {
+            return;
+        };
+        let columns = &mut patch.block.columns;
+        for r in 0..columns[f].len() {
+            let l: [f64; 4] = std::array::from_fn(|k| dt * columns[l + k][r]);
+            for k in [f, f + 1] {
+                let (x, y) = (columns[k][r], columns[k + 2][r]);
+                columns[k][r] = x + (l[0] * x + l[1] * y);
+                columns[k + 2][r] = y + (l[2] * x + l[3] * y);
+            }
+        }
+    }
+
     /// Wraps rows across joined sides, books those that leave by an outflow, faults the others.
     fn leave(&self, patch: &mut Patch<D>) {
         const NAMES: [[&str; 2]; 2] = [["lower", "upper"], ["lower y", "upper y"]];
@@ -309,7 +326,15 @@ impl<const D: usize> Stepper<D> {
         let mut relaxed = c.pressure_mid.zip(c.compliance).map(|(p, w)| (take(p), take(w)));
         let column = |k: usize| &patch.block.columns[k];
         for (body, rows) in bodies(column(c.body)) {
-            self.models[body].mid_step(MidStep {
+            let Matter::Fluid(model) = &self.models[body] else {
+                // pressure relaxation leaves solids alone
+                if let Some((p, w)) = &mut relaxed {
+                    p[rows.clone()].fill(0.0);
+                    w[rows.clone()].fill(0.0);
+                }
+                continue;
+            };
+            model.mid_step(MidStep {
                 mass: &column(c.mass)[rows.clone()],
                 volume0: &column(c.volume0)[rows.clone()],
                 jacobian: &column(c.jacobian)[rows.clone()],
@@ -343,7 +368,8 @@ impl<const D: usize> Stepper<D> {
         let column = |k: usize| &patch.block.columns[k][..n];
         let tensors = c.affine.into_iter().chain(c.velocity_gradient).flat_map(|k| k..k + D * D);
         let vector = c.velocity..c.velocity + D;
-        let scalars = [c.gradient, c.stress_volume].into_iter().chain(c.pressure_mid);
+        let stress = c.stress_volume..c.stress_volume + c.stress_volumes;
+        let scalars = [c.gradient].into_iter().chain(stress).chain(c.pressure_mid);
         let watched: smallvec::SmallVec<[&[f64]; 16]> =
             vector.chain(scalars).chain(tensors).map(column).collect();
         let moves = |r: usize| watched.iter().any(|column| column[r] != 0.0);
@@ -377,6 +403,7 @@ impl<const D: usize> Stepper<D> {
             None => (0..n).for_each(|r| stress[r] = p[r] * volume0[r] * j[r]),
         }
         patch.block.columns[c.stress_volume] = stress;
+        self.find_solid_stress(patch, 0.0, c.jacobian);
     }
 
     /// Volume, viscosity, energy and pressure after `dt` at the divergence in its column.
@@ -395,7 +422,8 @@ impl<const D: usize> Stepper<D> {
         let mut energy = std::mem::take(&mut patch.block.columns[c.energy]);
         let column = |k: usize| &patch.block.columns[k];
         for (body, rows) in bodies(column(c.body)) {
-            self.models[body].change_volume(VolumeChange {
+            let Matter::Fluid(model) = &self.models[body] else { continue };
+            model.change_volume(VolumeChange {
                 mass: &column(c.mass)[rows.clone()],
                 volume0: &column(c.volume0)[rows.clone()],
                 before: &before[rows.clone()],
@@ -405,9 +433,11 @@ impl<const D: usize> Stepper<D> {
                 energy: &mut energy[rows],
             });
         }
+        self.work_on_solids(patch, dt, &before, &mut energy);
         patch.block.columns[c.pressure] = pressure;
         patch.block.columns[c.energy] = energy;
         patch.kept = before;
+        self.deform_forward(patch, dt);
     }
 
     /// Pressure, sound speed, and what the patch tells: time step, longest particle, faults.
@@ -418,7 +448,8 @@ impl<const D: usize> Stepper<D> {
         let column = |k: usize| &patch.block.columns[k];
         let mut found = None;
         for (body, rows) in bodies(column(c.body)) {
-            let told = self.models[body].refresh(
+            let Matter::Fluid(model) = &self.models[body] else { continue };
+            let told = model.refresh(
                 &column(c.jacobian)[rows.clone()],
                 &column(c.energy)[rows.clone()],
                 &mut pressure[rows.clone()],
@@ -428,6 +459,10 @@ impl<const D: usize> Stepper<D> {
                 found = Some((rows.start + row, what));
             }
         }
+        let of_solids = self.refresh_solids(patch, &mut pressure, &mut speed);
+        let first = found.iter().chain(&of_solids).min_by_key(|(row, _)| *row).cloned();
+        let mut found = first;
+        let column = |k: usize| &patch.block.columns[k];
         let velocity: [&[f64]; D] = std::array::from_fn(|a| &column(c.velocity + a)[..]);
         let d = column(c.gradient);
         // the most cells that a signal or particle passes along a direction in a second [1/s]
@@ -477,14 +512,14 @@ impl<const D: usize> Stepper<D> {
         let length = |r: usize| match (self.extent(), c.half_lengths, c.deformation) {
             (Extent::Current, None, _) => volume0[r] * j[r] * self.inverse_cell[0],
             (_, None, _) if D == 1 => volume0[r] * self.inverse_cell[0],
-            (_, Some(half), Some(f)) => {
+            (Extent::Current, Some(half), Some(f)) => {
                 let f = std::array::from_fn(|k| column(f + k)[r]);
                 let half = [column(half)[r], column(half + 1)[r]];
                 let at = if self.axisymmetric { column(c.position)[r] } else { 1.0 };
                 let extent = self.domain(f, half, volume0[r] * j[r] / at).extent();
                 extent[0].max(extent[1])
             }
-            (_, Some(half), None) => {
+            (_, Some(half), _) => {
                 let lengths = (0..D).map(|a| 2.0 * column(half + a)[r] * self.inverse_cell[a]);
                 lengths.fold(0.0, f64::max)
             }

@@ -36,7 +36,11 @@ impl<const D: usize> Stepper<D> {
                 (false, Some(_)) => s.scatter_width::<K, false, true>(patch, force),
             }
         }
-        with_width!(patch.stencils.width, go(patch, self, force));
+        let tensor = self.tensor_stress();
+        with_width!(patch.stencils.width, go(patch, self, force && !tensor));
+        if force && tensor {
+            self.scatter_stress(patch);
+        }
     }
 
     fn scatter_width<const K: usize, const MATRIX: bool, const AFFINE: bool>(

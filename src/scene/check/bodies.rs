@@ -4,6 +4,8 @@ use std::collections::{HashMap, HashSet};
 
 use serde_json::json;
 
+use crate::material::Lame;
+
 use super::super::conform::join;
 use super::super::errors::{Fault, suggest};
 use super::super::model::{Body, Eos, Scene};
@@ -75,6 +77,18 @@ fn check_materials(scene: &Scene) -> Result<(), Fault> {
             );
             return Err(Fault::new(path, material.density, reason));
         }
+        if let Eos::LinearElastic { youngs_modulus, poissons_ratio }
+        | Eos::NeoHookean { youngs_modulus, poissons_ratio } = material.eos
+            && !(Lame::new(youngs_modulus, poissons_ratio).longitudinal() / material.density)
+                .is_normal()
+        {
+            let path = join(&join("materials", name), "eos.youngs_modulus");
+            let reason = format!(
+                "no finite stiffness over density = {}; allowed: SI units, Pa and kg/m3",
+                json!(material.density)
+            );
+            return Err(Fault::new(path, youngs_modulus, reason));
+        }
     }
     Ok(())
 }
@@ -128,6 +142,11 @@ fn check_pressure(scene: &Scene, body: &Body, path: &str) -> Result<(), Fault> {
             "the tension -density c0^2/(2 gamma0) that Mie-Grueneisen can bear",
         ),
         Eos::IdealGas { .. } => (0.0, "since an ideal gas bears no tension"),
+        Eos::LinearElastic { .. } | Eos::NeoHookean { .. } if body.pressure == 0.0 => return Ok(()),
+        Eos::LinearElastic { .. } | Eos::NeoHookean { .. } => {
+            let reason = "an elastic body starts without stress; allowed: 0";
+            return Err(Fault::new(path, body.pressure, reason));
+        }
     };
     if body.pressure >= least {
         return Ok(());

@@ -113,7 +113,7 @@ fn check_impact(checked: &CheckedScene, impact: &Impact) -> Result<(), Fault> {
         Eos::MieGruneisen { c0, s, .. } => {
             Some(Hugoniot { rho0: checked.material_of(i).density, c0, s })
         }
-        Eos::IdealGas { .. } => None,
+        _ => None,
     };
     let Some(own) = hugoniot(impact.body) else { return Ok(()) };
     let other = match impact.other {

@@ -6,6 +6,7 @@ use super::super::errors::Fault;
 use super::super::model::{
     EnergyUpdate, LimitedTerms, Scene, ShapeKind, Stepping, StressUpdate, Transfer,
 };
+use super::CheckedScene;
 
 /// Beyond this Courant number the schemes with a filter were seen to fail [-].
 const COURANT_TRIED: f64 = 0.8;
@@ -50,6 +51,19 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Fau
         ));
     }
     Ok(())
+}
+
+/// What a method says nothing of where no body is a fluid.
+pub(super) fn check_bodies(checked: &CheckedScene) -> Result<(), Fault> {
+    let fluids = (0..checked.bodies.len()).any(|i| !checked.material_of(i).eos.is_solid());
+    match checked.scene.method.pressure_relaxation {
+        Some(relaxation) if !fluids => {
+            let reason =
+                "acts on fluids alone, and every body is elastic; allowed: to leave it out";
+            Err(Fault::new("method.pressure_relaxation", relaxation, reason))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// A mid-point step has one order of stress, and needs what its options act on.

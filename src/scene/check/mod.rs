@@ -67,6 +67,7 @@ impl CheckedScene {
             scene,
         };
         memory::check_counts(&checked)?;
+        method::check_bodies(&checked)?;
         output::check_tracers(&checked)?;
         reference::check(&mut checked)?;
         if dimension == 1 {
@@ -97,6 +98,11 @@ impl CheckedScene {
     /// Whether x is a radius.
     pub fn axisymmetric(&self) -> bool {
         self.scene.domain.geometry == Geometry::Axisymmetric
+    }
+
+    /// Whether a body is a solid, so that stress is a tensor.
+    pub fn has_solids(&self) -> bool {
+        (0..self.bodies.len()).any(|i| self.material_of(i).eos.is_solid())
     }
 
     /// The material of body `i`.

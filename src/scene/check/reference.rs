@@ -52,7 +52,7 @@ fn check_flyer_impact(checked: &mut CheckedScene, impact: &FlyerImpact) -> Resul
 fn warn_of_flyer(checked: &mut CheckedScene, flyer: usize, target: usize, from_below: bool) {
     let impedance = |i: usize| match checked.material_of(i).eos {
         Eos::MieGruneisen { c0, .. } => checked.material_of(i).density * c0,
-        Eos::IdealGas { .. } => 0.0,
+        _ => 0.0,
     };
     let mut warnings = Vec::new();
     if impedance(flyer) < impedance(target) {
@@ -125,6 +125,11 @@ fn check_riemann(checked: &CheckedScene, riemann: &Riemann) -> Result<(), Fault>
 fn check_wall_impact(checked: &CheckedScene, impact: &WallImpact) -> Result<(), Fault> {
     const BODY: &str = "reference.wall_impact.body";
     let body = find_body(checked, BODY, &impact.body)?;
+    if checked.material_of(body).eos.is_solid() {
+        let reason =
+            "an elastic body; allowed: one whose eos is \"mie_gruneisen\" or \"ideal_gas\"";
+        return Err(Fault::new(BODY, &impact.body, reason));
+    }
     if checked.wall_struck_by(body).is_some() {
         return Ok(());
     }

@@ -36,6 +36,31 @@ pub enum Eos {
         #[schemars(extend("exclusiveMinimum" = 1.0))]
         gamma: f64,
     },
+    /// Elastic solid, linear in the logarithmic strain: Hooke's law where strains are small.
+    LinearElastic {
+        /// Young's modulus [Pa].
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        youngs_modulus: f64,
+        /// Poisson's ratio [-].
+        #[schemars(extend("exclusiveMinimum" = -1.0, "exclusiveMaximum" = 0.5))]
+        poissons_ratio: f64,
+    },
+    /// Neo-Hookean solid, sigma = (lambda ln J 1 + mu (F F^T - 1))/J.
+    NeoHookean {
+        /// Young's modulus where strains are small [Pa].
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        youngs_modulus: f64,
+        /// Poisson's ratio where strains are small [-].
+        #[schemars(extend("exclusiveMinimum" = -1.0, "exclusiveMaximum" = 0.5))]
+        poissons_ratio: f64,
+    },
+}
+
+impl Eos {
+    /// Whether the material bears shear: its stress is a tensor.
+    pub fn is_solid(&self) -> bool {
+        matches!(self, Eos::LinearElastic { .. } | Eos::NeoHookean { .. })
+    }
 }
 
 /// A body: a box of one material, filled with particles.

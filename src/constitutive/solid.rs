@@ -1,0 +1,234 @@
+//! What an elastic solid does to rows of particles.
+
+use crate::material::{Deformation, ElasticSolid, Symmetric};
+
+/// Where the deformation of rows stands.
+#[derive(Clone, Copy)]
+pub enum Strain<'a> {
+    /// On a line: J.
+    Line(&'a [f64]),
+    /// In a plane.
+    Plane(PlaneStrain<'a>),
+    /// About an axis: in its plane, and J, which has the stretch about the axis in it.
+    Axis(PlaneStrain<'a>, &'a [f64]),
+}
+
+/// F in a plane, `ahead` of its columns in time: (1 + ahead L) F.
+#[derive(Clone, Copy)]
+pub struct PlaneStrain<'a> {
+    /// F by rows.
+    pub deformation: [&'a [f64]; 4],
+    /// Gradient L of the velocity by rows [1/s].
+    pub gradient: [&'a [f64]; 4],
+    /// Time [s].
+    pub ahead: f64,
+}
+
+impl PlaneStrain<'_> {
+    #[inline(always)]
+    fn at(&self, r: usize) -> Deformation {
+        let (l, f) = (self.gradient.map(|l| l[r]), self.deformation.map(|f| f[r]));
+        let plane = std::array::from_fn(|k| {
+            let (a, b) = (k / 2, k % 2);
+            f[k] + self.ahead * (l[2 * a] * f[b] + l[2 * a + 1] * f[2 + b])
+        });
+        Deformation { plane, across: 1.0 }
+    }
+}
+
+impl Strain<'_> {
+    /// F of row `r`.
+    #[inline(always)]
+    fn at(&self, r: usize) -> Deformation {
+        match self {
+            Strain::Line(jacobian) => Deformation::uniaxial(jacobian[r]),
+            Strain::Plane(plane) => plane.at(r),
+            Strain::Axis(plane, jacobian) => {
+                let flat = plane.at(r);
+                Deformation { across: jacobian[r] / flat.area_ratio(), ..flat }
+            }
+        }
+    }
+}
+
+/// Columns of a symmetric tensor, as many as a scene needs.
+pub struct TensorRows<'a> {
+    /// Components xx.
+    pub xx: &'a mut [f64],
+    /// Components yy and xy, in a plane.
+    pub plane: Option<[&'a mut [f64]; 2]>,
+    /// Components across the plane, about an axis.
+    pub across: Option<&'a mut [f64]>,
+}
+
+impl TensorRows<'_> {
+    /// Sets row `r` to `scale` times `tensor`.
+    #[inline(always)]
+    pub fn set(&mut self, r: usize, tensor: &Symmetric, scale: f64) {
+        self.xx[r] = scale * tensor.xx;
+        if let Some([yy, xy]) = &mut self.plane {
+            yy[r] = scale * tensor.yy;
+            xy[r] = scale * tensor.xy;
+        }
+        if let Some(zz) = &mut self.across {
+            zz[r] = scale * tensor.zz;
+        }
+    }
+}
+
+/// An elastic solid, as the step sees it.
+pub trait Solid: Send + Sync {
+    /// Sets minus Cauchy stress times volume [J], which is positive in compression as (p + q) V
+    /// of a fluid is; `volume0` is the volume at F = 1 [m3].
+    fn stress_volume(&self, strain: Strain<'_>, volume0: &[f64], out: TensorRows<'_>);
+
+    /// Sets the work of the stress along the straight way from one strain to another [J], by the
+    /// mid-point rule: V0 tau_h : (F' - F) F_h^-1 with F_h = (F + F')/2.
+    fn work(&self, before: Strain<'_>, after: Strain<'_>, volume0: &[f64], work: &mut [f64]);
+
+    /// Sets Cauchy stress [Pa], pressure -tr(sigma)/3 [Pa] and sound speed [m/s]. Tells the
+    /// first row whose state lies outside of the model, and why.
+    fn refresh(
+        &self,
+        strain: Strain<'_>,
+        stress: TensorRows<'_>,
+        pressure: &mut [f64],
+        sound_speed: &mut [f64],
+    ) -> Option<(usize, String)>;
+
+    /// Speed of the fastest wave in the solid at rest [m/s].
+    fn sound_speed_at_rest(&self) -> f64;
+}
+
+/// The loops over a solid.
+pub(super) struct Loops<S>(pub S);
+
+impl<S: ElasticSolid> Solid for Loops<S> {
+    fn stress_volume(&self, strain: Strain<'_>, volume0: &[f64], mut out: TensorRows<'_>) {
+        for (r, volume0) in volume0.iter().enumerate() {
+            out.set(r, &self.0.kirchhoff_stress(&strain.at(r)), -volume0);
+        }
+    }
+
+    fn work(&self, before: Strain<'_>, after: Strain<'_>, volume0: &[f64], work: &mut [f64]) {
+        for (r, work) in work.iter_mut().enumerate() {
+            let (from, to) = (before.at(r), after.at(r));
+            let middle = from.middle(&to);
+            let tau = self.0.kirchhoff_stress(&middle);
+            *work = volume0[r] * tau.along(&from.strain_to(&to, &middle));
+        }
+    }
+
+    fn refresh(
+        &self,
+        strain: Strain<'_>,
+        mut stress: TensorRows<'_>,
+        pressure: &mut [f64],
+        sound_speed: &mut [f64],
+    ) -> Option<(usize, String)> {
+        let mut sound = true;
+        for r in 0..pressure.len() {
+            let f = strain.at(r);
+            let (tau, j) = (self.0.kirchhoff_stress(&f), f.jacobian());
+            let c2 = self.0.sound_speed_squared(&f);
+            stress.set(r, &tau, 1.0 / j);
+            pressure[r] = -tau.trace() / (3.0 * j);
+            sound_speed[r] = c2.sqrt();
+            // a comparison with NaN is false
+            sound &= j > 0.0 && c2 >= 0.0 && pressure[r].abs() < f64::INFINITY;
+            sound &= self.0.fault(&f).is_none();
+        }
+        if sound {
+            return None;
+        }
+        (0..pressure.len()).find_map(|r| {
+            let f = strain.at(r);
+            let (j, p) = (f.jacobian(), pressure[r]);
+            let rho = self.0.reference_density() / j;
+            let state = format!("density {rho:.6e} kg/m3, pressure {p:.6e} Pa");
+            if !j.is_finite() {
+                Some((r, format!("its deformation is not a number ({state})")))
+            } else if j <= 0.0 || f.area_ratio() <= 0.0 {
+                Some((r, format!("it is turned inside out (J = {j:.6e})")))
+            } else if let Some(fault) = self.0.fault(&f) {
+                Some((r, format!("it is {fault} ({state})")))
+            } else if !p.is_finite() {
+                Some((r, format!("its stress is not a number ({state})")))
+            } else if sound_speed[r].is_nan() {
+                Some((r, format!("its sound speed is imaginary ({state})")))
+            } else {
+                None
+            }
+        })
+    }
+
+    fn sound_speed_at_rest(&self) -> f64 {
+        self.0.sound_speed_squared(&Deformation::uniaxial(1.0)).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::{Hencky, Lame};
+
+    const STEEL: Loops<Hencky> =
+        Loops(Hencky { rho0: 7800.0, lame: Lame { lambda: 115e9, mu: 77e9 } });
+
+    #[test]
+    fn a_state_outside_of_the_model_is_named() {
+        let told = |j: f64| {
+            let (mut s, mut p, mut c) = ([0.0; 2], [0.0; 2], [0.0; 2]);
+            let stress = TensorRows { xx: &mut s, plane: None, across: None };
+            STEEL.refresh(Strain::Line(&[0.9, j]), stress, &mut p, &mut c)
+        };
+        assert_eq!(told(1.01), None);
+        for (j, word) in [(2.9, "no stiffness"), (-0.1, "inside out"), (f64::NAN, "not a number")] {
+            let (row, what) = told(j).unwrap();
+            assert_eq!(row, 1);
+            assert!(what.contains(word), "{what}");
+        }
+    }
+
+    #[test]
+    fn pressure_is_the_mean_of_the_stress_in_all_directions() {
+        let (mut xx, mut yy, mut xy, mut zz) = ([0.0], [0.0], [0.0], [0.0]);
+        let (mut p, mut c) = ([0.0], [0.0]);
+        let f = [[1.1], [0.2], [-0.1], [0.8]];
+        let deformation = [&f[0][..], &f[1], &f[2], &f[3]];
+        let plane = PlaneStrain { deformation, gradient: [&[0.0]; 4], ahead: 0.0 };
+        let stress =
+            TensorRows { xx: &mut xx, plane: Some([&mut yy, &mut xy]), across: Some(&mut zz) };
+        let jacobian = [1.2 * (1.1 * 0.8 + 0.2 * 0.1)];
+        assert_eq!(STEEL.refresh(Strain::Axis(plane, &jacobian), stress, &mut p, &mut c), None);
+        assert!(zz[0] > 0.0 && (p[0] + (xx[0] + yy[0] + zz[0]) / 3.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn work_of_small_steps_is_the_change_of_stored_energy() {
+        let at = |t: f64| [[1.0 + 0.3 * t], [0.5 * t], [-0.2 * t * t], [1.0 - 0.1 * t]];
+        let jacobian =
+            |t: f64, f: &[[f64; 1]; 4]| [(1.0 + 0.2 * t) * (f[0][0] * f[3][0] - f[1][0] * f[2][0])];
+        let error = |steps: usize| {
+            let mut sum = 0.0;
+            for k in 0..steps {
+                let times = [k, k + 1].map(|k| k as f64 / steps as f64);
+                let f = times.map(at);
+                let j = [jacobian(times[0], &f[0]), jacobian(times[1], &f[1])];
+                let strain = |k: usize| {
+                    let deformation = [&f[k][0][..], &f[k][1], &f[k][2], &f[k][3]];
+                    let plane = PlaneStrain { deformation, gradient: [&[0.0]; 4], ahead: 0.0 };
+                    Strain::Axis(plane, &j[k])
+                };
+                let mut work = [0.0];
+                STEEL.work(strain(0), strain(1), &[2.0], &mut work);
+                sum += work[0];
+            }
+            let end = at(1.0).map(|c| c[0]);
+            let stored = STEEL.0.stored_energy(&Deformation { plane: end, across: 1.2 });
+            (sum / (2.0 * stored) - 1.0).abs()
+        };
+        let order = (error(10) / error(20)).log2();
+        assert!((order - 2.0).abs() < 0.05, "{order} {}", error(20));
+    }
+}
