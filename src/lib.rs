@@ -10,6 +10,7 @@ pub mod geometry;
 pub mod grid;
 pub mod material;
 pub mod model;
+pub mod motion;
 pub mod output;
 pub mod particles;
 pub mod patch;

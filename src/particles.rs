@@ -6,7 +6,7 @@
 use decomp::{Block, ColumnSpec, IndexBox, Layout, Mirror};
 use nalgebra::SVector;
 
-use crate::scene::{CheckedScene, Stepping, Transfer};
+use crate::scene::{BodyForce, CheckedScene, Stepping, Transfer};
 use crate::shape::Extent;
 
 /// Where each column stands in a block. Vectors take D columns that follow each other, tensors
@@ -65,12 +65,27 @@ pub struct Columns {
     pub stress_volume: usize,
     /// Components of it.
     pub stress_volumes: usize,
+    /// What a body force takes, with one.
+    pub body_force: Option<BodyForceColumns>,
     /// J at the middle of the step, scratch, with mid-point stepping.
     pub jacobian_mid: Option<usize>,
     /// Pressure at the middle of the step [Pa], scratch, with pressure relaxation.
     pub pressure_mid: Option<usize>,
     /// -dV/dp at the middle of the step [m3/Pa], scratch, with pressure relaxation.
     pub compliance: Option<usize>,
+}
+
+/// Where the columns of a body force stand.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyForceColumns {
+    /// m b at the middle of the step [N], a vector, scratch.
+    pub force: usize,
+    /// Its work so far [J].
+    pub work: usize,
+    /// Its impulse so far [N s], a vector.
+    pub impulse: usize,
+    /// First place X [m], a vector, where the force depends on it.
+    pub reference: Option<usize>,
 }
 
 impl Columns {
@@ -123,6 +138,11 @@ impl Columns {
             "velocity_gradient_yx",
             "velocity_gradient_yy",
         ];
+        const FORCE: [&str; 3] = ["body_force", "body_force_x", "body_force_y"];
+        const IMPULSE: [&str; 3] =
+            ["body_force_impulse", "body_force_impulse_x", "body_force_impulse_y"];
+        const REFERENCE: [&str; 3] =
+            ["reference_position", "reference_position_x", "reference_position_y"];
         const STRESS: [&str; 3] = ["stress_xx", "stress_yy", "stress_xy"];
         const STRESS_VOLUME: [&str; 4] =
             ["stress_volume_xx", "stress_volume_yy", "stress_volume_xy", "stress_volume_zz"];
@@ -164,7 +184,15 @@ impl Columns {
         let is_length = !plane && extent == Extent::Current;
         let filled = (masked && !is_length).then(|| add("cell_volume", "", true, false));
         let domain = add_all(domains, "", true, false, &of_domain);
+        let body_force = scene.scene.body_force.as_ref().map(|force| BodyForceColumns {
+            force: add_all(vector(&FORCE), "N", true, false, &of_vector),
+            work: add_all(&["body_force_work"], "J", false, true, &same),
+            impulse: add_all(vector(&IMPULSE), "N s", false, true, &of_vector),
+            reference: matches!(force, BodyForce::Vortex(_))
+                .then(|| add_all(vector(&REFERENCE), "m", false, true, &same)),
+        });
         Columns {
+            body_force,
             filled: filled.or(masked.then_some(domain)),
             domain,
             position: add_all(position, "m", false, true, &same),
@@ -221,7 +249,8 @@ fn lattice<const D: usize>(
 
 /// Fills the bodies with particles, keeping those whose patch is on `rank`: a block a patch of
 /// the rank. Ids number the particles of all bodies in order, whatever the layout. Velocities
-/// are those seen from a grid that travels at `grid_velocity` [m/s].
+/// are those seen from a grid that travels at `grid_velocity` [m/s]; `energy` gives the specific
+/// internal energy at which a body is at a pressure [J/kg].
 ///
 /// A body's particles tile it: each has an equal share of its volume and mass to rounding.
 pub fn fill<const D: usize>(
@@ -230,7 +259,7 @@ pub fn fill<const D: usize>(
     layout: &Layout<D>,
     rank: usize,
     grid_velocity: [f64; D],
-    energies: &[f64],
+    energy: &dyn Fn(usize, f64) -> f64,
 ) -> Vec<Block<D>> {
     let mine = layout.patches_of(rank);
     let mut blocks: Vec<Block<D>> = mine.iter().map(|_| Block::new(&columns.specs)).collect();
@@ -256,11 +285,27 @@ pub fn fill<const D: usize>(
                     row[columns.position + a] = centre[a];
                     row[columns.velocity + a] = checked.velocity[a] - grid_velocity[a];
                 }
+                let mut pressure = body.pressure;
+                if let Some(motion) = &checked.motion {
+                    let place = std::array::from_fn(|a| if a < D { centre[a] } else { 0.0 });
+                    let velocity = motion.velocity(place);
+                    for a in 0..D {
+                        row[columns.velocity + a] = velocity[a] - grid_velocity[a];
+                    }
+                    if let Some(affine) = columns.affine {
+                        let gradient = motion.gradient(place, size[0]);
+                        (0..D * D).for_each(|k| row[affine + k] = gradient[k / D][k % D]);
+                    }
+                    pressure = motion.pressure(place).unwrap_or(pressure);
+                }
+                if let Some(reference) = columns.body_force.and_then(|c| c.reference) {
+                    (0..D).for_each(|a| row[reference + a] = centre[a]);
+                }
                 let volume = if scene.axisymmetric() { volume * centre[0] } else { volume };
                 row[columns.mass] = material.density * volume;
                 row[columns.volume0] = volume;
                 row[columns.jacobian] = 1.0;
-                row[columns.energy] = energies[number];
+                row[columns.energy] = energy(number, pressure);
                 row[columns.body] = number as f64;
                 if let Some(half_lengths) = columns.half_lengths {
                     (0..D).for_each(|a| row[half_lengths + a] = 0.5 * size[a]);

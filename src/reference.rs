@@ -2,6 +2,10 @@
 //!
 //! Turns the scene's bodies into the terms of [`crate::exact`]; knows no MPI.
 
+mod plane;
+
+pub use plane::{PlaneReference, PlaneSolution};
+
 use crate::exact::{
     Accuracy, Chain, Errors, ExactError, GasState, Impact, ImpactBody, Plate, Profile, Riemann,
     Sample, Solution, Tracer, WallImpact, WallMaterial, cell_average, interface_errors, score,
@@ -32,6 +36,8 @@ pub enum Reference {
         /// The body.
         body: usize,
     },
+    /// A solution that follows from a body's first motion.
+    Plane(PlaneReference),
 }
 
 /// A plate that strikes a target.
@@ -149,6 +155,7 @@ impl Reference {
                 )?;
                 Reference::Wall { solution, body }
             }
+            _ => return Ok(PlaneReference::new(scene).map(Reference::Plane)),
         }))
     }
 
@@ -162,6 +169,7 @@ impl Reference {
                 Some(solution.profile(*diaphragm, t, domain.lower[0], domain.upper[0]))
             }
             Reference::Wall { solution, .. } => solution.profile(t),
+            Reference::Plane(_) => None,
         }
     }
 
@@ -178,7 +186,7 @@ impl Reference {
         let scored = match self {
             Reference::Impact(all) => Some(all.target),
             Reference::Wall { body, .. } => Some(*body),
-            Reference::Riemann { .. } => None,
+            Reference::Riemann { .. } | Reference::Plane(_) => None,
         };
         let samples = samples(scene, table, scored);
         let averaged = cell_average(&samples, h, scene.scene.domain.lower[0]);
@@ -196,6 +204,7 @@ impl Reference {
             Reference::Wall { solution, .. } => {
                 Some(score(samples, &exact, &solution.landmarks(time)?, h))
             }
+            Reference::Plane(_) => None,
             Reference::Riemann { .. } => {
                 let domain = &scene.scene.domain;
                 Some(score_density(samples, &exact, domain.lower[0], domain.upper[0]))

@@ -24,7 +24,7 @@ use crate::output::trace::write_trace;
 use crate::output::vtkhdf::{RESULTS_FILE, RunInfo, write_vtkhdf};
 use crate::output::{OutputError, ParticleTable};
 use crate::probes::Probes;
-use crate::reference::Reference;
+use crate::reference::{PlaneReference, Reference};
 use crate::scene::{CheckedScene, Side};
 use crate::simulation::{Left, RunError, Simulation, Totals};
 
@@ -125,6 +125,8 @@ impl Progress {
 /// What the time loop leaves at rank 0.
 struct Recorded {
     tables: Vec<(ParticleTable, String)>,
+    /// Particles at the start, where a score needs them.
+    start: Option<ParticleTable>,
     waves: Vec<PressureRow>,
     histories: Option<Histories>,
 }
@@ -140,7 +142,11 @@ fn step_to_end<C: Comm, const D: usize>(
     let first = comm.rank() == 0;
     let mut progress = Progress::new(end, first && !quiet);
     let mut probes = Probes::new(scene);
-    let mut recorded = Recorded { tables: Vec::new(), waves: Vec::new(), histories: None };
+    let mut recorded =
+        Recorded { tables: Vec::new(), start: None, waves: Vec::new(), histories: None };
+    if PlaneReference::needs_start(scene) {
+        recorded.start = simulation.gather().map(|(table, _)| table);
+    }
     let stride = scene.particles.div_ceil(WAVE_POINTS).max(1);
     let draws = scene.scene.output.pictures && D == 1;
     let mut due_wave = 0;
@@ -295,11 +301,15 @@ fn write_profiles<C: Comm>(
     let mut profiles = Vec::new();
     for (k, ((table, digest), file)) in recorded.tables.iter().zip(names).enumerate() {
         write_profile(&folder.file(&file), table)?;
-        let scores = reference.and_then(|r| r.score(scene, k, table));
         let as_json = |e| serde_json::to_value(e).expect("errors are plain data");
-        let (errors, errors_cell) = match scores {
-            Some((raw, cell)) => (Some(as_json(raw)), Some(as_json(cell))),
-            None => (None, None),
+        let (errors, errors_cell) = match reference {
+            Some(Reference::Plane(plane)) => {
+                (plane.score(scene, table, recorded.start.as_ref()), None)
+            }
+            _ => match reference.and_then(|r| r.score(scene, k, table)) {
+                Some((raw, cell)) => (Some(as_json(raw)), Some(as_json(cell))),
+                None => (None, None),
+            },
         };
         profiles.push(ProfileSummary {
             time: table.time,
@@ -363,7 +373,10 @@ fn balance<const D: usize>(
     // along a radius momentum is no sum that is kept
     let open = |a: usize| !sides[a].iter().any(rigid) && !(a == 0 && scene.axisymmetric());
     let walls: [f64; D] = std::array::from_fn(|a| match !open(a) {
-        true => end.momentum[a] + left.momentum[a] - start.momentum[a],
+        true => {
+            let all = end.momentum[a] + left.momentum[a] - start.momentum[a];
+            all - end.body_force_impulse[a]
+        }
         false => 0.0,
     });
     let pistons = scene.grid_velocity::<D>();
@@ -371,6 +384,13 @@ fn balance<const D: usize>(
     let work = (0..D).map(|a| pistons[a] * walls[a]).sum::<f64>() - (left.kinetic + left.internal);
     let energy = Energy::new([start.kinetic, end.kinetic], [start.internal, end.internal], work);
     let momentum = Momentum::new(&start.momentum, &end.momentum, &impulse, start.absolute_momentum);
+    let (energy, momentum) = match scene.scene.body_force {
+        None => (energy, momentum),
+        Some(_) => (
+            energy.with_body_force(end.body_force_work),
+            momentum.with_body_force(&end.body_force_impulse, start.absolute_momentum),
+        ),
+    };
     let outflow = sides.as_flattened().contains(&Side::Outflow).then(|| Outflow {
         particles: left.count,
         mass: left.mass,

@@ -8,7 +8,7 @@ use super::summary::{ProfileSummary, Summary};
 use crate::clock::Activity;
 
 /// Errors of a profile by name, with a heading and whether they are shown in per cent.
-const ERRORS: [(&str, &str, bool); 13] = [
+const ERRORS: [(&str, &str, bool); 22] = [
     ("l1", "L1 %", true),
     ("l2", "L2 %", true),
     ("e1_cells", "E1 cells", false),
@@ -22,6 +22,15 @@ const ERRORS: [(&str, &str, bool); 13] = [
     ("energy_plateau", "energy %", true),
     ("density_interface", "interface density %", true),
     ("energy_interface", "energy %", true),
+    ("displacement_l2", "displacement L2 %", true),
+    ("angular_momentum_loss", "angular momentum lost %", true),
+    ("energy_loss", "energy lost %", true),
+    ("kinetic_energy_loss", "kinetic energy lost %", true),
+    ("velocity_rms", "velocity rms %", true),
+    ("pressure_rms", "pressure rms %", true),
+    ("pressure_form_rms", "form rms %", true),
+    ("mean_density", "density", false),
+    ("mean_density_error", "density error %", true),
 ];
 
 /// Each time's errors, energy, momentum, steps, seconds, and where the files are, as aligned text.

@@ -77,7 +77,10 @@ pub struct Energy {
     pub total_end: f64,
     /// Work that the boundaries did on the particles, less what left with particles.
     pub boundary_work: f64,
-    /// (total_end - total_start - boundary_work) / total_start \[-\]; where that is 0, over
+    /// Work of a body force; absent without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body_force_work: Option<f64>,
+    /// (total_end - total_start - all work) / total_start \[-\]; where that is 0, over
     /// total_end; null where both are.
     pub drift: Option<f64>,
 }
@@ -94,11 +97,20 @@ impl Energy {
             internal_end: internal[1],
             total_end,
             boundary_work,
+            body_force_work: None,
             drift: ratio(
                 total_end - total_start - boundary_work,
                 if total_start == 0.0 { total_end } else { total_start },
             ),
         }
+    }
+
+    /// The same with the work of a body force.
+    pub fn with_body_force(self, work: f64) -> Energy {
+        let kinetic = [self.kinetic_start, self.kinetic_end];
+        let internal = [self.internal_start, self.internal_end];
+        let drift = Energy::new(kinetic, internal, self.boundary_work + work).drift;
+        Energy { body_force_work: Some(work), drift, ..self }
     }
 }
 
@@ -111,7 +123,10 @@ pub struct Momentum {
     pub end: Vec<f64>,
     /// Impulse of the boundaries on the particles, less what left with particles, D numbers.
     pub boundary_impulse: Vec<f64>,
-    /// |end - start - boundary_impulse| over the sum of m|v| at the start \[-\]; with its sign in
+    /// Impulse of a body force, D numbers; absent without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body_force_impulse: Option<Vec<f64>>,
+    /// |end - start - all impulses| over the sum of m|v| at the start \[-\]; with its sign in
     /// one dimension; null where that sum is 0.
     pub drift: Option<f64>,
 }
@@ -129,8 +144,16 @@ impl Momentum {
             start: start.into(),
             end: end.into(),
             boundary_impulse: boundary_impulse.into(),
+            body_force_impulse: None,
             drift: ratio(left, scale),
         }
+    }
+
+    /// The same with the impulse of a body force; `scale` is the sum of m|v| at the start.
+    pub fn with_body_force(self, impulse: &[f64], scale: f64) -> Momentum {
+        let all: Vec<f64> = self.boundary_impulse.iter().zip(impulse).map(|(a, b)| a + b).collect();
+        let drift = Momentum::new(&self.start, &self.end, &all, scale).drift;
+        Momentum { body_force_impulse: Some(impulse.into()), drift, ..self }
     }
 }
 

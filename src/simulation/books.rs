@@ -64,8 +64,7 @@ impl<const D: usize> Outflow<D> {
                 density * size.product::<f64>() / c.particles as f64
             })
             .fold(0.0, f64::max);
-        let speed =
-            bodies().flat_map(|(_, c)| &c.velocity).fold(1e3, |s: f64, v| s.max(v.abs())) * 1e3;
+        let speed = bodies().fold(1e3, |s: f64, (_, c)| s.max(c.top_speed)) * 1e3;
         let energy = mass * speed * speed;
         let largest = [mass, energy, energy].into_iter().chain([mass * speed; D]);
         Outflow {

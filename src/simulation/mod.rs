@@ -196,7 +196,8 @@ fn may_sleep<const D: usize>(scene: &CheckedScene) -> bool {
     let mut bodies = scene.scene.bodies.iter().zip(&scene.bodies);
     let velocity = scene.grid_velocity::<D>();
     scene.scene.decomposition.skip_quiet
-        && bodies.any(|(b, c)| c.velocity == velocity && b.pressure == 0.0)
+        && scene.scene.body_force.is_none()
+        && bodies.any(|(b, c)| c.motion.is_none() && c.velocity == velocity && b.pressure == 0.0)
 }
 
 /// Particles in the cells of `cells`, counted without making them.
@@ -284,14 +285,13 @@ impl<'a, C: Comm, const D: usize> Simulation<'a, C, D> {
             layout.patches().iter().map(|p| count_particles(scene, p)).collect();
         let layout = layout.with_ranks(assign_patches(&weights, &order, comm.size()));
         let grid_velocity = scene.grid_velocity();
-        let energies = stepper.starting_energies(scene);
         let blocks = particles::fill(
             scene,
             &stepper.columns,
             &layout,
             comm.rank(),
             grid_velocity,
-            &energies,
+            &|body, pressure| stepper.starting_energy(body, pressure),
         );
         let longest = stepper.longest_at_start(scene);
         let reach = stepper.reach(longest).expect("a longer particle is a fault");
@@ -483,10 +483,10 @@ impl<'a, C: Comm, const D: usize> Simulation<'a, C, D> {
             });
         }
         self.step += 1;
-        let step = self.step;
+        let (step, time) = (self.step, self.time);
         let sampled = self.samples(step);
         self.clock.start_step(step, self.traced.contains(&step), sampled);
-        self.with_world(|stepper, world| stepper.advance(world, dt, step))?;
+        self.with_world(|stepper, world| stepper.advance(world, time, dt, step))?;
         if sampled {
             self.patches.iter_mut().for_each(|p| p.watch.end_step());
         }

@@ -19,6 +19,10 @@ pub struct Totals<const D: usize> {
     pub kinetic: f64,
     /// Internal energy [J].
     pub internal: f64,
+    /// Work that a body force has done so far [J].
+    pub body_force_work: f64,
+    /// Its impulse so far [kg m/s].
+    pub body_force_impulse: [f64; D],
 }
 
 /// What a particle that is followed tells.
@@ -38,7 +42,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
     /// Sums over all particles in the frame of the scene. Collective.
     pub fn totals(&self) -> Totals<D> {
         let c = &self.stepper.columns;
-        let [mass, absolute_momentum, kinetic, internal, x, y] =
+        let [mass, absolute_momentum, kinetic, internal, x, y, work, pull_x, pull_y] =
             exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
                 for patch in &self.patches {
                     let column = |k: usize| &patch.block.columns[k];
@@ -54,11 +58,26 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
                         add(2, 0.5 * m[r] * squared);
                         add(3, m[r] * e[r]);
                         (0..D).for_each(|a| add(4 + a, m[r] * v[a]));
+                        if let Some(force) = &c.body_force {
+                            let impulse = |a: usize| column(force.impulse + a)[r];
+                            // seen from the scene, the grid's travel does work too
+                            let travel = |a: usize| impulse(a) * self.grid_velocity[a];
+                            add(6, column(force.work)[r] + (0..D).map(travel).sum::<f64>());
+                            (0..D).for_each(|a| add(7 + a, impulse(a)));
+                        }
                     }
                 }
             });
         let momentum = std::array::from_fn(|a| [x, y][a]);
-        Totals { mass, momentum, absolute_momentum, kinetic, internal }
+        Totals {
+            mass,
+            momentum,
+            absolute_momentum,
+            kinetic,
+            internal,
+            body_force_work: work,
+            body_force_impulse: std::array::from_fn(|a| [pull_x, pull_y][a]),
+        }
     }
 
     /// All particles and the digest of the whole state, every bit in order of id, at rank 0;
@@ -114,6 +133,11 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             named("specific_internal_energy", "J/kg", pick(&|r| column(c.energy)[r])),
             named("artificial_viscosity", "Pa", pick(&|r| q.map_or(0.0, |q| q[r]))),
         ]);
+        if let Some(reference) = c.body_force.and_then(|c| c.reference) {
+            for (a, name) in ["reference_x", "reference_y"].into_iter().enumerate() {
+                columns.push(named(name, "m", pick(&|r| column(reference + a)[r])));
+            }
+        }
         if let Some(stress) = c.stress {
             let names = ["stress_xx", "stress_yy", "stress_xy"];
             let count = if D == 1 { 1 } else { 3 };

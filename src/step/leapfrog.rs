@@ -9,19 +9,21 @@ use crate::patch::Patch;
 use crate::scene::StressUpdate;
 
 impl<const D: usize> Stepper<D> {
-    /// One step. Collective.
+    /// One step from `time`. Collective.
     ///
     /// Stress first and modified last send the rows a second time, for what a ghost carries has
     /// changed within the step.
     pub(super) fn advance_leapfrog(
         &self,
         world: &mut World<'_, D>,
+        time: f64,
         dt: f64,
     ) -> Result<(), RowError> {
         let star = self.fields.velocity_star;
         world.each("start", |patch| {
             patch.block.drop_ghosts();
             self.current_stress(patch);
+            self.find_body_force(patch, time);
             self.locate(patch, 0.0, self.columns.jacobian);
             self.find_active(patch);
         });
@@ -44,6 +46,7 @@ impl<const D: usize> Stepper<D> {
             nodal.each("gather", |patch| {
                 self.gather_velocity(patch);
                 self.move_rows(patch, dt);
+                self.book_body_force(patch, dt);
                 if last {
                     self.gather_gradient(patch, star);
                     self.update_stress(patch, dt);

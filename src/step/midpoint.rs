@@ -17,10 +17,11 @@ use decomp::RowError;
 use super::{Stepper, World};
 
 impl<const D: usize> Stepper<D> {
-    /// One step; `relax` is the rate of pressure relaxation if this step has it. Collective.
+    /// One step from `time`; `relax` is the rate of pressure relaxation if this step has it. Collective.
     pub(super) fn advance_midpoint(
         &self,
         world: &mut World<'_, D>,
+        time: f64,
         dt: f64,
         relax: Option<f64>,
     ) -> Result<(), RowError> {
@@ -31,6 +32,7 @@ impl<const D: usize> Stepper<D> {
             self.find_viscosity(patch, mid);
             self.mid_step_stress(patch, relax.is_some());
             self.find_solid_stress(patch, 0.5 * dt, mid);
+            self.find_body_force(patch, time + 0.5 * dt);
             self.locate(patch, 0.5 * dt, mid);
             self.find_active(patch);
         });
@@ -47,6 +49,7 @@ impl<const D: usize> Stepper<D> {
             }
             nodal.each("gather", |patch| {
                 self.gather_midpoint(patch, dt);
+                self.book_body_force(patch, dt);
                 if let Some(rate) = relax {
                     self.relax_pressure(patch, rate);
                 }

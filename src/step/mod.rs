@@ -4,6 +4,7 @@
 //! [`midpoint`] or [`leapfrog`]. Physics and messages meet in [`World`], which calls a phase on
 //! every patch and the exchanges between phases.
 
+mod body_force;
 pub mod gather;
 pub mod leapfrog;
 pub mod midpoint;
@@ -43,6 +44,7 @@ pub struct Stepper<const D: usize> {
     relaxation: Option<PressureRelaxation>,
     edge_mask: Option<f64>,
     viscosity: Option<Viscosity>,
+    body_force: Option<body_force::Force>,
     /// One a body.
     models: Vec<Matter>,
     shape: ShapeKind,
@@ -133,7 +135,10 @@ impl<const D: usize> Stepper<D> {
         let models: Vec<Matter> =
             bodies.iter().map(|b| constitutive::build(&materials[&b.material])).collect();
         let fastest = (bodies.iter().zip(&models).zip(&scene.bodies))
-            .map(|((b, m), c)| m.sound_speed_at(b.pressure).max(norm(&c.velocity)))
+            .map(|((b, m), c)| {
+                let pressure = c.motion.and_then(|m| m.top_pressure()).unwrap_or(b.pressure);
+                m.sound_speed_at(pressure).max(c.top_speed)
+            })
             .fold(0.0, f64::max);
         let densest = bodies.iter().map(|b| materials[&b.material].density).fold(0.0, f64::max);
         // what a cell's edge is to viscosity: exact where all are the same
@@ -155,6 +160,7 @@ impl<const D: usize> Stepper<D> {
             relaxation: method.pressure_relaxation,
             edge_mask: method.edge_mask,
             viscosity: viscosity.map(|v| Viscosity::new(v, edge)),
+            body_force: body_force::Force::new(scene),
             models,
             shape: method.shape,
             cell,
@@ -175,10 +181,9 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// The specific internal energy at which each body starts [J/kg].
-    pub fn starting_energies(&self, scene: &CheckedScene) -> Vec<f64> {
-        let bodies = scene.scene.bodies.iter();
-        bodies.zip(&self.models).map(|(b, m)| m.energy_at(b.pressure)).collect()
+    /// The specific internal energy at which `body` starts at `pressure` [J/kg].
+    pub fn starting_energy(&self, body: usize, pressure: f64) -> f64 {
+        self.models[body].energy_at(pressure)
     }
 
     /// The greatest extent along a direction of the particles that `scene` starts with [cells].
@@ -279,16 +284,17 @@ impl<const D: usize> Stepper<D> {
         Ok(())
     }
 
-    /// Advances all patches by `dt` [s]; `step` numbers the steps from 1. Collective.
+    /// Advances all patches from `time` by `dt` [s]; `step` numbers the steps from 1. Collective.
     pub fn advance(
         &self,
         world: &mut World<'_, D>,
+        time: f64,
         dt: f64,
         step: u64,
     ) -> Result<(), decomp::RowError> {
         match self.stepping {
-            Stepping::Midpoint => self.advance_midpoint(world, dt, self.relaxes(step)),
-            Stepping::Leapfrog => self.advance_leapfrog(world, dt),
+            Stepping::Midpoint => self.advance_midpoint(world, time, dt, self.relaxes(step)),
+            Stepping::Leapfrog => self.advance_leapfrog(world, time, dt),
         }
     }
 
@@ -320,14 +326,5 @@ impl<const D: usize> Stepper<D> {
                 along(0).max(along(1))
             }
         }
-    }
-}
-
-/// Length of a vector; exact along an axis.
-#[inline(always)]
-fn norm(v: &[f64]) -> f64 {
-    match v {
-        [x] => x.abs(),
-        _ => v.iter().map(|x| x * x).sum::<f64>().sqrt(),
     }
 }

@@ -369,7 +369,8 @@ impl<const D: usize> Stepper<D> {
         let tensors = c.affine.into_iter().chain(c.velocity_gradient).flat_map(|k| k..k + D * D);
         let vector = c.velocity..c.velocity + D;
         let stress = c.stress_volume..c.stress_volume + c.stress_volumes;
-        let scalars = [c.gradient].into_iter().chain(stress).chain(c.pressure_mid);
+        let pulled = c.body_force.map(|c| c.force..c.force + D).into_iter().flatten();
+        let scalars = [c.gradient].into_iter().chain(pulled).chain(stress).chain(c.pressure_mid);
         let watched: smallvec::SmallVec<[&[f64]; 16]> =
             vector.chain(scalars).chain(tensors).map(column).collect();
         let moves = |r: usize| watched.iter().any(|column| column[r] != 0.0);

@@ -41,6 +41,9 @@ impl<const D: usize> Stepper<D> {
         if force && tensor {
             self.scatter_stress(patch);
         }
+        if force {
+            self.scatter_body_force(patch);
+        }
     }
 
     fn scatter_width<const K: usize, const MATRIX: bool, const AFFINE: bool>(

@@ -5,12 +5,13 @@ use std::collections::{HashMap, HashSet};
 use serde_json::json;
 
 use crate::material::Lame;
+use crate::motion::Motion;
 
 use super::super::conform::join;
 use super::super::errors::{Fault, suggest};
 use super::super::model::{Body, Eos, Scene};
 use super::domain::MOST;
-use super::{check_box, check_length, check_printable};
+use super::{check_box, check_length, check_printable, motion};
 
 /// Bodies nearer than this touch, and may overlap by it [cells].
 pub(super) const TOUCHING: f64 = 1e-9;
@@ -20,8 +21,12 @@ pub(super) const TOUCHING: f64 = 1e-9;
 pub struct CheckedBody {
     /// Its material, as an index into the scene's materials in their order by name.
     pub material: usize,
-    /// Velocity at the start [m/s], D numbers.
+    /// Velocity at the start [m/s], D numbers; zeros where it differs from place to place.
     pub velocity: Vec<f64>,
+    /// Velocity at the start where it differs from place to place.
+    pub motion: Option<Motion>,
+    /// No particle is faster at the start [m/s].
+    pub top_speed: f64,
     /// Particles in each direction: length over cell size times particles a cell, rounded. They
     /// tile the body: each is as long as the body over this number.
     pub lattice: Vec<usize>,
@@ -128,9 +133,22 @@ fn check_body(
         }
     }
     check_pressure(scene, body, &below("pressure"))?;
+    let motion = motion::check_field(scene, body, path, dimension)?;
+    let top_speed = match &motion {
+        Some(motion) => motion.top_speed(&extent.lower, &extent.upper),
+        None => norm(&velocity),
+    };
     let lattice = lattice(body, path, cell_size)?;
     let particles = lattice.iter().map(|&n| n as u64).product();
-    Ok(CheckedBody { material, velocity, lattice, particles })
+    Ok(CheckedBody { material, velocity, motion, top_speed, lattice, particles })
+}
+
+/// Length of a vector; exact along an axis.
+fn norm(v: &[f64]) -> f64 {
+    match v {
+        [x] => x.abs(),
+        _ => v.iter().map(|x| x * x).sum::<f64>().sqrt(),
+    }
 }
 
 /// A pressure that the material bears at its density.

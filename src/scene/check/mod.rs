@@ -8,7 +8,9 @@ mod domain;
 mod impact;
 mod memory;
 mod method;
+mod motion;
 mod output;
+mod plane_reference;
 mod reference;
 
 use serde::Serialize;
@@ -68,6 +70,7 @@ impl CheckedScene {
         };
         memory::check_counts(&checked)?;
         method::check_bodies(&checked)?;
+        motion::check_body_force(&checked)?;
         output::check_tracers(&checked)?;
         reference::check(&mut checked)?;
         if dimension == 1 {

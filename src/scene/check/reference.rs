@@ -3,7 +3,7 @@
 use super::super::conform::join;
 use super::super::errors::{Fault, suggest};
 use super::super::model::{Eos, FlyerImpact, Reference, Riemann, Side, WallImpact};
-use super::CheckedScene;
+use super::{CheckedScene, plane_reference};
 
 pub(super) fn check(checked: &mut CheckedScene) -> Result<(), Fault> {
     match checked.scene.reference.clone() {
@@ -11,14 +11,19 @@ pub(super) fn check(checked: &mut CheckedScene) -> Result<(), Fault> {
         Some(Reference::FlyerImpact(impact)) => check_flyer_impact(checked, &impact),
         Some(Reference::Riemann(riemann)) => check_riemann(checked, &riemann),
         Some(Reference::WallImpact(impact)) => check_wall_impact(checked, &impact),
+        Some(Reference::Vortex(named)) => plane_reference::check_vortex(checked, &named),
+        Some(Reference::Rotation(named)) => plane_reference::check_rotation(checked, &named),
+        Some(Reference::ShearLayer(named)) => plane_reference::check_shear_layer(checked, &named),
+        Some(Reference::Gresho(named)) => plane_reference::check_gresho(checked, &named),
+        Some(Reference::Noh(named)) => plane_reference::check_noh(checked, &named),
     }
 }
 
 fn check_flyer_impact(checked: &mut CheckedScene, impact: &FlyerImpact) -> Result<(), Fault> {
     const FLYER: &str = "reference.flyer_impact.flyer";
     const TARGET: &str = "reference.flyer_impact.target";
-    let flyer = find_body(checked, FLYER, &impact.flyer)?;
-    let target = find_body(checked, TARGET, &impact.target)?;
+    let flyer = find_even_body(checked, FLYER, &impact.flyer)?;
+    let target = find_even_body(checked, TARGET, &impact.target)?;
     check_unlike(TARGET, &impact.target, FLYER, flyer == target)?;
     for (path, i) in [(FLYER, flyer), (TARGET, target)] {
         check_eos(checked, path, i, "mie_gruneisen")?;
@@ -90,8 +95,8 @@ fn warn_of_flyer(checked: &mut CheckedScene, flyer: usize, target: usize, from_b
 fn check_riemann(checked: &CheckedScene, riemann: &Riemann) -> Result<(), Fault> {
     const LEFT: &str = "reference.riemann.left";
     const RIGHT: &str = "reference.riemann.right";
-    let left = find_body(checked, LEFT, &riemann.left)?;
-    let right = find_body(checked, RIGHT, &riemann.right)?;
+    let left = find_even_body(checked, LEFT, &riemann.left)?;
+    let right = find_even_body(checked, RIGHT, &riemann.right)?;
     check_unlike(RIGHT, &riemann.right, LEFT, left == right)?;
     let mut escape = 0.0;
     for (path, i) in [(LEFT, left), (RIGHT, right)] {
@@ -124,7 +129,7 @@ fn check_riemann(checked: &CheckedScene, riemann: &Riemann) -> Result<(), Fault>
 
 fn check_wall_impact(checked: &CheckedScene, impact: &WallImpact) -> Result<(), Fault> {
     const BODY: &str = "reference.wall_impact.body";
-    let body = find_body(checked, BODY, &impact.body)?;
+    let body = find_even_body(checked, BODY, &impact.body)?;
     if checked.material_of(body).eos.is_solid() {
         let reason =
             "an elastic body; allowed: one whose eos is \"mie_gruneisen\" or \"ideal_gas\"";
@@ -143,11 +148,22 @@ fn check_wall_impact(checked: &CheckedScene, impact: &WallImpact) -> Result<(), 
 }
 
 /// The body of this name.
-fn find_body(checked: &CheckedScene, path: &str, name: &str) -> Result<usize, Fault> {
+pub(super) fn find_body(checked: &CheckedScene, path: &str, name: &str) -> Result<usize, Fault> {
     let names: Vec<_> = checked.scene.bodies.iter().map(|body| body.name.as_str()).collect();
     names.iter().position(|&known| known == name).ok_or_else(|| {
         Fault::new(path, name, format!("no such body{}", suggest(name, names.iter().copied())))
     })
+}
+
+/// The body of this name, which must have one velocity.
+fn find_even_body(checked: &CheckedScene, path: &str, name: &str) -> Result<usize, Fault> {
+    let body = find_body(checked, path, name)?;
+    if checked.bodies[body].motion.is_none() {
+        return Ok(body);
+    }
+    let key = join(&join("bodies", name), "velocity_field");
+    let reason = format!("starts with {key}; allowed: a body with one velocity");
+    Err(Fault::new(path, name, reason))
 }
 
 fn check_unlike(path: &str, name: &str, other: &str, same: bool) -> Result<(), Fault> {

@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::VelocityField;
+
 /// A material.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -77,6 +79,9 @@ pub struct Body {
     /// Velocity at the start [m/s]; absent: at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity: Option<Vec<f64>>,
+    /// Velocity at the start as a function of place, instead of `velocity`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub velocity_field: Option<VelocityField>,
     /// Pressure at the start [Pa], reached at the material's density by its internal energy.
     #[serde(default)]
     pub pressure: f64,

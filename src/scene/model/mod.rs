@@ -5,6 +5,7 @@
 
 mod matter;
 mod method;
+mod motion;
 mod output;
 mod region;
 
@@ -15,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 pub use matter::*;
 pub use method::*;
+pub use motion::*;
 pub use output::*;
 pub use region::*;
 
@@ -44,6 +46,9 @@ pub struct Scene {
     /// Artificial viscosity; absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub artificial_viscosity: Option<ArtificialViscosity>,
+    /// A force per mass on every particle; absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body_force: Option<BodyForce>,
     /// What stands at the sides of the domain; absent: free on every side.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub boundary: Option<Boundary>,

@@ -69,6 +69,48 @@ pub enum Reference {
     Riemann(Riemann),
     /// A body runs into a rigid wall or is driven by a piston: one steady shock.
     WallImpact(WallImpact),
+    /// The generalized vortex (Kamojjala et al. 2015): `displacement_l2`.
+    Vortex(NamedBody),
+    /// A free body that spins: `angular_momentum_loss`, `energy_loss`, `kinetic_energy_loss`.
+    Rotation(NamedBody),
+    /// A shear layer: `velocity_rms`.
+    ShearLayer(NamedBody),
+    /// Gresho's vortex: `velocity_rms`, `pressure_rms`, `pressure_form_rms`.
+    Gresho(NamedBody),
+    /// Noh's problem: `mean_density`, `mean_density_error`, `density_l1`.
+    Noh(NamedNoh),
+}
+
+/// A body, whose first motion and material give the constants of the exact solution.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NamedBody {
+    /// The body; profiles are scored in it.
+    pub body: String,
+}
+
+/// Noh's problem in a body that starts with a `radial` velocity.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NamedNoh {
+    /// The body.
+    pub body: String,
+    /// What the gas closes in on.
+    pub symmetry: NohSymmetry,
+    /// Least and greatest distance from there between which the density is averaged [m].
+    pub between: [f64; 2],
+}
+
+/// What a gas closes in on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum NohSymmetry {
+    /// A plane, on a line.
+    Planar,
+    /// An axis, in plane strain.
+    Cylindrical,
+    /// A point on the axis, in axisymmetry.
+    Spherical,
 }
 
 /// Two names of bodies; all else comes from them.

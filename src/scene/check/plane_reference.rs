@@ -1,0 +1,112 @@
+//! Exact solutions that follow from a body's first motion: whether the body has that motion.
+
+use serde::Serialize;
+
+use super::super::conform::join;
+use super::super::errors::Fault;
+use super::super::model::{BodyForce, Eos, NamedBody, NamedNoh, NohSymmetry};
+use super::CheckedScene;
+use super::reference::find_body;
+use crate::motion::Motion;
+
+/// A fault of the reference of this name.
+fn fault(name: &str, value: impl Serialize, reason: String) -> Result<(), Fault> {
+    Err(Fault::new(join("reference", name), value, reason))
+}
+
+/// The body's number and its first motion.
+fn motion_of<'a>(
+    checked: &'a CheckedScene,
+    name: &str,
+    body: &str,
+) -> Result<(usize, Option<&'a Motion>), Fault> {
+    let i = find_body(checked, &format!("reference.{name}.body"), body)?;
+    Ok((i, checked.bodies[i].motion.as_ref()))
+}
+
+/// What must stand at the body for the reference `name`.
+fn needs(checked: &CheckedScene, name: &str, body: usize, what: &str) -> Result<(), Fault> {
+    let body = &checked.scene.bodies[body].name;
+    let path = join("bodies", body);
+    fault(name, body, format!("{path} has no {what}, which the exact solution begins with"))
+}
+
+pub(super) fn check_vortex(checked: &CheckedScene, named: &NamedBody) -> Result<(), Fault> {
+    const NAME: &str = "vortex";
+    let (body, motion) = motion_of(checked, NAME, &named.body)?;
+    let Some(Motion::Vortex(vortex)) = motion else {
+        return needs(checked, NAME, body, "velocity_field.vortex");
+    };
+    match &checked.scene.body_force {
+        Some(BodyForce::Vortex(ring))
+            if [ring.amplitude, ring.period, ring.inner, ring.outer]
+                == [vortex.amplitude, vortex.period, vortex.inner, vortex.outer] =>
+        {
+            Ok(())
+        }
+        other => {
+            let reason = "does not hold the body on its course; allowed: body_force.vortex with \
+                          the numbers of its velocity_field.vortex";
+            Err(Fault::new("body_force", other, reason))
+        }
+    }
+}
+
+pub(super) fn check_rotation(checked: &CheckedScene, named: &NamedBody) -> Result<(), Fault> {
+    const NAME: &str = "rotation";
+    let (body, motion) = motion_of(checked, NAME, &named.body)?;
+    match motion {
+        Some(Motion::Rotation(..)) => Ok(()),
+        _ => needs(checked, NAME, body, "velocity_field.rotation"),
+    }
+}
+
+pub(super) fn check_shear_layer(checked: &CheckedScene, named: &NamedBody) -> Result<(), Fault> {
+    const NAME: &str = "shear_layer";
+    let (body, motion) = motion_of(checked, NAME, &named.body)?;
+    match motion {
+        Some(Motion::ShearLayer(_)) => Ok(()),
+        _ => needs(checked, NAME, body, "velocity_field.shear_layer"),
+    }
+}
+
+pub(super) fn check_gresho(checked: &CheckedScene, named: &NamedBody) -> Result<(), Fault> {
+    const NAME: &str = "gresho";
+    let (body, motion) = motion_of(checked, NAME, &named.body)?;
+    match motion {
+        Some(Motion::Gresho(_)) => Ok(()),
+        _ => needs(checked, NAME, body, "velocity_field.gresho"),
+    }
+}
+
+pub(super) fn check_noh(checked: &CheckedScene, named: &NamedNoh) -> Result<(), Fault> {
+    const NAME: &str = "noh";
+    let (body, motion) = motion_of(checked, NAME, &named.body)?;
+    match motion {
+        Some(Motion::Radial(_, speed)) if *speed < 0.0 => {}
+        _ => return needs(checked, NAME, body, "velocity_field.radial with a speed below 0"),
+    }
+    let fits = match (checked.dimension, checked.axisymmetric()) {
+        (1, _) => NohSymmetry::Planar,
+        (_, false) => NohSymmetry::Cylindrical,
+        (_, true) => NohSymmetry::Spherical,
+    };
+    if named.symmetry != fits {
+        let allowed = serde_json::json!(fits);
+        let reason = format!("is not what this domain has; allowed: {allowed}");
+        return Err(Fault::new("reference.noh.symmetry", named.symmetry, reason));
+    }
+    let cold = matches!(checked.material_of(body).eos, Eos::IdealGas { .. })
+        && checked.scene.bodies[body].pressure == 0.0;
+    if !cold {
+        let reason =
+            "is of no cold gas; allowed: a body without pressure whose eos is \"ideal_gas\"";
+        return fault(NAME, &named.body, reason.into());
+    }
+    let [from, to] = named.between;
+    if from >= 0.0 && from < to {
+        return Ok(());
+    }
+    let reason = "no distances; allowed: two numbers of at least 0, the first below the second";
+    Err(Fault::new("reference.noh.between", named.between, reason))
+}
