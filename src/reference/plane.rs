@@ -81,7 +81,7 @@ impl PlaneReference {
                     NohSymmetry::Spherical => Symmetry::Spherical,
                 };
                 let noh = Noh::new(symmetry, gamma, material.density, -speed).ok()?;
-                (body, PlaneSolution::Noh(noh, *about, named.between))
+                (body, PlaneSolution::Noh(noh, *about, [named.between[0], named.between[1]]))
             }
             _ => return None,
         };

@@ -46,28 +46,44 @@ impl<const D: usize> Stepper<D> {
         with_width!(patch.stencils.width, go(patch, self));
     }
 
-    /// C = B/D with B = sum N v' (x_i - x_p) and D = sum N (x_i - x_p)^2 along each direction
-    /// (Jiang et al. 2015).
+    /// C = B D^-1 with B = sum N v' (x_i - x_p) and D = sum N (x_i - x_p) (x_i - x_p) (Jiang et
+    /// al. 2015): exact for a linear velocity, also where a sheared domain gives D a component xy.
     fn gather_affine<const K: usize>(&self, patch: &mut Patch<D>, affine: usize) {
         for r in 0..patch.block.own() {
             let offset = self.offset(patch, r, patch.stencils.first[r] as usize);
             let row = patch.stencils.row::<K, D>(r);
-            for b in 0..D {
-                let apart =
-                    |line: usize, k: usize| offset[b] + if b == 0 { k as f64 } else { line as f64 };
-                let square = |line: usize| std::array::from_fn(|k| apart(line, k) * apart(line, k));
-                let d = row.sum(row.values, square);
-                for a in 0..D {
-                    let star = &patch.nodes.fields[self.fields.velocity_star + a][..];
-                    let moment = |line: usize| {
+            let apart = |b: usize, line: usize, k: usize| {
+                offset[b] + if b == 0 { k as f64 } else { line as f64 }
+            };
+            let second = |a: usize, b: usize| {
+                let product =
+                    |line: usize| std::array::from_fn(|k| apart(a, line, k) * apart(b, line, k));
+                row.sum(row.values, product)
+            };
+            let square: [f64; D] = std::array::from_fn(|b| second(b, b));
+            let (first, last) = (0, D - 1);
+            let mixed = if D == 1 { 0.0 } else { second(first, last) };
+            let determinant = square[first] * square[last] - mixed * mixed;
+            for a in 0..D {
+                let star = &patch.nodes.fields[self.fields.velocity_star + a][..];
+                let moment = |b: usize| {
+                    let product = |line: usize| {
                         let v = row.line(star, line);
-                        std::array::from_fn(|k| v[k] * apart(line, k))
+                        std::array::from_fn(|k| v[k] * apart(b, line, k))
                     };
-                    // on a node of hat functions both vanish, and their ratio tends to the gradient
-                    patch.block.columns[affine + D * a + b][r] = if d > 1e-9 {
-                        row.sum(row.values, moment) / d * self.inverse_cell[b]
-                    } else {
+                    row.sum(row.values, product)
+                };
+                // on a node of hat functions both vanish, and their ratio tends to the gradient
+                let flat = square.iter().any(|d| *d <= 1e-9);
+                for b in 0..D {
+                    patch.block.columns[affine + D * a + b][r] = if flat {
                         row.dot(row.gradient(b), star)
+                    } else if D == 1 {
+                        moment(b) / square[b] * self.inverse_cell[b]
+                    } else {
+                        let other = 1 - b;
+                        let slope = moment(b) * square[other] - moment(other) * mixed;
+                        slope / determinant * self.inverse_cell[b]
                     };
                 }
             }
@@ -259,7 +275,11 @@ impl<const D: usize> Stepper<D> {
                 stress[r] * dt * working
             };
             for a in 0..D {
-                x[a][r] += 0.5 * dt * (v[a][r] + new[a]);
+                x[a][r] += match self.scheme {
+                    // with the grid: the particles' own velocities would tear their tiling
+                    Scheme::Blend(_) => dt * row.sum(row.values, |l| mean(a, l)),
+                    _ => 0.5 * dt * (v[a][r] + new[a]),
+                };
                 v[a][r] = new[a];
             }
             j[r] += dt * j_mid[r] * divergence;

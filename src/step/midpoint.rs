@@ -5,7 +5,7 @@
 //! p_h from J_h and the energy of the middle,  s = p_h + q
 //! f_i = sum V0 J_h s G_i
 //! v = sum K^l vL,  v' = v + dt sum K^l f/m
-//! v_p' = N v',  x += dt/2 (v_p + v_p'),  J += dt J_h G (v + v')/2
+//! v_p' = N v',  x += dt/2 (v_p + v_p')  (FLIP: dt N (v + v')/2),  J += dt J_h G (v + v')/2
 //! e += -s V0 J_h dt (G w)/m + heat
 //! ```
 //!

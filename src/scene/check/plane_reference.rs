@@ -103,10 +103,12 @@ pub(super) fn check_noh(checked: &CheckedScene, named: &NamedNoh) -> Result<(), 
             "is of no cold gas; allowed: a body without pressure whose eos is \"ideal_gas\"";
         return fault(NAME, &named.body, reason.into());
     }
-    let [from, to] = named.between;
-    if from >= 0.0 && from < to {
+    if let [from, to] = named.between[..]
+        && from >= 0.0
+        && from < to
+    {
         return Ok(());
     }
     let reason = "no distances; allowed: two numbers of at least 0, the first below the second";
-    Err(Fault::new("reference.noh.between", named.between, reason))
+    Err(Fault::new("reference.noh.between", &named.between, reason))
 }

@@ -98,7 +98,8 @@ pub struct NamedNoh {
     /// What the gas closes in on.
     pub symmetry: NohSymmetry,
     /// Least and greatest distance from there between which the density is averaged [m].
-    pub between: [f64; 2],
+    #[schemars(length(min = 2))]
+    pub between: Vec<f64>,
 }
 
 /// What a gas closes in on.
