@@ -160,6 +160,25 @@ impl Reference {
         }
     }
 
+    /// The body that is scored; none: all.
+    fn scored(&self) -> Option<usize> {
+        match self {
+            Reference::Impact(all) => Some(all.target),
+            Reference::Wall { body, .. } => Some(*body),
+            Reference::Riemann { .. } => None,
+        }
+    }
+
+    /// In a plane, means of the scored particles over `cells` cells along the waves.
+    pub fn samples_along(
+        &self,
+        scene: &CheckedScene,
+        table: &ParticleTable,
+        cells: f64,
+    ) -> Vec<Sample> {
+        plane_samples(scene, table, self.scored(), cells * scene.cell_size[0])
+    }
+
     /// The scores of the particles of profile time number `k`: as they are, and averaged over
     /// cells; `None` where no exact solution holds.
     pub fn score(
@@ -170,11 +189,7 @@ impl Reference {
     ) -> Option<(Errors, Errors)> {
         let exact = self.profile(scene, k)?;
         let h = scene.cell_size[0];
-        let scored = match self {
-            Reference::Impact(all) => Some(all.target),
-            Reference::Wall { body, .. } => Some(*body),
-            Reference::Riemann { .. } => None,
-        };
+        let scored = self.scored();
         let (samples, averaged) = match scene.dimension {
             1 => {
                 let samples = samples(scene, table, scored);
@@ -182,7 +197,7 @@ impl Reference {
                 (samples, averaged)
             }
             // particles of one place along the waves differ by where they are in their cells
-            _ => [0.5, 1.0].map(|cells| plane_samples(scene, table, scored, cells * h)).into(),
+            _ => [0.5, 1.0].map(|cells| self.samples_along(scene, table, cells)).into(),
         };
         let time = scene.profile_times[k];
         let judge = |samples: &[Sample]| match self {
