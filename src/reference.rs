@@ -3,9 +3,9 @@
 //! Turns the scene's bodies into the terms of [`crate::exact`]; knows no MPI.
 
 use crate::exact::{
-    Accuracy, Chain, Errors, ExactError, GasState, Impact, ImpactBody, PlanePoint, PlaneWave, Plate,
-    Profile, Riemann, Sample, Solution, Tracer, WallImpact, WallMaterial, cell_average, interface_errors, score,
-    score_density,
+    Accuracy, Chain, Errors, ExactError, GasState, Impact, ImpactBody, PlanePoint, PlaneWave,
+    Plate, Profile, Riemann, Sample, Solution, Tracer, WallImpact, WallMaterial, cell_average,
+    interface_errors, score, score_density,
 };
 use crate::material::MieGruneisen;
 use crate::output::ParticleTable;

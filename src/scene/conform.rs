@@ -261,6 +261,9 @@ fn has_type(schema: &Value, value: &Value) -> bool {
     if schema.get("oneOf").is_some() {
         return !value.is_null();
     }
+    if let Some(options) = schema.get("anyOf").and_then(Value::as_array) {
+        return options.iter().any(|option| has_type(option, value));
+    }
     types(schema).into_iter().any(|name| match name {
         "number" => value.is_number(),
         "integer" => value.is_u64() || value.is_i64(),

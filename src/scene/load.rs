@@ -49,7 +49,8 @@ pub fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
 fn with_positions(bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>, SceneError> {
     // what is wrong with the text is told when it is parsed
     let Ok(mut scene) = serde_json::from_slice::<Value>(&bytes) else { return Ok(bytes) };
-    let plane = scene.pointer("/domain/lower").and_then(Value::as_array).is_some_and(|l| l.len() > 1);
+    let plane =
+        scene.pointer("/domain/lower").and_then(Value::as_array).is_some_and(|l| l.len() > 1);
     let mut found = false;
     for body in scene.get_mut("bodies").and_then(Value::as_array_mut).into_iter().flatten() {
         let Some(Value::String(name)) = body.get("positions") else { continue };

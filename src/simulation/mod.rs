@@ -19,9 +19,9 @@ use decomp::{
 };
 
 use crate::clock::{Activity, Clock, Event};
+use crate::geometry::Tile;
 use crate::particles::{self, Columns};
 use crate::patch::Patch;
-use crate::geometry::Tile;
 use crate::scene::{CheckedBody, CheckedScene, FilterHalo, Side};
 use crate::step::{Reach, Sleep, Stepper, World};
 use crate::threads::make_pool;

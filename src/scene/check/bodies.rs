@@ -43,7 +43,8 @@ impl CheckedBody {
             let apart = |tile: &Tile| -> f64 {
                 at.iter().zip(tile.centre).map(|(x, centre)| (x - centre) * (x - centre)).sum()
             };
-            let nearest = (0..tiles.len()).min_by(|&a, &b| apart(&tiles[a]).total_cmp(&apart(&tiles[b])));
+            let nearest =
+                (0..tiles.len()).min_by(|&a, &b| apart(&tiles[a]).total_cmp(&apart(&tiles[b])));
             return nearest.unwrap_or(0) as u64;
         }
         let along = |a: usize| {
@@ -122,9 +123,7 @@ fn check_body(
     let (Some((key, region)), 1) = (regions.pop(), keys.len()) else {
         let allowed = if dimension == 1 { "\"box\"" } else { KEYS };
         return Err(match keys.get(1) {
-            None => {
-                Fault::missing(below("box"), format!("missing key; allowed: one of {allowed}"))
-            }
+            None => Fault::missing(below("box"), format!("missing key; allowed: one of {allowed}")),
             Some(other) => {
                 let reason = format!("beside {}; allowed: one region a body", below(keys[0]));
                 Fault::new(below(other), true, reason)
@@ -362,11 +361,7 @@ fn lattice(
 
 /// Bodies may touch, but not overlap: in order of x, each is held against those that begin
 /// before it ends.
-fn check_overlap(
-    scene: &Scene,
-    checked: &[CheckedBody],
-    cell_size: &[f64],
-) -> Result<(), Fault> {
+fn check_overlap(scene: &Scene, checked: &[CheckedBody], cell_size: &[f64]) -> Result<(), Fault> {
     let mut order: Vec<usize> = (0..checked.len()).collect();
     order.sort_by(|&a, &b| checked[a].lower[0].total_cmp(&checked[b].lower[0]));
     let cell: f64 = cell_size.iter().product();

@@ -3,9 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::region::{
-    Annulus, Disk, Ellipse, HalfPlane, Polygon, Region, Rotation,
-};
+use super::region::{Annulus, Disk, Ellipse, HalfPlane, Polygon, Region, Rotation};
 
 /// A material.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
