@@ -3,9 +3,9 @@
 //! Turns the scene's bodies into the terms of [`crate::exact`]; knows no MPI.
 
 use crate::exact::{
-    Accuracy, Chain, Errors, ExactError, GasState, Impact, ImpactBody, PlanePoint, PlaneWave,
-    Plate, Profile, Riemann, Sample, Solution, Tracer, WallImpact, WallMaterial, cell_average,
-    interface_errors, score, score_density,
+    Accuracy, Chain, EdgeRelease, Errors, ExactError, GasState, Impact, ImpactBody, PlanePoint,
+    PlaneWave, Plate, Profile, Riemann, Sample, Solution, Tracer, WallImpact, WallMaterial,
+    cell_average, interface_errors, score, score_density,
 };
 use crate::material::MieGruneisen;
 use crate::output::ParticleTable;
@@ -160,6 +160,22 @@ impl Reference {
         }
     }
 
+    /// Whether, in a plane, releases from the edges of the plates have reached the strip that is
+    /// scored.
+    fn edge_release_has_come(&self, scene: &CheckedScene, k: usize) -> bool {
+        let Reference::Impact(all) = self else { return false };
+        if scene.dimension == 1 {
+            return false;
+        }
+        let edge = scene.edge_distance(all.flyer).min(scene.edge_distance(all.target));
+        let scored = scene.front().and_then(|front| front.half_width).unwrap_or(f64::INFINITY);
+        if edge == f64::INFINITY {
+            return false;
+        }
+        EdgeRelease::new(&all.impact, edge)
+            .is_ok_and(|release| release.untouched_half_width(scene.profile_times[k]) < scored)
+    }
+
     /// The body that is scored; none: all.
     fn scored(&self) -> Option<usize> {
         match self {
@@ -190,6 +206,9 @@ impl Reference {
         let exact = self.profile(scene, k)?;
         let h = scene.cell_size[0];
         let scored = self.scored();
+        if self.edge_release_has_come(scene, k) {
+            return None;
+        }
         let (samples, averaged) = match scene.dimension {
             1 => {
                 let samples = samples(scene, table, scored);

@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::super::errors::Fault;
-use super::super::model::{Front, Reference, Region, Rotation};
+use super::super::model::{Front, Reference, Region, Rotation, Side};
 use super::{CheckedScene, check_length};
 
 /// How far the angles of a body and of a front may be apart [degrees].
@@ -43,6 +43,34 @@ impl CheckedScene {
             }
             _ => None,
         }
+    }
+
+    /// How far the line of the waves is from the nearest edge of body `i` across it [m]; infinite
+    /// where both ends across it stand at sides of the domain that reflect or are joined.
+    pub fn edge_distance(&self, i: usize) -> f64 {
+        let [_, ends] = self.sides::<2>();
+        let y = self.front().map_or(self.scene.domain.lower[1], |front| front.about[1]);
+        let turned = self.front().is_some_and(|front| front.angle != 0.0);
+        let regions = self.scene.bodies[i].regions();
+        let extent = match regions.first() {
+            Some((_, Region::Box(extent))) if !turned => extent,
+            Some((_, Region::Rotation(Rotation { of, .. }))) => match &**of {
+                Region::Box(extent) => extent,
+                _ => return 0.0,
+            },
+            _ => return 0.0,
+        };
+        let domain = &self.scene.domain;
+        let closed = |end: usize, at: f64| {
+            let side = [domain.lower[1], domain.upper[1]][end];
+            !turned
+                && !matches!(ends[end], Side::Free | Side::Outflow)
+                && (at - side).abs() <= self.tolerance(1)
+        };
+        let distance = |end: usize, at: f64| {
+            if closed(end, at) { f64::INFINITY } else { (at - y).abs() }
+        };
+        distance(0, extent.lower[1]).min(distance(1, extent.upper[1]))
     }
 
     /// Velocity of body `i` at the start along the line of the waves [m/s].
