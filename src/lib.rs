@@ -6,6 +6,7 @@ pub mod clock;
 pub mod constitutive;
 pub mod exact;
 pub mod figures;
+pub mod geometry;
 pub mod grid;
 pub mod material;
 pub mod model;

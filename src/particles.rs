@@ -19,9 +19,11 @@ pub struct Columns {
     pub position: usize,
     /// Velocity [m/s], a vector.
     pub velocity: usize,
-    /// Mass [kg] (in 1-D per unit area, kg/m2; in a plane per unit depth, kg/m).
+    /// Mass [kg] (in 1-D per unit area, kg/m2; in a plane per unit depth, kg/m, or
+    /// per radian).
     pub mass: usize,
-    /// Volume at J = 1 [m3] (in 1-D per unit area, m; in a plane per unit depth, m2).
+    /// Volume at J = 1 [m3] (in 1-D per unit area, m; in a plane per unit depth, m2, or
+    /// per radian).
     pub volume0: usize,
     /// Volume ratio J = V/V0 [-].
     pub jacobian: usize,
@@ -229,6 +231,7 @@ pub fn fill<const D: usize>(
                     row[columns.position + a] = centre[a];
                     row[columns.velocity + a] = checked.velocity[a] - grid_velocity[a];
                 }
+                let volume = if scene.axisymmetric() { volume * centre[0] } else { volume };
                 row[columns.mass] = material.density * volume;
                 row[columns.volume0] = volume;
                 row[columns.jacobian] = 1.0;

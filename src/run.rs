@@ -360,7 +360,9 @@ fn balance<const D: usize>(
 ) -> (Energy, Momentum, Option<Outflow>) {
     let rigid = |s: &Side| matches!(s, Side::Symmetry | Side::Wall | Side::Velocity(_));
     let sides = scene.sides::<D>();
-    let walls: [f64; D] = std::array::from_fn(|a| match sides[a].iter().any(rigid) {
+    // along a radius momentum is no sum that is kept
+    let open = |a: usize| !sides[a].iter().any(rigid) && !(a == 0 && scene.axisymmetric());
+    let walls: [f64; D] = std::array::from_fn(|a| match !open(a) {
         true => end.momentum[a] + left.momentum[a] - start.momentum[a],
         false => 0.0,
     });

@@ -74,6 +74,23 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
+    /// The divergence `plane` of a velocity in the plane, and about an axis the rate of strain
+    /// N v_x/x of a row that a radius adds to it; `radial` gives v_x for each line of nodes.
+    #[inline(always)]
+    fn with_hoop<const K: usize>(
+        &self,
+        patch: &Patch<D>,
+        row: &Row<'_, K, D>,
+        r: usize,
+        plane: f64,
+        radial: impl Fn(usize) -> [f64; K],
+    ) -> f64 {
+        match D > 1 && self.axisymmetric {
+            true => plane + row.sum(row.values, radial) / self.radius(patch, r),
+            false => plane,
+        }
+    }
+
     /// Gradient of the velocity in the fields from `field` on at a row, as far as a scene needs it.
     #[inline(always)]
     fn tensor<const K: usize>(
@@ -96,13 +113,15 @@ impl<const D: usize> Stepper<D> {
             let mut gradient = std::mem::take(&mut patch.block.columns[column]);
             for (r, d) in gradient.iter_mut().enumerate() {
                 let row = patch.stencils.row::<K, D>(r);
+                let radial = |line| *row.line(&patch.nodes.fields[field], line);
                 if let Some(whole) = s.columns.velocity_gradient {
                     let l = s.tensor(patch, &row, field);
-                    *d = trace(&l);
+                    *d = s.with_hoop(patch, &row, r, trace(&l), radial);
                     put(&mut patch.block.columns, whole, r, &l);
                 } else {
                     let along = |a: usize| row.dot(row.gradient(a), &patch.nodes.fields[field + a]);
-                    *d = (1..D).fold(along(0), |sum, a| sum + along(a));
+                    let sum = (1..D).fold(along(0), |sum, a| sum + along(a));
+                    *d = s.with_hoop(patch, &row, r, sum, radial);
                 }
             }
             patch.block.columns[column] = gradient;
@@ -219,10 +238,11 @@ impl<const D: usize> Stepper<D> {
                     Scheme::Affine => {}
                 }
             }
-            let along = |a: usize, of: &dyn Fn(usize) -> [f64; K]| row.sum(row.gradient(a), of);
-            let divergence = (0..D).map(|a| along(a, &|l| mean(a, l))).sum::<f64>();
+            let divergence = (0..D).map(|a| row.sum(row.gradient(a), |l| mean(a, l))).sum();
+            let divergence = self.with_hoop(patch, &row, r, divergence, |l| mean(0, l));
             let working = if self.compatible {
-                (0..D).map(|a| row.dot(row.gradient(a), work[a])).sum()
+                let plane = (0..D).map(|a| row.dot(row.gradient(a), work[a])).sum();
+                self.with_hoop(patch, &row, r, plane, |l| *row.line(work[0], l))
             } else {
                 divergence
             };
@@ -232,7 +252,8 @@ impl<const D: usize> Stepper<D> {
             }
             j[r] += dt * j_mid[r] * divergence;
             e[r] += heat - stress[r] * dt * working / mass[r];
-            d[r] = (0..D).map(|a| row.dot(row.gradient(a), star[a])).sum();
+            let end = (0..D).map(|a| row.dot(row.gradient(a), star[a])).sum();
+            d[r] = self.with_hoop(patch, &row, r, end, |l| *row.line(star[0], l));
         }
         let columns = &mut patch.block.columns;
         for (a, (x, v)) in x.into_iter().zip(v).enumerate() {

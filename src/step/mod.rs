@@ -52,6 +52,8 @@ pub struct Stepper<const D: usize> {
     lower: [f64; D],
     cells: [i64; D],
     sides: [[Side; 2]; D],
+    /// Whether x is a radius: what moves outward is strained about the axis.
+    axisymmetric: bool,
     /// Longest half diagonal of a particle's domain [cells], with a limit.
     domain_limit: Option<f64>,
     /// Whether patches at rest are left out.
@@ -159,6 +161,7 @@ impl<const D: usize> Stepper<D> {
             lower: std::array::from_fn(|a| scene.scene.domain.lower[a]),
             cells: std::array::from_fn(|a| scene.cells[a] as i64),
             sides: scene.sides(),
+            axisymmetric: scene.axisymmetric(),
             domain_limit: method.domain_limit,
             may_sleep: scene.scene.decomposition.skip_quiet,
             // what such a node holds is below rounding of its neighbours

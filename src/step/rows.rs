@@ -75,6 +75,14 @@ impl<const D: usize> Stepper<D> {
                 _ => (0..n).for_each(|r| out[r] = volume0[r] * j[r] * scale),
             }
         }
+        if let (true, Some(filled)) = (D > 1 && self.axisymmetric, filled) {
+            let [x, v, out] = patch
+                .block
+                .columns
+                .get_disjoint_mut([c.position, c.velocity, filled])
+                .expect("columns differ");
+            (0..n).for_each(|r| out[r] /= x[r] + ahead * v[r]);
+        }
         match (c.half_lengths, c.deformation) {
             (Some(half_lengths), Some(deformation)) => {
                 self.find_parallelograms(patch, half_lengths, deformation, ahead, jacobian);
@@ -123,7 +131,12 @@ impl<const D: usize> Stepper<D> {
             });
             let half = [columns[half_lengths][r], columns[half_lengths + 1][r]];
             let volume = columns[c.volume0][r] * columns[jacobian][r];
-            let domain = self.domain(f, half, volume);
+            let at = if self.axisymmetric {
+                columns[c.position][r] + ahead * columns[c.velocity][r]
+            } else {
+                1.0
+            };
+            let domain = self.domain(f, half, volume / at);
             let extent = domain.extent();
             if torn.is_none() && extent[0].max(extent[1]) > limit {
                 torn = Some(r);
@@ -139,16 +152,16 @@ impl<const D: usize> Stepper<D> {
     }
 
     /// The parallelogram [cells] of a particle with deformation gradient `f`, half lengths at the
-    /// start [m] and the area of `volume`.
+    /// start [m] and `area` [m2].
     ///
     /// What F and J differ by, the relaxation's share of the volume and rounding of the time
     /// step, goes to the directions that have been strained, with the squares of their strains:
     /// what is compressed along one direction alone keeps its width, as on a line.
     #[inline(always)]
-    fn domain(&self, f: [f64; 4], half: [f64; 2], volume: f64) -> Domain {
+    fn domain(&self, f: [f64; 4], half: [f64; 2], area: f64) -> Domain {
         let [xx, xy, yx, yy] = f;
         let determinant = xx * yy - xy * yx;
-        let q = volume / (4.0 * half[0] * half[1] * determinant);
+        let q = area / (4.0 * half[0] * half[1] * determinant);
         // E = (F F^T - 1)/2 and its square
         let (ex, ey, es) = (
             0.5 * (xx * xx + xy * xy - 1.0),
@@ -467,7 +480,8 @@ impl<const D: usize> Stepper<D> {
             (_, Some(half), Some(f)) => {
                 let f = std::array::from_fn(|k| column(f + k)[r]);
                 let half = [column(half)[r], column(half + 1)[r]];
-                let extent = self.domain(f, half, volume0[r] * j[r]).extent();
+                let at = if self.axisymmetric { column(c.position)[r] } else { 1.0 };
+                let extent = self.domain(f, half, volume0[r] * j[r] / at).extent();
                 extent[0].max(extent[1])
             }
             (_, Some(half), None) => {

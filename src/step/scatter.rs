@@ -118,6 +118,11 @@ impl<const D: usize> Stepper<D> {
                     for a in 0..D {
                         row.add(&mut nodal_force[a], row.gradient(a), |g| g * s);
                     }
+                    // what moves a node outward strains the material about the axis
+                    if D > 1 && self.axisymmetric {
+                        let hoop = s / self.radius(patch, r);
+                        row.add(&mut nodal_force[0], row.values, |n| n * hoop);
+                    }
                 }
             }
         }
@@ -133,6 +138,14 @@ impl<const D: usize> Stepper<D> {
         if let Some(volume) = volume {
             fields[f.volume] = volume;
         }
+    }
+
+    /// Distance of a row from the axis at the place of its weights [m]; negative for the image
+    /// beyond the axis.
+    #[inline(always)]
+    pub(super) fn radius(&self, patch: &Patch<D>, row: usize) -> f64 {
+        let fraction = patch.block.columns[self.columns.fraction][row];
+        self.lower[0] + (f64::from(patch.block.cells[row][0]) + fraction) * self.cell[0]
     }
 
     /// Where the window of `row` from node `first` on starts, seen from the row [cells].

@@ -1,7 +1,7 @@
 //! Sides of the domain that cannot stand opposite each other.
 
 use super::super::errors::Fault;
-use super::super::model::{Scene, Side};
+use super::super::model::{Geometry, Scene, Side};
 use super::CheckedScene;
 
 /// A rigid side of the domain: a plane of symmetry, a wall or a piston.
@@ -65,6 +65,13 @@ fn rigid_velocity(side: Side) -> Option<f64> {
 }
 
 pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
+    let at_axis = scene.domain.geometry == Geometry::Axisymmetric && scene.domain.lower[0] == 0.0;
+    let inner = scene.boundary.map_or(Side::Free, |b| b.x_lower);
+    if at_axis && inner != Side::Symmetry {
+        let reason = "stands on the axis of domain.geometry = \"axisymmetric\"; allowed: \
+                      \"symmetry\", or domain.lower[0] above 0";
+        return Err(Fault::new("boundary.x_lower", inner, reason));
+    }
     let Some(boundary) = &scene.boundary else { return Ok(()) };
     let y = [("boundary.y_lower", boundary.y_lower), ("boundary.y_upper", boundary.y_upper)];
     if scene.domain.lower.len() == 1 {
@@ -76,6 +83,12 @@ pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
                 return Err(Fault::new(path, side, reason));
             }
         }
+    }
+    let on_axis = scene.domain.geometry == Geometry::Axisymmetric;
+    if on_axis && (boundary.x_lower == Side::Periodic || boundary.x_upper == Side::Periodic) {
+        let reason = "joins radii, which domain.geometry = \"axisymmetric\" has along x; allowed: \
+                      any other side";
+        return Err(Fault::new("boundary.x_lower", boundary.x_lower, reason));
     }
     check_axis(["boundary.x_lower", "boundary.x_upper"], [boundary.x_lower, boundary.x_upper])?;
     check_axis(y.map(|(path, _)| path), y.map(|(_, side)| side.unwrap_or_default()))

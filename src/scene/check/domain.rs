@@ -1,7 +1,7 @@
 //! The domain: a whole number of cells, cut into no more patches than there are cells.
 
 use super::super::errors::Fault;
-use super::super::model::{CellSize, Domain};
+use super::super::model::{CellSize, Domain, Geometry};
 use super::{check_box, check_length};
 
 /// How far the domain may be from a whole number of cells [cells].
@@ -38,6 +38,17 @@ pub(super) fn check(domain: &Domain) -> Result<Grid, Fault> {
         return Err(Fault::new("domain.lower", &domain.lower, reason));
     }
     check_box("domain", &domain.lower, &domain.upper)?;
+    if domain.geometry == Geometry::Axisymmetric {
+        if dimension != 2 {
+            let reason = "needs a radius and an axis; allowed: \"plane_strain\", or two dimensions";
+            return Err(Fault::new("domain.geometry", domain.geometry, reason));
+        }
+        if domain.lower[0] < 0.0 {
+            let reason = "crosses the axis at radius 0, which domain.geometry = \"axisymmetric\" \
+                          has along x; allowed: domain.lower[0] at least 0";
+            return Err(Fault::new("domain.lower", &domain.lower, reason));
+        }
+    }
     let mut grid = Grid { dimension, cell_size: Vec::new(), cells: Vec::new() };
     for (d, &size) in asked.iter().enumerate() {
         let (lower, upper) = (domain.lower[d], domain.upper[d]);

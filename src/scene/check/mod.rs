@@ -14,7 +14,7 @@ mod reference;
 use serde::Serialize;
 
 use super::errors::{Fault, one_line};
-use super::model::{Material, Scene, Side};
+use super::model::{Geometry, Material, Scene, Side};
 
 pub use bodies::CheckedBody;
 pub use boundary::Wall;
@@ -92,6 +92,11 @@ impl CheckedScene {
             let piston = |s: &Side| if let Side::Velocity(v) = s { Some(*v) } else { None };
             ends.iter().find_map(piston).unwrap_or(0.0)
         })
+    }
+
+    /// Whether x is a radius.
+    pub fn axisymmetric(&self) -> bool {
+        self.scene.domain.geometry == Geometry::Axisymmetric
     }
 
     /// The material of body `i`.

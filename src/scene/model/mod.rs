@@ -6,6 +6,7 @@
 mod matter;
 mod method;
 mod output;
+mod region;
 
 use std::collections::BTreeMap;
 
@@ -15,6 +16,7 @@ use serde::{Deserialize, Serialize};
 pub use matter::*;
 pub use method::*;
 pub use output::*;
+pub use region::*;
 
 /// A scene: everything that a run is told.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -64,10 +66,30 @@ pub struct Domain {
     pub upper: Vec<f64>,
     /// Edge of a cell [m], one number or one a direction; the domain is a whole number of cells.
     pub cell_size: CellSize,
+    /// What the two directions of a plane stand for.
+    #[serde(default, skip_serializing_if = "Geometry::is_plane_strain")]
+    pub geometry: Geometry,
     /// Patches in each direction; absent: chosen from ranks and threads, and printed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1)))]
     pub patches: Option<Vec<usize>>,
+}
+
+/// What the two directions of a plane stand for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Geometry {
+    /// Cartesian x and y, nothing strains across them; on a line the only one.
+    #[default]
+    PlaneStrain,
+    /// x is the radius and y the axis; masses and energies are per radian.
+    Axisymmetric,
+}
+
+impl Geometry {
+    fn is_plane_strain(&self) -> bool {
+        *self == Geometry::PlaneStrain
+    }
 }
 
 /// How the work is shared.

@@ -1,0 +1,34 @@
+//! The module against closed forms, and against itself where there are none.
+
+mod areas;
+mod faults;
+mod random;
+mod tiles;
+mod voronoi;
+
+use serde_json::Value;
+
+use super::{Moments, Shape, Tile};
+use crate::scene::Region;
+
+fn region(json: Value) -> Region {
+    serde_json::from_value(json).unwrap()
+}
+
+fn shape(json: Value) -> Shape {
+    Shape::new(&region(json)).unwrap()
+}
+
+/// `found` is `exact` to `tolerance` of `scale`.
+#[track_caller]
+fn close(found: f64, exact: f64, tolerance: f64, scale: f64) {
+    let error = (found - exact).abs() / scale;
+    assert!(error <= tolerance, "{found} is not {exact}, by {error:e} of {scale}");
+}
+
+/// Area and moments of tiles about the origin of coordinates.
+fn sum(tiles: &[Tile]) -> Moments {
+    tiles.iter().fold(Moments::default(), |sum, tile| {
+        sum + Moments { area: tile.area, first: [0.0; 2] }.shifted(tile.centre)
+    })
+}

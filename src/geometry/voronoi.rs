@@ -1,0 +1,211 @@
+//! Tiles about given points: each is what of the shape lies nearer to its point than to any
+//! other, and its particle stands at the centroid rather than at the point.
+//!
+//! Particles that do not tile their body leave the noise of their places in its density; with the
+//! areas of these cells, and moved to the centroids, they do not.
+
+use delaunator::{EMPTY, next_halfedge, triangulate};
+
+use super::Point;
+use super::fill::Tile;
+use super::moments::Moments;
+use super::piece::Trapezium;
+use super::shape::Shape;
+
+/// Why a point can have no tile.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("point {} at {place:?}: {reason}", number + 1)]
+pub struct PointFault {
+    /// Number of the point, from 0; the text counts from 1.
+    pub number: usize,
+    /// Where it is [m].
+    pub place: Vec<f64>,
+    /// What is wrong, and what is allowed.
+    pub reason: String,
+}
+
+impl PointFault {
+    fn new(number: usize, place: &[f64], reason: impl Into<String>) -> Self {
+        PointFault { number, place: place.to_vec(), reason: reason.into() }
+    }
+
+    fn doubled(number: usize, other: usize, place: &[f64]) -> Self {
+        let reason = format!("the place of point {}; allowed: a place of its own", other + 1);
+        PointFault::new(number, place, reason)
+    }
+}
+
+/// Points nearer than this, over the mean distance between points, are one place.
+const SAME: f64 = 1e-6;
+
+/// Greatest difference between the tiles' area and the shape's, over the latter.
+const MISSING: f64 = 1e-10;
+
+/// The tiles of a shape about `points` [m], in their order; each is of `size` a square. Their
+/// areas add up to the shape's, and area times centre to its first moments. A cell that reaches
+/// across a gap of the shape is one tile nevertheless.
+///
+/// # Errors
+///
+/// A point outside of the shape, or in the place of another.
+pub fn voronoi(shape: &Shape, points: &[[f64; 2]]) -> Result<Vec<Tile>, PointFault> {
+    let outside = |point: &Point| point.iter().any(|x| !x.is_finite()) || !shape.contains(*point);
+    if let Some(number) = points.iter().position(outside) {
+        let reason = "outside of the region; allowed: points within it";
+        return Err(PointFault::new(number, &points[number], reason));
+    }
+    if points.is_empty() {
+        return Ok(Vec::new());
+    }
+    check_doubled(points)?;
+    let [lower, upper] = shape.bounds();
+    let extent = (upper[0] - lower[0]).max(upper[1] - lower[1]);
+    let neighbours = neighbours(points, lower, extent);
+    let same = SAME * (shape.area() / points.len() as f64).sqrt();
+    let margin = 0.1 * extent;
+    let mut tiles = Vec::with_capacity(points.len());
+    for (i, own) in neighbours.iter().enumerate() {
+        let place = points[i];
+        let distance = |j: usize| (points[j][0] - place[0]).hypot(points[j][1] - place[1]);
+        if let Some(&j) = own.iter().find(|&&j| distance(j) <= same) {
+            return Err(PointFault::doubled(i.max(j), i.min(j), &points[i.max(j)]));
+        }
+        let from = [0, 1].map(|d| lower[d] - margin);
+        let to = [0, 1].map(|d| upper[d] + margin);
+        let mut cell = vec![from, [to[0], from[1]], to, [from[0], to[1]]];
+        for &j in own {
+            cell = nearer(&cell, place, points[j]);
+        }
+        let mut moments = Moments::default();
+        for trapezium in trapezia(&cell) {
+            moments += shape.overlap(&trapezium, place);
+        }
+        let from = moments.centroid();
+        let centre = [0, 1].map(|d| place[d] + from[d]);
+        tiles.push(Tile { centre, area: moments.area, size: [moments.area.sqrt(); 2] });
+    }
+    check_cover(shape, points, &tiles)?;
+    Ok(tiles)
+}
+
+/// Intervals about `points` [m] from `lower` to `upper` [m], each the part nearer to its point
+/// than to any other: middle and length [m], in the points' order.
+///
+/// # Errors
+///
+/// A point outside, or in the place of another.
+pub fn voronoi_line(lower: f64, upper: f64, points: &[f64]) -> Result<Vec<(f64, f64)>, PointFault> {
+    let inside = |x: &f64| (lower..=upper).contains(x);
+    if let Some(number) = points.iter().position(|x| !inside(x)) {
+        let reason = format!("outside of the body; allowed: {lower:?} to {upper:?}");
+        return Err(PointFault::new(number, &points[number..=number], reason));
+    }
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by(|&a, &b| points[a].total_cmp(&points[b]).then(a.cmp(&b)));
+    let same = SAME * (upper - lower) / points.len() as f64;
+    for pair in order.windows(2) {
+        if points[pair[1]] - points[pair[0]] <= same {
+            let (first, second) = (pair[0].min(pair[1]), pair[0].max(pair[1]));
+            return Err(PointFault::doubled(second, first, &points[second..=second]));
+        }
+    }
+    let mut cells = vec![(0.0, 0.0); points.len()];
+    let middle = |a: usize, b: usize| points[a] + 0.5 * (points[b] - points[a]);
+    for (k, &i) in order.iter().enumerate() {
+        let from = if k == 0 { lower } else { middle(order[k - 1], i) };
+        let to = order.get(k + 1).map_or(upper, |&next| middle(i, next));
+        cells[i] = (from + 0.5 * (to - from), to - from);
+    }
+    Ok(cells)
+}
+
+/// Points in exactly one place, which the triangulation would leave out.
+fn check_doubled(points: &[Point]) -> Result<(), PointFault> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    // 0 is added since -0 and 0 are one place
+    let key = |i: usize| points[i].map(|x| x + 0.0);
+    order.sort_by(|&a, &b| {
+        let ([x, y], [u, v]) = (key(a), key(b));
+        x.total_cmp(&u).then(y.total_cmp(&v)).then(a.cmp(&b))
+    });
+    match order.windows(2).filter(|pair| points[pair[0]] == points[pair[1]]).min_by_key(|p| p[1]) {
+        Some(pair) => Err(PointFault::doubled(pair[1], pair[0], &points[pair[1]])),
+        None => Ok(()),
+    }
+}
+
+/// The points whose cells share an edge with that of each, from the Delaunay triangulation.
+fn neighbours(points: &[Point], lower: Point, extent: f64) -> Vec<Vec<usize>> {
+    // in units of the extent, since the triangulation's tolerance is absolute
+    let [x, y] = [0, 1].map(|d| move |p: &Point| (p[d] - lower[d]) / extent);
+    let scaled: Vec<_> = points.iter().map(|p| delaunator::Point { x: x(p), y: y(p) }).collect();
+    let net = triangulate(&scaled);
+    let mut neighbours = vec![Vec::new(); points.len()];
+    for (edge, &from) in net.triangles.iter().enumerate() {
+        let to = net.triangles[next_halfedge(edge)];
+        neighbours[from].push(to);
+        // on the hull no other triangle tells of the way back
+        if net.halfedges[edge] == EMPTY {
+            neighbours[to].push(from);
+        }
+    }
+    if net.triangles.is_empty() {
+        // all on one line, in whose order they are told
+        for pair in net.hull.windows(2) {
+            neighbours[pair[0]].push(pair[1]);
+            neighbours[pair[1]].push(pair[0]);
+        }
+    }
+    neighbours
+}
+
+/// What of a convex polygon is nearer to `own` than to `other`.
+fn nearer(polygon: &[Point], own: Point, other: Point) -> Vec<Point> {
+    let normal = [0, 1].map(|d| other[d] - own[d]);
+    let half = 0.5 * (normal[0] * normal[0] + normal[1] * normal[1]);
+    let beyond = |p: &Point| (0..2).map(|d| (p[d] - own[d]) * normal[d]).sum::<f64>() - half;
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (i, from) in polygon.iter().enumerate() {
+        let to = &polygon[(i + 1) % polygon.len()];
+        let (a, b) = (beyond(from), beyond(to));
+        if a <= 0.0 {
+            kept.push(*from);
+        }
+        if (a < 0.0 && b > 0.0) || (a > 0.0 && b < 0.0) {
+            kept.push([0, 1].map(|d| from[d] + (to[d] - from[d]) * (a / (a - b))));
+        }
+    }
+    kept
+}
+
+/// A convex polygon, counter-clockwise, cut by the upright lines through its vertices.
+fn trapezia(polygon: &[Point]) -> Vec<Trapezium> {
+    let mut places: Vec<f64> = polygon.iter().map(|p| p[0]).collect();
+    places.sort_by(f64::total_cmp);
+    places.dedup();
+    let outline = super::solid::Outline::polygon(polygon);
+    let super::solid::Outline::Polygon(edges) = outline else { return Vec::new() };
+    let strip = |x: &[f64]| {
+        let over = |p: Point, q: Point| p[0] <= x[0] && q[0] >= x[1];
+        let lower = edges.iter().find(|e| over(e.from, e.to))?.line?;
+        let upper = edges.iter().find(|e| over(e.to, e.from))?.line?;
+        Some(Trapezium { x: [x[0], x[1]], lower, upper })
+    };
+    places.windows(2).filter_map(strip).collect()
+}
+
+/// That the tiles cover the shape, each with an area: a triangulation can leave out points that
+/// lie almost in one place.
+fn check_cover(shape: &Shape, points: &[Point], tiles: &[Tile]) -> Result<(), PointFault> {
+    let reason = "its cell cannot be told from others; allowed: points that lie further apart";
+    if let Some(i) = tiles.iter().position(|tile| tile.area.is_nan() || tile.area <= 0.0) {
+        return Err(PointFault::new(i, &points[i], reason));
+    }
+    let (sum, area) = (tiles.iter().map(|tile| tile.area).sum::<f64>(), shape.area());
+    if (sum - area).abs() <= MISSING * area {
+        return Ok(());
+    }
+    let greatest = (0..tiles.len()).max_by(|&a, &b| tiles[a].area.total_cmp(&tiles[b].area));
+    let i = greatest.unwrap_or(0);
+    Err(PointFault::new(i, &points[i], reason))
+}
