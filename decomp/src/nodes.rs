@@ -179,13 +179,7 @@ impl<const D: usize> NodeExchange<D> {
     }
 
     /// The same for arrays with `layers` values of each field at a node.
-    pub fn layered(
-        layout: &Layout<D>,
-        rank: usize,
-        halo: i64,
-        depth: i64,
-        layers: usize,
-    ) -> Self {
+    pub fn layered(layout: &Layout<D>, rank: usize, halo: i64, depth: i64, layers: usize) -> Self {
         let patches = layout.patches_of(rank);
         let mut place = vec![usize::MAX; layout.patches().len()];
         patches.iter().enumerate().for_each(|(k, &p)| place[p] = k);

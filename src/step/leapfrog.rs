@@ -42,6 +42,9 @@ impl<const D: usize> Stepper<D> {
             nodal.each("scatter", |patch| self.scatter(patch, true));
             self.solve_velocity(nodal, dt, false);
             nodal.each("gather", |patch| {
+                if self.contact.is_some() {
+                    self.book_contact(patch, dt);
+                }
                 self.gather_velocity(patch);
                 self.move_rows(patch, dt);
                 if last {

@@ -4,6 +4,7 @@
 //! [`midpoint`] or [`leapfrog`]. Physics and messages meet in [`World`], which calls a phase on
 //! every patch and the exchanges between phases.
 
+mod contact;
 pub mod gather;
 pub mod leapfrog;
 pub mod midpoint;
@@ -18,6 +19,7 @@ pub use reach::Reach;
 pub use world::{Nodal, Sleep, World};
 
 use crate::constitutive::{self, Model};
+use crate::contact::Contact;
 use crate::grid::Fields;
 use crate::particles::Columns;
 use crate::patch::Patch;
@@ -42,6 +44,10 @@ pub struct Stepper<const D: usize> {
     relaxation: Option<PressureRelaxation>,
     edge_mask: Option<f64>,
     viscosity: Option<Viscosity>,
+    /// Contact between velocity fields of the bodies' own.
+    contact: Option<Contact>,
+    /// Velocity fields, each in a layer of the nodal arrays: one for all bodies, or one a body.
+    pub layers: usize,
     /// One a body.
     models: Vec<Box<dyn Model>>,
     shape: ShapeKind,
@@ -154,6 +160,10 @@ impl<const D: usize> Stepper<D> {
             relaxation: method.pressure_relaxation,
             edge_mask: method.edge_mask,
             viscosity: viscosity.map(|v| Viscosity::new(v, edge)),
+            contact: (scene.velocity_fields() > 1)
+                .then(|| scene.scene.contact.as_ref().and_then(Contact::new))
+                .flatten(),
+            layers: scene.velocity_fields(),
             models,
             shape: method.shape,
             cell,
@@ -294,7 +304,8 @@ impl<const D: usize> Stepper<D> {
     /// Weights of all rows of a patch, as wide as its longest row needs.
     fn find_weights(&self, patch: &mut Patch<D>) {
         fn find<S: Shape, const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
-            patch.find_weights::<S, K>(s.columns.fraction, s.columns.domain, s.inverse_cell)
+            let layer = (s.layers > 1).then_some(s.columns.body);
+            patch.find_weights::<S, K>(s.columns.fraction, s.columns.domain, s.inverse_cell, layer)
         }
         fn nodes<S: Shape, const K: usize, const D: usize>(length: f64) -> usize {
             S::nodes(length)

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::super::errors::Fault;
 use super::super::model::{
-    EnergyUpdate, LimitedTerms, Scene, ShapeKind, Stepping, StressUpdate, Transfer,
+    Contact, EnergyUpdate, LimitedTerms, Scene, ShapeKind, Stepping, StressUpdate, Transfer,
 };
 
 /// Beyond this Courant number the schemes with a filter were seen to fail [-].
@@ -36,6 +36,7 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Fau
             return Err(Fault::new("method.domain_limit", limit, reason));
         }
     }
+    check_contact(scene, warnings);
     if method.shape == ShapeKind::Linear {
         warnings.push(
             "method.shape = \"linear\": inaccurate, since forces jump when a particle passes into \
@@ -50,6 +51,24 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Fau
         ));
     }
     Ok(())
+}
+
+/// What a scene's contact cannot do.
+fn check_contact(scene: &Scene, warnings: &mut Vec<String>) {
+    let law = match scene.contact {
+        None => return,
+        Some(Contact::Stick {}) => "stick",
+        Some(Contact::Frictionless { .. }) => "frictionless",
+        Some(Contact::Friction { .. }) => "friction",
+    };
+    if scene.bodies.len() == 1 {
+        warnings.push("contact: the scene has one body, which touches no other".to_string());
+    } else if scene.domain.lower.len() == 1 && law == "friction" {
+        warnings.push(
+            "contact.type = \"friction\": on a line nothing slides; the same as \"frictionless\""
+                .to_string(),
+        );
+    }
 }
 
 /// A mid-point step has one order of stress, and needs what its options act on.

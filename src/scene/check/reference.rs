@@ -55,7 +55,7 @@ fn warn_of_flyer(checked: &mut CheckedScene, flyer: usize, target: usize, from_b
         Eos::IdealGas { .. } => 0.0,
     };
     let mut warnings = Vec::new();
-    if impedance(flyer) < impedance(target) {
+    if impedance(flyer) < impedance(target) && checked.velocity_fields() == 1 {
         warnings.push(
             "reference.flyer_impact: the flyer is softer than the target and would separate; \
              without contact the run holds them together"

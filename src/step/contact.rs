@@ -1,0 +1,279 @@
+//! Contact in a step: which bodies touch at which nodes, found by each patch for the nodes that it
+//! computes, from rows alone; and what they share put into the nodal sums and series.
+
+use smallvec::SmallVec;
+
+use super::series::Series;
+use super::{MOST_NODES, Stepper, with_width};
+use crate::contact::{Booked, Contact, ContactNodes, Joint, Knot, Member, Touch, find_normal};
+use crate::patch::Patch;
+use crate::transfer::Scheme;
+
+/// Bodies without stress touch if their edges are nearer than this [cells].
+const CLOSED: f64 = 0.01;
+
+/// Bodies that press on each other stay in contact up to this gap [cells]: as a wave passes, the
+/// outermost particles' lengths and places are a little out of step.
+const HELD: f64 = 0.1;
+
+/// The outermost part of a body at a meeting.
+#[derive(Clone, Copy)]
+struct Edge {
+    /// How far it reaches along the normal, seen from the node [m].
+    reach: f64,
+    /// (p + q) there, in the unit of its volume.
+    stress: f64,
+}
+
+impl<const D: usize> Stepper<D> {
+    /// Finds the pairs of bodies in contact at the nodes that the patch computes, once masses and
+    /// momenta are summed up.
+    pub(super) fn find_contact(&self, patch: &mut Patch<D>, contact: &Contact) {
+        fn go<const K: usize, const D: usize>(
+            patch: &mut Patch<D>,
+            s: &Stepper<D>,
+            contact: &Contact,
+        ) {
+            let mut nodes = std::mem::take(&mut patch.contact);
+            nodes.clear();
+            let mass = &patch.nodes.fields[s.fields.mass];
+            let least = s.empty_mass;
+            nodes.meetings.find::<K>(
+                mass,
+                least,
+                &patch.nodes.nodes,
+                &patch.active,
+                &patch.stencils,
+                &patch.runs,
+            );
+            for meeting in 0..nodes.meetings.len() {
+                s.find_joints::<K>(patch, &mut nodes, meeting, contact);
+            }
+            s.fill_joints(patch, &mut nodes);
+            patch.contact = nodes;
+        }
+        with_width!(patch.stencils.width, go(patch, self, contact));
+    }
+
+    /// The joints of one meeting.
+    fn find_joints<const K: usize>(
+        &self,
+        patch: &Patch<D>,
+        nodes: &mut ContactNodes<D>,
+        meeting: usize,
+        contact: &Contact,
+    ) {
+        let f = &self.fields;
+        let fields = &patch.nodes.fields;
+        let momentum = std::array::from_fn(|a| &fields[f.lumped + a][..]);
+        let meetings = &nodes.meetings;
+        let layers = patch.nodes.layers;
+        let mut members =
+            meetings.members(meeting, self.empty_mass, layers, &fields[f.mass], momentum);
+        let touches = meetings.touches(meeting);
+        let filled = self.columns.filled.expect("contact has the column");
+        for touch in touches {
+            let (r, at) = (touch.row as usize, touch.at as usize);
+            let row = patch.stencils.row::<K, D>(r);
+            let volume = patch.block.columns[filled][r];
+            if let Some(member) = members.iter_mut().find(|m| m.layer == self.layer_of(patch, r)) {
+                for a in 0..D {
+                    member.gradient[a] += volume * row.gradient(a)[at / K][at % K];
+                }
+            }
+        }
+        let node = meetings.node(meeting);
+        let index = self.index_of(patch, node);
+        let first = nodes.joints.len();
+        let share = self.share_of(patch, index);
+        let count = patch.nodes.nodes.count();
+        for (i, a) in members.iter().enumerate() {
+            for b in &members[i + 1..] {
+                let pair = [a, b];
+                let Some(normal) = find_normal(contact.normals, pair) else { continue };
+                if self.touch(patch, index, touches, pair, &normal) {
+                    nodes.joints.push(Joint {
+                        at: pair.map(|m| m.layer * count + node),
+                        mass: pair.map(|m| m.mass),
+                        normal,
+                        whole: false,
+                        low: [false; 2],
+                        share,
+                        given: [[0.0; D]; 2],
+                    });
+                }
+            }
+        }
+        if nodes.joints.len() > first + 1 {
+            nodes.knots.push(Knot::new(first, &nodes.joints[first..]));
+        }
+    }
+
+    /// The layer that a row stands in.
+    fn layer_of(&self, patch: &Patch<D>, row: usize) -> usize {
+        patch.block.columns[self.columns.body][row] as usize
+    }
+
+    /// The index of a place in a layer.
+    fn index_of(&self, patch: &Patch<D>, node: usize) -> [i64; D] {
+        let (nodes, stride) = (&patch.nodes.nodes, patch.stencils.stride);
+        std::array::from_fn(|a| {
+            let at = if D == 1 { node } else { [node % stride, node / stride][a] };
+            nodes.lower[a] + at as i64
+        })
+    }
+
+    /// See [`Joint::share`].
+    fn share_of(&self, patch: &Patch<D>, index: [i64; D]) -> f64 {
+        use crate::scene::Side;
+        if !patch.nodes.owned.contains(index) {
+            return 0.0;
+        }
+        let mirrored = |a: usize| {
+            let mirror =
+                |side: &Side| matches!(side, Side::Symmetry | Side::Wall | Side::Velocity(_));
+            let [lower, upper] = &self.sides[a];
+            (index[a] == 0 && mirror(lower)) || (index[a] == self.cells[a] && mirror(upper))
+        };
+        (0..D).filter(|&a| mirrored(a)).fold(1.0, |share, _| 0.5 * share)
+    }
+
+    /// Whether two bodies touch at a node: the gap between their edges is closed and they approach,
+    /// or they press on each other.
+    fn touch(
+        &self,
+        patch: &Patch<D>,
+        index: [i64; D],
+        touches: &[Touch],
+        [a, b]: [&Member<D>; 2],
+        normal: &[f64; D],
+    ) -> bool {
+        let (Some(first), Some(second)) = (
+            self.edge(patch, index, touches, a.layer, normal),
+            self.edge(patch, index, touches, b.layer, &normal.map(|n| -n)),
+        ) else {
+            return false;
+        };
+        let cell = self.cell.iter().copied().fold(f64::INFINITY, f64::min);
+        let gap = -(first.reach + second.reach) / cell;
+        let closing = (0..D).map(|k| (a.velocity[k] - b.velocity[k]) * normal[k]).sum::<f64>();
+        let presses = first.stress + second.stress > 0.0;
+        (gap < CLOSED && closing > 0.0) || (gap < HELD && presses)
+    }
+
+    /// The edge of the body in `layer` along `normal`, among the rows that touch a node.
+    fn edge(
+        &self,
+        patch: &Patch<D>,
+        index: [i64; D],
+        touches: &[Touch],
+        layer: usize,
+        normal: &[f64; D],
+    ) -> Option<Edge> {
+        let c = &self.columns;
+        let column = |k: usize| &patch.block.columns[k];
+        let filled = column(c.filled.expect("contact has the column"));
+        let stress = column(c.stress_volume);
+        let mut edge: Option<Edge> = None;
+        let rows = touches.iter().map(|t| t.row as usize);
+        for r in rows.filter(|&r| self.layer_of(patch, r) == layer) {
+            let along = |v: [f64; D]| (0..D).map(|a| v[a] * self.cell[a] * normal[a]).sum::<f64>();
+            let centre = along(std::array::from_fn(|a| {
+                let cell = i64::from(patch.block.cells[r][a]) - index[a];
+                cell as f64 + column(c.fraction + a)[r]
+            }));
+            let half = match c.half_edges {
+                None => along([0.5 * filled[r]; D]).abs(),
+                Some(first) => {
+                    let edge = |k: usize| {
+                        along(std::array::from_fn(|a| column(first + 2 * k + a)[r])).abs()
+                    };
+                    edge(0) + edge(1)
+                }
+            };
+            let reach = centre + half;
+            if edge.is_none_or(|e| reach > e.reach) {
+                edge = Some(Edge { reach, stress: stress[r] / filled[r] });
+            }
+        }
+        edge
+    }
+
+    /// With an edge mask, bodies in contact fill a node together.
+    fn fill_joints(&self, patch: &mut Patch<D>, nodes: &mut ContactNodes<D>) {
+        let Some(least) = self.edge_mask else { return };
+        let volume = &mut patch.nodes.fields[self.fields.volume];
+        let mut knotted = nodes.knots.iter().map(|k| k.joints()).flatten().peekable();
+        for (k, joint) in nodes.joints.iter_mut().enumerate() {
+            if knotted.next_if_eq(&k).is_none() {
+                let own = joint.at.map(|at| volume[at]);
+                joint.low = own.map(|v| v < least);
+                joint.at.iter().for_each(|&at| volume[at] = own[0] + own[1]);
+            }
+        }
+        for knot in &nodes.knots {
+            let sum: f64 = knot.places().iter().map(|&at| volume[at]).sum();
+            knot.places().iter().for_each(|&at| volume[at] = sum);
+        }
+    }
+
+    /// Shares lumped velocity and acceleration between bodies in contact.
+    pub(super) fn join_sums(&self, patch: &mut Patch<D>) {
+        let f = &self.fields;
+        for (field, booked) in [(f.lumped, Booked::Velocity), (f.acceleration, Booked::Force)] {
+            patch.contact.join(&mut patch.nodes.fields[field..field + D], Some(booked));
+        }
+    }
+
+    /// Shares what a product has just made of a series.
+    pub(super) fn join_series(&self, patch: &mut Patch<D>, series: &Series, ends: bool) {
+        let f = &self.fields;
+        if series.is_scalar() {
+            let [weight, sum] = patch.nodes.fields_mut([f.relaxation[0], series.sum]);
+            return patch.contact.join_scalar(weight, sum);
+        }
+        // what the bodies give each other is what the first and the last term jump by
+        let booked = match series.sum {
+            s if ends && s == f.velocity => Some(Booked::Velocity),
+            s if ends && s == f.acceleration => Some(Booked::Force),
+            _ => None,
+        };
+        patch.contact.join(&mut patch.nodes.fields[series.sum..series.sum + D], booked);
+    }
+
+    /// Shares the first term of the series of w.
+    pub(super) fn join_work(&self, patch: &mut Patch<D>) {
+        let f = &self.fields;
+        patch.contact.join(&mut patch.nodes.fields[f.work..f.work + D], None);
+        if let Scheme::Series { .. } = self.scheme {
+            for a in 0..D {
+                let [work, first] = patch.nodes.fields_mut([f.work + a, f.first + a]);
+                for at in patch.contact.joints.iter().flat_map(|j| j.at) {
+                    first[at] = work[at];
+                }
+            }
+        }
+    }
+
+    /// Books the force between bodies in contact over a step of `dt`.
+    pub(super) fn book_contact(&self, patch: &mut Patch<D>, dt: f64) {
+        // a blend leaves its share of the particles' velocity as it was
+        let moved = match self.scheme {
+            Scheme::Blend(share) => 1.0 - share,
+            Scheme::Series { .. } | Scheme::Affine => 1.0,
+        };
+        let ContactNodes { joints, told, .. } = &mut patch.contact;
+        told.clear();
+        let own = joints.iter().filter(|j| j.share > 0.0);
+        told.extend(own.map(|joint| {
+            let [momentum, force] = joint.given;
+            let force: [f64; D] =
+                std::array::from_fn(|a| joint.share * (moved * momentum[a] / dt + force[a]));
+            let along: SmallVec<[f64; 2]> = (0..D).map(|a| force[a] * joint.normal[a]).collect();
+            let normal: f64 = along.iter().sum();
+            let rest = |a: usize| force[a] - normal * joint.normal[a];
+            let across = (0..D).map(|a| rest(a) * rest(a)).sum::<f64>().sqrt();
+            [-normal, across]
+        }));
+    }
+}
