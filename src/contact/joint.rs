@@ -2,6 +2,7 @@
 
 use super::knot::Knot;
 use super::meeting::Meetings;
+use super::normal::Point;
 
 /// Two velocity fields in contact at a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +70,8 @@ pub struct ContactNodes<const D: usize> {
     pub joints: Vec<Joint<D>>,
     /// Nodes at which more than one pair is in contact: their joints, which follow each other.
     pub knots: Vec<Knot<D>>,
+    /// Corners of particles, for normals by regression.
+    pub points: Vec<Point<D>>,
     /// Force across and along the plane of each of the patch's own joints [N]: positive where
     /// bodies press on each other, and a length.
     pub told: Vec<[f64; 2]>,

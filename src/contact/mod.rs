@@ -30,15 +30,9 @@ mod normal;
 pub use joint::{Booked, ContactNodes, Joint};
 pub use knot::Knot;
 pub use meeting::{Member, Touch};
+pub use normal::{Point, logistic_regression, volume_gradient};
 
 use crate::scene::{self, Normals};
-
-/// The unit normal from the first of two bodies at a meeting to the second.
-pub fn find_normal<const D: usize>(normals: Normals, [a, b]: [&Member<D>; 2]) -> Option<[f64; D]> {
-    match normals {
-        Normals::VolumeGradient => normal::volume_gradient(&a.gradient, &b.gradient),
-    }
-}
 
 /// What happens along the plane of contact.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,8 +5,12 @@ use smallvec::SmallVec;
 
 use super::series::Series;
 use super::{MOST_NODES, Stepper, with_width};
-use crate::contact::{Booked, Contact, ContactNodes, Joint, Knot, Member, Touch, find_normal};
+use crate::contact::{
+    Booked, Contact, ContactNodes, Joint, Knot, Member, Point, Touch, logistic_regression,
+    volume_gradient,
+};
 use crate::patch::Patch;
+use crate::scene::Normals;
 use crate::transfer::Scheme;
 
 /// Bodies without stress touch if their edges are nearer than this [cells].
@@ -90,7 +94,14 @@ impl<const D: usize> Stepper<D> {
         for (i, a) in members.iter().enumerate() {
             for b in &members[i + 1..] {
                 let pair = [a, b];
-                let Some(normal) = find_normal(contact.normals, pair) else { continue };
+                let normal = match contact.normals {
+                    Normals::VolumeGradient => volume_gradient(&a.gradient, &b.gradient),
+                    Normals::LogisticRegression => {
+                        self.find_corners(patch, index, touches, pair, &mut nodes.points);
+                        logistic_regression(&nodes.points, &self.cell)
+                    }
+                };
+                let Some(normal) = normal else { continue };
                 if self.touch(patch, index, touches, pair, &normal) {
                     nodes.joints.push(Joint {
                         at: pair.map(|m| m.layer * count + node),
@@ -138,6 +149,40 @@ impl<const D: usize> Stepper<D> {
         (0..D).filter(|&a| mirrored(a)).fold(1.0, |share, _| 0.5 * share)
     }
 
+    /// The place of a row seen from a node [cells].
+    fn place(&self, patch: &Patch<D>, row: usize, index: [i64; D]) -> [f64; D] {
+        let cell = patch.block.cells[row];
+        std::array::from_fn(|a| {
+            let cells = (i64::from(cell[a]) - index[a]) as f64;
+            cells + patch.block.columns[self.columns.fraction + a][row]
+        })
+    }
+
+    /// Corners of the particles of two bodies that touch a node.
+    fn find_corners(
+        &self,
+        patch: &Patch<D>,
+        index: [i64; D],
+        touches: &[Touch],
+        [a, b]: [&Member<D>; 2],
+        points: &mut Vec<Point<D>>,
+    ) {
+        points.clear();
+        let Some(edges) = self.columns.half_edges else { return };
+        for r in touches.iter().map(|t| t.row as usize) {
+            let layer = self.layer_of(patch, r);
+            if layer != a.layer && layer != b.layer {
+                continue;
+            }
+            let x = self.place(patch, r, index);
+            let edge = |k: usize, a: usize| patch.block.columns[edges + 2 * k + a][r];
+            for (s, t) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
+                let corner = std::array::from_fn(|a| x[a] + s * edge(0, a) + t * edge(1, a));
+                points.push((corner, layer == b.layer));
+            }
+        }
+    }
+
     /// Whether two bodies touch at a node: the gap between their edges is closed and they approach,
     /// or they press on each other.
     fn touch(
@@ -178,10 +223,7 @@ impl<const D: usize> Stepper<D> {
         let rows = touches.iter().map(|t| t.row as usize);
         for r in rows.filter(|&r| self.layer_of(patch, r) == layer) {
             let along = |v: [f64; D]| (0..D).map(|a| v[a] * self.cell[a] * normal[a]).sum::<f64>();
-            let centre = along(std::array::from_fn(|a| {
-                let cell = i64::from(patch.block.cells[r][a]) - index[a];
-                cell as f64 + column(c.fraction + a)[r]
-            }));
+            let centre = along(self.place(patch, r, index));
             let half = match c.half_edges {
                 None => along([0.5 * filled[r]; D]).abs(),
                 Some(first) => {

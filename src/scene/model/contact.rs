@@ -36,4 +36,7 @@ pub enum Normals {
     /// 2010).
     #[default]
     VolumeGradient,
+    /// The line that best tells the corners of the two bodies' particles apart (Nairn,
+    /// Hammerquist & Smith 2020), in a plane.
+    LogisticRegression,
 }
