@@ -21,8 +21,10 @@ pub struct Joint<const D: usize> {
     /// Share of the node's sums that is this patch's own: 0 for a node of another, 1/2 on a
     /// mirror, which holds each twice.
     pub share: f64,
-    /// What the second has given the first: momentum [kg m/s], and force [N].
+    /// What the second has given the first to share a velocity: momentum [kg m/s], and force [N].
     pub given: [[f64; D]; 2],
+    /// Friction of the second on the first [N].
+    pub friction: [f64; D],
 }
 
 /// What a projection's jump is booked as.
@@ -163,7 +165,8 @@ mod tests {
 
     fn joint<const D: usize>(normal: [f64; D], whole: bool) -> Joint<D> {
         let mass = [2.0, 6.0];
-        Joint { at: [1, 4], mass, normal, whole, low: [false; 2], share: 1.0, given: [[0.0; D]; 2] }
+        let (low, given, friction) = ([false; 2], [[0.0; D]; 2], [0.0; D]);
+        Joint { at: [1, 4], mass, normal, whole, low, share: 1.0, given, friction }
     }
 
     #[test]

@@ -140,7 +140,8 @@ mod tests {
     use super::*;
 
     fn joint<const D: usize>(at: [usize; 2], mass: [f64; 2], normal: [f64; D]) -> Joint<D> {
-        Joint { at, mass, normal, whole: false, low: [false; 2], share: 1.0, given: [[0.0; D]; 2] }
+        let (low, given, friction) = ([false; 2], [[0.0; D]; 2], [0.0; D]);
+        Joint { at, mass, normal, whole: false, low, share: 1.0, given, friction }
     }
 
     #[test]

@@ -26,6 +26,8 @@ pub struct Member<const D: usize> {
     pub mass: f64,
     /// Its lumped velocity [m/s].
     pub velocity: [f64; D],
+    /// Its lumped acceleration without contact [m/s2].
+    pub acceleration: [f64; D],
     /// The gradient of its filled volume, sum V G: it points out of the body [cells/m].
     pub gradient: [f64; D],
 }
@@ -146,22 +148,23 @@ impl<const D: usize> Meetings<D> {
         &self.touches[self.starts[meeting] as usize..self.starts[meeting + 1] as usize]
     }
 
-    /// The bodies at a meeting, those with more than `least` of mass; `fields` gives mass and the
-    /// components of momentum.
+    /// The bodies at a meeting, those with more than `least` of `mass`, from the components of
+    /// momentum and force.
     pub fn members(
         &self,
         meeting: usize,
         least: f64,
         layers: usize,
         mass: &[f64],
-        momentum: [&[f64]; D],
+        [momentum, force]: [[&[f64]; D]; 2],
     ) -> SmallVec<[Member<D>; 3]> {
         let count = self.number.len();
         let at = |layer: usize| layer * count + self.node(meeting);
         let member = |layer: usize| {
             let i = at(layer);
-            let velocity = std::array::from_fn(|a| momentum[a][i] / mass[i]);
-            Member { layer, mass: mass[i], velocity, gradient: [0.0; D] }
+            let [velocity, acceleration] =
+                [momentum, force].map(|sums| std::array::from_fn(|a| sums[a][i] / mass[i]));
+            Member { layer, mass: mass[i], velocity, acceleration, gradient: [0.0; D] }
         };
         (0..layers).filter(|&l| mass[at(l)] > least).map(member).collect()
     }

@@ -30,7 +30,7 @@ mod normal;
 pub use joint::{Booked, ContactNodes, Joint};
 pub use knot::Knot;
 pub use meeting::{Member, Touch};
-pub use normal::{Point, logistic_regression, volume_gradient};
+pub use normal::{INSET, Point, logistic_regression, volume_gradient};
 
 use crate::scene::{self, Normals};
 

@@ -48,6 +48,8 @@ pub struct Stepper<const D: usize> {
     contact: Option<Contact>,
     /// Velocity fields, each in a layer of the nodal arrays: one for all bodies, or one a body.
     pub layers: usize,
+    /// rho c^2 of each body as it starts [Pa].
+    stiffness: Vec<f64>,
     /// One a body.
     models: Vec<Box<dyn Model>>,
     shape: ShapeKind,
@@ -140,6 +142,9 @@ impl<const D: usize> Stepper<D> {
         let fastest = (bodies.iter().zip(&models).zip(&scene.bodies))
             .map(|((b, m), c)| m.sound_speed_at(b.pressure).max(norm(&c.velocity)))
             .fold(0.0, f64::max);
+        let stiffness = (bodies.iter().zip(&models))
+            .map(|(b, m)| materials[&b.material].density * m.sound_speed_at(b.pressure).powi(2))
+            .collect();
         let densest = bodies.iter().map(|b| materials[&b.material].density).fold(0.0, f64::max);
         // what a cell's edge is to viscosity: exact where all are the same
         let edge = match cell.iter().all(|&h| h == cell[0]) {
@@ -149,9 +154,12 @@ impl<const D: usize> Stepper<D> {
         let scheme: Scheme = method.transfer.into();
         let filtered = matches!(scheme, Scheme::Series { .. });
         let relaxed = method.pressure_relaxation.is_some();
+        let contact = scene.scene.contact.as_ref().and_then(Contact::new);
+        let contact = contact.filter(|_| scene.velocity_fields() > 1);
+        let rubs = D > 1 && contact.is_some_and(|c| c.coefficient.is_some());
         Stepper {
             columns: Columns::new(scene),
-            fields: Fields::new(D, filtered, method.edge_mask.is_some(), relaxed),
+            fields: Fields::new(D, filtered, method.edge_mask.is_some(), relaxed, rubs),
             scheme,
             stepping: method.stepping,
             stress_update: method.stress_update,
@@ -160,10 +168,9 @@ impl<const D: usize> Stepper<D> {
             relaxation: method.pressure_relaxation,
             edge_mask: method.edge_mask,
             viscosity: viscosity.map(|v| Viscosity::new(v, edge)),
-            contact: (scene.velocity_fields() > 1)
-                .then(|| scene.scene.contact.as_ref().and_then(Contact::new))
-                .flatten(),
+            contact,
             layers: scene.velocity_fields(),
+            stiffness,
             models,
             shape: method.shape,
             cell,

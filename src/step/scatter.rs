@@ -7,12 +7,12 @@ use crate::transfer::{Scheme, cut, lines};
 
 impl<const D: usize> Stepper<D> {
     /// All sums of a patch at new places of its rows, with or without the force, and the lumped
-    /// velocity and acceleration from them.
-    pub(super) fn scatter(&self, patch: &mut Patch<D>, force: bool) {
+    /// velocity and acceleration from them in a step of `dt`.
+    pub(super) fn scatter(&self, patch: &mut Patch<D>, force: bool, dt: f64) {
         self.find_weights(patch);
         self.scatter_rows(patch, force);
         if let Some(contact) = &self.contact {
-            self.find_contact(patch, contact);
+            self.find_contact(patch, contact, if force { dt } else { 0.0 });
         }
         self.divide_by_mass(patch);
         self.start_series(patch);
