@@ -211,7 +211,7 @@ fn lattice<const D: usize>(
 /// the rank. Ids number the particles of all bodies in order, whatever the layout. Velocities
 /// are those seen from a grid that travels at `grid_velocity` [m/s].
 ///
-/// A body's particles tile it: each has an equal share of its volume and mass to rounding.
+/// A body's particles tile it: those of a box have equal shares of its volume and mass to rounding.
 pub fn fill<const D: usize>(
     scene: &CheckedScene,
     columns: &Columns,
@@ -229,42 +229,73 @@ pub fn fill<const D: usize>(
     let mut row = vec![0.0; columns.specs.len()];
     let mut id = 0u64;
     for (number, (body, checked)) in scene.scene.bodies.iter().zip(&scene.bodies).enumerate() {
-        let material = &scene.scene.materials[&body.material];
-        let lower = SVector::from(std::array::from_fn::<f64, D, _>(|a| body.extent.lower[a]));
-        let upper = SVector::from(std::array::from_fn::<f64, D, _>(|a| body.extent.upper[a]));
-        let counts = std::array::from_fn(|a| checked.lattice[a]);
-        let size: [f64; D] = std::array::from_fn(|a| (upper - lower)[a] / counts[a] as f64);
-        let volume: f64 = size.iter().product();
-        for centre in lattice(lower, upper, counts) {
-            let cell = cell_of(scene, centre.into());
+        let density = scene.scene.materials[&body.material].density;
+        let mut add = |centre: [f64; D], size: [f64; D], volume: f64| {
+            let cell = cell_of(scene, centre);
             let patch = layout.wrap_cell(cell).map(|c| layout.patch_of(c));
-            if let Some(block) = patch.and_then(|p| place[p]) {
-                row.fill(0.0);
-                for a in 0..D {
-                    row[columns.position + a] = centre[a];
-                    row[columns.velocity + a] = checked.velocity[a] - grid_velocity[a];
-                }
-                let volume = if scene.axisymmetric() { volume * centre[0] } else { volume };
-                row[columns.mass] = material.density * volume;
-                row[columns.volume0] = volume;
-                row[columns.jacobian] = 1.0;
-                row[columns.energy] = energies[number];
-                row[columns.body] = number as f64;
-                if let Some(half_lengths) = columns.half_lengths {
-                    (0..D).for_each(|a| row[half_lengths + a] = 0.5 * size[a]);
-                }
-                if let Some(deformation) = columns.deformation {
-                    (0..D).for_each(|a| row[deformation + (D + 1) * a] = 1.0);
-                }
-                blocks[block].push(id, cell.map(|c| c as i32), &row);
-            }
             id += 1;
+            let Some(block) = patch.and_then(|p| place[p]) else { return };
+            let volume = if scene.axisymmetric() { volume * centre[0] } else { volume };
+            row.fill(0.0);
+            for a in 0..D {
+                row[columns.position + a] = centre[a];
+                row[columns.velocity + a] = checked.velocity[a] - grid_velocity[a];
+            }
+            row[columns.mass] = density * volume;
+            row[columns.volume0] = volume;
+            row[columns.jacobian] = 1.0;
+            row[columns.energy] = energies[number];
+            row[columns.body] = number as f64;
+            if let Some(half_lengths) = columns.half_lengths {
+                (0..D).for_each(|a| row[half_lengths + a] = 0.5 * size[a]);
+            }
+            if let Some(deformation) = columns.deformation {
+                (0..D).for_each(|a| row[deformation + (D + 1) * a] = 1.0);
+            }
+            blocks[block].push(id - 1, cell.map(|c| c as i32), &row);
+        };
+        match &checked.tiles {
+            Some(tiles) => tiles.iter().for_each(|tile| {
+                let first = |v: [f64; 2]| std::array::from_fn(|a| v[a]);
+                add(first(tile.centre), first(tile.size), tile.area);
+            }),
+            None => {
+                let lower = SVector::from(std::array::from_fn::<f64, D, _>(|a| checked.lower[a]));
+                let upper = SVector::from(std::array::from_fn::<f64, D, _>(|a| checked.upper[a]));
+                let counts = std::array::from_fn(|a| checked.lattice[a]);
+                let size = std::array::from_fn(|a| (upper - lower)[a] / counts[a] as f64);
+                for centre in lattice(lower, upper, counts) {
+                    add(centre.into(), size, size.iter().product());
+                }
+            }
         }
     }
     for block in &mut blocks {
         block.sort_own();
     }
     blocks
+}
+
+/// Particles in each slice of cells across `axis`, counted without making them.
+pub fn slices(scene: &CheckedScene, axis: usize) -> Vec<u64> {
+    let (lower, size) = (scene.scene.domain.lower[axis], scene.cell_size[axis]);
+    let mut counts = vec![0.0; scene.cells[axis]];
+    for body in &scene.bodies {
+        if let Some(tiles) = &body.tiles {
+            for tile in tiles.iter() {
+                let cell = ((tile.centre[axis] - lower) / size) as usize;
+                counts[cell.min(scene.cells[axis] - 1)] += 1.0;
+            }
+            continue;
+        }
+        let (from, to) = (body.lower[axis], body.upper[axis]);
+        let per_length = body.particles as f64 / (to - from);
+        for (cell, count) in counts.iter_mut().enumerate() {
+            let x = lower + cell as f64 * size;
+            *count += ((to.min(x + size) - from.max(x)).max(0.0) * per_length).round();
+        }
+    }
+    counts.into_iter().map(|count| count as u64).collect()
 }
 
 /// The cell of a place.

@@ -61,7 +61,7 @@ impl Probes {
             Some(Reference::FlyerImpact(named)) if scene.dimension == 1 => {
                 let number = |name: &str| bodies.iter().position(|b| b.name == name);
                 let (flyer, target) = (number(&named.flyer)?, number(&named.target)?);
-                let below = bodies[flyer].extent.lower[0] < bodies[target].extent.lower[0];
+                let below = scene.bodies[flyer].lower[0] < scene.bodies[target].lower[0];
                 add("interface", vec![end(flyer, below), end(target, !below)]);
                 add("free_surface", vec![end(target, below)]);
                 add("flyer_rear", vec![end(flyer, !below)]);
@@ -77,13 +77,7 @@ impl Probes {
         let histories = scene.scene.output.histories.as_ref()?;
         for tracer in &histories.tracers {
             let number = bodies.iter().position(|b| b.name == tracer.body)?;
-            let (extent, lattice) = (&bodies[number].extent, &scene.bodies[number].lattice);
-            let along = |a: usize| {
-                let share = (tracer.at[a] - extent.lower[a]) / (extent.upper[a] - extent.lower[a]);
-                let count = lattice[a] as f64;
-                (share * count).floor().clamp(0.0, count - 1.0) as u64
-            };
-            let k = (0..scene.dimension).rev().fold(0, |k, a| k * lattice[a] as u64 + along(a));
+            let k = scene.bodies[number].nearest(&tracer.at);
             add(&tracer.name, vec![(ranges[number].0 + k, Part::Centre)]);
         }
         let mut columns: Vec<(String, String)> = [

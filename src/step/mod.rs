@@ -100,7 +100,7 @@ macro_rules! with_shape {
             0..=3 => $call::<$shape, 3, D>($($arg),*),
             4 => $call::<$shape, 4, D>($($arg),*),
             5..=6 => $call::<$shape, 6, D>($($arg),*),
-            7..=10 => $call::<$shape, 10, D>($($arg),*),
+            _ if D > 1 || $nodes <= 10 => $call::<$shape, 10, D>($($arg),*),
             _ => $call::<$shape, MOST_NODES, D>($($arg),*),
         }
     };
@@ -114,15 +114,23 @@ macro_rules! with_width {
             3 => $call::<3, D>($($arg),*),
             4 => $call::<4, D>($($arg),*),
             6 => $call::<6, D>($($arg),*),
-            10 => $call::<10, D>($($arg),*),
+            _ if D > 1 || $width <= 10 => $call::<10, D>($($arg),*),
             _ => $call::<MOST_NODES, D>($($arg),*),
         }
     };
 }
 use with_width;
 
-/// Most nodes along one direction that a particle may touch.
+/// Most nodes along one direction that a particle may touch, on a line.
 const MOST_NODES: usize = 18;
+
+/// Most nodes along one direction that a particle may touch, in a plane.
+const MOST_NODES_IN_PLANE: usize = 10;
+
+/// Most nodes along one direction that a particle may touch.
+const fn most_nodes(dimension: usize) -> usize {
+    if dimension == 1 { MOST_NODES } else { MOST_NODES_IN_PLANE }
+}
 
 /// How much longer a particle may be at the middle of a step than at its start.
 const STRETCH: f64 = 1.25;
@@ -199,12 +207,21 @@ impl<const D: usize> Stepper<D> {
 
     /// The greatest extent along a direction of the particles that `scene` starts with [cells].
     pub fn longest_at_start(&self, scene: &CheckedScene) -> f64 {
-        let bodies = scene.scene.bodies.iter().zip(&scene.bodies);
-        let lengths = bodies.flat_map(|(b, c)| {
-            let edge = |a: usize| (b.extent.upper[a] - b.extent.lower[a]) / c.lattice[a] as f64;
-            (0..D).map(move |a| edge(a) / scene.cell_size[a])
-        });
-        lengths.fold(0.0, f64::max)
+        let bodies = scene.bodies.iter();
+        bodies
+            .map(|c| {
+                let in_cells = |a: usize, length: f64| length / scene.cell_size[a];
+                match &c.tiles {
+                    Some(tiles) => tiles
+                        .iter()
+                        .flat_map(|t| (0..D).map(|a| in_cells(a, t.size[a])))
+                        .fold(0.0, f64::max),
+                    None => (0..D)
+                        .map(|a| in_cells(a, (c.upper[a] - c.lower[a]) / c.lattice[a] as f64))
+                        .fold(0.0, f64::max),
+                }
+            })
+            .fold(0.0, f64::max)
     }
 
     /// The reach of particles up to `length` long [cells], with room to stretch in a step; `None`
@@ -218,7 +235,7 @@ impl<const D: usize> Stepper<D> {
             _ => length,
         };
         let nodes = with_shape!(self.shape, 4usize, nodes(length));
-        (nodes <= MOST_NODES).then_some(Reach { nodes, products: self.products() })
+        (nodes <= most_nodes(D)).then_some(Reach { nodes, products: self.products() })
     }
 
     /// Products with a matrix that lie between the particles' sums and what they take back.
@@ -272,7 +289,7 @@ impl<const D: usize> Stepper<D> {
 
     /// The longest particle [cells] that any reach is deep enough for, with room to stretch.
     fn longest_ever(&self) -> f64 {
-        self.longest_within(Reach { nodes: MOST_NODES, products: 0 }) / STRETCH
+        self.longest_within(Reach { nodes: most_nodes(D), products: 0 }) / STRETCH
     }
 
     fn extent(&self) -> Extent {

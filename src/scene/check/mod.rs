@@ -5,6 +5,7 @@
 mod bodies;
 mod boundary;
 mod domain;
+mod front;
 mod impact;
 mod memory;
 mod method;
