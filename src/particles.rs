@@ -54,8 +54,11 @@ pub struct Columns {
     pub fraction: usize,
     /// Length for the shape function, in a plane half edges of the domain [cells], scratch.
     pub domain: usize,
-    /// Volume [cells], scratch, with an edge mask: on a line the deformed length itself.
+    /// Volume [cells], scratch, with an edge mask or contact: on a line the deformed length itself.
     pub filled: Option<usize>,
+    /// Half edges of the deformed parallelogram [cells], two vectors, scratch, where a plane's
+    /// domains deform or touch: those of the shape function, if it looks at them.
+    pub half_edges: Option<usize>,
     /// (p + q) V [J], scratch.
     pub stress_volume: usize,
     /// J at the middle of the step, scratch, with mid-point stepping.
@@ -92,16 +95,17 @@ impl Columns {
         let viscous = scene.scene.artificial_viscosity;
         let limited = viscous.is_some_and(|v| v.limiter.is_some());
         let relaxed = method.pressure_relaxation.is_some();
+        let touching = scene.velocity_fields() > 1;
         let same = |_: usize| Mirror::Same;
         let of_vector = |a: usize| Mirror::Negate(a);
         let of_tensor = |k: usize| if k % 3 == 0 { Mirror::Same } else { Mirror::NegatePair(0, 1) };
+        const HALF_EDGES: [&str; 4] =
+            ["cell_edge1_x", "cell_edge1_y", "cell_edge2_x", "cell_edge2_y"];
         let domains: &[&str] = match (plane, extent) {
             (false, _) => &["cell_length"],
             (true, Extent::Point) => &[],
             (true, Extent::Undeformed) => &["cell_width", "cell_height"],
-            (true, Extent::Current) => {
-                &["cell_edge1_x", "cell_edge1_y", "cell_edge2_x", "cell_edge2_y"]
-            }
+            (true, Extent::Current) => &HALF_EDGES,
         };
         let affine: &[&str] = match plane {
             false => &["affine_velocity"],
@@ -115,12 +119,15 @@ impl Columns {
             "velocity_gradient_yx",
             "velocity_gradient_yy",
         ];
-        let deforms = plane && extent == Extent::Current;
+        let seen = plane && extent == Extent::Current;
+        // where bodies touch is where their domains do, whatever the shape function looks at
+        let deforms = seen || (plane && touching);
         let position = vector(&["position", "position_x", "position_y"]);
         let velocity = vector(&["velocity", "velocity_x", "velocity_y"]);
         let fraction = vector(&["cell_fraction", "cell_fraction_x", "cell_fraction_y"]);
         let complement = |a: usize| Mirror::Complement(a);
-        let of_domain = |k: usize| if deforms { Mirror::Negate(k % 2) } else { Mirror::Same };
+        let of_edge = |k: usize| Mirror::Negate(k % 2);
+        let of_domain = |k: usize| if seen { of_edge(k) } else { Mirror::Same };
         let mut add =
             |name: &'static str, unit, ghost, state| add_all(&[name], unit, ghost, state, &same);
         let [mass, volume0, jacobian, energy, body, gradient, sound_speed, pressure] = [
@@ -128,7 +135,8 @@ impl Columns {
             ("volume0", "m3", false),
             ("jacobian", "", false),
             ("specific_internal_energy", "J/kg", false),
-            ("body", "", false),
+            // its ghosts stand in their body's velocity field
+            ("body", "", touching),
             ("velocity_gradient", "1/s", false),
             ("sound_speed", "m/s", false),
             ("pressure", "Pa", false),
@@ -140,18 +148,23 @@ impl Columns {
         let jacobian_mid = midpoint.then(|| add("jacobian_mid", "", false, false));
         let pressure_mid = relaxed.then(|| add("pressure_mid", "Pa", true, false));
         let compliance = relaxed.then(|| add("compliance", "m3/Pa", true, false));
-        let masked = method.edge_mask.is_some();
+        let filled = method.edge_mask.is_some() || touching;
         let is_length = !plane && extent == Extent::Current;
-        let filled = (masked && !is_length).then(|| add("cell_volume", "", true, false));
+        let volume = (filled && !is_length).then(|| add("cell_volume", "", true, false));
         let domain = add_all(domains, "", true, false, &of_domain);
+        let half_edges = deforms.then(|| match seen {
+            true => domain,
+            false => add_all(&HALF_EDGES, "", true, false, &of_edge),
+        });
         Columns {
-            filled: filled.or(masked.then_some(domain)),
+            filled: volume.or(filled.then_some(domain)),
+            half_edges,
             domain,
             position: add_all(position, "m", false, true, &same),
             velocity: add_all(velocity, "m/s", true, true, &of_vector),
             affine: (method.transfer == Transfer::Apic)
                 .then(|| add_all(affine, "1/s", true, true, &of_tensor)),
-            half_lengths: (plane && extent != Extent::Point)
+            half_lengths: (plane && (extent != Extent::Point || touching))
                 .then(|| add_all(&["half_width", "half_height"], "m", false, true, &same)),
             deformation: deforms.then(|| add_all(&DEFORMATION, "", false, true, &of_tensor)),
             velocity_gradient: deforms.then(|| add_all(&GRADIENT, "1/s", false, true, &of_tensor)),

@@ -265,7 +265,8 @@ impl<const D: usize> Plan<D> {
         let ghosts = reach.cells() + deeper;
         let notice = options.skip_quiet.then(|| stepper.notice(reach));
         let rows = RowExchange::new(layout, rank, RowReach { depth: ghosts, travel: 1, notice });
-        let nodes = NodeExchange::new(layout, rank, reach.halo(), reach.depth(ghosts));
+        let nodes =
+            NodeExchange::layered(layout, rank, reach.halo(), reach.depth(ghosts), stepper.layers);
         Plan {
             inner_rows: rows.inner().to_vec(),
             inner_nodes: nodes.inner().to_vec(),
@@ -423,11 +424,11 @@ impl<'a, C: Comm, const D: usize> Simulation<'a, C, D> {
         if self.reach != Some(reach) {
             self.reach = Some(reach);
             self.make_plan(reach);
-            let fields = self.stepper.fields.count;
+            let (fields, layers) = (self.stepper.fields.count, self.stepper.layers);
             let mine = self.layout.patches_of(self.comm.rank());
             let (depth, deeper) = (reach.depth(self.plan.ghosts), self.plan.deeper);
             for (patch, index) in self.patches.iter_mut().zip(mine) {
-                patch.set_arrays(&self.layout, index, depth, deeper, fields);
+                patch.set_arrays(&self.layout, index, depth, deeper, fields, layers);
             }
         }
         let limit = self.stepper.longest_within(reach);

@@ -61,6 +61,17 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         Totals { mass, momentum, absolute_momentum, kinetic, internal }
     }
 
+    /// Force between bodies in contact over the last step [N], in 1-D per unit area and in a plane
+    /// per unit depth: the sums over all places of contact of what presses across the plane of
+    /// contact, and of what drags along it. Zero without contact. Collective.
+    pub fn contact_force(&self) -> [f64; 2] {
+        exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
+            for told in self.patches.iter().flat_map(|p| &p.contact.told) {
+                told.iter().enumerate().for_each(|(k, &force)| add(k, force));
+            }
+        })
+    }
+
     /// All particles and the digest of the whole state, every bit in order of id, at rank 0;
     /// nothing elsewhere. Collective.
     pub fn gather(&self) -> Option<(ParticleTable, String)> {

@@ -35,7 +35,7 @@ impl<const D: usize> Stepper<D> {
         });
         world.exchange_rows(|nodal| {
             nodal.each("scatter", |patch| {
-                self.scatter(patch, true);
+                self.scatter(patch, true, dt);
                 if relax.is_some() {
                     self.start_pressure(patch);
                 }
@@ -44,6 +44,7 @@ impl<const D: usize> Stepper<D> {
             if self.compatible {
                 self.solve_work(nodal);
             }
+            self.solve_friction_heat(nodal, dt);
             nodal.each("gather", |patch| {
                 self.gather_midpoint(patch, dt);
                 if let Some(rate) = relax {
@@ -69,7 +70,7 @@ impl<const D: usize> Stepper<D> {
             }
         });
         world.exchange_rows(|nodal| {
-            nodal.each("scatter", |patch| self.scatter(patch, false));
+            nodal.each("scatter", |patch| self.scatter(patch, false, 0.0));
             self.solve_velocity(nodal, 0.0, false);
             nodal.each("gather", |patch| {
                 self.gather_gradient(patch, self.fields.velocity_star);

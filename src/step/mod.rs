@@ -4,6 +4,7 @@
 //! [`midpoint`] or [`leapfrog`]. Physics and messages meet in [`World`], which calls a phase on
 //! every patch and the exchanges between phases.
 
+mod contact;
 pub mod gather;
 pub mod leapfrog;
 pub mod midpoint;
@@ -18,6 +19,7 @@ pub use reach::Reach;
 pub use world::{Nodal, Sleep, World};
 
 use crate::constitutive::{self, Model};
+use crate::contact::Contact;
 use crate::grid::Fields;
 use crate::particles::Columns;
 use crate::patch::Patch;
@@ -42,6 +44,12 @@ pub struct Stepper<const D: usize> {
     relaxation: Option<PressureRelaxation>,
     edge_mask: Option<f64>,
     viscosity: Option<Viscosity>,
+    /// Contact between velocity fields of the bodies' own.
+    contact: Option<Contact>,
+    /// Velocity fields, each in a layer of the nodal arrays: one for all bodies, or one a body.
+    pub layers: usize,
+    /// rho c^2 of each body as it starts [Pa].
+    stiffness: Vec<f64>,
     /// One a body.
     models: Vec<Box<dyn Model>>,
     shape: ShapeKind,
@@ -142,6 +150,9 @@ impl<const D: usize> Stepper<D> {
         let fastest = (bodies.iter().zip(&models).zip(&scene.bodies))
             .map(|((b, m), c)| m.sound_speed_at(b.pressure).max(norm(&c.velocity)))
             .fold(0.0, f64::max);
+        let stiffness = (bodies.iter().zip(&models))
+            .map(|(b, m)| materials[&b.material].density * m.sound_speed_at(b.pressure).powi(2))
+            .collect();
         let densest = bodies.iter().map(|b| materials[&b.material].density).fold(0.0, f64::max);
         // what a cell's edge is to viscosity: exact where all are the same
         let edge = match cell.iter().all(|&h| h == cell[0]) {
@@ -151,9 +162,12 @@ impl<const D: usize> Stepper<D> {
         let scheme: Scheme = method.transfer.into();
         let filtered = matches!(scheme, Scheme::Series { .. });
         let relaxed = method.pressure_relaxation.is_some();
+        let contact = scene.scene.contact.as_ref().and_then(Contact::new);
+        let contact = contact.filter(|_| scene.velocity_fields() > 1);
+        let rubs = D > 1 && contact.is_some_and(|c| c.coefficient.is_some());
         Stepper {
             columns: Columns::new(scene),
-            fields: Fields::new(D, filtered, method.edge_mask.is_some(), relaxed),
+            fields: Fields::new(D, filtered, method.edge_mask.is_some(), relaxed, rubs),
             scheme,
             stepping: method.stepping,
             stress_update: method.stress_update,
@@ -162,6 +176,9 @@ impl<const D: usize> Stepper<D> {
             relaxation: method.pressure_relaxation,
             edge_mask: method.edge_mask,
             viscosity: viscosity.map(|v| Viscosity::new(v, edge)),
+            contact,
+            layers: scene.velocity_fields(),
+            stiffness,
             models,
             shape: method.shape,
             cell,
@@ -311,7 +328,8 @@ impl<const D: usize> Stepper<D> {
     /// Weights of all rows of a patch, as wide as its longest row needs.
     fn find_weights(&self, patch: &mut Patch<D>) {
         fn find<S: Shape, const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
-            patch.find_weights::<S, K>(s.columns.fraction, s.columns.domain, s.inverse_cell)
+            let layer = (s.layers > 1).then_some(s.columns.body);
+            patch.find_weights::<S, K>(s.columns.fraction, s.columns.domain, s.inverse_cell, layer)
         }
         fn nodes<S: Shape, const K: usize, const D: usize>(length: f64) -> usize {
             S::nodes(length)

@@ -83,22 +83,19 @@ impl<const D: usize> Stepper<D> {
                 .expect("columns differ");
             (0..n).for_each(|r| out[r] /= x[r] + ahead * v[r]);
         }
-        match (c.half_lengths, c.deformation) {
-            (Some(half_lengths), Some(deformation)) => {
-                self.find_parallelograms(patch, half_lengths, deformation, ahead, jacobian);
+        if let (Some(half_lengths), Some(deformation)) = (c.half_lengths, c.deformation) {
+            self.find_parallelograms(patch, half_lengths, deformation, ahead, jacobian);
+        }
+        if let (Some(half_lengths), Extent::Undeformed) = (c.half_lengths, self.extent()) {
+            for a in 0..D {
+                let [half, out] = patch
+                    .block
+                    .columns
+                    .get_disjoint_mut([half_lengths + a, c.domain + a])
+                    .expect("differ");
+                out.clear();
+                out.extend(half.iter().map(|h| 2.0 * h * self.inverse_cell[a]));
             }
-            (Some(half_lengths), None) => {
-                for a in 0..D {
-                    let [half, out] = patch
-                        .block
-                        .columns
-                        .get_disjoint_mut([half_lengths + a, c.domain + a])
-                        .expect("differ");
-                    out.clear();
-                    out.extend(half.iter().map(|h| 2.0 * h * self.inverse_cell[a]));
-                }
-            }
-            _ => {}
         }
     }
 
@@ -114,11 +111,13 @@ impl<const D: usize> Stepper<D> {
     ) {
         let c = &self.columns;
         let whole = c.velocity_gradient.expect("a domain that deforms has the column");
+        let half_edges = c.half_edges.expect("likewise");
         let n = patch.block.own();
         for k in 0..4 {
-            patch.block.columns[c.domain + k].resize(n, 0.0);
+            patch.block.columns[half_edges + k].resize(n, 0.0);
         }
-        let limit = patch.reach_length;
+        let limit =
+            if self.extent() == Extent::Current { patch.reach_length } else { f64::INFINITY };
         let mut torn = None;
         let columns = &mut patch.block.columns;
         for r in 0..n {
@@ -143,7 +142,7 @@ impl<const D: usize> Stepper<D> {
             }
             let [a, b] = domain.half_edges;
             for (k, value) in [a[0], a[1], b[0], b[1]].into_iter().enumerate() {
-                columns[c.domain + k][r] = value;
+                columns[half_edges + k][r] = value;
             }
         }
         if let Some(row) = torn {
@@ -308,7 +307,7 @@ impl<const D: usize> Stepper<D> {
         let mut stress = take(c.stress_volume);
         let mut relaxed = c.pressure_mid.zip(c.compliance).map(|(p, w)| (take(p), take(w)));
         let column = |k: usize| &patch.block.columns[k];
-        for (body, rows) in bodies(column(c.body)) {
+        for (body, rows) in bodies(&column(c.body)[..patch.block.own()]) {
             self.models[body].mid_step(MidStep {
                 mass: &column(c.mass)[rows.clone()],
                 volume0: &column(c.volume0)[rows.clone()],
@@ -394,7 +393,7 @@ impl<const D: usize> Stepper<D> {
         let mut pressure = std::mem::take(&mut patch.block.columns[c.pressure]);
         let mut energy = std::mem::take(&mut patch.block.columns[c.energy]);
         let column = |k: usize| &patch.block.columns[k];
-        for (body, rows) in bodies(column(c.body)) {
+        for (body, rows) in bodies(&column(c.body)[..patch.block.own()]) {
             self.models[body].change_volume(VolumeChange {
                 mass: &column(c.mass)[rows.clone()],
                 volume0: &column(c.volume0)[rows.clone()],
@@ -417,7 +416,7 @@ impl<const D: usize> Stepper<D> {
         let mut speed = std::mem::take(&mut patch.block.columns[c.sound_speed]);
         let column = |k: usize| &patch.block.columns[k];
         let mut found = None;
-        for (body, rows) in bodies(column(c.body)) {
+        for (body, rows) in bodies(&column(c.body)[..patch.block.own()]) {
             let told = self.models[body].refresh(
                 &column(c.jacobian)[rows.clone()],
                 &column(c.energy)[rows.clone()],
@@ -477,14 +476,14 @@ impl<const D: usize> Stepper<D> {
         let length = |r: usize| match (self.extent(), c.half_lengths, c.deformation) {
             (Extent::Current, None, _) => volume0[r] * j[r] * self.inverse_cell[0],
             (_, None, _) if D == 1 => volume0[r] * self.inverse_cell[0],
-            (_, Some(half), Some(f)) => {
+            (Extent::Current, Some(half), Some(f)) => {
                 let f = std::array::from_fn(|k| column(f + k)[r]);
                 let half = [column(half)[r], column(half + 1)[r]];
                 let at = if self.axisymmetric { column(c.position)[r] } else { 1.0 };
                 let extent = self.domain(f, half, volume0[r] * j[r] / at).extent();
                 extent[0].max(extent[1])
             }
-            (_, Some(half), None) => {
+            (Extent::Undeformed, Some(half), _) => {
                 let lengths = (0..D).map(|a| 2.0 * column(half + a)[r] * self.inverse_cell[a]);
                 lengths.fold(0.0, f64::max)
             }

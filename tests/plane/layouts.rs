@@ -58,6 +58,23 @@ fn other_schemes() {
 }
 
 #[test]
+fn bodies_in_contact() {
+    for contact in [
+        json!({"type": "frictionless"}),
+        json!({"type": "friction", "coefficient": 0.3, "normals": "logistic_regression"}),
+    ] {
+        let mut scene = plates();
+        scene["contact"] = contact;
+        // they meet within the run
+        scene["bodies"][0]["box"] = json!({"lower": [-0.000303, 0.0], "upper": [-3e-6, 0.0004]});
+        same(scene.clone(), "contact");
+        scene["method"] = json!({"shape": "gimp", "transfer": "apic"});
+        scene["time"]["end"] = json!(6e-9);
+        same(scene, "contact");
+    }
+}
+
+#[test]
 fn about_an_axis() {
     let mut scene = plates();
     scene["domain"]["lower"] = json!([0.0, -0.0004]);

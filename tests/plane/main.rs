@@ -5,6 +5,7 @@
 
 mod bodies;
 mod column;
+mod contact;
 mod layouts;
 mod symmetry;
 mod tools;

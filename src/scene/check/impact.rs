@@ -64,6 +64,7 @@ pub(super) fn check(checked: &mut CheckedScene) -> Result<(), Fault> {
         }
         check_impact(checked, &impact)?;
         if let Some(other) = other
+            && checked.velocity_fields() == 1
             && gap > checked.tolerance(0)
         {
             let [a, b] = [body, other].map(|i| join("bodies", &checked.scene.bodies[i].name));

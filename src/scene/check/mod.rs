@@ -15,7 +15,7 @@ mod reference;
 use serde::Serialize;
 
 use super::errors::{Fault, one_line};
-use super::model::{Geometry, Material, Scene, Side};
+use super::model::{Contact, Geometry, Material, Scene, Side};
 
 pub use bodies::CheckedBody;
 pub use boundary::Wall;
@@ -98,6 +98,16 @@ impl CheckedScene {
     /// Whether x is a radius.
     pub fn axisymmetric(&self) -> bool {
         self.scene.domain.geometry == Geometry::Axisymmetric
+    }
+
+    /// Velocity fields: one for all bodies, or with contact one a body.
+    pub fn velocity_fields(&self) -> usize {
+        match self.scene.contact {
+            None | Some(Contact::Stick {}) => 1,
+            Some(Contact::Frictionless { .. } | Contact::Friction { .. }) => {
+                self.scene.bodies.len()
+            }
+        }
     }
 
     /// The material of body `i`.

@@ -3,6 +3,7 @@
 //! The bounds are attributes of the fields: the JSON schema shows them, and reading a scene
 //! checks them against that same schema. What two keys say of each other is not known here.
 
+mod contact;
 mod matter;
 mod method;
 mod output;
@@ -13,6 +14,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use contact::*;
 pub use matter::*;
 pub use method::*;
 pub use output::*;
@@ -44,6 +46,10 @@ pub struct Scene {
     /// Artificial viscosity; absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub artificial_viscosity: Option<ArtificialViscosity>,
+    /// What bodies do to each other where they touch; absent: one velocity field for all of them,
+    /// so that they meet through the grid and stick together.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<Contact>,
     /// What stands at the sides of the domain; absent: free on every side.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub boundary: Option<Boundary>,
