@@ -38,14 +38,16 @@ pub struct Fields {
     /// Relaxation: summed compliance and its inverse, the projected pressure, and its first term,
     /// in the end its last.
     pub relaxation: [usize; 4],
+    /// Heat of friction [J/kg], with contact that has friction.
+    pub heat: Option<usize>,
     /// Number of fields.
     pub count: usize,
 }
 
 impl Fields {
-    /// The fields in `dimension` directions for a scheme with or without a filter, an edge mask
-    /// and pressure relaxation.
-    pub fn new(dimension: usize, filtered: bool, masked: bool, relaxed: bool) -> Self {
+    /// The fields in `dimension` directions for a scheme with or without a filter, an edge mask,
+    /// pressure relaxation and friction.
+    pub fn new(dimension: usize, filtered: bool, masked: bool, relaxed: bool, rubs: bool) -> Self {
         let mut count = 0;
         let mut add = |n: usize, wanted: bool| {
             let at = if wanted { count } else { usize::MAX / 2 };
@@ -59,6 +61,7 @@ impl Fields {
         let remainder = filtered.then(|| add(dimension, true));
         let volume = add(1, masked);
         let r = add(4, relaxed);
+        let heat = rubs.then(|| add(1, true));
         Fields {
             mass,
             inverse,
@@ -72,6 +75,7 @@ impl Fields {
             first,
             volume,
             relaxation: [r, r + 1, r + 2, r + 3],
+            heat,
             count,
         }
     }

@@ -4,6 +4,7 @@ pub mod accounts;
 pub mod calibrate;
 pub mod clock;
 pub mod constitutive;
+pub mod contact;
 pub mod exact;
 pub mod figures;
 pub mod geometry;

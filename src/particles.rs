@@ -58,8 +58,11 @@ pub struct Columns {
     pub fraction: usize,
     /// Length for the shape function, in a plane half edges of the domain [cells], scratch.
     pub domain: usize,
-    /// Volume [cells], scratch, with an edge mask: on a line the deformed length itself.
+    /// Volume [cells], scratch, with an edge mask or contact: on a line the deformed length itself.
     pub filled: Option<usize>,
+    /// Half edges of the deformed parallelogram [cells], two vectors, scratch, where a plane's
+    /// domains deform or touch: those of the shape function, if it looks at them.
+    pub half_edges: Option<usize>,
     /// (p + q) V [J], scratch. Where a body is a solid and in a plane, the tensor (q - sigma) V:
     /// xx, yy, xy, and about an axis zz.
     pub stress_volume: usize,
@@ -114,17 +117,18 @@ impl Columns {
         let viscous = scene.scene.artificial_viscosity;
         let limited = viscous.is_some_and(|v| v.limiter.is_some());
         let relaxed = method.pressure_relaxation.is_some();
+        let touching = scene.velocity_fields() > 1;
         let same = |_: usize| Mirror::Same;
         let of_vector = |a: usize| Mirror::Negate(a);
         let of_tensor = |k: usize| if k % 3 == 0 { Mirror::Same } else { Mirror::NegatePair(0, 1) };
         let of_stress = |k: usize| if k == 2 { Mirror::NegatePair(0, 1) } else { Mirror::Same };
+        const HALF_EDGES: [&str; 4] =
+            ["cell_edge1_x", "cell_edge1_y", "cell_edge2_x", "cell_edge2_y"];
         let domains: &[&str] = match (plane, extent) {
             (false, _) => &["cell_length"],
             (true, Extent::Point) => &[],
             (true, Extent::Undeformed) => &["cell_width", "cell_height"],
-            (true, Extent::Current) => {
-                &["cell_edge1_x", "cell_edge1_y", "cell_edge2_x", "cell_edge2_y"]
-            }
+            (true, Extent::Current) => &HALF_EDGES,
         };
         let affine: &[&str] = match plane {
             false => &["affine_velocity"],
@@ -146,14 +150,17 @@ impl Columns {
         const STRESS: [&str; 3] = ["stress_xx", "stress_yy", "stress_xy"];
         const STRESS_VOLUME: [&str; 4] =
             ["stress_volume_xx", "stress_volume_yy", "stress_volume_xy", "stress_volume_zz"];
-        let deforms = plane && extent == Extent::Current;
+        let seen = plane && extent == Extent::Current;
+        // where bodies touch is where their domains do, whatever the shape function looks at
+        let deforms = seen || (plane && touching);
         let solids = scene.has_solids();
         let strained = deforms || (plane && solids);
         let position = vector(&["position", "position_x", "position_y"]);
         let velocity = vector(&["velocity", "velocity_x", "velocity_y"]);
         let fraction = vector(&["cell_fraction", "cell_fraction_x", "cell_fraction_y"]);
         let complement = |a: usize| Mirror::Complement(a);
-        let of_domain = |k: usize| if deforms { Mirror::Negate(k % 2) } else { Mirror::Same };
+        let of_edge = |k: usize| Mirror::Negate(k % 2);
+        let of_domain = |k: usize| if seen { of_edge(k) } else { Mirror::Same };
         let mut add =
             |name: &'static str, unit, ghost, state| add_all(&[name], unit, ghost, state, &same);
         let [mass, volume0, jacobian, energy, body, gradient, sound_speed, pressure] = [
@@ -161,7 +168,8 @@ impl Columns {
             ("volume0", "m3", false),
             ("jacobian", "", false),
             ("specific_internal_energy", "J/kg", false),
-            ("body", "", false),
+            // its ghosts stand in their body's velocity field
+            ("body", "", touching),
             ("velocity_gradient", "1/s", false),
             ("sound_speed", "m/s", false),
             ("pressure", "Pa", false),
@@ -180,9 +188,9 @@ impl Columns {
         let jacobian_mid = midpoint.then(|| add("jacobian_mid", "", false, false));
         let pressure_mid = relaxed.then(|| add("pressure_mid", "Pa", true, false));
         let compliance = relaxed.then(|| add("compliance", "m3/Pa", true, false));
-        let masked = method.edge_mask.is_some();
+        let filled = method.edge_mask.is_some() || touching;
         let is_length = !plane && extent == Extent::Current;
-        let filled = (masked && !is_length).then(|| add("cell_volume", "", true, false));
+        let volume = (filled && !is_length).then(|| add("cell_volume", "", true, false));
         let domain = add_all(domains, "", true, false, &of_domain);
         let body_force = scene.scene.body_force.as_ref().map(|force| BodyForceColumns {
             force: add_all(vector(&FORCE), "N", true, false, &of_vector),
@@ -191,15 +199,20 @@ impl Columns {
             reference: matches!(force, BodyForce::Vortex(_))
                 .then(|| add_all(vector(&REFERENCE), "m", false, true, &same)),
         });
+        let half_edges = deforms.then(|| match seen {
+            true => domain,
+            false => add_all(&HALF_EDGES, "", true, false, &of_edge),
+        });
         Columns {
             body_force,
-            filled: filled.or(masked.then_some(domain)),
+            filled: volume.or(filled.then_some(domain)),
+            half_edges,
             domain,
             position: add_all(position, "m", false, true, &same),
             velocity: add_all(velocity, "m/s", true, true, &of_vector),
             affine: (method.transfer == Transfer::Apic)
                 .then(|| add_all(affine, "1/s", true, true, &of_tensor)),
-            half_lengths: (plane && extent != Extent::Point)
+            half_lengths: (plane && (extent != Extent::Point || touching))
                 .then(|| add_all(&["half_width", "half_height"], "m", false, true, &same)),
             deformation: strained.then(|| add_all(&DEFORMATION, "", false, true, &of_tensor)),
             velocity_gradient: strained.then(|| add_all(&GRADIENT, "1/s", false, true, &of_tensor)),
@@ -252,7 +265,7 @@ fn lattice<const D: usize>(
 /// are those seen from a grid that travels at `grid_velocity` [m/s]; `energy` gives the specific
 /// internal energy at which a body is at a pressure [J/kg].
 ///
-/// A body's particles tile it: each has an equal share of its volume and mass to rounding.
+/// A body's particles tile it: those of a box have equal shares of its volume and mass to rounding.
 pub fn fill<const D: usize>(
     scene: &CheckedScene,
     columns: &Columns,
@@ -270,58 +283,89 @@ pub fn fill<const D: usize>(
     let mut row = vec![0.0; columns.specs.len()];
     let mut id = 0u64;
     for (number, (body, checked)) in scene.scene.bodies.iter().zip(&scene.bodies).enumerate() {
-        let material = &scene.scene.materials[&body.material];
-        let lower = SVector::from(std::array::from_fn::<f64, D, _>(|a| body.extent.lower[a]));
-        let upper = SVector::from(std::array::from_fn::<f64, D, _>(|a| body.extent.upper[a]));
-        let counts = std::array::from_fn(|a| checked.lattice[a]);
-        let size: [f64; D] = std::array::from_fn(|a| (upper - lower)[a] / counts[a] as f64);
-        let volume: f64 = size.iter().product();
-        for centre in lattice(lower, upper, counts) {
-            let cell = cell_of(scene, centre.into());
+        let density = scene.scene.materials[&body.material].density;
+        let mut add = |centre: [f64; D], size: [f64; D], volume: f64| {
+            let cell = cell_of(scene, centre);
             let patch = layout.wrap_cell(cell).map(|c| layout.patch_of(c));
-            if let Some(block) = patch.and_then(|p| place[p]) {
-                row.fill(0.0);
-                for a in 0..D {
-                    row[columns.position + a] = centre[a];
-                    row[columns.velocity + a] = checked.velocity[a] - grid_velocity[a];
-                }
-                let mut pressure = body.pressure;
-                if let Some(motion) = &checked.motion {
-                    let place = std::array::from_fn(|a| if a < D { centre[a] } else { 0.0 });
-                    let velocity = motion.velocity(place);
-                    for a in 0..D {
-                        row[columns.velocity + a] = velocity[a] - grid_velocity[a];
-                    }
-                    if let Some(affine) = columns.affine {
-                        let gradient = motion.gradient(place, size[0]);
-                        (0..D * D).for_each(|k| row[affine + k] = gradient[k / D][k % D]);
-                    }
-                    pressure = motion.pressure(place).unwrap_or(pressure);
-                }
-                if let Some(reference) = columns.body_force.and_then(|c| c.reference) {
-                    (0..D).for_each(|a| row[reference + a] = centre[a]);
-                }
-                let volume = if scene.axisymmetric() { volume * centre[0] } else { volume };
-                row[columns.mass] = material.density * volume;
-                row[columns.volume0] = volume;
-                row[columns.jacobian] = 1.0;
-                row[columns.energy] = energy(number, pressure);
-                row[columns.body] = number as f64;
-                if let Some(half_lengths) = columns.half_lengths {
-                    (0..D).for_each(|a| row[half_lengths + a] = 0.5 * size[a]);
-                }
-                if let Some(deformation) = columns.deformation {
-                    (0..D).for_each(|a| row[deformation + (D + 1) * a] = 1.0);
-                }
-                blocks[block].push(id, cell.map(|c| c as i32), &row);
-            }
             id += 1;
+            let Some(block) = patch.and_then(|p| place[p]) else { return };
+            let volume = if scene.axisymmetric() { volume * centre[0] } else { volume };
+            row.fill(0.0);
+            for a in 0..D {
+                row[columns.position + a] = centre[a];
+                row[columns.velocity + a] = checked.velocity[a] - grid_velocity[a];
+            }
+            let mut pressure = body.pressure;
+            if let Some(motion) = &checked.motion {
+                let place = std::array::from_fn(|a| if a < D { centre[a] } else { 0.0 });
+                let velocity = motion.velocity(place);
+                for a in 0..D {
+                    row[columns.velocity + a] = velocity[a] - grid_velocity[a];
+                }
+                if let Some(affine) = columns.affine {
+                    let gradient = motion.gradient(place, size[0]);
+                    (0..D * D).for_each(|k| row[affine + k] = gradient[k / D][k % D]);
+                }
+                pressure = motion.pressure(place).unwrap_or(pressure);
+            }
+            if let Some(reference) = columns.body_force.and_then(|c| c.reference) {
+                (0..D).for_each(|a| row[reference + a] = centre[a]);
+            }
+            row[columns.mass] = density * volume;
+            row[columns.volume0] = volume;
+            row[columns.jacobian] = 1.0;
+            row[columns.energy] = energy(number, pressure);
+            row[columns.body] = number as f64;
+            if let Some(half_lengths) = columns.half_lengths {
+                (0..D).for_each(|a| row[half_lengths + a] = 0.5 * size[a]);
+            }
+            if let Some(deformation) = columns.deformation {
+                (0..D).for_each(|a| row[deformation + (D + 1) * a] = 1.0);
+            }
+            blocks[block].push(id - 1, cell.map(|c| c as i32), &row);
+        };
+        match &checked.tiles {
+            Some(tiles) => tiles.iter().for_each(|tile| {
+                let first = |v: [f64; 2]| std::array::from_fn(|a| v[a]);
+                add(first(tile.centre), first(tile.size), tile.area);
+            }),
+            None => {
+                let lower = SVector::from(std::array::from_fn::<f64, D, _>(|a| checked.lower[a]));
+                let upper = SVector::from(std::array::from_fn::<f64, D, _>(|a| checked.upper[a]));
+                let counts = std::array::from_fn(|a| checked.lattice[a]);
+                let size = std::array::from_fn(|a| (upper - lower)[a] / counts[a] as f64);
+                for centre in lattice(lower, upper, counts) {
+                    add(centre.into(), size, size.iter().product());
+                }
+            }
         }
     }
     for block in &mut blocks {
         block.sort_own();
     }
     blocks
+}
+
+/// Particles in each slice of cells across `axis`, counted without making them.
+pub fn slices(scene: &CheckedScene, axis: usize) -> Vec<u64> {
+    let (lower, size) = (scene.scene.domain.lower[axis], scene.cell_size[axis]);
+    let mut counts = vec![0.0; scene.cells[axis]];
+    for body in &scene.bodies {
+        if let Some(tiles) = &body.tiles {
+            for tile in tiles.iter() {
+                let cell = ((tile.centre[axis] - lower) / size) as usize;
+                counts[cell.min(scene.cells[axis] - 1)] += 1.0;
+            }
+            continue;
+        }
+        let (from, to) = (body.lower[axis], body.upper[axis]);
+        let per_length = body.particles as f64 / (to - from);
+        for (cell, count) in counts.iter_mut().enumerate() {
+            let x = lower + cell as f64 * size;
+            *count += ((to.min(x + size) - from.max(x)).max(0.0) * per_length).round();
+        }
+    }
+    counts.into_iter().map(|count| count as u64).collect()
 }
 
 /// The cell of a place.

@@ -5,6 +5,7 @@ use std::ops::Range;
 use decomp::{Block, IndexBox, Layout, NodeArrays};
 
 use crate::clock::Watch;
+use crate::contact::ContactNodes;
 use crate::grid::Band;
 use crate::shape::{Domain, Shape, Weights};
 use crate::transfer::{Row, lines};
@@ -117,12 +118,16 @@ pub struct Patch<const D: usize> {
     /// Runs of rows in canonical order.
     pub runs: Vec<Range<usize>>,
     /// Nodes that hold material, of those that the patch computes: its own, and with deep ghosts
-    /// those about it.
-    pub active: IndexBox<D>,
-    /// Nodes whose values its own rows or products on `active` may take.
-    pub span: IndexBox<D>,
-    /// Whether it sees a node with little material, which filters leave out.
+    /// those about it. A box a layer.
+    pub active: Vec<IndexBox<D>>,
+    /// Their places in its arrays.
+    pub active_lines: Vec<Range<usize>>,
+    /// Places of the nodes whose values its own rows or products on active nodes may take.
+    pub span_lines: Vec<Range<usize>>,
+    /// Whether it computes a node with little material, which filters leave out.
     pub has_edge: bool,
+    /// Where its bodies' velocity fields touch, with contact.
+    pub contact: ContactNodes<D>,
     /// How far beyond its own nodes it computes [nodes].
     pub deeper: i64,
     /// What it tells of its step.
@@ -180,9 +185,11 @@ impl<const D: usize> Patch<D> {
             band: Band::default(),
             compliance_band: Band::default(),
             runs: Vec::new(),
-            active: IndexBox::new([0; D], [0; D]),
-            span: IndexBox::new([0; D], [0; D]),
+            active: Vec::new(),
+            active_lines: Vec::new(),
+            span_lines: Vec::new(),
             has_edge: false,
+            contact: ContactNodes::default(),
             deeper: 0,
             told: Told::default(),
             departed: Vec::new(),
@@ -195,8 +202,8 @@ impl<const D: usize> Patch<D> {
 }
 
 impl<const D: usize> Patch<D> {
-    /// Gives it arrays of `fields` nodal values with halos of `depth` nodes, of which it computes
-    /// those up to `deeper` beyond its own.
+    /// Gives it arrays of `fields` nodal values in `layers` with halos of `depth` nodes, of which
+    /// it computes those up to `deeper` beyond its own.
     pub fn set_arrays(
         &mut self,
         layout: &Layout<D>,
@@ -204,8 +211,9 @@ impl<const D: usize> Patch<D> {
         depth: i64,
         deeper: i64,
         fields: usize,
+        layers: usize,
     ) {
-        self.nodes = NodeArrays::new(layout, index, depth, fields);
+        self.nodes = NodeArrays::layered(layout, index, depth, fields, layers);
         self.deeper = deeper;
         // what it held for its sleep is gone
         self.rest = Rest::default();
@@ -218,6 +226,7 @@ impl<const D: usize> Patch<D> {
         // what moves nearby cannot change a patch that none of its rows reach
         let stirred = self.block.stirred && self.block.rows() > 0;
         if self.rest.note(stirred, needed) {
+            self.contact.clear();
             for (k, field) in self.nodes.fields.iter_mut().enumerate() {
                 if !kept.contains(&k) {
                     field.fill(0.0);
@@ -228,23 +237,15 @@ impl<const D: usize> Patch<D> {
 }
 
 impl<const D: usize> Patch<D> {
-    /// Places of the nodes that hold material and are computed, in the patch's arrays.
-    pub fn active_lines(&self) -> impl Iterator<Item = Range<usize>> + use<D> {
-        self.active.lines_in(&self.nodes.nodes)
-    }
-
-    /// Places of the nodes whose values its rows or products may take, in the patch's arrays.
-    pub fn span_lines(&self) -> impl Iterator<Item = Range<usize>> + use<D> {
-        self.span.lines_in(&self.nodes.nodes)
-    }
-
     /// Computes the weights of all rows from the columns that start at `fraction` and at `domain`
-    /// [cells]; `inverse_cell` is 1/edge of a cell [1/m].
+    /// [cells]; `inverse_cell` is 1/edge of a cell [1/m], `layer` the column with each row's
+    /// layer, if there are several.
     pub fn find_weights<S: Shape, const K: usize>(
         &mut self,
         fraction: usize,
         domain: usize,
         inverse_cell: [f64; D],
+        layer: Option<usize>,
     ) {
         let rows = self.block.rows();
         let stencils = &mut self.stencils;
@@ -300,27 +301,56 @@ impl<const D: usize> Patch<D> {
             }
         }
         self.block.runs(&mut self.runs);
-        self.find_active(K as i64, rows, least, most);
+        self.active.clear();
+        self.active_lines.clear();
+        self.span_lines.clear();
+        match layer {
+            None => self.find_active(0, K as i64, least, most),
+            Some(column) => self.separate(column, K as i64),
+        }
     }
 
-    /// The nodes to compute that any row touches; windows of `width` nodes start between `least`
-    /// and `most`, counted from the arrays' first node.
-    fn find_active(&mut self, width: i64, rows: usize, least: [i32; D], most: [i32; D]) {
+    /// Moves each row's window to the layer in `column`.
+    fn separate(&mut self, column: usize, width: i64) {
+        let (count, stride) = (self.nodes.nodes.count(), self.stencils.stride);
+        for layer in 0..self.nodes.layers {
+            let (mut least, mut most) = ([i32::MAX; D], [i32::MIN; D]);
+            let rows = self.stencils.first.iter_mut().zip(&self.block.columns[column]);
+            for (first, _) in rows.filter(|(_, l)| **l as usize == layer) {
+                let at = *first as usize;
+                for a in 0..D {
+                    let at = if D == 1 { at } else { [at % stride, at / stride][a] } as i32;
+                    (least[a], most[a]) = (least[a].min(at), most[a].max(at));
+                }
+                *first += (layer * count) as u32;
+            }
+            self.find_active(layer, width, least, most);
+        }
+    }
+
+    /// The nodes of a layer to compute that any row touches; windows of `width` nodes start
+    /// between `least` and `most`, counted from the arrays' first node.
+    fn find_active(&mut self, layer: usize, width: i64, least: [i32; D], most: [i32; D]) {
         let all = self.nodes.nodes;
         let own = self.nodes.owned.grow(self.deeper).intersect(&all);
         let touched = IndexBox {
             lower: std::array::from_fn(|a| all.lower[a] + i64::from(least[a])),
             upper: std::array::from_fn(|a| all.lower[a] + i64::from(most[a]) + width),
         };
-        self.active = match rows {
-            0 => IndexBox::new(own.lower, own.lower),
-            _ => {
+        let active = match least[0] > most[0] {
+            true => IndexBox::new(own.lower, own.lower),
+            false => {
                 let active = own.intersect(&touched);
                 let upper = std::array::from_fn(|a| active.upper[a].max(active.lower[a]));
                 IndexBox::new(active.lower, upper)
             }
         };
-        self.span = self.active.grow(width).intersect(&all);
+        let span = active.grow(width).intersect(&all);
+        let from = layer * all.count();
+        let place = |line: Range<usize>| line.start + from..line.end + from;
+        self.active_lines.extend(active.lines_in(&all).map(place));
+        self.span_lines.extend(span.lines_in(&all).map(place));
+        self.active.push(active);
     }
 }
 

@@ -24,6 +24,8 @@ struct Probe {
 pub struct Probes {
     probes: Vec<Probe>,
     wanted: Vec<u64>,
+    /// Columns of the force of contact.
+    forces: usize,
     interval: f64,
     due: u64,
     histories: Histories,
@@ -59,7 +61,7 @@ impl Probes {
             Some(Reference::FlyerImpact(named)) if scene.dimension == 1 => {
                 let number = |name: &str| bodies.iter().position(|b| b.name == name);
                 let (flyer, target) = (number(&named.flyer)?, number(&named.target)?);
-                let below = bodies[flyer].extent.lower[0] < bodies[target].extent.lower[0];
+                let below = scene.bodies[flyer].lower[0] < scene.bodies[target].lower[0];
                 add("interface", vec![end(flyer, below), end(target, !below)]);
                 add("free_surface", vec![end(target, below)]);
                 add("flyer_rear", vec![end(flyer, !below)]);
@@ -75,13 +77,7 @@ impl Probes {
         let histories = scene.scene.output.histories.as_ref()?;
         for tracer in &histories.tracers {
             let number = bodies.iter().position(|b| b.name == tracer.body)?;
-            let (extent, lattice) = (&bodies[number].extent, &scene.bodies[number].lattice);
-            let along = |a: usize| {
-                let share = (tracer.at[a] - extent.lower[a]) / (extent.upper[a] - extent.lower[a]);
-                let count = lattice[a] as f64;
-                (share * count).floor().clamp(0.0, count - 1.0) as u64
-            };
-            let k = (0..scene.dimension).rev().fold(0, |k, a| k * lattice[a] as u64 + along(a));
+            let k = scene.bodies[number].nearest(&tracer.at);
             add(&tracer.name, vec![(ranges[number].0 + k, Part::Centre)]);
         }
         let mut columns: Vec<(String, String)> = [
@@ -98,6 +94,12 @@ impl Probes {
             _ => (&["momentum_x", "momentum_y"], &["x", "y"], &["velocity_x", "velocity_y"]),
         };
         columns.extend(momenta.iter().map(|name| (name.to_string(), "kg m/s".to_string())));
+        let forces: &[&str] = match (scene.velocity_fields(), scene.dimension) {
+            (1, _) => &[],
+            (_, 1) => &["contact_force"],
+            _ => &["contact_force", "contact_friction"],
+        };
+        columns.extend(forces.iter().map(|name| (name.to_string(), "N".to_string())));
         for probe in &probes {
             let units = [(places, "m"), (velocities, "m/s"), (&["pressure"], "Pa")];
             for (names, unit) in units {
@@ -108,7 +110,8 @@ impl Probes {
         let mut wanted: Vec<u64> = probes.iter().flat_map(|p| &p.parts).map(|p| p.0).collect();
         wanted.sort_unstable();
         wanted.dedup();
-        Some(Probes { probes, wanted, interval, due: 0, histories: Histories::new(columns) })
+        let (forces, histories) = (forces.len(), Histories::new(columns));
+        Some(Probes { probes, wanted, forces, interval, due: 0, histories })
     }
 
     /// Takes a row if one is due: at the first step's end past each interval. Collective.
@@ -119,8 +122,10 @@ impl Probes {
         }
         self.due = (time / self.interval).floor() as u64 + 1;
         let totals = simulation.totals();
+        let forces = if self.forces > 0 { simulation.contact_force() } else { [0.0; 2] };
         let followed = simulation.follow(&self.wanted);
-        if followed.is_empty() {
+        // another rank than the first has nobody to tell
+        if followed.is_empty() && !self.wanted.is_empty() {
             return;
         }
         let mut row = vec![
@@ -131,6 +136,7 @@ impl Probes {
             totals.kinetic + totals.internal,
         ];
         row.extend(totals.momentum);
+        row.extend(&forces[..self.forces]);
         for probe in &self.probes {
             let parts = probe.parts.iter().map(|&(id, part)| {
                 let at = self.wanted.binary_search(&id).expect("a probe's particle is wanted");

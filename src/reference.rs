@@ -7,9 +7,9 @@ mod plane;
 pub use plane::{PlaneReference, PlaneSolution};
 
 use crate::exact::{
-    Accuracy, Chain, Errors, ExactError, GasState, Impact, ImpactBody, Plate, Profile, Riemann,
-    Sample, Solution, Tracer, WallImpact, WallMaterial, cell_average, interface_errors, score,
-    score_density,
+    Accuracy, Chain, EdgeRelease, Errors, ExactError, GasState, Impact, ImpactBody, PlanePoint,
+    PlaneWave, Plate, Profile, Riemann, Sample, Solution, Tracer, WallImpact, WallMaterial,
+    cell_average, interface_errors, score, score_density,
 };
 use crate::material::MieGruneisen;
 use crate::output::ParticleTable;
@@ -73,7 +73,7 @@ fn gas(scene: &CheckedScene, body: usize) -> GasState {
     let Eos::IdealGas { gamma } = material.eos else {
         unreachable!("the check has refused other equations of state")
     };
-    let (p, u) = (scene.scene.bodies[body].pressure, scene.bodies[body].velocity[0]);
+    let (p, u) = (scene.scene.bodies[body].pressure, scene.speed_along(body));
     GasState { rho: material.density, u, p, gamma }
 }
 
@@ -84,13 +84,9 @@ pub fn impact_of(
 ) -> Result<(Impact, [usize; 2]), ExactError> {
     let numbers = [body_named(scene, &named.flyer), body_named(scene, &named.target)];
     let [flyer, target] = numbers.map(|b| {
-        let extent = &scene.scene.bodies[b].extent;
-        ImpactBody {
-            material: solid(scene, b),
-            lower: extent.lower[0],
-            upper: extent.upper[0],
-            velocity: scene.bodies[b].velocity[0],
-        }
+        let [lower, upper] = scene.span(b).expect("the check has found the body's ends");
+        let velocity = scene.speed_along(b);
+        ImpactBody { material: solid(scene, b), lower, upper, velocity }
     });
     Ok((Impact::new(flyer, target)?, numbers))
 }
@@ -127,7 +123,7 @@ impl Reference {
                     (body_named(scene, &named.left), body_named(scene, &named.right));
                 Reference::Riemann {
                     solution: Riemann::solve(gas(scene, left), gas(scene, right))?,
-                    diaphragm: scene.scene.bodies[left].extent.upper[0],
+                    diaphragm: scene.span(left).map_or(0.0, |[_, upper]| upper),
                 }
             }
             scene::Reference::WallImpact(named) => {
@@ -135,7 +131,7 @@ impl Reference {
                 let wall = scene.wall_struck_by(body).ok_or(ExactError::NoImpact(
                     "the body of the reference does not run into a wall",
                 ))?;
-                let extent = &scene.scene.bodies[body].extent;
+                let extent = &scene.bodies[body];
                 let material = match scene.material_of(body).eos {
                     Eos::MieGruneisen { .. } => WallMaterial::MieGruneisen(solid(scene, body)),
                     Eos::IdealGas { gamma } => {
@@ -165,12 +161,48 @@ impl Reference {
         match self {
             Reference::Impact(all) => all.solution.snapshots[k].target.clone(),
             Reference::Riemann { solution, diaphragm } => {
-                let domain = &scene.scene.domain;
-                Some(solution.profile(*diaphragm, t, domain.lower[0], domain.upper[0]))
+                let [lower, upper] = scored_range(scene);
+                Some(solution.profile(*diaphragm, t, lower, upper))
             }
             Reference::Wall { solution, .. } => solution.profile(t),
             Reference::Plane(_) => None,
         }
+    }
+
+    /// Whether, in a plane, releases from the edges of the plates have reached the strip that is
+    /// scored.
+    fn edge_release_has_come(&self, scene: &CheckedScene, k: usize) -> bool {
+        let Reference::Impact(all) = self else { return false };
+        if scene.dimension == 1 {
+            return false;
+        }
+        let edge = scene.edge_distance(all.flyer).min(scene.edge_distance(all.target));
+        let scored = scene.front().and_then(|front| front.half_width).unwrap_or(f64::INFINITY);
+        if edge == f64::INFINITY {
+            return false;
+        }
+        EdgeRelease::new(&all.impact, edge)
+            .is_ok_and(|release| release.untouched_half_width(scene.profile_times[k]) < scored)
+    }
+
+    /// The body that is scored; none: all.
+    fn scored(&self) -> Option<usize> {
+        match self {
+            Reference::Impact(all) => Some(all.target),
+            Reference::Wall { body, .. } => Some(*body),
+            Reference::Plane(plane) => Some(plane.body),
+            Reference::Riemann { .. } => None,
+        }
+    }
+
+    /// In a plane, means of the scored particles over `cells` cells along the waves.
+    pub fn samples_along(
+        &self,
+        scene: &CheckedScene,
+        table: &ParticleTable,
+        cells: f64,
+    ) -> Vec<Sample> {
+        plane_samples(scene, table, self.scored(), cells * scene.cell_size[0])
     }
 
     /// The scores of the particles of profile time number `k`: as they are, and averaged over
@@ -183,13 +215,19 @@ impl Reference {
     ) -> Option<(Errors, Errors)> {
         let exact = self.profile(scene, k)?;
         let h = scene.cell_size[0];
-        let scored = match self {
-            Reference::Impact(all) => Some(all.target),
-            Reference::Wall { body, .. } => Some(*body),
-            Reference::Riemann { .. } | Reference::Plane(_) => None,
+        let scored = self.scored();
+        if self.edge_release_has_come(scene, k) {
+            return None;
+        }
+        let (samples, averaged) = match scene.dimension {
+            1 => {
+                let samples = samples(scene, table, scored);
+                let averaged = cell_average(&samples, h, scene.scene.domain.lower[0]);
+                (samples, averaged)
+            }
+            // particles of one place along the waves differ by where they are in their cells
+            _ => [0.5, 1.0].map(|cells| self.samples_along(scene, table, cells)).into(),
         };
-        let samples = samples(scene, table, scored);
-        let averaged = cell_average(&samples, h, scene.scene.domain.lower[0]);
         let time = scene.profile_times[k];
         let judge = |samples: &[Sample]| match self {
             Reference::Impact(all) => {
@@ -206,12 +244,61 @@ impl Reference {
             }
             Reference::Plane(_) => None,
             Reference::Riemann { .. } => {
-                let domain = &scene.scene.domain;
-                Some(score_density(samples, &exact, domain.lower[0], domain.upper[0]))
+                let [lower, upper] = scored_range(scene);
+                Some(score_density(samples, &exact, lower, upper))
             }
         };
         Some((judge(&samples)?, judge(&averaged)?))
     }
+}
+
+/// The places along the waves between which gases are scored [m].
+fn scored_range(scene: &CheckedScene) -> [f64; 2] {
+    let domain = &scene.scene.domain;
+    scene.front().and_then(|front| front.range).unwrap_or([domain.lower[0], domain.upper[0]])
+}
+
+/// The line along which waves run in a plane.
+fn wave_line(scene: &CheckedScene) -> PlaneWave {
+    let (about, angle) = scene.front().map_or(([0.0; 2], 0.0), |front| {
+        // along x places are those of the scene
+        let about = [front.about[0], front.about[1]];
+        (if front.angle == 0.0 { [0.0, about[1]] } else { about }, front.angle.to_radians())
+    });
+    PlaneWave::at_angle(about, angle).expect("the scene's numbers are finite")
+}
+
+/// The particles of `body` (or all) in a plane, as means over `width` [m] along the waves.
+fn plane_samples(
+    scene: &CheckedScene,
+    table: &ParticleTable,
+    body: Option<usize>,
+    width: f64,
+) -> Vec<Sample> {
+    let column = |name| table.column(name).expect("the table has its own columns");
+    let [x, y] = ["x", "y"].map(column);
+    let [vx, vy] = ["velocity_x", "velocity_y"].map(column);
+    let [p, rho, e, volume] =
+        ["pressure", "density", "specific_internal_energy", "volume"].map(column);
+    let line = wave_line(scene);
+    let range = scene.front().and_then(|front| front.range);
+    let scored = |&r: &usize| {
+        body.is_none_or(|b| table.body[r] as usize == b)
+            && range.is_none_or(|[from, to]| (from..=to).contains(&line.along([x[r], y[r]])))
+    };
+    let points: Vec<PlanePoint> = (0..table.len())
+        .filter(scored)
+        .map(|r| PlanePoint {
+            x: [x[r], y[r]],
+            v: [vx[r], vy[r]],
+            volume: volume[r],
+            p: p[r],
+            rho: rho[r],
+            e: e[r],
+        })
+        .collect();
+    let half_width = scene.front().and_then(|front| front.half_width).unwrap_or(f64::INFINITY);
+    line.binned(&points, half_width, width)
 }
 
 /// The particles of `body` (or all) as samples.
@@ -219,14 +306,18 @@ fn samples(scene: &CheckedScene, table: &ParticleTable, body: Option<usize>) -> 
     let column = |name| table.column(name).expect("the table has its own columns");
     let (x, p) = (column("x"), column("pressure"));
     let (rho, e) = (column("density"), column("specific_internal_energy"));
+    let volumes = table.column("volume");
     (0..table.len())
         .filter(|&r| body.is_none_or(|b| table.body[r] as usize == b))
         .map(|r| {
             // a particle's mass is an equal share of its body's
             let b = table.body[r] as usize;
-            let extent = &scene.scene.bodies[b].extent;
-            let length = (extent.upper[0] - extent.lower[0]) / scene.bodies[b].lattice[0] as f64;
-            let volume = length * scene.material_of(b).density / rho[r];
+            let body = &scene.bodies[b];
+            let length = (body.upper[0] - body.lower[0]) / body.lattice[0] as f64;
+            let volume = match volumes {
+                Some(volumes) => volumes[r],
+                None => length * scene.material_of(b).density / rho[r],
+            };
             Sample { x: x[r], volume, p: p[r], rho: rho[r], e: e[r] }
         })
         .collect()

@@ -332,7 +332,7 @@ fn draw<C: Comm>(
     profiles: &[ProfileSummary],
     folder: &OutputFolder,
 ) -> Result<(), PictureError> {
-    if let Some(Reference::Impact(all)) = reference {
+    if let (1, Some(Reference::Impact(all))) = (scene.dimension, reference) {
         let bodies = [all.flyer, all.target];
         figures::draw_hugoniots(scene, bodies, &all.impact, &all.chain, folder.path())?;
     }
@@ -345,9 +345,22 @@ fn draw<C: Comm>(
             notes.push(format!("plateau {:+.3} %", 100.0 * plateau));
         }
         let stem = Path::new(&profile.file).with_extension("");
+        if scene.dimension > 1 {
+            let name = stem.to_string_lossy();
+            figures::draw_fields(scene, table, &notes, &name, folder.path())?;
+            if let Some(reference) = reference {
+                let along = folder.file(&name.replace("profile", "along"));
+                figures::draw_along(scene, reference, k, table, notes, &along)?;
+            }
+            comm.heartbeat();
+            continue;
+        }
         let stem = stem.to_string_lossy().replace("profile", "figure_4");
         figures::draw_profile(scene, reference, k, table, notes, &folder.file(&stem))?;
         comm.heartbeat();
+    }
+    if scene.dimension > 1 {
+        return Ok(());
     }
     let title = format!("{}: pressure and wave paths", scene.scene.title);
     figures::draw_waves(&title, &recorded.waves, reference, &folder.file("x_t_diagram"))?;

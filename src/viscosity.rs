@@ -112,8 +112,9 @@ pub fn christensen<const D: usize>(nodes: &Nodes<'_, D>, node: usize) -> f64 {
     if weights > 0.0 { sum / weights } else { 0.0 }
 }
 
-/// Weight above which a particle touches a node: well above rounding, for a particle whose edge
-/// is just at the end of a node's function must not see the node or not by a bit.
+/// Share of its greatest weight above which a particle touches a node: well above rounding, for a
+/// particle whose edge is just at the end of a node's function must not see the node or not by a
+/// bit.
 const TOUCHES: f64 = 1e-3;
 
 /// phi = clamp(2 min_i D_i/D_p, 0, 1) over the nodes i that a particle touches, D_i the
@@ -127,10 +128,12 @@ pub fn nodal<const K: usize, const D: usize>(
     if gradient == 0.0 {
         return 0.0;
     }
+    let greatest = row.values.as_flattened().iter().copied().fold(0.0, f64::max);
+    let least_weight = TOUCHES * greatest;
     let mut least = f64::INFINITY;
     for (line, values) in row.values.iter().enumerate() {
         for (k, &value) in values.iter().enumerate() {
-            if value > TOUCHES {
+            if value > least_weight {
                 let i = row.first + line * row.stride + k;
                 let mut divergence = 0.0;
                 for axis in 0..D {

@@ -47,6 +47,7 @@ fn table(dimension: usize, time: f64, rows: usize) -> ParticleTable {
         material: (0..rows as u32).map(|row| row % 2).collect(),
         materials: vec!["aluminium".into(), "copper, hard".into()],
         body: vec![0; rows],
+        half_edges: Vec::new(),
         columns: columns.collect(),
     }
 }

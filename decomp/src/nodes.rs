@@ -13,23 +13,40 @@ pub enum Parity {
 }
 
 /// Arrays over the nodes of one patch: those it owns and a halo about them.
+///
+/// A node may hold several values of each field, one a layer: an array has its layers one after
+/// the other, each of them over all nodes.
 #[derive(Clone, Debug)]
 pub struct NodeArrays<const D: usize> {
     /// All nodes that are held.
     pub nodes: IndexBox<D>,
     /// The nodes that the patch owns.
     pub owned: IndexBox<D>,
-    /// One array a field, over `nodes`.
+    /// Values of a field at a node.
+    pub layers: usize,
+    /// One array a field, over `nodes`, a layer after the other.
     pub fields: Vec<Vec<f64>>,
 }
 
 impl<const D: usize> NodeArrays<D> {
     /// `fields` arrays of zeros for `patch`, with a halo of `depth` nodes about its cells.
     pub fn new(layout: &Layout<D>, patch: usize, depth: i64, fields: usize) -> Self {
+        NodeArrays::layered(layout, patch, depth, fields, 1)
+    }
+
+    /// The same with `layers` values of each field at a node.
+    pub fn layered(
+        layout: &Layout<D>,
+        patch: usize,
+        depth: i64,
+        fields: usize,
+        layers: usize,
+    ) -> Self {
         let mut nodes = layout.patches()[patch].grow(depth);
         nodes.upper = nodes.upper.map(|u| u + 1);
         let owned = layout.owned_nodes(patch, depth);
-        NodeArrays { nodes, owned, fields: vec![vec![0.0; nodes.count()]; fields] }
+        let fields = vec![vec![0.0; layers * nodes.count()]; fields];
+        NodeArrays { nodes, owned, layers, fields }
     }
 
     /// The arrays at `which`, all at once. They must differ.
@@ -158,6 +175,11 @@ impl<const D: usize> NodeExchange<D> {
     /// The exchange on `rank` for halos of `halo` nodes, in arrays with `depth` nodes about each
     /// patch's cells.
     pub fn new(layout: &Layout<D>, rank: usize, halo: i64, depth: i64) -> Self {
+        NodeExchange::layered(layout, rank, halo, depth, 1)
+    }
+
+    /// The same for arrays with `layers` values of each field at a node.
+    pub fn layered(layout: &Layout<D>, rank: usize, halo: i64, depth: i64, layers: usize) -> Self {
         let patches = layout.patches_of(rank);
         let mut place = vec![usize::MAX; layout.patches().len()];
         patches.iter().enumerate().for_each(|(k, &p)| place[p] = k);
@@ -203,9 +225,14 @@ impl<const D: usize> NodeExchange<D> {
                     continue;
                 }
                 let (giving, taking) = (arrays_of(from), arrays_of(to));
-                let nodes = nodes
-                    .iter()
-                    .map(|n| (giving.flat(image.source_node(n)) as u32, taking.flat(n) as u32));
+                let nodes = (0..layers).flat_map(|layer| {
+                    let (from, to) = (layer * giving.count(), layer * taking.count());
+                    let place = move |n| {
+                        let source = from + giving.flat(image.source_node(n));
+                        (source as u32, (to + taking.flat(n)) as u32)
+                    };
+                    nodes.iter().map(place)
+                });
                 let copy = Copy {
                     from: place[from],
                     to: place[to],
@@ -434,9 +461,12 @@ pub fn fold_mirrors<const D: usize>(
                 for node in beyond.iter() {
                     let source = image.source_node(node);
                     if arrays.nodes.contains(source) {
-                        let value = arrays.fields[field][arrays.nodes.flat(source)];
-                        arrays.fields[field][arrays.nodes.flat(node)] =
-                            sign(parity, &image.flip) * value;
+                        let (from, to) = (arrays.nodes.flat(source), arrays.nodes.flat(node));
+                        for layer in 0..arrays.layers {
+                            let first = layer * arrays.nodes.count();
+                            let value = arrays.fields[field][first + from];
+                            arrays.fields[field][first + to] = sign(parity, &image.flip) * value;
+                        }
                     }
                 }
             }
@@ -467,7 +497,9 @@ fn zero_on_mirrors<const D: usize>(
         if !plane.is_empty() {
             for node in plane.iter() {
                 let k = arrays.nodes.flat(node);
-                arrays.fields[field][k] = 0.0;
+                for layer in 0..arrays.layers {
+                    arrays.fields[field][k + layer * arrays.nodes.count()] = 0.0;
+                }
             }
         }
     }
@@ -499,6 +531,32 @@ mod tests {
             for node in arrays.nodes.iter() {
                 let got = arrays.fields[0][arrays.nodes.flat(node)];
                 assert_eq!(got, exact(node[0]), "node {node:?} of {parts} patches");
+            }
+        }
+    }
+
+    #[test]
+    fn each_layer_has_its_own_values() {
+        let layout = Layout::new(IndexBox::new([0], [10]), [[Side::Mirror, Side::Open]], [3]);
+        let mut exchange = NodeExchange::layered(&layout, 0, 4, 4, 2);
+        let mut patches: Vec<_> =
+            (0..3).map(|p| NodeArrays::layered(&layout, p, 4, 1, 2)).collect();
+        let place = |arrays: &NodeArrays<1>, node: [i64; 1], layer: usize| {
+            arrays.nodes.flat(node) + layer * arrays.nodes.count()
+        };
+        for arrays in &mut patches {
+            for (node, layer) in arrays.owned.iter().flat_map(|n| [(n, 0), (n, 1)]) {
+                let at = place(arrays, node, layer);
+                arrays.fields[0][at] = (node[0] * (1 + 10 * layer as i64)) as f64 + layer as f64;
+            }
+        }
+        exchange.refresh(&Serial, &mut patches, &[(0, Parity::Odd(0))], &mut |_| {});
+        for arrays in &patches {
+            for (node, layer) in arrays.nodes.iter().flat_map(|n| [(n, 0), (n, 1)]) {
+                let l = layer as i64;
+                let exact = node[0].signum() * (node[0].abs() * (1 + 10 * l) + l);
+                let got = arrays.fields[0][place(arrays, node, layer)];
+                assert_eq!(got, exact as f64, "node {node:?}, layer {layer}");
             }
         }
     }

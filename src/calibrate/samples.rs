@@ -73,7 +73,7 @@ fn sized(scene: &CheckedScene, finer: i64, denser: usize) -> Option<CheckedScene
     };
     new.domain.cell_size = CellSize::Uniform(size);
     for body in &mut new.bodies {
-        body.particles_per_cell.iter_mut().for_each(|n| *n *= denser);
+        body.particles_per_cell.iter_mut().flatten().for_each(|n| *n *= denser);
     }
     new.decomposition.skip_quiet = false;
     scene::check(new, &scene.file).ok()

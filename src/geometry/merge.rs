@@ -40,16 +40,10 @@ pub(super) fn merge(shape: &Shape, lattice: &Lattice, cuts: &mut Vec<Cut>) {
     slivers.sort_by(|&a, &b| cuts[a].moments.area.total_cmp(&cuts[b].moments.area).then(a.cmp(&b)));
     let into = (0..cuts.len()).collect();
     let mut merger = Merger { shape, lattice, cuts, into, members: HashMap::new() };
-    // a sliver that took up others may still be one, and has then more neighbours
-    loop {
-        let mut merged = false;
-        for &sliver in &slivers {
-            if merger.into[sliver] == sliver && merger.cuts[sliver].moments.area < least {
-                merged |= merger.merge(sliver);
-            }
-        }
-        if !merged {
-            break;
+    // one pass is enough: what has been looked at is merged, no sliver any more, or alone
+    for sliver in slivers {
+        if merger.cuts[sliver].moments.area < least {
+            merger.merge(sliver);
         }
     }
     let into = merger.into;
@@ -61,12 +55,12 @@ pub(super) fn merge(shape: &Shape, lattice: &Lattice, cuts: &mut Vec<Cut>) {
 }
 
 impl Merger<'_> {
-    /// Merges a tile into the best neighbour; false if it has none.
-    fn merge(&mut self, tile: usize) -> bool {
+    /// Merges a tile into the best neighbour, if it has one.
+    fn merge(&mut self, tile: usize) {
         let members = self.members.remove(&tile).unwrap_or_else(|| vec![tile]);
         let Some(target) = self.neighbour(tile, &members) else {
             self.members.insert(tile, members);
-            return false;
+            return;
         };
         let size = self.lattice.size();
         let (own, other) = (self.cuts[tile].index, self.cuts[target].index);
@@ -75,7 +69,6 @@ impl Merger<'_> {
         self.cuts[target].moments += moments;
         self.into[tile] = target;
         self.members.entry(target).or_insert_with(|| vec![target]).extend(members);
-        true
     }
 
     fn root(&self, mut tile: usize) -> usize {

@@ -29,10 +29,10 @@ impl Terrain {
     /// The terrain of a scene at its start.
     pub fn new(scene: &CheckedScene) -> Self {
         let (origin, size) = (scene.scene.domain.lower[0], scene.cell_size[0]);
-        let spans: Vec<Span> = (scene.scene.bodies.iter().zip(&scene.bodies))
-            .map(|(body, checked)| {
-                let lower = (body.extent.lower[0] - origin) / size;
-                let upper = (body.extent.upper[0] - origin) / size;
+        let spans: Vec<Span> = (scene.bodies.iter())
+            .map(|checked| {
+                let lower = (checked.lower[0] - origin) / size;
+                let upper = (checked.upper[0] - origin) / size;
                 let particles_per_cell = checked.lattice[0] as f64 / (upper - lower);
                 Span { lower, upper, particles_per_cell }
             })

@@ -343,6 +343,7 @@ mod tests {
                 column("artificial_viscosity", &[0.0, -0.0]),
                 column("temperature", &[f64::NAN, 293.15]),
             ],
+            half_edges: Vec::new(),
         };
         let home = tempfile::tempdir().unwrap();
         let path = home.path().join("p.csv");

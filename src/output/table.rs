@@ -29,6 +29,8 @@ pub struct ParticleTable {
     /// The columns in the order of the files: x, pressure, velocity, density,
     /// specific_internal_energy, artificial_viscosity, then those that an effect adds.
     pub columns: Vec<TableColumn>,
+    /// In a plane the half edges of each particle's parallelogram [m]; none on a line.
+    pub half_edges: Vec<[[f64; 2]; 2]>,
 }
 
 impl ParticleTable {

@@ -204,6 +204,7 @@ mod tests {
             materials: vec!["copper".into(), "aluminium".into()],
             body: vec![0; rows],
             columns,
+            half_edges: Vec::new(),
         }
     }
 

@@ -5,6 +5,8 @@
 //! accepts cannot differ. Only those words of JSON schema are known here that the scene's
 //! structs bring forth.
 
+use std::cell::RefCell;
+
 use serde_json::{Map, Value};
 
 use super::errors::{Fault, list, nearest, suggest};
@@ -34,11 +36,13 @@ pub(super) fn conform(scene: &Value) -> Result<(), Fault> {
     let root = super::schema();
     let empty = Map::new();
     let definitions = root.get("$defs").and_then(Value::as_object).unwrap_or(&empty);
-    Conform { definitions }.check(&root, scene)
+    Conform { definitions, open: RefCell::default() }.check(&root, scene)
 }
 
 struct Conform<'a> {
     definitions: &'a Map<String, Value>,
+    /// Definitions that are being put into words: one that holds itself is told by its name.
+    open: RefCell<Vec<String>>,
 }
 
 impl Conform<'_> {
@@ -167,7 +171,18 @@ impl Conform<'_> {
 
     /// What a schema allows, in words.
     fn allowed(&self, schema: &Value) -> String {
-        let schema = self.resolve(schema);
+        let name = schema.get("$ref").and_then(Value::as_str).and_then(|r| r.rsplit('/').next());
+        let Some(name) = name else { return self.allowed_inside(schema) };
+        if self.open.borrow().iter().any(|open| open == name) {
+            return format!("a {}", name.to_lowercase());
+        }
+        self.open.borrow_mut().push(name.to_string());
+        let text = self.allowed_inside(self.resolve(schema));
+        self.open.borrow_mut().pop();
+        text
+    }
+
+    fn allowed_inside(&self, schema: &Value) -> String {
         if let Some(options) = schema.get("anyOf").and_then(Value::as_array) {
             let texts: Vec<_> = options.iter().map(|option| self.allowed(option)).collect();
             return texts.join(", or ");
@@ -245,6 +260,9 @@ fn types(schema: &Value) -> Vec<&str> {
 fn has_type(schema: &Value, value: &Value) -> bool {
     if schema.get("oneOf").is_some() {
         return !value.is_null();
+    }
+    if let Some(options) = schema.get("anyOf").and_then(Value::as_array) {
+        return options.iter().any(|option| has_type(option, value));
     }
     types(schema).into_iter().any(|name| match name {
         "number" => value.is_number(),

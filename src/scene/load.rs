@@ -14,6 +14,7 @@ use serde_json::{Map, Value};
 use super::errors::{Fault, LONGEST_VALUE, SceneError, one_line, shorten};
 use super::overrides::apply;
 use super::{CheckedScene, Scene, conform::conform};
+use crate::geometry::read_points;
 
 /// A scene's file may be this long [bytes].
 pub const LARGEST_FILE: u64 = 16 << 20;
@@ -40,7 +41,34 @@ pub fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
             "is {length} bytes long; allowed: a scene of at most {LARGEST_FILE} bytes (16 MiB)"
         )));
     }
-    Ok(bytes)
+    with_positions(bytes, path)
+}
+
+/// The text of a scene with the points of its files of positions in their place: what the other
+/// ranks are sent is whole.
+fn with_positions(bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>, SceneError> {
+    // what is wrong with the text is told when it is parsed
+    let Ok(mut scene) = serde_json::from_slice::<Value>(&bytes) else { return Ok(bytes) };
+    let plane =
+        scene.pointer("/domain/lower").and_then(Value::as_array).is_some_and(|l| l.len() > 1);
+    let mut found = false;
+    for body in scene.get_mut("bodies").and_then(Value::as_array_mut).into_iter().flatten() {
+        let Some(Value::String(name)) = body.get("positions") else { continue };
+        let file = path.parent().unwrap_or(Path::new("")).join(name);
+        let fail = |reason: String| SceneError::File {
+            file: one_line(&file.display().to_string()),
+            reason: one_line(&reason),
+        };
+        let text = std::fs::read_to_string(&file)
+            .map_err(|error| fail(format!("cannot be read: {error}")))?;
+        let points = match plane {
+            true => read_points::<2>(&text).map(|points| serde_json::json!(points)),
+            false => read_points::<1>(&text).map(|points| serde_json::json!(points)),
+        };
+        body["positions"] = points.map_err(|fault| fail(fault.to_string()))?;
+        found = true;
+    }
+    Ok(if found { serde_json::to_vec(&scene).unwrap_or(bytes) } else { bytes })
 }
 
 /// Makes a checked scene of a file's bytes and the overrides `PATH=VALUE`, in their order.

@@ -91,7 +91,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         let reach = self.reach.expect("known since the start");
         let new = self.layout.clone().with_ranks(ranks);
         let (depth, deeper) = (reach.depth(self.plan.ghosts), self.plan.deeper);
-        let fields = self.stepper.fields.count;
+        let (fields, layers) = (self.stepper.fields.count, self.stepper.layers);
         let limit = self.stepper.longest_within(reach);
         // the timeline of a patch stays with the rank that computed it
         self.given_events = self.take_patch_events();
@@ -100,7 +100,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         let (patches, moved) =
             relocate(self.comm, &self.layout, &new, patches, specs, |index, block| {
                 let mut patch = Patch::new(&new, index, block);
-                patch.set_arrays(&new, index, depth, deeper, fields);
+                patch.set_arrays(&new, index, depth, deeper, fields, layers);
                 patch.reach_length = limit;
                 patch
             });

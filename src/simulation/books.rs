@@ -59,7 +59,7 @@ impl<const D: usize> Outflow<D> {
         let bodies = || scene.scene.bodies.iter().zip(&scene.bodies);
         let mass = bodies()
             .map(|(b, c)| {
-                let size = b.extent.upper.iter().zip(&b.extent.lower).map(|(u, l)| u - l);
+                let size = c.upper.iter().zip(&c.lower).map(|(u, l)| u - l);
                 let density = scene.scene.materials[&b.material].density;
                 density * size.product::<f64>() / c.particles as f64
             })

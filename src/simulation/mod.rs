@@ -19,9 +19,10 @@ use decomp::{
 };
 
 use crate::clock::{Activity, Clock, Event};
+use crate::geometry::Tile;
 use crate::particles::{self, Columns};
 use crate::patch::Patch;
-use crate::scene::{CheckedScene, FilterHalo, Side};
+use crate::scene::{CheckedBody, CheckedScene, FilterHalo, Side};
 use crate::step::{Reach, Sleep, Stepper, World};
 use crate::threads::make_pool;
 
@@ -203,17 +204,22 @@ fn may_sleep<const D: usize>(scene: &CheckedScene) -> bool {
 /// Particles in the cells of `cells`, counted without making them.
 fn count_particles<const D: usize>(scene: &CheckedScene, cells: &IndexBox<D>) -> u64 {
     let x = |a: usize, cell: i64| scene.scene.domain.lower[a] + cell as f64 * scene.cell_size[a];
-    let bodies = scene.scene.bodies.iter().zip(&scene.bodies);
-    bodies
-        .map(|(body, checked)| {
-            let along = |a: usize| {
-                let (lower, upper) = (body.extent.lower[a], body.extent.upper[a]);
+    let inside = |tile: &Tile| {
+        let at = (0..D).map(|a| (x(a, cells.lower[a]), tile.centre[a], x(a, cells.upper[a])));
+        at.into_iter().all(|(lower, at, upper)| lower <= at && at < upper)
+    };
+    let count = |body: &CheckedBody| match &body.tiles {
+        Some(tiles) => tiles.iter().filter(|tile| inside(tile)).count() as f64,
+        None => (0..D)
+            .map(|a| {
+                let (lower, upper) = (body.lower[a], body.upper[a]);
                 let inside = upper.min(x(a, cells.upper[a])) - lower.max(x(a, cells.lower[a]));
-                inside.max(0.0) / (upper - lower) * checked.lattice[a] as f64
-            };
-            (0..D).map(along).product::<f64>().round() as u64
-        })
-        .sum()
+                inside.max(0.0) / (upper - lower) * body.lattice[a] as f64
+            })
+            .product::<f64>()
+            .round(),
+    };
+    scene.bodies.iter().map(|body| count(body) as u64).sum()
 }
 
 /// How much more a particle weighs than an empty cell as the domain is cut.
@@ -230,12 +236,10 @@ fn cut_domain<const D: usize>(scene: &CheckedScene, ranks: usize, threads: usize
     }
     let cuts = std::array::from_fn(|a| {
         let across = domain.count() as u64 / scene.cells[a] as u64;
-        let weight = |c: i64| {
-            let mut slice = domain;
-            (slice.lower[a], slice.upper[a]) = (c, c + 1);
-            across + PARTICLE_WEIGHT * count_particles(scene, &slice)
-        };
-        let weights: Vec<u64> = (0..scene.cells[a] as i64).map(weight).collect();
+        let weights: Vec<u64> = particles::slices(scene, a)
+            .into_iter()
+            .map(|particles| across + PARTICLE_WEIGHT * particles)
+            .collect();
         even_cuts(&weights, parts[a], LEAST_CELLS)
     });
     Layout::with_cuts(domain, sides, cuts)
@@ -262,7 +266,8 @@ impl<const D: usize> Plan<D> {
         let ghosts = reach.cells() + deeper;
         let notice = options.skip_quiet.then(|| stepper.notice(reach));
         let rows = RowExchange::new(layout, rank, RowReach { depth: ghosts, travel: 1, notice });
-        let nodes = NodeExchange::new(layout, rank, reach.halo(), reach.depth(ghosts));
+        let nodes =
+            NodeExchange::layered(layout, rank, reach.halo(), reach.depth(ghosts), stepper.layers);
         Plan {
             inner_rows: rows.inner().to_vec(),
             inner_nodes: nodes.inner().to_vec(),
@@ -419,11 +424,11 @@ impl<'a, C: Comm, const D: usize> Simulation<'a, C, D> {
         if self.reach != Some(reach) {
             self.reach = Some(reach);
             self.make_plan(reach);
-            let fields = self.stepper.fields.count;
+            let (fields, layers) = (self.stepper.fields.count, self.stepper.layers);
             let mine = self.layout.patches_of(self.comm.rank());
             let (depth, deeper) = (reach.depth(self.plan.ghosts), self.plan.deeper);
             for (patch, index) in self.patches.iter_mut().zip(mine) {
-                patch.set_arrays(&self.layout, index, depth, deeper, fields);
+                patch.set_arrays(&self.layout, index, depth, deeper, fields, layers);
             }
         }
         let limit = self.stepper.longest_within(reach);

@@ -80,6 +80,17 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         }
     }
 
+    /// Force between bodies in contact over the last step [N], in 1-D per unit area and in a plane
+    /// per unit depth: the sums over all places of contact of what presses across the plane of
+    /// contact, and of what drags along it. Zero without contact. Collective.
+    pub fn contact_force(&self) -> [f64; 2] {
+        exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
+            for told in self.patches.iter().flat_map(|p| &p.contact.told) {
+                told.iter().enumerate().for_each(|(k, &force)| add(k, force));
+            }
+        })
+    }
+
     /// All particles and the digest of the whole state, every bit in order of id, at rank 0;
     /// nothing elsewhere. Collective.
     pub fn gather(&self) -> Option<(ParticleTable, String)> {
@@ -164,7 +175,33 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             materials: self.scene.scene.materials.keys().cloned().collect(),
             body,
             columns,
+            half_edges: self.half_edges(&order, &column),
         }
+    }
+
+    /// In a plane the half edges of the particles' parallelograms [m]: of those that have none,
+    /// squares of their volume.
+    fn half_edges<'b>(
+        &self,
+        order: &[usize],
+        column: &impl Fn(usize) -> &'b Vec<f64>,
+    ) -> Vec<[[f64; 2]; 2]> {
+        let c = &self.stepper.columns;
+        if D == 1 {
+            return Vec::new();
+        }
+        let edges = |r: usize| {
+            if let (Some(half), Some(f)) = (c.half_lengths, c.deformation) {
+                let half = [column(half)[r], column(half + 1)[r]];
+                let f = |k: usize| column(f + k)[r];
+                return [[f(0) * half[0], f(2) * half[0]], [f(1) * half[1], f(3) * half[1]]];
+            }
+            let about = if self.scene.axisymmetric() { column(c.position)[r] } else { 1.0 };
+            let area = column(c.volume0)[r] * column(c.jacobian)[r] / about;
+            let half = 0.5 * area.max(0.0).sqrt();
+            [[half, 0.0], [0.0, half]]
+        };
+        order.iter().map(|&r| edges(r)).collect()
     }
 
     /// The particles of the ids in `wanted` (in order) at rank 0; `None` for one that has left.

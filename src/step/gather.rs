@@ -162,6 +162,9 @@ impl<const D: usize> Stepper<D> {
         };
         let lower = patch.nodes.nodes.lower;
         let n = patch.block.own();
+        let (count, layers) = (patch.nodes.nodes.count(), patch.nodes.layers);
+        let first = &patch.stencils.first;
+        let layer = |r: usize| if layers > 1 { first[r] as usize / count * count } else { 0 };
         let [phi, gradient] = patch
             .block
             .columns
@@ -177,6 +180,7 @@ impl<const D: usize> Stepper<D> {
                         let at =
                             |a: usize| (i64::from(patch.block.cells[r][a]) - lower[a]) as usize;
                         let node = (1..D).fold(at(0), |sum, a| sum + stride * at(a));
+                        let node = node + layer(r);
                         viscosity::christensen(&nodes, node)
                     }
                     Limiter::Nodal => {
@@ -191,6 +195,9 @@ impl<const D: usize> Stepper<D> {
     /// All that the end of a mid-point step brings the own rows: volume and energy from the
     /// gradients of the mean velocity and of w, the filter's heat, velocity, position, and domain.
     pub(super) fn gather_midpoint(&self, patch: &mut Patch<D>, dt: f64) {
+        if self.contact.is_some() {
+            self.gather_contact(patch, dt);
+        }
         fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, dt: f64) {
             match s.tensor_stress() {
                 false => s.gather_rows::<K, false>(patch, dt),

@@ -29,7 +29,7 @@ impl<const D: usize> Stepper<D> {
         });
         if self.stress_update == StressUpdate::First {
             world.exchange_rows(|nodal| {
-                nodal.each("scatter", |patch| self.scatter(patch, false));
+                nodal.each("scatter", |patch| self.scatter(patch, false, 0.0));
                 // no force yet: the acceleration's sums are zero
                 self.solve_velocity(nodal, 0.0, false);
                 nodal.each("update stress", |patch| {
@@ -41,9 +41,13 @@ impl<const D: usize> Stepper<D> {
         }
         let last = self.stress_update == StressUpdate::Last;
         world.exchange_rows(|nodal| {
-            nodal.each("scatter", |patch| self.scatter(patch, true));
+            nodal.each("scatter", |patch| self.scatter(patch, true, dt));
             self.solve_velocity(nodal, dt, false);
+            self.solve_friction_heat(nodal, dt);
             nodal.each("gather", |patch| {
+                if self.contact.is_some() {
+                    self.gather_contact(patch, dt);
+                }
                 self.gather_velocity(patch);
                 self.move_rows(patch, dt);
                 self.book_body_force(patch, dt);

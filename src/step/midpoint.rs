@@ -38,7 +38,7 @@ impl<const D: usize> Stepper<D> {
         });
         world.exchange_rows(|nodal| {
             nodal.each("scatter", |patch| {
-                self.scatter(patch, true);
+                self.scatter(patch, true, dt);
                 if relax.is_some() {
                     self.start_pressure(patch);
                 }
@@ -47,6 +47,7 @@ impl<const D: usize> Stepper<D> {
             if self.compatible {
                 self.solve_work(nodal);
             }
+            self.solve_friction_heat(nodal, dt);
             nodal.each("gather", |patch| {
                 self.gather_midpoint(patch, dt);
                 self.book_body_force(patch, dt);
@@ -73,7 +74,7 @@ impl<const D: usize> Stepper<D> {
             }
         });
         world.exchange_rows(|nodal| {
-            nodal.each("scatter", |patch| self.scatter(patch, false));
+            nodal.each("scatter", |patch| self.scatter(patch, false, 0.0));
             self.solve_velocity(nodal, 0.0, false);
             nodal.each("gather", |patch| {
                 self.gather_gradient(patch, self.fields.velocity_star);

@@ -5,6 +5,7 @@
 //! every patch and the exchanges between phases.
 
 mod body_force;
+mod contact;
 pub mod gather;
 pub mod leapfrog;
 pub mod midpoint;
@@ -20,6 +21,7 @@ pub use reach::Reach;
 pub use world::{Nodal, Sleep, World};
 
 use crate::constitutive::{self, Matter};
+use crate::contact::Contact;
 use crate::grid::Fields;
 use crate::particles::Columns;
 use crate::patch::Patch;
@@ -45,6 +47,12 @@ pub struct Stepper<const D: usize> {
     edge_mask: Option<f64>,
     viscosity: Option<Viscosity>,
     body_force: Option<body_force::Force>,
+    /// Contact between velocity fields of the bodies' own.
+    contact: Option<Contact>,
+    /// Velocity fields, each in a layer of the nodal arrays: one for all bodies, or one a body.
+    pub layers: usize,
+    /// rho c^2 of each body as it starts [Pa].
+    stiffness: Vec<f64>,
     /// One a body.
     models: Vec<Matter>,
     shape: ShapeKind,
@@ -95,7 +103,7 @@ macro_rules! with_shape {
             0..=3 => $call::<$shape, 3, D>($($arg),*),
             4 => $call::<$shape, 4, D>($($arg),*),
             5..=6 => $call::<$shape, 6, D>($($arg),*),
-            7..=10 => $call::<$shape, 10, D>($($arg),*),
+            _ if D > 1 || $nodes <= 10 => $call::<$shape, 10, D>($($arg),*),
             _ => $call::<$shape, MOST_NODES, D>($($arg),*),
         }
     };
@@ -109,15 +117,23 @@ macro_rules! with_width {
             3 => $call::<3, D>($($arg),*),
             4 => $call::<4, D>($($arg),*),
             6 => $call::<6, D>($($arg),*),
-            10 => $call::<10, D>($($arg),*),
+            _ if D > 1 || $width <= 10 => $call::<10, D>($($arg),*),
             _ => $call::<MOST_NODES, D>($($arg),*),
         }
     };
 }
 use with_width;
 
-/// Most nodes along one direction that a particle may touch.
+/// Most nodes along one direction that a particle may touch, on a line.
 const MOST_NODES: usize = 18;
+
+/// Most nodes along one direction that a particle may touch, in a plane.
+const MOST_NODES_IN_PLANE: usize = 10;
+
+/// Most nodes along one direction that a particle may touch.
+const fn most_nodes(dimension: usize) -> usize {
+    if dimension == 1 { MOST_NODES } else { MOST_NODES_IN_PLANE }
+}
 
 /// How much longer a particle may be at the middle of a step than at its start.
 const STRETCH: f64 = 1.25;
@@ -140,6 +156,9 @@ impl<const D: usize> Stepper<D> {
                 m.sound_speed_at(pressure).max(c.top_speed)
             })
             .fold(0.0, f64::max);
+        let stiffness = (bodies.iter().zip(&models))
+            .map(|(b, m)| materials[&b.material].density * m.sound_speed_at(b.pressure).powi(2))
+            .collect();
         let densest = bodies.iter().map(|b| materials[&b.material].density).fold(0.0, f64::max);
         // what a cell's edge is to viscosity: exact where all are the same
         let edge = match cell.iter().all(|&h| h == cell[0]) {
@@ -149,9 +168,12 @@ impl<const D: usize> Stepper<D> {
         let scheme: Scheme = method.transfer.into();
         let filtered = matches!(scheme, Scheme::Series { .. });
         let relaxed = method.pressure_relaxation.is_some();
+        let contact = scene.scene.contact.as_ref().and_then(Contact::new);
+        let contact = contact.filter(|_| scene.velocity_fields() > 1);
+        let rubs = D > 1 && contact.is_some_and(|c| c.coefficient.is_some());
         Stepper {
             columns: Columns::new(scene),
-            fields: Fields::new(D, filtered, method.edge_mask.is_some(), relaxed),
+            fields: Fields::new(D, filtered, method.edge_mask.is_some(), relaxed, rubs),
             scheme,
             stepping: method.stepping,
             stress_update: method.stress_update,
@@ -161,6 +183,9 @@ impl<const D: usize> Stepper<D> {
             edge_mask: method.edge_mask,
             viscosity: viscosity.map(|v| Viscosity::new(v, edge)),
             body_force: body_force::Force::new(scene),
+            contact,
+            layers: scene.velocity_fields(),
+            stiffness,
             models,
             shape: method.shape,
             cell,
@@ -188,12 +213,21 @@ impl<const D: usize> Stepper<D> {
 
     /// The greatest extent along a direction of the particles that `scene` starts with [cells].
     pub fn longest_at_start(&self, scene: &CheckedScene) -> f64 {
-        let bodies = scene.scene.bodies.iter().zip(&scene.bodies);
-        let lengths = bodies.flat_map(|(b, c)| {
-            let edge = |a: usize| (b.extent.upper[a] - b.extent.lower[a]) / c.lattice[a] as f64;
-            (0..D).map(move |a| edge(a) / scene.cell_size[a])
-        });
-        lengths.fold(0.0, f64::max)
+        let bodies = scene.bodies.iter();
+        bodies
+            .map(|c| {
+                let in_cells = |a: usize, length: f64| length / scene.cell_size[a];
+                match &c.tiles {
+                    Some(tiles) => tiles
+                        .iter()
+                        .flat_map(|t| (0..D).map(|a| in_cells(a, t.size[a])))
+                        .fold(0.0, f64::max),
+                    None => (0..D)
+                        .map(|a| in_cells(a, (c.upper[a] - c.lower[a]) / c.lattice[a] as f64))
+                        .fold(0.0, f64::max),
+                }
+            })
+            .fold(0.0, f64::max)
     }
 
     /// The reach of particles up to `length` long [cells], with room to stretch in a step; `None`
@@ -207,7 +241,7 @@ impl<const D: usize> Stepper<D> {
             _ => length,
         };
         let nodes = with_shape!(self.shape, 4usize, nodes(length));
-        (nodes <= MOST_NODES).then_some(Reach { nodes, products: self.products() })
+        (nodes <= most_nodes(D)).then_some(Reach { nodes, products: self.products() })
     }
 
     /// Products with a matrix that lie between the particles' sums and what they take back.
@@ -261,7 +295,7 @@ impl<const D: usize> Stepper<D> {
 
     /// The longest particle [cells] that any reach is deep enough for, with room to stretch.
     fn longest_ever(&self) -> f64 {
-        self.longest_within(Reach { nodes: MOST_NODES, products: 0 }) / STRETCH
+        self.longest_within(Reach { nodes: most_nodes(D), products: 0 }) / STRETCH
     }
 
     fn extent(&self) -> Extent {
@@ -301,7 +335,8 @@ impl<const D: usize> Stepper<D> {
     /// Weights of all rows of a patch, as wide as its longest row needs.
     fn find_weights(&self, patch: &mut Patch<D>) {
         fn find<S: Shape, const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
-            patch.find_weights::<S, K>(s.columns.fraction, s.columns.domain, s.inverse_cell)
+            let layer = (s.layers > 1).then_some(s.columns.body);
+            patch.find_weights::<S, K>(s.columns.fraction, s.columns.domain, s.inverse_cell, layer)
         }
         fn nodes<S: Shape, const K: usize, const D: usize>(length: f64) -> usize {
             S::nodes(length)
@@ -326,5 +361,14 @@ impl<const D: usize> Stepper<D> {
                 along(0).max(along(1))
             }
         }
+    }
+}
+
+/// Length of a vector; exact along an axis.
+#[inline(always)]
+fn norm(v: &[f64]) -> f64 {
+    match v {
+        [x] => x.abs(),
+        _ => v.iter().map(|x| x * x).sum::<f64>().sqrt(),
     }
 }

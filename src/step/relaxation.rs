@@ -36,9 +36,9 @@ impl<const D: usize> Stepper<D> {
             return;
         };
         let (p, w) = (&patch.block.columns[p][..rows], &patch.block.columns[w][..rows]);
-        let (nodes, stride) = (patch.nodes.nodes.count(), patch.nodes.nodes.extent(0));
+        let (nodes, stride) =
+            (patch.nodes.layers * patch.nodes.nodes.count(), patch.nodes.nodes.extent(0));
         patch.compliance_band.clear(nodes, K, D, stride);
-        let lines = patch.active_lines();
         let [weight, inverse, sum, term] = patch.nodes.fields_mut([weight, inverse, sum, term]);
         weight.fill(0.0);
         inverse.fill(0.0);
@@ -53,7 +53,7 @@ impl<const D: usize> Stepper<D> {
             }
         }
         patch.compliance_band.finish();
-        for i in lines.flatten() {
+        for i in patch.active_lines.iter().cloned().flatten() {
             inverse[i] = if weight[i] > 0.0 { 1.0 / weight[i] } else { 0.0 };
             term[i] = cut(term[i] * inverse[i], self.still_pressure);
         }

@@ -83,22 +83,20 @@ impl<const D: usize> Stepper<D> {
                 .expect("columns differ");
             (0..n).for_each(|r| out[r] /= x[r] + ahead * v[r]);
         }
-        match (c.half_lengths, c.deformation.filter(|_| self.extent() == Extent::Current)) {
-            (Some(half_lengths), Some(deformation)) => {
-                self.find_parallelograms(patch, half_lengths, deformation, ahead, jacobian);
+        let deforms = c.deformation.filter(|_| c.half_edges.is_some());
+        if let (Some(half_lengths), Some(deformation)) = (c.half_lengths, deforms) {
+            self.find_parallelograms(patch, half_lengths, deformation, ahead, jacobian);
+        }
+        if let (Some(half_lengths), Extent::Undeformed) = (c.half_lengths, self.extent()) {
+            for a in 0..D {
+                let [half, out] = patch
+                    .block
+                    .columns
+                    .get_disjoint_mut([half_lengths + a, c.domain + a])
+                    .expect("differ");
+                out.clear();
+                out.extend(half.iter().map(|h| 2.0 * h * self.inverse_cell[a]));
             }
-            (Some(half_lengths), None) => {
-                for a in 0..D {
-                    let [half, out] = patch
-                        .block
-                        .columns
-                        .get_disjoint_mut([half_lengths + a, c.domain + a])
-                        .expect("differ");
-                    out.clear();
-                    out.extend(half.iter().map(|h| 2.0 * h * self.inverse_cell[a]));
-                }
-            }
-            _ => {}
         }
     }
 
@@ -114,11 +112,13 @@ impl<const D: usize> Stepper<D> {
     ) {
         let c = &self.columns;
         let whole = c.velocity_gradient.expect("a domain that deforms has the column");
+        let half_edges = c.half_edges.expect("likewise");
         let n = patch.block.own();
         for k in 0..4 {
-            patch.block.columns[c.domain + k].resize(n, 0.0);
+            patch.block.columns[half_edges + k].resize(n, 0.0);
         }
-        let limit = patch.reach_length;
+        let limit =
+            if self.extent() == Extent::Current { patch.reach_length } else { f64::INFINITY };
         let mut torn = None;
         let columns = &mut patch.block.columns;
         for r in 0..n {
@@ -143,7 +143,7 @@ impl<const D: usize> Stepper<D> {
             }
             let [a, b] = domain.half_edges;
             for (k, value) in [a[0], a[1], b[0], b[1]].into_iter().enumerate() {
-                columns[c.domain + k][r] = value;
+                columns[half_edges + k][r] = value;
             }
         }
         if let Some(row) = torn {
@@ -325,7 +325,7 @@ impl<const D: usize> Stepper<D> {
         let mut stress = take(c.stress_volume);
         let mut relaxed = c.pressure_mid.zip(c.compliance).map(|(p, w)| (take(p), take(w)));
         let column = |k: usize| &patch.block.columns[k];
-        for (body, rows) in bodies(column(c.body)) {
+        for (body, rows) in bodies(&column(c.body)[..patch.block.own()]) {
             let Matter::Fluid(model) = &self.models[body] else {
                 // pressure relaxation leaves solids alone
                 if let Some((p, w)) = &mut relaxed {
@@ -422,7 +422,7 @@ impl<const D: usize> Stepper<D> {
         let mut pressure = std::mem::take(&mut patch.block.columns[c.pressure]);
         let mut energy = std::mem::take(&mut patch.block.columns[c.energy]);
         let column = |k: usize| &patch.block.columns[k];
-        for (body, rows) in bodies(column(c.body)) {
+        for (body, rows) in bodies(&column(c.body)[..patch.block.own()]) {
             let Matter::Fluid(model) = &self.models[body] else { continue };
             model.change_volume(VolumeChange {
                 mass: &column(c.mass)[rows.clone()],
@@ -448,7 +448,7 @@ impl<const D: usize> Stepper<D> {
         let mut speed = std::mem::take(&mut patch.block.columns[c.sound_speed]);
         let column = |k: usize| &patch.block.columns[k];
         let mut found = None;
-        for (body, rows) in bodies(column(c.body)) {
+        for (body, rows) in bodies(&column(c.body)[..patch.block.own()]) {
             let Matter::Fluid(model) = &self.models[body] else { continue };
             let told = model.refresh(
                 &column(c.jacobian)[rows.clone()],
@@ -520,7 +520,7 @@ impl<const D: usize> Stepper<D> {
                 let extent = self.domain(f, half, volume0[r] * j[r] / at).extent();
                 extent[0].max(extent[1])
             }
-            (_, Some(half), _) => {
+            (Extent::Undeformed, Some(half), _) => {
                 let lengths = (0..D).map(|a| 2.0 * column(half + a)[r] * self.inverse_cell[a]);
                 lengths.fold(0.0, f64::max)
             }

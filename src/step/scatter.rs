@@ -7,10 +7,13 @@ use crate::transfer::{Scheme, cut, lines};
 
 impl<const D: usize> Stepper<D> {
     /// All sums of a patch at new places of its rows, with or without the force, and the lumped
-    /// velocity and acceleration from them.
-    pub(super) fn scatter(&self, patch: &mut Patch<D>, force: bool) {
+    /// velocity and acceleration from them in a step of `dt`.
+    pub(super) fn scatter(&self, patch: &mut Patch<D>, force: bool, dt: f64) {
         self.find_weights(patch);
         self.scatter_rows(patch, force);
+        if let Some(contact) = &self.contact {
+            self.find_contact(patch, contact, if force { dt } else { 0.0 });
+        }
         self.divide_by_mass(patch);
         self.start_series(patch);
     }
@@ -59,7 +62,8 @@ impl<const D: usize> Stepper<D> {
             patch.nodes.fields[field].fill(0.0);
         }
         if MATRIX {
-            patch.band.clear(patch.nodes.nodes.count(), K, D, patch.nodes.nodes.extent(0));
+            let nodes = patch.nodes.layers * patch.nodes.nodes.count();
+            patch.band.clear(nodes, K, D, patch.nodes.nodes.extent(0));
         }
         // fields leave the list while the others are read and written
         let mut take = |k: usize| std::mem::take(&mut patch.nodes.fields[k]);
@@ -160,6 +164,7 @@ impl<const D: usize> Stepper<D> {
     pub(super) fn offset(&self, patch: &Patch<D>, row: usize, first: usize) -> [f64; D] {
         let (nodes, cell) = (&patch.nodes.nodes, patch.block.cells[row]);
         let stride = patch.stencils.stride;
+        let first = if patch.nodes.layers > 1 { first % nodes.count() } else { first };
         std::array::from_fn(|a| {
             let at = match (D, a) {
                 (1, _) => first,
@@ -175,10 +180,9 @@ impl<const D: usize> Stepper<D> {
     /// matter are cut to zero.
     pub(super) fn divide_by_mass(&self, patch: &mut Patch<D>) {
         let f = &self.fields;
-        let lines = patch.active_lines();
         patch.nodes.fields[f.inverse].fill(0.0);
         let (still, slow) = (self.still_speed, self.still_acceleration);
-        for line in lines {
+        for line in &patch.active_lines {
             let [mass, inverse] = patch.nodes.fields_mut([f.mass, f.inverse]);
             for i in line.clone() {
                 inverse[i] = if mass[i] > self.empty_mass { 1.0 / mass[i] } else { 0.0 };
@@ -192,5 +196,9 @@ impl<const D: usize> Stepper<D> {
                 }
             }
         }
+        if self.contact.is_some() {
+            self.join_sums(patch);
+        }
+        self.find_edge(patch);
     }
 }

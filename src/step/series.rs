@@ -14,11 +14,12 @@ use crate::patch::Patch;
 use crate::transfer::{Scheme, cut};
 
 /// A series s = sum_(l<order) t_l with t_l = K t_(l-1), summed up by Horner's rule,
-/// s' = t_0 + K s: one pass over the nodes a term.
+/// s' = t_0 + K s: one pass over the nodes a term. A vector has one a component, in fields that
+/// follow each other.
 #[derive(Clone, Copy)]
-struct Series {
-    /// The field of the sum; in the beginning t_0 on the patch's own nodes.
-    sum: usize,
+pub(super) struct Series {
+    /// The field of the sum; in the beginning t_0 on the nodes that the patch computes.
+    pub(super) sum: usize,
     /// The field that keeps t_0.
     first: usize,
     /// Where the last term is wanted too, what the last product adds to the sum.
@@ -26,17 +27,41 @@ struct Series {
     order: u32,
     matrix: Matrix,
     mask: Mask,
-    parity: Parity,
 }
 
 /// The matrix in K.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 enum Matrix {
+    /// Of masses, for a vector.
     Mass,
+    /// Of compliances, for a scalar.
     Compliance,
 }
 
-/// Where nodes with little material are taken out: t_l = K chi t_(l-1), or chi K t_(l-1).
+impl Series {
+    /// Whether it is of a scalar.
+    pub(super) fn is_scalar(&self) -> bool {
+        self.matrix == Matrix::Compliance
+    }
+
+    /// The same for component `axis`.
+    fn component(mut self, axis: usize) -> Self {
+        self.sum += axis;
+        self.first += axis;
+        self.last = self.last.map(|l| l + axis);
+        self
+    }
+
+    /// Its components and how each behaves in a mirror.
+    fn components<const D: usize>(self) -> impl Iterator<Item = (Self, Parity)> {
+        let scalar = self.is_scalar();
+        let parity = move |axis| if scalar { Parity::Even } else { Parity::Odd(axis) };
+        (0..if scalar { 1 } else { D }).map(move |axis| (self.component(axis), parity(axis)))
+    }
+}
+
+/// Where nodes with little material are taken out: t_l = K chi t_(l-1), or chi K t_(l-1). A node
+/// is taken out by the patch that computes it, before others see its value.
 #[derive(Clone, Copy, PartialEq)]
 enum Mask {
     No,
@@ -46,9 +71,9 @@ enum Mask {
 
 /// The last term of a series, from its sum and the sum before, which `last` holds.
 fn find_last<const D: usize>(patch: &mut Patch<D>, sum: usize, last: usize) {
-    for span in patch.span_lines() {
-        let [sum, last] = patch.nodes.fields_mut([sum, last]);
-        for (sum, last) in sum[span.clone()].iter().zip(&mut last[span]) {
+    let [sum, last] = patch.nodes.fields_mut([sum, last]);
+    for span in &patch.span_lines {
+        for (sum, last) in sum[span.clone()].iter().zip(&mut last[span.clone()]) {
             *last = sum - *last;
         }
     }
@@ -62,64 +87,61 @@ fn copy<const D: usize>(patch: &mut Patch<D>, from: usize, to: usize) {
 }
 
 impl<const D: usize> Stepper<D> {
-    /// Takes nodes with little material out of a field: chi = 0 where the filled fraction of the
-    /// node's volume is below the edge mask.
-    fn mask(&self, patch: &mut Patch<D>, field: usize) {
-        let Some(least) = self.edge_mask else { return };
-        if !patch.has_edge {
-            return;
-        }
-        let [volume, values] = patch.nodes.fields_mut([self.fields.volume, field]);
-        for (value, volume) in values.iter_mut().zip(volume) {
-            if *volume < least {
-                *value = 0.0;
-            }
-        }
-    }
-
-    /// Notes whether a patch sees a node that the mask takes out: where none is, no field has to
-    /// be looked through. Nodes without material hold zeros anyway.
-    fn find_edge(&self, patch: &mut Patch<D>) {
+    /// Notes whether a patch computes a node that the mask takes out: where none is, no field has
+    /// to be looked through. Nodes without material hold zeros anyway.
+    pub(super) fn find_edge(&self, patch: &mut Patch<D>) {
         let Some(least) = self.edge_mask else { return };
         let [volume, inverse] = patch.nodes.fields_mut([self.fields.volume, self.fields.inverse]);
-        patch.has_edge = volume.iter().zip(inverse).any(|(v, i)| *v < least && *i > 0.0);
+        let mut nodes = patch.active_lines.iter().cloned().flatten();
+        patch.has_edge = nodes.any(|i| volume[i] < least && inverse[i] > 0.0);
+    }
+
+    /// Takes nodes with little material out of a sum: chi = 0 where the filled fraction of the
+    /// node's volume is below the edge mask. What a product has just made becomes t_0 there.
+    fn mask(&self, patch: &mut Patch<D>, series: &Series) {
+        let Some(least) = self.edge_mask else { return };
+        if patch.has_edge {
+            for (series, _) in series.components::<D>() {
+                let [volume, sum, first] =
+                    patch.nodes.fields_mut([self.fields.volume, series.sum, series.first]);
+                for i in patch.active_lines.iter().cloned().flatten() {
+                    if volume[i] < least {
+                        sum[i] = if series.mask == Mask::After { first[i] } else { 0.0 };
+                    }
+                }
+            }
+        }
+        if self.contact.is_some() {
+            let first = (series.mask == Mask::After).then_some(series.first);
+            patch.contact.mask(&mut patch.nodes.fields, first, series.sum);
+        }
     }
 
     /// The sum of a series with one more term, on the nodes that the patch computes; beyond them
     /// it is what the next exchange makes of it. `ends` tells that it is the last term.
     fn next_sum(&self, patch: &mut Patch<D>, series: &Series, ends: bool) {
-        let Series { sum, first, .. } = *series;
-        if series.mask == Mask::Before {
-            self.mask(patch, sum);
-        }
         let (band, inverse) = match series.matrix {
             Matrix::Mass => (&patch.band, self.fields.inverse),
             Matrix::Compliance => (&patch.compliance_band, self.fields.relaxation[1]),
         };
         let scratch = self.fields.scratch;
-        let lines = patch.active_lines();
-        let [inverse, x, t, y] = patch.nodes.fields_mut([inverse, sum, first, scratch]);
-        lines.for_each(|line| band.next_sum(x, inverse, t, line, y));
-        // nodes without material hold zeros in both
-        patch.nodes.fields.swap(sum, scratch);
-        if series.mask == Mask::After {
-            self.mask_product(patch, series);
-        }
-        if let (true, Some(last)) = (ends, series.last) {
-            patch.nodes.fields.swap(scratch, last);
-        }
-    }
-
-    /// Takes nodes with little material out of what a product has just made: t_0 stays.
-    fn mask_product(&self, patch: &mut Patch<D>, series: &Series) {
-        let Some(least) = self.edge_mask.filter(|_| patch.has_edge) else { return };
-        let lines = patch.active_lines();
-        let [volume, sum, first] =
-            patch.nodes.fields_mut([self.fields.volume, series.sum, series.first]);
-        for i in lines.flatten() {
-            if volume[i] < least {
-                sum[i] = first[i];
+        for (Series { sum, first, last, .. }, _) in series.components::<D>() {
+            let [inverse, x, t, y] = patch.nodes.fields_mut([inverse, sum, first, scratch]);
+            for line in &patch.active_lines {
+                band.next_sum(x, inverse, t, line.clone(), y);
             }
+            // nodes without material hold zeros in both
+            patch.nodes.fields.swap(sum, scratch);
+            if let (true, Some(last)) = (ends, last) {
+                patch.nodes.fields.swap(scratch, last);
+            }
+        }
+        if self.contact.is_some() {
+            self.join_series(patch, series, ends);
+        }
+        // the sum itself is not masked, what the next product takes from it is
+        if series.mask == Mask::After || (series.mask == Mask::Before && !ends) {
+            self.mask(patch, series);
         }
     }
 
@@ -138,17 +160,19 @@ impl<const D: usize> Stepper<D> {
             let going = || all.iter().filter(move |s| s.order > l);
             let mut fields: SmallVec<[(usize, Parity); 8]> = SmallVec::new();
             fields.extend(others.iter().copied().filter(|_| l == 0));
-            fields.extend(going().map(|s| (s.sum, s.parity)));
+            let components = going().flat_map(|s| s.components::<D>());
+            fields.extend(components.map(|(s, parity)| (s.sum, parity)));
             nodal.refresh(&fields);
             nodal.each(name, |patch| {
-                if l == 0 && !others.is_empty() {
-                    self.find_edge(patch);
-                }
                 for series in going() {
                     if l + 1 < series.order {
                         self.next_sum(patch, series, l + 2 == series.order);
-                    } else if let Some(last) = series.last {
-                        find_last(patch, series.sum, last);
+                    } else {
+                        for (series, _) in series.components::<D>() {
+                            if let Some(last) = series.last {
+                                find_last(patch, series.sum, last);
+                            }
+                        }
                     }
                 }
                 if l + 1 == rounds {
@@ -158,27 +182,26 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// The series of a component of velocity and force: v = sum_(l<k) K^l vL; b = sum_(l<k) t_l
-    /// with t_0 = f/m and t_l = K chi t_(l-1), or b = f/m where the scheme lumps the force.
-    fn velocity_series(&self, axis: usize) -> [Series; 2] {
+    /// The series of velocity and force: v = sum_(l<k) K^l vL; b = sum_(l<k) t_l with t_0 = f/m
+    /// and t_l = K chi t_(l-1), or b = f/m where the scheme lumps the force.
+    fn velocity_series(&self) -> [Series; 2] {
         let f = &self.fields;
         let (order, force_order) = match self.scheme {
             Scheme::Series { order, force } => (order, if force { order } else { 1 }),
             Scheme::Blend(_) | Scheme::Affine => (1, 1),
         };
         let velocity = Series {
-            sum: f.velocity + axis,
-            first: f.lumped + axis,
+            sum: f.velocity,
+            first: f.lumped,
             // what the filter's heat is counted from
-            last: f.remainder.map(|r| r + axis),
+            last: f.remainder,
             order,
             matrix: Matrix::Mass,
             mask: Mask::No,
-            parity: Parity::Odd(axis),
         };
         let force = Series {
-            sum: f.acceleration + axis,
-            first: f.first + axis,
+            sum: f.acceleration,
+            first: f.first,
             last: None,
             order: force_order,
             mask: Mask::Before,
@@ -189,12 +212,16 @@ impl<const D: usize> Stepper<D> {
 
     /// The first terms of the series of velocity and force, from lumped velocity and f/m.
     pub(super) fn start_series(&self, patch: &mut Patch<D>) {
+        let [velocity, force] = self.velocity_series();
         for axis in 0..D {
-            let [velocity, force] = self.velocity_series(axis);
+            let (velocity, force) = (velocity.component(axis), force.component(axis));
             copy(patch, velocity.first, velocity.sum);
             if force.order > 1 {
                 copy(patch, force.sum, force.first);
             }
+        }
+        if force.order > 1 {
+            self.mask(patch, &force);
         }
     }
 
@@ -203,8 +230,7 @@ impl<const D: usize> Stepper<D> {
     /// between neighbours.
     pub(super) fn solve_velocity(&self, nodal: &mut Nodal<'_, D>, dt: f64, relax: bool) {
         let f = &self.fields;
-        let mut all: SmallVec<[Series; 5]> =
-            (0..D).flat_map(|axis| self.velocity_series(axis)).collect();
+        let mut all: SmallVec<[Series; 3]> = self.velocity_series().into_iter().collect();
         if relax {
             let [_, _, sum, first] = f.relaxation;
             all.push(Series {
@@ -214,15 +240,13 @@ impl<const D: usize> Stepper<D> {
                 order: relaxation::ORDER,
                 matrix: Matrix::Compliance,
                 mask: Mask::No,
-                parity: Parity::Even,
             });
         }
-        let others = [(f.inverse, Parity::Even), (f.volume, Parity::Even)];
-        let others = if self.edge_mask.is_some() { &others[..] } else { &others[..1] };
+        let others = [(f.inverse, Parity::Even)];
         // pressure may have more terms than velocity
-        self.sum_series(nodal, "series", others, &all, |patch| {
+        self.sum_series(nodal, "series", &others, &all, |patch| {
             let still = self.still_speed;
-            for span in patch.span_lines() {
+            for span in &patch.span_lines {
                 for a in 0..D {
                     let [v, b, star] = patch.nodes.fields_mut([
                         f.velocity + a,
@@ -239,6 +263,9 @@ impl<const D: usize> Stepper<D> {
             }
             if self.compatible {
                 (0..D).for_each(|axis| self.start_work(patch, axis));
+                if self.contact.is_some() {
+                    self.join_work(patch);
+                }
             }
         });
     }
@@ -249,23 +276,21 @@ impl<const D: usize> Stepper<D> {
         let f = &self.fields;
         let (star, lumped) = (f.velocity_star + axis, f.lumped + axis);
         let (work, first) = (f.work + axis, f.first + axis);
-        let lines = || patch.active.lines_in(&patch.nodes.nodes);
+        let lines = &patch.active_lines;
         match self.scheme {
             Scheme::Series { .. } => {
-                let lines = lines();
                 let [inverse, star, lumped, w, first] =
                     patch.nodes.fields_mut([f.inverse, star, lumped, work, first]);
                 w.fill(0.0);
                 for line in lines {
                     patch.band.product(star, line.clone(), w);
-                    for i in line {
+                    for i in line.clone() {
                         w[i] = 0.5 * (lumped[i] + inverse[i] * w[i]);
                         first[i] = w[i];
                     }
                 }
             }
             Scheme::Blend(a) => {
-                let lines = lines();
                 let [lumped, star, x] = patch.nodes.fields_mut([lumped, star, first]);
                 for i in 0..x.len() {
                     x[i] = (1.0 - a) * lumped[i] + 0.5 * (star[i] - lumped[i]);
@@ -280,7 +305,7 @@ impl<const D: usize> Stepper<D> {
                 w.fill(0.0);
                 for line in lines {
                     patch.band.product(x, line.clone(), y);
-                    for i in line {
+                    for i in line.clone() {
                         w[i] = a * lumped[i] + inverse[i] * y[i];
                     }
                 }
@@ -299,15 +324,14 @@ impl<const D: usize> Stepper<D> {
             Scheme::Series { order, force: true } => order,
             _ => 1,
         };
-        let series: [Series; D] = std::array::from_fn(|axis| Series {
-            sum: self.fields.work + axis,
-            first: self.fields.first + axis,
+        let series = Series {
+            sum: self.fields.work,
+            first: self.fields.first,
             last: None,
             order,
             matrix: Matrix::Mass,
             mask: Mask::After,
-            parity: Parity::Odd(axis),
-        });
-        self.sum_series(nodal, "work", &[], &series, |_| {});
+        };
+        self.sum_series(nodal, "work", &[], &[series], |_| {});
     }
 }

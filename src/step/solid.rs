@@ -181,6 +181,19 @@ impl<const D: usize> Stepper<D> {
         patch.block.columns[c.stress_volume] = work;
     }
 
+    /// n.S n of a row, what it presses with along a normal [J].
+    #[inline(always)]
+    pub(super) fn pressing(&self, patch: &Patch<D>, r: usize, normal: &[f64; D]) -> f64 {
+        let s = |k: usize| patch.block.columns[self.columns.stress_volume + k][r];
+        match self.tensor_stress() {
+            false => s(0),
+            true => {
+                let [x, y] = [normal[0], normal[D - 1]];
+                s(0) * x * x + s(1) * y * y + 2.0 * s(2) * x * y
+            }
+        }
+    }
+
     /// The internal force of all rows, f_i = sum S G_i, onto the nodes.
     pub(super) fn scatter_stress(&self, patch: &mut Patch<D>) {
         fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use crate::in_process::end_of;
 use crate::layouts::Layout;
-use crate::scenes::{SHAPES, ending, shipped, small_leapfrog, small_midpoint};
+use crate::scenes::{SHAPES, ending, shipped, small, small_leapfrog, small_midpoint};
 
 /// Transfers, one of each kind.
 fn transfers() -> [Value; 6] {
@@ -41,6 +41,25 @@ fn each_scheme_in_leapfrog() {
 #[test]
 fn each_scheme_at_the_midpoint() {
     every_scheme(small_midpoint);
+}
+
+#[test]
+fn bodies_that_meet_and_part() {
+    for method in [
+        json!({}),
+        json!({"shape": "cpdi", "transfer": "flip"}),
+        json!({"shape": "gimp", "transfer": "apic", "stress_update": "modified_last"}),
+        json!({"shape": "bspline_cubic", "transfer": {"xpic": 3}, "stress_update": "first"}),
+    ] {
+        let mut scene = small("soft_flyer.json");
+        // a gap of a cell, and a flyer so thin that it comes off again
+        scene["bodies"][0]["box"] = json!({"lower": [-0.00007], "upper": [-0.00001]});
+        if method != json!({}) {
+            scene["method"] = method.clone();
+            scene["artificial_viscosity"] = json!({"linear": 0.2, "quadratic": 2.0});
+        }
+        same(&scene, &format!("contact, {method}"));
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@
 mod accuracy;
 mod bits;
 mod conservation;
+mod contact;
 mod hard;
 mod invariance;
 mod options;

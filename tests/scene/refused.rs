@@ -129,6 +129,29 @@ fn options_that_cannot_go_together_are_named() {
 }
 
 #[test]
+fn contact_that_says_nothing_or_too_much() {
+    let edit = |set: &str, fragments: &[&str]| refused("soft_flyer.json", &[set], fragments);
+    edit("contact.type=glue", &["contact", "glue", "frictionless"]);
+    edit("contact={\"type\": \"friction\"}", &["contact", "coefficient"]);
+    let negative = "contact={\"type\": \"friction\", \"coefficient\": -0.1}";
+    edit(negative, &["contact.coefficient = -0.1", "at least 0"]);
+    edit("contact={\"type\": \"stick\", \"coefficient\": 0.1}", &["contact", "coefficient"]);
+    let both = "contact={\"type\": \"frictionless\", \"coefficient\": 0.1}";
+    edit(both, &["contact", "coefficient"]);
+    let normals = "contact={\"type\": \"frictionless\", \"normals\": \"logistic_regression\"}";
+    edit(normals, &["contact.normals = \"logistic_regression\"", "two dimensions"]);
+    edit("contact.normals=volume", &["contact", "volume"]);
+    let warned = |name: &str, sets: &[&str]| with(name, sets).unwrap().warnings.join("; ");
+    let friction = "contact={\"type\": \"friction\", \"coefficient\": 0.1}";
+    tells(&warned("soft_flyer.json", &[friction]), &["contact.type", "nothing slides"]);
+    let sets = ["contact={\"type\": \"frictionless\"}"];
+    tells(&warned("piston.json", &sets), &["one body"]);
+    // a softer flyer is held together without contact alone
+    tells(&warned("soft_flyer.json", &["contact={\"type\": \"stick\"}"]), &["would separate"]);
+    assert_eq!(warned("soft_flyer.json", &[]), "");
+}
+
+#[test]
 fn sides_that_cannot_face_each_other() {
     let pair = |lower: &str, upper: &str| {
         let sets = [format!("boundary.x_lower={lower}"), format!("boundary.x_upper={upper}")];

@@ -31,7 +31,7 @@ fn greshos_vortex_stands_for_a_quarter_turn() {
 }
 
 #[test]
-fn apic_keeps_the_rotation_of_a_block() {
+fn apic_keeps_the_rotation_of_a_disk() {
     let mut value = shipped("spinning_disk.json");
     value["time"]["end"] = json!(13.5);
     value["output"]["profiles"]["times"] = json!([13.5]);

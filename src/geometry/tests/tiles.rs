@@ -144,6 +144,30 @@ fn a_sliver_goes_to_the_neighbour_that_it_shares_most_with() {
 }
 
 #[test]
+fn a_sliver_goes_by_its_edges_before_its_distance() {
+    // 1 % of a tile, 0.2 of an edge above a whole tile, 0.05 of an edge beside a near part of one
+    let body = |lower: [f64; 2], upper: [f64; 2]| json!({"box": {"lower": lower, "upper": upper}});
+    let shape = shape(json!({"union": [
+        body([1.0, 0.0], [2.0, 1.0]),
+        body([0.8, 1.0], [1.0, 1.2]),
+        body([1.0, 1.0], [1.2, 1.05])]}));
+    let tiles = fill(&shape, [0.0, 0.0], [1.0, 1.0], [1, 1]);
+    assert_eq!(tiles.len(), 2);
+    close(tiles[0].area, 1.01, 1e-14, 1.0);
+    close(tiles[1].area, 0.04, 1e-14, 1.0);
+}
+
+#[test]
+fn a_sliver_at_a_corner_goes_across_it() {
+    let shape = shape(json!({"union": [
+        {"box": {"lower": [0.0, 0.0], "upper": [1.0, 1.0]}},
+        {"box": {"lower": [1.0, 1.0], "upper": [1.1, 1.1]}}]}));
+    let tiles = fill(&shape, [0.0, 0.0], [1.0, 1.0], [1, 1]);
+    assert_eq!(tiles.len(), 1);
+    close(tiles[0].area, 1.01, 1e-14, 1.0);
+}
+
+#[test]
 fn a_body_all_of_slivers_is_merged_within_itself() {
     // a strip of 0.7 % of a tile over nine tiles: three come to 2.1 %
     let strip = json!({"polygon": {"vertices": [[0, 0], [9, 0], [9, 0.007], [0, 0.007]]}});

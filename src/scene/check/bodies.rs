@@ -1,6 +1,7 @@
 //! Materials and bodies: names, places, and how many particles fill them.
 
 use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 use serde_json::json;
 
@@ -9,9 +10,10 @@ use crate::motion::Motion;
 
 use super::super::conform::join;
 use super::super::errors::{Fault, suggest};
-use super::super::model::{Body, Eos, Scene};
+use super::super::model::{Body, BoxShape, Eos, Positions, Region, Scene};
 use super::domain::MOST;
 use super::{check_box, check_length, check_printable, motion};
+use crate::geometry::{PointFault, Shape, Tile, fill, voronoi, voronoi_line};
 
 /// Bodies nearer than this touch, and may overlap by it [cells].
 pub(super) const TOUCHING: f64 = 1e-9;
@@ -27,11 +29,38 @@ pub struct CheckedBody {
     pub motion: Option<Motion>,
     /// No particle is faster at the start [m/s].
     pub top_speed: f64,
-    /// Particles in each direction: length over cell size times particles a cell, rounded. They
-    /// tile the body: each is as long as the body over this number.
+    /// Lower and upper corner of the smallest box about it [m], D numbers each.
+    pub lower: Vec<f64>,
+    /// The upper corner.
+    pub upper: Vec<f64>,
+    /// Of a body that is a box, particles in each direction: length over cell size times particles
+    /// a cell, rounded. They tile the body: each is as long as the body over this number. One of
+    /// other bodies.
     pub lattice: Vec<usize>,
+    /// The tiles that a body that is no box, or has positions of its own, is filled with.
+    pub tiles: Option<Arc<Vec<Tile>>>,
     /// Particles in all.
     pub particles: u64,
+}
+
+impl CheckedBody {
+    /// Number of the particle in whose tile a place [m] lies, or that is nearest to it.
+    pub fn nearest(&self, at: &[f64]) -> u64 {
+        if let Some(tiles) = &self.tiles {
+            let apart = |tile: &Tile| -> f64 {
+                at.iter().zip(tile.centre).map(|(x, centre)| (x - centre) * (x - centre)).sum()
+            };
+            let nearest =
+                (0..tiles.len()).min_by(|&a, &b| apart(&tiles[a]).total_cmp(&apart(&tiles[b])));
+            return nearest.unwrap_or(0) as u64;
+        }
+        let along = |a: usize| {
+            let share = (at[a] - self.lower[a]) / (self.upper[a] - self.lower[a]);
+            let count = self.lattice[a] as f64;
+            (share * count).floor().clamp(0.0, count - 1.0) as u64
+        };
+        (0..at.len()).rev().fold(0, |k, a| k * self.lattice[a] as u64 + along(a))
+    }
 }
 
 pub(super) fn check(
@@ -59,7 +88,7 @@ pub(super) fn check(
         };
         checked.push(check_body(scene, body, &path, material, cell_size)?);
     }
-    check_overlap(scene, cell_size)?;
+    check_overlap(scene, &checked, cell_size)?;
     let used: HashSet<_> = checked.iter().map(|body| body.material).collect();
     for (i, name) in materials.iter().enumerate() {
         if !used.contains(&i) {
@@ -107,40 +136,212 @@ fn check_body(
 ) -> Result<CheckedBody, Fault> {
     let dimension = cell_size.len();
     let below = |key: &str| format!("{path}.{key}");
-    let extent = &body.extent;
-    check_length(&below("box.lower"), &extent.lower, dimension)?;
-    check_length(&below("box.upper"), &extent.upper, dimension)?;
-    check_length(&below("particles_per_cell"), &body.particles_per_cell, dimension)?;
     let velocity = body.velocity.clone().unwrap_or_else(|| vec![0.0; dimension]);
+    let mut regions = body.regions();
+    let keys: Vec<_> = regions.iter().map(|(key, _)| *key).collect();
+    let (Some((key, region)), 1) = (regions.pop(), keys.len()) else {
+        let allowed = if dimension == 1 { "\"box\"" } else { KEYS };
+        return Err(match keys.get(1) {
+            None => Fault::missing(below("box"), format!("missing key; allowed: one of {allowed}")),
+            Some(other) => {
+                let reason = format!("beside {}; allowed: one region a body", below(keys[0]));
+                Fault::new(below(other), true, reason)
+            }
+        });
+    };
+    let fill = Fill { scene, body, path, key, region: &region, cell_size };
+    let filled = if dimension == 1 { fill.line()? } else { fill.plane()? };
     check_length(&below("velocity"), &velocity, dimension)?;
-    check_box(&below("box"), &extent.lower, &extent.upper)?;
+    check_inside(scene, path, key, &filled, cell_size)?;
+    check_pressure(scene, body, &below("pressure"))?;
+    let motion = motion::check_field(scene, body, path, dimension)?;
+    let Filled { lower, upper, lattice, tiles } = filled;
+    let top_speed = match &motion {
+        Some(motion) => motion.top_speed(&lower, &upper),
+        None => norm(&velocity),
+    };
+    let particles = match &tiles {
+        Some(tiles) => tiles.len() as u64,
+        None => lattice.iter().map(|&n| n as u64).product(),
+    };
+    Ok(CheckedBody {
+        material,
+        velocity,
+        motion,
+        top_speed,
+        lower,
+        upper,
+        lattice,
+        tiles,
+        particles,
+    })
+}
+
+/// Keys of regions, in words.
+const KEYS: &str = "\"box\", \"disk\", \"ellipse\", \"polygon\", \"annulus\", \"half_plane\", \
+                    \"union\", \"difference\", \"intersection\" and \"rotation\"";
+
+/// What is known of a body once it is filled; see [`CheckedBody`].
+struct Filled {
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    lattice: Vec<usize>,
+    tiles: Option<Arc<Vec<Tile>>>,
+}
+
+/// A body that is about to be filled.
+struct Fill<'a> {
+    scene: &'a Scene,
+    body: &'a Body,
+    path: &'a str,
+    /// The key of its region.
+    key: &'static str,
+    region: &'a Region,
+    cell_size: &'a [f64],
+}
+
+impl Fill<'_> {
+    fn below(&self, key: &str) -> String {
+        format!("{}.{key}", self.path)
+    }
+
+    /// Particles a cell; they must be given where there are no positions, and only there.
+    fn per_cell(&self) -> Result<Option<&[usize]>, Fault> {
+        let path = self.below("particles_per_cell");
+        let dimension = self.cell_size.len();
+        match (&self.body.particles_per_cell, &self.body.positions) {
+            (Some(counts), None) => {
+                check_length(&path, counts, dimension)?;
+                Ok(Some(counts))
+            }
+            (None, Some(_)) => Ok(None),
+            (None, None) => {
+                let reason = "missing key; allowed: an array of whole numbers, or positions";
+                Err(Fault::missing(path, reason))
+            }
+            (Some(counts), Some(_)) => {
+                let reason = format!("beside {}; allowed: one of them", self.below("positions"));
+                Err(Fault::new(path, counts, reason))
+            }
+        }
+    }
+
+    /// The positions that the scene gives.
+    fn points<const D: usize>(&self) -> Result<Vec<[f64; D]>, Fault> {
+        let path = self.below("positions");
+        let points = match &self.body.positions {
+            Some(Positions::Points(points)) => points,
+            Some(Positions::File(name)) => {
+                let reason = "a file is read with the scene alone; allowed: positions in the scene's \
+                              own text, or an array of points";
+                return Err(Fault::new(path, name, reason));
+            }
+            None => return Ok(Vec::new()),
+        };
+        let point = |(k, point): (usize, &Vec<f64>)| {
+            check_length(&format!("{path}[{k}]"), point, D)?;
+            Ok(std::array::from_fn(|a| point[a]))
+        };
+        points.iter().enumerate().map(point).collect()
+    }
+
+    fn faulty(&self, fault: PointFault) -> Fault {
+        let path = format!("{}[{}]", self.below("positions"), fault.number);
+        Fault::new(path, fault.place, fault.reason)
+    }
+
+    /// On a line.
+    fn line(&self) -> Result<Filled, Fault> {
+        let Region::Box(extent) = self.region else {
+            let reason = "a region of the plane, but domain.lower has 1 number, which is the \
+                          dimension of the scene; allowed: \"box\"";
+            return Err(Fault::new(self.below(self.key), true, reason));
+        };
+        let (lower, upper) = (extent.lower.clone(), extent.upper.clone());
+        check_length(&self.below("box.lower"), &lower, 1)?;
+        check_length(&self.below("box.upper"), &upper, 1)?;
+        check_box(&self.below("box"), &lower, &upper)?;
+        let Some(per_cell) = self.per_cell()? else {
+            let points: Vec<f64> = self.points::<1>()?.into_iter().map(|p| p[0]).collect();
+            let tiles = voronoi_line(lower[0], upper[0], &points).map_err(|f| self.faulty(f))?;
+            let tile = |&(centre, length): &(f64, f64)| Tile {
+                centre: [centre, 0.0],
+                area: length,
+                size: [length, 0.0],
+            };
+            let tiles = Some(Arc::new(tiles.iter().map(tile).collect()));
+            return Ok(Filled { lower, upper, lattice: vec![1], tiles });
+        };
+        let lattice = lattice(extent, per_cell, self.path, self.cell_size)?;
+        Ok(Filled { lower, upper, lattice, tiles: None })
+    }
+
+    /// In a plane.
+    fn plane(&self) -> Result<Filled, Fault> {
+        if let Region::Box(extent) = self.region {
+            check_length(&self.below("box.lower"), &extent.lower, 2)?;
+            check_length(&self.below("box.upper"), &extent.upper, 2)?;
+            check_box(&self.below("box"), &extent.lower, &extent.upper)?;
+            if let Some(per_cell) = self.per_cell()? {
+                let (lower, upper) = (extent.lower.clone(), extent.upper.clone());
+                let lattice = lattice(extent, per_cell, self.path, self.cell_size)?;
+                return Ok(Filled { lower, upper, lattice, tiles: None });
+            }
+        }
+        let shape = Shape::new(self.region)
+            .map_err(|fault| Fault::new(self.below(&fault.path), fault.value, fault.reason))?;
+        let [lower, upper] = shape.bounds().map(|corner| corner.to_vec());
+        let cell = [self.cell_size[0], self.cell_size[1]];
+        let tiles = match self.per_cell()? {
+            Some(per_cell) => {
+                let counts = [per_cell[0], per_cell[1]];
+                let whole = cell[0] * cell[1] / (counts[0] * counts[1]) as f64;
+                if shape.area() / whole > MOST_TILES {
+                    let reason = format!(
+                        "{:.1e} particles; allowed: at most {MOST_TILES:e} in a body that is no box",
+                        shape.area() / whole
+                    );
+                    let path = self.below("particles_per_cell");
+                    return Err(Fault::new(path, per_cell, reason));
+                }
+                let origin = [self.scene.domain.lower[0], self.scene.domain.lower[1]];
+                fill(&shape, origin, cell, counts)
+            }
+            None => voronoi(&shape, &self.points::<2>()?).map_err(|f| self.faulty(f))?,
+        };
+        Ok(Filled { lower, upper, lattice: vec![1; 2], tiles: Some(Arc::new(tiles)) })
+    }
+}
+
+/// Most particles of a body whose tiles have to be made one by one.
+const MOST_TILES: f64 = 1e9;
+
+/// A body lies within the domain.
+fn check_inside(
+    scene: &Scene,
+    path: &str,
+    key: &str,
+    filled: &Filled,
+    cell_size: &[f64],
+) -> Result<(), Fault> {
     let domain = &scene.domain;
     for (d, size) in cell_size.iter().enumerate() {
         let tolerance = TOUCHING * size;
         let (lower, upper) = (domain.lower[d], domain.upper[d]);
-        let outside = if extent.lower[d] < lower - tolerance {
-            Some(("box.lower", &extent.lower))
-        } else if extent.upper[d] > upper + tolerance {
-            Some(("box.upper", &extent.upper))
+        let (corner, value) = if filled.lower[d] < lower - tolerance {
+            ("lower", &filled.lower)
+        } else if filled.upper[d] > upper + tolerance {
+            ("upper", &filled.upper)
         } else {
-            None
+            continue;
         };
-        if let Some((key, corner)) = outside {
-            let reason = format!(
-                "outside of the domain; allowed: {lower} to {upper} (domain.lower, domain.upper)"
-            );
-            return Err(Fault::new(below(key), corner, reason));
-        }
+        let reason = format!(
+            "outside of the domain; allowed: {lower} to {upper} (domain.lower, domain.upper)"
+        );
+        let key = if key == "box" { format!("box.{corner}") } else { key.to_string() };
+        return Err(Fault::new(format!("{path}.{key}"), value, reason));
     }
-    check_pressure(scene, body, &below("pressure"))?;
-    let motion = motion::check_field(scene, body, path, dimension)?;
-    let top_speed = match &motion {
-        Some(motion) => motion.top_speed(&extent.lower, &extent.upper),
-        None => norm(&velocity),
-    };
-    let lattice = lattice(body, path, cell_size)?;
-    let particles = lattice.iter().map(|&n| n as u64).product();
-    Ok(CheckedBody { material, velocity, motion, top_speed, lattice, particles })
+    Ok(())
 }
 
 /// Length of a vector; exact along an axis.
@@ -172,14 +373,18 @@ fn check_pressure(scene: &Scene, body: &Body, path: &str) -> Result<(), Fault> {
     Err(Fault::new(path, body.pressure, format!("allowed: at least {}, {why}", json!(least))))
 }
 
-/// Particles in each direction.
-fn lattice(body: &Body, path: &str, cell_size: &[f64]) -> Result<Vec<usize>, Fault> {
-    let extent = &body.extent;
+/// Particles in each direction of a box.
+fn lattice(
+    extent: &BoxShape,
+    per_cell: &[usize],
+    path: &str,
+    cell_size: &[f64],
+) -> Result<Vec<usize>, Fault> {
     let mut total = 1.0;
     let mut lattice = Vec::with_capacity(cell_size.len());
     for (d, size) in cell_size.iter().enumerate() {
         let cells = (extent.upper[d] - extent.lower[d]) / size;
-        let count = (cells * body.particles_per_cell[d] as f64).round();
+        let count = (cells * per_cell[d] as f64).round();
         if count < 1.0 {
             let reason = format!(
                 "no particle: the body is {cells:?} cells long, less than half a particle's size; \
@@ -194,7 +399,7 @@ fn lattice(body: &Body, path: &str, cell_size: &[f64]) -> Result<Vec<usize>, Fau
                  memory holds"
             );
             let path = format!("{path}.particles_per_cell");
-            return Err(Fault::new(path, &body.particles_per_cell, reason));
+            return Err(Fault::new(path, per_cell, reason));
         }
         lattice.push(count as usize);
     }
@@ -203,26 +408,37 @@ fn lattice(body: &Body, path: &str, cell_size: &[f64]) -> Result<Vec<usize>, Fau
 
 /// Bodies may touch, but not overlap: in order of x, each is held against those that begin
 /// before it ends.
-fn check_overlap(scene: &Scene, cell_size: &[f64]) -> Result<(), Fault> {
-    let mut order: Vec<&Body> = scene.bodies.iter().collect();
-    order.sort_by(|a, b| a.extent.lower[0].total_cmp(&b.extent.lower[0]));
-    let overlap = |a: &Body, b: &Body| {
-        cell_size.iter().enumerate().all(|(d, size)| {
-            let upper = a.extent.upper[d].min(b.extent.upper[d]);
-            upper - a.extent.lower[d].max(b.extent.lower[d]) > TOUCHING * size
-        })
+fn check_overlap(scene: &Scene, checked: &[CheckedBody], cell_size: &[f64]) -> Result<(), Fault> {
+    let mut order: Vec<usize> = (0..checked.len()).collect();
+    order.sort_by(|&a, &b| checked[a].lower[0].total_cmp(&checked[b].lower[0]));
+    let cell: f64 = cell_size.iter().product();
+    let overlap = |a: usize, b: usize| {
+        let (one, other) = (&checked[a], &checked[b]);
+        let boxes = cell_size.iter().enumerate().all(|(d, size)| {
+            one.upper[d].min(other.upper[d]) - one.lower[d].max(other.lower[d]) > TOUCHING * size
+        });
+        let region = |i: usize| scene.bodies[i].regions().pop().map(|(_, region)| region);
+        match (boxes, region(a), region(b)) {
+            (false, ..) | (_, None, _) | (.., None) => false,
+            (_, Some(Region::Box(_)), Some(Region::Box(_))) => true,
+            (_, Some(a), Some(b)) => Shape::new(&Region::Intersection(vec![a, b]))
+                .is_ok_and(|shape| shape.area() > TOUCHING * cell),
+        }
     };
-    for (i, body) in order.iter().enumerate() {
-        let rest = order[i + 1..].iter();
-        for other in rest.take_while(|other| other.extent.lower[0] < body.extent.upper[0]) {
+    let key = |i: usize| scene.bodies[i].regions().pop().map_or("box", |(key, _)| key);
+    let path = |i: usize| join(&join("bodies", &scene.bodies[i].name), key(i));
+    let value = |i: usize| json!(scene.bodies[i])[key(i)].clone();
+    for (k, &body) in order.iter().enumerate() {
+        let rest = order[k + 1..].iter();
+        for &other in rest.take_while(|&&other| checked[other].lower[0] < checked[body].upper[0]) {
             if overlap(body, other) {
                 let reason = format!(
-                    "overlaps {} = {}; allowed: boxes that touch at most",
-                    join(&join("bodies", &body.name), "box"),
-                    json!(body.extent)
+                    "overlaps {} = {}; allowed: {} that touch at most",
+                    path(body),
+                    value(body),
+                    if scene.domain.lower.len() == 1 { "boxes" } else { "bodies" }
                 );
-                let path = join(&join("bodies", &other.name), "box");
-                return Err(Fault::new(path, &other.extent, reason));
+                return Err(Fault::new(path(other), value(other), reason));
             }
         }
     }

@@ -44,7 +44,7 @@ impl CheckedScene {
 
     /// Distance from body `i` to a wall [m].
     pub(super) fn gap_to(&self, wall: &Wall, i: usize) -> f64 {
-        let extent = &self.scene.bodies[i].extent;
+        let extent = &self.bodies[i];
         if wall.upper { wall.position - extent.upper[0] } else { extent.lower[0] - wall.position }
     }
 

@@ -64,6 +64,7 @@ pub(super) fn check(checked: &mut CheckedScene) -> Result<(), Fault> {
         }
         check_impact(checked, &impact)?;
         if let Some(other) = other
+            && checked.velocity_fields() == 1
             && gap > checked.tolerance(0)
         {
             let [a, b] = [body, other].map(|i| join("bodies", &checked.scene.bodies[i].name));
@@ -82,13 +83,13 @@ fn impacts(checked: &CheckedScene) -> Vec<Impact<'_>> {
     let scene = &checked.scene;
     let bodies = &scene.bodies;
     let mut order: Vec<usize> = (0..bodies.len()).collect();
-    order.sort_by(|&a, &b| bodies[a].extent.lower[0].total_cmp(&bodies[b].extent.lower[0]));
+    order.sort_by(|&a, &b| checked.bodies[a].lower[0].total_cmp(&checked.bodies[b].lower[0]));
     let pair = |a: usize, b: usize, shift: f64| Impact {
         body: a,
         other: Some(b),
         name: &bodies[b].name,
         speed: checked.bodies[a].velocity[0] - checked.bodies[b].velocity[0],
-        gap: bodies[b].extent.lower[0] + shift - bodies[a].extent.upper[0],
+        gap: checked.bodies[b].lower[0] + shift - checked.bodies[a].upper[0],
     };
     let mut impacts: Vec<_> = order.windows(2).map(|w| pair(w[0], w[1], 0.0)).collect();
     let (first, last) = (order[0], order[order.len() - 1]);

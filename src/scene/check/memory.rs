@@ -19,7 +19,8 @@ impl CheckedScene {
     /// Estimate of the memory that the run takes on all ranks together [bytes].
     pub fn memory(&self) -> u64 {
         let particles = self.particles.saturating_mul(BYTES_PER_PARTICLE);
-        particles.saturating_add(self.cell_count().saturating_mul(BYTES_PER_CELL))
+        let nodes = self.cell_count().saturating_mul(self.velocity_fields() as u64);
+        particles.saturating_add(nodes.saturating_mul(BYTES_PER_CELL))
     }
 
     /// Refuses a run that needs more than `available` bytes; `None` is taken as enough.

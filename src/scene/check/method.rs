@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use super::super::errors::Fault;
 use super::super::model::{
-    EnergyUpdate, LimitedTerms, Scene, ShapeKind, Stepping, StressUpdate, Transfer,
+    Contact, EnergyUpdate, LimitedTerms, Normals, Scene, ShapeKind, Stepping, StressUpdate,
+    Transfer,
 };
 use super::CheckedScene;
 
@@ -37,6 +38,7 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Fau
             return Err(Fault::new("method.domain_limit", limit, reason));
         }
     }
+    check_contact(scene, warnings)?;
     if method.shape == ShapeKind::Linear {
         warnings.push(
             "method.shape = \"linear\": inaccurate, since forces jump when a particle passes into \
@@ -64,6 +66,31 @@ pub(super) fn check_bodies(checked: &CheckedScene) -> Result<(), Fault> {
         }
         _ => Ok(()),
     }
+}
+
+/// What a scene's contact cannot do.
+fn check_contact(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Fault> {
+    let (rubs, normals) = match scene.contact {
+        None => return Ok(()),
+        Some(Contact::Stick {}) => (false, Normals::default()),
+        Some(Contact::Frictionless { normals }) => (false, normals),
+        Some(Contact::Friction { normals, .. }) => (true, normals),
+    };
+    let on_a_line = scene.domain.lower.len() == 1;
+    if on_a_line && normals == Normals::LogisticRegression {
+        let reason = "says nothing: on a line every normal is along it; allowed: to leave it out, \
+                      or two dimensions";
+        return Err(Fault::new("contact.normals", normals, reason));
+    }
+    if scene.bodies.len() == 1 {
+        warnings.push("contact: the scene has one body, which touches no other".to_string());
+    } else if on_a_line && rubs {
+        warnings.push(
+            "contact.type = \"friction\": on a line nothing slides; the same as \"frictionless\""
+                .to_string(),
+        );
+    }
+    Ok(())
 }
 
 /// A mid-point step has one order of stress, and needs what its options act on.

@@ -5,6 +5,7 @@
 mod bodies;
 mod boundary;
 mod domain;
+mod front;
 mod impact;
 mod memory;
 mod method;
@@ -16,7 +17,7 @@ mod reference;
 use serde::Serialize;
 
 use super::errors::{Fault, one_line};
-use super::model::{Geometry, Material, Scene, Side};
+use super::model::{Contact, Geometry, Material, Scene, Side};
 
 pub use bodies::CheckedBody;
 pub use boundary::Wall;
@@ -106,6 +107,16 @@ impl CheckedScene {
     /// Whether a body is a solid, so that stress is a tensor.
     pub fn has_solids(&self) -> bool {
         (0..self.bodies.len()).any(|i| self.material_of(i).eos.is_solid())
+    }
+
+    /// Velocity fields: one for all bodies, or with contact one a body.
+    pub fn velocity_fields(&self) -> usize {
+        match self.scene.contact {
+            None | Some(Contact::Stick {}) => 1,
+            Some(Contact::Frictionless { .. } | Contact::Friction { .. }) => {
+                self.scene.bodies.len()
+            }
+        }
     }
 
     /// The material of body `i`.

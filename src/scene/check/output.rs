@@ -39,8 +39,8 @@ pub(super) fn history_interval(scene: &Scene) -> Option<f64> {
 
 pub(super) fn check_tracers(checked: &CheckedScene) -> Result<(), Fault> {
     let Some(histories) = &checked.scene.output.histories else { return Ok(()) };
-    let bodies: HashMap<_, _> =
-        checked.scene.bodies.iter().map(|body| (body.name.as_str(), body)).collect();
+    let names = checked.scene.bodies.iter().map(|body| body.name.as_str());
+    let bodies: HashMap<_, _> = names.zip(0..).collect();
     let mut names = HashSet::new();
     for (i, tracer) in histories.tracers.iter().enumerate() {
         let path = format!("output.histories.tracers[{i}].name");
@@ -54,7 +54,7 @@ pub(super) fn check_tracers(checked: &CheckedScene) -> Result<(), Fault> {
             return Err(Fault::new(path, &tracer.name, reason));
         }
         let path = join("output.histories.tracers", &tracer.name);
-        let Some(body) = bodies.get(tracer.body.as_str()) else {
+        let Some(&number) = bodies.get(tracer.body.as_str()) else {
             let known = checked.scene.bodies.iter().map(|body| body.name.as_str());
             let reason = format!("no such body{}", suggest(&tracer.body, known));
             return Err(Fault::new(join(&path, "body"), &tracer.body, reason));
@@ -63,11 +63,12 @@ pub(super) fn check_tracers(checked: &CheckedScene) -> Result<(), Fault> {
         check_length(&path, &tracer.at, checked.dimension)?;
         for (d, at) in tracer.at.iter().enumerate() {
             let tolerance = checked.tolerance(d);
-            let (lower, upper) = (body.extent.lower[d], body.extent.upper[d]);
+            let bounds = &checked.bodies[number];
+            let (lower, upper) = (bounds.lower[d], bounds.upper[d]);
             if *at < lower - tolerance || *at > upper + tolerance {
                 let reason = format!(
-                    "outside of its body; allowed: {lower} to {upper} ({}.box)",
-                    join("bodies", &body.name)
+                    "outside of its body; allowed: {lower} to {upper} ({})",
+                    join("bodies", &tracer.body)
                 );
                 return Err(Fault::new(path, &tracer.at, reason));
             }

@@ -22,6 +22,7 @@ pub(super) fn check(checked: &mut CheckedScene) -> Result<(), Fault> {
 fn check_flyer_impact(checked: &mut CheckedScene, impact: &FlyerImpact) -> Result<(), Fault> {
     const FLYER: &str = "reference.flyer_impact.flyer";
     const TARGET: &str = "reference.flyer_impact.target";
+    super::front::check(checked, "reference.flyer_impact")?;
     let flyer = find_even_body(checked, FLYER, &impact.flyer)?;
     let target = find_even_body(checked, TARGET, &impact.target)?;
     check_unlike(TARGET, &impact.target, FLYER, flyer == target)?;
@@ -35,13 +36,15 @@ fn check_flyer_impact(checked: &mut CheckedScene, impact: &FlyerImpact) -> Resul
             return Err(Fault::new(key, body.pressure, reason));
         }
     }
-    let from_below = check_touch(checked, FLYER, flyer, TARGET, target)?;
-    let speed = checked.bodies[flyer].velocity[0] - checked.bodies[target].velocity[0];
+    // with contact nothing happens before a gap has closed
+    let apart = checked.velocity_fields() > 1;
+    let from_below = check_touch(checked, [FLYER, TARGET], [flyer, target], apart)?;
+    let speed = checked.speed_along(flyer) - checked.speed_along(target);
     let closing = if from_below { speed } else { -speed };
     if closing <= 0.0 {
         let key = join(&join("bodies", &impact.flyer), "velocity");
         let sign = if from_below { "above" } else { "below" };
-        let target_velocity = checked.bodies[target].velocity[0];
+        let target_velocity = checked.speed_along(target);
         let reason = format!(
             "does not approach {TARGET} = \"{}\"; allowed: {sign} {target_velocity}, the target's \
              velocity",
@@ -60,14 +63,18 @@ fn warn_of_flyer(checked: &mut CheckedScene, flyer: usize, target: usize, from_b
         _ => 0.0,
     };
     let mut warnings = Vec::new();
-    if impedance(flyer) < impedance(target) {
+    if impedance(flyer) < impedance(target) && checked.velocity_fields() == 1 {
         warnings.push(
             "reference.flyer_impact: the flyer is softer than the target and would separate; \
              without contact the run holds them together"
                 .to_string(),
         );
     }
-    let rear = &checked.scene.bodies[flyer].extent;
+    if checked.front().is_some_and(|front| front.angle != 0.0) {
+        checked.warnings.extend(warnings);
+        return;
+    }
+    let rear = &checked.bodies[flyer];
     let tolerance = checked.tolerance(0);
     let rear_at = if from_below { rear.lower[0] } else { rear.upper[0] };
     let at_wall = |i: usize| {
@@ -76,8 +83,8 @@ fn warn_of_flyer(checked: &mut CheckedScene, flyer: usize, target: usize, from_b
         let side = checked.scene.boundary.as_ref().map_or(Side::Free, |boundary| {
             if from_below { boundary.x_lower } else { boundary.x_upper }
         });
-        let beside = checked.scene.bodies.iter().enumerate().any(|(j, body)| {
-            let near = if from_below { body.extent.upper[0] } else { body.extent.lower[0] };
+        let beside = checked.bodies.iter().enumerate().any(|(j, body)| {
+            let near = if from_below { body.upper[0] } else { body.lower[0] };
             j != i && (near - rear_at).abs() <= tolerance
         });
         beside || ((rear_at - end).abs() <= tolerance && side != Side::Free)
@@ -95,6 +102,7 @@ fn warn_of_flyer(checked: &mut CheckedScene, flyer: usize, target: usize, from_b
 fn check_riemann(checked: &CheckedScene, riemann: &Riemann) -> Result<(), Fault> {
     const LEFT: &str = "reference.riemann.left";
     const RIGHT: &str = "reference.riemann.right";
+    super::front::check(checked, "reference.riemann")?;
     let left = find_even_body(checked, LEFT, &riemann.left)?;
     let right = find_even_body(checked, RIGHT, &riemann.right)?;
     check_unlike(RIGHT, &riemann.right, LEFT, left == right)?;
@@ -111,11 +119,13 @@ fn check_riemann(checked: &CheckedScene, riemann: &Riemann) -> Result<(), Fault>
             escape += 2.0 * (gamma * body.pressure / material.density).sqrt() / (gamma - 1.0);
         }
     }
-    if !check_touch(checked, LEFT, left, RIGHT, right)? {
+    // at an angle the diaphragm is where the front says
+    let slanted = riemann.front.as_ref().is_some_and(|front| front.angle != 0.0);
+    if !slanted && !check_touch(checked, [LEFT, RIGHT], [left, right], false)? {
         let reason = format!("lies above {RIGHT} = \"{}\"; allowed: the body below", riemann.right);
         return Err(Fault::new(LEFT, &riemann.left, reason));
     }
-    let apart = checked.bodies[right].velocity[0] - checked.bodies[left].velocity[0];
+    let apart = checked.speed_along(right) - checked.speed_along(left);
     if apart >= escape {
         let key = join(&join("bodies", &riemann.right), "velocity");
         let reason = format!(
@@ -185,20 +195,31 @@ fn check_eos(checked: &CheckedScene, path: &str, i: usize, wanted: &str) -> Resu
     Err(Fault::new(path, &body.name, reason))
 }
 
-/// Whether the first body lies below the second; they must touch along x.
+/// Whether the first body lies below the second; they must touch along x, unless they may be
+/// `apart`.
 fn check_touch(
     checked: &CheckedScene,
-    path: &str,
-    a: usize,
-    other_path: &str,
-    b: usize,
+    [path, other_path]: [&str; 2],
+    [a, b]: [usize; 2],
+    apart: bool,
 ) -> Result<bool, Fault> {
-    let [first, second] = [a, b].map(|i| &checked.scene.bodies[i].extent);
+    let spans = [(path, a), (other_path, b)].map(|(path, i)| {
+        checked.span(i).ok_or_else(|| {
+            let reason = "no box turned by the angle of this reference's front about its point; \
+                          allowed: \"rotation\" of a \"box\" by that angle about that point";
+            Fault::new(path, &checked.scene.bodies[i].name, reason)
+        })
+    });
+    let [first, second] = spans;
+    let ([first_lower, first_upper], [second_lower, second_upper]) = (first?, second?);
     let tolerance = checked.tolerance(0);
-    let above = second.lower[0] - first.upper[0];
-    let below = first.lower[0] - second.upper[0];
+    let above = second_lower - first_upper;
+    let below = first_lower - second_upper;
     if above.abs() <= tolerance || below.abs() <= tolerance {
         return Ok(above.abs() <= tolerance);
+    }
+    if apart {
+        return Ok(above > below);
     }
     let names = [a, b].map(|i| checked.scene.bodies[i].name.as_str());
     let reason = format!(

@@ -3,6 +3,7 @@
 //! The bounds are attributes of the fields: the JSON schema shows them, and reading a scene
 //! checks them against that same schema. What two keys say of each other is not known here.
 
+mod contact;
 mod matter;
 mod method;
 mod motion;
@@ -14,6 +15,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use contact::*;
 pub use matter::*;
 pub use method::*;
 pub use motion::*;
@@ -49,6 +51,10 @@ pub struct Scene {
     /// A force per mass on every particle; absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body_force: Option<BodyForce>,
+    /// What bodies do to each other where they touch; absent: one velocity field for all of them,
+    /// so that they meet through the grid and stick together.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<Contact>,
     /// What stands at the sides of the domain; absent: free on every side.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub boundary: Option<Boundary>,

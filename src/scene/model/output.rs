@@ -122,6 +122,29 @@ pub struct FlyerImpact {
     pub flyer: String,
     /// The plate that is struck; profiles are scored in it.
     pub target: String,
+    /// How the waves lie in a plane; absent: along x.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub front: Option<Front>,
+}
+
+/// Plane waves in a plane, and what of the material is scored against them.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Front {
+    /// Angle from the x axis to the direction along which the waves run [degrees].
+    #[serde(default)]
+    pub angle: f64,
+    /// A point on the line along which they are followed [m]; at an angle the interface passes
+    /// through it.
+    pub about: Vec<f64>,
+    /// Particles nearer to that line than this are scored [m]; absent: all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub half_width: Option<f64>,
+    /// Two places along the line, counted from `about`, between which they are scored [m];
+    /// absent: everywhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub range: Option<[f64; 2]>,
 }
 
 /// Two names of bodies that touch.
@@ -132,6 +155,9 @@ pub struct Riemann {
     pub left: String,
     /// The body on the upper side.
     pub right: String,
+    /// How the waves lie in a plane; absent: along x.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub front: Option<Front>,
 }
 
 /// The body that runs into the wall.

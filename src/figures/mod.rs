@@ -1,5 +1,9 @@
 //! The pictures of a run, made from its tables and the exact solution.
 
+mod plane;
+
+pub use plane::{draw_along, draw_fields};
+
 use std::path::Path;
 
 use crate::exact::chain::{centre_left, centre_right, hugoniot_left, hugoniot_right};

@@ -1,0 +1,78 @@
+//! Plates of finite width, and waves at an angle to the grid.
+
+use flyer_mpm::output::summary::ProfileSummary;
+
+use crate::runs::{Job, Outcome};
+use crate::table::{Show, Table};
+
+/// A figure of the last profile time that has it.
+fn last(run: &Outcome, of: impl Fn(&ProfileSummary) -> Option<f64>) -> Option<f64> {
+    run.summary.profiles.iter().rev().find_map(of)
+}
+
+/// The plate of finite width lives through corners and jets; its centre line is that of a line
+/// until the edge release comes.
+pub fn finite_flyer(table: &mut Table) {
+    let Some(run) = table.take("flyer_2d.json to 1 us", Job::new("flyer_2d").run()) else { return };
+    table.at_most("flyer_2d.json: energy drift", run.summary.energy.drift, 1e-10, Show::Tiny);
+    let momentum = run.summary.momentum.drift;
+    table.at_most("flyer_2d.json: momentum drift", momentum, 1e-12, Show::Tiny);
+    // 0.9 of the edge release's time to the centre
+    let early =
+        || Job::new("flyer_2d").set("time.end=2.1e-7").set("output.profiles.times=[2.1e-7]");
+    let line = [
+        "domain.upper=[0.0048, 2e-5]",
+        "bodies.flyer.box.upper=[0, 2e-5]",
+        "bodies.target.box.upper=[0.004, 2e-5]",
+        "boundary.y_upper=symmetry",
+    ];
+    let line = line.iter().fold(early(), |job, set| job.set(*set)).run();
+    let Some(line) = table.take("the same as one row of cells", line) else { return };
+    let Some(plate) = table.take("flyer_2d.json to 0.21 us", early().run()) else { return };
+    let apart = centre_lines(&plate, &line);
+    table.at_most("centre line against one row, of P2", apart, 1e-3, Show::Percent);
+}
+
+/// Largest difference of the pressure on the lowest row of particles, of the largest.
+fn centre_lines(plate: &Outcome, line: &Outcome) -> Option<f64> {
+    let row = |run: &Outcome| -> Option<Vec<(f64, f64)>> {
+        let tables = run.tables().ok()?;
+        let table = tables.last()?;
+        let (x, y) = (table.numbers("x")?, table.numbers("y")?);
+        let p = table.numbers("pressure")?;
+        let mut row: Vec<(f64, f64)> =
+            (0..x.len()).filter(|&k| y[k] < 1e-5).map(|k| (x[k], p[k])).collect();
+        row.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Some(row)
+    };
+    let (plate, line) = (row(plate)?, row(line)?);
+    let scale = line.iter().fold(0.0f64, |m, (_, p)| m.max(p.abs()));
+    let apart = plate.iter().zip(&line).map(|(a, b)| (a.1 - b.1).abs() / scale);
+    (plate.len() == line.len()).then(|| apart.fold(0.0, f64::max))
+}
+
+/// Waves at 30 degrees against waves along x, on the same cells.
+pub fn oblique(table: &mut Table) {
+    let Some(turned) = table.take("oblique_impact.json", Job::new("oblique_impact").run()) else {
+        return;
+    };
+    let sets = [
+        "bodies.flyer.rotation=null",
+        "bodies.target.rotation=null",
+        "bodies.flyer.box={\"lower\": [-0.0005, -0.003], \"upper\": [0, 0.003]}",
+        "bodies.target.box={\"lower\": [0, -0.003], \"upper\": [0.002, 0.003]}",
+        "bodies.flyer.velocity=[1000, 0]",
+        "reference.flyer_impact.front.angle=0",
+    ];
+    let aligned = sets.iter().fold(Job::new("oblique_impact"), |job, set| job.set(*set)).run();
+    let Some(aligned) = table.take("the same along x", aligned) else { return };
+    let l1 = |run: &Outcome| last(run, |p| p.error("l1"));
+    let ratio = l1(&turned).zip(l1(&aligned)).map(|(a, b)| a / b);
+    table.beside("along x: L1", l1(&aligned), "", Show::Percent);
+    table.beside("at 30 degrees: L1", l1(&turned), "", Show::Percent);
+    table.at_most("L1 at 30 degrees over that along x", ratio, 1.3, Show::Number);
+    let noise = last(&turned, |p| p.error("noise"));
+    table.at_most("at 30 degrees: plateau noise", noise, 1e-3, Show::Percent);
+    let drift = turned.summary.energy.drift;
+    table.at_most("at 30 degrees: energy drift", drift, 1e-10, Show::Tiny);
+}

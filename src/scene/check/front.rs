@@ -1,0 +1,102 @@
+//! Plane waves at an angle: bodies and velocities along the line that they run on.
+
+use serde_json::json;
+
+use super::super::errors::Fault;
+use super::super::model::{Front, Reference, Region, Rotation, Side};
+use super::{CheckedScene, check_length};
+
+/// How far the angles of a body and of a front may be apart [degrees].
+const SAME_ANGLE: f64 = 1e-9;
+
+impl CheckedScene {
+    /// How the waves of the scene's exact solution lie, if it says so.
+    pub fn front(&self) -> Option<&Front> {
+        match self.scene.reference.as_ref()? {
+            Reference::FlyerImpact(impact) => impact.front.as_ref(),
+            Reference::Riemann(riemann) => riemann.front.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// Unit vector along which the waves run.
+    fn direction(&self) -> [f64; 2] {
+        let angle = self.front().map_or(0.0, |front| front.angle.to_radians());
+        [angle.cos(), angle.sin()]
+    }
+
+    /// Where body `i` begins and ends along the line of the waves [m]: along x, or from the point
+    /// of a front at an angle. `None` for a body that has no ends along it.
+    pub fn span(&self, i: usize) -> Option<[f64; 2]> {
+        let body = &self.bodies[i];
+        let Some(front) = self.front().filter(|front| front.angle != 0.0) else {
+            return Some([body.lower[0], body.upper[0]]);
+        };
+        let regions = self.scene.bodies[i].regions();
+        let (_, Region::Rotation(Rotation { angle, about, of })) = regions.first()? else {
+            return None;
+        };
+        let same = (angle - front.angle).abs() <= SAME_ANGLE && *about == front.about;
+        match &**of {
+            Region::Box(extent) if same => {
+                Some([extent.lower[0] - about[0], extent.upper[0] - about[0]])
+            }
+            _ => None,
+        }
+    }
+
+    /// How far the line of the waves is from the nearest edge of body `i` across it [m]; infinite
+    /// where both ends across it stand at sides of the domain that reflect or are joined.
+    pub fn edge_distance(&self, i: usize) -> f64 {
+        let [_, ends] = self.sides::<2>();
+        let y = self.front().map_or(self.scene.domain.lower[1], |front| front.about[1]);
+        let turned = self.front().is_some_and(|front| front.angle != 0.0);
+        let regions = self.scene.bodies[i].regions();
+        let extent = match regions.first() {
+            Some((_, Region::Box(extent))) if !turned => extent,
+            Some((_, Region::Rotation(Rotation { of, .. }))) => match &**of {
+                Region::Box(extent) => extent,
+                _ => return 0.0,
+            },
+            _ => return 0.0,
+        };
+        let domain = &self.scene.domain;
+        let closed = |end: usize, at: f64| {
+            let side = [domain.lower[1], domain.upper[1]][end];
+            !turned
+                && !matches!(ends[end], Side::Free | Side::Outflow)
+                && (at - side).abs() <= self.tolerance(1)
+        };
+        let distance = |end: usize, at: f64| {
+            if closed(end, at) { f64::INFINITY } else { (at - y).abs() }
+        };
+        distance(0, extent.lower[1]).min(distance(1, extent.upper[1]))
+    }
+
+    /// Velocity of body `i` at the start along the line of the waves [m/s].
+    pub fn speed_along(&self, i: usize) -> f64 {
+        let velocity = &self.bodies[i].velocity;
+        match self.front().filter(|front| front.angle != 0.0) {
+            Some(_) => self.direction().iter().zip(velocity).map(|(n, v)| n * v).sum(),
+            None => velocity[0],
+        }
+    }
+}
+
+/// A front has a line in the plane of its scene.
+pub(super) fn check(checked: &CheckedScene, path: &str) -> Result<(), Fault> {
+    let Some(front) = checked.front() else { return Ok(()) };
+    let path = format!("{path}.front");
+    if checked.dimension == 1 {
+        let reason = "a line in a plane, but domain.lower has 1 number; allowed: to leave it out";
+        return Err(Fault::new(path, json!(front), reason));
+    }
+    check_length(&format!("{path}.about"), &front.about, checked.dimension)?;
+    if let Some([from, to]) = front.range
+        && from >= to
+    {
+        let reason = "ends before it begins; allowed: two numbers that ascend";
+        return Err(Fault::new(format!("{path}.range"), [from, to], reason));
+    }
+    Ok(())
+}

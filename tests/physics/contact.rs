@@ -1,0 +1,190 @@
+//! Bodies with velocity fields of their own, on a line: they part, meet and press as they should.
+
+use decomp::Serial;
+use flyer_mpm::exact::{Accuracy, Impact, ImpactBody, Separation};
+use flyer_mpm::material::MieGruneisen;
+use flyer_mpm::output::ParticleTable;
+use flyer_mpm::scene::Eos;
+use flyer_mpm::simulation::Simulation;
+use serde_json::{Value, json};
+
+use crate::tools::{
+    SHAPES, apart, at_most, checked, column, run, run_scene, scored, shipped, transfers, with,
+};
+
+/// Pressure behind the shocks of aluminium at 1500 m/s on copper and of copper at 1000 m/s on
+/// aluminium [Pa].
+const P2: [f64; 2] = [19.42e9, 12.144294e9];
+
+/// Contact forces (time at the step's end, force) of a run, and its particles at the end.
+fn forces(value: &Value) -> (Vec<(f64, f64)>, ParticleTable) {
+    let scene = checked(value);
+    let mut simulation = Simulation::<_, 1>::new(&scene, &Serial, 1).unwrap();
+    let mut forces = Vec::new();
+    while simulation.time() < scene.scene.time.end {
+        simulation.advance(scene.scene.time.end).unwrap();
+        forces.push((simulation.time(), simulation.contact_force()[0]));
+    }
+    (forces, simulation.gather().unwrap().0)
+}
+
+/// The impact of a scene's two bodies.
+fn impact(value: &Value) -> Impact {
+    let scene = checked(value);
+    let body = |i: usize| {
+        let Eos::MieGruneisen { c0, s, gamma0 } = scene.material_of(i).eos else { panic!() };
+        let extent = &value["bodies"][i]["box"];
+        let at = |key: &str| extent[key][0].as_f64().unwrap();
+        ImpactBody {
+            material: MieGruneisen { rho0: scene.material_of(i).density, c0, s, gamma0 },
+            lower: at("lower"),
+            upper: at("upper"),
+            velocity: scene.bodies[i].velocity[0],
+        }
+    };
+    Impact::new(body(0), body(1)).unwrap()
+}
+
+/// A scene cut to a target of 2 mm, until `end`.
+fn cut(name: &str, end: f64) -> Value {
+    let edit = json!({
+        "domain": {"upper": [0.003]},
+        "time": {"end": end},
+        "output": {"profiles": {"times": [end]}},
+    });
+    let mut value = with(&shipped(name), &edit);
+    value["bodies"][1]["box"]["upper"] = json!([0.0024]);
+    value
+}
+
+/// Distance between the facing edges of the two bodies.
+fn gap(table: &ParticleTable, halves: [f64; 2]) -> f64 {
+    let x = column(table, "x");
+    let of = |body: u32| (0..x.len()).filter(move |&r| table.body[r] == body);
+    let density = column(table, "density");
+    let last = of(0).max_by(|&a, &b| x[a].total_cmp(&x[b])).unwrap();
+    let first = of(1).min_by(|&a, &b| x[a].total_cmp(&x[b])).unwrap();
+    x[first] - halves[1] / density[first] - x[last] - halves[0] / density[last]
+}
+
+#[test]
+fn a_softer_flyer_parts_in_time() {
+    let cell = 1e-5;
+    for (thickness, end, bound) in [(0.5e-3, 0.4e-6, 0.02), (1e-3, 0.4e-6, 0.02)] {
+        let mut value = cut("soft_flyer.json", end);
+        value["domain"]["lower"] = json!([-0.0012]);
+        value["bodies"][0]["box"]["lower"] = json!([-thickness]);
+        let separation = Separation::new(&impact(&value), end, Accuracy::default());
+        let separation = separation.unwrap().unwrap();
+        let (forces, table) = forces(&value);
+        let level = 0.01 * separation.peak_pressure;
+        let last = forces.iter().filter(|f| f.1 > level).map(|f| f.0).fold(0.0, f64::max);
+        let exact = separation.falls_to(0.01);
+        let bound_of_time = (0.01 * exact).max(2.0 * cell / 5386.0);
+        at_most(&format!("parting of {thickness}"), last - exact, bound_of_time);
+        // nothing is pulled
+        assert!(forces.iter().all(|f| f.1 > -1e-3 * separation.peak_pressure));
+        let middle = forces.iter().find(|f| f.0 > 0.08e-6).unwrap().1;
+        at_most("force in contact", middle / separation.peak_pressure - 1.0, 0.01);
+        let masses = [2785.0 * 0.25 * cell, 8930.0 * 0.25 * cell];
+        let error = separation.gap_error(gap(&table, masses), end).unwrap();
+        at_most(&format!("gap of {thickness}"), error, bound);
+        let (outcome, errors) = scored(&value);
+        at_most("L1", errors[0].l1.unwrap(), 0.02);
+        at_most("energy drift", outcome.energy_drift(), 1e-12);
+        at_most("momentum drift", outcome.momentum_drift(), 1e-12);
+    }
+}
+
+#[test]
+fn a_gap_closes_before_anything_happens() {
+    let (forces, _) = forces(&cut("gap.json", 1.2e-7));
+    let first = forces.iter().find(|f| f.1 != 0.0).unwrap().0;
+    at_most("closing time", first - 100e-9, 2e-9);
+    let before = run(&cut("gap.json", 0.99e-7));
+    assert!(column(before.last(), "velocity").iter().all(|v| *v == 0.0 || (v - 1e3).abs() < 1e-9));
+    // from then on it is the impact, late
+    let (outcome, errors) = scored(&cut("gap.json", 3e-7));
+    at_most("L1", errors[0].l1.unwrap(), 0.012);
+    at_most("energy drift", outcome.energy_drift(), 1e-12);
+}
+
+/// Pressures of the same particles in two scenes, by the peak of the impact.
+fn differ(a: &Value, b: &Value, peak: f64) -> f64 {
+    let [a, b] = [a, b].map(|value| run(value));
+    let [p, q] = [&a, &b].map(|o| column(o.last(), "pressure"));
+    p.iter().zip(q).fold(0.0f64, |most, (p, q)| most.max((p - q).abs())) / peak
+}
+
+#[test]
+fn two_fields_in_contact_are_as_good_as_one() {
+    let one = cut("flyer.json", 2e-7);
+    let two = with(&one, &json!({"contact": {"type": "frictionless"}}));
+    at_most("copper on aluminium", differ(&one, &two, P2[1]), 1e-3);
+    let stick = with(&one, &json!({"contact": {"type": "stick"}}));
+    assert_eq!(run(&one).digest, run(&stick).digest, "one field for all");
+}
+
+#[test]
+fn a_plate_cut_in_two_is_one_plate() {
+    // pressed together from the start
+    let mut whole = cut("flyer.json", 2e-7);
+    whole.as_object_mut().unwrap().remove("reference");
+    whole["boundary"] = json!({"x_lower": "wall", "x_upper": "wall"});
+    whole["domain"] = json!({"lower": [-0.0005], "upper": [0.0024], "cell_size": 1e-5});
+    for body in whole["bodies"].as_array_mut().unwrap() {
+        body["pressure"] = json!(1e9);
+    }
+    let second = whole["bodies"].as_array_mut().unwrap();
+    let mut upper = second[1].clone();
+    upper["name"] = json!("upper");
+    upper["box"]["lower"] = json!([0.0005]);
+    second[1]["box"]["upper"] = json!([0.0005]);
+    second.push(upper);
+    let cut = with(&whole, &json!({"contact": {"type": "frictionless"}}));
+    at_most("cut in two", differ(&whole, &cut, P2[1]), 1e-3);
+}
+
+#[test]
+fn bodies_that_fly_apart_let_go_at_once() {
+    let mut value = cut("flyer.json", 5e-8);
+    value.as_object_mut().unwrap().remove("reference");
+    value["bodies"][0]["velocity"] = json!([-20.0]);
+    value["bodies"][0]["box"]["lower"] = json!([-0.0003]);
+    value["contact"] = json!({"type": "frictionless"});
+    let outcome = run(&value);
+    let velocity = column(outcome.last(), "velocity");
+    let body = &outcome.last().body;
+    for (v, body) in velocity.iter().zip(body) {
+        at_most("velocity", v - [-20.0, 0.0][*body as usize], 1e-9);
+    }
+}
+
+#[test]
+fn every_scheme_has_contact() {
+    for shape in SHAPES {
+        for transfer in transfers() {
+            let mut value = cut("soft_flyer.json", 1e-7);
+            value["bodies"][0]["box"]["lower"] = json!([-0.0001]);
+            value["bodies"][1]["box"]["upper"] = json!([0.0009]);
+            value["domain"]["upper"] = json!([0.0012]);
+            value["method"] = json!({"shape": shape, "transfer": transfer});
+            value["artificial_viscosity"] = json!({"linear": 0.2, "quadratic": 2.0});
+            let outcome = run_scene(&checked(&value), 1).unwrap_or_else(|e| panic!("{shape} {e}"));
+            at_most(&format!("{shape} {transfer}"), outcome.momentum_drift(), 1e-12);
+            // they have parted
+            let [a, b] = [0, 1].map(|body| {
+                let x = column(outcome.last(), "x").iter().zip(&outcome.last().body);
+                let x = x.filter(|(_, b)| **b == body).map(|(x, _)| *x);
+                if body == 0 { x.fold(f64::MIN, f64::max) } else { x.fold(f64::MAX, f64::min) }
+            });
+            assert!(b - a > 1e-5, "{shape} {transfer}: {}", b - a);
+            let method = json!({"method": {"stepping": "midpoint"}});
+            let midpoint = run(&with(&value, &method));
+            at_most(&format!("{shape} {transfer}"), midpoint.momentum_drift(), 1e-12);
+        }
+    }
+    let base = run(&cut("soft_flyer.json", 5e-8));
+    let same = run(&cut("soft_flyer.json", 5e-8));
+    assert_eq!(apart(column(base.last(), "x"), column(same.last(), "x")), 0.0);
+}

@@ -1,0 +1,104 @@
+//! Any layout of a plane leaves the same bits.
+
+use serde_json::{Value, json};
+
+use crate::tools::{digest_on, impact};
+
+/// Plates whose corners and free sides lie within many patches.
+fn plates() -> Value {
+    let flyer = json!({"box": {"lower": [-0.0003, 0.0], "upper": [0.0, 0.0004]}});
+    let target = json!({"box": {"lower": [0.0, -0.0002], "upper": [0.0006, 0.0006]}});
+    let mut scene = impact([[-0.0006, -0.0004], [0.001, 0.0008]], [flyer, target], [1e3, 2e2]);
+    scene["time"]["end"] = json!(1.2e-8);
+    scene
+}
+
+const LAYOUTS: [[usize; 2]; 5] = [[1, 1], [4, 1], [1, 4], [3, 5], [8, 8]];
+
+#[track_caller]
+fn same(mut scene: Value, what: &str) {
+    scene["domain"]["patches"] = json!([1, 1]);
+    scene["decomposition"] = json!({"skip_quiet": false, "filter_halo": "exchange"});
+    let whole = digest_on(&scene, 1, 1);
+    for (k, layout) in LAYOUTS.into_iter().enumerate() {
+        for ranks in 1..=4 {
+            // every option meets every layout and number of ranks in turn
+            let mut shared = scene.clone();
+            shared["domain"]["patches"] = json!(layout);
+            shared["decomposition"] = json!({
+                "skip_quiet": (k + ranks) % 2 == 0,
+                "overlap": (k / 2 + ranks) % 2 == 0,
+                "filter_halo": (["exchange", "deep"][(k + ranks / 2) % 2]),
+                "balance": {"every": 7 * (ranks % 2), "cost": "particles"}
+            });
+            let threads = 1 + (k + ranks) % 2;
+            assert_eq!(digest_on(&shared, ranks, threads), whole, "{what}: {shared}");
+        }
+    }
+}
+
+#[test]
+fn the_default_scheme() {
+    same(plates(), "default");
+}
+
+#[test]
+fn other_schemes() {
+    for (shape, transfer) in [
+        ("linear", json!("flip")),
+        ("cpdi", json!("apic")),
+        ("gimp", json!({"xpic": 2})),
+        ("bspline_cubic", json!({"fmpm": 3})),
+    ] {
+        let mut scene = plates();
+        scene["method"] = json!({"shape": shape, "transfer": transfer});
+        scene["time"]["end"] = json!(6e-9);
+        same(scene, shape);
+    }
+}
+
+#[test]
+fn bodies_in_contact() {
+    for contact in [
+        json!({"type": "frictionless"}),
+        json!({"type": "friction", "coefficient": 0.3, "normals": "logistic_regression"}),
+    ] {
+        let mut scene = plates();
+        scene["contact"] = contact;
+        // they meet within the run
+        scene["bodies"][0]["box"] = json!({"lower": [-0.000303, 0.0], "upper": [-3e-6, 0.0004]});
+        same(scene.clone(), "contact");
+        scene["method"] = json!({"shape": "gimp", "transfer": "apic"});
+        scene["time"]["end"] = json!(6e-9);
+        same(scene, "contact");
+    }
+}
+
+#[test]
+fn about_an_axis() {
+    let mut scene = plates();
+    scene["domain"]["lower"] = json!([0.0, -0.0004]);
+    scene["domain"]["geometry"] = json!("axisymmetric");
+    scene["boundary"] = json!({"x_lower": "symmetry"});
+    scene["bodies"][0]["box"] = json!({"lower": [0.0, -0.0002], "upper": [0.0003, 0.0]});
+    scene["bodies"][1]["box"] = json!({"lower": [0.0, 0.0], "upper": [0.0006, 0.0004]});
+    scene["bodies"][0]["velocity"] = json!([0.0, 1e3]);
+    same(scene, "axisymmetric");
+}
+
+#[test]
+fn round_bodies_between_periodic_sides() {
+    let mut scene = plates();
+    scene["bodies"][0] = json!({
+        "name": "flyer", "material": "copper", "velocity": [1e3, 3e2], "particles_per_cell": [2, 2],
+        "disk": {"centre": [-0.0003, 0.0007], "radius": 0.0002}
+    });
+    scene["bodies"][1] = json!({
+        "name": "target", "material": "aluminium", "particles_per_cell": [2, 2],
+        "box": {"lower": [-0.0001, -0.0004], "upper": [0.0004, 0.0008]}
+    });
+    scene["boundary"] = json!({"y_lower": "periodic", "y_upper": "periodic"});
+    scene["domain"]["lower"] = json!([-0.0006, -0.0004]);
+    scene["bodies"][0]["disk"]["centre"] = json!([-0.0003, 0.0005]);
+    same(scene, "periodic");
+}

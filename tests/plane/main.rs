@@ -1,0 +1,12 @@
+//! Runs in a plane: a column is a line, any layout leaves the same bits, axes can be swapped and
+//! mirrored, waves may run at any angle, bodies have any shape.
+//!
+//! Runs are made in process, through the library.
+
+mod bodies;
+mod column;
+mod contact;
+mod layouts;
+mod symmetry;
+mod tools;
+mod waves;

@@ -1,0 +1,106 @@
+//! Scenes in a plane, and runs of them.
+
+use decomp::comm::local::run_ranks;
+use decomp::{Comm, Serial};
+use flyer_mpm::output::ParticleTable;
+use flyer_mpm::scene::{self, CheckedScene};
+use flyer_mpm::simulation::{Simulation, Totals};
+use serde_json::{Value, json};
+
+/// Makes a checked scene.
+pub fn checked(scene: &Value) -> CheckedScene {
+    scene::parse(scene.to_string().as_bytes(), "scene.json", &[])
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// What a run leaves.
+pub struct Outcome<const D: usize> {
+    /// All particles at the end.
+    pub table: ParticleTable,
+    /// Digest of the state at the end.
+    pub digest: String,
+    /// Sums at the start and at the end.
+    pub totals: [Totals<D>; 2],
+}
+
+impl<const D: usize> Outcome<D> {
+    /// Relative change of the total energy.
+    pub fn energy_drift(&self) -> f64 {
+        let [start, end] = self.totals.map(|t| t.kinetic + t.internal);
+        end / start - 1.0
+    }
+
+    /// A column of the last table.
+    pub fn column(&self, name: &str) -> &[f64] {
+        self.table.column(name).unwrap_or_else(|| panic!("no column {name}"))
+    }
+}
+
+fn run_rank<C: Comm, const D: usize>(
+    scene: &CheckedScene,
+    comm: &C,
+    threads: usize,
+) -> Option<Outcome<D>> {
+    let mut simulation = Simulation::<C, D>::new(scene, comm, threads).unwrap();
+    let start = simulation.totals();
+    while simulation.time() < scene.scene.time.end {
+        simulation.advance(scene.scene.time.end).unwrap();
+    }
+    let totals = [start, simulation.totals()];
+    let (table, digest) = simulation.gather()?;
+    Some(Outcome { table, digest, totals })
+}
+
+/// Runs a scene on one rank.
+pub fn run<const D: usize>(scene: &Value) -> Outcome<D> {
+    run_rank(&checked(scene), &Serial, 1).expect("rank 0")
+}
+
+/// The digest of the state that ranks and threads leave.
+pub fn digest_on(scene: &Value, ranks: usize, threads: usize) -> String {
+    let scene = checked(scene);
+    let outcomes = run_ranks(ranks, |comm| run_rank::<_, 2>(&scene, comm, threads));
+    outcomes.into_iter().flatten().next().expect("rank 0").digest
+}
+
+/// Copper and aluminium.
+pub fn metals() -> Value {
+    let eos = |c0: f64, s: f64, gamma0: f64| json!({"type": "mie_gruneisen", "c0": c0, "s": s, "gamma0": gamma0});
+    json!({
+        "copper": {"density": 8930.0, "eos": eos(3940.0, 1.489, 1.96)},
+        "aluminium": {"density": 2785.0, "eos": eos(5386.0, 1.339, 2.1)}
+    })
+}
+
+/// The default scheme of the plane.
+pub fn default_method() -> Value {
+    json!({
+        "shape": "cpdi_bspline_quadratic", "transfer": {"fmpm": 4}, "stepping": "midpoint",
+        "energy": "compatible", "filter_heat": true,
+        "pressure_relaxation": {"rate": 0.1, "interval": 1}, "edge_mask": 0.3, "domain_limit": 1.0
+    })
+}
+
+/// A body of copper at 1 km/s on one of aluminium, both of `regions`, on cells of 20 um.
+pub fn impact(domain: [[f64; 2]; 2], regions: [Value; 2], velocity: [f64; 2]) -> Value {
+    let [mut flyer, mut target] = regions;
+    let common = [
+        (&mut flyer, "flyer", "copper", velocity),
+        (&mut target, "target", "aluminium", [0.0, 0.0]),
+    ];
+    for (body, name, material, velocity) in common {
+        body["name"] = json!(name);
+        body["material"] = json!(material);
+        body["velocity"] = json!(velocity);
+        body["particles_per_cell"] = json!([2, 2]);
+    }
+    json!({
+        "title": "an impact in a plane",
+        "domain": {"lower": domain[0], "upper": domain[1], "cell_size": 2e-5},
+        "time": {"end": 2e-8},
+        "method": default_method(),
+        "materials": metals(),
+        "bodies": [flyer, target],
+        "artificial_viscosity": {"linear": 0.1, "quadratic": 0.75, "limiter": "nodal"}
+    })
+}
