@@ -120,7 +120,8 @@ impl Columns {
         let touching = scene.velocity_fields() > 1;
         let same = |_: usize| Mirror::Same;
         let of_vector = |a: usize| Mirror::Negate(a);
-        let of_tensor = |k: usize| if k % 3 == 0 { Mirror::Same } else { Mirror::NegatePair(0, 1) };
+        let of_tensor =
+            |k: usize| if k.is_multiple_of(3) { Mirror::Same } else { Mirror::NegatePair(0, 1) };
         let of_stress = |k: usize| if k == 2 { Mirror::NegatePair(0, 1) } else { Mirror::Same };
         const HALF_EDGES: [&str; 4] =
             ["cell_edge1_x", "cell_edge1_y", "cell_edge2_x", "cell_edge2_y"];

@@ -384,8 +384,8 @@ fn balance<const D: usize>(
     let rigid = |s: &Side| matches!(s, Side::Symmetry | Side::Wall | Side::Velocity(_));
     let sides = scene.sides::<D>();
     // along a radius momentum is no sum that is kept
-    let open = |a: usize| !sides[a].iter().any(rigid) && !(a == 0 && scene.axisymmetric());
-    let walls: [f64; D] = std::array::from_fn(|a| match !open(a) {
+    let booked = |a: usize| sides[a].iter().any(rigid) || (a == 0 && scene.axisymmetric());
+    let walls: [f64; D] = std::array::from_fn(|a| match booked(a) {
         true => {
             let all = end.momentum[a] + left.momentum[a] - start.momentum[a];
             all - end.body_force_impulse[a]

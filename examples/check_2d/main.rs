@@ -18,7 +18,10 @@ use std::process::ExitCode;
 
 use table::Table;
 
-const SECTIONS: [(&str, fn(&mut Table)); 5] = [
+/// Checks one section.
+type Section = fn(&mut Table);
+
+const SECTIONS: [(&str, Section); 5] = [
     ("column", column::check),
     ("bits", bits::check),
     ("finite", waves::finite_flyer),

@@ -279,7 +279,7 @@ impl<const D: usize> Stepper<D> {
     fn fill_joints(&self, patch: &mut Patch<D>, nodes: &mut ContactNodes<D>) {
         let Some(least) = self.edge_mask else { return };
         let volume = &mut patch.nodes.fields[self.fields.volume];
-        let mut knotted = nodes.knots.iter().map(|k| k.joints()).flatten().peekable();
+        let mut knotted = nodes.knots.iter().flat_map(|k| k.joints()).peekable();
         for (k, joint) in nodes.joints.iter_mut().enumerate() {
             if knotted.next_if_eq(&k).is_none() {
                 let own = joint.at.map(|at| volume[at]);
