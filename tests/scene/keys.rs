@@ -94,7 +94,7 @@ fn unknown_keys_and_names() {
     edit("method.transfer.xpic=2", &["method.transfer = {", "\"flip\""]);
     edit("method.transfer={}", &["method.transfer = {}", "\"flip\""]);
     edit("boundary.x_lower=open", &["boundary.x_lower = \"open\"", "\"outflow\""]);
-    edit("boundary.y_lower=free", &["boundary.y_lower", "allowed: x_lower, x_upper"]);
+    edit("boundary.z_lower=free", &["boundary.z_lower", "x_lower, x_upper, y_lower, y_upper"]);
     edit("reference={\"flyer\": 1}", &["reference.flyer", "flyer_impact", "riemann"]);
     edit("reference.flyer_impact.speed=1", &["reference.flyer_impact.speed", "flyer, target"]);
     edit(
@@ -134,7 +134,7 @@ fn missing_keys() {
         ("/method/shape", ["method.shape: missing key", "\"cpdi\""]),
         ("/materials/copper/density", ["materials.copper.density: missing", "a number above 0"]),
         ("/materials/copper/eos/c0", ["materials.copper.eos.c0: missing", "a number above 0"]),
-        ("/bodies/0/box", ["bodies.flyer.box: missing", "lower, upper"]),
+        ("/bodies/0/box", ["bodies.flyer.box: missing", "\"box\""]),
         ("/bodies/0/name", ["bodies[0].name: missing", "a string"]),
         ("/reference/flyer_impact/target", ["reference.flyer_impact.target: missing", "a string"]),
     ] {

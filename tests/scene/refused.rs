@@ -25,7 +25,7 @@ fn domains_that_do_not_fit() {
         &plane,
         &["bodies.flyer.box.lower = [-0.0005]", "domain.lower has 2", "allowed: 2 numbers"],
     );
-    edit("boundary={y_upper: \"wall\"}", &["boundary.y_upper = \"wall\"", "a side along y"]);
+    edit("boundary={\"y_upper\": \"wall\"}", &["boundary.y_upper = \"wall\"", "a side along y"]);
     edit("method.domain_limit=1", &["method.domain_limit = 1", "two dimensions"]);
     let space = ["domain.lower=[0, 0, 0]", "domain.upper=[1, 1, 1]"];
     refused("flyer.json", &space, &["domain.lower", "allowed: one number or two"]);

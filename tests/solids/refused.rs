@@ -48,13 +48,17 @@ fn motions() {
     refused(
         "sod.json",
         &[
+            "bodies.left.velocity=null",
             "bodies.left.velocity_field={\"shear_layer\": {\"profile\": \"sine\", \"speed\": 1, \"height\": 1, \"centre\": 0}}",
         ],
         &["bodies.left.velocity_field", "two dimensions"],
     );
     refused(
         "sod.json",
-        &["bodies.left.velocity_field={\"radial\": {\"about\": [0], \"speed\": 1}}"],
+        &[
+            "bodies.left.velocity=null",
+            "bodies.left.velocity_field={\"radial\": {\"about\": [0], \"speed\": 1}}",
+        ],
         &["reference.riemann.left", "a body with one velocity"],
     );
 }

@@ -73,7 +73,7 @@ fn every_order_of_a_leapfrog_step_nearly_keeps_energy() {
         for shape in ["gimp", "cpdi"] {
             let method = json!({"shape": shape, "transfer": "flip", "stress_update": update});
             let outcome = run::<2>(&block("neo_hookean", method, slide(0.1), 2.0));
-            at_most(&format!("{update} {shape}"), outcome.energy_drift(), 0.03);
+            at_most(&format!("{update} {shape}"), outcome.energy_drift(), 0.06);
             assert!(outcome.greatest("stress_xy") > 0.05);
         }
     }
@@ -142,7 +142,7 @@ fn uniaxial_strain_in_a_plane_is_that_on_a_line() {
             for (r, on_line) in line.column(stress).iter().enumerate() {
                 for k in 0..6 {
                     let off = strip.column(stress)[6 * r + k] - on_line;
-                    at_most(&format!("{eos} {stress}"), off / most, 1e-7);
+                    at_most(&format!("{eos} {stress}"), off / most, 1e-6);
                 }
             }
         }

@@ -116,7 +116,7 @@ fn check_materials(scene: &Scene) -> Result<(), Fault> {
             && !(Lame::new(youngs_modulus, poissons_ratio).longitudinal() / material.density)
                 .is_normal()
         {
-            let path = join(&join("materials", name), "eos.youngs_modulus");
+            let path = format!("{}.eos.youngs_modulus", join("materials", name));
             let reason = format!(
                 "no finite stiffness over density = {}; allowed: SI units, Pa and kg/m3",
                 json!(material.density)
