@@ -96,7 +96,10 @@ fn unknown_keys_and_names() {
     edit("boundary.x_lower=open", &["boundary.x_lower = \"open\"", "\"outflow\""]);
     edit("boundary.z_lower=free", &["boundary.z_lower", "x_lower, x_upper, y_lower, y_upper"]);
     edit("reference={\"flyer\": 1}", &["reference.flyer", "flyer_impact", "riemann"]);
-    edit("reference.flyer_impact.speed=1", &["reference.flyer_impact.speed", "flyer, target"]);
+    edit(
+        "reference.flyer_impact.speed=1",
+        &["reference.flyer_impact.speed", "flyer, front, target"],
+    );
     edit(
         "bodies.flyer.material=cooper",
         &["bodies.flyer.material = \"cooper\"", "did you mean copper?", "aluminium, copper"],
