@@ -79,12 +79,15 @@ fn an_end_within_the_first_step() {
     }
 }
 
-/// Every shipped scene makes its first steps.
+/// Every shipped scene on a line makes its first steps.
 #[test]
 fn every_shipped_scene_runs() {
     for file in inputs() {
         let name = file.file_name().unwrap().to_str().unwrap().to_owned();
         let mut value = shipped(&name);
+        if value["domain"]["lower"].as_array().unwrap().len() > 1 {
+            continue;
+        }
         let end = value["time"]["end"].as_f64().unwrap();
         ending(&mut value, 0.01 * end);
         let outcome = run(&value);
