@@ -190,7 +190,8 @@ impl Columns {
         let pressure_mid = relaxed.then(|| add("pressure_mid", "Pa", true, false));
         let compliance = relaxed.then(|| add("compliance", "m3/Pa", true, false));
         let filled = method.edge_mask.is_some() || touching;
-        let is_length = !plane;
+        // contact looks at what particles fill; of a mask on a line the length has to do
+        let is_length = !plane && (extent == Extent::Current || !touching);
         let volume = (filled && !is_length).then(|| add("cell_volume", "", true, false));
         let domain = add_all(domains, "", true, false, &of_domain);
         let body_force = scene.scene.body_force.as_ref().map(|force| BodyForceColumns {
