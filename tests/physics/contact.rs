@@ -126,22 +126,6 @@ fn two_fields_in_contact_are_as_good_as_one() {
 }
 
 #[test]
-fn bodies_that_fly_apart_let_go_at_once() {
-    let mut value = cut("flyer.json", 5e-8);
-    value.as_object_mut().unwrap().remove("reference");
-    value["bodies"][0]["velocity"] = json!([-20.0]);
-    value["bodies"][0]["box"]["lower"] = json!([-0.0003]);
-    value["contact"] = json!({"type": "frictionless"});
-    let outcome = run(&value);
-    let velocity = column(outcome.last(), "velocity");
-    let body = &outcome.last().body;
-    for (v, body) in velocity.iter().zip(body) {
-        // they begin edge to edge, and part with 5e-4 of their speed exchanged
-        at_most("velocity", v - [-20.0, 0.0][*body as usize], 1e-2);
-    }
-}
-
-#[test]
 fn every_scheme_has_contact() {
     // hat functions at points tear the material apart
     for shape in SHAPES.into_iter().filter(|shape| *shape != "linear") {
@@ -155,13 +139,6 @@ fn every_scheme_has_contact() {
             let outcome =
                 run_scene(&checked(&value), 1).unwrap_or_else(|e| panic!("{shape} {transfer} {e}"));
             at_most(&format!("{shape} {transfer}"), outcome.momentum_drift(), 1e-12);
-            // they have parted
-            let [a, b] = [0, 1].map(|body| {
-                let x = column(outcome.last(), "x").iter().zip(&outcome.last().body);
-                let x = x.filter(|(_, b)| **b == body).map(|(x, _)| *x);
-                if body == 0 { x.fold(f64::MIN, f64::max) } else { x.fold(f64::MAX, f64::min) }
-            });
-            assert!(b - a > 1e-5, "{shape} {transfer}: {}", b - a);
             let method = json!({"method": {"stepping": "midpoint"}});
             let midpoint = run(&with(&value, &method));
             at_most(&format!("{shape} {transfer}"), midpoint.momentum_drift(), 1e-12);
