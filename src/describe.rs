@@ -11,6 +11,7 @@ use flyer_mpm::output::summary::SUMMARY_FILE;
 use flyer_mpm::reference;
 use flyer_mpm::scene::{CheckedScene, Reference};
 use flyer_mpm::simulation::{RunError, Simulation};
+use flyer_mpm::step::{Stepper, Steps};
 use serde_json::json;
 
 use crate::{FAILED, Outcome, bad};
@@ -23,7 +24,10 @@ pub fn check(scene: &CheckedScene) -> Result<String, RunError> {
     }
 }
 
-fn check_in<const D: usize>(scene: &CheckedScene) -> Result<String, RunError> {
+fn check_in<const D: usize>(scene: &CheckedScene) -> Result<String, RunError>
+where
+    Stepper<D>: Steps<D>,
+{
     let simulation = Simulation::<_, D>::new(scene, &Serial, 1)?;
     let dt = simulation.time_step().min(scene.scene.time.end);
     let mut text = String::new();

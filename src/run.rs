@@ -27,6 +27,7 @@ use crate::probes::Probes;
 use crate::reference::{PlaneReference, Reference};
 use crate::scene::{CheckedScene, Side};
 use crate::simulation::{Left, RunError, Simulation, Totals};
+use crate::step::{Stepper, Steps};
 
 /// Why a run has no result.
 #[derive(Debug, thiserror::Error)]
@@ -137,7 +138,10 @@ fn step_to_end<C: Comm, const D: usize>(
     scene: &CheckedScene,
     comm: &C,
     quiet: bool,
-) -> Result<Recorded, RunError> {
+) -> Result<Recorded, RunError>
+where
+    Stepper<D>: Steps<D>,
+{
     let end = scene.scene.time.end;
     let first = comm.rank() == 0;
     let mut progress = Progress::new(end, first && !quiet);
@@ -200,7 +204,10 @@ fn run_in<C: Comm, const D: usize>(
     comm: &C,
     scene: &CheckedScene,
     options: &Options,
-) -> Result<Option<String>, Failure> {
+) -> Result<Option<String>, Failure>
+where
+    Stepper<D>: Steps<D>,
+{
     let mut simulation = Simulation::<C, D>::new(scene, comm, options.threads)?;
     let start = simulation.totals();
     if let Some((_, steps)) = &options.trace {

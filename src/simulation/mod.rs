@@ -23,7 +23,7 @@ use crate::geometry::Tile;
 use crate::particles::{self, Columns};
 use crate::patch::Patch;
 use crate::scene::{CheckedBody, CheckedScene, FilterHalo, Side};
-use crate::step::{Reach, Sleep, Stepper, World};
+use crate::step::{Reach, Sleep, Stepper, Steps, World};
 use crate::threads::make_pool;
 
 use books::{CENSUS_EVERY, Outflow};
@@ -280,7 +280,10 @@ impl<const D: usize> Plan<D> {
     }
 }
 
-impl<'a, C: Comm, const D: usize> Simulation<'a, C, D> {
+impl<'a, C: Comm, const D: usize> Simulation<'a, C, D>
+where
+    Stepper<D>: Steps<D>,
+{
     /// Makes the particles of `scene`, to be run by `threads` threads on each rank. Collective.
     pub fn new(scene: &'a CheckedScene, comm: &'a C, threads: usize) -> Result<Self, RunError> {
         let stepper = Stepper::new(scene);
@@ -336,6 +339,41 @@ impl<'a, C: Comm, const D: usize> Simulation<'a, C, D> {
         Ok(simulation)
     }
 
+    /// One step, the last one before `until` [s] shortened to meet it exactly; the step after is
+    /// as long as if it had not been. Collective.
+    pub fn advance(&mut self, until: f64) -> Result<(), RunError> {
+        let left = until - self.time;
+        let stable = self.dt;
+        // a remainder below rounding of the time is no step of its own
+        let meets = stable * (1.0 + 1e-9) >= left;
+        let dt = if meets { left } else { stable };
+        let (end, step) = (self.scene.scene.time.end, self.step);
+        if dt * MOST_STEPS < end && !meets {
+            return Err(match step {
+                0 => RunError::TooLong { end, dt, steps: MOST_STEPS },
+                _ => RunError::TimeStep { time: self.time, step, dt },
+            });
+        }
+        self.step += 1;
+        let (step, time) = (self.step, self.time);
+        let sampled = self.samples(step);
+        self.clock.start_step(step, self.traced.contains(&step), sampled);
+        self.with_world(|stepper, world| stepper.advance(world, time, dt, step))?;
+        if sampled {
+            self.patches.iter_mut().for_each(|p| p.watch.end_step());
+        }
+        self.outflow.take(&mut self.patches);
+        self.time = if meets { until } else { self.time + dt };
+        self.agree()?;
+        if step.is_multiple_of(CENSUS_EVERY) || self.time >= end {
+            self.check_census()?;
+        }
+        self.balance();
+        Ok(())
+    }
+}
+
+impl<C: Comm, const D: usize> Simulation<'_, C, D> {
     fn with_world<R>(&mut self, call: impl FnOnce(&Stepper<D>, &mut World<'_, D>) -> R) -> R {
         let mut world = World {
             comm: self.comm,
@@ -470,38 +508,5 @@ impl<'a, C: Comm, const D: usize> Simulation<'a, C, D> {
             what: String::from_utf8_lossy(&what.iter().map(|&b| b as u8).collect::<Vec<_>>())
                 .into_owned(),
         }
-    }
-
-    /// One step, the last one before `until` [s] shortened to meet it exactly; the step after is
-    /// as long as if it had not been. Collective.
-    pub fn advance(&mut self, until: f64) -> Result<(), RunError> {
-        let left = until - self.time;
-        let stable = self.dt;
-        // a remainder below rounding of the time is no step of its own
-        let meets = stable * (1.0 + 1e-9) >= left;
-        let dt = if meets { left } else { stable };
-        let (end, step) = (self.scene.scene.time.end, self.step);
-        if dt * MOST_STEPS < end && !meets {
-            return Err(match step {
-                0 => RunError::TooLong { end, dt, steps: MOST_STEPS },
-                _ => RunError::TimeStep { time: self.time, step, dt },
-            });
-        }
-        self.step += 1;
-        let (step, time) = (self.step, self.time);
-        let sampled = self.samples(step);
-        self.clock.start_step(step, self.traced.contains(&step), sampled);
-        self.with_world(|stepper, world| stepper.advance(world, time, dt, step))?;
-        if sampled {
-            self.patches.iter_mut().for_each(|p| p.watch.end_step());
-        }
-        self.outflow.take(&mut self.patches);
-        self.time = if meets { until } else { self.time + dt };
-        self.agree()?;
-        if step.is_multiple_of(CENSUS_EVERY) || self.time >= end {
-            self.check_census()?;
-        }
-        self.balance();
-        Ok(())
     }
 }

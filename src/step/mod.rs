@@ -1,6 +1,6 @@
 //! One time step, written as the method reads in a paper.
 //!
-//! [`Stepper`] holds what a scene chose; [`Stepper::advance`] runs the list of phases of
+//! [`Stepper`] holds what a scene chose; [`Steps::advance`] runs the list of phases of
 //! [`midpoint`] or [`leapfrog`]. Physics and messages meet in [`World`], which calls a phase on
 //! every patch and the exchanges between phases.
 
@@ -307,31 +307,6 @@ impl<const D: usize> Stepper<D> {
         self.relaxation.filter(|r| step.is_multiple_of(r.interval as u64)).map(|r| r.rate)
     }
 
-    /// Makes the starting state whole: pressure, sound speed and, where the scheme needs it, the
-    /// gradient of the starting velocity. Collective.
-    pub fn prime(&self, world: &mut World<'_, D>) -> Result<(), decomp::RowError> {
-        world.each("refresh", |patch| self.refresh(patch));
-        if self.stepping == Stepping::Midpoint {
-            self.prime_gradient(world)?;
-            world.each("refresh", |patch| self.refresh(patch));
-        }
-        Ok(())
-    }
-
-    /// Advances all patches from `time` by `dt` [s]; `step` numbers the steps from 1. Collective.
-    pub fn advance(
-        &self,
-        world: &mut World<'_, D>,
-        time: f64,
-        dt: f64,
-        step: u64,
-    ) -> Result<(), decomp::RowError> {
-        match self.stepping {
-            Stepping::Midpoint => self.advance_midpoint(world, time, dt, self.relaxes(step)),
-            Stepping::Leapfrog => self.advance_leapfrog(world, time, dt),
-        }
-    }
-
     /// Weights of all rows of a patch, as wide as its longest row needs.
     fn find_weights(&self, patch: &mut Patch<D>) {
         fn find<S: Shape, const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
@@ -363,6 +338,55 @@ impl<const D: usize> Stepper<D> {
         }
     }
 }
+
+/// Whole steps, compiled once in this crate for each dimension: what they call is generic over
+/// shape functions, widths and dimensions, and every program that used them as generic functions
+/// would compile all of it again.
+pub trait Steps<const D: usize> {
+    /// Makes the starting state whole: pressure, sound speed and, where the scheme needs it, the
+    /// gradient of the starting velocity. Collective.
+    fn prime(&self, world: &mut World<'_, D>) -> Result<(), decomp::RowError>;
+
+    /// Advances all patches from `time` by `dt` [s]; `step` numbers the steps from 1. Collective.
+    fn advance(
+        &self,
+        world: &mut World<'_, D>,
+        time: f64,
+        dt: f64,
+        step: u64,
+    ) -> Result<(), decomp::RowError>;
+}
+
+macro_rules! compile_steps {
+    ($($dimension:literal),*) => {$(
+        impl Steps<$dimension> for Stepper<$dimension> {
+            fn prime(&self, world: &mut World<'_, $dimension>) -> Result<(), decomp::RowError> {
+                world.each("refresh", |patch| self.refresh(patch));
+                if self.stepping == Stepping::Midpoint {
+                    self.prime_gradient(world)?;
+                    world.each("refresh", |patch| self.refresh(patch));
+                }
+                Ok(())
+            }
+
+            fn advance(
+                &self,
+                world: &mut World<'_, $dimension>,
+                time: f64,
+                dt: f64,
+                step: u64,
+            ) -> Result<(), decomp::RowError> {
+                match self.stepping {
+                    Stepping::Midpoint => {
+                        self.advance_midpoint(world, time, dt, self.relaxes(step))
+                    }
+                    Stepping::Leapfrog => self.advance_leapfrog(world, time, dt),
+                }
+            }
+        }
+    )*};
+}
+compile_steps!(1, 2);
 
 /// Length of a vector; exact along an axis.
 #[inline(always)]

@@ -5,6 +5,7 @@ use decomp::{Comm, Serial};
 use flyer_mpm::output::ParticleTable;
 use flyer_mpm::scene::{self, CheckedScene};
 use flyer_mpm::simulation::{Simulation, Totals};
+use flyer_mpm::step::{Stepper, Steps};
 use serde_json::{Value, json};
 
 /// Makes a checked scene.
@@ -40,7 +41,10 @@ fn run_rank<C: Comm, const D: usize>(
     scene: &CheckedScene,
     comm: &C,
     threads: usize,
-) -> Option<Outcome<D>> {
+) -> Option<Outcome<D>>
+where
+    Stepper<D>: Steps<D>,
+{
     let mut simulation = Simulation::<C, D>::new(scene, comm, threads).unwrap();
     let start = simulation.totals();
     while simulation.time() < scene.scene.time.end {
@@ -52,7 +56,10 @@ fn run_rank<C: Comm, const D: usize>(
 }
 
 /// Runs a scene on one rank.
-pub fn run<const D: usize>(scene: &Value) -> Outcome<D> {
+pub fn run<const D: usize>(scene: &Value) -> Outcome<D>
+where
+    Stepper<D>: Steps<D>,
+{
     run_rank(&checked(scene), &Serial, 1).expect("rank 0")
 }
 

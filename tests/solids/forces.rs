@@ -1,5 +1,6 @@
 //! Body forces, and what is booked of them.
 
+use flyer_mpm::step::{Stepper, Steps};
 use serde_json::{Value, json};
 
 use crate::tools::{at_most, midpoint, run, shipped};
@@ -30,7 +31,10 @@ fn falling(plane: bool, method: Value) -> Value {
     })
 }
 
-fn check<const D: usize>(method: Value, bound: f64) {
+fn check<const D: usize>(method: Value, bound: f64)
+where
+    Stepper<D>: Steps<D>,
+{
     let what = method.to_string();
     let outcome = run::<D>(&falling(D == 2, method));
     let [start, end] = outcome.totals;

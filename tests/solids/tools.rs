@@ -5,6 +5,7 @@ use flyer_mpm::output::ParticleTable;
 use flyer_mpm::reference::PlaneReference;
 use flyer_mpm::scene::{self, CheckedScene};
 use flyer_mpm::simulation::{Simulation, Totals};
+use flyer_mpm::step::{Stepper, Steps};
 use serde_json::{Value, json};
 
 /// A shipped scene, to be edited.
@@ -63,7 +64,10 @@ impl<const D: usize> Outcome<D> {
 
 /// Runs a scene to its end; it must succeed.
 #[track_caller]
-pub fn run<const D: usize>(value: &Value) -> Outcome<D> {
+pub fn run<const D: usize>(value: &Value) -> Outcome<D>
+where
+    Stepper<D>: Steps<D>,
+{
     let scene = checked(value);
     assert_eq!(scene.dimension, D);
     let mut simulation = Simulation::<_, D>::new(&scene, &Serial, 1).unwrap();
