@@ -68,6 +68,8 @@ pub struct Columns {
     pub stress_volume: usize,
     /// Components of it.
     pub stress_volumes: usize,
+    /// What the particle has been pressed with, up to a most [Pa s], with contact.
+    pub pressed: Option<usize>,
     /// What a body force takes, with one.
     pub body_force: Option<BodyForceColumns>,
     /// J at the middle of the step, scratch, with mid-point stepping.
@@ -201,11 +203,13 @@ impl Columns {
             reference: matches!(force, BodyForce::Vortex(_))
                 .then(|| add_all(vector(&REFERENCE), "m", false, true, &same)),
         });
+        let pressed = touching.then(|| add_all(&["contact_impulse"], "Pa s", true, true, &same));
         let half_edges = deforms.then(|| match seen {
             true => domain,
             false => add_all(&HALF_EDGES, "", true, false, &of_edge),
         });
         Columns {
+            pressed,
             body_force,
             filled: volume.or(filled.then_some(domain)),
             half_edges,
@@ -265,7 +269,8 @@ fn lattice<const D: usize>(
 /// Fills the bodies with particles, keeping those whose patch is on `rank`: a block a patch of
 /// the rank. Ids number the particles of all bodies in order, whatever the layout. Velocities
 /// are those seen from a grid that travels at `grid_velocity` [m/s]; `energy` gives the specific
-/// internal energy at which a body is at a pressure [J/kg].
+/// internal energy at which a body is at a pressure [J/kg], and `pressed` what it has been pressed
+/// with [Pa s].
 ///
 /// A body's particles tile it: those of a box have equal shares of its volume and mass to rounding.
 pub fn fill<const D: usize>(
@@ -275,6 +280,7 @@ pub fn fill<const D: usize>(
     rank: usize,
     grid_velocity: [f64; D],
     energy: &dyn Fn(usize, f64) -> f64,
+    pressed: &dyn Fn(usize, f64) -> f64,
 ) -> Vec<Block<D>> {
     let mine = layout.patches_of(rank);
     let mut blocks: Vec<Block<D>> = mine.iter().map(|_| Block::new(&columns.specs)).collect();
@@ -318,6 +324,9 @@ pub fn fill<const D: usize>(
             row[columns.jacobian] = 1.0;
             row[columns.energy] = energy(number, pressure);
             row[columns.body] = number as f64;
+            if let Some(column) = columns.pressed {
+                row[column] = pressed(number, pressure);
+            }
             if let Some(half_lengths) = columns.half_lengths {
                 (0..D).for_each(|a| row[half_lengths + a] = 0.5 * size[a]);
             }

@@ -64,6 +64,26 @@ pub struct Nodes<'a, const D: usize> {
     pub steps: [usize; D],
     /// 1/edge of a cell [1/m].
     pub inverse_cell: [f64; D],
+    /// Places in a layer, of the bodies' velocity fields that the arrays hold one after the other.
+    pub layer: usize,
+}
+
+impl<const D: usize> Nodes<'_, D> {
+    /// A component of the velocity of node `i`; where its body has no material, that of another's:
+    /// where two touch, smooth flow goes on in the other. None where there is no material.
+    #[inline(always)]
+    fn velocity(&self, axis: usize, i: usize) -> Option<f64> {
+        match self.inverse_mass[i] > 0.0 {
+            true => Some(self.velocity[axis][i]),
+            false => self.velocity_of_others(axis, i),
+        }
+    }
+
+    #[cold]
+    fn velocity_of_others(&self, axis: usize, i: usize) -> Option<f64> {
+        let mut all = (i % self.layer..self.inverse_mass.len()).step_by(self.layer);
+        all.find(|&i| self.inverse_mass[i] > 0.0).map(|i| self.velocity[axis][i])
+    }
 }
 
 /// phi of Christensen (1990) along one direction: with the gradients D_c over the cells, r =
@@ -88,10 +108,9 @@ fn christensen_line(v: [f64; 4], ends: [bool; 2]) -> f64 {
 #[inline(always)]
 pub fn christensen<const D: usize>(nodes: &Nodes<'_, D>, node: usize) -> f64 {
     let along = |axis: usize, from: usize| {
-        let (step, v) = (nodes.steps[axis], nodes.velocity[axis]);
-        let at = [from - step, from, from + step, from + 2 * step];
-        let ends = [at[0], at[3]].map(|i| nodes.inverse_mass[i] > 0.0);
-        (at.map(|i| v[i]), ends)
+        let step = nodes.steps[axis];
+        let v = [from - step, from, from + step, from + 2 * step].map(|i| nodes.velocity(axis, i));
+        (v.map(|v| v.unwrap_or(0.0)), [v[0], v[3]].map(|v| v.is_some()))
     };
     if D == 1 {
         let (v, ends) = along(0, node);
@@ -137,12 +156,10 @@ pub fn nodal<const K: usize, const D: usize>(
                 let i = row.first + line * row.stride + k;
                 let mut divergence = 0.0;
                 for axis in 0..D {
-                    let (step, v) = (nodes.steps[axis], nodes.velocity[axis]);
-                    let known =
-                        nodes.inverse_mass[i - step] > 0.0 && nodes.inverse_mass[i + step] > 0.0;
-                    if known {
-                        divergence +=
-                            (v[i + step] - v[i - step]) * (0.5 * nodes.inverse_cell[axis]);
+                    let step = nodes.steps[axis];
+                    let ends = [i - step, i + step].map(|i| nodes.velocity(axis, i));
+                    if let [Some(before), Some(after)] = ends {
+                        divergence += (after - before) * (0.5 * nodes.inverse_cell[axis]);
                     }
                 }
                 least = least.min(divergence / gradient);
@@ -180,7 +197,13 @@ mod tests {
     }
 
     fn line<'a>(velocity: &'a [f64], ones: &'a [f64]) -> Nodes<'a, 1> {
-        Nodes { velocity: [velocity], inverse_mass: ones, steps: [1], inverse_cell: [1.0] }
+        Nodes {
+            velocity: [velocity],
+            inverse_mass: ones,
+            steps: [1],
+            inverse_cell: [1.0],
+            layer: velocity.len(),
+        }
     }
 
     #[test]
@@ -209,8 +232,13 @@ mod tests {
             let turned: Vec<f64> = (0..36).map(|i| v[i / 6]).collect();
             let rest = [0.0; 36];
             for velocity in [[&wave[..], &rest], [&rest, &turned[..]]] {
-                let nodes =
-                    Nodes { velocity, inverse_mass: &ones, steps: [1, 6], inverse_cell: [1.0; 2] };
+                let nodes = Nodes {
+                    velocity,
+                    inverse_mass: &ones,
+                    steps: [1, 6],
+                    inverse_cell: [1.0; 2],
+                    layer: 36,
+                };
                 assert_eq!(christensen(&nodes, 14), on_a_line);
             }
         }

@@ -17,8 +17,10 @@
 //! become one at a node is heat of the particles there.
 //!
 //! Bodies are in contact where the edges of their particles, at the middle of the step, leave no
-//! gap, and they approach or press on each other: so nothing happens a cell early, as it does where
-//! the grid alone decides (Bardenhagen, Brackbill & Sulsky 2000), and nothing sticks.
+//! gap, and apart they would overlap by its end: so nothing happens a cell early, as it does where
+//! the grid alone decides (Bardenhagen, Brackbill & Sulsky 2000), and nothing sticks. Bodies that
+//! were pressed together hold a little while when pulled on, for an interface that opened at each
+//! ripple ahead of a shock would scatter it.
 //!
 //! Knows no materials, no messages.
 

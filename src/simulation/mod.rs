@@ -300,6 +300,7 @@ where
             comm.rank(),
             grid_velocity,
             &|body, pressure| stepper.starting_energy(body, pressure),
+            &|body, pressure| stepper.starting_impulse(body, pressure),
         );
         let longest = stepper.longest_at_start(scene);
         let reach = stepper.reach(longest).expect("a longer particle is a fault");

@@ -159,6 +159,7 @@ impl<const D: usize> Stepper<D> {
             inverse_mass: &fields[self.fields.inverse],
             steps: std::array::from_fn(|a| if a == 0 { 1 } else { stride }),
             inverse_cell: self.inverse_cell,
+            layer: patch.nodes.nodes.count(),
         };
         let lower = patch.nodes.nodes.lower;
         let n = patch.block.own();

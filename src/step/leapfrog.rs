@@ -23,13 +23,14 @@ impl<const D: usize> Stepper<D> {
         world.each("start", |patch| {
             patch.block.drop_ghosts();
             self.current_stress(patch);
+            self.find_pressed(patch, self.columns.jacobian, dt);
             self.find_body_force(patch, time);
             self.locate(patch, 0.0, self.columns.jacobian);
             self.find_active(patch);
         });
         if self.stress_update == StressUpdate::First {
             world.exchange_rows(|nodal| {
-                nodal.each("scatter", |patch| self.scatter(patch, false, 0.0));
+                nodal.each("scatter", |patch| self.scatter(patch, false, dt));
                 // no force yet: the acceleration's sums are zero
                 self.solve_velocity(nodal, 0.0, false);
                 nodal.each("update stress", |patch| {

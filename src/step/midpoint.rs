@@ -32,6 +32,7 @@ impl<const D: usize> Stepper<D> {
             self.find_viscosity(patch, mid);
             self.mid_step_stress(patch, relax.is_some());
             self.find_solid_stress(patch, 0.5 * dt, mid);
+            self.find_pressed(patch, mid, dt);
             self.find_body_force(patch, time + 0.5 * dt);
             self.locate(patch, 0.5 * dt, mid);
             self.find_active(patch);

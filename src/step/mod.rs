@@ -53,6 +53,8 @@ pub struct Stepper<const D: usize> {
     pub layers: usize,
     /// rho c^2 of each body as it starts [Pa].
     stiffness: Vec<f64>,
+    /// The most impulse that each body may give back where it is pulled on [Pa s].
+    most_pull: Vec<f64>,
     /// One a body.
     models: Vec<Matter>,
     shape: ShapeKind,
@@ -159,6 +161,14 @@ impl<const D: usize> Stepper<D> {
         let stiffness = (bodies.iter().zip(&models))
             .map(|(b, m)| materials[&b.material].density * m.sound_speed_at(b.pressure).powi(2))
             .collect();
+        let impact = scene.impact_speed::<D>();
+        let most_pull = (bodies.iter().zip(&models))
+            .map(|(b, m)| {
+                let density = materials[&b.material].density;
+                let speed = impact.max(b.pressure.abs() / (density * m.sound_speed_at(b.pressure)));
+                contact::PULL * density * smallest * speed
+            })
+            .collect();
         let densest = bodies.iter().map(|b| materials[&b.material].density).fold(0.0, f64::max);
         // what a cell's edge is to viscosity: exact where all are the same
         let edge = match cell.iter().all(|&h| h == cell[0]) {
@@ -186,6 +196,7 @@ impl<const D: usize> Stepper<D> {
             contact,
             layers: scene.velocity_fields(),
             stiffness,
+            most_pull,
             models,
             shape: method.shape,
             cell,
@@ -209,6 +220,11 @@ impl<const D: usize> Stepper<D> {
     /// The specific internal energy at which `body` starts at `pressure` [J/kg].
     pub fn starting_energy(&self, body: usize, pressure: f64) -> f64 {
         self.models[body].energy_at(pressure)
+    }
+
+    /// What `body` has been pressed with where it starts at `pressure` [Pa s].
+    pub fn starting_impulse(&self, body: usize, pressure: f64) -> f64 {
+        if pressure > 0.0 { self.most_pull[body] } else { 0.0 }
     }
 
     /// The greatest extent along a direction of the particles that `scene` starts with [cells].

@@ -57,6 +57,9 @@ impl<const D: usize> Stepper<D> {
             inverse[i] = if weight[i] > 0.0 { 1.0 / weight[i] } else { 0.0 };
             term[i] = cut(term[i] * inverse[i], self.still_pressure);
         }
+        if self.contact.is_some() {
+            patch.contact.join_scalar(weight, term);
+        }
         sum.copy_from_slice(term);
     }
 

@@ -12,7 +12,7 @@ impl<const D: usize> Stepper<D> {
         self.find_weights(patch);
         self.scatter_rows(patch, force);
         if let Some(contact) = &self.contact {
-            self.find_contact(patch, contact, if force { dt } else { 0.0 });
+            self.find_contact(patch, contact, dt, force);
         }
         self.divide_by_mass(patch);
         self.start_series(patch);

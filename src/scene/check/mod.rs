@@ -99,6 +99,21 @@ impl CheckedScene {
         })
     }
 
+    /// The greatest speed with which bodies and pistons can meet at the start [m/s].
+    pub fn impact_speed<const D: usize>(&self) -> f64 {
+        let pistons = self.sides::<D>();
+        let moving = pistons.iter().flatten().any(|s| matches!(s, Side::Velocity(_)));
+        let piston = moving.then(|| self.grid_velocity::<D>());
+        let bodies = self.bodies.iter().map(|b| std::array::from_fn(|a| b.velocity[a]));
+        let all: Vec<[f64; D]> = bodies.chain(piston).collect();
+        let apart = |a: &[f64; D], b: &[f64; D]| {
+            a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+        };
+        let pairs = all.iter().flat_map(|a| all.iter().map(move |b| apart(a, b)));
+        let moved = self.bodies.iter().filter(|b| b.motion.is_some()).map(|b| b.top_speed);
+        pairs.chain(moved).fold(0.0, f64::max)
+    }
+
     /// Whether x is a radius.
     pub fn axisymmetric(&self) -> bool {
         self.scene.domain.geometry == Geometry::Axisymmetric

@@ -1,11 +1,15 @@
 //! Contact in a step: which bodies touch at which nodes, found by each patch for the nodes that it
 //! computes, from rows alone; and what they share put into the nodal sums and series.
 
-use decomp::Parity;
+mod friction;
+mod touch;
+
+pub(super) use touch::PULL;
+
 use smallvec::SmallVec;
 
 use super::series::Series;
-use super::{MOST_NODES, Nodal, Stepper, norm, with_width};
+use super::{MOST_NODES, Stepper, with_width};
 use crate::contact::{
     Booked, Contact, ContactNodes, INSET, Joint, Knot, Member, Point, Touch, logistic_regression,
     volume_gradient,
@@ -14,32 +18,21 @@ use crate::patch::Patch;
 use crate::scene::Normals;
 use crate::transfer::Scheme;
 
-/// Bodies without stress touch if their edges are nearer than this [cells].
-const CLOSED: f64 = 0.01;
-
-/// Bodies that press on each other stay in contact over a gap as wide as their compression of a
-/// cell, up to this [cells]: as a wave passes, the outermost particles' lengths and places are a
-/// little out of step.
-const HELD: f64 = 0.1;
-
-/// The outermost part of a body at a meeting.
-#[derive(Clone, Copy)]
-struct Edge {
-    /// How far it reaches along the normal, seen from the node [m].
-    reach: f64,
-    /// p + q there [Pa].
-    stress: f64,
-}
-
 impl<const D: usize> Stepper<D> {
     /// Finds the pairs of bodies in contact at the nodes that the patch computes, once masses and
-    /// momenta are summed up.
-    pub(super) fn find_contact(&self, patch: &mut Patch<D>, contact: &Contact, dt: f64) {
+    /// momenta are summed up; in a step of `dt`, in which nodal forces are known or not.
+    pub(super) fn find_contact(
+        &self,
+        patch: &mut Patch<D>,
+        contact: &Contact,
+        dt: f64,
+        forces: bool,
+    ) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
             s: &Stepper<D>,
             contact: &Contact,
-            dt: f64,
+            [dt, rubbing]: [f64; 2],
         ) {
             let mut nodes = std::mem::take(&mut patch.contact);
             nodes.clear();
@@ -54,7 +47,7 @@ impl<const D: usize> Stepper<D> {
                 &patch.runs,
             );
             for meeting in 0..nodes.meetings.len() {
-                s.find_joints::<K>(patch, &mut nodes, meeting, contact, dt);
+                s.find_joints::<K>(patch, &mut nodes, meeting, contact, [dt, rubbing]);
             }
             s.fill_joints(patch, &mut nodes);
             if contact.coefficient.is_some() {
@@ -62,17 +55,18 @@ impl<const D: usize> Stepper<D> {
             }
             patch.contact = nodes;
         }
-        with_width!(patch.stencils.width, go(patch, self, contact, dt));
+        let rubbing = if forces { dt } else { 0.0 };
+        with_width!(patch.stencils.width, go(patch, self, contact, [dt, rubbing]));
     }
 
-    /// The joints of one meeting.
+    /// The joints of one meeting, in a step of `dt` and with friction for the time `rubbing`.
     fn find_joints<const K: usize>(
         &self,
         patch: &Patch<D>,
         nodes: &mut ContactNodes<D>,
         meeting: usize,
         contact: &Contact,
-        dt: f64,
+        [dt, rubbing]: [f64; 2],
     ) {
         let f = &self.fields;
         let fields = &patch.nodes.fields;
@@ -109,10 +103,10 @@ impl<const D: usize> Stepper<D> {
                     }
                 };
                 let Some(normal) = normal else { continue };
-                if self.touch(patch, index, touches, pair, &normal) {
+                if self.touch(patch, index, touches, pair, &normal, dt) {
                     let (whole, friction) = match contact.coefficient {
-                        Some(coefficient) if D > 1 && dt > 0.0 => {
-                            self.friction(pair, &normal, coefficient, dt)
+                        Some(coefficient) if D > 1 && rubbing > 0.0 => {
+                            self.friction(pair, &normal, coefficient, rubbing)
                         }
                         _ => (false, [0.0; D]),
                     };
@@ -197,84 +191,6 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// Whether two bodies touch at a node: the gap between the edges of their particles is closed
-    /// and they approach, or they press on each other.
-    fn touch(
-        &self,
-        patch: &Patch<D>,
-        index: [i64; D],
-        touches: &[Touch],
-        [a, b]: [&Member<D>; 2],
-        normal: &[f64; D],
-    ) -> bool {
-        let edges = |direction: &[f64; D]| {
-            let first = self.edge(patch, index, touches, a.layer, direction)?;
-            let second = self.edge(patch, index, touches, b.layer, &direction.map(|n| -n))?;
-            Some((first, second))
-        };
-        let Some((first, second)) = edges(normal) else { return false };
-        let cell = self.cell.iter().copied().fold(f64::INFINITY, f64::min);
-        let mut gap = -(first.reach + second.reach) / cell;
-        // near a corner the normal is between those of two faces, and along it the bodies seem to
-        // overlap; a gap along any direction is one
-        if D > 1 {
-            let faces = [a.gradient, b.gradient.map(|g| -g)];
-            let axes = (0..D).map(|k| {
-                let mut axis = [0.0; D];
-                axis[k] = normal[k].signum();
-                axis
-            });
-            for direction in faces.into_iter().chain(axes) {
-                let length = norm(&direction);
-                if length > 0.0
-                    && let Some((first, second)) = edges(&direction.map(|x| x / length))
-                {
-                    gap = gap.max(-(first.reach + second.reach) / cell);
-                }
-            }
-        }
-        let closing = (0..D).map(|k| (a.velocity[k] - b.velocity[k]) * normal[k]).sum::<f64>();
-        let stress = 0.5 * (first.stress + second.stress);
-        let strain = stress / self.stiffness[a.layer].min(self.stiffness[b.layer]);
-        (gap < CLOSED && closing > 0.0) || (stress > 0.0 && gap < CLOSED + strain.min(HELD))
-    }
-
-    /// The edge of the body in `layer` along `normal`, among the rows that touch a node.
-    fn edge(
-        &self,
-        patch: &Patch<D>,
-        index: [i64; D],
-        touches: &[Touch],
-        layer: usize,
-        normal: &[f64; D],
-    ) -> Option<Edge> {
-        let c = &self.columns;
-        let column = |k: usize| &patch.block.columns[k];
-        let filled = column(c.filled.expect("contact has the column"));
-        let mut edge: Option<Edge> = None;
-        let rows = touches.iter().map(|t| t.row as usize);
-        for r in rows.filter(|&r| self.layer_of(patch, r) == layer) {
-            let along = |v: [f64; D]| (0..D).map(|a| v[a] * self.cell[a] * normal[a]).sum::<f64>();
-            let centre = along(self.place(patch, r, index));
-            let half = match c.half_edges {
-                None => along([0.5 * filled[r]; D]).abs(),
-                Some(first) => {
-                    let edge = |k: usize| {
-                        along(std::array::from_fn(|a| column(first + 2 * k + a)[r])).abs()
-                    };
-                    edge(0) + edge(1)
-                }
-            };
-            let reach = centre + half;
-            if edge.is_none_or(|e| reach > e.reach) {
-                let around = if self.axisymmetric { self.radius(patch, r).abs() } else { 1.0 };
-                let volume = filled[r] * self.cell.iter().product::<f64>() * around;
-                edge = Some(Edge { reach, stress: self.pressing(patch, r, normal) / volume });
-            }
-        }
-        edge
-    }
-
     /// With an edge mask, bodies in contact fill a node together.
     fn fill_joints(&self, patch: &mut Patch<D>, nodes: &mut ContactNodes<D>) {
         let Some(least) = self.edge_mask else { return };
@@ -331,51 +247,6 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// Whether two bodies stick in a step of `dt`, and if not the force with which the second rubs
-    /// the first [N].
-    ///
-    /// With the velocities that they would have apart at the end of the step, N is the impulse that
-    /// makes one of their normal parts, T that which makes one of the others. Coulomb's law: they
-    /// stick if T <= coefficient N, else an impulse of coefficient N opposes the slip (Bardenhagen,
-    /// Brackbill & Sulsky 2000).
-    fn friction(
-        &self,
-        [a, b]: [&Member<D>; 2],
-        normal: &[f64; D],
-        coefficient: f64,
-        dt: f64,
-    ) -> (bool, [f64; D]) {
-        let moved = self.moved();
-        let mass = a.mass * b.mass / (a.mass + b.mass);
-        let apart: [f64; D] = std::array::from_fn(|k| a.velocity[k] - b.velocity[k]);
-        let pushed: [f64; D] =
-            std::array::from_fn(|k| dt * (a.acceleration[k] - b.acceleration[k]));
-        let along = |v: &[f64; D]| (0..D).map(|k| v[k] * normal[k]).sum::<f64>();
-        let most = coefficient * mass * (moved * along(&apart) + along(&pushed)).max(0.0);
-        let slip: [f64; D] = std::array::from_fn(|k| {
-            let across = |v: &[f64; D]| v[k] - along(v) * normal[k];
-            across(&apart) + across(&pushed)
-        });
-        let speed = norm(&slip);
-        let sticks = mass * speed <= most;
-        if sticks && moved == 1.0 {
-            return (true, [0.0; D]);
-        }
-        // a blend keeps particles' velocities: what holds them must be a force
-        let impulse = if sticks { mass * speed } else { most };
-        let scale = if speed > 0.0 { -impulse / (dt * speed) } else { 0.0 };
-        (false, slip.map(|s| scale * s))
-    }
-
-    /// Adds friction to the nodal force.
-    fn rub(&self, patch: &mut Patch<D>, nodes: &ContactNodes<D>) {
-        for (joint, a) in nodes.joints.iter().flat_map(|j| (0..D).map(move |a| (j, a))) {
-            let force = &mut patch.nodes.fields[self.fields.acceleration + a];
-            force[joint.at[0]] += joint.friction[a];
-            force[joint.at[1]] -= joint.friction[a];
-        }
-    }
-
     /// The share of a nodal jump of velocity that particles take: a blend leaves a part of theirs
     /// as it was.
     fn moved(&self) -> f64 {
@@ -383,50 +254,6 @@ impl<const D: usize> Stepper<D> {
             Scheme::Blend(share) => 1.0 - share,
             Scheme::Series { .. } | Scheme::Affine => 1.0,
         }
-    }
-
-    /// The work that friction has taken from the motion in a step of `dt`, as heat of the two
-    /// bodies, half each [J/kg]: -f.(w_a - w_b) dt, with the velocity whose gradient does the work.
-    fn find_friction_heat(&self, patch: &mut Patch<D>, dt: f64) {
-        let f = &self.fields;
-        let Some(field) = f.heat else { return };
-        let mut heat = std::mem::take(&mut patch.nodes.fields[field]);
-        heat.fill(0.0);
-        let fields = &patch.nodes.fields;
-        let velocity = |a: usize, at: usize| match self.compatible {
-            true => fields[f.work + a][at],
-            false => 0.5 * (fields[f.velocity + a][at] + fields[f.velocity_star + a][at]),
-        };
-        for joint in &patch.contact.joints {
-            let [i, j] = joint.at;
-            let slip = |a: usize| velocity(a, i) - velocity(a, j);
-            let power: f64 = (0..D).map(|a| -joint.friction[a] * slip(a)).sum();
-            heat[i] += 0.5 * dt * power / joint.mass[0];
-            heat[j] += 0.5 * dt * power / joint.mass[1];
-        }
-        patch.nodes.fields[field] = heat;
-    }
-
-    /// Brings the heat of friction to all who see its nodes. Collective between neighbours.
-    pub(super) fn solve_friction_heat(&self, nodal: &mut Nodal<'_, D>, dt: f64) {
-        if let Some(heat) = self.fields.heat {
-            nodal.each("friction heat", |patch| self.find_friction_heat(patch, dt));
-            nodal.refresh(&[(heat, Parity::Even)]);
-        }
-    }
-
-    /// Gives the own rows the heat of friction.
-    fn gather_friction_heat(&self, patch: &mut Patch<D>) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
-            let Some(field) = s.fields.heat else { return };
-            let n = patch.block.own();
-            let energy = &mut patch.block.columns[s.columns.energy][..n];
-            for (r, e) in energy.iter_mut().enumerate() {
-                let row = patch.stencils.row::<K, D>(r);
-                *e += row.dot(row.values, &patch.nodes.fields[field]);
-            }
-        }
-        with_width!(patch.stencils.width, go(patch, self));
     }
 
     /// What a step of `dt` brings from contact: the heat of friction to the own rows, and the
