@@ -53,18 +53,18 @@ impl<'a, const K: usize, const D: usize> Row<'a, K, D> {
         self.sum(weights, |line| *self.line(field, line))
     }
 
-    /// Sum of weights times what `of` gives for each line of nodes, in node order from +0, so
-    /// that weights of zero at the end change no bit.
+    /// Sum of weights times what `of` gives for each line of nodes: over the lines for each place
+    /// in them, then over the places from +0 on, so that weights of zero at the end change no bit.
     #[inline(always)]
     pub fn sum(&self, weights: &[[f64; K]], of: impl Fn(usize) -> [f64; K]) -> f64 {
-        let mut sum = 0.0;
+        let mut sums = [0.0; K];
         for line in 0..Self::LINES {
             let values = of(line);
             for k in 0..K {
-                sum += weights[line][k] * values[k];
+                sums[k] += weights[line][k] * values[k];
             }
         }
-        sum
+        sums.iter().fold(0.0, |sum, s| sum + s)
     }
 }
 

@@ -5,7 +5,7 @@
 //! In a plane values are the mean over the corners of the parallelogram, gradients by the
 //! trapezoidal rule along its edges, which is exact for what hat functions are interpolated to.
 
-use super::plane::{RulePoint, by_rule};
+use super::plane::{RulePoint, by_rule, product};
 use super::{Domain, Extent, Plane, Shape, Weights, split};
 
 /// The corners.
@@ -63,6 +63,9 @@ impl Shape for Cpdi {
         domain: &Domain,
         out: &mut Plane<'_, K>,
     ) -> [i32; 2] {
+        if domain.is_box() {
+            return product::<Self, K>(fraction, domain, out);
+        }
         let hats = |x: f64| {
             let (first, t) = split(x);
             (first as i32, [1.0 - t, t])

@@ -5,7 +5,7 @@
 //! phi(upper))/6, which keeps linear fields exact; gradients by the exact mean,
 //! (phi(upper) - phi(lower))/length. The same rule serves parallelograms in two dimensions.
 
-use super::plane::{RulePoint, by_rule};
+use super::plane::{RulePoint, by_rule, product};
 use super::{Domain, Extent, Plane, Shape, Weights, quadratic};
 
 /// Simpson's rule over a parallelogram and along its edges.
@@ -75,6 +75,9 @@ impl Shape for CpdiBsplineQuadratic {
         domain: &Domain,
         out: &mut Plane<'_, K>,
     ) -> [i32; 2] {
+        if domain.is_box() {
+            return product::<Self, K>(fraction, domain, out);
+        }
         let splines = |x: f64| {
             let (first, _, values) = quadratic(x);
             (first, values)

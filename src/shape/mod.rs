@@ -58,17 +58,7 @@ pub trait Shape: Copy + Send + Sync + 'static {
         domain: &Domain,
         out: &mut Plane<'_, K>,
     ) -> [i32; 2] {
-        let extent = domain.extent();
-        let x: Weights<K> = Self::weights(fraction[0], extent[0]);
-        let y: Weights<K> = Self::weights(fraction[1], extent[1]);
-        for l in 0..K {
-            for k in 0..K {
-                out.values[l][k] = x.values[k] * y.values[l];
-                out.gradients[0][l][k] = x.gradients[k] * y.values[l];
-                out.gradients[1][l][k] = x.values[k] * y.gradients[l];
-            }
-        }
-        [x.first, y.first]
+        plane::product::<Self, K>(fraction, domain, out)
     }
 }
 

@@ -1,5 +1,7 @@
 //! Grid to particles: own rows alone.
 
+use smallvec::SmallVec;
+
 use super::{MOST_NODES, Stepper, with_width};
 use crate::patch::Patch;
 use crate::scene::Limiter;
@@ -115,10 +117,7 @@ impl<const D: usize> Stepper<D> {
         row: &Row<'_, K, D>,
         field: usize,
     ) -> [[f64; D]; D] {
-        std::array::from_fn(|a| {
-            let nodal = &patch.nodes.fields[field + a][..];
-            std::array::from_fn(|b| row.dot(row.gradient(b), nodal))
-        })
+        tensor_of(row, |a, line| *row.line(&patch.nodes.fields[field + a], line))
     }
 
     /// Divergence of the nodal velocity in the fields from `field` on at the own rows, its whole
@@ -225,7 +224,10 @@ impl<const D: usize> Stepper<D> {
         let mut take = |k: usize| std::mem::take(&mut columns[k]);
         let mut x: [Vec<f64>; D] = std::array::from_fn(|a| take(c.position + a));
         let mut v: [Vec<f64>; D] = std::array::from_fn(|a| take(c.velocity + a));
-        let [mut j, mut e, mut d] = [c.jacobian, c.energy, c.gradient].map(take);
+        let [mut j, mut e, mut d] = [c.jacobian, c.energy, c.gradient].map(&mut take);
+        let tensors = [c.deformation, c.velocity_gradient].into_iter().flatten();
+        let mut strain: SmallVec<[(usize, SmallVec<[Vec<f64>; 4]>); 2]> =
+            tensors.map(|first| (first, (first..first + D * D).map(&mut take).collect())).collect();
         let column = |k: usize| &patch.block.columns[k][..n];
         let mid = c.jacobian_mid.expect("mid-point stepping has the column");
         let (mass, j_mid, stress) = (column(c.mass), column(mid), column(c.stress_volume));
@@ -265,8 +267,21 @@ impl<const D: usize> Stepper<D> {
                     Scheme::Affine => {}
                 }
             }
-            let divergence = (0..D).map(|a| row.sum(row.gradient(a), |l| mean(a, l))).sum();
-            let divergence = self.with_hoop(patch, &row, r, divergence, |l| mean(0, l));
+            // where domains deform the whole gradients are needed, else their traces
+            let (plane, end) = match &mut strain[..] {
+                [(_, deformation), (_, gradient)] => {
+                    let during = tensor_of(&row, mean);
+                    let end = tensor_of(&row, |a, l| *row.line(star[a], l));
+                    put(gradient, 0, r, &end);
+                    deform(deformation, r, &during, dt);
+                    (trace(&during), trace(&end))
+                }
+                _ => (
+                    (0..D).map(|a| row.sum(row.gradient(a), |l| mean(a, l))).sum(),
+                    (0..D).map(|a| row.dot(row.gradient(a), star[a])).sum(),
+                ),
+            };
+            let divergence = self.with_hoop(patch, &row, r, plane, |l| mean(0, l));
             let work_done = if TENSOR {
                 let of = |a: usize, line: usize| match self.compatible {
                     true => *row.line(work[a], line),
@@ -292,7 +307,6 @@ impl<const D: usize> Stepper<D> {
             }
             j[r] += dt * j_mid[r] * divergence;
             e[r] += heat - work_done / mass[r];
-            let end = (0..D).map(|a| row.dot(row.gradient(a), star[a])).sum();
             d[r] = self.with_hoop(patch, &row, r, end, |l| *row.line(star[0], l));
         }
         let columns = &mut patch.block.columns;
@@ -303,23 +317,42 @@ impl<const D: usize> Stepper<D> {
         columns[c.jacobian] = j;
         columns[c.energy] = e;
         columns[c.gradient] = d;
-        if let Some(whole) = c.velocity_gradient {
-            self.deform_rows::<K>(patch, whole, dt);
+        for (first, tensor) in strain {
+            for (k, column) in tensor.into_iter().enumerate() {
+                columns[first + k] = column;
+            }
         }
     }
+}
 
-    /// The whole gradient of v' at the own rows, and their domains after the step with that of
-    /// the mean velocity.
-    fn deform_rows<const K: usize>(&self, patch: &mut Patch<D>, whole: usize, dt: f64) {
-        for r in 0..patch.block.own() {
-            let row = patch.stencils.row::<K, D>(r);
-            let start = self.tensor(patch, &row, self.fields.velocity);
-            let star = self.tensor(patch, &row, self.fields.velocity_star);
-            let mean =
-                std::array::from_fn(|a| std::array::from_fn(|b| 0.5 * (start[a][b] + star[a][b])));
-            put(&mut patch.block.columns, whole, r, &star);
-            self.deform(&mut patch.block.columns, r, &mean, dt);
+/// The gradient of the velocity at a row, whose components `of` gives for each line of nodes.
+#[inline(always)]
+fn tensor_of<const K: usize, const D: usize>(
+    row: &Row<'_, K, D>,
+    of: impl Fn(usize, usize) -> [f64; K],
+) -> [[f64; D]; D] {
+    // no nested closures: they stay calls
+    let mut tensor = [[0.0; D]; D];
+    for a in 0..D {
+        for b in 0..D {
+            tensor[a][b] = row.sum(row.gradient(b), |line| of(a, line));
         }
+    }
+    tensor
+}
+
+/// The deformation gradient F in `columns` of a row after `dt` at the gradient `l` of the velocity, by
+/// Cayley's form (1 - dt/2 l)^-1 (1 + dt/2 l) F, which turns without stretching.
+#[inline(always)]
+fn deform<const D: usize>(columns: &mut [Vec<f64>], row: usize, l: &[[f64; D]; D], dt: f64) {
+    let half = 0.5 * dt;
+    let [xx, xy, yx, yy] = [l[0][0], l[0][D - 1], l[D - 1][0], l[D - 1][D - 1]].map(|l| half * l);
+    let inverse = 1.0 / ((1.0 - xx) * (1.0 - yy) - xy * yx);
+    for k in [0, 1] {
+        let (x, y) = (columns[k][row], columns[k + 2][row]);
+        let (x, y) = (x + xx * x + xy * y, y + yx * x + yy * y);
+        columns[k][row] = inverse * ((1.0 - yy) * x + xy * y);
+        columns[k + 2][row] = inverse * (yx * x + (1.0 - xx) * y);
     }
 }
 

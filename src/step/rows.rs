@@ -187,23 +187,6 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// The deformation gradient of a row after `dt` at the gradient `l` of the velocity, by
-    /// Cayley's form (1 - dt/2 l)^-1 (1 + dt/2 l) F, which turns without stretching.
-    #[inline(always)]
-    pub(super) fn deform(&self, columns: &mut [Vec<f64>], row: usize, l: &[[f64; D]; D], dt: f64) {
-        let Some(deformation) = self.columns.deformation else { return };
-        let half = 0.5 * dt;
-        let [xx, xy, yx, yy] =
-            [l[0][0], l[0][D - 1], l[D - 1][0], l[D - 1][D - 1]].map(|l| half * l);
-        let inverse = 1.0 / ((1.0 - xx) * (1.0 - yy) - xy * yx);
-        for k in [deformation, deformation + 1] {
-            let (x, y) = (columns[k][row], columns[k + 2][row]);
-            let (x, y) = (x + xx * x + xy * y, y + yx * x + yy * y);
-            columns[k][row] = inverse * ((1.0 - yy) * x + xy * y);
-            columns[k + 2][row] = inverse * (yx * x + (1.0 - xx) * y);
-        }
-    }
-
     /// The deformation of the own rows after a leapfrog step, (1 + dt L) F: what the places within
     /// a particle move by as it does, at the velocity of the step's end about its start.
     fn deform_forward(&self, patch: &mut Patch<D>, dt: f64) {
