@@ -148,17 +148,14 @@ impl<const D: usize> Stepper<D> {
         })
     }
 
-    /// See [`Joint::share`].
-    fn share_of(&self, patch: &Patch<D>, index: [i64; D]) -> f64 {
-        use crate::scene::Side;
+    /// See [`Joint::share`](crate::contact::Joint::share).
+    pub(super) fn share_of(&self, patch: &Patch<D>, index: [i64; D]) -> f64 {
         if !patch.nodes.owned.contains(index) {
             return 0.0;
         }
         let mirrored = |a: usize| {
-            let mirror =
-                |side: &Side| matches!(side, Side::Symmetry | Side::Wall | Side::Velocity(_));
-            let [lower, upper] = &self.sides[a];
-            (index[a] == 0 && mirror(lower)) || (index[a] == self.cells[a] && mirror(upper))
+            let [lower, upper] = self.sides[a].map(|side| side.rigid_velocity().is_some());
+            (index[a] == 0 && lower) || (index[a] == self.cells[a] && upper)
         };
         (0..D).filter(|&a| mirrored(a)).fold(1.0, |share, _| 0.5 * share)
     }
@@ -378,7 +375,7 @@ impl<const D: usize> Stepper<D> {
 
     /// The share of a nodal jump of velocity that particles take: a blend leaves a part of theirs
     /// as it was.
-    fn moved(&self) -> f64 {
+    pub(super) fn moved(&self) -> f64 {
         match self.scheme {
             Scheme::Blend(share) => 1.0 - share,
             Scheme::Series { .. } | Scheme::Affine => 1.0,
@@ -387,6 +384,7 @@ impl<const D: usize> Stepper<D> {
 
     /// The work that friction has taken from the motion in a step of `dt`, as heat of the two
     /// bodies, half each [J/kg]: -f.(w_a - w_b) dt, with the velocity whose gradient does the work.
+    /// A wall takes none: what rubs on it has all of -f.w dt.
     fn find_friction_heat(&self, patch: &mut Patch<D>, dt: f64) {
         let f = &self.fields;
         let Some(field) = f.heat else { return };
@@ -403,6 +401,10 @@ impl<const D: usize> Stepper<D> {
             let power: f64 = (0..D).map(|a| -joint.friction[a] * slip(a)).sum();
             heat[i] += 0.5 * dt * power / joint.mass[0];
             heat[j] += 0.5 * dt * power / joint.mass[1];
+        }
+        for pushed in patch.side_forces.iter().filter(|p| p.rubs) {
+            let power: f64 = (0..D).map(|a| -pushed.force[a] * velocity(a, pushed.at)).sum();
+            heat[pushed.at] += dt * power / fields[f.mass][pushed.at];
         }
         patch.nodes.fields[field] = heat;
     }

@@ -71,6 +71,7 @@ impl CheckedScene {
         };
         memory::check_counts(&checked)?;
         method::check_bodies(&checked)?;
+        boundary::check_touched(&checked)?;
         motion::check_body_force(&checked)?;
         output::check_tracers(&checked)?;
         reference::check(&mut checked)?;
@@ -97,6 +98,18 @@ impl CheckedScene {
             let piston = |s: &Side| if let Side::Velocity(v) = s { Some(*v) } else { None };
             ends.iter().find_map(piston).unwrap_or(0.0)
         })
+    }
+
+    /// Whether waves pass one of the sides.
+    pub fn transmits(&self) -> bool {
+        self.sides::<2>()[..self.dimension].as_flattened().contains(&Side::Transmitting)
+    }
+
+    /// Whether one of the sides rubs.
+    pub fn has_frictional_wall(&self) -> bool {
+        let sides = self.sides::<2>();
+        let mut all = sides[..self.dimension].as_flattened().iter();
+        all.any(|side| matches!(side, Side::Friction(_)))
     }
 
     /// Whether x is a radius.
