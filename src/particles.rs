@@ -101,8 +101,8 @@ pub struct SideColumns {
     pub volume: usize,
     /// Impedance of a compression wave that leaves [Pa s/m].
     pub impedance: usize,
-    /// Rate of strain along each direction [1/s], a vector.
-    pub stretching: usize,
+    /// Gradient of the velocity of the last step [1/s], a tensor.
+    pub gradient: usize,
 }
 
 impl Columns {
@@ -163,7 +163,8 @@ impl Columns {
             ["body_force_impulse", "body_force_impulse_x", "body_force_impulse_y"];
         const REFERENCE: [&str; 3] =
             ["reference_position", "reference_position_x", "reference_position_y"];
-        const STRETCHING: [&str; 3] = ["side_stretching", "side_stretching_x", "side_stretching_y"];
+        const SIDE_GRADIENT: [&str; 4] =
+            ["side_gradient_xx", "side_gradient_xy", "side_gradient_yx", "side_gradient_yy"];
         const STRESS: [&str; 3] = ["stress_xx", "stress_yy", "stress_xy"];
         const STRESS_VOLUME: [&str; 4] =
             ["stress_volume_xx", "stress_volume_yy", "stress_volume_xy", "stress_volume_zz"];
@@ -220,7 +221,13 @@ impl Columns {
         let side = transmits.then(|| SideColumns {
             volume: add_all(&["side_volume"], "m3", true, false, &same),
             impedance: add_all(&["side_impedance"], "Pa s/m", true, false, &same),
-            stretching: add_all(vector(&STRETCHING), "1/s", true, false, &same),
+            gradient: add_all(
+                if plane { &SIDE_GRADIENT } else { &SIDE_GRADIENT[..1] },
+                "1/s",
+                true,
+                false,
+                &of_tensor,
+            ),
         });
         let half_edges = deforms.then(|| match seen {
             true => domain,

@@ -14,8 +14,8 @@
 //! shock (Courant & Friedrichs 1948). sum V G_i is the surface of what the particles fill, in the
 //! quadrature of the internal force: a uniform pressure is held to rounding wherever the outermost
 //! particle ends, so that nothing is felt as one leaves. The velocity is that of the middle of the
-//! step, found together with the force on lumped masses, which no step is too long for. That across
-//! the side is taken to the node with each particle's gradient of it: without, it is that of a
+//! step, found together with the force on lumped masses, which no step is too long for. It is
+//! taken to the node with each particle's gradient of it across the side: without, it is that of a
 //! place a third of a cell within, where a wave that leaves has been earlier.
 //!
 //! A wall with friction takes from each of its nodes no more momentum along it than it holds, and
@@ -30,7 +30,7 @@ use decomp::{IndexBox, Parity};
 use super::{MOST_NODES, Stepper, with_width};
 use crate::patch::{Given, Patch, SideForce};
 use crate::scene::{CheckedScene, Side};
-use crate::transfer::Row;
+use crate::transfer::{Row, add};
 
 /// The state in which a body starts: that of the material beyond a transmitting side.
 pub(super) struct Rest<const D: usize> {
@@ -75,7 +75,7 @@ impl<const D: usize> Stepper<D> {
     /// Fields that the sums of a side take.
     pub(super) fn side_sums(scene: &CheckedScene) -> usize {
         match (scene.transmits(), scene.has_frictional_wall()) {
-            (true, _) => 2 + 2 * D,
+            (true, _) => 1 + 3 * D,
             (false, true) => 2,
             (false, false) => 0,
         }
@@ -88,7 +88,6 @@ impl<const D: usize> Stepper<D> {
         let n = patch.block.own();
         let mut take = |k: usize| std::mem::take(&mut patch.block.columns[k]);
         let (mut volume, mut impedance) = (take(side.volume), take(side.impedance));
-        let mut stretching: [Vec<f64>; D] = std::array::from_fn(|a| take(side.stretching + a));
         let column = |k: usize| &patch.block.columns[k][..n];
         let (mass, volume0, j) = (column(c.mass), column(c.volume0), column(jacobian));
         let (speed, body) = (column(c.sound_speed), column(c.body));
@@ -98,15 +97,17 @@ impl<const D: usize> Stepper<D> {
         impedance.extend((0..n).map(|r| {
             0.5 * (self.rest[body[r] as usize].impedance + mass[r] / volume[r] * speed[r])
         }));
-        for (a, stretching) in stretching.iter_mut().enumerate() {
-            let along = c.velocity_gradient.map_or(c.gradient, |whole| whole + (D + 1) * a);
-            stretching.clear();
-            stretching.extend_from_slice(column(along));
-        }
         patch.block.columns[side.volume] = volume;
         patch.block.columns[side.impedance] = impedance;
-        for (a, stretching) in stretching.into_iter().enumerate() {
-            patch.block.columns[side.stretching + a] = stretching;
+        let whole = c.velocity_gradient.unwrap_or(c.gradient);
+        for k in 0..D * D {
+            let [from, to] = patch
+                .block
+                .columns
+                .get_disjoint_mut([whole + k, side.gradient + k])
+                .expect("columns differ");
+            to.clear();
+            to.extend_from_slice(&from[..n]);
         }
     }
 
@@ -164,21 +165,21 @@ impl<const D: usize> Stepper<D> {
             let (side, outward) = if end == 0 { (0, -1.0) } else { (s.cells[axis], 1.0) };
             let (from, to) =
                 if end == 0 { (i64::MIN, depth + 1) } else { (side - depth, i64::MAX) };
-            let Some(boxes) = s.start_side(patch, axis, from, to, 2 + 2 * D) else { return };
+            let Some(boxes) = s.start_side(patch, axis, from, to, 1 + 3 * D) else { return };
             let reach = depth + K as i64 + 1;
             s.sum_impedance::<K>(patch, axis, outward, |cell| (cell - side).abs() <= reach);
             for (layer, part) in boxes.into_iter().enumerate().filter(|(_, p)| !p.is_empty()) {
                 for index in part.iter() {
-                    s.transmit_at(patch, layer, index, axis, dt);
+                    s.transmit_at(patch, layer, index, dt);
                 }
             }
         }
         with_width!(patch.stencils.width, go(patch, self, axis, end, dt));
     }
 
-    /// Sums over the rows near a side: its surface sum V G.n, what the velocity across it grows by
-    /// up to the nodes, sum m D (x_i - x) N, and for each direction sum m Z N and
-    /// sum m N (n p0 - Z u0).
+    /// Sums over the rows near a side: its surface sum V G.n, and for each direction sum m Z N,
+    /// sum m N (n p0 - Z u0), and what the momentum grows by up to the nodes,
+    /// sum m N du/dn (x_i - x).
     fn sum_impedance<const K: usize>(
         &self,
         patch: &mut Patch<D>,
@@ -189,7 +190,7 @@ impl<const D: usize> Stepper<D> {
         let c = &self.columns;
         let side = c.side.expect("a transmitting side has the columns");
         let first = self.fields.side;
-        let mut sums: Vec<Vec<f64>> = (first..first + 2 + 2 * D)
+        let mut sums: Vec<Vec<f64>> = (first..first + 1 + 3 * D)
             .map(|k| std::mem::take(&mut patch.nodes.fields[k]))
             .collect();
         let column = |k: usize| &patch.block.columns[k];
@@ -205,23 +206,24 @@ impl<const D: usize> Stepper<D> {
                 let hoop = v / self.radius(patch, r);
                 row.add(&mut sums[0], row.values, |n| n * hoop);
             }
-            let growth = m * column(side.stretching + axis)[r] * self.cell[axis];
             let apart = self.offset(patch, r, row.first)[axis];
-            for line in 0..Row::<K, D>::LINES {
-                let terms = std::array::from_fn(|k| {
-                    let nodes = if axis == 0 { k } else { line } as f64;
-                    row.values[line][k] * growth * (apart + nodes)
-                });
-                crate::transfer::add::<K>(&mut sums[1], row.first + line * row.stride, terms);
-            }
             for a in 0..D {
                 let (z, pressure) = match a == axis {
                     true => (column(side.impedance)[r], outward * rest.pressure),
                     false => (m / column(side.volume)[r] * rest.shear_speed, 0.0),
                 };
                 let still = pressure - z * rest.velocity[a];
-                row.add(&mut sums[2 + a], row.values, |n| n * m * z);
-                row.add(&mut sums[2 + D + a], row.values, |n| n * m * still);
+                row.add(&mut sums[1 + a], row.values, |n| n * m * z);
+                row.add(&mut sums[1 + D + a], row.values, |n| n * m * still);
+                let growth = m * column(side.gradient + D * a + axis)[r] * self.cell[axis];
+                for line in 0..Row::<K, D>::LINES {
+                    let terms = std::array::from_fn(|k| {
+                        let nodes = if axis == 0 { k } else { line } as f64;
+                        row.values[line][k] * growth * (apart + nodes)
+                    });
+                    let first = row.first + line * row.stride;
+                    add::<K>(&mut sums[1 + 2 * D + a], first, terms);
+                }
             }
         }
         for (k, sum) in sums.into_iter().enumerate() {
@@ -230,14 +232,7 @@ impl<const D: usize> Stepper<D> {
     }
 
     /// The force of a transmitting side on a node.
-    fn transmit_at(
-        &self,
-        patch: &mut Patch<D>,
-        layer: usize,
-        index: [i64; D],
-        axis: usize,
-        dt: f64,
-    ) {
+    fn transmit_at(&self, patch: &mut Patch<D>, layer: usize, index: [i64; D], dt: f64) {
         let f = &self.fields;
         let at = layer * patch.nodes.nodes.count() + patch.nodes.nodes.flat(index);
         let value = |k: usize| patch.nodes.fields[k][at];
@@ -247,9 +242,8 @@ impl<const D: usize> Stepper<D> {
             return;
         }
         let force = std::array::from_fn(|a| {
-            let (z, still) = (value(f.side + 2 + a) / mass, value(f.side + 2 + D + a) / mass);
-            let grown = if a == axis { value(f.side + 1) } else { 0.0 };
-            let momentum = value(f.lumped + a) + grown;
+            let sum = |k: usize| value(f.side + 1 + D * k + a);
+            let (z, still, momentum) = (sum(0) / mass, sum(1) / mass, value(f.lumped + a) + sum(2));
             let pushed = value(f.acceleration + a) - area * still;
             let mean = (momentum + 0.5 * dt * pushed) / (mass + 0.5 * dt * area * z);
             -area * (still + z * mean)
