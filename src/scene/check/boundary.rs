@@ -1,7 +1,7 @@
 //! Sides of the domain that cannot stand opposite each other.
 
 use super::super::errors::Fault;
-use super::super::model::{Geometry, Scene, Side};
+use super::super::model::{Geometry, Scene, Side, Transfer};
 use super::CheckedScene;
 
 /// A rigid side of the domain: a plane of symmetry, a wall or a piston.
@@ -118,7 +118,7 @@ fn check_axis([path, other_path]: [&str; 2], [lower, upper]: [Side; 2]) -> Resul
 }
 
 /// A transmitting side stands for more of the material that touches it.
-pub(super) fn check_touched(checked: &CheckedScene) -> Result<(), Fault> {
+pub(super) fn check_transmitting(checked: &mut CheckedScene) -> Result<(), Fault> {
     const PATHS: [[&str; 2]; 2] =
         [["boundary.x_lower", "boundary.x_upper"], ["boundary.y_lower", "boundary.y_upper"]];
     let sides = checked.sides::<2>();
@@ -133,6 +133,16 @@ pub(super) fn check_touched(checked: &CheckedScene) -> Result<(), Fault> {
                           allowed: \"outflow\", or a body up to this side";
             return Err(Fault::new(PATHS[a][end], sides[a][end], reason));
         }
+    }
+    let method = &checked.scene.method;
+    let sharp = matches!(method.transfer, Transfer::Fmpm(order) if order > 2);
+    if checked.transmits() && sharp && method.edge_mask.is_none() {
+        checked.warnings.push(
+            "boundary: the full mass matrix of \"fmpm\" beyond order 2 magnifies the force of a \
+             side \"transmitting\" where a particle about to leave fills little of a node, which \
+             may become unstable; method.edge_mask leaves those nodes out"
+                .to_string(),
+        );
     }
     Ok(())
 }

@@ -71,7 +71,7 @@ impl CheckedScene {
         };
         memory::check_counts(&checked)?;
         method::check_bodies(&checked)?;
-        boundary::check_touched(&checked)?;
+        boundary::check_transmitting(&mut checked)?;
         motion::check_body_force(&checked)?;
         output::check_tracers(&checked)?;
         reference::check(&mut checked)?;
