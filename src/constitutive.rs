@@ -27,6 +27,14 @@ impl Matter {
         }
     }
 
+    /// Speed of a shear wave in the material at rest [m/s]; none in a fluid.
+    pub fn shear_speed(&self) -> f64 {
+        match self {
+            Matter::Fluid(_) => 0.0,
+            Matter::Solid(solid) => solid.shear_speed_at_rest(),
+        }
+    }
+
     /// The specific internal energy at which the material at rest is at `pressure` [J/kg]; none
     /// in a solid, which starts without stress.
     pub fn energy_at(&self, pressure: f64) -> f64 {

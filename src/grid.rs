@@ -38,16 +38,25 @@ pub struct Fields {
     /// Relaxation: summed compliance and its inverse, the projected pressure, and its first term,
     /// in the end its last.
     pub relaxation: [usize; 4],
-    /// Heat of friction [J/kg], with contact that has friction.
+    /// Heat of friction [J/kg], with contact or a wall that has friction.
     pub heat: Option<usize>,
+    /// Scratch for the sums of a side.
+    pub side: usize,
     /// Number of fields.
     pub count: usize,
 }
 
 impl Fields {
     /// The fields in `dimension` directions for a scheme with or without a filter, an edge mask,
-    /// pressure relaxation and friction.
-    pub fn new(dimension: usize, filtered: bool, masked: bool, relaxed: bool, rubs: bool) -> Self {
+    /// pressure relaxation and friction, and with `sides` sums of a side.
+    pub fn new(
+        dimension: usize,
+        filtered: bool,
+        masked: bool,
+        relaxed: bool,
+        rubs: bool,
+        sides: usize,
+    ) -> Self {
         let mut count = 0;
         let mut add = |n: usize, wanted: bool| {
             let at = if wanted { count } else { usize::MAX / 2 };
@@ -62,6 +71,7 @@ impl Fields {
         let volume = add(1, masked);
         let r = add(4, relaxed);
         let heat = rubs.then(|| add(1, true));
+        let side = add(sides, true);
         Fields {
             mass,
             inverse,
@@ -76,6 +86,7 @@ impl Fields {
             volume,
             relaxation: [r, r + 1, r + 2, r + 3],
             heat,
+            side,
             count,
         }
     }

@@ -49,7 +49,8 @@ pub struct Columns {
     /// Deformation gradient F [-], a tensor, in a plane where the domain deforms or a body is a
     /// solid.
     pub deformation: Option<usize>,
-    /// Gradient of the velocity of the last step [1/s], a tensor, where there is a deformation.
+    /// Gradient of the velocity of the last step [1/s], a tensor, where there is a deformation or
+    /// in a plane a transmitting side.
     pub velocity_gradient: Option<usize>,
     /// Cauchy stress without artificial viscosity [Pa], positive in tension, where a body is a
     /// solid: xx, and in a plane yy and xy.
@@ -72,6 +73,8 @@ pub struct Columns {
     pub pressed: Option<usize>,
     /// What a body force takes, with one.
     pub body_force: Option<BodyForceColumns>,
+    /// What a transmitting side looks at, with one.
+    pub side: Option<SideColumns>,
     /// J at the middle of the step, scratch, with mid-point stepping.
     pub jacobian_mid: Option<usize>,
     /// Pressure at the middle of the step [Pa], scratch, with pressure relaxation.
@@ -91,6 +94,17 @@ pub struct BodyForceColumns {
     pub impulse: usize,
     /// First place X [m], a vector, where the force depends on it.
     pub reference: Option<usize>,
+}
+
+/// Where the columns that a transmitting side looks at stand, all of them scratch.
+#[derive(Clone, Copy, Debug)]
+pub struct SideColumns {
+    /// Volume at the time of the forces [m3].
+    pub volume: usize,
+    /// Impedance of a compression wave that leaves [Pa s/m].
+    pub impedance: usize,
+    /// Gradient of the velocity of the last step [1/s], a tensor.
+    pub gradient: usize,
 }
 
 impl Columns {
@@ -120,6 +134,7 @@ impl Columns {
         let limited = viscous.is_some_and(|v| v.limiter.is_some());
         let relaxed = method.pressure_relaxation.is_some();
         let touching = scene.velocity_fields() > 1;
+        let transmits = scene.transmits();
         let same = |_: usize| Mirror::Same;
         let of_vector = |a: usize| Mirror::Negate(a);
         let of_tensor =
@@ -150,6 +165,8 @@ impl Columns {
             ["body_force_impulse", "body_force_impulse_x", "body_force_impulse_y"];
         const REFERENCE: [&str; 3] =
             ["reference_position", "reference_position_x", "reference_position_y"];
+        const SIDE_GRADIENT: [&str; 4] =
+            ["side_gradient_xx", "side_gradient_xy", "side_gradient_yx", "side_gradient_yy"];
         const STRESS: [&str; 3] = ["stress_xx", "stress_yy", "stress_xy"];
         const STRESS_VOLUME: [&str; 4] =
             ["stress_volume_xx", "stress_volume_yy", "stress_volume_xy", "stress_volume_zz"];
@@ -171,8 +188,8 @@ impl Columns {
             ("volume0", "m3", false),
             ("jacobian", "", false),
             ("specific_internal_energy", "J/kg", false),
-            // its ghosts stand in their body's velocity field
-            ("body", "", touching),
+            // its ghosts stand in their body's velocity field, or show its state at rest
+            ("body", "", touching || transmits),
             ("velocity_gradient", "1/s", false),
             ("sound_speed", "m/s", false),
             ("pressure", "Pa", false),
@@ -204,6 +221,17 @@ impl Columns {
                 .then(|| add_all(vector(&REFERENCE), "m", false, true, &same)),
         });
         let pressed = touching.then(|| add_all(&["contact_impulse"], "Pa s", true, true, &same));
+        let side = transmits.then(|| SideColumns {
+            volume: add_all(&["side_volume"], "m3", true, false, &same),
+            impedance: add_all(&["side_impedance"], "Pa s/m", true, false, &same),
+            gradient: add_all(
+                if plane { &SIDE_GRADIENT } else { &SIDE_GRADIENT[..1] },
+                "1/s",
+                true,
+                false,
+                &of_tensor,
+            ),
+        });
         let half_edges = deforms.then(|| match seen {
             true => domain,
             false => add_all(&HALF_EDGES, "", true, false, &of_edge),
@@ -211,6 +239,7 @@ impl Columns {
         Columns {
             pressed,
             body_force,
+            side,
             filled: volume.or(filled.then_some(domain)),
             half_edges,
             domain,
@@ -221,7 +250,8 @@ impl Columns {
             half_lengths: (plane && (extent != Extent::Point || touching))
                 .then(|| add_all(&["half_width", "half_height"], "m", false, true, &same)),
             deformation: strained.then(|| add_all(&DEFORMATION, "", false, true, &of_tensor)),
-            velocity_gradient: strained.then(|| add_all(&GRADIENT, "1/s", false, true, &of_tensor)),
+            velocity_gradient: (strained || (plane && transmits))
+                .then(|| add_all(&GRADIENT, "1/s", false, true, &of_tensor)),
             stress: solids.then(|| {
                 let names = if plane { &STRESS[..] } else { &STRESS[..1] };
                 add_all(names, "Pa", false, true, &of_stress)

@@ -102,6 +102,29 @@ pub struct Departed<const D: usize> {
     pub energy: f64,
 }
 
+/// A force of a side of the domain on a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SideForce<const D: usize> {
+    /// Place of the node.
+    pub at: usize,
+    /// Share of it that is this patch's own: 0 for a node of another, 1/2 on a mirror, whose sums
+    /// hold each particle twice.
+    pub share: f64,
+    /// The force [N].
+    pub force: [f64; D],
+    /// Whether it is friction, whose work becomes heat of the material.
+    pub rubs: bool,
+}
+
+/// What sides have given in a step, as seen in the grid's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Given<const D: usize> {
+    /// Work, without that of friction [J].
+    pub work: f64,
+    /// Impulse [N s].
+    pub impulse: [f64; D],
+}
+
 /// One patch.
 #[derive(Clone, Debug)]
 pub struct Patch<const D: usize> {
@@ -132,6 +155,10 @@ pub struct Patch<const D: usize> {
     pub deeper: i64,
     /// What it tells of its step.
     pub told: Told<D>,
+    /// Forces of the sides on the nodes that it computes.
+    pub side_forces: Vec<SideForce<D>>,
+    /// What they have given its own nodes in this step.
+    pub given: Vec<Given<D>>,
     /// Particles that have left in this step.
     pub departed: Vec<Departed<D>>,
     /// Longest particle that ghosts and halos are deep enough for [cells].
@@ -192,6 +219,8 @@ impl<const D: usize> Patch<D> {
             contact: ContactNodes::default(),
             deeper: 0,
             told: Told::default(),
+            side_forces: Vec::new(),
+            given: Vec::new(),
             departed: Vec::new(),
             reach_length: f64::INFINITY,
             kept: Vec::new(),
@@ -227,6 +256,7 @@ impl<const D: usize> Patch<D> {
         let stirred = self.block.stirred && self.block.rows() > 0;
         if self.rest.note(stirred, needed) {
             self.contact.clear();
+            self.side_forces.clear();
             for (k, field) in self.nodes.fields.iter_mut().enumerate() {
                 if !kept.contains(&k) {
                     field.fill(0.0);

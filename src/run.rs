@@ -26,7 +26,7 @@ use crate::output::{OutputError, ParticleTable};
 use crate::probes::Probes;
 use crate::reference::{PlaneReference, Reference};
 use crate::scene::{CheckedScene, Side};
-use crate::simulation::{Left, RunError, Simulation, Totals};
+use crate::simulation::{Given, Left, RunError, Simulation, Totals};
 use crate::step::{Stepper, Steps};
 
 /// Why a run has no result.
@@ -218,7 +218,7 @@ where
     let recorded = step_to_end(&mut simulation, scene, comm, options.quiet)?;
     let loop_wall_seconds = loop_start.elapsed().as_secs_f64();
     let loop_cpu = user_cpu_seconds() - loop_cpu;
-    let (end, left) = (simulation.totals(), simulation.left());
+    let (end, left, given) = (simulation.totals(), simulation.left(), simulation.given());
     let sharing = &scene.scene.decomposition;
     let decomposition = accounts::decomposition(
         comm,
@@ -266,7 +266,7 @@ where
     if scene.scene.output.pictures {
         draw(comm, scene, reference.as_ref(), &recorded, &profiles, &folder)?;
     }
-    let (energy, momentum, outflow) = balance(scene, &start, &end, &left);
+    let (energy, momentum, outflow) = balance(scene, [&start, &end], &left, &given);
     let particle_steps = scene.particles as f64 * simulation.steps() as f64;
     let layout = simulation.layout();
     let summary = Summary {
@@ -381,27 +381,30 @@ fn draw<C: Comm>(
 /// Energy and momentum at start and end, with what sides and outflows have given and taken.
 ///
 /// A wall's impulse on the particles is what their momentum has changed by, for nothing else
-/// acts on them from outside; a piston's work is its velocity times its impulse.
+/// acts on them from outside; a piston's work is its velocity times its impulse. What transmitting
+/// sides and friction on walls give is summed up as it is given.
 fn balance<const D: usize>(
     scene: &CheckedScene,
-    start: &Totals<D>,
-    end: &Totals<D>,
+    [start, end]: [&Totals<D>; 2],
     left: &Left<D>,
+    given: &Given<D>,
 ) -> (Energy, Momentum, Option<Outflow>) {
-    let rigid = |s: &Side| matches!(s, Side::Symmetry | Side::Wall | Side::Velocity(_));
     let sides = scene.sides::<D>();
+    let rigid = |a: usize| sides[a].iter().any(|s| s.rigid_velocity().is_some());
+    let holds = sides.as_flattened().contains(&Side::NoSlip);
     // along a radius momentum is no sum that is kept
-    let booked = |a: usize| sides[a].iter().any(rigid) || (a == 0 && scene.axisymmetric());
+    let booked = |a: usize| rigid(a) || holds || (a == 0 && scene.axisymmetric());
     let walls: [f64; D] = std::array::from_fn(|a| match booked(a) {
         true => {
             let all = end.momentum[a] + left.momentum[a] - start.momentum[a];
             all - end.body_force_impulse[a]
         }
-        false => 0.0,
+        false => given.impulse[a],
     });
     let pistons = scene.grid_velocity::<D>();
     let impulse: [f64; D] = std::array::from_fn(|a| walls[a] - left.momentum[a]);
-    let work = (0..D).map(|a| pistons[a] * walls[a]).sum::<f64>() - (left.kinetic + left.internal);
+    let work = (0..D).map(|a| pistons[a] * walls[a]).sum::<f64>() + given.work
+        - (left.kinetic + left.internal);
     let energy = Energy::new([start.kinetic, end.kinetic], [start.internal, end.internal], work);
     let momentum = Momentum::new(&start.momentum, &end.momentum, &impulse, start.absolute_momentum);
     let (energy, momentum) = match scene.scene.body_force {
@@ -411,7 +414,7 @@ fn balance<const D: usize>(
             momentum.with_body_force(&end.body_force_impulse, start.absolute_momentum),
         ),
     };
-    let outflow = sides.as_flattened().contains(&Side::Outflow).then(|| Outflow {
+    let outflow = sides.as_flattened().iter().any(|side| side.lets_out()).then(|| Outflow {
         particles: left.count,
         mass: left.mass,
         momentum: left.momentum.to_vec(),

@@ -9,6 +9,7 @@ mod column;
 mod resident;
 #[path = "../common/runs.rs"]
 mod runs;
+mod sides;
 mod speed;
 #[path = "../common/table.rs"]
 mod table;
@@ -21,11 +22,12 @@ use table::Table;
 /// Checks one section.
 type Section = fn(&mut Table);
 
-const SECTIONS: [(&str, Section); 5] = [
+const SECTIONS: [(&str, Section); 6] = [
     ("column", column::check),
     ("bits", bits::check),
     ("finite", waves::finite_flyer),
     ("oblique", waves::oblique),
+    ("sides", sides::check),
     ("speed", speed::check),
 ];
 

@@ -98,6 +98,9 @@ pub trait Solid: Send + Sync {
 
     /// Speed of the fastest wave in the solid at rest [m/s].
     fn sound_speed_at_rest(&self) -> f64;
+
+    /// Speed of a shear wave in the solid at rest [m/s].
+    fn shear_speed_at_rest(&self) -> f64;
 }
 
 /// The loops over a solid.
@@ -164,6 +167,10 @@ impl<S: ElasticSolid> Solid for Loops<S> {
 
     fn sound_speed_at_rest(&self) -> f64 {
         self.0.sound_speed_squared(&Deformation::uniaxial(1.0)).sqrt()
+    }
+
+    fn shear_speed_at_rest(&self) -> f64 {
+        (self.0.shear_modulus() / self.0.reference_density()).sqrt()
     }
 }
 

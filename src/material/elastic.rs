@@ -157,6 +157,9 @@ pub trait ElasticSolid: Copy + Send + Sync + 'static {
     /// Density at F = 1 [kg/m3].
     fn reference_density(&self) -> f64;
 
+    /// Shear modulus at F = 1 [Pa].
+    fn shear_modulus(&self) -> f64;
+
     /// Kirchhoff stress tau = J sigma, sigma the Cauchy stress [Pa].
     fn kirchhoff_stress(&self, f: &Deformation) -> Symmetric;
 

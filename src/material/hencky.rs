@@ -70,6 +70,10 @@ impl ElasticSolid for Hencky {
     }
 
     #[inline(always)]
+    fn shear_modulus(&self) -> f64 {
+        self.lame.mu
+    }
+
     fn kirchhoff_stress(&self, f: &Deformation) -> Symmetric {
         let Strain { h, volume, .. } = Self::strain(f);
         let (even, twice) = (self.lame.lambda * volume, 2.0 * self.lame.mu);

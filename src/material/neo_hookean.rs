@@ -30,6 +30,10 @@ impl ElasticSolid for NeoHookean {
     }
 
     #[inline(always)]
+    fn shear_modulus(&self) -> f64 {
+        self.lame.mu
+    }
+
     fn kirchhoff_stress(&self, f: &Deformation) -> Symmetric {
         let b = f.left_cauchy_green();
         let Lame { lambda, mu } = self.lame;

@@ -5,7 +5,7 @@ use decomp::{Census, Comm, ExactSum};
 
 use super::{RunError, Simulation};
 use crate::clock::Event;
-use crate::patch::Patch;
+use crate::patch::{Given, Patch};
 use crate::scene::CheckedScene;
 
 /// Steps between two counts of all particles: so rare that they cost nothing that shows.
@@ -56,15 +56,8 @@ impl<const D: usize> Outflow<D> {
     /// Nothing so far. The sums' resolution is chosen by the scene: 2^-80 of a particle at some
     /// times the fastest speed of the start, with room for 2^46 of that.
     pub fn new(scene: &CheckedScene, grid_velocity: [f64; D]) -> Self {
-        let bodies = || scene.scene.bodies.iter().zip(&scene.bodies);
-        let mass = bodies()
-            .map(|(b, c)| {
-                let size = c.upper.iter().zip(&c.lower).map(|(u, l)| u - l);
-                let density = scene.scene.materials[&b.material].density;
-                density * size.product::<f64>() / c.particles as f64
-            })
-            .fold(0.0, f64::max);
-        let speed = bodies().fold(1e3, |s: f64, (_, c)| s.max(c.top_speed)) * 1e3;
+        let mass = largest_mass(scene);
+        let speed = scene.bodies.iter().fold(1e3, |s: f64, c| s.max(c.top_speed)) * 1e3;
         let energy = mass * speed * speed;
         let largest = [mass, energy, energy].into_iter().chain([mass * speed; D]);
         Outflow {
@@ -87,7 +80,54 @@ impl<const D: usize> Outflow<D> {
     }
 }
 
+/// About the mass of the heaviest particle [kg].
+fn largest_mass(scene: &CheckedScene) -> f64 {
+    let bodies = scene.scene.bodies.iter().zip(&scene.bodies);
+    bodies
+        .map(|(b, c)| {
+            let size = c.upper.iter().zip(&c.lower).map(|(u, l)| u - l);
+            let density = scene.scene.materials[&b.material].density;
+            density * size.product::<f64>() / c.particles as f64
+        })
+        .fold(0.0, f64::max)
+}
+
+/// What sides have given the nodes of this rank's patches: sums that do not depend on who
+/// counted.
+#[derive(Clone, Debug)]
+pub(super) struct SideBooks<const D: usize> {
+    /// Work, impulse.
+    sums: Vec<ExactSum>,
+}
+
+impl<const D: usize> SideBooks<D> {
+    /// Nothing so far. The sums' resolution is 2^-80 of what a particle has at the `fastest` speed
+    /// of the start, of bodies or sound [m/s], with room for 2^46 of that.
+    pub fn new(scene: &CheckedScene, fastest: f64) -> Self {
+        let momentum = largest_mass(scene) * fastest;
+        let largest = std::iter::once(momentum * fastest).chain([momentum; D]);
+        SideBooks { sums: largest.map(ExactSum::new).collect() }
+    }
+
+    /// Books what the sides have given in a step.
+    pub fn take(&mut self, patches: &mut [Patch<D>]) {
+        for given in patches.iter_mut().flat_map(|p| p.given.drain(..)) {
+            let terms = std::iter::once(given.work).chain(given.impulse);
+            self.sums.iter_mut().zip(terms).for_each(|(sum, term)| sum.add(term));
+        }
+    }
+}
+
 impl<C: Comm, const D: usize> Simulation<'_, C, D> {
+    /// What transmitting sides and friction on walls have given so far, as seen in the grid's
+    /// frame. Collective.
+    pub fn given(&self) -> Given<D> {
+        let mut sums = self.side_books.sums.clone();
+        ExactSum::over_ranks(self.comm, &mut sums);
+        let impulse = std::array::from_fn(|a| sums[1 + a].value());
+        Given { work: sums[0].value(), impulse }
+    }
+
     /// Counts what the step computed and left out; returns the particles computed.
     pub(super) fn count_step(&mut self) -> u64 {
         let (mut computed, mut skipped) = (0, 0);

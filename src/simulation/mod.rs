@@ -7,6 +7,7 @@ mod balance;
 mod books;
 mod observe;
 
+pub use crate::patch::Given;
 pub use books::{Left, Tally};
 pub use observe::{Followed, Totals};
 
@@ -26,7 +27,7 @@ use crate::scene::{CheckedBody, CheckedScene, FilterHalo, Side};
 use crate::step::{Reach, Sleep, Stepper, Steps, World};
 use crate::threads::make_pool;
 
-use books::{CENSUS_EVERY, Outflow};
+use books::{CENSUS_EVERY, Outflow, SideBooks};
 
 /// Why a run ended before its time.
 #[derive(Debug, thiserror::Error)]
@@ -120,6 +121,7 @@ pub struct Simulation<'a, C: Comm, const D: usize> {
     /// All particles at the start.
     census: Census,
     outflow: Outflow<D>,
+    side_books: SideBooks<D>,
     grid_velocity: [f64; D],
     time: f64,
     step: u64,
@@ -142,8 +144,10 @@ struct Plan<const D: usize> {
 /// What the side of a scene is to the decomposition.
 pub(crate) fn decomp_side(side: Side) -> decomp::Side {
     match side {
-        Side::Free | Side::Outflow => decomp::Side::Open,
-        Side::Symmetry | Side::Wall | Side::Velocity(_) => decomp::Side::Mirror,
+        Side::Free | Side::Outflow | Side::Transmitting => decomp::Side::Open,
+        Side::Symmetry | Side::Wall | Side::NoSlip | Side::Friction(_) | Side::Velocity(_) => {
+            decomp::Side::Mirror
+        }
         Side::Periodic => decomp::Side::Wrap,
     }
 }
@@ -314,6 +318,7 @@ where
             plan: Plan::new(scene, &stepper, &layout, reach, comm.rank(), workers),
             sleep: stepper.sleep(),
             outflow: Outflow::new(scene, grid_velocity),
+            side_books: SideBooks::new(scene, stepper.fastest),
             stepper,
             layout,
             order,
@@ -364,6 +369,7 @@ where
             self.patches.iter_mut().for_each(|p| p.watch.end_step());
         }
         self.outflow.take(&mut self.patches);
+        self.side_books.take(&mut self.patches);
         self.time = if meets { until } else { self.time + dt };
         self.agree()?;
         if step.is_multiple_of(CENSUS_EVERY) || self.time >= end {

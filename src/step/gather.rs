@@ -195,9 +195,7 @@ impl<const D: usize> Stepper<D> {
     /// All that the end of a mid-point step brings the own rows: volume and energy from the
     /// gradients of the mean velocity and of w, the filter's heat, velocity, position, and domain.
     pub(super) fn gather_midpoint(&self, patch: &mut Patch<D>, dt: f64) {
-        if self.contact.is_some() {
-            self.gather_contact(patch, dt);
-        }
+        self.gather_contact(patch, dt);
         fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, dt: f64) {
             match s.tensor_stress() {
                 false => s.gather_rows::<K, false>(patch, dt),

@@ -25,6 +25,7 @@ impl<const D: usize> Stepper<D> {
             self.current_stress(patch);
             self.find_pressed(patch, self.columns.jacobian, dt);
             self.find_body_force(patch, time);
+            self.find_impedance(patch, self.columns.jacobian);
             self.locate(patch, 0.0, self.columns.jacobian);
             self.find_active(patch);
         });
@@ -46,12 +47,11 @@ impl<const D: usize> Stepper<D> {
             self.solve_velocity(nodal, dt, false);
             self.solve_friction_heat(nodal, dt);
             nodal.each("gather", |patch| {
-                if self.contact.is_some() {
-                    self.gather_contact(patch, dt);
-                }
+                self.gather_contact(patch, dt);
                 self.gather_velocity(patch);
                 self.move_rows(patch, dt);
                 self.book_body_force(patch, dt);
+                self.book_sides(patch, dt);
                 if last {
                     self.gather_gradient(patch, star);
                     self.update_stress(patch, dt);

@@ -34,6 +34,7 @@ impl<const D: usize> Stepper<D> {
             self.find_solid_stress(patch, 0.5 * dt, mid);
             self.find_pressed(patch, mid, dt);
             self.find_body_force(patch, time + 0.5 * dt);
+            self.find_impedance(patch, mid);
             self.locate(patch, 0.5 * dt, mid);
             self.find_active(patch);
         });
@@ -52,6 +53,7 @@ impl<const D: usize> Stepper<D> {
             nodal.each("gather", |patch| {
                 self.gather_midpoint(patch, dt);
                 self.book_body_force(patch, dt);
+                self.book_sides(patch, dt);
                 if let Some(rate) = relax {
                     self.relax_pressure(patch, rate);
                 }

@@ -14,6 +14,7 @@ pub mod relaxation;
 mod rows;
 pub mod scatter;
 pub mod series;
+mod sides;
 mod solid;
 mod world;
 
@@ -55,6 +56,8 @@ pub struct Stepper<const D: usize> {
     stiffness: Vec<f64>,
     /// The most impulse that each body may give back where it is pulled on [Pa s].
     most_pull: Vec<f64>,
+    /// The state in which each body starts.
+    rest: Vec<sides::Rest<D>>,
     /// One a body.
     models: Vec<Matter>,
     shape: ShapeKind,
@@ -71,6 +74,8 @@ pub struct Stepper<const D: usize> {
     domain_limit: Option<f64>,
     /// Whether patches at rest are left out.
     may_sleep: bool,
+    /// The fastest speed of the start, of bodies or sound [m/s].
+    pub fastest: f64,
     /// Mass below which a node counts as empty [kg].
     empty_mass: f64,
     /// Nodal speed below which a node counts as at rest [m/s].
@@ -181,9 +186,11 @@ impl<const D: usize> Stepper<D> {
         let contact = scene.scene.contact.as_ref().and_then(Contact::new);
         let contact = contact.filter(|_| scene.velocity_fields() > 1);
         let rubs = D > 1 && contact.is_some_and(|c| c.coefficient.is_some());
+        let rubs = rubs || scene.has_frictional_wall();
+        let (masked, sides) = (method.edge_mask.is_some(), Self::side_sums(scene));
         Stepper {
             columns: Columns::new(scene),
-            fields: Fields::new(D, filtered, method.edge_mask.is_some(), relaxed, rubs),
+            fields: Fields::new(D, filtered, masked, relaxed, rubs, sides),
             scheme,
             stepping: method.stepping,
             stress_update: method.stress_update,
@@ -197,6 +204,7 @@ impl<const D: usize> Stepper<D> {
             layers: scene.velocity_fields(),
             stiffness,
             most_pull,
+            rest: sides::Rest::of(scene, &models),
             models,
             shape: method.shape,
             cell,
@@ -207,6 +215,7 @@ impl<const D: usize> Stepper<D> {
             axisymmetric: scene.axisymmetric(),
             domain_limit: method.domain_limit,
             may_sleep: scene.scene.decomposition.skip_quiet,
+            fastest,
             // what such a node holds is below rounding of its neighbours
             empty_mass: densest * volume * 2f64.powi(-90),
             // far ahead of a wave values would fall and fall, until they are denormal; at this

@@ -220,7 +220,7 @@ impl<const D: usize> Stepper<D> {
                         patch.block.cells[row][a] = cell.rem_euclid(self.cells[a]) as i32;
                         continue;
                     }
-                    Side::Outflow => *keep = false,
+                    side if side.lets_out() => *keep = false,
                     _ => {
                         let name = NAMES[a][side];
                         let what = format!("it leaves the domain by its {name} side");

@@ -11,6 +11,9 @@ impl<const D: usize> Stepper<D> {
     pub(super) fn scatter(&self, patch: &mut Patch<D>, force: bool, dt: f64) {
         self.find_weights(patch);
         self.scatter_rows(patch, force);
+        if force {
+            self.push_at_sides(patch, dt);
+        }
         if let Some(contact) = &self.contact {
             self.find_contact(patch, contact, dt, force);
         }
@@ -39,12 +42,14 @@ impl<const D: usize> Stepper<D> {
                 (false, Some(_)) => s.scatter_width::<K, false, true>(patch, force),
             }
         }
+        self.turn_images(patch);
         let tensor = self.tensor_stress();
         with_width!(patch.stencils.width, go(patch, self, force && !tensor));
         if force && tensor {
             self.scatter_stress(patch);
         }
         if force {
+            self.turn_forces(patch);
             self.scatter_body_force(patch);
         }
     }

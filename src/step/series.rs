@@ -164,6 +164,7 @@ impl<const D: usize> Stepper<D> {
             fields.extend(components.map(|(s, parity)| (s.sum, parity)));
             nodal.refresh(&fields);
             nodal.each(name, |patch| {
+                self.hold(patch, &fields);
                 for series in going() {
                     if l + 1 < series.order {
                         self.next_sum(patch, series, l + 2 == series.order);

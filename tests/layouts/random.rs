@@ -47,8 +47,8 @@ fn bodies(cells: usize, lumps: &[Lump]) -> Vec<Value> {
 
 fn boundary() -> impl Strategy<Value = Value> {
     let side = || {
-        let sides = [json!("free"), json!("symmetry"), json!("wall"), json!("outflow")];
-        select(sides.to_vec())
+        let sides = ["free", "symmetry", "wall", "outflow", "transmitting"];
+        select(sides.map(|side| json!(side)).to_vec())
     };
     let two = (side(), side()).prop_map(|(a, b)| json!({"x_lower": a, "x_upper": b}));
     let periodic = json!({"x_lower": "periodic", "x_upper": "periodic"});

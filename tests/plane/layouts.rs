@@ -102,3 +102,28 @@ fn round_bodies_between_periodic_sides() {
     scene["bodies"][0]["disk"]["centre"] = json!([-0.0003, 0.0005]);
     same(scene, "periodic");
 }
+
+/// A plate driven against a wall that rubs, out of a side that waves pass, between walls that it
+/// sticks to; a fluid and a solid.
+#[test]
+fn sides_that_push() {
+    let flyer = json!({"box": {"lower": [-0.0003, 0.0], "upper": [0.0, 0.0004]}});
+    let target = json!({"box": {"lower": [0.0, -0.0002], "upper": [0.00006, 0.0006]}});
+    let domain = [[-0.0006, -0.0002], [0.00006, 0.0006]];
+    let mut scene = impact(domain, [flyer, target], [1e3, 2e2]);
+    scene["time"]["end"] = json!(1.5e-8);
+    scene["boundary"] =
+        json!({"x_upper": "transmitting", "y_lower": {"friction": 0.4}, "y_upper": "no_slip"});
+    same(scene.clone(), "a fluid");
+    scene["materials"]["aluminium"]["eos"] =
+        json!({"type": "neo_hookean", "youngs_modulus": 7e10, "poissons_ratio": 0.33});
+    scene["bodies"][0]["velocity"] = json!([200.0, 100.0]);
+    scene["boundary"]["y_lower"] = json!("no_slip");
+    scene["boundary"]["y_upper"] = json!("transmitting");
+    same(scene.clone(), "a solid");
+    scene["method"] = json!({"shape": "gimp", "transfer": "apic"});
+    scene["contact"] = json!({"type": "friction", "coefficient": 0.2});
+    scene["boundary"]["y_upper"] = json!({"friction": 0.4});
+    scene["time"]["end"] = json!(6e-9);
+    same(scene, "contact");
+}

@@ -4,7 +4,7 @@ use decomp::comm::local::run_ranks;
 use decomp::{Comm, Serial};
 use flyer_mpm::output::ParticleTable;
 use flyer_mpm::scene::{self, CheckedScene};
-use flyer_mpm::simulation::{Simulation, Totals};
+use flyer_mpm::simulation::{Given, Left, Simulation, Totals};
 use flyer_mpm::step::{Stepper, Steps};
 use serde_json::{Value, json};
 
@@ -22,6 +22,10 @@ pub struct Outcome<const D: usize> {
     pub digest: String,
     /// Sums at the start and at the end.
     pub totals: [Totals<D>; 2],
+    /// What has left by open sides.
+    pub left: Left<D>,
+    /// What the sides have given.
+    pub given: Given<D>,
 }
 
 impl<const D: usize> Outcome<D> {
@@ -29,6 +33,27 @@ impl<const D: usize> Outcome<D> {
     pub fn energy_drift(&self) -> f64 {
         let [start, end] = self.totals.map(|t| t.kinetic + t.internal);
         end / start - 1.0
+    }
+
+    /// Change of the total energy that is not booked, over the greatest of what there is.
+    pub fn unbooked_energy(&self) -> f64 {
+        let [start, end] = self.totals.map(|t| t.kinetic + t.internal);
+        let gone = self.left.kinetic + self.left.internal;
+        let work = self.given.work + self.totals[1].body_force_work;
+        (end + gone - start - work) / start.max(end)
+    }
+
+    /// Change of the momentum along `a` that is not booked [N s].
+    pub fn unbooked_momentum(&self, a: usize) -> f64 {
+        let [start, end] = self.totals;
+        let impulse = self.given.impulse[a] + end.body_force_impulse[a];
+        end.momentum[a] + self.left.momentum[a] - start.momentum[a] - impulse
+    }
+
+    /// Mean of a column.
+    pub fn mean(&self, name: &str) -> f64 {
+        let column = self.column(name);
+        column.iter().sum::<f64>() / column.len() as f64
     }
 
     /// A column of the last table.
@@ -51,8 +76,9 @@ where
         simulation.advance(scene.scene.time.end).unwrap();
     }
     let totals = [start, simulation.totals()];
+    let (left, given) = (simulation.left(), simulation.given());
     let (table, digest) = simulation.gather()?;
-    Some(Outcome { table, digest, totals })
+    Some(Outcome { table, digest, totals, left, given })
 }
 
 /// Runs a scene on one rank.
@@ -63,11 +89,12 @@ where
     run_rank(&checked(scene), &Serial, 1).expect("rank 0")
 }
 
-/// The digest of the state that ranks and threads leave.
+/// The digest of the state that ranks and threads leave, and what the sides have booked.
 pub fn digest_on(scene: &Value, ranks: usize, threads: usize) -> String {
     let scene = checked(scene);
     let outcomes = run_ranks(ranks, |comm| run_rank::<_, 2>(&scene, comm, threads));
-    outcomes.into_iter().flatten().next().expect("rank 0").digest
+    let outcome = outcomes.into_iter().flatten().next().expect("rank 0");
+    format!("{} {:?} {:?}", outcome.digest, outcome.left, outcome.given)
 }
 
 /// Copper and aluminium.

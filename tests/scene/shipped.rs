@@ -7,8 +7,8 @@ use super::{inputs, refused, shipped, tells, with};
 
 #[test]
 fn shipped_scenes_pass() {
-    // made for layouts: without an exact solution, and their bodies start apart
-    const FOR_LAYOUTS: [&str; 2] = ["crossing.json", "quarter.json"];
+    // made for layouts or for one law, and without an exact solution
+    const UNSCORED: [&str; 3] = ["crossing.json", "quarter.json", "sliding_block.json"];
     assert!(inputs().len() >= 11);
     for path in inputs() {
         let name = path.file_name().unwrap().to_str().unwrap();
@@ -17,7 +17,7 @@ fn shipped_scenes_pass() {
         let expected = if name == "crossing.json" { 2 } else { 0 };
         assert_eq!((apart, checked.warnings.len()), (expected, expected), "{:?}", checked.warnings);
         assert!(checked.scene.description.len() > 100, "{name} names its sources");
-        assert_eq!(checked.scene.reference.is_none(), FOR_LAYOUTS.contains(&name), "{name}");
+        assert_eq!(checked.scene.reference.is_none(), UNSCORED.contains(&name), "{name}");
     }
 }
 

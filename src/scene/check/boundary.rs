@@ -1,7 +1,7 @@
 //! Sides of the domain that cannot stand opposite each other.
 
 use super::super::errors::Fault;
-use super::super::model::{Geometry, Scene, Side};
+use super::super::model::{Geometry, Scene, Side, Transfer};
 use super::CheckedScene;
 
 /// A rigid side of the domain: a plane of symmetry, a wall or a piston.
@@ -27,8 +27,8 @@ impl CheckedScene {
     pub fn walls(&self) -> Vec<Wall> {
         let Some(boundary) = &self.scene.boundary else { return Vec::new() };
         let domain = &self.scene.domain;
-        let wall = |side, position, upper| {
-            rigid_velocity(side).map(|velocity| Wall { upper, position, velocity })
+        let wall = |side: Side, position, upper| {
+            side.rigid_velocity().map(|velocity| Wall { upper, position, velocity })
         };
         let lower = wall(boundary.x_lower, domain.lower[0], false);
         let upper = wall(boundary.x_upper, domain.upper[0], true);
@@ -55,15 +55,6 @@ impl CheckedScene {
     }
 }
 
-/// Velocity of a side that lets nothing through [m/s].
-fn rigid_velocity(side: Side) -> Option<f64> {
-    match side {
-        Side::Symmetry | Side::Wall => Some(0.0),
-        Side::Velocity(velocity) => Some(velocity),
-        Side::Free | Side::Periodic | Side::Outflow => None,
-    }
-}
-
 pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
     let at_axis = scene.domain.geometry == Geometry::Axisymmetric && scene.domain.lower[0] == 0.0;
     let inner = scene.boundary.map_or(Side::Free, |b| b.x_lower);
@@ -80,6 +71,14 @@ pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
                 let reason = "a side along y, but domain.lower has 1 number, which is the \
                               dimension of the scene; allowed: boundary.x_lower and \
                               boundary.x_upper";
+                return Err(Fault::new(path, side, reason));
+            }
+        }
+        let x = [("boundary.x_lower", boundary.x_lower), ("boundary.x_upper", boundary.x_upper)];
+        for (path, side) in x {
+            if matches!(side, Side::NoSlip | Side::Friction(_)) {
+                let reason = "holds what slides along it, but domain.lower has 1 number, which is \
+                              the dimension of the scene; allowed: \"wall\"";
                 return Err(Fault::new(path, side, reason));
             }
         }
@@ -104,15 +103,46 @@ fn check_axis([path, other_path]: [&str; 2], [lower, upper]: [Side; 2]) -> Resul
         );
         return Err(Fault::new(path, lower, reason));
     }
-    match (rigid_velocity(lower), rigid_velocity(upper)) {
+    match (lower.rigid_velocity(), upper.rigid_velocity()) {
         (Some(a), Some(b)) if a != b => {
             let reason = format!(
                 "cannot stand opposite {other_path} = {other}, since the grid travels with a \
                  piston; allowed: the same velocity on both sides (a wall and a plane of symmetry \
-                 are at rest), \"free\" or \"outflow\""
+                 are at rest), \"free\", \"outflow\" or \
+                 \"transmitting\""
             );
             Err(Fault::new(path, lower, reason))
         }
         _ => Ok(()),
     }
+}
+
+/// A transmitting side stands for more of the material that touches it.
+pub(super) fn check_transmitting(checked: &mut CheckedScene) -> Result<(), Fault> {
+    const PATHS: [[&str; 2]; 2] =
+        [["boundary.x_lower", "boundary.x_upper"], ["boundary.y_lower", "boundary.y_upper"]];
+    let sides = checked.sides::<2>();
+    for (a, end) in (0..checked.dimension).flat_map(|a| [(a, 0), (a, 1)]) {
+        let domain = &checked.scene.domain;
+        let touches = |body: &super::CheckedBody| match end {
+            0 => body.lower[a] - domain.lower[a] <= checked.tolerance(a),
+            _ => domain.upper[a] - body.upper[a] <= checked.tolerance(a),
+        };
+        if sides[a][end] == Side::Transmitting && !checked.bodies.iter().any(touches) {
+            let reason = "stands for more of the material that touches it, but no body does; \
+                          allowed: \"outflow\", or a body up to this side";
+            return Err(Fault::new(PATHS[a][end], sides[a][end], reason));
+        }
+    }
+    let method = &checked.scene.method;
+    let sharp = matches!(method.transfer, Transfer::Fmpm(order) if order > 2);
+    if checked.transmits() && sharp && method.edge_mask.is_none() {
+        checked.warnings.push(
+            "boundary: the full mass matrix of \"fmpm\" beyond order 2 magnifies the force of a \
+             side \"transmitting\" where a particle about to leave fills little of a node, which \
+             may become unstable; method.edge_mask leaves those nodes out"
+                .to_string(),
+        );
+    }
+    Ok(())
 }

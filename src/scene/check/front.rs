@@ -64,7 +64,7 @@ impl CheckedScene {
         let closed = |end: usize, at: f64| {
             let side = [domain.lower[1], domain.upper[1]][end];
             !turned
-                && !matches!(ends[end], Side::Free | Side::Outflow)
+                && matches!(ends[end], Side::Symmetry | Side::Wall | Side::Periodic)
                 && (at - side).abs() <= self.tolerance(1)
         };
         let distance = |end: usize, at: f64| {

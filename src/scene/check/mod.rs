@@ -71,6 +71,7 @@ impl CheckedScene {
         };
         memory::check_counts(&checked)?;
         method::check_bodies(&checked)?;
+        boundary::check_transmitting(&mut checked)?;
         motion::check_body_force(&checked)?;
         output::check_tracers(&checked)?;
         reference::check(&mut checked)?;
@@ -112,6 +113,18 @@ impl CheckedScene {
         let pairs = all.iter().flat_map(|a| all.iter().map(move |b| apart(a, b)));
         let moved = self.bodies.iter().filter(|b| b.motion.is_some()).map(|b| b.top_speed);
         pairs.chain(moved).fold(0.0, f64::max)
+    }
+
+    /// Whether waves pass one of the sides.
+    pub fn transmits(&self) -> bool {
+        self.sides::<2>()[..self.dimension].as_flattened().contains(&Side::Transmitting)
+    }
+
+    /// Whether one of the sides rubs.
+    pub fn has_frictional_wall(&self) -> bool {
+        let sides = self.sides::<2>();
+        let mut all = sides[..self.dimension].as_flattened().iter();
+        all.any(|side| matches!(side, Side::Friction(_)))
     }
 
     /// Whether x is a radius.

@@ -2,7 +2,7 @@
 
 use super::super::conform::join;
 use super::super::errors::Fault;
-use super::super::model::{Body, BodyForce, Geometry, Scene, Side, VelocityField};
+use super::super::model::{Body, BodyForce, Geometry, Scene, VelocityField};
 use super::{CheckedScene, check_length};
 use crate::motion::{Motion, vortex_of};
 
@@ -65,11 +65,12 @@ pub(super) fn check_body_force(checked: &CheckedScene) -> Result<(), Fault> {
     let Some(force) = &checked.scene.body_force else { return Ok(()) };
     let fault = |reason: String| Err(Fault::new("body_force", force, reason));
     let sides = checked.sides::<2>();
-    if sides[..checked.dimension].as_flattened().contains(&Side::Outflow) {
-        return fault(
-            "its work on what leaves by a side \"outflow\" is not booked; allowed: any other side"
-                .into(),
-        );
+    let mut all = sides[..checked.dimension].as_flattened().iter();
+    if let Some(side) = all.find(|side| side.lets_out()) {
+        let side = serde_json::json!(side);
+        return fault(format!(
+            "its work on what leaves by a side {side} is not booked; allowed: any other side"
+        ));
     }
     match force {
         BodyForce::Gravity(g) => {

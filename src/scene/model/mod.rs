@@ -225,12 +225,37 @@ pub enum Side {
     Free,
     /// A plane of symmetry.
     Symmetry,
-    /// A rigid wall; in one dimension the same as symmetry.
+    /// A rigid wall along which material slides freely: the same as symmetry.
     Wall,
+    /// A rigid wall that material sticks to, in a plane.
+    NoSlip,
+    /// A rigid wall that material slides along against Coulomb's friction of this coefficient
+    /// [-], in a plane: it sticks while that takes no more than the coefficient times what it
+    /// presses with.
+    Friction(#[schemars(range(min = 0.0))] f64),
     /// Joined to the opposite side.
     Periodic,
     /// Open: a particle that passes it leaves the run, and is booked.
     Outflow,
+    /// Open, as if the same material went on beyond it: waves pass it and do not come back, and a
+    /// particle that passes it leaves the run, and is booked.
+    Transmitting,
     /// A rigid piston with this velocity along x [m/s]; the grid travels with it.
     Velocity(f64),
+}
+
+impl Side {
+    /// Velocity of a side that lets nothing through [m/s].
+    pub fn rigid_velocity(self) -> Option<f64> {
+        match self {
+            Side::Symmetry | Side::Wall | Side::NoSlip | Side::Friction(_) => Some(0.0),
+            Side::Velocity(velocity) => Some(velocity),
+            Side::Free | Side::Periodic | Side::Outflow | Side::Transmitting => None,
+        }
+    }
+
+    /// Whether particles that pass it leave the run.
+    pub fn lets_out(self) -> bool {
+        matches!(self, Side::Outflow | Side::Transmitting)
+    }
 }

@@ -54,6 +54,7 @@ impl<const D: usize> Stepper<D> {
 
     /// The work that friction has taken from the motion in a step of `dt`, as heat of the two
     /// bodies, half each [J/kg]: -f.(w_a - w_b) dt, with the velocity whose gradient does the work.
+    /// A wall takes none: what rubs on it has all of -f.w dt.
     fn find_friction_heat(&self, patch: &mut Patch<D>, dt: f64) {
         let f = &self.fields;
         let Some(field) = f.heat else { return };
@@ -70,6 +71,10 @@ impl<const D: usize> Stepper<D> {
             let power: f64 = (0..D).map(|a| -joint.friction[a] * slip(a)).sum();
             heat[i] += 0.5 * dt * power / joint.mass[0];
             heat[j] += 0.5 * dt * power / joint.mass[1];
+        }
+        for pushed in patch.side_forces.iter().filter(|p| p.rubs) {
+            let power: f64 = (0..D).map(|a| -pushed.force[a] * velocity(a, pushed.at)).sum();
+            heat[pushed.at] += dt * power / fields[f.mass][pushed.at];
         }
         patch.nodes.fields[field] = heat;
     }

@@ -142,17 +142,14 @@ impl<const D: usize> Stepper<D> {
         })
     }
 
-    /// See [`Joint::share`].
-    fn share_of(&self, patch: &Patch<D>, index: [i64; D]) -> f64 {
-        use crate::scene::Side;
+    /// See [`Joint::share`](crate::contact::Joint::share).
+    pub(super) fn share_of(&self, patch: &Patch<D>, index: [i64; D]) -> f64 {
         if !patch.nodes.owned.contains(index) {
             return 0.0;
         }
         let mirrored = |a: usize| {
-            let mirror =
-                |side: &Side| matches!(side, Side::Symmetry | Side::Wall | Side::Velocity(_));
-            let [lower, upper] = &self.sides[a];
-            (index[a] == 0 && mirror(lower)) || (index[a] == self.cells[a] && mirror(upper))
+            let [lower, upper] = self.sides[a].map(|side| side.rigid_velocity().is_some());
+            (index[a] == 0 && lower) || (index[a] == self.cells[a] && upper)
         };
         (0..D).filter(|&a| mirrored(a)).fold(1.0, |share, _| 0.5 * share)
     }
@@ -249,7 +246,7 @@ impl<const D: usize> Stepper<D> {
 
     /// The share of a nodal jump of velocity that particles take: a blend leaves a part of theirs
     /// as it was.
-    fn moved(&self) -> f64 {
+    pub(super) fn moved(&self) -> f64 {
         match self.scheme {
             Scheme::Blend(share) => 1.0 - share,
             Scheme::Series { .. } | Scheme::Affine => 1.0,
