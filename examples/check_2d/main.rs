@@ -5,13 +5,17 @@
 
 mod bits;
 mod column;
+mod disks;
+mod gases;
 #[path = "../common/resident.rs"]
 mod resident;
 #[path = "../common/runs.rs"]
 mod runs;
+mod schemes;
 mod speed;
 #[path = "../common/table.rs"]
 mod table;
+mod turning;
 mod waves;
 
 use std::process::ExitCode;
@@ -21,11 +25,18 @@ use table::Table;
 /// Checks one section.
 type Section = fn(&mut Table);
 
-const SECTIONS: [(&str, Section); 5] = [
+const SECTIONS: [(&str, Section); 12] = [
     ("column", column::check),
     ("bits", bits::check),
     ("finite", waves::finite_flyer),
     ("oblique", waves::oblique),
+    ("vortex", turning::vortex),
+    ("disk", turning::disk),
+    ("shear", turning::shear),
+    ("gresho", turning::gresho),
+    ("disks", disks::check),
+    ("noh", gases::noh),
+    ("sod", gases::sod),
     ("speed", speed::check),
 ];
 
