@@ -57,11 +57,19 @@ pub struct MidStep<'a> {
     pub jacobian_mid: &'a [f64],
     /// Specific internal energy at the start of the step [J/kg].
     pub energy: &'a [f64],
+    /// Divergence D of the velocity [1/s].
+    pub gradient: &'a [f64],
+    /// Edge h of a cell [m].
+    pub edge: f64,
+    /// Stiffness S above what rounding leaves in a cold gas [Pa].
+    pub floor: f64,
     /// Artificial viscosity [Pa], if there is any.
     pub q: Option<&'a [f64]>,
     /// Set to (p + q) V [J].
     pub stress_volume: &'a mut [f64],
-    /// Set to p [Pa] and to -dV/dp along the isentrope [m3/Pa], if wanted.
+    /// Set to p [Pa] and to V^2/(m (c^2 + (h D)^2) + S V) [m3/Pa], if wanted: -dV/dp along the
+    /// isentrope, bounded where a gas has next to no pressure, so that what a cell's jump of
+    /// velocity may raise it by stands for it. 0 without any.
     pub compliance: Option<(&'a mut [f64], &'a mut [f64])>,
 }
 
@@ -139,10 +147,12 @@ impl<E: EquationOfState> Model for Point<E> {
         let (mass, volume0, j, j_mid) =
             (rows.mass, &rows.volume0[..n], &rows.jacobian[..n], &rows.jacobian_mid[..n]);
         let (energy, out) = (&rows.energy[..n], &mut rows.stress_volume[..n]);
+        let gradient = &rows.gradient[..n];
         let pressure_at = |r: usize, q: f64| {
             let dv = (j_mid[r] - j[r]) * volume0[r] / mass[r];
             let Linear { cold, energy_factor } = self.0.linear(j_mid[r]);
-            (cold + energy_factor * (energy[r] - q * dv)) / (1.0 + energy_factor * dv)
+            let linear = cold + energy_factor * (energy[r] - q * dv);
+            self.0.borne(linear / (1.0 + energy_factor * dv))
         };
         match rows.q {
             Some(q) => {
@@ -159,11 +169,12 @@ impl<E: EquationOfState> Model for Point<E> {
         if let Some((pressure, compliance)) = rows.compliance {
             for r in 0..n {
                 let p = pressure_at(r, rows.q.map_or(0.0, |q| q[r]));
-                // -dV/dp = V^2/(m c^2)
                 let volume = volume0[r] * j_mid[r];
                 let c2 = self.0.sound_speed_squared(j_mid[r], p);
+                let jump = rows.edge * gradient[r];
+                let stiffness = mass[r] * (c2 + jump * jump) + rows.floor * volume;
                 pressure[r] = p;
-                compliance[r] = if c2 > 0.0 { volume * volume / (mass[r] * c2) } else { 0.0 };
+                compliance[r] = if c2 > 0.0 { volume * volume / stiffness } else { 0.0 };
             }
         }
     }
@@ -175,8 +186,11 @@ impl<E: EquationOfState> Model for Point<E> {
             let Linear { cold, energy_factor } = self.0.linear(rows.after[r]);
             let energy = (rows.energy[r] - (0.5 * (rows.pressure[r] + cold) + q) * dv)
                 / (1.0 + 0.5 * energy_factor * dv);
-            rows.energy[r] = energy;
-            rows.pressure[r] = cold + energy_factor * energy;
+            let pressure = cold + energy_factor * energy;
+            let borne = self.0.borne(pressure);
+            // what the material does not bear does no work
+            rows.energy[r] = energy + 0.5 * (pressure - borne) * dv;
+            rows.pressure[r] = borne;
         }
     }
 
@@ -247,6 +261,9 @@ mod tests {
             jacobian_mid: &j_mid,
             energy: &e,
             q: Some(&q),
+            gradient: &[0.0],
+            edge: 1.0,
+            floor: 0.0,
             stress_volume: &mut stress,
             compliance: None,
         });
@@ -277,6 +294,42 @@ mod tests {
         };
         let order = (error(20) / error(40)).log2();
         assert!((order - 2.0).abs() < 0.05, "{order}");
+    }
+
+    #[test]
+    fn a_gas_short_of_energy_bears_no_tension() {
+        let (mut p, mut c) = ([1.0; 2], [1.0; 2]);
+        assert_eq!(GAS.refresh(&[1.0, 0.5], &[-1e-32, -1e-3], &mut p, &mut c), None);
+        assert_eq!((p, c), ([0.0; 2], [0.0; 2]));
+        assert!(GAS.refresh(&[1.0], &[f64::NAN], &mut p[..1], &mut c[..1]).is_some());
+        let mut stress = [1.0];
+        GAS.mid_step(MidStep {
+            mass: &[0.02],
+            volume0: &[0.01],
+            jacobian: &[1.0],
+            jacobian_mid: &[1.2],
+            energy: &[-1e-3],
+            q: Some(&[0.5]),
+            gradient: &[0.0],
+            edge: 1.0,
+            floor: 0.0,
+            stress_volume: &mut stress,
+            compliance: None,
+        });
+        assert_eq!(stress, [0.5 * 0.01 * 1.2], "viscosity alone");
+        // it takes no work to expand, and all the work of viscosity is kept
+        let (mut p, mut e) = ([0.0], [-1e-3]);
+        GAS.change_volume(VolumeChange {
+            mass: &[0.02],
+            volume0: &[0.01],
+            before: &[1.0],
+            after: &[1.2],
+            q: Some(&[0.5]),
+            pressure: &mut p,
+            energy: &mut e,
+        });
+        assert_eq!(p, [0.0]);
+        assert!((e[0] + 1e-3 + 0.5 * 0.2 * 0.5).abs() < 1e-16, "{e:?}");
     }
 
     #[test]

@@ -66,6 +66,7 @@ fn effects(scene: &CheckedScene) -> Vec<(&'static str, String)> {
         ("energy", plain(&method.energy)),
         ("filter heat", if method.filter_heat { "on".into() } else { off() }),
         ("pressure relaxation", method.pressure_relaxation.as_ref().map_or_else(off, |r| plain(r))),
+        ("volume relaxation", method.volume_relaxation.map_or_else(off, |r| r.to_string())),
         ("edge mask", method.edge_mask.map_or_else(off, |m| m.to_string())),
         (
             "artificial viscosity",

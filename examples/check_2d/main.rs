@@ -5,14 +5,18 @@
 
 mod bits;
 mod column;
+mod disks;
+mod gases;
 #[path = "../common/resident.rs"]
 mod resident;
 #[path = "../common/runs.rs"]
 mod runs;
+mod schemes;
 mod sides;
 mod speed;
 #[path = "../common/table.rs"]
 mod table;
+mod turning;
 mod waves;
 
 use std::process::ExitCode;
@@ -22,12 +26,19 @@ use table::Table;
 /// Checks one section.
 type Section = fn(&mut Table);
 
-const SECTIONS: [(&str, Section); 6] = [
+const SECTIONS: [(&str, Section); 13] = [
     ("column", column::check),
     ("bits", bits::check),
     ("finite", waves::finite_flyer),
     ("oblique", waves::oblique),
     ("sides", sides::check),
+    ("vortex", turning::vortex),
+    ("disk", turning::disk),
+    ("shear", turning::shear),
+    ("gresho", turning::gresho),
+    ("disks", disks::check),
+    ("noh", gases::noh),
+    ("sod", gases::sod),
     ("speed", speed::check),
 ];
 

@@ -6,7 +6,7 @@ use crate::runs::{Job, Outcome};
 use crate::table::{Show, Table};
 
 /// A figure of the last profile time that has it.
-fn last(run: &Outcome, of: impl Fn(&ProfileSummary) -> Option<f64>) -> Option<f64> {
+pub fn last(run: &Outcome, of: impl Fn(&ProfileSummary) -> Option<f64>) -> Option<f64> {
     run.summary.profiles.iter().rev().find_map(of)
 }
 

@@ -8,7 +8,7 @@ use crate::output::pictures::{
     Quantity, Shading, Tile,
 };
 use crate::reference::Reference;
-use crate::scene::CheckedScene;
+use crate::scene::{CheckedScene, Side};
 
 /// A quantity of particles that is drawn, with what its pictures are named.
 struct Drawn {
@@ -60,11 +60,12 @@ pub fn draw_fields(
     for Drawn { stem, label, unit, shading, values } in drawn {
         let tile = |(k, value): (usize, f64)| Tile {
             centre: [x[k], y[k]],
-            half_edges: table.half_edges[k],
+            half_edges: compact(table.half_edges[k], &scene.cell_size),
             value,
             body: table.body[k],
         };
-        let tiles = values.into_iter().enumerate().map(tile).collect();
+        let tiles = values.into_iter().enumerate().map(tile);
+        let tiles = tiles.flat_map(|tile| in_domain(scene, tile)).collect();
         let quantity = Quantity::new(label, unit, shading);
         let field = Field {
             extent: Some([corner(&domain.lower), corner(&domain.upper)]),
@@ -88,6 +89,53 @@ pub fn draw_fields(
         pictures::draw(&field.figure(), &folder.join(file))?;
     }
     Ok(())
+}
+
+/// Longest half diagonal with which a parallelogram is drawn as it is [cells].
+const LONGEST_DRAWN: f64 = 2.0;
+
+/// The half edges of a parallelogram [m]; of one that has been sheared into a needle, which would
+/// hide others and leave gaps where it is, those of a square of its area.
+fn compact([a, b]: [[f64; 2]; 2], cell: &[f64]) -> [[f64; 2]; 2] {
+    let diagonal = |sign: f64| {
+        let along = |d: usize| (a[d] + sign * b[d]) / cell[d];
+        along(0).hypot(along(1))
+    };
+    if diagonal(1.0).max(diagonal(-1.0)) <= LONGEST_DRAWN {
+        return [a, b];
+    }
+    let half = (a[0] * b[1] - a[1] * b[0]).abs().sqrt();
+    [[half, 0.0], [0.0, half]]
+}
+
+/// The tile where it lies in a domain that is joined to itself, and once more at the opposite
+/// side where it crosses one.
+fn in_domain(scene: &CheckedScene, tile: Tile) -> Vec<Tile> {
+    let domain = &scene.scene.domain;
+    let mut tiles = vec![tile];
+    for (d, ends) in scene.sides::<2>().iter().enumerate() {
+        if !ends.contains(&Side::Periodic) {
+            continue;
+        }
+        let (lower, upper) = (domain.lower[d], domain.upper[d]);
+        let length = upper - lower;
+        for k in 0..tiles.len() {
+            let tile = &mut tiles[k];
+            tile.centre[d] -= ((tile.centre[d] - lower) / length).floor() * length;
+            let (tile, reach) = (*tile, tile.half_edges.iter().map(|edge| edge[d].abs()).sum());
+            let at = tile.centre[d];
+            for (crosses, image) in
+                [(at - lower < reach, at + length), (upper - at < reach, at - length)]
+            {
+                if crosses {
+                    let mut centre = tile.centre;
+                    centre[d] = image;
+                    tiles.push(Tile { centre, ..tile });
+                }
+            }
+        }
+    }
+    tiles
 }
 
 /// Pressure along the line of the waves of profile time number `k`, against the exact one.
@@ -123,4 +171,34 @@ pub fn draw_along(
     };
     pictures::draw(&figure.figure(), stem)?;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_needle_is_drawn_as_a_square_of_its_area() {
+        let tile = [[0.3, 0.1], [-0.1, 0.3]];
+        assert_eq!(compact(tile, &[1.0, 1.0]), tile);
+        let needle = [[3.0, 0.5], [2.9, 0.5]];
+        let [[a, zero], [other, b]] = compact(needle, &[1.0, 1.0]);
+        assert!((a * b - 0.05f64).abs() < 1e-15 && a == b && zero == 0.0 && other == 0.0);
+        assert_eq!(compact(needle, &[4.0, 4.0]), needle, "cells are larger");
+    }
+
+    #[test]
+    fn what_has_left_a_joined_side_is_drawn_within() {
+        let scene = include_bytes!("../../inputs/shear_layer.json");
+        let scene = crate::scene::parse(scene, "shear_layer.json", &[]).unwrap();
+        let half_edges = [[0.02, 0.0], [0.0, 0.01]];
+        let tile = |x, y| Tile { centre: [x, y], half_edges, value: 1.0, body: 0 };
+        let centres = |x, y| -> Vec<[f64; 2]> {
+            in_domain(&scene, tile(x, y)).iter().map(|t| t.centre).collect()
+        };
+        assert_eq!(centres(3.25, 0.5), [[0.25, 0.5]]);
+        assert_eq!(centres(-0.25, 0.5), [[0.75, 0.5]]);
+        assert_eq!(centres(0.5, 1.0), [[0.5, 0.0], [0.5, 1.0]]);
+        assert_eq!(centres(1.0, 1.0).len(), 4);
+    }
 }

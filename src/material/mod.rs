@@ -42,13 +42,26 @@ pub trait EquationOfState: Copy + Send + Sync + 'static {
     /// model has ceased to hold.
     fn sound_speed_squared(&self, jacobian: f64, pressure: f64) -> f64;
 
+    /// The least pressure that the material bears [Pa]: where f(J) + g(J) e is below, the pressure
+    /// is this one.
+    fn least_pressure(&self) -> f64 {
+        f64::NEG_INFINITY
+    }
+
+    /// `pressure` of the linear form, as far as the material bears it [Pa].
+    #[inline(always)]
+    fn borne(&self, pressure: f64) -> f64 {
+        // max() would pass over NaN
+        if pressure < self.least_pressure() { self.least_pressure() } else { pressure }
+    }
+
     /// Why a state lies outside of the model, if it does.
     fn fault(&self, jacobian: f64, pressure: f64) -> Option<&'static str>;
 
     /// Pressure [Pa].
     fn pressure(&self, jacobian: f64, energy: f64) -> f64 {
         let Linear { cold, energy_factor } = self.linear(jacobian);
-        cold + energy_factor * energy
+        self.borne(cold + energy_factor * energy)
     }
 
     /// The specific internal energy at which the material is at `pressure` [J/kg].

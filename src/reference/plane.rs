@@ -28,8 +28,8 @@ pub enum PlaneSolution {
     ShearLayer(ShearLayer),
     /// Gresho's vortex.
     Gresho(Gresho),
-    /// Noh's problem about a place [m], its density averaged between two distances [m].
-    Noh(Noh, Vector, [f64; 2]),
+    /// Noh's problem about a place [m] or the axis, its density averaged between two distances [m].
+    Noh(Noh, Option<Vector>, [f64; 2]),
 }
 
 /// What the particles of one body tell.
@@ -70,8 +70,10 @@ impl PlaneReference {
                 _ => return None,
             },
             scene::Reference::Noh(named) => {
-                let (body, Some(Motion::Radial(about, speed))) = of(&named.body) else {
-                    return None;
+                let (body, motion) = of(&named.body);
+                let (about, speed) = match motion {
+                    Some(Motion::Radial(about, speed)) => (Some(*about), -speed),
+                    _ => (None, scene.speed_to_axis(body)?),
                 };
                 let material = scene.material_of(body);
                 let Eos::IdealGas { gamma } = material.eos else { return None };
@@ -80,8 +82,8 @@ impl PlaneReference {
                     NohSymmetry::Cylindrical => Symmetry::Cylindrical,
                     NohSymmetry::Spherical => Symmetry::Spherical,
                 };
-                let noh = Noh::new(symmetry, gamma, material.density, -speed).ok()?;
-                (body, PlaneSolution::Noh(noh, *about, [named.between[0], named.between[1]]))
+                let noh = Noh::new(symmetry, gamma, material.density, speed).ok()?;
+                (body, PlaneSolution::Noh(noh, about, [named.between[0], named.between[1]]))
             }
             _ => return None,
         };
@@ -192,12 +194,15 @@ fn score_gresho(vortex: &Gresho, all: &[Particle]) -> Option<Value> {
 /// Mean density between two distances, and the L1 error of the density within twice the shock's.
 fn score_noh(
     noh: &Noh,
-    about: Vector,
+    about: Option<Vector>,
     [from, to]: [f64; 2],
     all: &[Particle],
     t: f64,
 ) -> Option<Value> {
-    let distance = |q: &Particle| (q.x[0] - about[0]).hypot(q.x[1] - about[1]);
+    let distance = |q: &Particle| match about {
+        Some([x, y]) => (q.x[0] - x).hypot(q.x[1] - y),
+        None => q.x[0],
+    };
     let (mut mass, mut volume, mut error, mut exact) = (0.0, 0.0, 0.0, 0.0);
     for q in all {
         let r = distance(q);

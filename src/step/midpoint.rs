@@ -57,6 +57,9 @@ impl<const D: usize> Stepper<D> {
                 if let Some(rate) = relax {
                     self.relax_pressure(patch, rate);
                 }
+                if let Some(rate) = self.volume_relaxation {
+                    self.relax_volume(patch, rate);
+                }
                 self.refresh(patch);
             });
         })

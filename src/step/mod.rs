@@ -45,6 +45,7 @@ pub struct Stepper<const D: usize> {
     compatible: bool,
     filter_heat: bool,
     relaxation: Option<PressureRelaxation>,
+    volume_relaxation: Option<f64>,
     edge_mask: Option<f64>,
     viscosity: Option<Viscosity>,
     body_force: Option<body_force::Force>,
@@ -64,6 +65,8 @@ pub struct Stepper<const D: usize> {
     /// Edges of a cell [m] and their inverse.
     cell: [f64; D],
     inverse_cell: [f64; D],
+    /// Edge of a square or line of a cell's volume [m].
+    edge: f64,
     /// Lower corner of the domain [m] and its number of cells.
     lower: [f64; D],
     cells: [i64; D],
@@ -175,7 +178,7 @@ impl<const D: usize> Stepper<D> {
             })
             .collect();
         let densest = bodies.iter().map(|b| materials[&b.material].density).fold(0.0, f64::max);
-        // what a cell's edge is to viscosity: exact where all are the same
+        // exact where all are the same
         let edge = match cell.iter().all(|&h| h == cell[0]) {
             true => cell[0],
             false => volume.powf(1.0 / D as f64),
@@ -197,6 +200,7 @@ impl<const D: usize> Stepper<D> {
             compatible: method.energy == EnergyUpdate::Compatible,
             filter_heat: method.filter_heat,
             relaxation: method.pressure_relaxation,
+            volume_relaxation: method.volume_relaxation,
             edge_mask: method.edge_mask,
             viscosity: viscosity.map(|v| Viscosity::new(v, edge)),
             body_force: body_force::Force::new(scene),
@@ -209,6 +213,7 @@ impl<const D: usize> Stepper<D> {
             shape: method.shape,
             cell,
             inverse_cell: cell.map(|h| 1.0 / h),
+            edge,
             lower: std::array::from_fn(|a| scene.scene.domain.lower[a]),
             cells: std::array::from_fn(|a| scene.cells[a] as i64),
             sides: scene.sides(),

@@ -10,6 +10,10 @@ use crate::patch::{Departed, Fault, Patch, Phase};
 use crate::scene::Side;
 use crate::shape::{Domain, Extent, floor};
 
+/// Stiffness that pressure relaxation takes a gas to have at least, over the pressure that counts
+/// as none: 2^-30 of the scene's. What rounding leaves of pressure then moves no volume.
+const COLD: f64 = (1u64 << 20) as f64;
+
 /// Ranges of rows of one body.
 pub(super) fn bodies(column: &[f64]) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
     let mut at = 0;
@@ -323,6 +327,9 @@ impl<const D: usize> Stepper<D> {
                 jacobian: &column(c.jacobian)[rows.clone()],
                 jacobian_mid: &column(mid)[rows.clone()],
                 energy: &column(c.energy)[rows.clone()],
+                gradient: &column(c.gradient)[rows.clone()],
+                edge: self.edge,
+                floor: COLD * self.still_pressure,
                 q: c.viscosity.map(|q| &column(q)[rows.clone()]),
                 stress_volume: &mut stress[rows.clone()],
                 compliance: relaxed

@@ -99,6 +99,16 @@ fn gases_and_walls() {
 }
 
 #[test]
+fn what_counts_as_no_pressure() {
+    let mut cold = shipped("noh_planar.json");
+    cold.as_object_mut().unwrap().remove("reference");
+    let body = cold["bodies"][0].as_object_mut().unwrap();
+    body.remove("velocity_field");
+    body.insert("velocity".into(), json!([-1.0]));
+    same_bits(&cold);
+}
+
+#[test]
 fn other_schemes() {
     for method in [
         json!({"shape": "linear", "transfer": "apic"}),

@@ -40,3 +40,27 @@ fn a_wave_at_an_angle_is_as_good_as_one_along_an_axis() {
     assert!(aligned.0 < 0.08, "{aligned:?}");
     assert!(oblique.0 < 1.3 * aligned.0 && oblique.1 < 1.3 * aligned.1, "{oblique:?} {aligned:?}");
 }
+
+/// Norm of the density's error of Sod's tube at `angle` to cells of 0.02 m.
+fn sod(angle: f64) -> f64 {
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/sod_2d.json");
+    let mut scene: Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
+    let (sin, cos) = angle.to_radians().sin_cos();
+    for (body, normal) in [(0, [cos, sin]), (1, [-cos, -sin])] {
+        scene["bodies"][body]["intersection"][1]["half_plane"]["normal"] = json!(normal);
+    }
+    scene["reference"]["riemann"]["front"]["angle"] = json!(angle);
+    scene["domain"]["cell_size"] = json!(0.02);
+    let outcome = run::<2>(&scene);
+    assert!(outcome.energy_drift().abs() < 1e-12, "{:e}", outcome.energy_drift());
+    let checked = checked(&scene);
+    let reference = Reference::new(&checked).unwrap().unwrap();
+    reference.score(&checked, 0, &outcome.table).unwrap().0.density_l1.unwrap()
+}
+
+#[test]
+fn a_shock_tube_may_lie_at_any_angle() {
+    let [along, oblique, diagonal] = [0.0, 30.0, 45.0].map(sod);
+    assert!(along < 0.01, "{along}");
+    assert!(oblique < 1.1 * along && diagonal < 1.1 * along, "{oblique} {diagonal} {along}");
+}

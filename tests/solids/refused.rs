@@ -26,6 +26,15 @@ fn solids() {
         "method.pressure_relaxation={\"rate\": 0.1, \"interval\": 1}",
         &["method.pressure_relaxation", "acts on fluids alone", "every body is elastic"],
     );
+    edit(
+        "method.volume_relaxation=0.1",
+        &["method.volume_relaxation = 0.1", "needs method.edge_mask"],
+    );
+    refused(
+        "vortex.json",
+        &["method.volume_relaxation=0.1", "method.edge_mask=0.3"],
+        &["method.volume_relaxation = 0.1", "every body is elastic"],
+    );
     edit("materials.solid.density=1e-310", &["youngs_modulus = 1000", "no finite stiffness"]);
 }
 
@@ -89,6 +98,10 @@ fn references() {
     refused("gresho.json", &[wrong], &["reference.noh", "velocity_field.radial"]);
     let radial = "bodies.gas.velocity_field={\"radial\": {\"about\": [0, 0], \"speed\": -1}}";
     refused("gresho.json", &[radial, wrong], &["symmetry = \"planar\"", "\"cylindrical\""]);
+    let spherical = "reference.noh.symmetry=spherical";
+    refused("noh_axis.json", &[spherical], &["symmetry = \"spherical\"", "\"cylindrical\""]);
+    let up = "bodies.gas.velocity=[-1, 1]";
+    refused("noh_axis.json", &[up], &["reference.noh", "a velocity along x towards the axis"]);
     let between = wrong.replace("planar", "cylindrical").replace("[0, 1]", "[1, 1]");
     refused("gresho.json", &[radial, &between], &["between = [1.0,1.0]", "two numbers"]);
     refused(

@@ -38,6 +38,11 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Fau
             return Err(Fault::new("method.domain_limit", limit, reason));
         }
     }
+    if let (Some(rate), None) = (method.volume_relaxation, method.edge_mask) {
+        let reason = "needs method.edge_mask, which knows what is filled; allowed: to leave it \
+                      out, or method.edge_mask";
+        return Err(Fault::new("method.volume_relaxation", rate, reason));
+    }
     check_contact(scene, warnings)?;
     if method.shape == ShapeKind::Linear {
         warnings.push(
@@ -58,12 +63,13 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Fau
 /// What a method says nothing of where no body is a fluid.
 pub(super) fn check_bodies(checked: &CheckedScene) -> Result<(), Fault> {
     let fluids = (0..checked.bodies.len()).any(|i| !checked.material_of(i).eos.is_solid());
-    match checked.scene.method.pressure_relaxation {
-        Some(relaxation) if !fluids => {
-            let reason =
-                "acts on fluids alone, and every body is elastic; allowed: to leave it out";
+    let reason = "acts on fluids alone, and every body is elastic; allowed: to leave it out";
+    let method = &checked.scene.method;
+    match (method.pressure_relaxation, method.volume_relaxation) {
+        (Some(relaxation), _) if !fluids => {
             Err(Fault::new("method.pressure_relaxation", relaxation, reason))
         }
+        (_, Some(rate)) if !fluids => Err(Fault::new("method.volume_relaxation", rate, reason)),
         _ => Ok(()),
     }
 }

@@ -82,14 +82,23 @@ pub(super) fn check_gresho(checked: &CheckedScene, named: &NamedBody) -> Result<
 pub(super) fn check_noh(checked: &CheckedScene, named: &NamedNoh) -> Result<(), Fault> {
     const NAME: &str = "noh";
     let (body, motion) = motion_of(checked, NAME, &named.body)?;
-    match motion {
-        Some(Motion::Radial(_, speed)) if *speed < 0.0 => {}
+    let axisymmetric = checked.axisymmetric();
+    let radial = match motion {
+        Some(Motion::Radial(_, speed)) => *speed < 0.0,
+        _ => false,
+    };
+    let to_axis = checked.speed_to_axis(body).is_some();
+    let fits = match (checked.dimension, axisymmetric) {
+        (1, _) if radial => NohSymmetry::Planar,
+        (2, false) if radial => NohSymmetry::Cylindrical,
+        (2, true) if to_axis => NohSymmetry::Cylindrical,
+        (2, true) if radial => NohSymmetry::Spherical,
+        (_, true) => {
+            let what = "velocity_field.radial with a speed below 0, nor a velocity along x \
+                        towards the axis";
+            return needs(checked, NAME, body, what);
+        }
         _ => return needs(checked, NAME, body, "velocity_field.radial with a speed below 0"),
-    }
-    let fits = match (checked.dimension, checked.axisymmetric()) {
-        (1, _) => NohSymmetry::Planar,
-        (_, false) => NohSymmetry::Cylindrical,
-        (_, true) => NohSymmetry::Spherical,
     };
     if named.symmetry != fits {
         let allowed = serde_json::json!(fits);
@@ -111,4 +120,15 @@ pub(super) fn check_noh(checked: &CheckedScene, named: &NamedNoh) -> Result<(), 
     }
     let reason = "no distances; allowed: two numbers of at least 0, the first below the second";
     Err(Fault::new("reference.noh.between", &named.between, reason))
+}
+
+impl CheckedScene {
+    /// Speed at which body `i` closes in on the axis of an axisymmetric scene all along it [m/s].
+    pub fn speed_to_axis(&self, i: usize) -> Option<f64> {
+        let body = &self.bodies[i];
+        match (self.axisymmetric(), &body.motion, &body.velocity[..]) {
+            (true, None, &[radial, axial]) if radial < 0.0 && axial == 0.0 => Some(-radial),
+            _ => None,
+        }
+    }
 }

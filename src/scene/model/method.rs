@@ -27,6 +27,12 @@ pub struct Method {
     /// Relaxation of the pressure towards its projection on the grid; absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure_relaxation: Option<PressureRelaxation>,
+    /// Share of what fluid particles fill too much or too little of the space around them, by
+    /// their volumes, that one step takes away at their energy; with an edge mask, which knows
+    /// what is filled [-]; absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0.0))]
+    pub volume_relaxation: Option<f64>,
     /// Fraction of a node's volume that must hold material for the filter's inverse to act on
     /// its force [-]; absent: no mask.
     #[serde(default, skip_serializing_if = "Option::is_none")]

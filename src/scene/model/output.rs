@@ -89,7 +89,8 @@ pub struct NamedBody {
     pub body: String,
 }
 
-/// Noh's problem in a body that starts with a `radial` velocity.
+/// Noh's problem in a body that starts with a `radial` velocity, or about an axis with a velocity
+/// towards it.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NamedNoh {
@@ -108,7 +109,7 @@ pub struct NamedNoh {
 pub enum NohSymmetry {
     /// A plane, on a line.
     Planar,
-    /// An axis, in plane strain.
+    /// An axis: a point in plane strain, or the axis itself in axisymmetry.
     Cylindrical,
     /// A point on the axis, in axisymmetry.
     Spherical,

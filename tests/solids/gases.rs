@@ -1,0 +1,81 @@
+//! Noh's problem: gases without any energy that meet, at low resolution.
+
+use serde_json::{Value, json};
+
+use crate::tools::{Outcome, at_most, run, shipped};
+
+/// Noh's problem of `scene` with `cells` a metre.
+fn noh<const D: usize>(scene: &str, cells: f64) -> Outcome<D>
+where
+    flyer_mpm::step::Stepper<D>: flyer_mpm::step::Steps<D>,
+{
+    let mut value = shipped(scene);
+    value["domain"]["cell_size"] = json!(1.0 / cells);
+    let outcome = run::<D>(&value);
+    at_most("energy", outcome.energy_drift(), 1e-12);
+    outcome
+}
+
+fn number(score: &Value, name: &str) -> f64 {
+    score[name].as_f64().unwrap_or_else(|| panic!("no {name} in {score}"))
+}
+
+#[test]
+fn a_cold_gas_is_stopped_by_a_wall() {
+    let [coarse, fine] = [50.0, 100.0].map(|cells| noh::<1>("noh_planar.json", cells));
+    at_most("mean density", number(&fine.score, "mean_density_error"), 0.015);
+    let [coarse_l1, l1] = [&coarse, &fine].map(|run| number(&run.score, "density_l1"));
+    assert!(l1 < 0.6 * coarse_l1, "{l1} {coarse_l1}");
+    // one pressure behind the shock, though the density is not even
+    let (x, p) = (fine.column("x"), fine.column("pressure"));
+    let behind: Vec<f64> = (0..x.len()).filter(|&r| x[r] < 0.15).map(|r| p[r]).collect();
+    let mean = behind.iter().sum::<f64>() / behind.len() as f64;
+    at_most("mean pressure", mean / (4.0 / 3.0) - 1.0, 0.03);
+    behind.iter().skip(8).for_each(|p| at_most("pressure", p / mean - 1.0, 0.02));
+    // and none ahead of it
+    let ahead = (0..x.len()).filter(|&r| x[r] > 0.3);
+    ahead.for_each(|r| at_most("pressure ahead", p[r], 1e-6));
+}
+
+#[test]
+fn a_cold_gas_closes_in_on_an_axis() {
+    let score = |scene: &str, cells: f64| noh::<2>(scene, cells).score;
+    for (scene, bound) in [("noh_cylindrical.json", 0.13), ("noh_axis.json", 0.16)] {
+        let [coarse, fine] = [25.0, 50.0].map(|cells| score(scene, cells));
+        at_most(scene, number(&fine, "mean_density_error"), bound);
+        for name in ["mean_density_error", "density_l1"] {
+            let [coarse, fine] = [&coarse, &fine].map(|score| number(score, name).abs());
+            assert!(fine < 0.7 * coarse, "{scene}: {name} {fine} {coarse}");
+        }
+    }
+}
+
+#[test]
+fn other_schemes_bear_a_gas_without_energy() {
+    for (scheme, keeps) in [
+        (json!({"shape": "cpdi", "transfer": "flip"}), false),
+        (json!({"shape": "gimp", "transfer": "flip", "stress_update": "first"}), false),
+        (
+            json!({"shape": "bspline_quadratic", "transfer": {"fmpm": 4}, "stepping": "midpoint",
+                "energy": "compatible", "filter_heat": true}),
+            true,
+        ),
+        (
+            json!({"shape": "cpdi", "transfer": "flip", "stepping": "midpoint",
+                "energy": "compatible"}),
+            true,
+        ),
+    ] {
+        let mut value = shipped("noh_planar.json");
+        value["domain"]["cell_size"] = json!(0.01);
+        value["artificial_viscosity"] = json!({"linear": 0.2, "quadratic": 2.0});
+        value["method"] = scheme.clone();
+        let outcome = run::<1>(&value);
+        let what = scheme.to_string();
+        at_most(&what, number(&outcome.score, "mean_density_error"), 0.1);
+        if keeps {
+            at_most(&what, outcome.energy_drift(), 1e-12);
+        }
+        assert!(outcome.column("pressure").iter().all(|&p| p >= 0.0), "{what}: tension");
+    }
+}
