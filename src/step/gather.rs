@@ -2,6 +2,7 @@
 
 use smallvec::SmallVec;
 
+use super::solid::Taken;
 use super::{MOST_NODES, Stepper, with_width};
 use crate::patch::Patch;
 use crate::scene::Limiter;
@@ -224,7 +225,7 @@ impl<const D: usize> Stepper<D> {
         let mut v: [Vec<f64>; D] = std::array::from_fn(|a| take(c.velocity + a));
         let [mut j, mut e, mut d] = [c.jacobian, c.energy, c.gradient].map(&mut take);
         let tensors = [c.deformation, c.velocity_gradient].into_iter().flatten();
-        let mut strain: SmallVec<[(usize, SmallVec<[Vec<f64>; 4]>); 2]> =
+        let mut strain: SmallVec<[(usize, Taken); 2]> =
             tensors.map(|first| (first, (first..first + D * D).map(&mut take).collect())).collect();
         let column = |k: usize| &patch.block.columns[k][..n];
         let mid = c.jacobian_mid.expect("mid-point stepping has the column");

@@ -20,7 +20,7 @@ use crate::patch::Patch;
 use crate::transfer::Row;
 
 /// The columns of a tensor, out of their block: xx, yy, xy, zz, those that there are.
-type Taken = smallvec::SmallVec<[Vec<f64>; 4]>;
+pub(super) type Taken = smallvec::SmallVec<[Vec<f64>; 4]>;
 
 /// Rows of a tensor's columns.
 fn tensor_rows(columns: &mut Taken, rows: Range<usize>) -> TensorRows<'_> {
