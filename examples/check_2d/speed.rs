@@ -19,8 +19,9 @@ const PLAIN: [&str; 7] = [
 
 fn job() -> Job {
     Job::new("flyer_2d")
-        .set("time.end=3e-8")
-        .set("output.profiles.times=[3e-8]")
+        // hat functions at points tear the flyer's rear apart at 1.9e-8 s
+        .set("time.end=1.5e-8")
+        .set("output.profiles.times=[1.5e-8]")
         .set("decomposition.skip_quiet=false")
 }
 
@@ -34,6 +35,11 @@ pub fn check(table: &mut Table) {
     let kinds = [
         ("linear FLIP", linear, 12e6),
         ("CPDI FLIP", plain("cpdi"), 5e6),
+        (
+            "CPDI on quadratics, FMPM(4), exact energy",
+            job().set("method.pressure_relaxation=null").set("domain.patches=[1, 1]"),
+            1.5e6,
+        ),
         ("flyer_2d.json as it is", job().set("domain.patches=[1, 1]"), 1.5e6),
     ];
     for (name, job, bound) in kinds {
