@@ -52,7 +52,10 @@ pub fn check(table: &mut Table) {
         let name = format!("{name}: particle-steps per CPU second");
         table.at_least(&name, Some(speed), bound, Show::Millions);
     }
-    let large = |ranks| job().set("domain.cell_size=1.5e-5").ranks(ranks).on_own_cores();
+    let large = |ranks| {
+        let job = job().set("time.end=3e-8").set("output.profiles.times=[3e-8]");
+        job.set("domain.cell_size=1.5e-5").ranks(ranks).on_own_cores()
+    };
     let mut walls = [Vec::new(), Vec::new()];
     for _ in 0..ROUNDS {
         for (ranks, walls) in [1, 2].into_iter().zip(&mut walls) {

@@ -69,11 +69,11 @@ impl ElasticSolid for Hencky {
         self.rho0
     }
 
-    #[inline(always)]
     fn shear_modulus(&self) -> f64 {
         self.lame.mu
     }
 
+    #[inline(always)]
     fn kirchhoff_stress(&self, f: &Deformation) -> Symmetric {
         let Strain { h, volume, .. } = Self::strain(f);
         let (even, twice) = (self.lame.lambda * volume, 2.0 * self.lame.mu);

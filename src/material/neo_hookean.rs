@@ -29,11 +29,11 @@ impl ElasticSolid for NeoHookean {
         self.rho0
     }
 
-    #[inline(always)]
     fn shear_modulus(&self) -> f64 {
         self.lame.mu
     }
 
+    #[inline(always)]
     fn kirchhoff_stress(&self, f: &Deformation) -> Symmetric {
         let b = f.left_cauchy_green();
         let Lame { lambda, mu } = self.lame;
