@@ -3,12 +3,19 @@
 //!
 //! Knows no grid, no messages, no dimension.
 
+mod failure;
+mod heat;
+mod plastic;
 mod solid;
 
+pub use failure::{Criterion, Ductile, Loaded};
+pub use heat::{Isentrope, Thermal};
+pub use plastic::{DeviatorRows, Flow, FlowRows, RateRows};
 pub use solid::{PlaneStrain, Solid, Strain, TensorRows};
 
 use crate::material::{EquationOfState, Hencky, IdealGas, Lame, Linear, MieGruneisen, NeoHookean};
-use crate::scene::{Eos, Material};
+use crate::scene::{self, Eos, Failure, HeatSource, Material, TensionMeasure};
+use crate::strength::{JohnsonCook, Softening, SteinbergGuinan, VonMises};
 
 /// What a body is made of, as the step sees it.
 pub enum Matter {
@@ -136,6 +143,83 @@ pub fn build(material: &Material) -> Matter {
             Matter::Solid(Box::new(solid::Loops(NeoHookean { rho0, lame })))
         }
     }
+}
+
+/// What a fluid's material bears of shear, if its scene says so.
+pub fn flow_of(material: &Material) -> Option<Box<dyn Flow>> {
+    use plastic::Shearing;
+    Some(match material.strength? {
+        scene::Strength::VonMises { shear_modulus, yield_stress, hardening } => {
+            Box::new(Shearing(VonMises { shear_modulus, yield_stress, hardening }))
+        }
+        scene::Strength::JohnsonCook { shear_modulus, a, b, n, c, reference_rate, softening } => {
+            let softening = softening.map(|s| Softening {
+                m: s.m,
+                room: s.reference_temperature,
+                melt: s.melt_temperature,
+            });
+            let model = JohnsonCook { shear_modulus, a, b, n, c, reference_rate, softening };
+            Box::new(Shearing(model))
+        }
+        scene::Strength::SteinbergGuinan {
+            shear_modulus,
+            yield_stress,
+            beta,
+            n,
+            initial_strain,
+            max_yield_stress,
+            pressure_hardening,
+            temperature_softening,
+        } => Box::new(Shearing(SteinbergGuinan {
+            shear_modulus,
+            yield_stress,
+            beta,
+            n,
+            initial_strain,
+            most: max_yield_stress,
+            by_pressure: pressure_hardening,
+            by_temperature: temperature_softening,
+        })),
+    })
+}
+
+/// When a material fails, if its scene says so.
+pub fn criterion_of(material: &Material) -> Option<Criterion> {
+    Some(match material.failure? {
+        Failure::TensionLimit { stress, measure: TensionMeasure::PrincipalStress } => {
+            Criterion::PrincipalStress(stress)
+        }
+        Failure::TensionLimit { stress, measure: TensionMeasure::MeanStress } => {
+            Criterion::MeanTension(stress)
+        }
+        Failure::JohnsonCook { d1, d2, d3, d4, d5, reference_rate } => {
+            let temperatures = match material.strength {
+                Some(scene::Strength::JohnsonCook { softening, .. }) => {
+                    softening.map(|s| [s.reference_temperature, s.melt_temperature])
+                }
+                _ => None,
+            };
+            Criterion::Ductile(Ductile { d: [d1, d2, d3, d4, d5], reference_rate, temperatures })
+        }
+    })
+}
+
+/// How a material's temperature follows, if its scene says so; `matter` is its model.
+pub fn thermal_of(material: &Material, matter: &Matter) -> Option<Thermal> {
+    let named = material.thermal?;
+    let isentrope = match (named.source, matter) {
+        (HeatSource::Energy, Matter::Fluid(model)) => {
+            Some(Isentrope::new(model.as_ref(), material.density))
+        }
+        _ => None,
+    };
+    Some(Thermal {
+        specific_heat: named.specific_heat,
+        rest: named.reference_temperature,
+        taylor_quinney: named.taylor_quinney,
+        conductivity: named.conductivity,
+        isentrope,
+    })
 }
 
 /// The loops over an equation of state.

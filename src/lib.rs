@@ -22,6 +22,7 @@ pub mod scene;
 pub mod shape;
 pub mod simulation;
 pub mod step;
+pub mod strength;
 pub mod threads;
 pub mod transfer;
 pub mod viscosity;

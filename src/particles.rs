@@ -77,10 +77,53 @@ pub struct Columns {
     pub side: Option<SideColumns>,
     /// J at the middle of the step, scratch, with mid-point stepping.
     pub jacobian_mid: Option<usize>,
+    /// What strength takes, where a body has it.
+    pub strength: Option<StrengthColumns>,
+    /// What failure takes, where a body may fail.
+    pub failure: Option<FailureColumns>,
+    /// What temperature takes, where a body has one.
+    pub thermal: Option<ThermalColumns>,
     /// Pressure at the middle of the step [Pa], scratch, with pressure relaxation.
     pub pressure_mid: Option<usize>,
     /// -dV/dp at the middle of the step [m3/Pa], scratch, with pressure relaxation.
     pub compliance: Option<usize>,
+}
+
+/// Where the columns of strength stand.
+#[derive(Clone, Copy, Debug)]
+pub struct StrengthColumns {
+    /// Deviator of the Cauchy stress [Pa]: xx, and in a plane yy and xy.
+    pub deviator: usize,
+    /// Equivalent plastic strain [-].
+    pub plastic_strain: usize,
+    /// Gradient of the velocity during the step [1/s], a tensor, and about an axis its divergence,
+    /// scratch.
+    pub rate: usize,
+    /// Specific internal energy at the middle of the step but for the work of pressure [J/kg],
+    /// scratch.
+    pub energy_mid: usize,
+    /// Plastic strain after the step, then that of the step [-], scratch.
+    pub plastic_increment: usize,
+    /// Plastic work of the step per volume [J/m3], scratch.
+    pub plastic_work: usize,
+}
+
+/// Where the columns of failure stand.
+#[derive(Clone, Copy, Debug)]
+pub struct FailureColumns {
+    /// Damage [-]: from 1 on the particle bears neither tension nor shear.
+    pub damage: usize,
+    /// Elastic energy that failure has set free as heat [J].
+    pub released: usize,
+}
+
+/// Where the columns of temperature stand.
+#[derive(Clone, Copy, Debug)]
+pub struct ThermalColumns {
+    /// Temperature [K]; 0 in bodies that have none.
+    pub temperature: usize,
+    /// Plastic work that does not heat [J/kg], where there is any.
+    pub stored: Option<usize>,
 }
 
 /// Where the columns of a body force stand.
@@ -167,6 +210,8 @@ impl Columns {
             ["reference_position", "reference_position_x", "reference_position_y"];
         const SIDE_GRADIENT: [&str; 4] =
             ["side_gradient_xx", "side_gradient_xy", "side_gradient_yx", "side_gradient_yy"];
+        const DEVIATOR: [&str; 3] = ["deviator_xx", "deviator_yy", "deviator_xy"];
+        const RATE: [&str; 5] = ["rate_xx", "rate_xy", "rate_yx", "rate_yy", "rate_divergence"];
         const STRESS: [&str; 3] = ["stress_xx", "stress_yy", "stress_xy"];
         const STRESS_VOLUME: [&str; 4] =
             ["stress_volume_xx", "stress_volume_yy", "stress_volume_xy", "stress_volume_zz"];
@@ -232,11 +277,47 @@ impl Columns {
                 &of_tensor,
             ),
         });
+        let materials = || (0..scene.scene.bodies.len()).map(|i| scene.material_of(i));
+        let shears = materials().any(|m| m.strength.is_some());
+        let strength = shears.then(|| StrengthColumns {
+            deviator: add_all(
+                if plane { &DEVIATOR } else { &DEVIATOR[..1] },
+                "Pa",
+                false,
+                true,
+                &of_stress,
+            ),
+            plastic_strain: add_all(&["plastic_strain"], "", false, true, &same),
+            rate: {
+                let names = if plane { &RATE[..4] } else { &RATE[..1] };
+                let first = add_all(names, "1/s", false, false, &of_tensor);
+                if scene.axisymmetric() {
+                    add_all(&RATE[4..], "1/s", false, false, &same);
+                }
+                first
+            },
+            energy_mid: add_all(&["energy_mid"], "J/kg", false, false, &same),
+            plastic_increment: add_all(&["plastic_increment"], "", false, false, &same),
+            plastic_work: add_all(&["plastic_work"], "J/m3", false, false, &same),
+        });
+        let fails = materials().any(|m| m.failure.is_some());
+        let failure = fails.then(|| FailureColumns {
+            damage: add_all(&["damage"], "", false, true, &same),
+            released: add_all(&["released_energy"], "J", false, true, &same),
+        });
+        let stores = materials().any(|m| m.stores_work());
+        let thermal = materials().any(|m| m.thermal.is_some()).then(|| ThermalColumns {
+            temperature: add_all(&["temperature"], "K", false, true, &same),
+            stored: stores.then(|| add_all(&["stored_work"], "J/kg", false, true, &same)),
+        });
         let half_edges = deforms.then(|| match seen {
             true => domain,
             false => add_all(&HALF_EDGES, "", true, false, &of_edge),
         });
         Columns {
+            strength,
+            failure,
+            thermal,
             pressed,
             body_force,
             side,
@@ -353,6 +434,10 @@ pub fn fill<const D: usize>(
             row[columns.volume0] = volume;
             row[columns.jacobian] = 1.0;
             row[columns.energy] = energy(number, pressure);
+            if let (Some(c), Some(thermal)) = (columns.thermal, &scene.material_of(number).thermal)
+            {
+                row[c.temperature] = thermal.reference_temperature;
+            }
             row[columns.body] = number as f64;
             if let Some(column) = columns.pressed {
                 row[column] = pressed(number, pressure);

@@ -4,18 +4,20 @@
 //! - [`impact`]: the true solution of a plate impact, with rarefaction fans, in lab coordinates
 //!   (`tracking` stands behind it: front tracking in Lagrangian coordinates);
 //! - [`release`]: the closed-form states and times of that solution, by release isentropes;
-//! - [`riemann`]: two ideal gases at a diaphragm; [`wall`]: one body run into a wall;
+//! - [`riemann`]: two ideal gases at a diaphragm; [`wall`]: one body run into a wall, and
+//!   [`elastic_plastic`]: one that has strength;
 //! - [`plane`]: references in two dimensions, and what a plate impact is there;
 //! - [`mod@score`]: how a computed profile is held against one of these.
 //!
 //! Knows materials, but no particles, grid, scene or files. But for [`plane`], one dimension,
-//! uniaxial strain; no strength (but for [`plane::vortex`]), no heat conduction. SI units;
+//! uniaxial strain; no strength (but for [`elastic_plastic`] and [`plane::vortex`]), no heat conduction. SI units;
 //! pressure is positive in compression.
 
 pub mod chain;
 #[cfg(test)]
 mod checks;
 mod collision;
+pub mod elastic_plastic;
 pub mod impact;
 mod isentrope;
 pub mod plane;
@@ -29,6 +31,7 @@ pub mod wall;
 mod wave;
 
 pub use chain::{Chain, ChainState, ChainWave, Plate, WaveKind};
+pub use elastic_plastic::{Behind, ElasticPlastic, Plastic};
 pub use impact::{Accuracy, Impact, ImpactBody, Snapshot, Solution, Tracer};
 pub use plane::{
     Displaced, EdgeRelease, Gap, Gresho, MassPoint, Noh, PlanePoint, PlaneWave, Separation,

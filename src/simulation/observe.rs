@@ -163,6 +163,16 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             };
             columns.push(named("stress_zz", "Pa", pick(&across)));
         }
+        if let Some(strength) = c.strength {
+            let strain = column(strength.plastic_strain);
+            columns.push(named("plastic_strain", "", pick(&|r| strain[r])));
+        }
+        if let Some(failure) = c.failure {
+            columns.push(named("damage", "", pick(&|r| column(failure.damage)[r])));
+        }
+        if let Some(thermal) = c.thermal {
+            columns.push(named("temperature", "K", pick(&|r| column(thermal.temperature)[r])));
+        }
         if D > 1 {
             columns.push(named("volume", "m3", pick(&|r| v0[r] * j[r])));
         }

@@ -96,7 +96,7 @@ impl<const D: usize> Stepper<D> {
     /// The divergence `plane` of a velocity in the plane, and about an axis the rate of strain
     /// N v_x/x of a row that a radius adds to it; `radial` gives v_x for each line of nodes.
     #[inline(always)]
-    fn with_hoop<const K: usize>(
+    pub(super) fn with_hoop<const K: usize>(
         &self,
         patch: &Patch<D>,
         row: &Row<'_, K, D>,
@@ -326,7 +326,7 @@ impl<const D: usize> Stepper<D> {
 
 /// The gradient of the velocity at a row, whose components `of` gives for each line of nodes.
 #[inline(always)]
-fn tensor_of<const K: usize, const D: usize>(
+pub(super) fn tensor_of<const K: usize, const D: usize>(
     row: &Row<'_, K, D>,
     of: impl Fn(usize, usize) -> [f64; K],
 ) -> [[f64; D]; D] {
@@ -357,13 +357,18 @@ fn deform<const D: usize>(columns: &mut [Vec<f64>], row: usize, l: &[[f64; D]; D
 
 /// Sum of the diagonal.
 #[inline(always)]
-fn trace<const D: usize>(tensor: &[[f64; D]; D]) -> f64 {
+pub(super) fn trace<const D: usize>(tensor: &[[f64; D]; D]) -> f64 {
     (1..D).fold(tensor[0][0], |sum, a| sum + tensor[a][a])
 }
 
 /// Writes a tensor into its columns from `first` on.
 #[inline(always)]
-fn put<const D: usize>(columns: &mut [Vec<f64>], first: usize, row: usize, tensor: &[[f64; D]; D]) {
+pub(super) fn put<const D: usize>(
+    columns: &mut [Vec<f64>],
+    first: usize,
+    row: usize,
+    tensor: &[[f64; D]; D],
+) {
     for a in 0..D {
         for b in 0..D {
             columns[first + D * a + b][row] = tensor[a][b];

@@ -30,8 +30,10 @@ impl<const D: usize> Stepper<D> {
             patch.block.drop_ghosts();
             self.half_step_volume(patch, dt);
             self.find_viscosity(patch, mid);
+            self.shear_to_middle(patch, 0.5 * dt, mid);
             self.mid_step_stress(patch, relax.is_some());
-            self.find_solid_stress(patch, 0.5 * dt, mid);
+            self.bear_no_tension(patch, mid);
+            self.find_solid_stress(patch, 0.5 * dt, mid, self.columns.stress);
             self.find_pressed(patch, mid, dt);
             self.find_body_force(patch, time + 0.5 * dt);
             self.find_impedance(patch, mid);
@@ -51,7 +53,9 @@ impl<const D: usize> Stepper<D> {
             }
             self.solve_friction_heat(nodal, dt);
             nodal.each("gather", |patch| {
+                self.gather_rate(patch);
                 self.gather_midpoint(patch, dt);
+                self.shear(patch, dt);
                 self.book_body_force(patch, dt);
                 self.book_sides(patch, dt);
                 if let Some(rate) = relax {
@@ -61,6 +65,7 @@ impl<const D: usize> Stepper<D> {
                     self.relax_volume(patch, rate);
                 }
                 self.refresh(patch);
+                self.fail(patch, dt);
             });
         })
     }

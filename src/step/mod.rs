@@ -6,6 +6,7 @@
 
 mod body_force;
 mod contact;
+mod failure;
 pub mod gather;
 pub mod leapfrog;
 pub mod midpoint;
@@ -16,20 +17,24 @@ pub mod scatter;
 pub mod series;
 mod sides;
 mod solid;
+mod strength;
+mod thermal;
 mod world;
 
 pub use reach::Reach;
 pub use world::{Nodal, Sleep, World};
 
-use crate::constitutive::{self, Matter};
+use crate::constitutive::{self, Criterion, Flow, Matter, Thermal};
 use crate::contact::Contact;
 use crate::grid::Fields;
 use crate::particles::Columns;
 use crate::patch::Patch;
 use crate::scene::{
-    CheckedScene, EnergyUpdate, PressureRelaxation, ShapeKind, Side, Stepping, StressUpdate,
+    CheckedScene, EnergyUpdate, Material, PressureRelaxation, ShapeKind, Side, Stepping,
+    StressUpdate,
 };
 use crate::shape::{self, Extent, Shape};
+use crate::strength::Condition;
 use crate::transfer::Scheme;
 use crate::viscosity::Viscosity;
 
@@ -61,6 +66,12 @@ pub struct Stepper<const D: usize> {
     rest: Vec<sides::Rest<D>>,
     /// One a body.
     models: Vec<Matter>,
+    /// What each body's material bears of shear beside its equation of state.
+    flows: Vec<Option<Box<dyn Flow>>>,
+    /// When each body's material fails.
+    criteria: Vec<Option<Criterion>>,
+    /// How each body's temperature follows.
+    thermals: Vec<Option<Thermal>>,
     shape: ShapeKind,
     /// Edges of a cell [m] and their inverse.
     cell: [f64; D],
@@ -148,6 +159,37 @@ const fn most_nodes(dimension: usize) -> usize {
 /// How much longer a particle may be at the middle of a step than at its start.
 const STRETCH: f64 = 1.25;
 
+/// Waves in a body at rest.
+struct Waves {
+    /// Speed of shear waves [m/s]; none in a fluid without strength.
+    shear: f64,
+    /// What shear adds to the square of the sound speed, 4 G/(3 rho) of a material with strength
+    /// [m2/s2].
+    added: f64,
+}
+
+impl Waves {
+    fn of(material: &Material, model: &Matter, flow: Option<&dyn Flow>) -> Self {
+        let rest = Condition {
+            compression: 1.0,
+            pressure: 0.0,
+            temperature: material.thermal.map_or(f64::NAN, |t| t.reference_temperature),
+        };
+        match flow {
+            None => Waves { shear: model.shear_speed(), added: 0.0 },
+            Some(flow) => {
+                let square = flow.shear_modulus(&rest) / material.density;
+                Waves { shear: square.sqrt(), added: 4.0 / 3.0 * square }
+            }
+        }
+    }
+
+    /// Speed of the fastest wave where the sound speed without strength is `sound` [m/s].
+    fn fastest(&self, sound: f64) -> f64 {
+        if self.added > 0.0 { (sound * sound + self.added).sqrt() } else { sound }
+    }
+}
+
 impl<const D: usize> Stepper<D> {
     /// What `scene` chose.
     pub fn new(scene: &CheckedScene) -> Self {
@@ -160,20 +202,31 @@ impl<const D: usize> Stepper<D> {
         let smallest = cell.iter().copied().fold(f64::INFINITY, f64::min);
         let models: Vec<Matter> =
             bodies.iter().map(|b| constitutive::build(&materials[&b.material])).collect();
-        let fastest = (bodies.iter().zip(&models).zip(&scene.bodies))
-            .map(|((b, m), c)| {
+        let flows: Vec<_> =
+            bodies.iter().map(|b| constitutive::flow_of(&materials[&b.material])).collect();
+        let criteria = bodies.iter().map(|b| constitutive::criterion_of(&materials[&b.material]));
+        let thermals = (bodies.iter().zip(&models))
+            .map(|(b, model)| constitutive::thermal_of(&materials[&b.material], model));
+        let waves: Vec<Waves> = (bodies.iter().zip(models.iter().zip(&flows)))
+            .map(|(b, (model, flow))| Waves::of(&materials[&b.material], model, flow.as_deref()))
+            .collect();
+        let fastest = (bodies.iter().zip(&waves).zip(models.iter().zip(&scene.bodies)))
+            .map(|((b, w), (m, c))| {
                 let pressure = c.motion.and_then(|m| m.top_pressure()).unwrap_or(b.pressure);
-                m.sound_speed_at(pressure).max(c.top_speed)
+                w.fastest(m.sound_speed_at(pressure)).max(c.top_speed)
             })
             .fold(0.0, f64::max);
-        let stiffness = (bodies.iter().zip(&models))
-            .map(|(b, m)| materials[&b.material].density * m.sound_speed_at(b.pressure).powi(2))
-            .collect();
-        let impact = scene.impact_speed::<D>();
-        let most_pull = (bodies.iter().zip(&models))
-            .map(|(b, m)| {
+        let speeds = || {
+            (bodies.iter().zip(&waves).zip(&models)).map(|((b, w), m)| {
                 let density = materials[&b.material].density;
-                let speed = impact.max(b.pressure.abs() / (density * m.sound_speed_at(b.pressure)));
+                (b, density, w.fastest(m.sound_speed_at(b.pressure)))
+            })
+        };
+        let stiffness = speeds().map(|(_, density, c)| density * c.powi(2)).collect();
+        let impact = scene.impact_speed::<D>();
+        let most_pull = speeds()
+            .map(|(b, density, c)| {
+                let speed = impact.max(b.pressure.abs() / (density * c));
                 contact::PULL * density * smallest * speed
             })
             .collect();
@@ -208,8 +261,11 @@ impl<const D: usize> Stepper<D> {
             layers: scene.velocity_fields(),
             stiffness,
             most_pull,
-            rest: sides::Rest::of(scene, &models),
+            rest: sides::Rest::of(scene, &models, &waves),
+            criteria: criteria.collect(),
+            thermals: thermals.collect(),
             models,
+            flows,
             shape: method.shape,
             cell,
             inverse_cell: cell.map(|h| 1.0 / h),

@@ -312,6 +312,7 @@ impl<const D: usize> Stepper<D> {
         let mut stress = take(c.stress_volume);
         let mut relaxed = c.pressure_mid.zip(c.compliance).map(|(p, w)| (take(p), take(w)));
         let column = |k: usize| &patch.block.columns[k];
+        let energy = c.strength.map_or(c.energy, |c| c.energy_mid);
         for (body, rows) in bodies(&column(c.body)[..patch.block.own()]) {
             let Matter::Fluid(model) = &self.models[body] else {
                 // pressure relaxation leaves solids alone
@@ -326,7 +327,7 @@ impl<const D: usize> Stepper<D> {
                 volume0: &column(c.volume0)[rows.clone()],
                 jacobian: &column(c.jacobian)[rows.clone()],
                 jacobian_mid: &column(mid)[rows.clone()],
-                energy: &column(c.energy)[rows.clone()],
+                energy: &column(energy)[rows.clone()],
                 gradient: &column(c.gradient)[rows.clone()],
                 edge: self.edge,
                 floor: COLD * self.still_pressure,
@@ -394,7 +395,7 @@ impl<const D: usize> Stepper<D> {
             None => (0..n).for_each(|r| stress[r] = p[r] * volume0[r] * j[r]),
         }
         patch.block.columns[c.stress_volume] = stress;
-        self.find_solid_stress(patch, 0.0, c.jacobian);
+        self.find_solid_stress(patch, 0.0, c.jacobian, c.strength.map(|c| c.deviator));
     }
 
     /// Volume, viscosity, energy and pressure after `dt` at the divergence in its column.
@@ -425,8 +426,10 @@ impl<const D: usize> Stepper<D> {
             });
         }
         self.work_on_solids(patch, dt, &before, &mut energy);
+        self.release_tension(patch, &before, &mut pressure, &mut energy);
         patch.block.columns[c.pressure] = pressure;
         patch.block.columns[c.energy] = energy;
+        self.shear_and_heat(patch, &before, dt);
         patch.kept = before;
         self.deform_forward(patch, dt);
     }
@@ -440,16 +443,25 @@ impl<const D: usize> Stepper<D> {
         let mut found = None;
         for (body, rows) in bodies(&column(c.body)[..patch.block.own()]) {
             let Matter::Fluid(model) = &self.models[body] else { continue };
-            let told = model.refresh(
-                &column(c.jacobian)[rows.clone()],
-                &column(c.energy)[rows.clone()],
-                &mut pressure[rows.clone()],
-                &mut speed[rows.clone()],
-            );
+            let told = match c.failure.filter(|_| self.criteria[body].is_some()) {
+                Some(failure) => self.refresh_failing(
+                    (model.as_ref(), &column(failure.damage)[rows.clone()]),
+                    (&column(c.jacobian)[rows.clone()], &column(c.energy)[rows.clone()]),
+                    (&mut pressure[rows.clone()], &mut speed[rows.clone()]),
+                ),
+                None => model.refresh(
+                    &column(c.jacobian)[rows.clone()],
+                    &column(c.energy)[rows.clone()],
+                    &mut pressure[rows.clone()],
+                    &mut speed[rows.clone()],
+                ),
+            };
             if let (None, Some((row, what))) = (&found, told) {
                 found = Some((rows.start + row, what));
             }
         }
+        self.refresh_temperature(patch, &pressure);
+        self.stiffen(patch, &pressure, &mut speed);
         let of_solids = self.refresh_solids(patch, &mut pressure, &mut speed);
         let first = found.iter().chain(&of_solids).min_by_key(|(row, _)| *row).cloned();
         let mut found = first;

@@ -27,7 +27,8 @@
 
 use decomp::{IndexBox, Parity};
 
-use super::{MOST_NODES, Stepper, with_width};
+use super::{MOST_NODES, Stepper, Waves, with_width};
+use crate::constitutive::Matter;
 use crate::patch::{Given, Patch, SideForce};
 use crate::scene::{CheckedScene, Side};
 use crate::transfer::{Row, add};
@@ -56,16 +57,16 @@ enum Seen {
 
 impl<const D: usize> Rest<D> {
     /// One a body.
-    pub(super) fn of(scene: &CheckedScene, models: &[crate::constitutive::Matter]) -> Vec<Self> {
+    pub(super) fn of(scene: &CheckedScene, models: &[Matter], waves: &[Waves]) -> Vec<Self> {
         let grid = scene.grid_velocity::<D>();
-        let bodies = scene.scene.bodies.iter().zip(&scene.bodies).zip(models);
+        let bodies = scene.scene.bodies.iter().zip(&scene.bodies).zip(models.iter().zip(waves));
         bodies
-            .map(|((body, checked), model)| Rest {
+            .map(|((body, checked), (model, waves))| Rest {
                 pressure: body.pressure,
                 velocity: std::array::from_fn(|a| checked.velocity[a] - grid[a]),
                 impedance: scene.scene.materials[&body.material].density
-                    * model.sound_speed_at(body.pressure),
-                shear_speed: model.shear_speed(),
+                    * waves.fastest(model.sound_speed_at(body.pressure)),
+                shear_speed: waves.shear,
             })
             .collect()
     }

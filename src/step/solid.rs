@@ -7,7 +7,7 @@
 //! e += -dt S : grad w/m
 //! ```
 //!
-//! A fluid's S is (p + q) V 1. On a line S is a scalar, which a fluid's loops take as it is;
+//! A fluid's S is (p + q) V 1, less what its strength bears, s V. On a line S is a scalar, which a fluid's loops take as it is;
 //! about an axis its component zz pushes outward, as a fluid's pressure does.
 
 use std::ops::Range;
@@ -79,8 +79,15 @@ impl<const D: usize> Stepper<D> {
     }
 
     /// S of own rows at volume ratio `jacobian` (a column) and `ahead` of their deformation, once
-    /// that of the fluids, a scalar, is in the column of xx.
-    pub(super) fn find_solid_stress(&self, patch: &mut Patch<D>, ahead: f64, jacobian: usize) {
+    /// that of the fluids, a scalar, is in the column of xx; what strength bears stands in the
+    /// columns from `deviator` on.
+    pub(super) fn find_solid_stress(
+        &self,
+        patch: &mut Patch<D>,
+        ahead: f64,
+        jacobian: usize,
+        deviator: Option<usize>,
+    ) {
         let c = &self.columns;
         if c.stress.is_none() {
             return;
@@ -92,10 +99,19 @@ impl<const D: usize> Stepper<D> {
         for (body, rows) in bodies(column(c.body)) {
             match &self.models[body] {
                 Matter::Fluid(_) => {
-                    for r in rows {
+                    for r in rows.clone() {
                         for k in 1..s.len() {
                             s[k][r] = if k == 2 { 0.0 } else { s[0][r] };
                         }
+                    }
+                    let Some(first) = deviator.filter(|_| self.flows[body].is_some()) else {
+                        continue;
+                    };
+                    let stress = self.deviator(patch, first, rows.clone());
+                    for (k, r) in rows.enumerate() {
+                        let (shear, volume) = (stress.at(k), volume0[r] * j[r]);
+                        let parts = [shear.xx, shear.yy, shear.xy, shear.zz];
+                        s.iter_mut().zip(parts).for_each(|(s, part)| s[r] -= part * volume);
                     }
                 }
                 Matter::Solid(solid) => {
@@ -130,8 +146,17 @@ impl<const D: usize> Stepper<D> {
             let mut out = tensor_rows(&mut s, rows.clone());
             match &self.models[body] {
                 Matter::Fluid(_) => {
+                    let first = c.strength.filter(|_| self.flows[body].is_some());
+                    let shear = first.map(|c| self.deviator(patch, c.deviator, rows.clone()));
                     for (k, r) in rows.enumerate() {
-                        out.set(k, &Symmetric::isotropic(-pressure[r]), 1.0);
+                        let mut all = Symmetric::isotropic(-pressure[r]);
+                        if let Some(shear) = shear.map(|s| s.at(k)) {
+                            all.xx += shear.xx;
+                            all.yy += shear.yy;
+                            all.xy += shear.xy;
+                            all.zz += shear.zz;
+                        }
+                        out.set(k, &all, 1.0);
                     }
                 }
                 Matter::Solid(solid) => {

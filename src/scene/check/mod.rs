@@ -5,6 +5,7 @@
 mod bodies;
 mod boundary;
 mod domain;
+mod effects;
 mod front;
 mod impact;
 mod memory;
@@ -56,6 +57,7 @@ impl CheckedScene {
         let domain::Grid { dimension, cell_size, cells } = domain::check(&scene.domain)?;
         method::check(&scene, &mut warnings)?;
         boundary::check(&scene)?;
+        effects::check(&scene)?;
         let bodies = bodies::check(&scene, &cell_size, &mut warnings)?;
         let mut checked = CheckedScene {
             dimension,
@@ -132,9 +134,9 @@ impl CheckedScene {
         self.scene.domain.geometry == Geometry::Axisymmetric
     }
 
-    /// Whether a body is a solid, so that stress is a tensor.
+    /// Whether a body bears shear, so that stress is a tensor.
     pub fn has_solids(&self) -> bool {
-        (0..self.bodies.len()).any(|i| self.material_of(i).eos.is_solid())
+        (0..self.bodies.len()).any(|i| self.material_of(i).bears_shear())
     }
 
     /// Velocity fields: one for all bodies, or with contact one a body.

@@ -140,6 +140,7 @@ fn check_riemann(checked: &CheckedScene, riemann: &Riemann) -> Result<(), Fault>
 fn check_wall_impact(checked: &CheckedScene, impact: &WallImpact) -> Result<(), Fault> {
     const BODY: &str = "reference.wall_impact.body";
     let body = find_even_body(checked, BODY, &impact.body)?;
+    check_no_strength(checked, BODY, body)?;
     if checked.material_of(body).eos.is_solid() {
         let reason =
             "an elastic body; allowed: one whose eos is \"mie_gruneisen\" or \"ideal_gas\"";
@@ -183,7 +184,21 @@ fn check_unlike(path: &str, name: &str, other: &str, same: bool) -> Result<(), F
     Err(Fault::new(path, name, format!("the same body as {other}; allowed: two bodies")))
 }
 
+/// The exact solutions of fluids know no shear.
+fn check_no_strength(checked: &CheckedScene, path: &str, i: usize) -> Result<(), Fault> {
+    let body = &checked.scene.bodies[i];
+    if checked.material_of(i).strength.is_none() {
+        return Ok(());
+    }
+    let key = join(&join("materials", &body.material), "strength");
+    let reason = format!(
+        "{key} is not in this exact solution, which is that of fluids; allowed: a body without it"
+    );
+    Err(Fault::new(path, &body.name, reason))
+}
+
 fn check_eos(checked: &CheckedScene, path: &str, i: usize, wanted: &str) -> Result<(), Fault> {
+    check_no_strength(checked, path, i)?;
     let eos = serde_json::json!(checked.material_of(i).eos);
     let body = &checked.scene.bodies[i];
     if eos["type"] == wanted {

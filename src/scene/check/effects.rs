@@ -1,0 +1,115 @@
+//! Strength, failure and temperature of the materials: what each needs of the others.
+
+use super::super::conform::join;
+use super::super::errors::Fault;
+use super::super::model::{Failure, HeatSource, Material, Scene, Strength};
+
+pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
+    for (name, material) in &scene.materials {
+        let path = join("materials", name);
+        check_strength(&path, material)?;
+        check_failure(&path, material)?;
+        check_thermal(&path, material)?;
+    }
+    Ok(())
+}
+
+fn check_strength(path: &str, material: &Material) -> Result<(), Fault> {
+    let Some(strength) = material.strength else { return Ok(()) };
+    let below = |key: &str| format!("{path}.strength.{key}");
+    if material.eos.is_solid() {
+        let reason = "beside an eos that bears shear by itself; allowed: to leave it out, or the \
+                      eos of a fluid, such as \"mie_gruneisen\"";
+        return Err(Fault::new(format!("{path}.strength"), strength, reason));
+    }
+    let needs_thermal = |key: &str| {
+        let reason =
+            format!("needs a temperature; allowed: to leave it out, or {path}.thermal beside it");
+        Fault::new(below(key), true, reason)
+    };
+    match strength {
+        Strength::VonMises { .. } => {}
+        Strength::JohnsonCook { softening: Some(softening), .. } => {
+            if material.thermal.is_none() {
+                return Err(needs_thermal("softening"));
+            }
+            if softening.melt_temperature <= softening.reference_temperature {
+                let reason = format!(
+                    "not above reference_temperature = {}; allowed: a higher temperature",
+                    softening.reference_temperature
+                );
+                let key = below("softening.melt_temperature");
+                return Err(Fault::new(key, softening.melt_temperature, reason));
+            }
+        }
+        Strength::JohnsonCook { softening: None, .. } => {}
+        Strength::SteinbergGuinan {
+            temperature_softening, yield_stress, max_yield_stress, ..
+        } => {
+            if temperature_softening.is_some() && material.thermal.is_none() {
+                return Err(needs_thermal("temperature_softening"));
+            }
+            if max_yield_stress < yield_stress {
+                let reason =
+                    format!("below yield_stress = {yield_stress}; allowed: at least as much");
+                return Err(Fault::new(below("max_yield_stress"), max_yield_stress, reason));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_failure(path: &str, material: &Material) -> Result<(), Fault> {
+    let Some(failure) = material.failure else { return Ok(()) };
+    let path = format!("{path}.failure");
+    if material.eos.is_solid() {
+        let reason = "an elastic solid does not fail; allowed: to leave it out, or the eos of a \
+                      fluid, such as \"mie_gruneisen\", with strength";
+        return Err(Fault::new(path, failure, reason));
+    }
+    let Failure::JohnsonCook { d1, d2, d5, .. } = failure else { return Ok(()) };
+    if material.strength.is_none() {
+        let reason = "needs plastic strain; allowed: \"tension_limit\", or strength beside it";
+        return Err(Fault::new(format!("{path}.type"), "johnson_cook", reason));
+    }
+    if d1 + d2.max(0.0) <= 0.0 {
+        let reason = format!(
+            "with d2 = {d2} the material breaks at no strain at all; allowed: d1 + d2 above 0"
+        );
+        return Err(Fault::new(format!("{path}.d1"), d1, reason));
+    }
+    let softens =
+        matches!(material.strength, Some(Strength::JohnsonCook { softening: Some(_), .. }));
+    if d5 != 0.0 && !softens {
+        let reason = "needs the temperatures of strength.softening of \"johnson_cook\"; allowed: \
+                      0, or those";
+        return Err(Fault::new(format!("{path}.d5"), d5, reason));
+    }
+    Ok(())
+}
+
+fn check_thermal(path: &str, material: &Material) -> Result<(), Fault> {
+    let Some(thermal) = material.thermal else { return Ok(()) };
+    let path = format!("{path}.thermal");
+    if material.eos.is_solid() {
+        let reason = "an elastic solid has no thermal part; allowed: to leave it out, or the eos \
+                      of a fluid with strength";
+        return Err(Fault::new(path, thermal, reason));
+    }
+    if material.strength.is_none() {
+        if thermal.source == HeatSource::PlasticWork {
+            let reason = "without strength there is none; allowed: \"energy\", or strength";
+            return Err(Fault::new(format!("{path}.source"), thermal.source, reason));
+        }
+        if thermal.taylor_quinney != 1.0 {
+            let reason =
+                "says nothing without strength; allowed: to leave it out, or strength beside it";
+            return Err(Fault::new(
+                format!("{path}.taylor_quinney"),
+                thermal.taylor_quinney,
+                reason,
+            ));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,81 @@
+//! Keys of strength, failure and temperature that are refused, and in what words.
+
+use flyer_mpm::scene;
+
+use crate::tools::shipped;
+
+#[track_caller]
+fn refused(sets: &[&str], fragments: &[&str]) {
+    let sets: Vec<String> = sets.iter().map(|s| format!("materials.aluminium.{s}")).collect();
+    let text = shipped("piston_elastic_plastic.json").to_string();
+    let error = scene::parse(text.as_bytes(), "p.json", &sets).unwrap_err().to_string();
+    for fragment in fragments {
+        assert!(error.contains(fragment), "{error}\nhas no {fragment}");
+    }
+}
+
+const COOK: &str = "strength={\"type\": \"johnson_cook\", \"shear_modulus\": 1e9, \"a\": 1e8, \
+                    \"b\": 1e8, \"n\": 0.3, \"softening\": {\"m\": 1, \"reference_temperature\": \
+                    300, \"melt_temperature\": 900}}";
+const WARM: &str = "thermal={\"specific_heat\": 900, \"reference_temperature\": 300}";
+
+#[test]
+fn strength() {
+    refused(&["strength.yield_stress=0"], &["yield_stress = 0", "above 0"]);
+    refused(&["strength.shear_modulus=-1"], &["shear_modulus = -1", "above 0"]);
+    refused(&["strength.hardening=-1"], &["hardening = -1"]);
+    refused(&["strength.type=mises"], &["mises", "von_mises"]);
+    refused(&["strength={\"type\": \"von_mises\", \"shear_modulus\": 1e9}"], &["yield_stress"]);
+    refused(&["strength.yield=1e8"], &["strength.yield", "unknown"]);
+    refused(
+        &["eos={\"type\": \"linear_elastic\", \"youngs_modulus\": 1e9, \"poissons_ratio\": 0.3}"],
+        &["materials.aluminium.strength", "bears shear by itself"],
+    );
+    refused(&[COOK], &["strength.softening", "materials.aluminium.thermal"]);
+    refused(
+        &[COOK, WARM, "strength.softening.melt_temperature=300"],
+        &["melt_temperature = 300", "reference_temperature = 300"],
+    );
+    let guinan = "strength={\"type\": \"steinberg_guinan\", \"shear_modulus\": 1e9, \
+                  \"yield_stress\": 1e8, \"beta\": 1, \"n\": 0.3, \"max_yield_stress\": 1e7}";
+    refused(&[guinan], &["max_yield_stress", "below yield_stress"]);
+    refused(
+        &[guinan, "strength.max_yield_stress=1e9", "strength.temperature_softening=1e-3"],
+        &["temperature_softening", "thermal"],
+    );
+}
+
+#[test]
+fn failure() {
+    let limit = "failure={\"type\": \"tension_limit\", \"stress\": 0}";
+    refused(&[limit], &["failure.stress = 0", "above 0"]);
+    refused(&["failure={\"type\": \"spall\"}"], &["spall", "tension_limit"]);
+    let cook = "failure={\"type\": \"johnson_cook\", \"d1\": 0.5}";
+    refused(&["strength=null", cook], &["failure.type", "needs plastic strain"]);
+    refused(&[cook, "failure.d1=0"], &["failure.d1 = 0", "above 0"]);
+    refused(&[cook, "failure.d5=1"], &["failure.d5 = 1", "softening"]);
+}
+
+#[test]
+fn temperature() {
+    refused(
+        &["thermal={\"specific_heat\": -1, \"reference_temperature\": 300}"],
+        &["specific_heat = -1", "above 0"],
+    );
+    refused(&["thermal={\"specific_heat\": 900}"], &["reference_temperature"]);
+    refused(&["strength=null", WARM, "thermal.source=plastic_work"], &["thermal.source"]);
+    refused(&["strength=null", WARM, "thermal.taylor_quinney=0.9"], &["taylor_quinney = 0.9"]);
+    refused(&[WARM, "thermal.taylor_quinney=1.1"], &["taylor_quinney = 1.1"]);
+}
+
+#[test]
+fn exact_solutions_of_fluids() {
+    let text = shipped("piston.json").to_string();
+    let set = "materials.aluminium.strength={\"type\": \"von_mises\", \"shear_modulus\": 1e9, \
+               \"yield_stress\": 1e8}";
+    let error = scene::parse(text.as_bytes(), "p.json", &[set.into()]).unwrap_err().to_string();
+    assert!(
+        error.contains("materials.aluminium.strength is not in this exact solution"),
+        "{error}"
+    );
+}

@@ -1,0 +1,106 @@
+//! Strength in runs: waves in uniaxial strain, turning, every kind of step.
+
+use flyer_mpm::exact::{ElasticPlastic, Plastic};
+use flyer_mpm::material::MieGruneisen;
+use serde_json::{Value, json};
+
+use crate::tools::{Outcome, at_most, midpoint, run, shipped};
+
+const ALUMINIUM: Plastic<MieGruneisen> = Plastic {
+    eos: MieGruneisen { rho0: 2790.0, c0: 5330.0, s: 1.34, gamma0: 2.0 },
+    shear_modulus: 28.6e9,
+    yield_stress: 0.26e9,
+};
+
+/// The shipped piston, coarser and shorter.
+fn piston() -> Value {
+    let mut scene = shipped("piston_elastic_plastic.json");
+    scene["domain"]["cell_size"] = json!(2.5e-5);
+    scene["output"]["profiles"]["times"] = json!([0.6e-6]);
+    scene["time"]["end"] = json!(0.6e-6);
+    scene
+}
+
+/// Mean of a column over the places between two shares of the way from `from` to `to`.
+fn mean<const D: usize>(run: &Outcome<D>, name: &str, [from, to]: [f64; 2]) -> f64 {
+    let (x, values) = (run.column("x"), run.column(name));
+    let within = |r: &usize| (from + 0.3 * (to - from)..from + 0.7 * (to - from)).contains(&x[*r]);
+    let rows: Vec<usize> = (0..x.len()).filter(within).collect();
+    rows.iter().map(|&r| values[r]).sum::<f64>() / rows.len() as f64
+}
+
+/// Holds both plateaus of a piston's run against the exact ones.
+fn check_plateaus<const D: usize>(run: &Outcome<D>, axial: &str, velocity: &str, bound: f64) {
+    let exact = ElasticPlastic::new(&ALUMINIUM, 100.0).unwrap();
+    let first = exact.precursor.unwrap();
+    // seen from the wall, the metal comes in at 100 m/s
+    let at = |speed: f64| (speed - 100.0) * 0.6e-6;
+    let behind = [0.0, at(exact.last.speed)];
+    let between = [at(exact.last.speed), at(first.speed)];
+    let near = |what: &str, value: f64, wanted: f64| at_most(what, value / wanted - 1.0, bound);
+    near("final stress", -mean(run, axial, behind), exact.last.stress);
+    near("final pressure", mean(run, "pressure", behind), exact.last.p);
+    near("final density", mean(run, "density", behind), exact.last.rho);
+    near("precursor's stress", -mean(run, axial, between), first.stress);
+    near("precursor's velocity", mean(run, velocity, between) + 100.0, first.u);
+}
+
+#[test]
+fn a_precursor_runs_ahead_of_a_plastic_shock() {
+    let outcome = run::<1>(&piston());
+    check_plateaus(&outcome, "stress_xx", "velocity", 0.003);
+    at_most("energy", outcome.energy_drift(), 1e-12);
+    let strain = outcome.column("plastic_strain");
+    assert!(strain.iter().all(|&e| e >= 0.0) && outcome.greatest("plastic_strain") > 0.008);
+    // nothing yields ahead of the plastic shock
+    let x = outcome.column("x");
+    assert!((0..x.len()).filter(|&r| x[r] > 0.0035).all(|r| strain[r] == 0.0));
+}
+
+#[test]
+fn every_kind_of_step_knows_strength() {
+    let steps = [
+        json!({"shape": "cpdi", "transfer": "flip"}),
+        json!({"shape": "gimp", "transfer": "apic", "stress_update": "first"}),
+        json!({"shape": "cpdi", "transfer": {"xpic": 2}, "stress_update": "modified_last"}),
+        midpoint("bspline_cubic", json!("apic")),
+        midpoint("cpdi", json!({"fmpm": 2})),
+    ];
+    for method in steps {
+        let mut scene = piston();
+        scene["method"] = method.clone();
+        scene["artificial_viscosity"] = json!({"linear": 0.2, "quadratic": 2.0});
+        // plain FLIP is noisy, and the precursor is narrow on such cells
+        check_plateaus(&run::<1>(&scene), "stress_xx", "velocity", 0.05);
+    }
+}
+
+/// The piston as a strip in a plane, along y.
+fn strip(geometry: &str) -> Value {
+    let mut scene = piston();
+    scene["domain"] = json!({"lower": [0.0, 0.0], "upper": [1e-4, 0.007], "cell_size": 2.5e-5,
+        "geometry": geometry});
+    scene["bodies"][0]["box"] = json!({"lower": [0.0, 0.0], "upper": [1e-4, 0.006]});
+    scene["bodies"][0]["velocity"] = json!([0.0, -100.0]);
+    scene["bodies"][0]["particles_per_cell"] = json!([2, 2]);
+    scene["boundary"] = json!({"x_lower": "symmetry", "x_upper": "symmetry", "y_lower": "wall"});
+    scene["time"]["end"] = json!(0.6e-6);
+    scene
+}
+
+#[test]
+fn in_a_plane_and_about_an_axis_uniaxial_strain_is_the_same() {
+    for (geometry, noise) in [("plane_strain", 0.01), ("axisymmetric", 0.03)] {
+        let outcome = run::<2>(&strip(geometry));
+        let (y, stress) = (outcome.column("y"), outcome.column("stress_yy"));
+        let exact = ElasticPlastic::new(&ALUMINIUM, 100.0).unwrap();
+        let shock = (exact.last.speed - 100.0) * 0.6e-6;
+        let within = |r: &usize| (0.3 * shock..0.7 * shock).contains(&y[*r]);
+        for r in (0..y.len()).filter(within) {
+            at_most(geometry, -stress[r] / exact.last.stress - 1.0, noise);
+            let across = [outcome.column("stress_xx")[r], outcome.column("stress_zz")[r]];
+            at_most("across", (across[0] - across[1]) / exact.last.stress, 1e-3);
+        }
+        at_most("energy", outcome.energy_drift(), 1e-12);
+    }
+}
