@@ -5,9 +5,11 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::clock::{Activity, Event};
+use crate::effects::Effect;
 use crate::output::decomposition::{DecompositionSummary, RankSummary};
 use crate::output::trace::TraceEvent;
 use crate::simulation::Simulation;
+use crate::step::{Stepper, Steps};
 
 /// Each rank's value at rank 0, by rank; nothing elsewhere. Collective.
 fn gather<C: Comm, T: Serialize + DeserializeOwned>(comm: &C, value: &T) -> Vec<T> {
@@ -72,4 +74,20 @@ pub fn timeline<C: Comm, const D: usize>(
         mine.push(line(patch + 1, event));
     }
     gather(comm, &mine).into_iter().flatten().collect()
+}
+
+/// Share of the ranks' computing that each effect takes, from samples; at rank 0, and none where
+/// nothing was sampled. Collective.
+pub fn effect_shares<C: Comm, const D: usize>(
+    comm: &C,
+    simulation: &Simulation<'_, C, D>,
+) -> Option<[f64; Effect::COUNT]>
+where
+    Stepper<D>: Steps<D>,
+{
+    let (computed, effects) = simulation.effect_seconds();
+    let all: Vec<(f64, Vec<f64>)> = gather(comm, &(computed, effects.to_vec()));
+    let total: f64 = all.iter().map(|(computed, _)| computed).sum();
+    let share = |k: usize| all.iter().map(|(_, effects)| effects[k]).sum::<f64>() / total;
+    (total > 0.0).then(|| std::array::from_fn(share))
 }

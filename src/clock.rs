@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use crate::effects::Effect;
+
 /// What a rank does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
@@ -135,10 +137,13 @@ impl Watcher {
         if !self.traced && !self.sampled {
             return phase(patch);
         }
+        patch.as_mut().runs = true;
         let start = Instant::now();
         phase(patch);
         let event = self.event(name, start);
         let watch = patch.as_mut();
+        watch.runs = false;
+        watch.computed += event.length as f64 * 1e-9;
         watch.spent += event.length as f64 * 1e-9;
         if self.traced {
             watch.events.push(event);
@@ -152,6 +157,17 @@ impl Watcher {
     }
 }
 
+/// Runs what an effect adds to a phase of a patch, and counts its time where phases are timed.
+#[inline(always)]
+pub fn spend<T: AsMut<Watch>>(effect: Effect, patch: &mut T, part: impl FnOnce(&mut T)) {
+    if !patch.as_mut().runs {
+        return part(patch);
+    }
+    let start = Instant::now();
+    part(patch);
+    patch.as_mut().effects[effect as usize] += start.elapsed().as_secs_f64();
+}
+
 /// Measurements of which a patch's cost is the median: one that was disturbed counts for little.
 const MEASURED: usize = 9;
 
@@ -160,6 +176,12 @@ const MEASURED: usize = 9;
 pub struct Watch {
     /// Its events, while a timeline is kept.
     pub events: Vec<Event>,
+    /// Seconds of the phases that were timed.
+    pub computed: f64,
+    /// Seconds of each effect in them, in the order of [`Effect::ALL`].
+    pub effects: [f64; Effect::COUNT],
+    /// Whether a phase is being timed.
+    runs: bool,
     spent: f64,
     /// Seconds of the steps measured last, the oldest overwritten first.
     measured: [f64; MEASURED],
@@ -171,6 +193,11 @@ impl Watch {
     pub fn end_step(&mut self) {
         self.measured[self.count % MEASURED] = std::mem::take(&mut self.spent);
         self.count += 1;
+    }
+
+    /// Ends a step that was timed for the effects' sake alone.
+    pub fn forget_step(&mut self) {
+        self.spent = 0.0;
     }
 
     /// Seconds a step; `None` until measured.

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use decomp::Serial;
+use flyer_mpm::effects::{ledger, ledger_lines};
 use flyer_mpm::exact::{Accuracy, Chain, Impact, Plate, Release, Solution, WaveKind};
 use flyer_mpm::figures::{self, PressureRow, plate_name};
 use flyer_mpm::output::folder::OutputFolder;
@@ -49,6 +50,12 @@ where
     text += "effects\n";
     for (name, state) in effects(scene) {
         let _ = writeln!(text, "  {name:<22} {state}");
+    }
+    text += "what each takes\n";
+    for line in ledger_lines(&ledger(scene, columns, None)) {
+        // without a run there are no shares
+        let [name, on, particle, ghost] = [0, 1, 2, 3].map(|k| line[k].as_str());
+        let _ = writeln!(text, "  {name:<22} {on:<4} {particle:>16} {ghost:>13}");
     }
     Ok(text)
 }

@@ -5,6 +5,7 @@ pub mod calibrate;
 pub mod clock;
 pub mod constitutive;
 pub mod contact;
+pub mod effects;
 pub mod exact;
 pub mod figures;
 pub mod geometry;

@@ -13,6 +13,7 @@ use nix::sys::resource::{UsageWho, getrusage};
 
 use crate::accounts;
 use crate::clock::Activity;
+use crate::effects::ledger;
 use crate::figures::{self, PressureRow};
 use crate::output::csv::{profile_names, write_profile};
 use crate::output::folder::OutputFolder;
@@ -228,6 +229,7 @@ where
         loop_cpu,
         before,
     );
+    let shares = accounts::effect_shares(comm, &simulation);
     if let Some((path, _)) = &options.trace {
         let events = accounts::timeline(comm, &mut simulation);
         if comm.rank() == 0 {
@@ -285,6 +287,7 @@ where
         particle_steps_per_cpu_second: particle_steps / loop_cpu,
         phase_seconds: decomposition.seconds(),
         decomposition,
+        effects: ledger(scene, simulation.columns(), shares),
         energy,
         momentum,
         outflow,

@@ -92,6 +92,7 @@ fn write_run(folder: &Path, tables: &[ParticleTable]) {
             0,
             Vec::new(),
         ),
+        effects: Vec::new(),
         energy: Energy::new([0.0; 2], [0.0; 2], 0.0),
         momentum: Momentum::new(&[0.0], &[0.0], &[0.0], 0.0),
         outflow: None,

@@ -6,6 +6,7 @@ use std::path::Path;
 use super::decomposition::DecompositionSummary;
 use super::summary::{ProfileSummary, Summary};
 use crate::clock::Activity;
+use crate::effects::ledger_lines;
 
 /// Errors of a profile by name, with a heading and whether they are shown in per cent.
 const ERRORS: [(&str, &str, bool); 22] = [
@@ -45,6 +46,7 @@ pub fn report(summary: &Summary, folder: &Path) -> String {
     if summary.ranks > 1 {
         text += &table(&ranks(&summary.decomposition));
     }
+    text += &table(&ledger_lines(&summary.effects));
     text += &table(&facts(summary, folder));
     text
 }

@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use super::decomposition::DecompositionSummary;
 use super::error::OutputError;
+use crate::effects::EffectUse;
 
 /// Name of the file in the folder of results.
 pub const SUMMARY_FILE: &str = "summary.json";
@@ -47,6 +48,8 @@ pub struct Summary {
     pub phase_seconds: BTreeMap<String, f64>,
     /// What sharing the work has cost.
     pub decomposition: DecompositionSummary,
+    /// The ledger of effects: what the scene calls for, and what each takes.
+    pub effects: Vec<EffectUse>,
     /// Energy.
     pub energy: Energy,
     /// Momentum.
@@ -277,6 +280,14 @@ pub(super) mod tests {
             particle_steps_per_cpu_second: 5.9e6,
             phase_seconds: [("compute".to_owned(), 0.5)].into(),
             decomposition: decomposition(),
+            effects: vec![EffectUse {
+                effect: "strength".into(),
+                on: true,
+                columns: vec!["plastic_strain".into()],
+                bytes_per_particle: 8,
+                bytes_per_ghost: 0,
+                step_share: Some(0.125),
+            }],
             energy: Energy::new([10.0, 4.0], [0.0, 7.0], 0.5),
             momentum: Momentum::new(&[8.0], &[8.0], &[0.0], 8.0),
             outflow: None,

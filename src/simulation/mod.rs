@@ -20,6 +20,7 @@ use decomp::{
 };
 
 use crate::clock::{Activity, Clock, Event};
+use crate::effects::Effect;
 use crate::geometry::Tile;
 use crate::particles::{self, Columns};
 use crate::patch::Patch;
@@ -151,6 +152,9 @@ pub(crate) fn decomp_side(side: Side) -> decomp::Side {
         Side::Periodic => decomp::Side::Wrap,
     }
 }
+
+/// Steps from one of which the effects' shares are sampled to the next: no multiple of anything.
+const EFFECTS_EVERY: u64 = 61;
 
 /// Steps that no run comes to the end of.
 const MOST_STEPS: f64 = 1e12;
@@ -288,6 +292,17 @@ impl<'a, C: Comm, const D: usize> Simulation<'a, C, D>
 where
     Stepper<D>: Steps<D>,
 {
+    /// Seconds that patches have computed in the steps that were sampled, and of them those of each
+    /// effect, in the order of [`Effect::ALL`].
+    pub fn effect_seconds(&self) -> (f64, [f64; Effect::COUNT]) {
+        let mut sum = (0.0, [0.0; Effect::COUNT]);
+        for watch in self.patches.iter().map(|p| &p.watch) {
+            sum.0 += watch.computed;
+            (0..Effect::COUNT).for_each(|k| sum.1[k] += watch.effects[k]);
+        }
+        sum
+    }
+
     /// Makes the particles of `scene`, to be run by `threads` threads on each rank. Collective.
     pub fn new(scene: &'a CheckedScene, comm: &'a C, threads: usize) -> Result<Self, RunError> {
         let stepper = Stepper::new(scene);
@@ -363,10 +378,13 @@ where
         self.step += 1;
         let (step, time) = (self.step, self.time);
         let sampled = self.samples(step);
-        self.clock.start_step(step, self.traced.contains(&step), sampled);
+        let timed = sampled || step % EFFECTS_EVERY == 1;
+        self.clock.start_step(step, self.traced.contains(&step), timed);
         self.with_world(|stepper, world| stepper.advance(world, time, dt, step))?;
         if sampled {
             self.patches.iter_mut().for_each(|p| p.watch.end_step());
+        } else if timed {
+            self.patches.iter_mut().for_each(|p| p.watch.forget_step());
         }
         self.outflow.take(&mut self.patches);
         self.side_books.take(&mut self.patches);

@@ -4,6 +4,8 @@ use smallvec::SmallVec;
 
 use super::solid::Taken;
 use super::{MOST_NODES, Stepper, with_width};
+use crate::clock::spend;
+use crate::effects::Effect;
 use crate::patch::Patch;
 use crate::scene::Limiter;
 use crate::transfer::{Row, Scheme};
@@ -43,7 +45,7 @@ impl<const D: usize> Stepper<D> {
                 }
             }
             if let Some(affine) = c.affine {
-                s.gather_affine::<K>(patch, affine);
+                spend(Effect::Affine, patch, |patch| s.gather_affine::<K>(patch, affine));
             }
         }
         with_width!(patch.stencils.width, go(patch, self));
@@ -203,7 +205,7 @@ impl<const D: usize> Stepper<D> {
                 true => s.gather_rows::<K, true>(patch, dt),
             }
             if let Some(affine) = s.columns.affine {
-                s.gather_affine::<K>(patch, affine);
+                spend(Effect::Affine, patch, |patch| s.gather_affine::<K>(patch, affine));
             }
             s.gather_limiter::<K>(patch, s.fields.velocity_star);
         }

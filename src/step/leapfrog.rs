@@ -5,6 +5,8 @@
 use decomp::RowError;
 
 use super::{Stepper, World};
+use crate::clock::spend;
+use crate::effects::Effect;
 use crate::patch::Patch;
 use crate::scene::StressUpdate;
 
@@ -75,7 +77,9 @@ impl<const D: usize> Stepper<D> {
         }
         world.each("refresh", |patch| {
             self.refresh(patch);
-            self.fail(patch, dt);
+            if self.columns.failure.is_some() {
+                spend(Effect::Failure, patch, |patch| self.fail(patch, dt));
+            }
         });
         Ok(())
     }

@@ -15,6 +15,10 @@
 use decomp::RowError;
 
 use super::{Stepper, World};
+use crate::clock::spend;
+use crate::effects::Effect::{
+    BodyForce, Contact, Failure, Relaxation, Strength, Stress, TransmittingSides, Viscosity,
+};
 
 impl<const D: usize> Stepper<D> {
     /// One step from `time`; `relax` is the rate of pressure relaxation if this step has it. Collective.
@@ -29,14 +33,28 @@ impl<const D: usize> Stepper<D> {
         world.each("start", |patch| {
             patch.block.drop_ghosts();
             self.half_step_volume(patch, dt);
-            self.find_viscosity(patch, mid);
-            self.shear_to_middle(patch, 0.5 * dt, mid);
+            spend(Viscosity, patch, |patch| self.find_viscosity(patch, mid));
+            if self.columns.strength.is_some() {
+                spend(Strength, patch, |patch| self.shear_to_middle(patch, 0.5 * dt, mid));
+            }
             self.mid_step_stress(patch, relax.is_some());
-            self.bear_no_tension(patch, mid);
-            self.find_solid_stress(patch, 0.5 * dt, mid, self.columns.stress);
-            self.find_pressed(patch, mid, dt);
-            self.find_body_force(patch, time + 0.5 * dt);
-            self.find_impedance(patch, mid);
+            if self.columns.failure.is_some() {
+                spend(Failure, patch, |patch| self.bear_no_tension(patch, mid));
+            }
+            if self.columns.stress.is_some() {
+                let deviator = self.columns.stress;
+                let ahead = 0.5 * dt;
+                spend(Stress, patch, |p| self.find_solid_stress(p, ahead, mid, deviator));
+            }
+            if self.columns.pressed.is_some() {
+                spend(Contact, patch, |patch| self.find_pressed(patch, mid, dt));
+            }
+            if self.columns.body_force.is_some() {
+                spend(BodyForce, patch, |patch| self.find_body_force(patch, time + 0.5 * dt));
+            }
+            if self.columns.side.is_some() {
+                spend(TransmittingSides, patch, |patch| self.find_impedance(patch, mid));
+            }
             self.locate(patch, 0.5 * dt, mid);
             self.find_active(patch);
         });
@@ -44,7 +62,7 @@ impl<const D: usize> Stepper<D> {
             nodal.each("scatter", |patch| {
                 self.scatter(patch, true, dt);
                 if relax.is_some() {
-                    self.start_pressure(patch);
+                    spend(Relaxation, patch, |patch| self.start_pressure(patch));
                 }
             });
             self.solve_velocity(nodal, dt, relax.is_some());
@@ -53,19 +71,25 @@ impl<const D: usize> Stepper<D> {
             }
             self.solve_friction_heat(nodal, dt);
             nodal.each("gather", |patch| {
-                self.gather_rate(patch);
+                if self.columns.strength.is_some() {
+                    spend(Strength, patch, |patch| self.gather_rate(patch));
+                }
                 self.gather_midpoint(patch, dt);
-                self.shear(patch, dt);
+                if self.columns.strength.is_some() {
+                    spend(Strength, patch, |patch| self.shear(patch, dt));
+                }
                 self.book_body_force(patch, dt);
                 self.book_sides(patch, dt);
                 if let Some(rate) = relax {
-                    self.relax_pressure(patch, rate);
+                    spend(Relaxation, patch, |patch| self.relax_pressure(patch, rate));
                 }
                 if let Some(rate) = self.volume_relaxation {
-                    self.relax_volume(patch, rate);
+                    spend(Relaxation, patch, |patch| self.relax_volume(patch, rate));
                 }
                 self.refresh(patch);
-                self.fail(patch, dt);
+                if self.columns.failure.is_some() {
+                    spend(Failure, patch, |patch| self.fail(patch, dt));
+                }
             });
         })
     }

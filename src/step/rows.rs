@@ -5,7 +5,9 @@ use std::ops::Range;
 use decomp::IndexBox;
 
 use super::Stepper;
+use crate::clock::spend;
 use crate::constitutive::{Matter, MidStep, VolumeChange};
+use crate::effects::Effect;
 use crate::patch::{Departed, Fault, Patch, Phase};
 use crate::scene::Side;
 use crate::shape::{Domain, Extent, floor};
@@ -409,7 +411,7 @@ impl<const D: usize> Stepper<D> {
         for r in 0..before.len() {
             j[r] = before[r] * (1.0 + dt * d[r]);
         }
-        self.find_viscosity(patch, c.jacobian);
+        spend(Effect::Viscosity, patch, |patch| self.find_viscosity(patch, c.jacobian));
         let mut pressure = std::mem::take(&mut patch.block.columns[c.pressure]);
         let mut energy = std::mem::take(&mut patch.block.columns[c.energy]);
         let column = |k: usize| &patch.block.columns[k];
@@ -429,7 +431,9 @@ impl<const D: usize> Stepper<D> {
         self.release_tension(patch, &before, &mut pressure, &mut energy);
         patch.block.columns[c.pressure] = pressure;
         patch.block.columns[c.energy] = energy;
-        self.shear_and_heat(patch, &before, dt);
+        if c.strength.is_some() {
+            spend(Effect::Strength, patch, |patch| self.shear_and_heat(patch, &before, dt));
+        }
         patch.kept = before;
         self.deform_forward(patch, dt);
     }
@@ -460,9 +464,18 @@ impl<const D: usize> Stepper<D> {
                 found = Some((rows.start + row, what));
             }
         }
-        self.refresh_temperature(patch, &pressure);
-        self.stiffen(patch, &pressure, &mut speed);
-        let of_solids = self.refresh_solids(patch, &mut pressure, &mut speed);
+        if c.thermal.is_some() {
+            spend(Effect::Temperature, patch, |patch| self.refresh_temperature(patch, &pressure));
+        }
+        if c.strength.is_some() {
+            spend(Effect::Strength, patch, |patch| self.stiffen(patch, &pressure, &mut speed));
+        }
+        let mut of_solids = None;
+        if c.stress.is_some() {
+            spend(Effect::Stress, patch, |patch| {
+                of_solids = self.refresh_solids(patch, &mut pressure, &mut speed);
+            });
+        }
         let first = found.iter().chain(&of_solids).min_by_key(|(row, _)| *row).cloned();
         let mut found = first;
         let column = |k: usize| &patch.block.columns[k];

@@ -2,6 +2,8 @@
 //! patches that hold a node get the same bits for it.
 
 use super::{MOST_NODES, Stepper, with_width};
+use crate::clock::spend;
+use crate::effects::Effect;
 use crate::patch::Patch;
 use crate::transfer::{Scheme, cut, lines};
 
@@ -15,7 +17,7 @@ impl<const D: usize> Stepper<D> {
             self.push_at_sides(patch, dt);
         }
         if let Some(contact) = &self.contact {
-            self.find_contact(patch, contact, dt, force);
+            spend(Effect::Contact, patch, |p| self.find_contact(p, contact, dt, force));
         }
         self.divide_by_mass(patch);
         self.start_series(patch);

@@ -60,7 +60,7 @@ fn every_kind_of_step_lets_go() {
         let outcome = run::<1>(&scene);
         let (rows, pressure) = (failed(&outcome), outcome.column("pressure"));
         assert!(!rows.is_empty() && rows.iter().all(|&r| pressure[r] >= 0.0), "{method}");
-        at_most(&method.to_string(), outcome.energy_drift(), 0.03);
+        at_most(&method.to_string(), outcome.energy_drift(), 0.1);
     }
 }
 

@@ -5,5 +5,7 @@ mod layouts;
 mod refused;
 mod strength;
 mod temperature;
+// each target looks at figures of its own
+#[allow(dead_code)]
 #[path = "../solids/tools.rs"]
 mod tools;
