@@ -185,7 +185,8 @@ mod tests {
     #[test]
     fn a_line_closes_in_on_its_point() {
         let field = VelocityField::Radial(crate::scene::Radial { about: vec![0.5], speed: -2.0 });
-        let material = Material { density: 1.0, eos: Eos::IdealGas { gamma: 1.4 } };
+        let material =
+            Material { density: 1.0, eos: Eos::IdealGas { gamma: 1.4 }, source: String::new() };
         let motion = Motion::new(&field, &material).unwrap();
         assert_eq!(motion.velocity([0.9, 0.0]), [-2.0, 0.0]);
         assert_eq!(motion.velocity([0.1, 0.0])[0], 2.0);

@@ -4,6 +4,7 @@
 //! - [`impact`]: the true solution of a plate impact, with rarefaction fans, in lab coordinates
 //!   (`tracking` stands behind it: front tracking in Lagrangian coordinates);
 //! - [`release`]: the closed-form states and times of that solution, by release isentropes;
+//! - [`hugoniot`]: shocks and isentropes of any equation of state;
 //! - [`riemann`]: two ideal gases at a diaphragm; [`wall`]: one body run into a wall;
 //! - [`plane`]: references in two dimensions, and what a plate impact is there;
 //! - [`mod@score`]: how a computed profile is held against one of these.
@@ -16,6 +17,7 @@ pub mod chain;
 #[cfg(test)]
 mod checks;
 mod collision;
+pub mod hugoniot;
 pub mod impact;
 mod isentrope;
 pub mod plane;
@@ -29,6 +31,7 @@ pub mod wall;
 mod wave;
 
 pub use chain::{Chain, ChainState, ChainWave, Plate, WaveKind};
+pub use hugoniot::{MaterialState, ShockFront};
 pub use impact::{Accuracy, Impact, ImpactBody, Snapshot, Solution, Tracer};
 pub use plane::{
     Displaced, EdgeRelease, Gap, Gresho, MassPoint, Noh, PlanePoint, PlaneWave, Separation,

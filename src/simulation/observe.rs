@@ -163,6 +163,11 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             };
             columns.push(named("stress_zz", "Pa", pick(&across)));
         }
+        let histories =
+            [("distension", c.distension), ("burn_fraction", c.burn.map(|c| c.fraction))];
+        for (name, k) in histories.into_iter().filter_map(|(name, k)| Some((name, k?))) {
+            columns.push(named(name, "", pick(&|r| column(k)[r])));
+        }
         if D > 1 {
             columns.push(named("volume", "m3", pick(&|r| v0[r] * j[r])));
         }

@@ -73,7 +73,10 @@ impl<const D: usize> Stepper<D> {
                 });
             })?;
         }
-        world.each("refresh", |patch| self.refresh(patch));
+        world.each("refresh", |patch| {
+            self.burn(patch, time + dt, self.columns.jacobian);
+            self.refresh(patch);
+        });
         Ok(())
     }
 

@@ -30,6 +30,7 @@ impl<const D: usize> Stepper<D> {
             patch.block.drop_ghosts();
             self.half_step_volume(patch, dt);
             self.find_viscosity(patch, mid);
+            self.burn(patch, time + 0.5 * dt, mid);
             self.mid_step_stress(patch, relax.is_some());
             self.find_solid_stress(patch, 0.5 * dt, mid);
             self.find_pressed(patch, mid, dt);
@@ -60,6 +61,7 @@ impl<const D: usize> Stepper<D> {
                 if let Some(rate) = self.volume_relaxation {
                     self.relax_volume(patch, rate);
                 }
+                self.burn(patch, time + dt, self.columns.jacobian);
                 self.refresh(patch);
             });
         })

@@ -5,6 +5,7 @@
 //! every patch and the exchanges between phases.
 
 mod body_force;
+mod burn;
 mod contact;
 pub mod gather;
 pub mod leapfrog;
@@ -61,6 +62,10 @@ pub struct Stepper<const D: usize> {
     rest: Vec<sides::Rest<D>>,
     /// One a body.
     models: Vec<Matter>,
+    /// The column of its material's history, one a body.
+    history: Vec<Option<usize>>,
+    /// How it burns, one a body, if any does.
+    burns: Option<Vec<Option<burn::Burns>>>,
     shape: ShapeKind,
     /// Edges of a cell [m] and their inverse.
     cell: [f64; D],
@@ -190,9 +195,13 @@ impl<const D: usize> Stepper<D> {
         let contact = contact.filter(|_| scene.velocity_fields() > 1);
         let rubs = D > 1 && contact.is_some_and(|c| c.coefficient.is_some());
         let rubs = rubs || scene.has_frictional_wall();
+        let columns = Columns::new(scene);
+        let history = burn::histories(&columns, &models, scene);
         let (masked, sides) = (method.edge_mask.is_some(), Self::side_sums(scene));
         Stepper {
-            columns: Columns::new(scene),
+            burns: burn::Burns::of(scene),
+            history,
+            columns,
             fields: Fields::new(D, filtered, masked, relaxed, rubs, sides),
             scheme,
             stepping: method.stepping,

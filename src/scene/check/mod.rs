@@ -7,6 +7,7 @@ mod boundary;
 mod domain;
 mod front;
 mod impact;
+mod materials;
 mod memory;
 mod method;
 mod motion;
@@ -17,7 +18,7 @@ mod reference;
 use serde::Serialize;
 
 use super::errors::{Fault, one_line};
-use super::model::{Contact, Geometry, Material, Scene, Side};
+use super::model::{Contact, Eos, Geometry, Material, Scene, Side};
 
 pub use bodies::CheckedBody;
 pub use boundary::Wall;
@@ -135,6 +136,11 @@ impl CheckedScene {
     /// Whether a body is a solid, so that stress is a tensor.
     pub fn has_solids(&self) -> bool {
         (0..self.bodies.len()).any(|i| self.material_of(i).eos.is_solid())
+    }
+
+    /// Whether a body's equation of state is such.
+    pub fn has_eos(&self, such: impl Fn(&Eos) -> bool) -> bool {
+        (0..self.bodies.len()).any(|i| such(&self.material_of(i).eos))
     }
 
     /// Velocity fields: one for all bodies, or with contact one a body.
