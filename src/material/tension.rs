@@ -41,9 +41,8 @@ impl<E: EquationOfState> EquationOfState for Cutoff<E> {
 
     #[inline(always)]
     fn fault(&self, jacobian: f64, pressure: f64) -> Option<&'static str> {
-        if pressure <= -self.tension {
-            return None;
-        }
+        // no tension is too much; what is wrong with the volume still is
+        let pressure = if pressure <= -self.tension { 0.0 } else { pressure };
         EquationOfState::fault(&self.eos, jacobian, pressure)
     }
 }
@@ -84,9 +83,7 @@ impl<E: GeneralEos> GeneralEos for GeneralCutoff<E> {
     }
 
     fn fault(&self, jacobian: f64, energy: f64, pressure: f64) -> Option<&'static str> {
-        if pressure <= -self.tension {
-            return None;
-        }
+        let pressure = if pressure <= -self.tension { 0.0 } else { pressure };
         self.eos.fault(jacobian, energy, pressure)
     }
 
@@ -111,5 +108,6 @@ mod tests {
         assert_eq!((point.pressure, point.energy_slope), (-1e9, 0.0));
         assert!((point.sound_speed_squared.sqrt() - 3940.0).abs() < 1e-9);
         assert_eq!(GeneralEos::fault(&limited, 5.0, 0.0, -1e9), None);
+        assert!(GeneralEos::fault(&limited, 0.2, 0.0, -1e9).is_some(), "past the limit 1/s");
     }
 }
