@@ -143,6 +143,22 @@ pub enum Command {
         #[arg(long, value_name = "DIR")]
         output: Option<PathBuf>,
     },
+    /// Print and draw what a material's equation of state does: Hugoniot, isentropes, sound speed,
+    /// and where it ceases to hold.
+    Material {
+        /// The scene: a JSON file.
+        #[arg(value_name = "SCENE.json")]
+        scene: PathBuf,
+        /// Name of the material in the scene.
+        #[arg(value_name = "NAME")]
+        name: String,
+        /// Overrides a value of the scene; may be repeated.
+        #[arg(long, value_name = "PATH=VALUE")]
+        set: Vec<String>,
+        /// Folder of the pictures [default: output/<name of the scene>_<name>/].
+        #[arg(long, value_name = "DIR")]
+        output: Option<PathBuf>,
+    },
     /// Check a scene and tell what a run would take: particles, cells, memory, steps, effects.
     Check {
         /// The scene.

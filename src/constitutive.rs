@@ -4,17 +4,20 @@
 //! Knows no grid, no messages, no dimension.
 
 mod failure;
+mod general;
 mod heat;
 mod plastic;
 mod solid;
+mod table;
 
 pub use failure::{Criterion, Ductile, Loaded};
 pub use heat::{Isentrope, Thermal};
 pub use plastic::{DeviatorRows, Flow, FlowRows, RateRows};
 pub use solid::{PlaneStrain, Solid, Strain, TensorRows};
+pub use table::{build, equation, products};
 
-use crate::material::{EquationOfState, Hencky, IdealGas, Lame, Linear, MieGruneisen, NeoHookean};
-use crate::scene::{self, Eos, Failure, HeatSource, Material, TensionMeasure};
+use crate::material::{EquationOfState, Linear};
+use crate::scene::{self, Failure, HeatSource, Material, TensionMeasure};
 use crate::strength::{JohnsonCook, Softening, SteinbergGuinan, VonMises};
 
 /// What a body is made of, as the step sees it.
@@ -72,6 +75,8 @@ pub struct MidStep<'a> {
     pub floor: f64,
     /// Artificial viscosity [Pa], if there is any.
     pub q: Option<&'a [f64]>,
+    /// History at the start of the step, of a material with one.
+    pub history: Option<&'a [f64]>,
     /// Set to (p + q) V [J].
     pub stress_volume: &'a mut [f64],
     /// Set to p [Pa] and to V^2/(m (c^2 + (h D)^2) + S V) [m3/Pa], if wanted: -dV/dp along the
@@ -96,6 +101,8 @@ pub struct VolumeChange<'a> {
     pub pressure: &'a mut [f64],
     /// Specific internal energy before, set to that after [J/kg].
     pub energy: &'a mut [f64],
+    /// History before, of a material with one.
+    pub history: Option<&'a [f64]>,
 }
 
 /// A fluid, as the step sees it.
@@ -109,12 +116,14 @@ pub trait Model: Send + Sync {
     /// e' = e - ((p + p')/2 + q) dv, solved together with p' = f + g e'.
     fn change_volume(&self, rows: VolumeChange<'_>);
 
-    /// Sets pressure [Pa] and sound speed [m/s] of rows from J and e. Tells the first row whose
-    /// state lies outside of the model, and why.
+    /// Sets pressure [Pa] and sound speed [m/s] of rows from J and e, and brings the history of a
+    /// material with one to its end. Tells the first row whose state lies outside of the model,
+    /// and why.
     fn refresh(
         &self,
         jacobian: &[f64],
         energy: &[f64],
+        history: Option<&mut [f64]>,
         pressure: &mut [f64],
         sound_speed: &mut [f64],
     ) -> Option<(usize, String)>;
@@ -124,24 +133,11 @@ pub trait Model: Send + Sync {
 
     /// Sound speed of the material at its density and `pressure` [m/s].
     fn sound_speed_at(&self, pressure: f64) -> f64;
-}
 
-/// The model of a material of a scene.
-pub fn build(material: &Material) -> Matter {
-    let rho0 = material.density;
-    match material.eos {
-        Eos::MieGruneisen { c0, s, gamma0 } => {
-            Matter::Fluid(Box::new(Point(MieGruneisen { rho0, c0, s, gamma0 })))
-        }
-        Eos::IdealGas { gamma } => Matter::Fluid(Box::new(Point(IdealGas { rho0, gamma }))),
-        Eos::LinearElastic { youngs_modulus, poissons_ratio } => {
-            let lame = Lame::new(youngs_modulus, poissons_ratio);
-            Matter::Solid(Box::new(solid::Loops(Hencky { rho0, lame })))
-        }
-        Eos::NeoHookean { youngs_modulus, poissons_ratio } => {
-            let lame = Lame::new(youngs_modulus, poissons_ratio);
-            Matter::Solid(Box::new(solid::Loops(NeoHookean { rho0, lame })))
-        }
+    /// The history that the material starts with; none of most materials, which have no such
+    /// column.
+    fn first_history(&self) -> Option<f64> {
+        None
     }
 }
 
@@ -282,6 +278,7 @@ impl<E: EquationOfState> Model for Point<E> {
         &self,
         jacobian: &[f64],
         energy: &[f64],
+        _history: Option<&mut [f64]>,
         pressure: &mut [f64],
         sound_speed: &mut [f64],
     ) -> Option<(usize, String)> {
@@ -331,6 +328,7 @@ impl<E: EquationOfState> Model for Point<E> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::material::{IdealGas, MieGruneisen};
 
     const GAS: Point<IdealGas> = Point(IdealGas { rho0: 2.0, gamma: 1.4 });
 
@@ -345,6 +343,7 @@ mod tests {
             jacobian_mid: &j_mid,
             energy: &e,
             q: Some(&q),
+            history: None,
             gradient: &[0.0],
             edge: 1.0,
             floor: 0.0,
@@ -372,6 +371,7 @@ mod tests {
                     q: None,
                     pressure: &mut p,
                     energy: &mut e,
+                    history: None,
                 });
             }
             (p[0] / (start * 0.6f64.powf(-1.4)) - 1.0).abs()
@@ -383,9 +383,9 @@ mod tests {
     #[test]
     fn a_gas_short_of_energy_bears_no_tension() {
         let (mut p, mut c) = ([1.0; 2], [1.0; 2]);
-        assert_eq!(GAS.refresh(&[1.0, 0.5], &[-1e-32, -1e-3], &mut p, &mut c), None);
+        assert_eq!(GAS.refresh(&[1.0, 0.5], &[-1e-32, -1e-3], None, &mut p, &mut c), None);
         assert_eq!((p, c), ([0.0; 2], [0.0; 2]));
-        assert!(GAS.refresh(&[1.0], &[f64::NAN], &mut p[..1], &mut c[..1]).is_some());
+        assert!(GAS.refresh(&[1.0], &[f64::NAN], None, &mut p[..1], &mut c[..1]).is_some());
         let mut stress = [1.0];
         GAS.mid_step(MidStep {
             mass: &[0.02],
@@ -394,6 +394,7 @@ mod tests {
             jacobian_mid: &[1.2],
             energy: &[-1e-3],
             q: Some(&[0.5]),
+            history: None,
             gradient: &[0.0],
             edge: 1.0,
             floor: 0.0,
@@ -411,6 +412,7 @@ mod tests {
             q: Some(&[0.5]),
             pressure: &mut p,
             energy: &mut e,
+            history: None,
         });
         assert_eq!(p, [0.0]);
         assert!((e[0] + 1e-3 + 0.5 * 0.2 * 0.5).abs() < 1e-16, "{e:?}");
@@ -421,7 +423,7 @@ mod tests {
         let copper = Point(MieGruneisen { rho0: 8930.0, c0: 3940.0, s: 1.489, gamma0: 1.96 });
         let told = |j: f64, e: f64| {
             let (mut p, mut c) = ([0.0; 2], [0.0; 2]);
-            copper.refresh(&[0.9, j], &[0.0, e], &mut p, &mut c)
+            copper.refresh(&[0.9, j], &[0.0, e], None, &mut p, &mut c)
         };
         assert_eq!(told(0.9, 0.0), None);
         for (j, e, word) in [

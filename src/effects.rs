@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::particles::Columns;
-use crate::scene::{CheckedScene, Transfer};
+use crate::scene::{CheckedScene, Eos, Transfer};
 
 /// What a scene may call for beside the motion of fluids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +23,10 @@ pub enum Effect {
     Failure,
     /// Temperature.
     Temperature,
+    /// Pores that close.
+    Pores,
+    /// A detonation's front.
+    Burn,
     /// Contact between velocity fields of the bodies' own.
     Contact,
     /// A body force.
@@ -36,7 +40,7 @@ impl Effect {
     pub const COUNT: usize = Self::ALL.len();
 
     /// All of them, in order.
-    pub const ALL: [Effect; 10] = [
+    pub const ALL: [Effect; 12] = [
         Effect::Viscosity,
         Effect::Relaxation,
         Effect::Affine,
@@ -44,6 +48,8 @@ impl Effect {
         Effect::Strength,
         Effect::Failure,
         Effect::Temperature,
+        Effect::Pores,
+        Effect::Burn,
         Effect::Contact,
         Effect::BodyForce,
         Effect::TransmittingSides,
@@ -59,6 +65,8 @@ impl Effect {
             Effect::Strength => "strength",
             Effect::Failure => "failure",
             Effect::Temperature => "temperature",
+            Effect::Pores => "pores",
+            Effect::Burn => "burn",
             Effect::Contact => "contact",
             Effect::BodyForce => "body force",
             Effect::TransmittingSides => "transmitting sides",
@@ -75,6 +83,8 @@ impl Effect {
             }
             "damage" | "released_energy" => Effect::Failure,
             "temperature" | "stored_work" => Effect::Temperature,
+            "distension" => Effect::Pores,
+            "lighting_time" | "burn_fraction" => Effect::Burn,
             "contact_impulse" => Effect::Contact,
             _ if name.starts_with("affine_") => Effect::Affine,
             _ if name.starts_with("deviator_") || name.starts_with("rate_") => Effect::Strength,
@@ -103,6 +113,10 @@ impl Effect {
             Effect::Strength => materials().any(|m| m.strength.is_some()),
             Effect::Failure => materials().any(|m| m.failure.is_some()),
             Effect::Temperature => materials().any(|m| m.thermal.is_some()),
+            Effect::Pores => materials().any(|m| matches!(m.eos, Eos::PAlpha { .. })),
+            Effect::Burn => {
+                materials().any(|m| m.eos.burn().is_some_and(|b| b.front().is_some()))
+            }
             Effect::Contact => scene.velocity_fields() > 1,
             Effect::BodyForce => whole.body_force.is_some(),
             Effect::TransmittingSides => scene.transmits(),
@@ -177,7 +191,7 @@ mod tests {
     #[test]
     fn what_is_off_has_no_column() {
         let root = env!("CARGO_MANIFEST_DIR");
-        for name in ["flyer", "piston_elastic_plastic", "spall", "soft_flyer", "vortex"] {
+        for name in ["flyer", "piston_elastic_plastic", "spall", "soft_flyer", "vortex", "detonation", "porous_impact"] {
             let text = std::fs::read(format!("{root}/inputs/{name}.json")).unwrap();
             let scene = crate::scene::parse(&text, name, &[]).unwrap();
             let columns = Columns::new(&scene);

@@ -1,6 +1,7 @@
 //! flyer-mpm: impact and shock waves by the material point method.
 
 pub mod accounts;
+pub mod burn;
 pub mod calibrate;
 pub mod clock;
 pub mod constitutive;

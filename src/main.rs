@@ -6,6 +6,7 @@
 mod cli;
 mod describe;
 mod forecast;
+mod sheet;
 
 use std::io::Write;
 use std::path::Path;
@@ -197,6 +198,14 @@ fn side_command(command: Command) -> Outcome<()> {
             let output =
                 output.unwrap_or_else(|| Path::new("output").join(format!("{stem}_hugoniot")));
             say(&describe::hugoniot(&checked, &output)?);
+            Ok(())
+        }
+        Command::Material { scene, name, set, output } => {
+            let stem = scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            let (_, checked) = read_scene(&SceneArgs { scene, set })?;
+            let output =
+                output.unwrap_or_else(|| Path::new("output").join(format!("{stem}_{name}")));
+            say(&sheet::material(&checked, &name, &output)?);
             Ok(())
         }
         Command::Predict(args) => {

@@ -188,6 +188,7 @@ mod tests {
         let material = Material {
             density: 1.0,
             eos: Eos::IdealGas { gamma: 1.4 },
+            source: String::new(),
             strength: None,
             failure: None,
             thermal: None,

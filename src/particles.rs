@@ -6,7 +6,8 @@
 use decomp::{Block, ColumnSpec, IndexBox, Layout, Mirror};
 use nalgebra::SVector;
 
-use crate::scene::{BodyForce, CheckedScene, Stepping, Transfer};
+use crate::burn::Front;
+use crate::scene::{BodyForce, CheckedScene, Eos, Stepping, Transfer};
 use crate::shape::Extent;
 
 /// Where each column stands in a block. Vectors take D columns that follow each other, tensors
@@ -75,6 +76,10 @@ pub struct Columns {
     pub body_force: Option<BodyForceColumns>,
     /// What a transmitting side looks at, with one.
     pub side: Option<SideColumns>,
+    /// Distension alpha = v/v_solid [-], where a body is porous.
+    pub distension: Option<usize>,
+    /// What an explosive takes, where one burns.
+    pub burn: Option<BurnColumns>,
     /// J at the middle of the step, scratch, with mid-point stepping.
     pub jacobian_mid: Option<usize>,
     /// What strength takes, where a body has it.
@@ -124,6 +129,15 @@ pub struct ThermalColumns {
     pub temperature: usize,
     /// Plastic work that does not heat [J/kg], where there is any.
     pub stored: Option<usize>,
+}
+
+/// Where the columns of an explosive stand.
+#[derive(Clone, Copy, Debug)]
+pub struct BurnColumns {
+    /// When the front reaches the particle [s]; -1 for what does not burn.
+    pub lighting_time: usize,
+    /// Burnt fraction F [-].
+    pub fraction: usize,
 }
 
 /// Where the columns of a body force stand.
@@ -310,6 +324,13 @@ impl Columns {
             temperature: add_all(&["temperature"], "K", false, true, &same),
             stored: stores.then(|| add_all(&["stored_work"], "J/kg", false, true, &same)),
         });
+        let porous = scene.has_eos(|eos| matches!(eos, Eos::PAlpha { .. }));
+        let distension = porous.then(|| add_all(&["distension"], "", false, true, &same));
+        let burns = scene.has_eos(|eos| eos.burn().is_some_and(|b| b.front().is_some()));
+        let burn = burns.then(|| BurnColumns {
+            lighting_time: add_all(&["lighting_time"], "s", false, true, &same),
+            fraction: add_all(&["burn_fraction"], "", false, true, &same),
+        });
         let half_edges = deforms.then(|| match seen {
             true => domain,
             false => add_all(&HALF_EDGES, "", true, false, &of_edge),
@@ -318,6 +339,8 @@ impl Columns {
             strength,
             failure,
             thermal,
+            distension,
+            burn,
             pressed,
             body_force,
             side,
@@ -403,6 +426,7 @@ pub fn fill<const D: usize>(
     let mut id = 0u64;
     for (number, (body, checked)) in scene.scene.bodies.iter().zip(&scene.bodies).enumerate() {
         let density = scene.scene.materials[&body.material].density;
+        let front = Front::of(&scene.scene.materials[&body.material].eos);
         let mut add = |centre: [f64; D], size: [f64; D], volume: f64| {
             let cell = cell_of(scene, centre);
             let patch = layout.wrap_cell(cell).map(|c| layout.patch_of(c));
@@ -437,6 +461,12 @@ pub fn fill<const D: usize>(
             if let (Some(c), Some(thermal)) = (columns.thermal, &scene.material_of(number).thermal)
             {
                 row[c.temperature] = thermal.reference_temperature;
+            }
+            if let Some(distension) = columns.distension {
+                row[distension] = scene.material_of(number).distension();
+            }
+            if let Some(burn) = columns.burn {
+                row[burn.lighting_time] = front.as_ref().map_or(-1.0, |f| f.lighting_time(&centre));
             }
             row[columns.body] = number as f64;
             if let Some(column) = columns.pressed {

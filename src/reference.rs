@@ -6,10 +6,11 @@ mod plane;
 
 pub use plane::{PlaneReference, PlaneSolution};
 
+use crate::constitutive;
 use crate::exact::{
-    Accuracy, Chain, EdgeRelease, Errors, ExactError, GasState, Impact, ImpactBody, PlanePoint,
-    PlaneWave, Plate, Profile, Riemann, Sample, Solution, Tracer, WallImpact, WallMaterial,
-    cell_average, interface_errors, score, score_density,
+    Accuracy, Chain, EdgeRelease, Errors, ExactError, GasState, Impact, ImpactBody, MaterialState,
+    PlanePoint, PlaneWave, Plate, Point, Profile, Riemann, Sample, Solution, Tracer, WallImpact,
+    WallMaterial, cell_average, hugoniot, interface_errors, score, score_density,
 };
 use crate::material::MieGruneisen;
 use crate::output::ParticleTable;
@@ -60,12 +61,8 @@ fn body_named(scene: &CheckedScene, name: &str) -> usize {
 
 fn solid(scene: &CheckedScene, body: usize) -> MieGruneisen {
     let material = scene.material_of(body);
-    match material.eos {
-        Eos::MieGruneisen { c0, s, gamma0 } => {
-            MieGruneisen { rho0: material.density, c0, s, gamma0 }
-        }
-        _ => unreachable!("the check has refused other equations of state"),
-    }
+    let straight = material.eos.straight(material.density);
+    straight.expect("the check has refused other equations of state")
 }
 
 fn gas(scene: &CheckedScene, body: usize) -> GasState {
@@ -75,6 +72,31 @@ fn gas(scene: &CheckedScene, body: usize) -> GasState {
     };
     let (p, u) = (scene.scene.bodies[body].pressure, scene.speed_along(body));
     GasState { rho: material.density, u, p, gamma }
+}
+
+/// The Mie-Grueneisen material of a body without pressure whose shocks are on a straight line.
+fn straight_at_rest(scene: &CheckedScene, body: usize) -> Option<MieGruneisen> {
+    let material = scene.material_of(body);
+    let free = scene.scene.bodies[body].pressure == 0.0;
+    material.eos.straight(material.density).filter(|_| free)
+}
+
+/// The fronts that a wall sends into a body of any other material.
+fn fronts(
+    scene: &CheckedScene,
+    body: usize,
+    wall: &scene::Wall,
+) -> Result<WallMaterial, ExactError> {
+    let eos = constitutive::equation(scene.material_of(body)).ok().flatten();
+    let eos = eos.ok_or(ExactError::NoImpact("the body has no equation of state"))?;
+    let rest = MaterialState::at_rest(&*eos, scene.scene.bodies[body].pressure, 0.0);
+    let fronts = hugoniot::piston(&*eos, &rest, scene.closing_speed(wall, body))?;
+    let point = |s: &MaterialState| Point { x: 0.0, p: s.p, u: s.u, rho: s.density(&*eos), e: s.e };
+    let (speed, precursor) = match &fronts[..] {
+        [first, last] => (last.speed, Some((point(&first.behind), first.speed))),
+        _ => (fronts[0].speed, None),
+    };
+    Ok(WallMaterial::Fronts { ahead: point(&rest), precursor, speed })
 }
 
 /// The bodies of an impact in the terms of the exact solution.
@@ -133,13 +155,15 @@ impl Reference {
                 ))?;
                 let extent = &scene.bodies[body];
                 let material = match scene.material_of(body).eos {
-                    Eos::MieGruneisen { .. } => WallMaterial::MieGruneisen(solid(scene, body)),
                     Eos::IdealGas { gamma } => {
                         let state = gas(scene, body);
                         let e = state.p / ((gamma - 1.0) * state.rho);
                         WallMaterial::IdealGas { gamma, rho: state.rho, e }
                     }
-                    _ => unreachable!("the check has refused other equations of state"),
+                    _ => match straight_at_rest(scene, body) {
+                        Some(material) => WallMaterial::MieGruneisen(material),
+                        None => fronts(scene, body, &wall)?,
+                    },
                 };
                 let solution = WallImpact::new(
                     material,

@@ -38,11 +38,13 @@ impl Job {
     }
 
     /// On this many ranks; more than one are started by mpirun.
+    #[allow(dead_code)] // not every check looks at ranks
     pub fn ranks(self, ranks: usize) -> Job {
         Job { ranks, ..self }
     }
 
     /// With this many threads a rank.
+    #[allow(dead_code)] // not every check looks at threads
     pub fn threads(self, threads: usize) -> Job {
         Job { threads, ..self }
     }

@@ -55,6 +55,7 @@ impl Table {
     }
 
     /// A figure that must reach the bound.
+    #[allow(dead_code)] // each check has its own figures
     pub fn at_least(&mut self, figure: &str, value: Option<f64>, bound: f64, show: Show) {
         let ok = value.is_some_and(|v| v >= bound);
         self.row(figure, shown(value, show), format!(">= {}", shown(Some(bound), show)), Some(ok));
@@ -66,6 +67,7 @@ impl Table {
     }
 
     /// Something that holds or does not.
+    #[allow(dead_code)] // likewise
     pub fn holds(&mut self, figure: &str, measured: &str, bound: &str, ok: bool) {
         self.row(figure, measured, bound, Some(ok));
     }

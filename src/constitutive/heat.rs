@@ -32,7 +32,7 @@ impl Isentrope {
         let state = |j: f64, e: f64| -> Option<[f64; 2]> {
             let at = |e: f64| {
                 let (mut p, mut c) = ([0.0], [0.0]);
-                model.refresh(&[j], &[e], &mut p, &mut c).is_none().then_some(p[0])
+                model.refresh(&[j], &[e], None, &mut p, &mut c).is_none().then_some(p[0])
             };
             // dp/de is constant in each model that is linear in the energy
             let step = 1e-3 * model.sound_speed_at(0.0).powi(2).max(f64::MIN_POSITIVE);

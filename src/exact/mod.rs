@@ -4,6 +4,7 @@
 //! - [`impact`]: the true solution of a plate impact, with rarefaction fans, in lab coordinates
 //!   (`tracking` stands behind it: front tracking in Lagrangian coordinates);
 //! - [`release`]: the closed-form states and times of that solution, by release isentropes;
+//! - [`hugoniot`]: shocks and isentropes of any equation of state;
 //! - [`riemann`]: two ideal gases at a diaphragm; [`wall`]: one body run into a wall, and
 //!   [`elastic_plastic`]: one that has strength;
 //! - [`plane`]: references in two dimensions, and what a plate impact is there;
@@ -18,6 +19,7 @@ pub mod chain;
 mod checks;
 mod collision;
 pub mod elastic_plastic;
+pub mod hugoniot;
 pub mod impact;
 mod isentrope;
 pub mod plane;
@@ -32,6 +34,7 @@ mod wave;
 
 pub use chain::{Chain, ChainState, ChainWave, Plate, WaveKind};
 pub use elastic_plastic::{Behind, ElasticPlastic, Plastic};
+pub use hugoniot::{MaterialState, ShockFront};
 pub use impact::{Accuracy, Impact, ImpactBody, Snapshot, Solution, Tracer};
 pub use plane::{
     Displaced, EdgeRelease, Gap, Gresho, MassPoint, Noh, PlanePoint, PlaneWave, Separation,

@@ -29,6 +29,16 @@ pub enum WallMaterial {
         /// Specific internal energy [J/kg].
         e: f64,
     },
+    /// Any other material, whose fronts are known ([`super::hugoniot::piston`]).
+    Fronts {
+        /// The state ahead, with the body's velocity.
+        ahead: Point,
+        /// State and speed [m/s] of an elastic precursor, relative to the material ahead of it;
+        /// velocities are those that a piston towards +x gives material at rest.
+        precursor: Option<(Point, f64)>,
+        /// Speed of the shock relative to the material ahead of it [m/s].
+        speed: f64,
+    },
 }
 
 /// The steady shock that leaves a wall or a piston.
@@ -48,11 +58,23 @@ pub struct WallImpact {
     pub valid_until: f64,
     /// State ahead: pressure [Pa], density [kg/m3], energy [J/kg].
     ahead: Point,
+    /// A front before the shock, which has left that state.
+    precursor: Option<Front>,
+    /// The state at rest, ahead of all fronts.
+    far: Point,
     /// +1 if the shock runs towards +x.
     direction: f64,
     /// Struck face and other face at time 0 [m].
     faces: [f64; 2],
     wall_velocity: f64,
+}
+
+/// A front before the shock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Front {
+    behind: Point,
+    /// Its speed relative to the material ahead [m/s].
+    speed: f64,
 }
 
 impl WallImpact {
@@ -75,7 +97,8 @@ impl WallImpact {
         if v <= 0.0 {
             return Err(ExactError::NoImpact("body and wall do not approach each other"));
         }
-        let (shock_speed, ahead) = match material {
+        let mut first = None;
+        let (shock_speed, far) = match material {
             WallMaterial::MieGruneisen(m) => {
                 for (name, value) in [("rho0", m.rho0), ("c0", m.c0), ("s", m.s)] {
                     positive(name, value)?;
@@ -107,17 +130,29 @@ impl WallImpact {
                 let us = k + (k * k + gamma * (gamma - 1.0) * e).sqrt();
                 (us, Point { x: 0.0, p: (gamma - 1.0) * rho * e, u: velocity, rho, e })
             }
+            WallMaterial::Fronts { ahead, precursor, speed } => {
+                first = precursor.map(|(behind, speed)| Front {
+                    behind: Point { u: velocity + direction * behind.u, ..behind },
+                    speed,
+                });
+                (speed, Point { u: velocity, ..ahead })
+            }
         };
+        // the shock runs into what the precursor has left
+        let ahead = first.map_or(far, |f: Front| f.behind);
+        let v = direction * (wall_velocity - ahead.u);
         let p = ahead.p + ahead.rho * shock_speed * v;
         let rho = ahead.rho * shock_speed / (shock_speed - v);
         Ok(WallImpact {
             p,
             rho,
             e: ahead.e + 0.5 * (p + ahead.p) * (1.0 / ahead.rho - 1.0 / rho),
-            closing_speed: v,
+            closing_speed: direction * (wall_velocity - far.u),
             shock_speed,
-            valid_until: thickness / shock_speed,
+            valid_until: thickness / first.map_or(shock_speed, |f| f.speed),
             ahead,
+            precursor: first,
+            far,
             direction,
             faces: if wall_on_lower_side { [lower, upper] } else { [upper, lower] },
             wall_velocity,
@@ -128,7 +163,7 @@ impl WallImpact {
     fn places(&self, t: f64) -> [f64; 3] {
         let [struck, other] = self.faces;
         let shock = self.ahead.u + self.direction * self.shock_speed;
-        [struck + self.wall_velocity * t, struck + shock * t, other + self.ahead.u * t]
+        [struck + self.wall_velocity * t, struck + shock * t, other + self.far.u * t]
     }
 
     /// The whole body at time `t`; `None` before 0 and after [`WallImpact::valid_until`].
@@ -139,7 +174,13 @@ impl WallImpact {
         let [wall, shock, other] = self.places(t);
         let behind = |x| Point { x, p: self.p, u: self.wall_velocity, rho: self.rho, e: self.e };
         let ahead = |x| Point { x, ..self.ahead };
-        let mut points = vec![behind(wall), behind(shock), ahead(shock), ahead(other)];
+        let far = |x| Point { x, ..self.far };
+        let mut points = vec![behind(wall), behind(shock), ahead(shock)];
+        if let Some(front) = &self.precursor {
+            let place = self.faces[0] + (self.far.u + self.direction * front.speed) * t;
+            points.extend([ahead(place), far(place)]);
+        }
+        points.push(far(other));
         if self.direction < 0.0 {
             points.reverse();
         }

@@ -2,21 +2,42 @@
 //!
 //! Knows neither particles, grid nor dimension: a model sees scalars alone.
 //!
-//! Every fluid here is linear in the specific internal energy,
+//! Most fluids here are linear in the specific internal energy,
 //! p = f(J) + g(J) e, with J = V/V0 = rho0/rho the volume ratio. That is what lets the
-//! mid-point rule for the energy be solved in closed form. [`elastic`] solids bear shear.
+//! mid-point rule for the energy be solved in closed form. Others are [`general`].
+//! [`elastic`] solids bear shear.
 
+mod bicubic;
 pub mod elastic;
+pub mod general;
 mod hencky;
 mod ideal_gas;
+mod jwl;
 mod mie_gruneisen;
 mod neo_hookean;
+mod porous;
+mod quadratic_mie_gruneisen;
+mod stiffened_gas;
+mod tabular;
+mod tait;
+mod tension;
+mod tillotson;
 
+pub use bicubic::Bicubic;
 pub use elastic::{Deformation, ElasticSolid, Lame, Symmetric};
+pub use general::{EosPoint, GeneralEos, HistoryEos, energy_of_work};
 pub use hencky::Hencky;
 pub use ideal_gas::IdealGas;
+pub use jwl::{Burning, Detonation, Jwl};
 pub use mie_gruneisen::MieGruneisen;
 pub use neo_hookean::NeoHookean;
+pub use porous::Porous;
+pub use quadratic_mie_gruneisen::QuadraticMieGruneisen;
+pub use stiffened_gas::StiffenedGas;
+pub use tabular::{Table, Tabular};
+pub use tait::Tait;
+pub use tension::{Cutoff, GeneralCutoff};
+pub use tillotson::Tillotson;
 
 /// What an equation of state tells of one state: p = cold + energy_factor * e.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,6 +12,7 @@ use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 
 use super::errors::{Fault, LONGEST_VALUE, SceneError, one_line, shorten};
+use super::library::{inline_files, resolve};
 use super::overrides::apply;
 use super::{CheckedScene, Scene, conform::conform};
 use crate::geometry::read_points;
@@ -41,17 +42,17 @@ pub fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
             "is {length} bytes long; allowed: a scene of at most {LARGEST_FILE} bytes (16 MiB)"
         )));
     }
-    with_positions(bytes, path)
+    with_files(bytes, path)
 }
 
-/// The text of a scene with the points of its files of positions in their place: what the other
-/// ranks are sent is whole.
-fn with_positions(bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>, SceneError> {
+/// The text of a scene with what its files of positions, materials and tables hold in their place:
+/// what the other ranks are sent is whole.
+fn with_files(bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>, SceneError> {
     // what is wrong with the text is told when it is parsed
     let Ok(mut scene) = serde_json::from_slice::<Value>(&bytes) else { return Ok(bytes) };
     let plane =
         scene.pointer("/domain/lower").and_then(Value::as_array).is_some_and(|l| l.len() > 1);
-    let mut found = false;
+    let mut found = inline_files(&mut scene, path.parent().unwrap_or(Path::new("")))?;
     for body in scene.get_mut("bodies").and_then(Value::as_array_mut).into_iter().flatten() {
         let Some(Value::String(name)) = body.get("positions") else { continue };
         let file = path.parent().unwrap_or(Path::new("")).join(name);
@@ -92,7 +93,8 @@ pub fn check(scene: Scene, file: &str) -> Result<CheckedScene, SceneError> {
     from_value(value, file)
 }
 
-fn from_value(value: Value, file: &str) -> Result<CheckedScene, SceneError> {
+fn from_value(mut value: Value, file: &str) -> Result<CheckedScene, SceneError> {
+    resolve(&mut value).map_err(|fault| fault.within(file))?;
     conform(&value).map_err(|fault| fault.within(file))?;
     let scene = serde_path_to_error::deserialize(value)
         .map_err(|e| Fault::missing(e.path().to_string(), e.inner().to_string()).within(file))?;

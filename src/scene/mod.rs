@@ -7,6 +7,7 @@
 mod check;
 mod conform;
 mod errors;
+mod library;
 mod load;
 mod model;
 mod overrides;
@@ -16,6 +17,7 @@ pub use check::{
     BYTES_PER_CELL, BYTES_PER_PARTICLE, CheckedBody, CheckedScene, Wall, available_memory,
 };
 pub use errors::SceneError;
+pub use library::LIBRARY;
 pub use load::{LARGEST_FILE, check, parse, read};
 pub use model::*;
 pub use schema::schema;

@@ -173,6 +173,11 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         if let Some(thermal) = c.thermal {
             columns.push(named("temperature", "K", pick(&|r| column(thermal.temperature)[r])));
         }
+        let histories =
+            [("distension", c.distension), ("burn_fraction", c.burn.map(|c| c.fraction))];
+        for (name, k) in histories.into_iter().filter_map(|(name, k)| Some((name, k?))) {
+            columns.push(named(name, "", pick(&|r| column(k)[r])));
+        }
         if D > 1 {
             columns.push(named("volume", "m3", pick(&|r| v0[r] * j[r])));
         }

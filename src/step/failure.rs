@@ -20,43 +20,46 @@ fn runs(damage: &[f64]) -> impl Iterator<Item = (bool, std::ops::Range<usize>)> 
     })
 }
 
-impl<const D: usize> Stepper<D> {
-    /// Pressure and sound speed of rows some of which may have failed. A failed row in tension is
-    /// debris: without pressure, and no fault of its equation of state.
-    pub(super) fn refresh_failing(
-        &self,
-        (model, damage): (&dyn Model, &[f64]),
-        (jacobian, energy): (&[f64], &[f64]),
-        (pressure, speed): (&mut [f64], &mut [f64]),
-    ) -> Option<(usize, String)> {
-        let mut found = None;
-        for (failed, rows) in runs(damage) {
-            if !failed {
-                let (p, c) = (&mut pressure[rows.clone()], &mut speed[rows.clone()]);
-                let told = model.refresh(&jacobian[rows.clone()], &energy[rows.clone()], p, c);
-                if let (None, Some((row, what))) = (&found, told) {
-                    found = Some((rows.start + row, what));
-                }
-                continue;
+/// Pressure and sound speed of rows some of which may have failed. A failed row in tension is
+/// debris: without pressure, and no fault of its equation of state.
+pub(super) fn refresh(
+    (model, damage): (&dyn Model, &[f64]),
+    (jacobian, energy): (&[f64], &[f64]),
+    mut history: Option<&mut [f64]>,
+    (pressure, speed): (&mut [f64], &mut [f64]),
+) -> Option<(usize, String)> {
+    let mut found = None;
+    for (failed, rows) in runs(damage) {
+        if !failed {
+            let (p, c) = (&mut pressure[rows.clone()], &mut speed[rows.clone()]);
+            let history = history.as_mut().map(|h| &mut h[rows.clone()]);
+            let (j, e) = (&jacobian[rows.clone()], &energy[rows.clone()]);
+            let told = model.refresh(j, e, history, p, c);
+            if let (None, Some((row, what))) = (&found, told) {
+                found = Some((rows.start + row, what));
             }
-            for r in rows {
-                let (p, c) = (&mut pressure[r..=r], &mut speed[r..=r]);
-                let told = model.refresh(&jacobian[r..=r], &energy[r..=r], p, c);
-                let apart = p[0] < 0.0 && jacobian[r] > 0.0 && energy[r].is_finite();
-                if p[0] < 0.0 {
-                    p[0] = 0.0;
-                }
-                if apart && (c[0].is_nan() || c[0] == 0.0) {
-                    c[0] = model.sound_speed_at(0.0);
-                }
-                if let (None, Some((_, what)), false) = (&found, told, apart) {
-                    found = Some((r, what));
-                }
+            continue;
+        }
+        for r in rows {
+            let (p, c) = (&mut pressure[r..=r], &mut speed[r..=r]);
+            let history = history.as_mut().map(|h| &mut h[r..=r]);
+            let told = model.refresh(&jacobian[r..=r], &energy[r..=r], history, p, c);
+            let apart = p[0] < 0.0 && jacobian[r] > 0.0 && energy[r].is_finite();
+            if p[0] < 0.0 {
+                p[0] = 0.0;
+            }
+            if apart && (c[0].is_nan() || c[0] == 0.0) {
+                c[0] = model.sound_speed_at(0.0);
+            }
+            if let (None, Some((_, what)), false) = (&found, told, apart) {
+                found = Some((r, what));
             }
         }
-        found
     }
+    found
+}
 
+impl<const D: usize> Stepper<D> {
     /// Takes the tension away that the middle of the step would have in failed rows, at volume
     /// ratio `jacobian` (a column).
     pub(super) fn bear_no_tension(&self, patch: &mut Patch<D>, jacobian: usize) {

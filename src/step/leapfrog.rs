@@ -76,6 +76,7 @@ impl<const D: usize> Stepper<D> {
             })?;
         }
         world.each("refresh", |patch| {
+            self.burn(patch, time + dt, self.columns.jacobian);
             self.refresh(patch);
             if self.columns.failure.is_some() {
                 spend(Effect::Failure, patch, |patch| self.fail(patch, dt));

@@ -37,6 +37,7 @@ impl<const D: usize> Stepper<D> {
             if self.columns.strength.is_some() {
                 spend(Strength, patch, |patch| self.shear_to_middle(patch, 0.5 * dt, mid));
             }
+            self.burn(patch, time + 0.5 * dt, mid);
             self.mid_step_stress(patch, relax.is_some());
             if self.columns.failure.is_some() {
                 spend(Failure, patch, |patch| self.bear_no_tension(patch, mid));
@@ -86,6 +87,7 @@ impl<const D: usize> Stepper<D> {
                 if let Some(rate) = self.volume_relaxation {
                     spend(Relaxation, patch, |patch| self.relax_volume(patch, rate));
                 }
+                self.burn(patch, time + dt, self.columns.jacobian);
                 self.refresh(patch);
                 if self.columns.failure.is_some() {
                     spend(Failure, patch, |patch| self.fail(patch, dt));

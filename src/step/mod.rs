@@ -5,6 +5,7 @@
 //! every patch and the exchanges between phases.
 
 mod body_force;
+mod burn;
 mod contact;
 mod failure;
 pub mod gather;
@@ -72,6 +73,10 @@ pub struct Stepper<const D: usize> {
     criteria: Vec<Option<Criterion>>,
     /// How each body's temperature follows.
     thermals: Vec<Option<Thermal>>,
+    /// The column of its material's history, one a body.
+    history: Vec<Option<usize>>,
+    /// How it burns, one a body, if any does.
+    burns: Option<Vec<Option<burn::Burns>>>,
     shape: ShapeKind,
     /// Edges of a cell [m] and their inverse.
     cell: [f64; D],
@@ -243,9 +248,13 @@ impl<const D: usize> Stepper<D> {
         let contact = contact.filter(|_| scene.velocity_fields() > 1);
         let rubs = D > 1 && contact.is_some_and(|c| c.coefficient.is_some());
         let rubs = rubs || scene.has_frictional_wall();
+        let columns = Columns::new(scene);
+        let history = burn::histories(&columns, &models, scene);
         let (masked, sides) = (method.edge_mask.is_some(), Self::side_sums(scene));
         Stepper {
-            columns: Columns::new(scene),
+            burns: burn::Burns::of(scene),
+            history,
+            columns,
             fields: Fields::new(D, filtered, masked, relaxed, rubs, sides),
             scheme,
             stepping: method.stepping,

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use decomp::IndexBox;
 
-use super::Stepper;
+use super::{Stepper, failure};
 use crate::clock::spend;
 use crate::constitutive::{Matter, MidStep, VolumeChange};
 use crate::effects::Effect;
@@ -334,6 +334,7 @@ impl<const D: usize> Stepper<D> {
                 edge: self.edge,
                 floor: COLD * self.still_pressure,
                 q: c.viscosity.map(|q| &column(q)[rows.clone()]),
+                history: self.history[body].map(|h| &column(h)[rows.clone()]),
                 stress_volume: &mut stress[rows.clone()],
                 compliance: relaxed
                     .as_mut()
@@ -366,7 +367,10 @@ impl<const D: usize> Stepper<D> {
         let scalars = [c.gradient].into_iter().chain(pulled).chain(stress).chain(c.pressure_mid);
         let watched: smallvec::SmallVec<[&[f64]; 16]> =
             vector.chain(scalars).chain(tensors).map(column).collect();
-        let moves = |r: usize| watched.iter().any(|column| column[r] != 0.0);
+        let burns = c.burn.map(|c| (column(c.lighting_time), column(c.fraction)));
+        // what waits to be lit moves by itself
+        let waits = |r: usize| burns.is_some_and(|(lit, f)| lit[r] >= 0.0 && f[r] < 1.0);
+        let moves = |r: usize| watched.iter().any(|column| column[r] != 0.0) || waits(r);
         // rows from the first to the last that moves: those between mostly do
         patch.block.active = match (0..n).find(|&r| moves(r)) {
             None => IndexBox::new([0; D], [0; D]),
@@ -423,6 +427,7 @@ impl<const D: usize> Stepper<D> {
                 before: &before[rows.clone()],
                 after: &column(c.jacobian)[rows.clone()],
                 q: c.viscosity.map(|q| &column(q)[rows.clone()]),
+                history: self.history[body].map(|h| &column(h)[rows.clone()]),
                 pressure: &mut pressure[rows.clone()],
                 energy: &mut energy[rows],
             });
@@ -443,26 +448,28 @@ impl<const D: usize> Stepper<D> {
         let c = &self.columns;
         let mut pressure = std::mem::take(&mut patch.block.columns[c.pressure]);
         let mut speed = std::mem::take(&mut patch.block.columns[c.sound_speed]);
+        let mut histories = self.take_histories(patch);
         let column = |k: usize| &patch.block.columns[k];
         let mut found = None;
         for (body, rows) in bodies(&column(c.body)[..patch.block.own()]) {
             let Matter::Fluid(model) = &self.models[body] else { continue };
+            let history = histories.iter_mut().find(|(k, _)| self.history[body] == Some(*k));
+            let history = history.map(|(_, h)| &mut h[rows.clone()]);
+            let (j, e) = (&column(c.jacobian)[rows.clone()], &column(c.energy)[rows.clone()]);
+            let (p, speed) = (&mut pressure[rows.clone()], &mut speed[rows.clone()]);
             let told = match c.failure.filter(|_| self.criteria[body].is_some()) {
-                Some(failure) => self.refresh_failing(
-                    (model.as_ref(), &column(failure.damage)[rows.clone()]),
-                    (&column(c.jacobian)[rows.clone()], &column(c.energy)[rows.clone()]),
-                    (&mut pressure[rows.clone()], &mut speed[rows.clone()]),
-                ),
-                None => model.refresh(
-                    &column(c.jacobian)[rows.clone()],
-                    &column(c.energy)[rows.clone()],
-                    &mut pressure[rows.clone()],
-                    &mut speed[rows.clone()],
-                ),
+                Some(failure) => {
+                    let damage = &column(failure.damage)[rows.clone()];
+                    failure::refresh((model.as_ref(), damage), (j, e), history, (p, speed))
+                }
+                None => model.refresh(j, e, history, p, speed),
             };
             if let (None, Some((row, what))) = (&found, told) {
                 found = Some((rows.start + row, what));
             }
+        }
+        for (k, history) in histories {
+            patch.block.columns[k] = history;
         }
         if c.thermal.is_some() {
             spend(Effect::Temperature, patch, |patch| self.refresh_temperature(patch, &pressure));

@@ -87,12 +87,21 @@ fn help_and_version_are_told() {
     for word in ["mpirun -n 2 flyer-mpm"].into_iter().chain(options) {
         assert!(help.contains(word), "no {word} in: {help}");
     }
-    for word in ["hugoniot", "check", "calibrate", "predict", "schema", "compare", "summary.json"] {
+    for word in [
+        "hugoniot",
+        "material",
+        "check",
+        "calibrate",
+        "predict",
+        "schema",
+        "compare",
+        "summary.json",
+    ] {
         assert!(help.contains(word), "no {word} in: {help}");
     }
     let version = home.call(["--version"]).end().succeeded();
     assert_eq!(version.trim(), format!("flyer-mpm {}", env!("CARGO_PKG_VERSION")));
-    for command in ["hugoniot", "check", "calibrate", "predict", "schema", "compare"] {
+    for command in ["hugoniot", "material", "check", "calibrate", "predict", "schema", "compare"] {
         home.call([command, "--help"]).end().succeeded();
     }
     assert!(names(home.path()).is_empty());

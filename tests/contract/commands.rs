@@ -53,6 +53,22 @@ fn check_tells_what_a_run_takes_and_makes_no_file() {
 }
 
 #[test]
+fn material_prints_and_draws_an_equation_of_state() {
+    let home = Home::new();
+    home.write("flyer.json", FLYER);
+    let text =
+        home.call(["material", "flyer.json", "copper", "--output", "sheet"]).end().succeeded();
+    // Us = c0 + s up at 1 km/s, and the limit of compression
+    for word in ["mie_gruneisen", "5429.00", "48.48", "isentrope from rest", "limit 1/s", "tension"]
+    {
+        assert!(text.contains(word), "no {word} in {text}");
+    }
+    has_pictures(&contents(&home.at("sheet")), &["hugoniot", "isentropes"]);
+    let unknown = home.call(["material", "flyer.json", "iron"]).end();
+    unknown.failed(&["no material iron", "allowed: aluminium, copper"]);
+}
+
+#[test]
 fn hugoniot_prints_the_chain_and_draws_it() {
     let home = Home::new();
     home.write("flyer.json", FLYER);

@@ -2,9 +2,7 @@
 
 use decomp::Serial;
 use flyer_mpm::exact::{Accuracy, Impact, ImpactBody, Separation};
-use flyer_mpm::material::MieGruneisen;
 use flyer_mpm::output::ParticleTable;
-use flyer_mpm::scene::Eos;
 use flyer_mpm::simulation::Simulation;
 use serde_json::{Value, json};
 
@@ -32,11 +30,10 @@ fn forces(value: &Value) -> (Vec<(f64, f64)>, ParticleTable) {
 fn impact(value: &Value) -> Impact {
     let scene = checked(value);
     let body = |i: usize| {
-        let Eos::MieGruneisen { c0, s, gamma0 } = scene.material_of(i).eos else { panic!() };
-        let extent = &value["bodies"][i]["box"];
+        let (material, extent) = (scene.material_of(i), &value["bodies"][i]["box"]);
         let at = |key: &str| extent[key][0].as_f64().unwrap();
         ImpactBody {
-            material: MieGruneisen { rho0: scene.material_of(i).density, c0, s, gamma0 },
+            material: material.eos.straight(material.density).unwrap(),
             lower: at("lower"),
             upper: at("upper"),
             velocity: scene.bodies[i].velocity[0],

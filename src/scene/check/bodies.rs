@@ -5,14 +5,13 @@ use std::sync::Arc;
 
 use serde_json::json;
 
-use crate::material::Lame;
 use crate::motion::Motion;
 
 use super::super::conform::join;
 use super::super::errors::{Fault, suggest};
-use super::super::model::{Body, BoxShape, Eos, Positions, Region, Scene};
+use super::super::model::{Body, BoxShape, Positions, Region, Scene};
 use super::domain::MOST;
-use super::{check_box, check_length, check_printable, motion};
+use super::{check_box, check_length, check_printable, materials, motion};
 use crate::geometry::{PointFault, Shape, Tile, fill, voronoi, voronoi_line};
 
 /// Bodies nearer than this touch, and may overlap by it [cells].
@@ -68,7 +67,7 @@ pub(super) fn check(
     cell_size: &[f64],
     warnings: &mut Vec<String>,
 ) -> Result<Vec<CheckedBody>, Fault> {
-    check_materials(scene)?;
+    materials::check(scene, warnings)?;
     let materials: Vec<_> = scene.materials.keys().map(String::as_str).collect();
     let index: HashMap<_, _> = materials.iter().enumerate().map(|(i, &name)| (name, i)).collect();
     let mut names = HashSet::new();
@@ -98,35 +97,6 @@ pub(super) fn check(
     Ok(checked)
 }
 
-fn check_materials(scene: &Scene) -> Result<(), Fault> {
-    for (name, material) in &scene.materials {
-        check_printable("materials", name)?;
-        if let Eos::MieGruneisen { c0, .. } = material.eos
-            && !(material.density * c0 * c0).is_normal()
-        {
-            let path = join(&join("materials", name), "density");
-            let reason = format!(
-                "density * c0^2 with eos.c0 = {c0} is no finite stiffness; allowed: SI units, \
-                 kg/m3 and m/s"
-            );
-            return Err(Fault::new(path, material.density, reason));
-        }
-        if let Eos::LinearElastic { youngs_modulus, poissons_ratio }
-        | Eos::NeoHookean { youngs_modulus, poissons_ratio } = material.eos
-            && !(Lame::new(youngs_modulus, poissons_ratio).longitudinal() / material.density)
-                .is_normal()
-        {
-            let path = format!("{}.eos.youngs_modulus", join("materials", name));
-            let reason = format!(
-                "no finite stiffness over density = {}; allowed: SI units, Pa and kg/m3",
-                json!(material.density)
-            );
-            return Err(Fault::new(path, youngs_modulus, reason));
-        }
-    }
-    Ok(())
-}
-
 fn check_body(
     scene: &Scene,
     body: &Body,
@@ -153,7 +123,7 @@ fn check_body(
     let filled = if dimension == 1 { fill.line()? } else { fill.plane()? };
     check_length(&below("velocity"), &velocity, dimension)?;
     check_inside(scene, path, key, &filled, cell_size)?;
-    check_pressure(scene, body, &below("pressure"))?;
+    materials::check_pressure(scene, body, &below("pressure"))?;
     let motion = motion::check_field(scene, body, path, dimension)?;
     let Filled { lower, upper, lattice, tiles } = filled;
     let top_speed = match &motion {
@@ -350,27 +320,6 @@ fn norm(v: &[f64]) -> f64 {
         [x] => x.abs(),
         _ => v.iter().map(|x| x * x).sum::<f64>().sqrt(),
     }
-}
-
-/// A pressure that the material bears at its density.
-fn check_pressure(scene: &Scene, body: &Body, path: &str) -> Result<(), Fault> {
-    let material = &scene.materials[&body.material];
-    let (least, why) = match material.eos {
-        Eos::MieGruneisen { c0, gamma0, .. } => (
-            -material.density * c0 * c0 / (2.0 * gamma0),
-            "the tension -density c0^2/(2 gamma0) that Mie-Grueneisen can bear",
-        ),
-        Eos::IdealGas { .. } => (0.0, "since an ideal gas bears no tension"),
-        Eos::LinearElastic { .. } | Eos::NeoHookean { .. } if body.pressure == 0.0 => return Ok(()),
-        Eos::LinearElastic { .. } | Eos::NeoHookean { .. } => {
-            let reason = "an elastic body starts without stress; allowed: 0";
-            return Err(Fault::new(path, body.pressure, reason));
-        }
-    };
-    if body.pressure >= least {
-        return Ok(());
-    }
-    Err(Fault::new(path, body.pressure, format!("allowed: at least {}, {why}", json!(least))))
 }
 
 /// Particles in each direction of a box.

@@ -49,7 +49,7 @@ impl CheckedScene {
     }
 
     /// Speed at which body `i` and a wall come together [m/s].
-    pub(super) fn closing_speed(&self, wall: &Wall, i: usize) -> f64 {
+    pub fn closing_speed(&self, wall: &Wall, i: usize) -> f64 {
         let relative = self.bodies[i].velocity[0] - wall.velocity;
         if wall.upper { relative } else { -relative }
     }

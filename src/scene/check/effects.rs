@@ -2,7 +2,7 @@
 
 use super::super::conform::join;
 use super::super::errors::Fault;
-use super::super::model::{Failure, HeatSource, Material, Scene, Strength};
+use super::super::model::{Eos, Failure, HeatSource, Material, Scene, Strength};
 
 pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
     for (name, material) in &scene.materials {
@@ -94,6 +94,13 @@ fn check_thermal(path: &str, material: &Material) -> Result<(), Fault> {
     if material.eos.is_solid() {
         let reason = "an elastic solid has no thermal part; allowed: to leave it out, or the eos \
                       of a fluid with strength";
+        return Err(Fault::new(path, thermal, reason));
+    }
+    let has_history = matches!(material.eos, Eos::PAlpha { .. })
+        || material.eos.burn().is_some_and(|burn| burn.front().is_some());
+    if has_history && thermal.source == HeatSource::Energy {
+        let reason = "pores and burning explosives have no one isentrope; allowed: to leave it \
+                      out, or thermal.source \"plastic_work\" with strength";
         return Err(Fault::new(path, thermal, reason));
     }
     if material.strength.is_none() {

@@ -110,8 +110,9 @@ fn impacts(checked: &CheckedScene) -> Vec<Impact<'_>> {
 }
 
 fn check_impact(checked: &CheckedScene, impact: &Impact) -> Result<(), Fault> {
+    // a curved Hugoniot has a limit of its own, which its fault tells of
     let hugoniot = |i: usize| match checked.material_of(i).eos {
-        Eos::MieGruneisen { c0, s, .. } => {
+        Eos::MieGruneisen { c0, s, s2: 0.0, .. } => {
             Some(Hugoniot { rho0: checked.material_of(i).density, c0, s })
         }
         _ => None,

@@ -8,6 +8,7 @@ mod domain;
 mod effects;
 mod front;
 mod impact;
+mod materials;
 mod memory;
 mod method;
 mod motion;
@@ -18,7 +19,7 @@ mod reference;
 use serde::Serialize;
 
 use super::errors::{Fault, one_line};
-use super::model::{Contact, Geometry, Material, Scene, Side};
+use super::model::{Contact, Eos, Geometry, Material, Scene, Side};
 
 pub use bodies::CheckedBody;
 pub use boundary::Wall;
@@ -137,6 +138,11 @@ impl CheckedScene {
     /// Whether a body bears shear, so that stress is a tensor.
     pub fn has_solids(&self) -> bool {
         (0..self.bodies.len()).any(|i| self.material_of(i).bears_shear())
+    }
+
+    /// Whether a body's equation of state is such.
+    pub fn has_eos(&self, such: impl Fn(&Eos) -> bool) -> bool {
+        (0..self.bodies.len()).any(|i| such(&self.material_of(i).eos))
     }
 
     /// Velocity fields: one for all bodies, or with contact one a body.

@@ -2,7 +2,7 @@
 
 use super::super::conform::join;
 use super::super::errors::{Fault, suggest};
-use super::super::model::{Eos, FlyerImpact, Reference, Riemann, Side, WallImpact};
+use super::super::model::{Burn, Eos, FlyerImpact, Reference, Riemann, Side, WallImpact};
 use super::{CheckedScene, plane_reference};
 
 pub(super) fn check(checked: &mut CheckedScene) -> Result<(), Fault> {
@@ -29,6 +29,15 @@ fn check_flyer_impact(checked: &mut CheckedScene, impact: &FlyerImpact) -> Resul
     for (path, i) in [(FLYER, flyer), (TARGET, target)] {
         check_eos(checked, path, i, "mie_gruneisen")?;
         let body = &checked.scene.bodies[i];
+        let material = checked.material_of(i);
+        if material.eos.straight(material.density).is_none() {
+            let key = join("materials", &body.material);
+            let reason = format!(
+                "{key}.eos has s2, gruneisen \"gamma_constant\" or a tension_cutoff, which the exact \
+                 solution does not have; allowed: to leave them out, or the reference"
+            );
+            return Err(Fault::new(path, &body.name, reason));
+        }
         if body.pressure != 0.0 {
             let key = join(&join("bodies", &body.name), "pressure");
             let reason =
@@ -142,8 +151,13 @@ fn check_wall_impact(checked: &CheckedScene, impact: &WallImpact) -> Result<(), 
     let body = find_even_body(checked, BODY, &impact.body)?;
     check_no_strength(checked, BODY, body)?;
     if checked.material_of(body).eos.is_solid() {
-        let reason =
-            "an elastic body; allowed: one whose eos is \"mie_gruneisen\" or \"ideal_gas\"";
+        let reason = "an elastic body; allowed: one with an equation of state of a fluid, such as \
+             \"mie_gruneisen\" or \"ideal_gas\"";
+        return Err(Fault::new(BODY, &impact.body, reason));
+    }
+    if matches!(checked.material_of(body).eos.burn(), Some(Burn::Front(_))) {
+        let reason = "an explosive that burns, which has no steady shock; allowed: another body, or \
+                      eos.burn \"complete\"";
         return Err(Fault::new(BODY, &impact.body, reason));
     }
     if checked.wall_struck_by(body).is_some() {

@@ -40,7 +40,8 @@ pub struct Scene {
     /// How the work is shared; it changes no bit of the results.
     #[serde(default)]
     pub decomposition: Decomposition,
-    /// Materials by name.
+    /// Materials by name; each whole, or by `library` or `file` with keys beside it that override.
+    #[schemars(with = "BTreeMap<String, MaterialSource>")]
     pub materials: BTreeMap<String, Material>,
     /// Bodies; their order numbers the particles.
     #[schemars(length(min = 1))]

@@ -1,0 +1,49 @@
+//! Measures what materials and effects promise, and prints each figure beside its bound.
+//!
+//! Started by `scripts/check_effects.sh`, which builds the program first. Arguments: names of
+//! sections to run them alone. Exit code 1 where a bound is missed.
+
+mod equations;
+mod explosives;
+mod paths;
+#[path = "../common/resident.rs"]
+mod resident;
+#[path = "../common/runs.rs"]
+mod runs;
+#[path = "../common/table.rs"]
+mod table;
+mod tables;
+
+use std::process::ExitCode;
+
+use table::Table;
+
+/// Checks one section.
+type Section = fn(&mut Table);
+
+const SECTIONS: [(&str, Section); 6] = [
+    ("equations", equations::check),
+    ("porous", equations::porous),
+    ("tables", tables::check),
+    ("products", explosives::products),
+    ("burn", explosives::burn),
+    ("paths", paths::check),
+];
+
+fn main() -> ExitCode {
+    let wanted: Vec<String> = std::env::args().skip(1).collect();
+    let known = |name: &str| SECTIONS.iter().any(|(section, _)| *section == name);
+    if let Some(unknown) = wanted.iter().find(|name| !known(name)) {
+        let names: Vec<_> = SECTIONS.iter().map(|(name, _)| *name).collect();
+        eprintln!("{unknown}: expected one of {}", names.join(", "));
+        return ExitCode::from(2);
+    }
+    let mut table = Table::new();
+    for (name, section) in SECTIONS {
+        if wanted.is_empty() || wanted.iter().any(|w| w == name) {
+            section(&mut table);
+        }
+    }
+    println!("{} of {} bounds held", table.bounded - table.missed, table.bounded);
+    if table.missed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}

@@ -1,0 +1,113 @@
+//! A least pressure for equations of state: tension beyond a cutoff is not borne.
+//!
+//! p = max(p_eos(J, e), -cutoff). Where the cutoff acts the pressure does not hear of the volume,
+//! and the work done is that of the pressure that is borne. The sound speed there, which sets the
+//! time step alone, is the one at rest: what comes back finds stiffness no sooner than there.
+
+use super::{EosPoint, EquationOfState, GeneralEos, Linear};
+
+/// An equation of state with a least pressure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cutoff<E> {
+    /// The equation of state.
+    pub eos: E,
+    /// The greatest tension that is borne [Pa]; the least pressure is minus it.
+    pub tension: f64,
+}
+
+impl<E: EquationOfState> EquationOfState for Cutoff<E> {
+    fn reference_density(&self) -> f64 {
+        EquationOfState::reference_density(&self.eos)
+    }
+
+    #[inline(always)]
+    fn linear(&self, jacobian: f64) -> Linear {
+        self.eos.linear(jacobian)
+    }
+
+    #[inline(always)]
+    fn sound_speed_squared(&self, jacobian: f64, pressure: f64) -> f64 {
+        if pressure <= -self.tension {
+            self.eos.sound_speed_squared(1.0, 0.0)
+        } else {
+            self.eos.sound_speed_squared(jacobian, pressure)
+        }
+    }
+
+    #[inline(always)]
+    fn least_pressure(&self) -> f64 {
+        -self.tension
+    }
+
+    #[inline(always)]
+    fn fault(&self, jacobian: f64, pressure: f64) -> Option<&'static str> {
+        // no tension is too much; what is wrong with the volume still is
+        let pressure = if pressure <= -self.tension { 0.0 } else { pressure };
+        EquationOfState::fault(&self.eos, jacobian, pressure)
+    }
+}
+
+/// The same of an equation of state of any form.
+pub struct GeneralCutoff<E> {
+    /// The equation of state.
+    pub eos: E,
+    /// The greatest tension that is borne [Pa].
+    pub tension: f64,
+    /// Square of its sound speed at rest [m2/s2].
+    pub rest: f64,
+}
+
+impl<E: GeneralEos> GeneralCutoff<E> {
+    /// `eos` with a cutoff.
+    pub fn new(eos: E, tension: f64) -> Self {
+        let rest = eos.at(1.0, eos.energy_at(0.0)).sound_speed_squared;
+        GeneralCutoff { eos, tension, rest }
+    }
+}
+
+impl<E: GeneralEos> GeneralEos for GeneralCutoff<E> {
+    fn reference_density(&self) -> f64 {
+        self.eos.reference_density()
+    }
+
+    #[inline(always)]
+    fn at(&self, jacobian: f64, energy: f64) -> EosPoint {
+        let point = self.eos.at(jacobian, energy);
+        // a comparison with NaN is false
+        if point.pressure <= -self.tension {
+            let (pressure, sound_speed_squared) = (-self.tension, self.rest);
+            EosPoint { pressure, energy_slope: 0.0, sound_speed_squared }
+        } else {
+            point
+        }
+    }
+
+    fn fault(&self, jacobian: f64, energy: f64, pressure: f64) -> Option<&'static str> {
+        let pressure = if pressure <= -self.tension { 0.0 } else { pressure };
+        self.eos.fault(jacobian, energy, pressure)
+    }
+
+    fn energy_at(&self, pressure: f64) -> f64 {
+        self.eos.energy_at(pressure)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::MieGruneisen;
+    use super::*;
+
+    #[test]
+    fn tension_stops_at_the_cutoff() {
+        let eos = MieGruneisen { rho0: 8930.0, c0: 3940.0, s: 1.489, gamma0: 1.96 };
+        let limited = Cutoff { eos, tension: 1e9 };
+        for j in [0.8, 0.999, 1.005] {
+            assert_eq!(limited.pressure(j, 1e3), eos.pressure(j, 1e3));
+        }
+        let point = GeneralEos::at(&limited, 1.5, 1e3);
+        assert_eq!((point.pressure, point.energy_slope), (-1e9, 0.0));
+        assert!((point.sound_speed_squared.sqrt() - 3940.0).abs() < 1e-9);
+        assert_eq!(GeneralEos::fault(&limited, 5.0, 0.0, -1e9), None);
+        assert!(GeneralEos::fault(&limited, 0.2, 0.0, -1e9).is_some(), "past the limit 1/s");
+    }
+}

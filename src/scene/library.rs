@@ -1,0 +1,196 @@
+//! Materials by name or from a file of their own, with keys beside them that override.
+//!
+//! `{"library": "copper"}` is replaced by a material that stands in the program itself, with its
+//! sources; `{"file": "mine.json"}` by the one in a file beside the scene's. Objects are merged key
+//! by key; one whose `type` is another is replaced as a whole. Files are read by one rank
+//! ([`inline_files`]), names are resolved by all, after the overrides of the command line
+//! ([`resolve`]). Nothing is ever written.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::conform::join;
+use super::errors::{Fault, SceneError, one_line, suggest};
+use crate::material::Table;
+
+/// The materials of the library; each file holds one as it stands in a scene.
+pub const LIBRARY: [(&str, &str); 21] = [
+    ("aluminium_1100", include_str!("../../inputs/materials/aluminium_1100.json")),
+    ("aluminium_2024", include_str!("../../inputs/materials/aluminium_2024.json")),
+    ("aluminium_6061", include_str!("../../inputs/materials/aluminium_6061.json")),
+    ("aluminium_tillotson", include_str!("../../inputs/materials/aluminium_tillotson.json")),
+    ("composition_b", include_str!("../../inputs/materials/composition_b.json")),
+    ("copper", include_str!("../../inputs/materials/copper.json")),
+    ("gold", include_str!("../../inputs/materials/gold.json")),
+    ("iron", include_str!("../../inputs/materials/iron.json")),
+    ("iron_tillotson", include_str!("../../inputs/materials/iron_tillotson.json")),
+    ("lead", include_str!("../../inputs/materials/lead.json")),
+    ("lithium_fluoride", include_str!("../../inputs/materials/lithium_fluoride.json")),
+    ("nickel", include_str!("../../inputs/materials/nickel.json")),
+    ("pbx_9404", include_str!("../../inputs/materials/pbx_9404.json")),
+    ("pmma", include_str!("../../inputs/materials/pmma.json")),
+    ("steel_304", include_str!("../../inputs/materials/steel_304.json")),
+    ("steel_4340", include_str!("../../inputs/materials/steel_4340.json")),
+    ("tantalum", include_str!("../../inputs/materials/tantalum.json")),
+    ("titanium", include_str!("../../inputs/materials/titanium.json")),
+    ("tnt", include_str!("../../inputs/materials/tnt.json")),
+    ("tungsten", include_str!("../../inputs/materials/tungsten.json")),
+    ("water", include_str!("../../inputs/materials/water.json")),
+];
+
+/// Puts `edit` into `base`: objects key by key, unless they are of another `type`, anything else as
+/// a whole.
+fn merge(base: &mut Value, edit: Value) {
+    match (base, edit) {
+        (Value::Object(base), Value::Object(edit))
+            if edit.get("type").is_none_or(|t| base.get("type") == Some(t)) =>
+        {
+            for (key, value) in edit {
+                merge(base.entry(key).or_insert(Value::Null), value);
+            }
+        }
+        (base, edit) => *base = edit,
+    }
+}
+
+/// Replaces names of the library by what they stand for.
+pub(super) fn resolve(scene: &mut Value) -> Result<(), Fault> {
+    let Some(materials) = scene.get_mut("materials").and_then(Value::as_object_mut) else {
+        return Ok(());
+    };
+    for (key, material) in materials {
+        let Some(object) = material.as_object_mut() else { continue };
+        let path = join("materials", key);
+        if let Some(file) = object.get("file") {
+            let reason = "is read with the scene's own file alone; allowed: to name it there, or \
+                          \"library\"";
+            return Err(Fault::new(format!("{path}.file"), file, reason));
+        }
+        let Some(name) = object.remove("library") else { continue };
+        let known = LIBRARY.iter().map(|(name, _)| *name);
+        let found = LIBRARY.iter().find(|(known, _)| name == *known);
+        let Some((_, text)) = found else {
+            let reason = format!("no such material{}", suggest(name.as_str().unwrap_or(""), known));
+            return Err(Fault::new(format!("{path}.library"), name, reason));
+        };
+        let mut made: Value = serde_json::from_str(text).expect("the library is JSON");
+        merge(&mut made, material.take());
+        *material = made;
+    }
+    Ok(())
+}
+
+/// Replaces files of materials and of tables by what stands in them; `folder` is the scene's.
+/// Tells whether there was one.
+pub(super) fn inline_files(scene: &mut Value, folder: &Path) -> Result<bool, SceneError> {
+    let mut found = false;
+    let materials = scene.get_mut("materials").and_then(Value::as_object_mut);
+    for material in materials.into_iter().flat_map(|m| m.values_mut()) {
+        // a table beside the name of a file is the scene's own
+        found |= inline_tables(material, folder)?;
+        let Some(object) = material.as_object_mut() else { continue };
+        let Some(Value::String(name)) = object.get("file") else { continue };
+        let file = folder.join(name);
+        let fail = |reason: String| fault(&file, reason);
+        let text = read_text(&file)?;
+        let mut made: Value = serde_json::from_str(&text)
+            .map_err(|error| fail(format!("is no JSON: {error}; allowed: one material")))?;
+        if !made.is_object() {
+            return Err(fail("allowed: a material, one JSON object".into()));
+        }
+        if made.get("file").is_some() {
+            return Err(fail("names a file; allowed: a material, or \"library\"".into()));
+        }
+        inline_tables(&mut made, file.parent().unwrap_or(Path::new("")))?;
+        object.remove("file");
+        merge(&mut made, material.take());
+        *material = made;
+        found = true;
+    }
+    Ok(found)
+}
+
+/// Replaces the file of a material's table by the table.
+fn inline_tables(material: &mut Value, folder: &Path) -> Result<bool, SceneError> {
+    let mut found = false;
+    for place in ["/eos/table", "/eos/solid/table"] {
+        let Some(Value::String(name)) = material.pointer(place) else { continue };
+        let file = folder.join(name);
+        let table = Table::read(&read_text(&file)?).map_err(|reason| fault(&file, reason))?;
+        *material.pointer_mut(place).expect("it is there") = serde_json::json!({
+            "density": table.density,
+            "specific_internal_energy": table.energy,
+            "pressure": table.pressure,
+        });
+        found = true;
+    }
+    Ok(found)
+}
+
+fn read_text(file: &Path) -> Result<String, SceneError> {
+    std::fs::read_to_string(file).map_err(|error| fault(file, format!("cannot be read: {error}")))
+}
+
+fn fault(file: &Path, reason: String) -> SceneError {
+    SceneError::File { file: one_line(&file.display().to_string()), reason: one_line(&reason) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constitutive::{equation, products};
+    use crate::exact::hugoniot::{MaterialState, piston};
+    use crate::scene::Material;
+    use serde_json::json;
+
+    fn resolved(material: Value) -> Result<Value, Fault> {
+        let mut scene = json!({"materials": {"m": material}});
+        resolve(&mut scene)?;
+        Ok(scene["materials"]["m"].take())
+    }
+
+    #[test]
+    fn keys_beside_a_name_override() {
+        let made = resolved(json!({"library": "copper", "eos": {"s": 1.5}})).unwrap();
+        assert_eq!((&made["eos"]["s"], &made["eos"]["c0"]), (&json!(1.5), &json!(3940.0)));
+        assert!(made.get("library").is_none());
+        let gas = json!({"type": "ideal_gas", "gamma": 1.4});
+        let made = resolved(json!({"library": "copper", "eos": gas})).unwrap();
+        assert_eq!(made["eos"], gas);
+    }
+
+    #[test]
+    fn unknown_names_are_told_with_the_known() {
+        let told = resolved(json!({"library": "coper"})).unwrap_err().within("s").to_string();
+        assert!(told.contains("did you mean copper?") && told.contains("tantalum"), "{told}");
+        let told = resolved(json!({"file": "x"})).unwrap_err().within("s").to_string();
+        assert!(told.contains("materials.m.file"), "{told}");
+    }
+
+    #[test]
+    fn each_material_has_a_source_and_a_hugoniot() {
+        for (name, text) in LIBRARY {
+            let mut value: Value = serde_json::from_str(text).unwrap();
+            let explosive = value["eos"]["type"] == "jwl";
+            if explosive {
+                value["eos"]["burn"] = json!("complete");
+            }
+            let material: Material = serde_json::from_value(value).unwrap();
+            assert!(material.source.len() > 30, "{name}");
+            if let Some(products) = products(&material.eos, material.density) {
+                // the speed that the handbook gives beside the constants
+                let (_, said) = material.source.split_once("detonation velocity of ").unwrap();
+                let said: f64 = said.split(' ').next().unwrap().parse().unwrap();
+                let speed = products.detonation().speed;
+                assert!((speed / said - 1.0).abs() < 0.01, "{name}: {speed}");
+            } else {
+                let eos = equation(&material).unwrap().unwrap();
+                let rest = MaterialState::at_rest(&*eos, 0.0, 0.0);
+                let front = piston(&*eos, &rest, 100.0).unwrap()[0];
+                let (c, us) = (rest.sound_speed, front.speed);
+                assert!(us > c && us < c + 500.0, "{name}: {c} {us}");
+            }
+        }
+    }
+}

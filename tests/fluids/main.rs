@@ -1,0 +1,9 @@
+//! Equations of state in runs: shocks against their jump conditions, pores, explosives, tables,
+//! materials of the library, and every bad constant with its message.
+
+mod bits;
+mod burn;
+mod library;
+mod pistons;
+mod refused;
+mod tools;
