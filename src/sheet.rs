@@ -78,8 +78,10 @@ fn burnt(material: &Material) -> Material {
 struct Sheet<'a> {
     eos: &'a dyn HistoryEos,
     rest: MaterialState,
-    /// The last front of each particle velocity.
+    /// The last front of each particle velocity of the table.
     hugoniot: Vec<ShockFront>,
+    /// The same of many, for pictures.
+    curve: Vec<ShockFront>,
     /// Names and states of isentropes.
     isentropes: Vec<(String, Vec<MaterialState>)>,
     detonation: Option<Detonation>,
@@ -88,15 +90,26 @@ struct Sheet<'a> {
 impl<'a> Sheet<'a> {
     fn new(eos: &'a dyn HistoryEos, detonation: Option<Detonation>) -> Self {
         let rest = MaterialState::at_rest(eos, 0.0, 0.0);
-        let fronts = VELOCITIES.iter().map_while(|&up| piston(eos, &rest, up).ok());
-        let hugoniot: Vec<ShockFront> =
-            fronts.filter_map(|fronts| fronts.last().copied()).collect();
-        let mut isentropes = vec![("from rest".to_string(), follow(eos, rest))];
+        let last = |up: f64| piston(eos, &rest, up).ok()?.last().copied();
+        let hugoniot: Vec<ShockFront> = VELOCITIES.iter().map_while(|&up| last(up)).collect();
+        let range = (VELOCITIES[VELOCITIES.len() - 1] / VELOCITIES[0]).ln();
+        let velocities =
+            (0..=POINTS).map(|k| VELOCITIES[0] * (range * k as f64 / POINTS as f64).exp());
+        let curve: Vec<ShockFront> = velocities.map_while(last).collect();
+        // the principal isentrope is followed into compression too
+        let densest = curve.last().map_or(rest.jacobian, |front| front.behind.jacobian);
+        let mut principal: Vec<MaterialState> = (0..POINTS)
+            .map(|k| densest + (rest.jacobian - densest) * k as f64 / POINTS as f64)
+            .map(|j| isentrope(eos, rest, j, 200))
+            .filter(|s| s.p.is_finite() && s.sound_speed > 0.0)
+            .collect();
+        principal.extend(follow(eos, rest));
+        let mut isentropes = vec![("from rest".to_string(), principal)];
         for front in hugoniot.iter().filter(|f| [1e3, 3e3].contains(&f.behind.u.round())) {
             let name = format!("from {:.4} GPa", front.behind.p * 1e-9);
             isentropes.push((name, follow(eos, front.behind)));
         }
-        Sheet { eos, rest, hugoniot, isentropes, detonation }
+        Sheet { eos, rest, hugoniot, curve, isentropes, detonation }
     }
 
     fn text(&self, name: &str, material: &Material) -> String {
@@ -135,7 +148,7 @@ impl<'a> Sheet<'a> {
             line(String::new());
             line(format!("isentrope {name}"));
             line("  v/v0         P [GPa]     e [J/kg]    c [m/s]".into());
-            let every = states.len().div_ceil(8).max(1);
+            let every = states.len().div_ceil(10).max(1);
             for s in states.iter().step_by(every).chain(states.last()) {
                 line(format!(
                     "{:>7.4} {:>14.6e} {:>12.5e} {:>10.2}",
@@ -190,13 +203,13 @@ impl<'a> Sheet<'a> {
     }
 
     fn figures(&self, name: &str) -> Vec<(&'static str, Figure)> {
-        let fronts = &self.hugoniot;
+        let fronts = &self.curve;
         let points = |x: &dyn Fn(&ShockFront) -> f64, y: &dyn Fn(&ShockFront) -> f64| {
             let xs: Vec<f64> = fronts.iter().map(x).collect();
             Points::new(xs, fronts.iter().map(y).collect::<Vec<f64>>())
         };
         let panel = |axis: Axis, points: Points| {
-            let style = Style::line_and_marks(Color::of_material(name, 0));
+            let style = Style::line(Color::of_material(name, 0));
             Panel::new(axis).series(Series::new("", points, style))
         };
         let up = |f: &ShockFront| f.behind.u;
@@ -208,7 +221,14 @@ impl<'a> Sheet<'a> {
                     Axis::linear("Sound speed", "m/s"),
                     points(&up, &|f| f.behind.sound_speed),
                 ));
-        let mut pressures = Panel::new(Axis::log("Pressure", "Pa"));
+        // gases expand over decades; what bears tension has to be drawn evenly
+        let states = || self.isentropes.iter().flat_map(|(_, states)| states);
+        let gas = states().all(|s| s.p > 0.0);
+        let axis = |label: &str, unit: &str| match gas {
+            true => Axis::log(label, unit),
+            false => Axis::linear(label, unit),
+        };
+        let mut pressures = Panel::new(axis("Pressure", "Pa"));
         let line = Style::line(Color::of_material(name, 0));
         let volume = |f: &ShockFront| f.behind.jacobian;
         let series = Series::new("Hugoniot", points(&volume, &|f| f.behind.p), line);
@@ -220,7 +240,7 @@ impl<'a> Sheet<'a> {
             let name = format!("isentrope {from}");
             pressures = pressures.series(Series::new(name, Points::new(v, p), style));
         }
-        let volume = Axis::log("Volume over that at rest", "");
+        let volume = axis("Volume over that at rest", "");
         let isentropes =
             Figure::new(format!("{name}: pressure by volume"), volume).panel(pressures);
         vec![("hugoniot", waves), ("isentropes", isentropes)]

@@ -129,7 +129,12 @@ fn inline_tables(material: &mut Value, folder: &Path) -> Result<bool, SceneError
 }
 
 fn read_text(file: &Path) -> Result<String, SceneError> {
-    std::fs::read_to_string(file).map_err(|error| fault(file, format!("cannot be read: {error}")))
+    let cannot = |error: std::io::Error| fault(file, format!("cannot be read: {error}"));
+    // a pipe or a device may have no end
+    if !std::fs::metadata(file).map_err(cannot)?.is_file() {
+        return Err(fault(file, "is no regular file; allowed: a file".into()));
+    }
+    std::fs::read_to_string(file).map_err(cannot)
 }
 
 fn fault(file: &Path, reason: String) -> SceneError {
