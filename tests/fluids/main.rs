@@ -4,6 +4,7 @@
 mod bits;
 mod burn;
 mod library;
+mod options;
 mod pistons;
 mod refused;
 mod tools;
