@@ -23,6 +23,8 @@ pub enum Effect {
     Failure,
     /// Temperature.
     Temperature,
+    /// Conduction of heat.
+    Conduction,
     /// Pores that close.
     Pores,
     /// A detonation's front.
@@ -40,7 +42,7 @@ impl Effect {
     pub const COUNT: usize = Self::ALL.len();
 
     /// All of them, in order.
-    pub const ALL: [Effect; 12] = [
+    pub const ALL: [Effect; 13] = [
         Effect::Viscosity,
         Effect::Relaxation,
         Effect::Affine,
@@ -48,6 +50,7 @@ impl Effect {
         Effect::Strength,
         Effect::Failure,
         Effect::Temperature,
+        Effect::Conduction,
         Effect::Pores,
         Effect::Burn,
         Effect::Contact,
@@ -65,6 +68,7 @@ impl Effect {
             Effect::Strength => "strength",
             Effect::Failure => "failure",
             Effect::Temperature => "temperature",
+            Effect::Conduction => "conduction",
             Effect::Pores => "pores",
             Effect::Burn => "burn",
             Effect::Contact => "contact",
@@ -83,6 +87,7 @@ impl Effect {
             }
             "damage" | "released_energy" => Effect::Failure,
             "temperature" | "stored_work" => Effect::Temperature,
+            "heat_capacity" | "heat_conductance" | "heat_received" => Effect::Conduction,
             "distension" => Effect::Pores,
             "lighting_time" | "burn_fraction" => Effect::Burn,
             "contact_impulse" => Effect::Contact,
@@ -113,10 +118,9 @@ impl Effect {
             Effect::Strength => materials().any(|m| m.strength.is_some()),
             Effect::Failure => materials().any(|m| m.failure.is_some()),
             Effect::Temperature => materials().any(|m| m.thermal.is_some()),
+            Effect::Conduction => scene.conducts(),
             Effect::Pores => materials().any(|m| matches!(m.eos, Eos::PAlpha { .. })),
-            Effect::Burn => {
-                materials().any(|m| m.eos.burn().is_some_and(|b| b.front().is_some()))
-            }
+            Effect::Burn => materials().any(|m| m.eos.burn().is_some_and(|b| b.front().is_some())),
             Effect::Contact => scene.velocity_fields() > 1,
             Effect::BodyForce => whole.body_force.is_some(),
             Effect::TransmittingSides => scene.transmits(),
@@ -191,7 +195,15 @@ mod tests {
     #[test]
     fn what_is_off_has_no_column() {
         let root = env!("CARGO_MANIFEST_DIR");
-        for name in ["flyer", "piston_elastic_plastic", "spall", "soft_flyer", "vortex", "detonation", "porous_impact"] {
+        for name in [
+            "flyer",
+            "piston_elastic_plastic",
+            "spall",
+            "soft_flyer",
+            "vortex",
+            "detonation",
+            "porous_impact",
+        ] {
             let text = std::fs::read(format!("{root}/inputs/{name}.json")).unwrap();
             let scene = crate::scene::parse(&text, name, &[]).unwrap();
             let columns = Columns::new(&scene);

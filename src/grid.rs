@@ -40,23 +40,48 @@ pub struct Fields {
     pub relaxation: [usize; 4],
     /// Heat of friction [J/kg], with contact or a wall that has friction.
     pub heat: Option<usize>,
+    /// What heat conduction takes, with it.
+    pub conduction: Option<ConductionFields>,
     /// Scratch for the sums of a side.
     pub side: usize,
     /// Number of fields.
     pub count: usize,
 }
 
+/// Where the fields of heat conduction stand.
+#[derive(Clone, Copy, Debug)]
+pub struct ConductionFields {
+    /// 1/C_i of the heat capacity, 0 where there is none [K/J].
+    pub inverse: usize,
+    /// Temperature T_i [K].
+    pub temperature: usize,
+    /// Temperature projected through the full matrix of capacities [K].
+    pub projected: usize,
+    /// Its rate [K/s].
+    pub rate: usize,
+}
+
+/// What of the fields a scheme and its effects ask for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Wanted {
+    /// A filter.
+    pub filtered: bool,
+    /// An edge mask.
+    pub masked: bool,
+    /// Pressure relaxation.
+    pub relaxed: bool,
+    /// Friction.
+    pub rubs: bool,
+    /// Heat conduction.
+    pub conducts: bool,
+    /// Sums of a side.
+    pub sides: usize,
+}
+
 impl Fields {
-    /// The fields in `dimension` directions for a scheme with or without a filter, an edge mask,
-    /// pressure relaxation and friction, and with `sides` sums of a side.
-    pub fn new(
-        dimension: usize,
-        filtered: bool,
-        masked: bool,
-        relaxed: bool,
-        rubs: bool,
-        sides: usize,
-    ) -> Self {
+    /// The fields in `dimension` directions.
+    pub fn new(dimension: usize, wanted: Wanted) -> Self {
+        let Wanted { filtered, masked, relaxed, rubs, conducts, sides } = wanted;
         let mut count = 0;
         let mut add = |n: usize, wanted: bool| {
             let at = if wanted { count } else { usize::MAX / 2 };
@@ -71,6 +96,12 @@ impl Fields {
         let volume = add(1, masked);
         let r = add(4, relaxed);
         let heat = rubs.then(|| add(1, true));
+        let conduction = conducts.then(|| ConductionFields {
+            inverse: add(1, true),
+            temperature: add(1, true),
+            projected: add(1, true),
+            rate: add(1, true),
+        });
         let side = add(sides, true);
         Fields {
             mass,
@@ -86,6 +117,7 @@ impl Fields {
             volume,
             relaxation: [r, r + 1, r + 2, r + 3],
             heat,
+            conduction,
             side,
             count,
         }

@@ -129,6 +129,19 @@ pub struct ThermalColumns {
     pub temperature: usize,
     /// Plastic work that does not heat [J/kg], where there is any.
     pub stored: Option<usize>,
+    /// What conduction takes, with it.
+    pub conduction: Option<ConductionColumns>,
+    /// Heat that conduction has brought so far [J], where a side is held at a temperature.
+    pub received: Option<usize>,
+}
+
+/// Where the columns of heat conduction stand, both of them scratch.
+#[derive(Clone, Copy, Debug)]
+pub struct ConductionColumns {
+    /// m cv [J/K].
+    pub capacity: usize,
+    /// k V [W m/K].
+    pub conductance: usize,
 }
 
 /// Where the columns of an explosive stand.
@@ -320,9 +333,15 @@ impl Columns {
             released: add_all(&["released_energy"], "J", false, true, &same),
         });
         let stores = materials().any(|m| m.stores_work());
+        let (conducts, held) = (scene.conducts(), scene.holds_temperature());
         let thermal = materials().any(|m| m.thermal.is_some()).then(|| ThermalColumns {
-            temperature: add_all(&["temperature"], "K", false, true, &same),
+            temperature: add_all(&["temperature"], "K", conducts, true, &same),
             stored: stores.then(|| add_all(&["stored_work"], "J/kg", false, true, &same)),
+            conduction: conducts.then(|| ConductionColumns {
+                capacity: add_all(&["heat_capacity"], "J/K", true, false, &same),
+                conductance: add_all(&["heat_conductance"], "W m/K", true, false, &same),
+            }),
+            received: held.then(|| add_all(&["heat_received"], "J", false, true, &same)),
         });
         let porous = scene.has_eos(|eos| matches!(eos, Eos::PAlpha { .. }));
         let distension = porous.then(|| add_all(&["distension"], "", false, true, &same));
@@ -460,7 +479,7 @@ pub fn fill<const D: usize>(
             row[columns.energy] = energy(number, pressure);
             if let (Some(c), Some(thermal)) = (columns.thermal, &scene.material_of(number).thermal)
             {
-                row[c.temperature] = thermal.reference_temperature;
+                row[c.temperature] = body.temperature.unwrap_or(thermal.reference_temperature);
             }
             if let Some(distension) = columns.distension {
                 row[distension] = scene.material_of(number).distension();

@@ -138,6 +138,8 @@ pub struct Patch<const D: usize> {
     pub band: Band,
     /// Matrix of compliances, for pressure relaxation.
     pub compliance_band: Band,
+    /// Matrix of heat capacities, for conduction.
+    pub capacity_band: Band,
     /// Runs of rows in canonical order.
     pub runs: Vec<Range<usize>>,
     /// Nodes that hold material, of those that the patch computes: its own, and with deep ghosts
@@ -211,6 +213,7 @@ impl<const D: usize> Patch<D> {
             stencils: Stencils::default(),
             band: Band::default(),
             compliance_band: Band::default(),
+            capacity_band: Band::default(),
             runs: Vec::new(),
             active: Vec::new(),
             active_lines: Vec::new(),

@@ -406,7 +406,7 @@ fn balance<const D: usize>(
     });
     let pistons = scene.grid_velocity::<D>();
     let impulse: [f64; D] = std::array::from_fn(|a| walls[a] - left.momentum[a]);
-    let work = (0..D).map(|a| pistons[a] * walls[a]).sum::<f64>() + given.work
+    let work = (0..D).map(|a| pistons[a] * walls[a]).sum::<f64>() + given.work + end.conducted
         - (left.kinetic + left.internal);
     let energy = Energy::new([start.kinetic, end.kinetic], [start.internal, end.internal], work);
     let momentum = Momentum::new(&start.momentum, &end.momentum, &impulse, start.absolute_momentum);

@@ -5,11 +5,14 @@
 
 mod equations;
 mod explosives;
+mod heat;
 mod paths;
 #[path = "../common/resident.rs"]
 mod resident;
 #[path = "../common/runs.rs"]
 mod runs;
+mod spall;
+mod strength;
 #[path = "../common/table.rs"]
 mod table;
 mod tables;
@@ -21,14 +24,24 @@ use table::Table;
 /// Checks one section.
 type Section = fn(&mut Table);
 
-const SECTIONS: [(&str, Section); 6] = [
+const SECTIONS: [(&str, Section); 13] = [
     ("equations", equations::check),
     ("porous", equations::porous),
     ("tables", tables::check),
     ("products", explosives::products),
     ("burn", explosives::burn),
     ("paths", paths::check),
+    ("strength_paths", strength::paths),
+    ("piston", strength::piston),
+    ("flyer", strength::flyer),
+    ("taylor", strength::taylor),
+    ("taylor_fine", strength::taylor_fine),
+    ("spall", spall::check),
+    ("heat", heat::check),
 ];
+
+/// Sections that take long, run where they are named alone.
+const LONG: [&str; 1] = ["taylor_fine"];
 
 fn main() -> ExitCode {
     let wanted: Vec<String> = std::env::args().skip(1).collect();
@@ -40,7 +53,8 @@ fn main() -> ExitCode {
     }
     let mut table = Table::new();
     for (name, section) in SECTIONS {
-        if wanted.is_empty() || wanted.iter().any(|w| w == name) {
+        let asked = wanted.iter().any(|w| w == name);
+        if asked || (wanted.is_empty() && !LONG.contains(&name)) {
             section(&mut table);
         }
     }

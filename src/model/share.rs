@@ -91,7 +91,7 @@ impl Work {
             row_bytes: 8.0 * (columns.len() + 2 * reach.nodes + 2) as f64,
             // patch and kind, id, cell, columns
             ghost_bytes: 8.0 * (3 + ghost_columns) as f64,
-            notice: if options.skip_quiet { stepper.notice(reach) as f64 } else { 0.0 },
+            notice: if scene.skips_quiet() { stepper.notice(reach) as f64 } else { 0.0 },
             overlap: options.overlap,
             evened: options.balance.every > 0 && options.balance.cost == BalanceCost::Time,
             reach,

@@ -204,7 +204,7 @@ fn patch_parts<const D: usize>(scene: &CheckedScene, ranks: usize, threads: usiz
 fn may_sleep<const D: usize>(scene: &CheckedScene) -> bool {
     let mut bodies = scene.scene.bodies.iter().zip(&scene.bodies);
     let velocity = scene.grid_velocity::<D>();
-    scene.scene.decomposition.skip_quiet
+    scene.skips_quiet()
         && scene.scene.body_force.is_none()
         && bodies.any(|(b, c)| c.motion.is_none() && c.velocity == velocity && b.pressure == 0.0)
 }
@@ -272,7 +272,7 @@ impl<const D: usize> Plan<D> {
             FilterHalo::Deep => reach.deeper(),
         };
         let ghosts = reach.cells() + deeper;
-        let notice = options.skip_quiet.then(|| stepper.notice(reach));
+        let notice = scene.skips_quiet().then(|| stepper.notice(reach));
         let rows = RowExchange::new(layout, rank, RowReach { depth: ghosts, travel: 1, notice });
         let nodes =
             NodeExchange::layered(layout, rank, reach.halo(), reach.depth(ghosts), stepper.layers);
@@ -318,7 +318,9 @@ where
             &layout,
             comm.rank(),
             grid_velocity,
-            &|body, pressure| stepper.starting_energy(body, pressure),
+            &|body, pressure| {
+                stepper.starting_energy(body, pressure, scene.scene.bodies[body].temperature)
+            },
             &|body, pressure| stepper.starting_impulse(body, pressure),
         );
         let longest = stepper.longest_at_start(scene);

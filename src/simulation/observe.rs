@@ -23,6 +23,8 @@ pub struct Totals<const D: usize> {
     pub body_force_work: f64,
     /// Its impulse so far [kg m/s].
     pub body_force_impulse: [f64; D],
+    /// Heat that sides held at a temperature have given so far [J].
+    pub conducted: f64,
 }
 
 /// What a particle that is followed tells.
@@ -42,7 +44,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
     /// Sums over all particles in the frame of the scene. Collective.
     pub fn totals(&self) -> Totals<D> {
         let c = &self.stepper.columns;
-        let [mass, absolute_momentum, kinetic, internal, x, y, work, pull_x, pull_y] =
+        let [mass, absolute_momentum, kinetic, internal, x, y, work, pull_x, pull_y, conducted] =
             exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
                 for patch in &self.patches {
                     let column = |k: usize| &patch.block.columns[k];
@@ -65,6 +67,9 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
                             add(6, column(force.work)[r] + (0..D).map(travel).sum::<f64>());
                             (0..D).for_each(|a| add(7 + a, impulse(a)));
                         }
+                        if let Some(received) = c.thermal.and_then(|c| c.received) {
+                            add(9, column(received)[r]);
+                        }
                     }
                 }
             });
@@ -77,6 +82,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             internal,
             body_force_work: work,
             body_force_impulse: std::array::from_fn(|a| [pull_x, pull_y][a]),
+            conducted,
         }
     }
 

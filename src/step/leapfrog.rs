@@ -28,6 +28,7 @@ impl<const D: usize> Stepper<D> {
             self.find_pressed(patch, self.columns.jacobian, dt);
             self.find_body_force(patch, time);
             self.find_impedance(patch, self.columns.jacobian);
+            self.find_conductance(patch, self.columns.jacobian);
             self.locate(patch, 0.0, self.columns.jacobian);
             self.find_active(patch);
         });
@@ -45,8 +46,12 @@ impl<const D: usize> Stepper<D> {
         }
         let last = self.stress_update == StressUpdate::Last;
         world.exchange_rows(|nodal| {
-            nodal.each("scatter", |patch| self.scatter(patch, true, dt));
+            nodal.each("scatter", |patch| {
+                self.scatter(patch, true, dt);
+                self.scatter_heat(patch);
+            });
             self.solve_velocity(nodal, dt, false);
+            self.conduct(nodal, dt);
             self.solve_friction_heat(nodal, dt);
             nodal.each("gather", |patch| {
                 self.gather_contact(patch, dt);

@@ -17,7 +17,8 @@ use decomp::RowError;
 use super::{Stepper, World};
 use crate::clock::spend;
 use crate::effects::Effect::{
-    BodyForce, Contact, Failure, Relaxation, Strength, Stress, TransmittingSides, Viscosity,
+    BodyForce, Conduction, Contact, Failure, Relaxation, Strength, Stress, TransmittingSides,
+    Viscosity,
 };
 
 impl<const D: usize> Stepper<D> {
@@ -56,6 +57,9 @@ impl<const D: usize> Stepper<D> {
             if self.columns.side.is_some() {
                 spend(TransmittingSides, patch, |patch| self.find_impedance(patch, mid));
             }
+            if self.conduction.is_some() {
+                spend(Conduction, patch, |patch| self.find_conductance(patch, mid));
+            }
             self.locate(patch, 0.5 * dt, mid);
             self.find_active(patch);
         });
@@ -65,11 +69,15 @@ impl<const D: usize> Stepper<D> {
                 if relax.is_some() {
                     spend(Relaxation, patch, |patch| self.start_pressure(patch));
                 }
+                if self.conduction.is_some() {
+                    spend(Conduction, patch, |patch| self.scatter_heat(patch));
+                }
             });
             self.solve_velocity(nodal, dt, relax.is_some());
             if self.compatible {
                 self.solve_work(nodal);
             }
+            self.conduct(nodal, dt);
             self.solve_friction_heat(nodal, dt);
             nodal.each("gather", |patch| {
                 if self.columns.strength.is_some() {

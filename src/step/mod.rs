@@ -6,6 +6,7 @@
 
 mod body_force;
 mod burn;
+mod conduction;
 mod contact;
 mod failure;
 pub mod gather;
@@ -27,7 +28,7 @@ pub use world::{Nodal, Sleep, World};
 
 use crate::constitutive::{self, Criterion, Flow, Matter, Thermal};
 use crate::contact::Contact;
-use crate::grid::Fields;
+use crate::grid::{Fields, Wanted};
 use crate::particles::Columns;
 use crate::patch::Patch;
 use crate::scene::{
@@ -73,6 +74,8 @@ pub struct Stepper<const D: usize> {
     criteria: Vec<Option<Criterion>>,
     /// How each body's temperature follows.
     thermals: Vec<Option<Thermal>>,
+    /// How heat is conducted.
+    conduction: Option<conduction::Conduction<D>>,
     /// The column of its material's history, one a body.
     history: Vec<Option<usize>>,
     /// How it burns, one a body, if any does.
@@ -255,7 +258,11 @@ impl<const D: usize> Stepper<D> {
             burns: burn::Burns::of(scene),
             history,
             columns,
-            fields: Fields::new(D, filtered, masked, relaxed, rubs, sides),
+            fields: Fields::new(
+                D,
+                Wanted { filtered, masked, relaxed, rubs, conducts: scene.conducts(), sides },
+            ),
+            conduction: conduction::Conduction::new(scene),
             scheme,
             stepping: method.stepping,
             stress_update: method.stress_update,
@@ -284,7 +291,7 @@ impl<const D: usize> Stepper<D> {
             sides: scene.sides(),
             axisymmetric: scene.axisymmetric(),
             domain_limit: method.domain_limit,
-            may_sleep: scene.scene.decomposition.skip_quiet,
+            may_sleep: scene.skips_quiet(),
             fastest,
             // what such a node holds is below rounding of its neighbours
             empty_mass: densest * volume * 2f64.powi(-90),
@@ -297,8 +304,12 @@ impl<const D: usize> Stepper<D> {
     }
 
     /// The specific internal energy at which `body` starts at `pressure` [J/kg].
-    pub fn starting_energy(&self, body: usize, pressure: f64) -> f64 {
-        self.models[body].energy_at(pressure)
+    /// With a `temperature` of its own [K], the energy is what that one takes.
+    pub fn starting_energy(&self, body: usize, pressure: f64, temperature: Option<f64>) -> f64 {
+        match (temperature, &self.thermals[body]) {
+            (Some(t), Some(thermal)) if thermal.isentrope.is_some() => thermal.energy_at(t),
+            _ => self.models[body].energy_at(pressure),
+        }
     }
 
     /// What `body` has been pressed with where it starts at `pressure` [Pa s].
@@ -350,7 +361,7 @@ impl<const D: usize> Stepper<D> {
             Scheme::Blend(_) | Scheme::Affine => 0,
         };
         let relaxed = self.relaxation.map_or(0, |_| relaxation::ORDER - 1);
-        own.max(relaxed) as usize
+        own.max(relaxed).max(self.conduction.as_ref().map_or(0, |_| conduction::ORDER)) as usize
     }
 
     /// How far about moving material a step may change a row by `reach` [cells]: the filters' and

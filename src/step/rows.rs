@@ -503,6 +503,9 @@ impl<const D: usize> Stepper<D> {
         }
         let edge = if D == 1 { self.cell[0] } else { 1.0 };
         patch.told.time_step = if fastest > 0.0 { edge / fastest } else { f64::INFINITY };
+        if let Some(conduction) = &self.conduction {
+            patch.told.time_step = patch.told.time_step.min(conduction.step);
+        }
         patch.told.length = self.longest_row(&patch.block).1;
         let limit = self.longest_ever();
         if found.is_none() && patch.told.length > limit && self.extent() == Extent::Current {

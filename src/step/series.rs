@@ -9,7 +9,8 @@
 use decomp::Parity;
 use smallvec::SmallVec;
 
-use super::{Nodal, Stepper, relaxation};
+use super::{Nodal, Stepper, conduction, relaxation};
+use crate::grid::ConductionFields;
 use crate::patch::Patch;
 use crate::transfer::{Scheme, cut};
 
@@ -36,12 +37,14 @@ enum Matrix {
     Mass,
     /// Of compliances, for a scalar.
     Compliance,
+    /// Of heat capacities, for a scalar.
+    Capacity,
 }
 
 impl Series {
     /// Whether it is of a scalar.
     pub(super) fn is_scalar(&self) -> bool {
-        self.matrix == Matrix::Compliance
+        self.matrix != Matrix::Mass
     }
 
     /// The same for component `axis`.
@@ -123,6 +126,10 @@ impl<const D: usize> Stepper<D> {
         let (band, inverse) = match series.matrix {
             Matrix::Mass => (&patch.band, self.fields.inverse),
             Matrix::Compliance => (&patch.compliance_band, self.fields.relaxation[1]),
+            Matrix::Capacity => {
+                let fields = self.fields.conduction.expect("the matrix comes with its fields");
+                (&patch.capacity_band, fields.inverse)
+            }
         };
         let scratch = self.fields.scratch;
         for (Series { sum, first, last, .. }, _) in series.components::<D>() {
@@ -165,6 +172,7 @@ impl<const D: usize> Stepper<D> {
             nodal.refresh(&fields);
             nodal.each(name, |patch| {
                 self.hold(patch, &fields);
+                self.hold_temperature(patch, &fields);
                 for series in going() {
                     if l + 1 < series.order {
                         self.next_sum(patch, series, l + 2 == series.order);
@@ -181,6 +189,26 @@ impl<const D: usize> Stepper<D> {
                 }
             });
         }
+    }
+
+    /// The nodal temperature of `fields` projected, halos included, and then `last`. Collective
+    /// between neighbours.
+    pub(super) fn project_temperature(
+        &self,
+        nodal: &mut Nodal<'_, D>,
+        fields: ConductionFields,
+        last: impl Fn(&mut Patch<D>) + Send + Sync,
+    ) {
+        let series = Series {
+            sum: fields.projected,
+            first: fields.temperature,
+            last: None,
+            order: conduction::ORDER,
+            matrix: Matrix::Capacity,
+            mask: Mask::No,
+        };
+        let others = [(fields.inverse, Parity::Even), (fields.temperature, Parity::Even)];
+        self.sum_series(nodal, "heat series", &others, &[series], last);
     }
 
     /// The series of velocity and force: v = sum_(l<k) K^l vL; b = sum_(l<k) t_l with t_0 = f/m

@@ -41,7 +41,7 @@ fn metal(density: f64, c0: f64, limit: f64) -> Value {
             {"m": 1.1, "reference_temperature": 293.0, "melt_temperature": 1300.0}},
         "failure": {"type": "tension_limit", "stress": limit},
         "thermal": {"specific_heat": 400.0, "reference_temperature": 293.0,
-            "taylor_quinney": 0.9}
+            "taylor_quinney": 0.9, "conductivity": 2e3}
     })
 }
 
@@ -80,7 +80,8 @@ fn about_an_axis_and_in_a_plane() {
                 "box": {"lower": [0.0, 0.0], "upper": [0.0013, 0.003]},
                 "velocity": [0.0, -400.0], "particles_per_cell": [2, 2]}],
             "artificial_viscosity": {"linear": 0.2, "quadratic": 2.0},
-            "boundary": {"x_lower": "symmetry", "y_lower": "wall"}
+            "boundary": {"x_lower": "symmetry", "y_lower": "wall",
+                "temperature": {"y_lower": 600.0}}
         });
         let whole = on::<2>(&scene, json!([1, 1]), 1);
         for (patches, ranks) in [([2, 1], 2), ([1, 3], 3), ([3, 5], 4), ([3, 5], 1)] {

@@ -1,6 +1,7 @@
 //! Effects that a scene names: strength, failure, temperature.
 
 mod failure;
+mod heat;
 mod layouts;
 mod refused;
 mod strength;

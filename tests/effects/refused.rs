@@ -79,3 +79,26 @@ fn exact_solutions_of_fluids() {
         "{error}"
     );
 }
+
+#[test]
+fn sides_and_bodies_without_heat() {
+    let edit = |sets: &[&str], fragments: &[&str]| {
+        let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
+        let text = shipped("heat_rod.json").to_string();
+        let error = scene::parse(text.as_bytes(), "h.json", &sets).unwrap_err().to_string();
+        for fragment in fragments {
+            assert!(error.contains(fragment), "{error}\nhas no {fragment}");
+        }
+    };
+    edit(
+        &["materials.rod.thermal.conductivity=null"],
+        &["boundary.temperature.x_lower = 400", "no material conducts heat"],
+    );
+    edit(&["boundary.x_lower=free"], &["boundary.temperature.x_lower", "needs a rigid side"]);
+    edit(&["boundary.temperature.x_lower=-1"], &["x_lower = -1", "at least 0"]);
+    edit(
+        &["boundary.temperature=null", "materials.rod.thermal=null", "bodies.rod.temperature=9"],
+        &["bodies.rod.temperature = 9", "materials.rod has no thermal"],
+    );
+    edit(&["bodies.rod.temperature=310", "bodies.rod.pressure=1"], &["bodies.rod", "pressure"]);
+}

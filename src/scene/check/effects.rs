@@ -5,11 +5,64 @@ use super::super::errors::Fault;
 use super::super::model::{Eos, Failure, HeatSource, Material, Scene, Strength};
 
 pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
+    check_sides(scene)?;
+    check_bodies(scene)?;
     for (name, material) in &scene.materials {
         let path = join("materials", name);
         check_strength(&path, material)?;
         check_failure(&path, material)?;
         check_thermal(&path, material)?;
+    }
+    Ok(())
+}
+
+/// Temperatures of sides need heat that is conducted, and a side that has images.
+fn check_sides(scene: &Scene) -> Result<(), Fault> {
+    let Some(boundary) = scene.boundary else { return Ok(()) };
+    let Some(held) = boundary.temperature else { return Ok(()) };
+    let conducts = |m: &Material| m.thermal.is_some_and(|t| t.conductivity.is_some());
+    for (key, temperature, side) in [
+        ("x_lower", held.x_lower, Some(boundary.x_lower)),
+        ("x_upper", held.x_upper, Some(boundary.x_upper)),
+        ("y_lower", held.y_lower, boundary.y_lower),
+        ("y_upper", held.y_upper, boundary.y_upper),
+    ] {
+        let Some(temperature) = temperature else { continue };
+        let path = format!("boundary.temperature.{key}");
+        if !scene.materials.values().any(conducts) {
+            let reason = "no material conducts heat; allowed: to leave it out, or \
+                          thermal.conductivity of a material";
+            return Err(Fault::new(path, temperature, reason));
+        }
+        if side.and_then(|side| side.rigid_velocity()).is_none() {
+            let reason = format!(
+                "needs a rigid side; allowed: to leave it out, or boundary.{key} \"wall\" or \
+                 another rigid one"
+            );
+            return Err(Fault::new(path, temperature, reason));
+        }
+    }
+    Ok(())
+}
+
+fn check_bodies(scene: &Scene) -> Result<(), Fault> {
+    for body in &scene.bodies {
+        let Some(temperature) = body.temperature else { continue };
+        let path = format!("{}.temperature", join("bodies", &body.name));
+        let Some(material) = scene.materials.get(&body.material) else { continue };
+        let Some(thermal) = material.thermal else {
+            let key = join("materials", &body.material);
+            let reason =
+                format!("{key} has no thermal; allowed: to leave it out, or {key}.thermal");
+            return Err(Fault::new(path, temperature, reason));
+        };
+        if thermal.source == HeatSource::Energy && body.pressure != 0.0 {
+            let reason = format!(
+                "beside pressure = {}, which sets the energy too; allowed: one of the two",
+                body.pressure
+            );
+            return Err(Fault::new(path, temperature, reason));
+        }
     }
     Ok(())
 }

@@ -145,6 +145,29 @@ impl CheckedScene {
         (0..self.bodies.len()).any(|i| such(&self.material_of(i).eos))
     }
 
+    /// Whether patches at rest may be left out: where heat flows nothing is at rest.
+    pub fn skips_quiet(&self) -> bool {
+        self.scene.decomposition.skip_quiet && !self.conducts()
+    }
+
+    /// Whether a body conducts heat.
+    pub fn conducts(&self) -> bool {
+        let conducts = |i| self.material_of(i).thermal.is_some_and(|t| t.conductivity.is_some());
+        (0..self.bodies.len()).any(conducts)
+    }
+
+    /// Temperatures that the sides are held at [K], along each of `D` directions.
+    pub fn held_temperatures<const D: usize>(&self) -> [[Option<f64>; 2]; D] {
+        let held = self.scene.boundary.and_then(|b| b.temperature).unwrap_or_default();
+        let all = [[held.x_lower, held.x_upper], [held.y_lower, held.y_upper]];
+        std::array::from_fn(|a| all[a])
+    }
+
+    /// Whether a side is held at a temperature.
+    pub fn holds_temperature(&self) -> bool {
+        self.held_temperatures::<2>().as_flattened().iter().any(Option::is_some)
+    }
+
     /// Velocity fields: one for all bodies, or with contact one a body.
     pub fn velocity_fields(&self) -> usize {
         match self.scene.contact {

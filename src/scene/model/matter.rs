@@ -235,7 +235,7 @@ fn one() -> f64 {
 #[allow(dead_code)] // it stands for what is read
 pub enum MaterialSource {
     /// The material itself.
-    Whole(Material),
+    Whole(Box<Material>),
     /// One of the library, by its name; keys beside it override.
     Library {
         /// Its name.
@@ -586,6 +586,10 @@ pub struct Body {
     /// Pressure at the start [Pa], reached at the material's density by its internal energy.
     #[serde(default)]
     pub pressure: f64,
+    /// Temperature at the start [K], of a material that has one; absent: that at rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub temperature: Option<f64>,
     /// Particles a cell in each direction; absent only where `positions` are given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1)))]

@@ -215,6 +215,32 @@ pub struct Boundary {
     /// Side at the upper end of y, in a plane.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub y_upper: Option<Side>,
+    /// Temperatures that rigid sides are held at, where heat is conducted; the others are
+    /// insulated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub temperature: Option<SideTemperatures>,
+}
+
+/// Temperatures of sides [K].
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct SideTemperatures {
+    /// At the lower end of x.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub x_lower: Option<f64>,
+    /// At the upper end of x.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub x_upper: Option<f64>,
+    /// At the lower end of y, in a plane.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub y_lower: Option<f64>,
+    /// At the upper end of y, in a plane.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub y_upper: Option<f64>,
 }
 
 /// What stands at one side of the domain.
