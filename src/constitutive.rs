@@ -234,6 +234,21 @@ impl<E: EquationOfState> Model for Point<E> {
             let linear = cold + energy_factor * (energy[r] - q * dv);
             self.0.borne(linear / (1.0 + energy_factor * dv))
         };
+        // one pressure for both, where both are wanted
+        if let Some((pressure, compliance)) = rows.compliance {
+            let (pressure, compliance) = (&mut pressure[..n], &mut compliance[..n]);
+            for r in 0..n {
+                let p = pressure_at(r, rows.q.map_or(0.0, |q| q[r]));
+                out[r] = rows.q.map_or(p, |q| p + q[r]) * volume0[r] * j_mid[r];
+                let volume = volume0[r] * j_mid[r];
+                let c2 = self.0.sound_speed_squared(j_mid[r], p);
+                let jump = rows.edge * gradient[r];
+                let stiffness = mass[r] * (c2 + jump * jump) + rows.floor * volume;
+                pressure[r] = p;
+                compliance[r] = if c2 > 0.0 { volume * volume / stiffness } else { 0.0 };
+            }
+            return;
+        }
         match rows.q {
             Some(q) => {
                 for r in 0..n {
@@ -244,17 +259,6 @@ impl<E: EquationOfState> Model for Point<E> {
                 for r in 0..n {
                     out[r] = pressure_at(r, 0.0) * volume0[r] * j_mid[r];
                 }
-            }
-        }
-        if let Some((pressure, compliance)) = rows.compliance {
-            for r in 0..n {
-                let p = pressure_at(r, rows.q.map_or(0.0, |q| q[r]));
-                let volume = volume0[r] * j_mid[r];
-                let c2 = self.0.sound_speed_squared(j_mid[r], p);
-                let jump = rows.edge * gradient[r];
-                let stiffness = mass[r] * (c2 + jump * jump) + rows.floor * volume;
-                pressure[r] = p;
-                compliance[r] = if c2 > 0.0 { volume * volume / stiffness } else { 0.0 };
             }
         }
     }

@@ -172,7 +172,9 @@ impl<const D: usize> Stepper<D> {
             nodal.refresh(&fields);
             nodal.each(name, |patch| {
                 self.hold(patch, &fields);
-                self.hold_temperature(patch, &fields);
+                if self.conduction.is_some() {
+                    self.hold_temperature(patch, &fields);
+                }
                 for series in going() {
                     if l + 1 < series.order {
                         self.next_sum(patch, series, l + 2 == series.order);
