@@ -112,6 +112,8 @@ pub struct Simulation<'a, C: Comm, const D: usize> {
     clock: Clock,
     /// Events of patches that other ranks have now.
     given_events: Vec<(usize, Event)>,
+    /// Forces of contact of the last step that such patches have told.
+    given_contact: Vec<[f64; 2]>,
     /// Steps of which a timeline is kept.
     traced: Range<u64>,
     tally: Tally,
@@ -327,6 +329,7 @@ where
             pool,
             clock: Clock::new(),
             given_events: Vec::new(),
+            given_contact: Vec::new(),
             traced: 0..0,
             tally: Tally::default(),
             forgone: 0.0,
@@ -361,6 +364,7 @@ where
             });
         }
         self.step += 1;
+        self.given_contact.clear();
         let (step, time) = (self.step, self.time);
         let sampled = self.samples(step);
         self.clock.start_step(step, self.traced.contains(&step), sampled);
