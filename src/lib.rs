@@ -2,6 +2,7 @@
 
 pub mod accounts;
 pub mod calibrate;
+pub mod checkpoint;
 pub mod clock;
 pub mod constitutive;
 pub mod contact;
@@ -16,6 +17,7 @@ pub mod output;
 pub mod particles;
 pub mod patch;
 pub mod probes;
+pub mod recorder;
 pub mod reference;
 pub mod run;
 pub mod scene;

@@ -55,6 +55,7 @@ impl Table {
     }
 
     /// A figure that must reach the bound.
+    #[allow(dead_code)] // each check has its own figures
     pub fn at_least(&mut self, figure: &str, value: Option<f64>, bound: f64, show: Show) {
         let ok = value.is_some_and(|v| v >= bound);
         self.row(figure, shown(value, show), format!(">= {}", shown(Some(bound), show)), Some(ok));

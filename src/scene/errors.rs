@@ -59,7 +59,8 @@ pub enum SceneError {
     /// The run needs more memory than there is.
     #[error(
         "{file}: {particles} particles in {cells} cells need about {} of memory; allowed: {}, what \
-         this machine has left; coarsen domain.cell_size or lower bodies' particles_per_cell",
+         this machine has left; coarsen domain.cell_size, lower bodies' particles_per_cell, or start it \
+         all the same with --ignore-memory",
         readable(*needed), readable(*available)
     )]
     Memory {

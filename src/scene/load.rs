@@ -12,7 +12,7 @@ use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 
 use super::errors::{Fault, LONGEST_VALUE, SceneError, one_line, shorten};
-use super::overrides::apply;
+use super::overrides::{apply, check_allowed};
 use super::{CheckedScene, Scene, conform::conform};
 use crate::geometry::read_points;
 
@@ -82,6 +82,18 @@ pub fn parse(bytes: &[u8], file: &str, sets: &[String]) -> Result<CheckedScene, 
         }
     }
     from_value(value, file)
+}
+
+/// Makes a checked scene of that of a checkpoint and of overrides, which may change only keys that
+/// are in `allowed` or stand below one that is.
+pub fn parse_changed(
+    bytes: &[u8],
+    file: &str,
+    sets: &[String],
+    allowed: &[&str],
+) -> Result<CheckedScene, SceneError> {
+    sets.iter().try_for_each(|set| check_allowed(set, allowed))?;
+    parse(bytes, file, sets)
 }
 
 /// Checks a scene that was not read from a file; `file` names it in messages.

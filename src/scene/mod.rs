@@ -16,6 +16,6 @@ pub use check::{
     BYTES_PER_CELL, BYTES_PER_PARTICLE, CheckedBody, CheckedScene, Wall, available_memory,
 };
 pub use errors::SceneError;
-pub use load::{LARGEST_FILE, check, parse, read};
+pub use load::{LARGEST_FILE, check, parse, parse_changed, read};
 pub use model::*;
 pub use schema::schema;

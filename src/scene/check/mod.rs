@@ -74,6 +74,7 @@ impl CheckedScene {
         boundary::check_transmitting(&mut checked)?;
         motion::check_body_force(&checked)?;
         output::check_tracers(&checked)?;
+        output::check_checkpoints(&checked.scene)?;
         reference::check(&mut checked)?;
         if dimension == 1 {
             impact::check(&mut checked)?;
