@@ -94,11 +94,14 @@ fn bad(error: impl ToString) -> (u8, String) {
     (BAD_INPUT, error.to_string())
 }
 
-/// Reads and checks a scene on this rank.
-fn read_scene(args: &SceneArgs) -> Outcome<(Vec<u8>, CheckedScene)> {
+/// Reads and checks a scene on this rank; one that is too large is refused before its particles are
+/// made, unless memory is not looked at.
+fn read_scene(args: &SceneArgs, ignore_memory: bool) -> Outcome<(Vec<u8>, CheckedScene)> {
     let bytes = scene::read(&args.scene).map_err(bad)?;
-    let checked =
-        scene::parse(&bytes, &args.scene.display().to_string(), &args.set).map_err(bad)?;
+    let name = args.scene.display().to_string();
+    let available = scene::available_memory().filter(|_| !ignore_memory);
+    scene::check_size(&bytes, &name, &args.set, available).map_err(bad)?;
+    let checked = scene::parse(&bytes, &name, &args.set).map_err(bad)?;
     Ok((bytes, checked))
 }
 
@@ -145,7 +148,7 @@ fn begin(args: &RunArgs) -> Outcome<Begun> {
         }
         (None, Some(path)) => {
             let scene = SceneArgs { scene: path.clone(), set: args.set.clone() };
-            let (bytes, checked) = read_scene(&scene)?;
+            let (bytes, checked) = read_scene(&scene, args.ignore_memory)?;
             (bytes, checked, Beginning::Scene, default_folder(path))
         }
         (None, None) => return Err((BAD_INPUT, "a scene is needed; see --help".into())),
@@ -287,13 +290,13 @@ fn side_command(command: Command) -> Outcome<()> {
             Ok(())
         }
         Command::Check { scene } => {
-            let (_, checked) = read_scene(&scene)?;
+            let (_, checked) = read_scene(&scene, false)?;
             checked.check_memory(scene::available_memory()).map_err(bad)?;
             say(&describe::check(&checked).map_err(|e| (FAILED, e.to_string()))?);
             Ok(())
         }
         Command::Hugoniot { scene, output } => {
-            let (_, checked) = read_scene(&scene)?;
+            let (_, checked) = read_scene(&scene, false)?;
             let stem = scene.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             let output =
                 output.unwrap_or_else(|| Path::new("output").join(format!("{stem}_hugoniot")));

@@ -30,8 +30,12 @@ impl Drop for Disk {
 
 /// Fills what is left of the disk but for `rest` bytes.
 fn fill(disk: &Path, rest: u64) {
+    // whose types differ from system to system
+    #[allow(clippy::unnecessary_cast)]
+    let bytes =
+        |s: nix::sys::statvfs::Statvfs| s.blocks_available() as u64 * s.fragment_size() as u64;
     let room = nix::sys::statvfs::statvfs(disk);
-    let left = room.map_or(0, |s| s.blocks_available() as u64 * s.fragment_size() as u64);
+    let left = room.map_or(0, bytes);
     let _ = fs::write(disk.join("filler"), vec![1u8; left.saturating_sub(rest) as usize]);
 }
 
@@ -61,8 +65,8 @@ pub fn check(table: &mut Table) {
         return;
     }
     let every = ["--output", &at, "--set", "output.checkpoint={\"every_steps\":40}"];
-    // room for some checkpoints and no more; for not even one whole one; for their names alone
-    for (ranks, rest) in [(1, 1_500_000), (2, 1_000_000), (2, 800_000), (1, 300_000), (2, 0)] {
+    // room for a checkpoint or two and no more; for none; for nothing at all
+    for (ranks, rest) in [(1, 600_000), (2, 600_000), (2, 300_000), (1, 100_000), (2, 0)] {
         let name = format!("{ranks} ranks, {} kB left", rest / 1000);
         let _ = fs::remove_dir_all(disk.0.join("run.checkpoints"));
         let stop = with(&every.map(String::from), &["--set", "time.wall_limit=1e-9"]);
@@ -82,14 +86,11 @@ pub fn check(table: &mut Table) {
         let on = ["--restart", &at, "--set", "time.wall_limit=null"].map(String::from);
         let (code, said) = end(ranks, &on);
         let line = said.lines().find(|l| l.starts_with("error:")).unwrap_or("no message");
-        let told = line.contains("the last good checkpoint is") && !said.contains("panicked");
+        let words = ["the last good checkpoint is", "No space left on device"];
+        let told = words.iter().any(|w| line.contains(w)) && !said.contains("panicked");
         let shown = format!("code {}", code.map_or("none".into(), |c| c.to_string()));
-        table.holds(
-            &format!("{name}: ends and says so"),
-            &shown,
-            "code 3",
-            code == Some(3) && told,
-        );
+        let ok = matches!(code, Some(2 | 3)) && told;
+        table.holds(&format!("{name}: ends and says so"), &shown, "code 2 or 3", ok);
         if !told {
             println!("  {line}");
         }

@@ -97,9 +97,9 @@ pub fn check(table: &mut Table) {
     let place = |role: &str| home.join(role).display().to_string();
     let sets = [
         "domain.cell_size=2e-6",
-        "time.end=1e-7",
-        "output.profiles.times=[5e-8,1e-7]",
-        "output.checkpoint={\"every_steps\":60}",
+        "time.end=2e-7",
+        "output.profiles.times=[5e-8,2e-7]",
+        "output.checkpoint={\"every_steps\":20}",
     ];
     let args = scene("flyer", &sets);
     let started = Instant::now();

@@ -52,6 +52,8 @@ fn try_write(
     // one that an earlier process left; HDF5 would refuse to take a file that is open
     let _ = fs::remove_file(&partial);
     if let Ok(disk) = statvfs(folder) {
+        // whose types differ from system to system
+        #[allow(clippy::unnecessary_cast)]
         let left = disk.blocks_available() as u64 * disk.fragment_size() as u64;
         let needed = contents.bytes();
         if left < needed {

@@ -38,10 +38,10 @@ pub(super) fn check_allowed(set: &str, allowed: &[&str]) -> Result<(), SceneErro
         reason: one_line(&shorten(&reason, LONGEST_REASON)),
     };
     let (keys, _) = split(set).map_err(fail)?;
-    let below = |path: &&str| {
+    let below = |path: &str| {
         path.split('.').zip(&keys).filter(|(a, b)| a == b).count() == path.split('.').count()
     };
-    if allowed.iter().any(|path| below(&path)) {
+    if allowed.iter().any(|path| below(path)) {
         return Ok(());
     }
     Err(fail(format!(

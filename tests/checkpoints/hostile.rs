@@ -159,3 +159,34 @@ fn changed_checkpoints() {
         assert!(!judged(&|| format!("at {at} to {to}"), || file::read(&path)));
     }
 }
+
+/// What would not fit into the machine is refused before it is made.
+#[test]
+fn too_much_is_told_before_it_is_taken() {
+    const LEFT: Option<u64> = Some(8 << 30);
+    let text = |name: &str| {
+        fs::read(format!("{}/inputs/{name}.json", env!("CARGO_MANIFEST_DIR"))).unwrap()
+    };
+    let told = |verdict: Result<(), scene::SceneError>| {
+        let error = verdict.unwrap_err().to_string();
+        let words = ["need about ", "GiB of memory; allowed: 8.0 GiB", "--ignore-memory"];
+        assert!(words.iter().all(|w| error.contains(w)), "{error}");
+    };
+    // disks are cut into particles one by one as the scene is read
+    let size = |set: &str, left| scene::check_size(&text("disks"), "s", &[set.to_string()], left);
+    for set in ["domain.cell_size=5e-5", "bodies.lower.particles_per_cell=[300,300]"] {
+        told(size(set, LEFT));
+        size(set, None).unwrap();
+        size(set, Some(1 << 40)).unwrap();
+    }
+    size("domain.cell_size=0.02", LEFT).unwrap();
+    for (name, set) in [
+        ("flyer", "bodies.flyer.particles_per_cell=[1000000]"),
+        ("flyer", "domain.cell_size=1e-10"),
+        ("flyer_2d", "domain.patches=[300,180]"),
+    ] {
+        let scene = scene::parse(&text(name), "s", &[set.to_string()]).unwrap();
+        told(scene.check_memory(LEFT));
+        scene.check_memory(None).unwrap();
+    }
+}

@@ -21,7 +21,8 @@ use super::model::{Contact, Geometry, Material, Scene, Side};
 
 pub use bodies::CheckedBody;
 pub use boundary::Wall;
-pub use memory::{BYTES_PER_CELL, BYTES_PER_PARTICLE, available_memory};
+pub(super) use memory::tiles;
+pub use memory::{BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, available_memory};
 
 /// A scene that passed every check, and the numbers that follow from it.
 #[derive(Clone, Debug)]
