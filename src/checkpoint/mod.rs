@@ -2,7 +2,7 @@
 //!
 //! A checkpoint is itself an input: it holds the whole scene, all that the next step needs
 //! ([`Saved`]), and what was recorded so far. [`folder`] writes them aside, flushes and renames
-//! them, [`seal`] shows that not a bit has changed since, [`file`](self::file) is the form on disk,
+//! them, [`seal`] shows that not a bit has changed since, [`mod@file`] is the form on disk,
 //! [`schedule`] says when one is due. Called on one rank; knows no MPI.
 
 pub mod error;

@@ -105,3 +105,51 @@ fn names_lead_nowhere() {
     let tracer = r#"output.histories.tracers=[{"name":"../t","body":"target","at":[0.0002]}]"#;
     home.call(["scene.json", "--set", tracer]).end().failed(&["../t", "letters, digits"]);
 }
+
+/// A rank of the test below: one of two panics while the other waits for it.
+#[cfg(feature = "mpi")]
+#[test]
+#[ignore = "started by another test, by mpirun"]
+fn a_rank_that_panics() {
+    use decomp::Comm;
+    let Some(ranks) = decomp::comm::mpi::Mpi::start() else { return };
+    if ranks.rank() == 1 {
+        panic!("on purpose");
+    }
+    ranks.gather(&[]);
+}
+
+#[cfg(feature = "mpi")]
+#[test]
+fn a_panic_of_one_rank_ends_all() {
+    use std::time::{Duration, Instant};
+    let mut run = Command::new("mpirun")
+        .args(["--oversubscribe", "--bind-to", "none", "-n", "2"])
+        .arg(std::env::current_exe().unwrap())
+        .args(["--exact", "faults::a_rank_that_panics", "--ignored", "--nocapture"])
+        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+        .env("OMPI_MCA_btl_vader_single_copy_mechanism", "none")
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let stderr = run.stderr.take().unwrap();
+    let said = std::thread::spawn(|| std::io::read_to_string(stderr).unwrap_or_default());
+    let since = Instant::now();
+    let status = loop {
+        if let Some(status) = run.try_wait().unwrap() {
+            break Some(status);
+        }
+        // well below the time after which a rank that waits would end by itself
+        if since.elapsed() > Duration::from_secs(60) {
+            signal("-TERM", run.id());
+            run.wait().unwrap();
+            break None;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    };
+    let said = said.join().unwrap();
+    assert!(status.is_some_and(|s| !s.success()), "{status:?}: {said}");
+    assert!(said.contains("on purpose"), "{said}");
+}
