@@ -5,10 +5,15 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use crate::program::{Random, command, folder, good, left, scene, wait, with};
+use flyer_mpm::checkpoint::folder::list;
+
+use crate::program::{Random, command, folder, good, left, scene, steps, wait, with};
 use crate::table::{Show, Table};
 
 const KILLS: u64 = 50;
+
+/// Steps from one checkpoint to the next.
+const EVERY: u64 = 20;
 
 /// Most time from a kill to the end of all processes.
 const SOON: Duration = Duration::from_secs(10);
@@ -47,26 +52,38 @@ fn writes(folder: &Path) -> bool {
     entries.into_iter().any(|e| e.file_name().to_string_lossy().starts_with(".checkpoint-"))
 }
 
-/// Kills a run on two ranks after `delay`, if wanted while it writes a checkpoint: seconds until
-/// all its processes had ended, and whether it was writing; `None` if it had ended before.
-fn killed(
-    args: &[String],
-    victim: Victim,
+/// When a run is killed.
+struct Moment<'a> {
+    checkpoints: &'a Path,
+    /// Once so many checkpoints have been written, ...
+    after: u64,
+    /// ... so much later, ...
     delay: Duration,
-    writing: Option<&Path>,
-) -> Option<(f64, bool)> {
+    /// ... and if wanted as the next one is being written.
+    writing: bool,
+}
+
+/// Kills a run on two ranks: seconds until all its processes had ended, and whether it was writing
+/// a checkpoint; `None` if it had come to its end before.
+fn killed(args: &[String], victim: Victim, moment: &Moment) -> Option<(f64, bool)> {
     let mut run = command(2, args).spawn().ok()?;
     let said = run.stderr.take();
     let reader = std::thread::spawn(move || said.map(std::io::read_to_string));
     let ends = |run: &mut std::process::Child| run.try_wait().is_ok_and(|s| s.is_some());
-    let (since, mut ranks) = (Instant::now(), Vec::new());
-    while since.elapsed() < delay && !ends(&mut run) {
+    let mut ranks = Vec::new();
+    let written = || list(moment.checkpoints).first().map_or(0, |(number, _)| *number);
+    while written() < moment.after && !ends(&mut run) {
         std::thread::sleep(Duration::from_millis(1));
     }
-    while writing.is_some_and(|folder| !writes(folder)) && !ends(&mut run) {}
+    let since = Instant::now();
+    while since.elapsed() < moment.delay && !ends(&mut run) {
+        std::thread::sleep(Duration::from_millis(1));
+    }
     while ranks.len() < 2 && !ends(&mut run) {
         ranks = ranks_of(run.id());
     }
+    while moment.writing && !writes(moment.checkpoints) && !ends(&mut run) {}
+    let writing = moment.writing.then_some(moment.checkpoints);
     let hit = writing.is_some_and(writes);
     if ends(&mut run) {
         return None;
@@ -99,35 +116,44 @@ pub fn check(table: &mut Table) {
         "domain.cell_size=2e-6",
         "time.end=2e-7",
         "output.profiles.times=[5e-8,2e-7]",
-        "output.checkpoint={\"every_steps\":20}",
+        &format!("output.checkpoint={{\"every_steps\":{EVERY}}}"),
     ];
     let args = scene("flyer", &sets);
-    let started = Instant::now();
     let whole = good(2, &with(&args, &["--output", &place("whole")]));
     let whole = whole.and_then(|()| left(&home.join("whole")));
     let Some(whole) = table.take("kills: a whole run", whole) else { return };
-    let length = started.elapsed();
+    let all = steps(&home.join("whole")) / EVERY;
     let (mut same, mut longest, mut hits, mut anew, mut clean) = (0, 0.0f64, 0, 0, 0);
     let mut ends = [0; 3];
-    for k in 0..KILLS {
+    let (mut k, mut tries) = (0, 0);
+    while k < KILLS && tries < 3 * KILLS {
+        tries += 1;
         let output = place("run");
         let checkpoints = home.join("run.checkpoints");
         let run = with(&args, &["--output", &output]);
-        let (kind, writing) = (k % 3, k % 2 == 1);
+        let kind = k % 3;
         let victim = if kind == 2 { Victim::All } else { Victim::Rank(kind as usize) };
-        let delay = length.mul_f64(random.below(1000) as f64 / 1100.0);
-        let folder = writing.then_some(&checkpoints as &Path);
-        let Some((seconds, hit)) = killed(&run, victim, delay, folder) else {
-            // it was over before: a moment of its own
-            same += 1;
-            clean += 1;
+        // one in ten as it starts, the rest all along the run, half of those within a writing
+        let after = if k % 10 == 0 { 0 } else { 1 + random.below(all - 2) };
+        let most = if after == 0 { 600 } else { 40 };
+        let moment = Moment {
+            checkpoints: &checkpoints,
+            after,
+            delay: Duration::from_millis(random.below(most)),
+            writing: after > 0 && k % 2 == 1,
+        };
+        let Some((seconds, hit)) = killed(&run, victim, &moment) else {
+            // it had ended: no kill, and another try
+            let _ = fs::remove_dir_all(home.join("run"));
+            let _ = fs::remove_dir_all(&checkpoints);
             continue;
         };
+        k += 1;
         ends[kind as usize] += 1;
         hits += u64::from(hit);
         longest = longest.max(seconds);
         // a user goes on if there is something to go on from
-        let again = flyer_mpm::checkpoint::folder::list(&checkpoints).is_empty();
+        let again = list(&checkpoints).is_empty();
         anew += u64::from(again);
         let on = if again { run } else { with(&[], &["--restart", &output]) };
         let outcome = good(2, &on).and_then(|()| left(&home.join("run")));
@@ -162,8 +188,9 @@ pub fn check(table: &mut Table) {
         SOON.as_secs_f64(),
         Show::Seconds,
     );
-    let kinds = format!("{}, {}, {}", ends[0], ends[1], ends[2]);
-    table.beside("kills of rank 0", Some(ends[0] as f64), &kinds, Show::Number);
+    for (what, count) in ["rank 0", "rank 1", "all at once"].into_iter().zip(ends) {
+        table.beside(&format!("kills of {what}"), Some(f64::from(count)), "", Show::Number);
+    }
     table.beside("kills while a checkpoint was written", Some(hits as f64), "", Show::Number);
     table.beside("kills before the first checkpoint", Some(anew as f64), "", Show::Number);
 }
