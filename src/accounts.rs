@@ -48,9 +48,11 @@ pub fn decomposition<C: Comm, const D: usize>(
     };
     let ranks = gather(comm, &mine);
     (comm.rank() == 0).then(|| {
-        let (steps, halo) = (simulation.steps(), simulation.filter_halo());
+        let (steps, halo) = (simulation.steps_made(), simulation.filter_halo());
+        let first_step = simulation.steps() - steps;
         let (busiest, balances) = (tally.busiest_particle_steps, tally.balances);
-        DecompositionSummary::new(halo, options, steps, busiest, balances, ranks)
+        let all = DecompositionSummary::new(halo, options, steps, busiest, balances, ranks);
+        DecompositionSummary { first_step, ..all }
     })
 }
 

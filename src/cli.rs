@@ -15,6 +15,13 @@ use clap::{Args, Parser, Subcommand};
 /// energy, times), one CSV a profile time, histories.csv, results.hdf5 (ParaView opens it) and
 /// pictures. A rerun replaces them once it is complete; a run that fails leaves them as they
 /// were.
+///
+/// Checkpoints go to output/<name of the scene>.checkpoints/ (output.checkpoint of the scene; every
+/// ten minutes unless said). SIGTERM, SIGINT, SIGUSR1 and time.wall_limit write one and end the run
+/// with code 4; flyer-mpm --restart output/<name of the scene>.checkpoints goes on to the same bits.
+///
+/// Exit codes: 0 done; 1 `compare` found a difference; 2 the command line, scene or folder is wrong;
+/// 3 the run failed; 4 it was stopped and can go on; 7 a rank hangs.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -51,8 +58,13 @@ pub struct SceneArgs {
 #[derive(Clone, Debug, Args)]
 pub struct RunArgs {
     /// The scene: a JSON file (`flyer-mpm schema` describes it).
-    #[arg(value_name = "SCENE.json")]
-    pub scene: PathBuf,
+    #[arg(value_name = "SCENE.json", required_unless_present = "restart")]
+    pub scene: Option<PathBuf>,
+
+    /// Goes on from a checkpoint, or from the newest one of a folder that is whole, in place of a
+    /// scene. --set may change time, output, domain.patches and decomposition.
+    #[arg(long, value_name = "FILE|DIR", conflicts_with = "scene")]
+    pub restart: Option<PathBuf>,
 
     /// Overrides a value of the scene, such as domain.patches=[8], bodies.flyer.velocity=[500] (by
     /// name or index) or method.shape=cpdi; may be repeated. What is not JSON is a string.
@@ -81,6 +93,10 @@ pub struct RunArgs {
     #[arg(long, value_name = "SECONDS", default_value_t = 300.0, value_parser = seconds)]
     pub stall_timeout: f64,
 
+    /// Start even if the run seems to need more memory than this machine has left.
+    #[arg(long)]
+    pub ignore_memory: bool,
+
     /// Refuse to replace an earlier result.
     #[arg(long)]
     pub keep: bool,
@@ -88,13 +104,6 @@ pub struct RunArgs {
     /// Say nothing but errors.
     #[arg(long)]
     pub quiet: bool,
-}
-
-impl RunArgs {
-    /// The scene and its overrides.
-    pub fn scene(&self) -> SceneArgs {
-        SceneArgs { scene: self.scene.clone(), set: self.set.clone() }
-    }
 }
 
 /// Where `calibrate` writes and `predict` reads.

@@ -95,7 +95,7 @@ pub fn calibrate<C: Comm>(comm: &C, order: &Order) -> Outcome<()> {
 
 /// Predicts a scene, or holds predictions against studies.
 pub fn predict(args: &PredictArgs) -> Outcome<String> {
-    let (bytes, checked) = read_scene(&args.scene)?;
+    let (bytes, checked) = read_scene(&args.scene, false)?;
     let machine = Machine::read(&args.machine).map_err(bad)?;
     machine.fits(&checked, &args.machine).map_err(bad)?;
     let network = Network::parse(&args.network, &machine.network).map_err(bad)?;

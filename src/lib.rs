@@ -3,6 +3,7 @@
 pub mod accounts;
 pub mod burn;
 pub mod calibrate;
+pub mod checkpoint;
 pub mod clock;
 pub mod constitutive;
 pub mod contact;
@@ -18,6 +19,7 @@ pub mod output;
 pub mod particles;
 pub mod patch;
 pub mod probes;
+pub mod recorder;
 pub mod reference;
 pub mod run;
 pub mod scene;

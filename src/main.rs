@@ -9,23 +9,33 @@ mod forecast;
 mod sheet;
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::Parser;
 use cli::{Cli, Command, RunArgs, SceneArgs};
 use decomp::{Comm, Serial};
+use flyer_mpm::checkpoint::fit::CHANGEABLE;
+use flyer_mpm::checkpoint::{Checkpoint, folder};
 use flyer_mpm::output::compare::compare;
 use flyer_mpm::output::folder::{check_writable, default_folder};
-use flyer_mpm::run::{Failure, Options, run};
+use flyer_mpm::output::lock::Lock;
+use flyer_mpm::run::{Beginning, Failure, Options, run};
 use flyer_mpm::scene::{self, CheckedScene};
 use flyer_mpm::simulation::RunError;
+use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
+use signal_hook::iterator::Signals;
+use signal_hook::low_level::emulate_default_handler;
 
 /// The command line or the scene is wrong.
 const BAD_INPUT: u8 = 2;
 /// The run failed.
 const FAILED: u8 = 3;
+/// The run was asked to end, and can go on.
+const STOPPED: u8 = 4;
 
 fn main() -> ExitCode {
     let started = Instant::now();
@@ -85,11 +95,14 @@ fn bad(error: impl ToString) -> (u8, String) {
     (BAD_INPUT, error.to_string())
 }
 
-/// Reads and checks a scene on this rank.
-fn read_scene(args: &SceneArgs) -> Outcome<(Vec<u8>, CheckedScene)> {
+/// Reads and checks a scene on this rank; one that is too large is refused before its particles are
+/// made, unless memory is not looked at.
+fn read_scene(args: &SceneArgs, ignore_memory: bool) -> Outcome<(Vec<u8>, CheckedScene)> {
     let bytes = scene::read(&args.scene).map_err(bad)?;
-    let checked =
-        scene::parse(&bytes, &args.scene.display().to_string(), &args.set).map_err(bad)?;
+    let name = args.scene.display().to_string();
+    let available = scene::available_memory().filter(|_| !ignore_memory);
+    scene::check_size(&bytes, &name, &args.set, available).map_err(bad)?;
+    let checked = scene::parse(&bytes, &name, &args.set).map_err(bad)?;
     Ok((bytes, checked))
 }
 
@@ -101,31 +114,112 @@ fn check_file(path: &Path) -> Outcome<()> {
         .map_err(|e| (BAD_INPUT, format!("{}: cannot write the file: {e}", path.display())))
 }
 
+/// What a run begins with, found and judged by rank 0.
+struct Begun {
+    /// The scene's text, for the other ranks.
+    bytes: Vec<u8>,
+    checked: CheckedScene,
+    beginning: Beginning,
+    output: PathBuf,
+    /// Held until the run has ended.
+    lock: Lock,
+}
+
+/// Name of the input in messages.
+fn input(args: &RunArgs) -> String {
+    let path = args.restart.as_ref().or(args.scene.as_ref());
+    path.map_or(String::new(), |path| path.display().to_string())
+}
+
+/// Looks at everything that a run could fail on, before the others are told.
+fn begin(args: &RunArgs) -> Outcome<Begun> {
+    let (bytes, checked, beginning, default) = match (&args.restart, &args.scene) {
+        (Some(path), _) => {
+            let (mut checkpoint, file, notes) = folder::open(path).map_err(bad)?;
+            notes.iter().for_each(|note| eprintln!("warning: {note}; taking the one before"));
+            let bytes = checkpoint.scene.clone().into_bytes();
+            let name = file.display().to_string();
+            let checked =
+                scene::parse_changed(&bytes, &name, &args.set, &CHANGEABLE).map_err(bad)?;
+            checkpoint.fit(&checked, &file).map_err(bad)?;
+            tell_restart(args, &checkpoint, &name);
+            let output = folder::results_of(&file).unwrap_or_else(|| default_folder(&file));
+            let beginning = Beginning::Checkpoint(Some(Box::new(checkpoint)));
+            (bytes, checked, beginning, output)
+        }
+        (None, Some(path)) => {
+            let scene = SceneArgs { scene: path.clone(), set: args.set.clone() };
+            let (bytes, checked) = read_scene(&scene, args.ignore_memory)?;
+            (bytes, checked, Beginning::Scene, default_folder(path))
+        }
+        (None, None) => return Err((BAD_INPUT, "a scene is needed; see --help".into())),
+    };
+    if !args.ignore_memory {
+        checked.check_memory(scene::available_memory()).map_err(bad)?;
+    }
+    let output = args.output.clone().unwrap_or(default);
+    let lock = Lock::take(&output).map_err(bad)?;
+    check_writable(&output, args.keep).map_err(bad)?;
+    if let Some(file) = &args.trace {
+        check_file(file)?;
+    }
+    Ok(Begun { bytes, checked, beginning, output, lock })
+}
+
+/// What a run goes on from.
+fn tell_restart(args: &RunArgs, checkpoint: &Checkpoint, file: &str) {
+    let ours = env!("CARGO_PKG_VERSION");
+    if checkpoint.version != ours {
+        let theirs = &checkpoint.version;
+        eprintln!("warning: {file}: written by version {theirs}, this is {ours}: bits may differ");
+    }
+    if !args.quiet {
+        let saved = &checkpoint.saved;
+        eprintln!("goes on from {file}: time {:.6e} s, step {}", saved.time, saved.step);
+    }
+}
+
+/// Takes note of the first signal that asks for an end; the second one ends the process at once.
+fn watch_signals() -> Arc<AtomicU8> {
+    /// A launcher and its batch system may send one signal each.
+    const TOGETHER: Duration = Duration::from_millis(300);
+    let came = Arc::new(AtomicU8::new(0));
+    let noted = came.clone();
+    // without a handler a signal ends the process as it would have
+    if let Ok(mut signals) = Signals::new([SIGTERM, SIGINT, SIGUSR1]) {
+        std::thread::spawn(move || {
+            let mut first: Option<Instant> = None;
+            for signal in signals.forever() {
+                if first.get_or_insert_with(Instant::now).elapsed() > TOGETHER {
+                    let _ = emulate_default_handler(signal);
+                }
+                noted.store(signal as u8, Ordering::Relaxed);
+            }
+        });
+    }
+    came
+}
+
 fn run_scene<C: Comm>(comm: &C, args: &RunArgs, started: Instant) -> Outcome<()> {
     comm.set_stall_timeout(Duration::from_secs_f64(args.stall_timeout));
-    let output = args.output.clone().unwrap_or_else(|| default_folder(&args.scene));
-    // rank 0 looks at everything that a run could fail on before it sends the scene on
+    let signal = watch_signals();
     let mine = match comm.rank() {
-        0 => read_scene(&args.scene()).and_then(|(bytes, checked)| {
-            checked.check_memory(scene::available_memory()).map_err(bad)?;
-            check_writable(&output, args.keep).map_err(bad)?;
-            if let Some(file) = &args.trace {
-                check_file(file)?;
-            }
-            Ok((bytes, checked))
-        }),
+        0 => begin(args),
         _ => Err((BAD_INPUT, String::new())),
     };
-    let (bytes, verdict) = match mine {
-        Ok((bytes, checked)) => (bytes, Ok(checked)),
-        Err(error) => (Vec::new(), Err(error)),
-    };
-    let bytes = comm.broadcast(bytes);
-    let checked = match verdict {
-        Err(error) if bytes.is_empty() => return Err(error),
-        Ok(checked) => checked,
+    let text = mine.as_ref().map_or(Vec::new(), |begun| begun.bytes.clone());
+    let text = comm.broadcast(text);
+    let (checked, beginning, output, lock) = match mine {
+        Ok(begun) => (begun.checked, begun.beginning, begun.output, Some(begun.lock)),
+        Err(error) if text.is_empty() => return Err(error),
         Err(_) => {
-            scene::parse(&bytes, &args.scene.display().to_string(), &args.set).map_err(bad)?
+            let checked = scene::parse(&text, &input(args), &args.set).map_err(bad)?;
+            let beginning = match args.restart {
+                Some(_) => Beginning::Checkpoint(None),
+                None => Beginning::Scene,
+            };
+            // the first rank alone writes
+            (checked, beginning, PathBuf::new(), None)
         }
     };
     let threads = args.threads.unwrap_or(checked.scene.decomposition.threads);
@@ -139,25 +233,35 @@ fn run_scene<C: Comm>(comm: &C, args: &RunArgs, started: Instant) -> Outcome<()>
         threads,
         trace: args.trace.clone().map(|file| (file, args.trace_steps.clone())),
         started,
+        signal,
     };
-    match run(comm, &checked, &options) {
+    // all ranks know of it, and rank 0 tells it
+    let by_first = |text: String| if comm.rank() == 0 { text } else { String::new() };
+    match run(comm, &checked, &options, beginning) {
         Ok(Some(report)) if !args.quiet => {
             say(&report);
             Ok(())
         }
         Ok(_) => Ok(()),
         Err(Failure::Run(RunError::Elsewhere)) => Err((FAILED, String::new())),
-        // all ranks know of a particle's fault, and rank 0 tells it
+        Err(stopped @ Failure::Stopped { .. }) => {
+            if comm.rank() == 0 {
+                eprintln!("{stopped}");
+            }
+            Err((STOPPED, String::new()))
+        }
         Err(
             error @ Failure::Run(
                 RunError::Particle { .. }
                 | RunError::TimeStep { .. }
                 | RunError::TooLong { .. }
+                | RunError::Foreign
                 | RunError::Lost { .. },
             ),
-        ) => Err((FAILED, if comm.rank() == 0 { error.to_string() } else { String::new() })),
+        ) => Err((FAILED, by_first(error.to_string()))),
         Err(error) => {
             eprintln!("error: {error}");
+            drop(lock);
             comm.abort(i32::from(FAILED))
         }
     }
@@ -187,13 +291,13 @@ fn side_command(command: Command) -> Outcome<()> {
             Ok(())
         }
         Command::Check { scene } => {
-            let (_, checked) = read_scene(&scene)?;
+            let (_, checked) = read_scene(&scene, false)?;
             checked.check_memory(scene::available_memory()).map_err(bad)?;
             say(&describe::check(&checked).map_err(|e| (FAILED, e.to_string()))?);
             Ok(())
         }
         Command::Hugoniot { scene, output } => {
-            let (_, checked) = read_scene(&scene)?;
+            let (_, checked) = read_scene(&scene, false)?;
             let stem = scene.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             let output =
                 output.unwrap_or_else(|| Path::new("output").join(format!("{stem}_hugoniot")));
@@ -202,7 +306,7 @@ fn side_command(command: Command) -> Outcome<()> {
         }
         Command::Material { scene, name, set, output } => {
             let stem = scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            let (_, checked) = read_scene(&SceneArgs { scene, set })?;
+            let (_, checked) = read_scene(&SceneArgs { scene, set }, false)?;
             let output =
                 output.unwrap_or_else(|| Path::new("output").join(format!("{stem}_{name}")));
             say(&sheet::material(&checked, &name, &output)?);

@@ -120,7 +120,7 @@ impl Probes {
         if time < self.due as f64 * self.interval {
             return;
         }
-        self.due = (time / self.interval).floor() as u64 + 1;
+        self.due = self.after(time);
         let totals = simulation.totals();
         let forces = if self.forces > 0 { simulation.contact_force() } else { [0.0; 2] };
         let followed = simulation.follow(&self.wanted);
@@ -151,6 +151,30 @@ impl Probes {
             row.extend((0..2 * D + 1).map(mean));
         }
         self.histories.push(&row);
+    }
+
+    /// The number of the first interval that ends after `time`.
+    fn after(&self, time: f64) -> u64 {
+        ((time / self.interval).floor() as u64).saturating_add(1)
+    }
+
+    /// The number of the interval at whose end the next row is due.
+    pub fn due(&self) -> u64 {
+        self.due
+    }
+
+    /// Goes on at `time` [s], where the row `due` is the next, if that is known, after `histories`,
+    /// which have the columns of this.
+    pub fn resume(&mut self, time: f64, due: Option<u64>, histories: Option<Histories>) {
+        self.due = due.unwrap_or_else(|| self.after(time));
+        if let Some(histories) = histories {
+            self.histories = histories;
+        }
+    }
+
+    /// What has been told so far.
+    pub fn histories(&self) -> &Histories {
+        &self.histories
     }
 
     /// What has been told.

@@ -1,10 +1,12 @@
-//! A run with its files: steps, profiles, histories, scores, pictures, summary.
+//! A run with its files: steps, checkpoints, profiles, histories, scores, pictures, summary.
 //!
 //! Every rank steps; rank 0 gathers, scores and writes.
 
 use std::io::IsTerminal;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicU8;
 use std::time::{Duration, Instant};
 
 use decomp::Comm;
@@ -12,20 +14,23 @@ use indicatif::{ProgressBar, ProgressStyle};
 use nix::sys::resource::{UsageWho, getrusage};
 
 use crate::accounts;
+use crate::checkpoint::schedule::Stop;
+use crate::checkpoint::{Checkpoint, CheckpointError, Schedule, StateColumn, folder};
 use crate::clock::Activity;
 use crate::effects::ledger;
-use crate::figures::{self, PressureRow};
+use crate::figures;
+use crate::output::OutputError;
+use crate::output::ParticleTable;
 use crate::output::csv::{profile_names, write_profile};
-use crate::output::folder::OutputFolder;
-use crate::output::histories::{HISTORIES_FILE, Histories};
+use crate::output::folder::{OutputFolder, checkpoint_folder};
+use crate::output::histories::HISTORIES_FILE;
 use crate::output::pictures::PictureError;
 use crate::output::report::report;
 use crate::output::summary::{Energy, Momentum, Outflow, ProfileSummary, Summary};
 use crate::output::trace::write_trace;
 use crate::output::vtkhdf::{RESULTS_FILE, RunInfo, write_vtkhdf};
-use crate::output::{OutputError, ParticleTable};
-use crate::probes::Probes;
-use crate::reference::{PlaneReference, Reference};
+use crate::recorder::Recorder;
+use crate::reference::Reference;
 use crate::scene::{CheckedScene, Side};
 use crate::simulation::{Given, Left, RunError, Simulation, Totals};
 use crate::step::{Stepper, Steps};
@@ -42,6 +47,29 @@ pub enum Failure {
     /// Its pictures.
     #[error(transparent)]
     Picture(#[from] PictureError),
+    /// Its checkpoints.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// It was asked to end, and can go on: no failure. All ranks know.
+    #[error("stopped at time {time:.6e} s, step {step}: {why}; {next}")]
+    Stopped {
+        /// What asked for it.
+        why: String,
+        /// Time [s].
+        time: f64,
+        /// Steps made.
+        step: u64,
+        /// How to go on.
+        next: String,
+    },
+}
+
+/// What a run begins with.
+pub enum Beginning {
+    /// The start of its scene.
+    Scene,
+    /// A checkpoint, which rank 0 has and which fits the scene.
+    Checkpoint(Option<Box<Checkpoint>>),
 }
 
 /// How to run.
@@ -59,13 +87,9 @@ pub struct Options {
     pub trace: Option<(PathBuf, Range<u64>)>,
     /// When the process started.
     pub started: Instant,
+    /// Number of a signal that has asked for an end; 0: none.
+    pub signal: Arc<AtomicU8>,
 }
-
-/// Rows of the x-t diagram.
-const WAVE_ROWS: u64 = 120;
-
-/// Particles in a row of the x-t diagram, at most.
-const WAVE_POINTS: u64 = 2000;
 
 /// User CPU time of this process so far [s].
 pub fn user_cpu_seconds() -> f64 {
@@ -78,21 +102,22 @@ pub fn user_cpu_seconds() -> f64 {
 /// Tells how far a run is: a bar on a terminal, else a line now and then.
 struct Progress {
     bar: Option<ProgressBar>,
-    end: f64,
+    /// Times between which it goes [s].
+    span: [f64; 2],
     told: Instant,
     started: Instant,
     speaks: bool,
 }
 
 impl Progress {
-    fn new(end: f64, speaks: bool) -> Self {
+    fn new(span: [f64; 2], speaks: bool) -> Self {
         let bar = (speaks && std::io::stderr().is_terminal()).then(|| {
             let bar = ProgressBar::new(1000);
             let style = "{bar:40} {percent:>3} %  {msg}  left {eta}";
             bar.set_style(ProgressStyle::with_template(style).expect("the template is sound"));
             bar
         });
-        Progress { bar, end, told: Instant::now(), started: Instant::now(), speaks }
+        Progress { bar, span, told: Instant::now(), started: Instant::now(), speaks }
     }
 
     fn tell(&mut self, time: f64, step: u64) {
@@ -101,7 +126,7 @@ impl Progress {
             return;
         }
         self.told = Instant::now();
-        let share = time / self.end;
+        let share = (time - self.span[0]) / (self.span[1] - self.span[0]);
         match &self.bar {
             Some(bar) => {
                 bar.set_position((1000.0 * share) as u64);
@@ -124,68 +149,88 @@ impl Progress {
     }
 }
 
-/// What the time loop leaves at rank 0.
-struct Recorded {
-    tables: Vec<(ParticleTable, String)>,
-    /// Particles at the start, where a score needs them.
-    start: Option<ParticleTable>,
-    waves: Vec<PressureRow>,
-    histories: Option<Histories>,
-}
-
-/// Steps to the end, recording on the way. Collective.
+/// Steps to the end, recording and writing checkpoints on the way. Collective.
 fn step_to_end<C: Comm, const D: usize>(
     simulation: &mut Simulation<'_, C, D>,
     scene: &CheckedScene,
     comm: &C,
-    quiet: bool,
-) -> Result<Recorded, RunError>
+    options: &Options,
+    recorder: &mut Recorder<'_>,
+    schedule: &mut Schedule,
+) -> Result<(), Failure>
 where
     Stepper<D>: Steps<D>,
 {
     let end = scene.scene.time.end;
     let first = comm.rank() == 0;
-    let mut progress = Progress::new(end, first && !quiet);
-    let mut probes = Probes::new(scene);
-    let mut recorded =
-        Recorded { tables: Vec::new(), start: None, waves: Vec::new(), histories: None };
-    if PlaneReference::needs_start(scene) {
-        recorded.start = simulation.gather().map(|(table, _)| table);
-    }
-    let stride = scene.particles.div_ceil(WAVE_POINTS).max(1);
-    let draws = scene.scene.output.pictures && D == 1;
-    let mut due_wave = 0;
-    let mut due_profile = 0;
+    let mut progress = Progress::new([simulation.time(), end], first && !options.quiet);
+    // the start and what the run goes on from need no checkpoint
+    let mut fresh = true;
     loop {
         let time = simulation.time();
         let (start, waited) = (Instant::now(), comm.traffic().waited);
-        if let Some(probes) = &mut probes {
-            probes.sample(simulation);
+        recorder.record(simulation, first);
+        let asked = simulation.asked();
+        if !fresh && schedule.is_due(time, simulation.steps(), asked) {
+            write_checkpoint(simulation, comm, scene, options, recorder, schedule)?;
         }
-        if draws && time >= due_wave as f64 * end / WAVE_ROWS as f64 {
-            due_wave = (time / end * WAVE_ROWS as f64) as u64 + 1;
-            let points = simulation.sample_pressure(stride);
-            if first {
-                recorded.waves.push(PressureRow { time, points });
-            }
-        }
-        if scene.profile_times.get(due_profile) == Some(&time) {
-            due_profile += 1;
-            recorded.tables.extend(simulation.gather());
-        }
+        fresh = false;
         let waited = comm.traffic().waited - waited;
         simulation.clock().add(Activity::Wait, waited);
         simulation.clock().add_since(Activity::Output, start, waited);
         if time >= end {
             break;
         }
-        let until = scene.profile_times.get(due_profile).copied().unwrap_or(end);
-        simulation.advance(until)?;
+        if let Some(stop) = Schedule::stops(asked) {
+            progress.finish();
+            return Err(stopped(stop, time, simulation.steps(), options, schedule));
+        }
+        simulation.ask(schedule.asks(first));
+        simulation.advance(recorder.next_profile())?;
         progress.tell(simulation.time(), simulation.steps());
     }
     progress.finish();
-    recorded.histories = probes.map(Probes::into_histories);
-    Ok(recorded)
+    Ok(())
+}
+
+/// Writes a checkpoint. Collective.
+fn write_checkpoint<C: Comm, const D: usize>(
+    simulation: &Simulation<'_, C, D>,
+    comm: &C,
+    scene: &CheckedScene,
+    options: &Options,
+    recorder: &Recorder<'_>,
+    schedule: &mut Schedule,
+) -> Result<(), Failure> {
+    let start = Instant::now();
+    if let Some(saved) = simulation.save() {
+        let text = serde_json::to_string(&scene.scene).expect("a scene is plain data");
+        let all = simulation.columns();
+        let of = |k: &usize| StateColumn {
+            name: all.specs[*k].name.into(),
+            unit: all.specs[*k].unit.into(),
+        };
+        let columns: Vec<StateColumn> = all.state().iter().map(of).collect();
+        let contents = recorder.contents(&text, &saved, &columns);
+        let folder = checkpoint_folder(&options.output)?;
+        // the others wait for this rank
+        folder::write(&folder, schedule.keep, &contents, &|| comm.heartbeat())?;
+    }
+    schedule.written(start.elapsed());
+    Ok(())
+}
+
+/// The end of a run before its time, in words.
+fn stopped(stop: Stop, time: f64, step: u64, options: &Options, schedule: &Schedule) -> Failure {
+    let why = match stop {
+        Stop::WallLimit => "time.wall_limit is over".to_string(),
+        Stop::Signal(signal) => format!("signal {signal} came"),
+    };
+    let next = match checkpoint_folder(&options.output) {
+        Ok(folder) if schedule.keep > 0 => format!("go on with --restart {}", folder.display()),
+        _ => "no checkpoint was written, for output.checkpoint.keep is 0".to_string(),
+    };
+    Failure::Stopped { why, time, step, next }
 }
 
 /// Runs a scene and writes its results; returns the final table at rank 0. Collective.
@@ -193,10 +238,11 @@ pub fn run<C: Comm>(
     comm: &C,
     scene: &CheckedScene,
     options: &Options,
+    beginning: Beginning,
 ) -> Result<Option<String>, Failure> {
     match scene.dimension {
-        1 => run_in::<C, 1>(comm, scene, options),
-        _ => run_in::<C, 2>(comm, scene, options),
+        1 => run_in::<C, 1>(comm, scene, options, beginning),
+        _ => run_in::<C, 2>(comm, scene, options, beginning),
     }
 }
 
@@ -205,6 +251,7 @@ fn run_in<C: Comm, const D: usize>(
     comm: &C,
     scene: &CheckedScene,
     options: &Options,
+    beginning: Beginning,
 ) -> Result<Option<String>, Failure>
 where
     Stepper<D>: Steps<D>,
@@ -214,9 +261,16 @@ where
     if let Some((_, steps)) = &options.trace {
         simulation.trace(steps.clone());
     }
+    let mut recorder = Recorder::new(scene, &simulation);
+    if let Beginning::Checkpoint(checkpoint) = beginning {
+        simulation.restore(checkpoint.as_ref().map(|c| &c.saved))?;
+        recorder.resume(comm, checkpoint.map(|c| *c), simulation.time());
+    }
+    let (now, signal) = (simulation.time(), options.signal.clone());
+    let mut schedule = Schedule::new(scene, now, options.started, signal);
     let before = comm.traffic();
     let (loop_start, loop_cpu) = (Instant::now(), user_cpu_seconds());
-    let recorded = step_to_end(&mut simulation, scene, comm, options.quiet)?;
+    step_to_end(&mut simulation, scene, comm, options, &mut recorder, &mut schedule)?;
     let loop_wall_seconds = loop_start.elapsed().as_secs_f64();
     let loop_cpu = user_cpu_seconds() - loop_cpu;
     let (end, left, given) = (simulation.totals(), simulation.left(), simulation.given());
@@ -253,23 +307,23 @@ where
     // the others wait for this rank at their end
     comm.heartbeat();
     let folder = OutputFolder::create(&options.output, options.keep)?;
-    let profiles = write_profiles(comm, scene, reference.as_ref(), &recorded, &folder)?;
+    let profiles = write_profiles(comm, scene, reference.as_ref(), &recorder, &folder)?;
     let as_run = serde_json::to_value(&scene.scene).expect("a scene is plain data");
     if scene.scene.output.hdf5 {
         let bodies: Vec<String> = scene.scene.bodies.iter().map(|b| b.name.clone()).collect();
         let info = RunInfo { title: &scene.scene.title, scene: &as_run, bodies: &bodies };
-        let tables: Vec<ParticleTable> = recorded.tables.iter().map(|t| t.0.clone()).collect();
+        let tables: Vec<ParticleTable> = recorder.tables.iter().map(|t| t.0.clone()).collect();
         write_vtkhdf(&folder.file(RESULTS_FILE), &tables, &info)?;
         comm.heartbeat();
     }
-    if let Some(histories) = &recorded.histories {
+    if let Some(histories) = recorder.histories() {
         histories.write(&folder.file(HISTORIES_FILE))?;
     }
     if scene.scene.output.pictures {
-        draw(comm, scene, reference.as_ref(), &recorded, &profiles, &folder)?;
+        draw(comm, scene, reference.as_ref(), &recorder, &profiles, &folder)?;
     }
     let (energy, momentum, outflow) = balance(scene, [&start, &end], &left, &given);
-    let particle_steps = scene.particles as f64 * simulation.steps() as f64;
+    let particle_steps = scene.particles as f64 * simulation.steps_made() as f64;
     let layout = simulation.layout();
     let summary = Summary {
         title: scene.scene.title.clone(),
@@ -296,6 +350,9 @@ where
     };
     summary.write(folder.path())?;
     let place = folder.commit()?;
+    if schedule.passing {
+        folder::clear(&checkpoint_folder(&options.output)?);
+    }
     Ok(Some(report(&summary, &place)))
 }
 
@@ -304,7 +361,7 @@ fn write_profiles<C: Comm>(
     comm: &C,
     scene: &CheckedScene,
     reference: Option<&Reference>,
-    recorded: &Recorded,
+    recorded: &Recorder<'_>,
     folder: &OutputFolder,
 ) -> Result<Vec<ProfileSummary>, Failure> {
     let names = profile_names(&scene.profile_times);
@@ -338,7 +395,7 @@ fn draw<C: Comm>(
     comm: &C,
     scene: &CheckedScene,
     reference: Option<&Reference>,
-    recorded: &Recorded,
+    recorded: &Recorder<'_>,
     profiles: &[ProfileSummary],
     folder: &OutputFolder,
 ) -> Result<(), PictureError> {
@@ -375,7 +432,7 @@ fn draw<C: Comm>(
     let title = format!("{}: pressure and wave paths", scene.scene.title);
     figures::draw_waves(&title, &recorded.waves, reference, &folder.file("x_t_diagram"))?;
     comm.heartbeat();
-    if let Some(histories) = &recorded.histories {
+    if let Some(histories) = recorded.histories() {
         figures::draw_histories(scene, histories, reference, &folder.file("histories"))?;
     }
     Ok(())

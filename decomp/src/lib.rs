@@ -11,6 +11,8 @@
 //!
 //! Both let the caller compute while messages fly. [`assign_patches`] deals patches to ranks
 //! along a space-filling curve by their weights, and [`relocate`] moves whole patches.
+//! [`StoredRows`] holds the rows of all ranks, for a file, and [`deal_rows`] brings them back to any
+//! layout.
 //!
 //! Rows stand in canonical order, by global cell and then by id, so every patch that sums
 //! particle terms into a node adds the same terms in the same order: any layout and any number of
@@ -28,6 +30,7 @@ mod nodes;
 mod reduce;
 mod relocate;
 mod rows;
+mod store;
 mod stretch;
 mod table;
 mod words;
@@ -41,5 +44,6 @@ pub use nodes::{NodeArrays, NodeExchange, Parity, fold_mirrors};
 pub use reduce::{ExactSum, exact_sums};
 pub use relocate::{Census, Moved, relocate};
 pub use rows::{RowError, RowExchange, RowReach, gather_rows};
+pub use store::{StoredRows, deal_rows};
 pub use table::{Block, ColumnSpec, Mirror};
 pub use words::{bytes_of, words_of};

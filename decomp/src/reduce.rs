@@ -54,6 +54,17 @@ impl ExactSum {
         }
     }
 
+    /// The sum so far in whole multiples of its quantum: with [`ExactSum::carry_on`] another sum
+    /// that was given the same `largest` goes on from there.
+    pub fn total(&self) -> i128 {
+        self.total
+    }
+
+    /// Goes on from the total of an earlier sum.
+    pub fn carry_on(&mut self, total: i128) {
+        self.total = total;
+    }
+
     /// The sum so far.
     pub fn value(&self) -> f64 {
         self.total as f64 * self.quantum

@@ -70,7 +70,7 @@ pub fn relocate<const D: usize, C: Comm + ?Sized, P: AsMut<Block<D>>>(
 }
 
 /// Number of the patch, number of rows, ids, cells, then each state column.
-fn pack<const D: usize>(out: &mut Vec<u64>, patch: usize, block: &Block<D>) {
+pub(crate) fn pack<const D: usize>(out: &mut Vec<u64>, patch: usize, block: &Block<D>) {
     let rows = block.own();
     out.extend([patch as u64, rows as u64]);
     out.extend(&block.ids[..rows]);
@@ -82,7 +82,7 @@ fn pack<const D: usize>(out: &mut Vec<u64>, patch: usize, block: &Block<D>) {
     }
 }
 
-fn unpack<'a, const D: usize>(
+pub(crate) fn unpack<'a, const D: usize>(
     specs: &[crate::ColumnSpec],
     words: &'a [u64],
 ) -> (Block<D>, &'a [u64]) {

@@ -15,6 +15,7 @@ use crate::reference::{ImpactReference, Reference};
 use crate::scene::CheckedScene;
 
 /// Pressure over all particles at one time, for the x-t diagram.
+#[derive(Clone, Debug, PartialEq)]
 pub struct PressureRow {
     /// Time [s].
     pub time: f64,

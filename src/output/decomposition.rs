@@ -9,6 +9,10 @@ use crate::scene::{BalanceCost, FilterHalo};
 /// What sharing the work has cost, over all ranks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DecompositionSummary {
+    /// Step from which this run went on by a checkpoint: all that is counted here came after it;
+    /// 0: the start.
+    #[serde(default)]
+    pub first_step: u64,
     /// How filters got what lies beyond a patch.
     pub filter_halo: FilterHalo,
     /// Whether inner patches were computed while messages were on their way.
@@ -70,7 +74,7 @@ pub struct RankSummary {
 }
 
 impl DecompositionSummary {
-    /// Sums over the ranks; `steps` is the number of steps.
+    /// Sums over the ranks of a run from the start; `steps` is the number of steps.
     pub fn new(
         filter_halo: FilterHalo,
         options: &crate::scene::Decomposition,
@@ -84,6 +88,7 @@ impl DecompositionSummary {
         let even = computed as f64 / ranks.len().max(1) as f64;
         let per_step = |total: u64| total as f64 / steps.max(1) as f64;
         DecompositionSummary {
+            first_step: 0,
             filter_halo,
             overlap: options.overlap,
             skip_quiet: options.skip_quiet,

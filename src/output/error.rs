@@ -44,6 +44,22 @@ pub enum OutputError {
         /// What it is, such as `a mount point`.
         why: &'static str,
     },
+    /// Another run writes there.
+    #[error(
+        "{}: process {pid} on {host} is writing results there; wait for its end or choose another \
+         --output (if it has ended, remove {})",
+        path.display(), lock.display()
+    )]
+    Locked {
+        /// The folder.
+        path: PathBuf,
+        /// The other's process.
+        pid: u32,
+        /// Its machine.
+        host: String,
+        /// The file that says so.
+        lock: PathBuf,
+    },
     /// HDF5 refused.
     #[error("{}: cannot write HDF5: {message}", path.display())]
     Hdf5 {

@@ -61,14 +61,7 @@ impl OutputFolder {
             keep,
             committed: false,
         };
-        let missing: Vec<&Path> = parent.ancestors().take_while(|p| !p.exists()).collect();
-        for path in missing.into_iter().rev() {
-            match fs::create_dir(path) {
-                Ok(()) => folder.made.push(path.to_path_buf()),
-                Err(e) if e.kind() == io::ErrorKind::AlreadyExists && path.is_dir() => {}
-                Err(e) => return Err(OutputError::io("create the folder", path)(e)),
-            }
-        }
+        folder.made = make_parents(parent)?;
         fs::create_dir(&folder.partial)
             .map_err(OutputError::io("write into the folder", parent))?;
         Ok(folder)
@@ -127,12 +120,41 @@ impl Drop for OutputFolder {
     }
 }
 
+/// Makes `folder` and the parents that it needs; returns those that were not there, outermost first.
+pub(super) fn make_parents(folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
+    let mut made: Vec<PathBuf> = Vec::new();
+    let missing: Vec<&Path> = folder.ancestors().take_while(|p| !p.exists()).collect();
+    for path in missing.into_iter().rev() {
+        match fs::create_dir(path) {
+            Ok(()) => made.push(path.to_path_buf()),
+            Err(e) if e.kind() == io::ErrorKind::AlreadyExists && path.is_dir() => {}
+            Err(e) => {
+                made.iter().rev().for_each(|path| drop(fs::remove_dir(path)));
+                return Err(OutputError::io("create the folder", path)(e));
+            }
+        }
+    }
+    Ok(made)
+}
+
 fn remove(folder: &Path) -> Result<(), OutputError> {
     fs::remove_dir_all(folder).map_err(OutputError::io("remove the folder", folder))
 }
 
+/// Folder of the checkpoints of results at `target`: beside it, so that it outlives a run that has no
+/// result.
+pub fn checkpoint_folder(target: &Path) -> Result<PathBuf, OutputError> {
+    let place = resolve(target)?;
+    let mut name = place.file_name().unwrap_or_default().to_os_string();
+    name.push(CHECKPOINTS);
+    Ok(place.with_file_name(name))
+}
+
+/// What the name of a folder of checkpoints ends with.
+pub const CHECKPOINTS: &str = ".checkpoints";
+
 /// The absolute path, links followed as far as the path exists, `.` and `..` resolved.
-fn resolve(target: &Path) -> Result<PathBuf, OutputError> {
+pub(super) fn resolve(target: &Path) -> Result<PathBuf, OutputError> {
     let absolute = std::path::absolute(target).map_err(OutputError::io("find the path", target))?;
     let mut path = PathBuf::new();
     for component in absolute.components() {
@@ -155,11 +177,19 @@ fn resolve(target: &Path) -> Result<PathBuf, OutputError> {
     Ok(path)
 }
 
+/// Refuses a target that is not a folder, or that would stand below what is none.
+pub(super) fn check_folder(named: &Path, target: &Path) -> Result<(), OutputError> {
+    match target.ancestors().find(|p| p.exists()).filter(|p| !p.is_dir()) {
+        Some(file) => {
+            Err(OutputError::NotAFolder(if file == target { named } else { file }.into()))
+        }
+        None => Ok(()),
+    }
+}
+
 /// Refuses a target that is not a folder, that is not ours to delete, or that cannot be renamed.
 fn check_replaceable(named: &Path, target: &Path, keep: bool) -> Result<(), OutputError> {
-    if let Some(file) = target.ancestors().find(|p| p.exists()).filter(|p| !p.is_dir()) {
-        return Err(OutputError::NotAFolder(if file == target { named } else { file }.into()));
-    }
+    check_folder(named, target)?;
     if !target.exists() {
         return Ok(());
     }
@@ -193,13 +223,13 @@ fn is_mount_point(folder: &Path) -> bool {
 }
 
 /// This machine's name, so that a folder left behind is not taken for that of a process elsewhere.
-fn host() -> String {
+pub(super) fn host() -> String {
     let name = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
     name.trim().chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-').collect()
 }
 
 /// What the names of all folders that we make beside `target` begin with: hidden.
-fn aside_prefix(target: &Path) -> String {
+pub(super) fn aside_prefix(target: &Path) -> String {
     format!(".{}.flyer.", target.file_name().unwrap_or_default().to_string_lossy())
 }
 
@@ -236,7 +266,7 @@ fn recover(parent: &Path, target: &Path) {
 }
 
 /// Whether no process of this machine has this number; false where that cannot be told.
-fn is_dead(process: &str) -> bool {
+pub(super) fn is_dead(process: &str) -> bool {
     let is_number = !process.is_empty() && process.bytes().all(|b| b.is_ascii_digit());
     is_number && Path::new("/proc/self").exists() && !Path::new("/proc").join(process).exists()
 }

@@ -28,6 +28,11 @@ impl Histories {
         Histories { columns: columns.into_iter().map(column).collect() }
     }
 
+    /// Columns with their rows.
+    pub fn of(columns: Vec<TableColumn>) -> Histories {
+        Histories { columns }
+    }
+
     /// Appends one value to each column, in their order; NaN where there is none.
     ///
     /// # Panics

@@ -7,6 +7,7 @@ pub mod decomposition;
 pub mod error;
 pub mod folder;
 pub mod histories;
+pub mod lock;
 pub mod pictures;
 pub mod report;
 pub mod summary;

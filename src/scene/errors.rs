@@ -58,16 +58,17 @@ pub enum SceneError {
     },
     /// The run needs more memory than there is.
     #[error(
-        "{file}: {particles} particles in {cells} cells need about {} of memory; allowed: {}, what \
-         this machine has left; coarsen domain.cell_size or lower bodies' particles_per_cell",
-        readable(*needed), readable(*available)
+        "{file}: {particles} particles{} need about {} of memory; allowed: {}, what \
+         this machine has left; coarsen domain.cell_size, lower bodies' particles_per_cell, or start it \
+         all the same with --ignore-memory",
+        in_cells(*cells), readable(*needed), readable(*available)
     )]
     Memory {
         /// Path of the scene.
         file: String,
         /// Particles of all bodies.
         particles: u64,
-        /// Cells of the domain.
+        /// Cells of the domain; 0: not counted yet.
         cells: u64,
         /// Estimate of what the run needs [bytes].
         needed: u64,
@@ -184,6 +185,10 @@ fn at_key(path: &str) -> String {
 
 fn equals(value: &str) -> String {
     if value.is_empty() { String::new() } else { format!(" = {value}") }
+}
+
+fn in_cells(cells: u64) -> String {
+    if cells == 0 { String::new() } else { format!(" in {cells} cells") }
 }
 
 /// A number of bytes as people read it.

@@ -11,10 +11,11 @@ use std::path::Path;
 use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 
+use super::check::tiles;
 use super::errors::{Fault, LONGEST_VALUE, SceneError, one_line, shorten};
 use super::library::{inline_files, resolve};
-use super::overrides::apply;
-use super::{CheckedScene, Scene, conform::conform};
+use super::overrides::{apply, check_allowed};
+use super::{BYTES_PER_PARTICLE, CheckedScene, Scene, conform::conform};
 use crate::geometry::read_points;
 
 /// A scene's file may be this long [bytes].
@@ -83,6 +84,42 @@ pub fn parse(bytes: &[u8], file: &str, sets: &[String]) -> Result<CheckedScene, 
         }
     }
     from_value(value, file)
+}
+
+/// Refuses a scene of which the particles that are made one by one as it is checked need more than
+/// `available` bytes; other faults are left to [`parse`], which makes them.
+pub fn check_size(
+    bytes: &[u8],
+    file: &str,
+    sets: &[String],
+    available: Option<u64>,
+) -> Result<(), SceneError> {
+    let read = || -> Option<Scene> {
+        let mut value = parse_json(bytes, file).ok()?;
+        sets.iter().try_for_each(|set| apply(&mut value, set)).ok()?;
+        conform(&value).ok()?;
+        serde_json::from_value(value).ok()
+    };
+    let particles = read().map_or(0, |scene| tiles(&scene));
+    let needed = particles.saturating_mul(BYTES_PER_PARTICLE);
+    match available {
+        Some(available) if needed > available => {
+            Err(SceneError::Memory { file: one_line(file), particles, cells: 0, needed, available })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Makes a checked scene of that of a checkpoint and of overrides, which may change only keys that
+/// are in `allowed` or stand below one that is.
+pub fn parse_changed(
+    bytes: &[u8],
+    file: &str,
+    sets: &[String],
+    allowed: &[&str],
+) -> Result<CheckedScene, SceneError> {
+    sets.iter().try_for_each(|set| check_allowed(set, allowed))?;
+    parse(bytes, file, sets)
 }
 
 /// Checks a scene that was not read from a file; `file` names it in messages.

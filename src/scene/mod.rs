@@ -14,10 +14,11 @@ mod overrides;
 mod schema;
 
 pub use check::{
-    BYTES_PER_CELL, BYTES_PER_PARTICLE, CheckedBody, CheckedScene, Wall, available_memory,
+    BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, CheckedBody, CheckedScene, Wall,
+    available_memory,
 };
 pub use errors::SceneError;
 pub use library::LIBRARY;
-pub use load::{LARGEST_FILE, check, parse, read};
+pub use load::{LARGEST_FILE, check, check_size, parse, parse_changed, read};
 pub use model::*;
 pub use schema::schema;

@@ -31,6 +31,25 @@ pub(super) fn apply(scene: &mut Value, set: &str) -> Result<(), SceneError> {
     Ok(())
 }
 
+/// Refuses an override of a key that is none of `allowed` nor stands below one of them.
+pub(super) fn check_allowed(set: &str, allowed: &[&str]) -> Result<(), SceneError> {
+    let fail = |reason: String| SceneError::Set {
+        set: one_line(&shorten(set, LONGEST_VALUE)),
+        reason: one_line(&shorten(&reason, LONGEST_REASON)),
+    };
+    let (keys, _) = split(set).map_err(fail)?;
+    let below = |path: &str| {
+        path.split('.').zip(&keys).filter(|(a, b)| a == b).count() == path.split('.').count()
+    };
+    if allowed.iter().any(|path| below(path)) {
+        return Ok(());
+    }
+    Err(fail(format!(
+        "cannot change after the start; allowed with --restart: {}",
+        list(allowed.iter().copied())
+    )))
+}
+
 /// The keys of the path, and the text of the value.
 fn split(set: &str) -> Result<(Vec<String>, &str), String> {
     let mut keys = Vec::new();

@@ -95,6 +95,13 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         let limit = self.stepper.longest_within(reach);
         // the timeline of a patch stays with the rank that computed it
         self.given_events = self.take_patch_events();
+        // and so does what it tells of its last step's contact
+        let rank = self.comm.rank();
+        for (patch, index) in self.patches.iter().zip(self.layout.patches_of(rank)) {
+            if new.rank_of(index) != rank {
+                self.given_contact.extend(&patch.contact.told);
+            }
+        }
         let patches = std::mem::take(&mut self.patches);
         let specs = &self.stepper.columns.specs;
         let (patches, moved) =

@@ -46,9 +46,9 @@ pub struct Left<const D: usize> {
 /// What has left by outflows of this rank's patches: sums that do not depend on who counted.
 #[derive(Clone, Debug)]
 pub(super) struct Outflow<const D: usize> {
-    census: Census,
+    pub(super) census: Census,
     /// Mass, kinetic and internal energy, momentum.
-    sums: Vec<ExactSum>,
+    pub(super) sums: Vec<ExactSum>,
     grid_velocity: [f64; D],
 }
 
@@ -97,7 +97,7 @@ fn largest_mass(scene: &CheckedScene) -> f64 {
 #[derive(Clone, Debug)]
 pub(super) struct SideBooks<const D: usize> {
     /// Work, impulse.
-    sums: Vec<ExactSum>,
+    pub(super) sums: Vec<ExactSum>,
 }
 
 impl<const D: usize> SideBooks<D> {

@@ -6,10 +6,12 @@
 mod balance;
 mod books;
 mod observe;
+mod save;
 
 pub use crate::patch::Given;
 pub use books::{Left, Tally};
 pub use observe::{Followed, Totals};
+pub use save::{Saved, saved_sums};
 
 use std::ops::Range;
 use std::time::Instant;
@@ -90,6 +92,9 @@ pub enum RunError {
         /// Number that there are.
         now: u64,
     },
+    /// What a run was to go on from is not of its scene.
+    #[error("the particles of the checkpoint are not those that its scene starts with")]
+    Foreign,
     /// Another rank tells.
     #[error("another rank has failed")]
     Elsewhere,
@@ -113,6 +118,8 @@ pub struct Simulation<'a, C: Comm, const D: usize> {
     clock: Clock,
     /// Events of patches that other ranks have now.
     given_events: Vec<(usize, Event)>,
+    /// Forces of contact of the last step that such patches have told.
+    given_contact: Vec<[f64; 2]>,
     /// Steps of which a timeline is kept.
     traced: Range<u64>,
     tally: Tally,
@@ -126,7 +133,17 @@ pub struct Simulation<'a, C: Comm, const D: usize> {
     grid_velocity: [f64; D],
     time: f64,
     step: u64,
+    /// The step from which this run goes on; 0: the start.
+    first_step: u64,
+    /// Longest stable next step at a Courant number of 1 [s].
+    stable: f64,
+    /// Greatest extent of a particle along a direction [cells].
+    longest: f64,
+    /// Length of the next step [s].
     dt: f64,
+    /// What this rank asks of all, and what the most urgent of all ranks asks.
+    asks: u8,
+    asked: u8,
 }
 
 /// Who exchanges what with whom, for one reach and one assignment of patches.
@@ -344,6 +361,7 @@ where
             pool,
             clock: Clock::new(),
             given_events: Vec::new(),
+            given_contact: Vec::new(),
             traced: 0..0,
             tally: Tally::default(),
             forgone: 0.0,
@@ -351,7 +369,12 @@ where
             grid_velocity,
             time: 0.0,
             step: 0,
+            first_step: 0,
+            stable: 0.0,
+            longest,
             dt: 0.0,
+            asks: 0,
+            asked: 0,
         };
         simulation.follow_reach(longest);
         simulation.census = simulation.count();
@@ -378,6 +401,7 @@ where
             });
         }
         self.step += 1;
+        self.given_contact.clear();
         let (step, time) = (self.step, self.time);
         let sampled = self.samples(step);
         let timed = sampled || step % EFFECTS_EVERY == 1;
@@ -429,6 +453,22 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         self.step
     }
 
+    /// Steps that this run has made itself: those since what it went on from.
+    pub fn steps_made(&self) -> u64 {
+        self.step - self.first_step
+    }
+
+    /// Asks something of all ranks: the greatest number of all is what [`asked`](Self::asked) tells
+    /// them all at the end of a step. It costs no message of its own.
+    pub fn ask(&mut self, what: u8) {
+        self.asks = what;
+    }
+
+    /// The greatest number that a rank has asked for in the last step.
+    pub fn asked(&self) -> u8 {
+        self.asked
+    }
+
     /// Length of the next step, unless an output shortens it [s].
     pub fn time_step(&self) -> f64 {
         self.dt
@@ -459,15 +499,16 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         &self.stepper.columns
     }
 
-    /// The longest stable step over all ranks, the verdict on all ranks' faults, and what the
-    /// busiest rank computed. Collective.
+    /// The longest stable step over all ranks, the verdict on all ranks' faults, what the busiest
+    /// rank computed, and what ranks ask for. Collective.
     fn agree(&mut self) -> Result<(), RunError> {
         let start = Instant::now();
         let faulty = self.patches.iter().any(|p| p.told.fault.is_some());
         let shortest = self.patches.iter().map(|p| p.told.time_step).fold(f64::INFINITY, f64::min);
         let longest = self.patches.iter().map(|p| p.told.length).fold(0.0, f64::max);
         let computed = self.count_step();
-        let mut told = [shortest, -longest, if faulty { -1.0 } else { 0.0 }, -(computed as f64)];
+        let fault = if faulty { -1.0 } else { 0.0 };
+        let mut told = [shortest, -longest, fault, -(computed as f64), -f64::from(self.asks)];
         let waited = self.comm.traffic().waited;
         self.comm.min(&mut told);
         let waited = self.comm.traffic().waited - waited;
@@ -478,8 +519,9 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         if told[2] < 0.0 {
             return Err(self.gather_fault());
         }
-        self.dt = self.scene.scene.time.courant * told[0];
-        self.follow_reach(-told[1]);
+        (self.stable, self.longest, self.asked) = (told[0], -told[1], -told[4] as u8);
+        self.dt = self.scene.scene.time.courant * self.stable;
+        self.follow_reach(self.longest);
         Ok(())
     }
 

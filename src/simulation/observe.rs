@@ -91,7 +91,8 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
     /// contact, and of what drags along it. Zero without contact. Collective.
     pub fn contact_force(&self) -> [f64; 2] {
         exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
-            for told in self.patches.iter().flat_map(|p| &p.contact.told) {
+            let told = self.patches.iter().flat_map(|p| &p.contact.told);
+            for told in told.chain(&self.given_contact) {
                 told.iter().enumerate().for_each(|(k, &force)| add(k, force));
             }
         })

@@ -60,9 +60,12 @@ impl Home {
         Results::read(&self.at(folder))
     }
 
-    /// Every file and folder below with its bytes, by path relative to here.
+    /// Every file and folder below with its bytes, by path relative to here. Left out are locks: one
+    /// that a killed run has left holds nobody up.
     pub fn contents(&self) -> Contents {
-        contents(self.path())
+        let mut found = contents(self.path());
+        found.retain(|path, _| path.extension().is_none_or(|end| end != "lock"));
+        found
     }
 }
 

@@ -1,6 +1,7 @@
 //! Bodies with velocity fields of their own, on a line: they part, meet and press as they should.
 
 use decomp::Serial;
+use decomp::comm::local::run_ranks;
 use flyer_mpm::exact::{Accuracy, Impact, ImpactBody, Separation};
 use flyer_mpm::output::ParticleTable;
 use flyer_mpm::simulation::Simulation;
@@ -203,4 +204,25 @@ fn every_scheme_has_contact_in_leapfrog() {
             assert!(b - a > 1e-5, "{shape} {transfer}: {}", b - a);
         }
     }
+}
+
+/// A patch that moves to another rank at a step's end takes nothing away from the force of that
+/// step.
+#[test]
+fn a_force_is_told_whole_when_patches_move() {
+    let mut value = cut("soft_flyer.json", 2e-8);
+    value["domain"]["patches"] = json!([16]);
+    value["decomposition"] = json!({"balance": {"every": 3, "cost": "particles"}});
+    let scene = checked(&value);
+    let ends = run_ranks(2, |rank| {
+        let mut simulation = Simulation::<_, 1>::new(&scene, rank, 1).unwrap();
+        let mut forces = Vec::new();
+        while simulation.time() < scene.scene.time.end {
+            simulation.advance(scene.scene.time.end).unwrap();
+            forces.push((simulation.time(), simulation.contact_force()[0]));
+        }
+        (forces, simulation.tally().balances)
+    });
+    assert!(ends[0].1 > 0, "no patch moves");
+    assert_eq!(ends[0].0, forces(&value).0);
 }

@@ -1,14 +1,20 @@
 //! What a run needs of the machine's memory, told before it is taken.
 
 use super::super::errors::{Fault, SceneError, one_line};
+use super::super::model::{CellSize, Region, Scene};
 use super::CheckedScene;
 use super::domain::MOST;
+use crate::geometry::Shape;
 
 /// Memory that a run takes for one particle, outputs included [bytes].
 pub const BYTES_PER_PARTICLE: u64 = 600;
 
 /// Memory that a run takes for one cell [bytes].
 pub const BYTES_PER_CELL: u64 = 400;
+
+/// Memory that a run takes at most for one patch that is narrower than its ghosts are deep, beyond
+/// that for its cells, on a line and in a plane [bytes].
+pub const BYTES_PER_PATCH: [u64; 2] = [40 << 10, 1 << 20];
 
 impl CheckedScene {
     /// Cells of the domain.
@@ -20,7 +26,11 @@ impl CheckedScene {
     pub fn memory(&self) -> u64 {
         let particles = self.particles.saturating_mul(BYTES_PER_PARTICLE);
         let nodes = self.cell_count().saturating_mul(self.velocity_fields() as u64);
-        particles.saturating_add(nodes.saturating_mul(BYTES_PER_CELL))
+        // those that the program chooses are wide and few
+        let patches = self.scene.domain.patches.as_deref().unwrap_or(&[]);
+        let patches = patches.iter().fold(1, |all: u64, &n| all.saturating_mul(n as u64));
+        let patches = patches.saturating_mul(BYTES_PER_PATCH[self.dimension.clamp(1, 2) - 1]);
+        particles.saturating_add(nodes.saturating_mul(BYTES_PER_CELL)).saturating_add(patches)
     }
 
     /// Refuses a run that needs more than `available` bytes; `None` is taken as enough.
@@ -39,6 +49,27 @@ impl CheckedScene {
             _ => Ok(()),
         }
     }
+}
+
+/// Particles of the bodies of a scene in a plane that are made one by one as the scene is checked,
+/// counted by areas; faults are told elsewhere.
+pub(in super::super) fn tiles(scene: &Scene) -> u64 {
+    let cell = match &scene.domain.cell_size {
+        CellSize::Uniform(size) => [*size; 2],
+        CellSize::PerDirection(sizes) => {
+            std::array::from_fn(|a| sizes.get(a).copied().unwrap_or(1.0))
+        }
+    };
+    let of_body = |body: &super::super::model::Body| -> Option<f64> {
+        let (_, region) = body.regions().pop()?;
+        let counts = body.particles_per_cell.as_ref()?;
+        if matches!(region, Region::Box(_)) || counts.len() != 2 || scene.domain.lower.len() != 2 {
+            return None;
+        }
+        let whole = cell[0] * cell[1] / (counts[0] * counts[1]) as f64;
+        Some(Shape::new(&region).ok()?.area() / whole)
+    };
+    scene.bodies.iter().filter_map(of_body).sum::<f64>() as u64
 }
 
 /// Counts that no machine holds are refused wherever the scene is read.

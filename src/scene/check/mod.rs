@@ -23,7 +23,8 @@ use super::model::{Contact, Eos, Geometry, Material, Scene, Side};
 
 pub use bodies::CheckedBody;
 pub use boundary::Wall;
-pub use memory::{BYTES_PER_CELL, BYTES_PER_PARTICLE, available_memory};
+pub(super) use memory::tiles;
+pub use memory::{BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, available_memory};
 
 /// A scene that passed every check, and the numbers that follow from it.
 #[derive(Clone, Debug)]
@@ -77,6 +78,7 @@ impl CheckedScene {
         boundary::check_transmitting(&mut checked)?;
         motion::check_body_force(&checked)?;
         output::check_tracers(&checked)?;
+        output::check_checkpoints(&checked.scene)?;
         reference::check(&mut checked)?;
         if dimension == 1 {
             impact::check(&mut checked)?;

@@ -14,8 +14,14 @@ const ROWS: f64 = 200.0;
 pub(super) fn profile_times(scene: &Scene) -> Result<Vec<f64>, Fault> {
     let times = &scene.output.profiles.times;
     let end = scene.time.end;
+    check_times("output.profiles.times", times, end)?;
+    Ok(if times.is_empty() { vec![end] } else { times.clone() })
+}
+
+/// Times strictly increasing, none beyond the end.
+fn check_times(path: &str, times: &[f64], end: f64) -> Result<(), Fault> {
     for (i, &time) in times.iter().enumerate() {
-        let path = || format!("output.profiles.times[{i}]");
+        let path = || format!("{path}[{i}]");
         if time > end {
             let reason = format!("beyond time.end = {end:e}; allowed: above 0 and at most {end:e}");
             return Err(Fault::new(path(), time, reason));
@@ -29,7 +35,13 @@ pub(super) fn profile_times(scene: &Scene) -> Result<Vec<f64>, Fault> {
             return Err(Fault::new(path(), time, reason));
         }
     }
-    Ok(if times.is_empty() { vec![end] } else { times.clone() })
+    Ok(())
+}
+
+/// Times of checkpoints are met before the end.
+pub(super) fn check_checkpoints(scene: &Scene) -> Result<(), Fault> {
+    let Some(checkpoints) = &scene.output.checkpoint else { return Ok(()) };
+    check_times("output.checkpoint.at_times", &checkpoints.at_times, scene.time.end)
 }
 
 pub(super) fn history_interval(scene: &Scene) -> Option<f64> {

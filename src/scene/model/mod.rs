@@ -195,6 +195,11 @@ pub struct Time {
     #[serde(default = "default_courant")]
     #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0.0))]
     pub courant: f64,
+    /// Wall time from the program's start after which the run writes a checkpoint and ends, to be
+    /// gone on with [s]; absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub wall_limit: Option<f64>,
 }
 
 fn default_courant() -> f64 {

@@ -12,6 +12,10 @@ pub struct Output {
     /// Histories; absent: none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub histories: Option<Histories>,
+    /// Checkpoints, from which a run can go on; absent: one every ten minutes of wall time, the last
+    /// two kept until the run has ended well.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub checkpoint: Option<Checkpoints>,
     /// Write `results.hdf5`.
     pub hdf5: bool,
     /// Draw the pictures.
@@ -20,7 +24,51 @@ pub struct Output {
 
 impl Default for Output {
     fn default() -> Self {
-        Output { profiles: Profiles::default(), histories: None, hdf5: true, pictures: true }
+        Output {
+            profiles: Profiles::default(),
+            histories: None,
+            checkpoint: None,
+            hdf5: true,
+            pictures: true,
+        }
+    }
+}
+
+/// When checkpoints are written, each at the first step's end past its time, in
+/// `<folder of the results>.checkpoints`. Without a time: every ten minutes of wall time. They change
+/// no bit of the results.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Checkpoints {
+    /// Simulated time from one to the next [s].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub every_seconds: Option<f64>,
+    /// Steps from one to the next.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1))]
+    pub every_steps: Option<u64>,
+    /// Times [s], increasing.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0.0}))]
+    pub at_times: Vec<f64>,
+    /// Wall time from one to the next [s].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub every_wall_seconds: Option<f64>,
+    /// The last so many stay, after the end too; 0: none are written.
+    pub keep: u64,
+}
+
+impl Default for Checkpoints {
+    fn default() -> Self {
+        Checkpoints {
+            every_seconds: None,
+            every_steps: None,
+            at_times: Vec::new(),
+            every_wall_seconds: None,
+            keep: 2,
+        }
     }
 }
 

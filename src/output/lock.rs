@@ -1,0 +1,200 @@
+//! One run at a time into a folder: a hidden file beside it that names who writes.
+//!
+//! The system's lock on the file ends with the process, however it ends, so a file that was left
+//! behind holds nobody up. Where another machine wrote it, whose locks may not be seen from here,
+//! its age decides: a run that lives touches it. Knows no MPI: called on one rank alone.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{Read, Write};
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread::JoinHandle;
+use std::time::{Duration, SystemTime};
+
+use serde::{Deserialize, Serialize};
+
+use super::error::OutputError;
+use super::folder::{aside_prefix, check_folder, host, is_dead, make_parents, resolve};
+
+/// Time between two signs of life.
+const TOUCHED: Duration = Duration::from_secs(15);
+
+/// Without a sign of life for so long a run on another machine has ended.
+const STALE: Duration = Duration::from_secs(90);
+
+/// Who writes.
+#[derive(Debug, Serialize, Deserialize)]
+struct Owner {
+    pid: u32,
+    host: String,
+}
+
+/// The right to write results at a place, until it is dropped.
+#[derive(Debug)]
+pub struct Lock {
+    path: PathBuf,
+    /// Held for the system's lock on it.
+    _file: File,
+    /// Parents that were made for it, outermost first.
+    made: Vec<PathBuf>,
+    /// Ends the signs of life.
+    end: Option<Sender<()>>,
+    alive: Option<JoinHandle<()>>,
+}
+
+impl Lock {
+    /// Takes the place of the results `target`, making its parents; refused while another process
+    /// has it.
+    pub fn take(target: &Path) -> Result<Lock, OutputError> {
+        let place = resolve(target)?;
+        let Some(parent) = place.parent() else {
+            return Err(OutputError::Fixed { path: target.into(), why: "the root folder" });
+        };
+        check_folder(target, &place)?;
+        let path = parent.join(format!("{}lock", aside_prefix(&place)));
+        let made = make_parents(parent)?;
+        match Lock::open(target, &path) {
+            Ok(file) => Ok(Lock::keep(path, file, made)),
+            Err(error) => {
+                made.iter().rev().for_each(|parent| drop(fs::remove_dir(parent)));
+                Err(error)
+            }
+        }
+    }
+
+    fn open(target: &Path, path: &Path) -> Result<File, OutputError> {
+        let fail = OutputError::io;
+        loop {
+            let mut file = OpenOptions::new()
+                .read(true)
+                .write(true)
+                .create(true)
+                .truncate(false)
+                .open(path)
+                .map_err(fail("write the lock file", path))?;
+            let taken = match file.try_lock() {
+                Ok(()) => false,
+                Err(TryLockError::WouldBlock) => true,
+                // a file system without locks: what the file says has to do
+                Err(TryLockError::Error(_)) => !said_by_dead(&mut file),
+            };
+            let owner = read_owner(&mut file);
+            let elsewhere = owner.as_ref().is_some_and(|o| o.host != host());
+            let age =
+                file.metadata().and_then(|m| m.modified()).ok().and_then(|m| m.elapsed().ok());
+            let fresh = age.is_none_or(|age| age < STALE);
+            if taken || (elsewhere && fresh) {
+                let (pid, host) = owner.map_or((0, "?".into()), |o| (o.pid, o.host));
+                return Err(OutputError::Locked {
+                    path: target.into(),
+                    pid,
+                    host,
+                    lock: path.into(),
+                });
+            }
+            // one that ended meanwhile may have taken the file away
+            let same = fs::metadata(path).is_ok_and(|now| {
+                file.metadata().is_ok_and(|mine| (mine.dev(), mine.ino()) == (now.dev(), now.ino()))
+            });
+            if !same {
+                continue;
+            }
+            let owner = Owner { pid: std::process::id(), host: host() };
+            let text = serde_json::to_string(&owner).expect("an owner is plain data");
+            file.set_len(0)
+                .and_then(|()| std::io::Seek::rewind(&mut file))
+                .and_then(|()| file.write_all(text.as_bytes()))
+                .map_err(fail("write the lock file", path))?;
+            return Ok(file);
+        }
+    }
+
+    /// Holds the file and shows signs of life.
+    fn keep(path: PathBuf, file: File, made: Vec<PathBuf>) -> Lock {
+        let (end, ended) = channel::<()>();
+        let touched = file.try_clone().ok();
+        let alive = std::thread::spawn(move || {
+            while let Err(RecvTimeoutError::Timeout) = ended.recv_timeout(TOUCHED) {
+                if let Some(file) = &touched {
+                    let _ = file.set_modified(SystemTime::now());
+                }
+            }
+        });
+        Lock { path, _file: file, made, end: Some(end), alive: Some(alive) }
+    }
+}
+
+impl Drop for Lock {
+    /// Best effort: a file that stays holds nobody up.
+    fn drop(&mut self) {
+        drop(self.end.take());
+        if let Some(alive) = self.alive.take() {
+            let _ = alive.join();
+        }
+        let _ = fs::remove_file(&self.path);
+        for parent in self.made.iter().rev() {
+            let _ = fs::remove_dir(parent);
+        }
+    }
+}
+
+fn read_owner(file: &mut File) -> Option<Owner> {
+    let mut text = String::new();
+    std::io::Seek::rewind(file).ok()?;
+    file.take(4096).read_to_string(&mut text).ok()?;
+    serde_json::from_str(&text).ok()
+}
+
+/// Whether the file names no process that may live.
+fn said_by_dead(file: &mut File) -> bool {
+    read_owner(file).is_none_or(|o| o.host == host() && is_dead(&o.pid.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entries(folder: &Path) -> usize {
+        fs::read_dir(folder).unwrap().count()
+    }
+
+    #[test]
+    fn the_second_is_refused_until_the_first_has_ended() {
+        let home = tempfile::tempdir().unwrap();
+        let target = home.path().join("a/run");
+        let first = Lock::take(&target).unwrap();
+        let error = Lock::take(&target).unwrap_err().to_string();
+        let me = std::process::id().to_string();
+        assert!(error.contains(&me) && error.contains(&host()), "{error}");
+        assert!(error.contains("another --output"), "{error}");
+        Lock::take(&home.path().join("a/other")).unwrap();
+        drop(first);
+        assert_eq!(entries(home.path()), 0);
+        drop(Lock::take(&target).unwrap());
+        assert_eq!(entries(home.path()), 0);
+    }
+
+    #[test]
+    fn a_file_left_behind_holds_nobody_up() {
+        let home = tempfile::tempdir().unwrap();
+        let (target, path) = (home.path().join("run"), home.path().join(".run.flyer.lock"));
+        for text in ["", "torn {", r#"{"pid": 1, "host": "HERE"}"#] {
+            fs::write(&path, text.replace("HERE", &host())).unwrap();
+            drop(Lock::take(&target).unwrap_or_else(|e| panic!("{text}: {e}")));
+            assert!(!path.exists());
+        }
+    }
+
+    #[test]
+    fn a_run_on_another_machine_lives_while_it_gives_signs() {
+        let home = tempfile::tempdir().unwrap();
+        let (target, path) = (home.path().join("run"), home.path().join(".run.flyer.lock"));
+        fs::write(&path, r#"{"pid": 1, "host": "elsewhere-7"}"#).unwrap();
+        let error = Lock::take(&target).unwrap_err().to_string();
+        assert!(error.contains("process 1 on elsewhere-7"), "{error}");
+        let old = SystemTime::now() - 2 * STALE;
+        File::options().write(true).open(&path).unwrap().set_modified(old).unwrap();
+        Lock::take(&target).unwrap();
+    }
+}

@@ -1,0 +1,140 @@
+//! What a run records on its way: histories, rows of the x-t diagram, profiles.
+
+use decomp::Comm;
+
+use crate::checkpoint::{Checkpoint, Contents, Due, Record, StateColumn};
+use crate::figures::PressureRow;
+use crate::output::ParticleTable;
+use crate::output::histories::Histories;
+use crate::probes::Probes;
+use crate::reference::PlaneReference;
+use crate::scene::CheckedScene;
+use crate::simulation::{Saved, Simulation};
+use crate::step::{Stepper, Steps};
+
+/// Rows of the x-t diagram.
+const WAVE_ROWS: u64 = 120;
+
+/// Particles in a row of the x-t diagram, at most.
+const WAVE_POINTS: u64 = 2000;
+
+/// What a run records; rank 0 has it all, the others know what is due.
+pub struct Recorder<'a> {
+    scene: &'a CheckedScene,
+    probes: Option<Probes>,
+    /// Profiles and the digests of their states.
+    pub tables: Vec<(ParticleTable, String)>,
+    /// Particles at the start, where a score needs them.
+    pub start: Option<ParticleTable>,
+    /// Rows of the x-t diagram.
+    pub waves: Vec<PressureRow>,
+    due_wave: u64,
+    due_profile: usize,
+}
+
+impl<'a> Recorder<'a> {
+    /// The recorder of a run at its start. Collective.
+    pub fn new<C: Comm, const D: usize>(
+        scene: &'a CheckedScene,
+        simulation: &Simulation<'_, C, D>,
+    ) -> Self
+    where
+        Stepper<D>: Steps<D>,
+    {
+        let needs_start = PlaneReference::needs_start(scene);
+        Recorder {
+            scene,
+            probes: Probes::new(scene),
+            tables: Vec::new(),
+            start: if needs_start { simulation.gather().map(|(table, _)| table) } else { None },
+            waves: Vec::new(),
+            due_wave: 0,
+            due_profile: 0,
+        }
+    }
+
+    /// Goes on from what a checkpoint of rank 0 holds, at `time` [s]. Collective.
+    pub fn resume<C: Comm>(&mut self, comm: &C, checkpoint: Option<Checkpoint>, time: f64) {
+        let told = checkpoint
+            .as_ref()
+            .map_or(Vec::new(), |c| serde_json::to_vec(&c.due).expect("what is due is plain data"));
+        let due: Due = serde_json::from_slice(&comm.broadcast(told)).expect("rank 0 has told");
+        let end = self.scene.scene.time.end;
+        self.due_wave = if due.end == end { due.wave } else { wave_after(time, end) };
+        self.due_profile = self.scene.profile_times.iter().filter(|&&t| t <= time).count();
+        let Record { tables, waves, histories } =
+            checkpoint.map_or_else(Record::default, |c| c.record);
+        (self.tables, self.waves) = (tables, waves);
+        if let Some(probes) = &mut self.probes {
+            let same = due.history_interval == self.scene.history_interval;
+            probes.resume(time, same.then_some(due.history), histories);
+        }
+    }
+
+    /// Records what is due at this time. Collective.
+    pub fn record<C: Comm, const D: usize>(
+        &mut self,
+        simulation: &Simulation<'_, C, D>,
+        first: bool,
+    ) where
+        Stepper<D>: Steps<D>,
+    {
+        let (time, end) = (simulation.time(), self.scene.scene.time.end);
+        if let Some(probes) = &mut self.probes {
+            probes.sample(simulation);
+        }
+        let draws = self.scene.scene.output.pictures && D == 1;
+        if draws && time >= self.due_wave as f64 * end / WAVE_ROWS as f64 {
+            self.due_wave = wave_after(time, end);
+            let stride = self.scene.particles.div_ceil(WAVE_POINTS).max(1);
+            let points = simulation.sample_pressure(stride);
+            if first {
+                self.waves.push(PressureRow { time, points });
+            }
+        }
+        if self.scene.profile_times.get(self.due_profile) == Some(&time) {
+            self.due_profile += 1;
+            self.tables.extend(simulation.gather());
+        }
+    }
+
+    /// The time of the next profile, which a step has to meet [s].
+    pub fn next_profile(&self) -> f64 {
+        self.scene.profile_times.get(self.due_profile).copied().unwrap_or(self.scene.scene.time.end)
+    }
+
+    /// The histories so far, if there are any.
+    pub fn histories(&self) -> Option<&Histories> {
+        self.probes.as_ref().map(Probes::histories)
+    }
+
+    /// What a checkpoint holds.
+    pub fn contents<'b>(
+        &'b self,
+        scene: &'b str,
+        saved: &'b Saved,
+        columns: &'b [StateColumn],
+    ) -> Contents<'b> {
+        let due = Due {
+            history: self.probes.as_ref().map_or(0, Probes::due),
+            history_interval: self.scene.history_interval,
+            wave: self.due_wave,
+            end: self.scene.scene.time.end,
+        };
+        Contents {
+            scene,
+            dimension: self.scene.dimension,
+            saved,
+            columns,
+            due,
+            tables: &self.tables,
+            waves: &self.waves,
+            histories: self.histories(),
+        }
+    }
+}
+
+/// The number of the first row of the x-t diagram that is due after `time`.
+fn wave_after(time: f64, end: f64) -> u64 {
+    (time / end * WAVE_ROWS as f64) as u64 + 1
+}

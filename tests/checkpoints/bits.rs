@@ -1,0 +1,178 @@
+//! Runs in process, broken at steps and gone on with on another layout: the same bits.
+
+use decomp::comm::local::run_ranks;
+use decomp::{Comm, Serial};
+use flyer_mpm::scene::{self, CheckedScene};
+use flyer_mpm::simulation::{Saved, Simulation};
+use flyer_mpm::step::{Stepper, Steps};
+use serde_json::{Value, json};
+
+use crate::scenes::{shipped, small, small_leapfrog, with};
+
+/// Steps of each run.
+const STEPS: u64 = 24;
+
+fn checked(scene: &Value) -> CheckedScene {
+    scene::parse(scene.to_string().as_bytes(), "scene.json", &[]).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// All that a run tells of its state.
+fn end_of<C: Comm, const D: usize>(run: &Simulation<'_, C, D>) -> String
+where
+    Stepper<D>: Steps<D>,
+{
+    let (totals, left, given, force) = (run.totals(), run.left(), run.given(), run.contact_force());
+    let digest = run.gather().map(|(_, digest)| digest).unwrap_or_default();
+    let (time, step, dt) = (run.time(), run.steps(), run.time_step());
+    format!("{digest} {time:?} {step} {dt:?} {totals:?} {left:?} {given:?} {force:?}")
+}
+
+/// The end of a run that was never broken, and what it has saved after some steps.
+fn whole<const D: usize>(scene: &CheckedScene, cuts: &[u64]) -> (String, Vec<Saved>)
+where
+    Stepper<D>: Steps<D>,
+{
+    let mut run = Simulation::<_, D>::new(scene, &Serial, 1).unwrap();
+    let mut saved = Vec::new();
+    while run.steps() < STEPS {
+        run.advance(scene.scene.time.end).unwrap();
+        if cuts.contains(&run.steps()) {
+            saved.extend(run.save());
+        }
+    }
+    (end_of(&run), saved)
+}
+
+/// The end of a run that goes on on some ranks.
+fn gone_on<const D: usize>(
+    scene: &CheckedScene,
+    saved: &Saved,
+    ranks: usize,
+    threads: usize,
+) -> String
+where
+    Stepper<D>: Steps<D>,
+{
+    let ends = run_ranks(ranks, |comm| {
+        let mut run = Simulation::<_, D>::new(scene, comm, threads).unwrap();
+        run.restore((comm.rank() == 0).then_some(saved)).unwrap();
+        assert_eq!((run.steps(), run.steps_made()), (saved.step, 0));
+        while run.steps() < STEPS {
+            run.advance(scene.scene.time.end).unwrap();
+        }
+        // saving again changes nothing
+        run.save();
+        end_of(&run)
+    });
+    ends.into_iter().next().unwrap()
+}
+
+/// Holds runs of `scene` that were broken after `cuts` steps against one that was not.
+fn same_bits<const D: usize>(scene: &Value, cuts: &[u64], patches: &[&[usize]])
+where
+    Stepper<D>: Steps<D>,
+{
+    let cut = |patches: &[usize]| checked(&with(scene, &json!({"domain": {"patches": patches}})));
+    let (end, saved) = whole::<D>(&cut(patches[0]), cuts);
+    assert_eq!(saved.len(), cuts.len());
+    for (k, saved) in saved.iter().enumerate() {
+        let (ranks, threads) = ([1, 2, 3, 4][(k + 1) % 4], 1 + k % 2);
+        let patches = patches[(k + 1) % patches.len()];
+        let again = gone_on::<D>(&cut(patches), saved, ranks, threads);
+        assert_eq!(again, end, "after {} steps, {ranks} ranks, {patches:?}", saved.step);
+    }
+}
+
+#[test]
+fn a_line_with_all_that_mid_point_steps_have() {
+    // relaxed every seventh step, so that the number of the step counts
+    let edit = json!({"method": {"pressure_relaxation": {"rate": 0.1, "interval": 7}}});
+    let scene = with(&small("flyer.json"), &edit);
+    same_bits::<1>(&scene, &[1, 6, 7, 13, 23, 24], &[&[3], &[1], &[16], &[5]]);
+}
+
+#[test]
+fn lines_with_leapfrog_steps() {
+    for (shape, transfer, update) in
+        [("cpdi", json!("flip"), "last"), ("bspline_cubic", json!("apic"), "modified_last")]
+    {
+        let scene = small_leapfrog(shape, &transfer);
+        let scene = with(&scene, &json!({"method": {"stress_update": update}}));
+        same_bits::<1>(&scene, &[2, 15], &[&[4], &[7]]);
+    }
+}
+
+#[test]
+fn contact_sides_and_what_has_left() {
+    same_bits::<1>(&small("soft_flyer.json"), &[5, 18], &[&[4], &[2]]);
+    // particles that leave, waves that pass, and a piston
+    let mut scene = small("flyer.json");
+    scene["domain"]["upper"] = json!([0.0007]);
+    scene["domain"]["lower"] = json!([-0.00012]);
+    scene["bodies"][0]["velocity"] = json!([-1000]);
+    scene["boundary"] = json!({"x_lower": "outflow", "x_upper": "transmitting"});
+    scene["bodies"][1]["velocity"] = json!([-1000]);
+    scene.as_object_mut().unwrap().remove("reference");
+    let (end, _) = whole::<1>(&checked(&scene), &[]);
+    assert!(!end.contains("Left { count: 0"), "{end}");
+    same_bits::<1>(&scene, &[8, 20], &[&[4], &[3]]);
+    let mut piston = shipped("piston.json");
+    piston["domain"]["cell_size"] = json!(1e-4);
+    same_bits::<1>(&piston, &[11], &[&[3], &[2]]);
+}
+
+#[test]
+fn planes_of_solids_gases_and_contact() {
+    let mut disks = shipped("disks.json");
+    disks["domain"]["cell_size"] = json!(0.05);
+    // they meet at once
+    disks["bodies"][1]["disk"]["centre"] = json!([0.49, 0.49]);
+    same_bits::<2>(&disks, &[3, 16], &[&[2, 2], &[1, 3]]);
+    let contact = json!({"contact": {"type": "friction", "coefficient": 0.2}});
+    same_bits::<2>(&with(&disks, &contact), &[9], &[&[1, 1], &[3, 2]]);
+    let mut noh = shipped("noh_axis.json");
+    noh["domain"]["cell_size"] = json!(0.02);
+    same_bits::<2>(&noh, &[4], &[&[1, 1], &[5, 1]]);
+}
+
+#[test]
+fn planes_with_forces_walls_and_joined_sides() {
+    let mut block = shipped("sliding_block.json");
+    block["output"] = json!({});
+    same_bits::<2>(&block, &[5, 17], &[&[3, 1], &[1, 2]]);
+    let mut layer = shipped("shear_layer.json");
+    layer["domain"]["cell_size"] = json!(0.125);
+    same_bits::<2>(&layer, &[10], &[&[2, 2], &[4, 1]]);
+    let mut vortex = shipped("vortex.json");
+    vortex["domain"]["cell_size"] = json!(0.25);
+    vortex["time"]["courant"] = json!(0.05);
+    same_bits::<2>(&vortex, &[7], &[&[1, 2], &[3, 3]]);
+}
+
+/// Patches that sleep at the cut are awake after it.
+#[test]
+fn patches_at_rest() {
+    let scene = small("flyer.json");
+    let saved = whole::<1>(&checked(&scene), &[12]).1;
+    let quiet = |skip: bool| {
+        let edit = json!({"domain": {"patches": [16]}, "decomposition": {"skip_quiet": skip}});
+        gone_on::<1>(&checked(&with(&scene, &edit)), &saved[0], 2, 1)
+    };
+    assert_eq!(quiet(true), quiet(false));
+}
+
+/// What is not of its scene is refused on all ranks.
+#[test]
+fn particles_of_another_scene() {
+    let scene = checked(&small("flyer.json"));
+    let mut saved = whole::<1>(&scene, &[3]).1.remove(0);
+    saved.rows.columns[0][5] *= 1.5;
+    let errors = run_ranks(2, |comm| {
+        let mut run = Simulation::<_, 1>::new(&scene, comm, 1).unwrap();
+        run.restore((comm.rank() == 0).then_some(&saved)).unwrap_err().to_string()
+    });
+    assert!(
+        errors.iter().all(|e| e.contains("not those that its scene starts with")),
+        "{errors:?}"
+    );
+}

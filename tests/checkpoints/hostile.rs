@@ -1,0 +1,192 @@
+//! Scenes, overrides and checkpoints that were changed at random, always the same ones: a verdict
+//! of one line, never a panic.
+
+use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+use flyer_mpm::checkpoint::file;
+use flyer_mpm::scene;
+
+use crate::damage::random;
+
+/// What is put into texts.
+const TOKENS: [&str; 30] = [
+    "0",
+    "-0.0",
+    "-1",
+    "1e308",
+    "-1e308",
+    "1e-320",
+    "1e999",
+    "18446744073709551616",
+    "NaN",
+    "null",
+    "true",
+    "{}",
+    "[]",
+    "[[]]",
+    "\"\"",
+    "\"\\u0000\"",
+    "\"../../x\"",
+    "{\"type\":",
+    "]",
+    "}",
+    ",",
+    ":",
+    "\"",
+    "\\",
+    "\u{feff}",
+    "\u{202e}",
+    "\"box\":",
+    "\"fmpm\"",
+    "1e15",
+    "0.1",
+];
+
+/// The shipped scenes that are small enough to be checked at once.
+fn corpus() -> Vec<String> {
+    let names = ["flyer", "soft_flyer", "piston", "sod", "noh_axis", "sliding_block", "gresho"];
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs");
+    names.map(|name| fs::read_to_string(folder.join(format!("{name}.json"))).unwrap()).into()
+}
+
+/// A text with one to three changes: bytes changed, lost, doubled, swapped, or numbers and other
+/// tokens replaced.
+fn changed(text: &str, seed: &mut u64) -> Vec<u8> {
+    let mut bytes = text.as_bytes().to_vec();
+    for _ in 0..1 + random(seed) % 3 {
+        let at = random(seed) as usize % bytes.len().max(1);
+        let length = random(seed) as usize % 12;
+        let end = (at + length).min(bytes.len());
+        let token = TOKENS[random(seed) as usize % TOKENS.len()];
+        match random(seed) % 7 {
+            0 if !bytes.is_empty() => bytes[at] ^= 1 << (random(seed) % 8),
+            1 => drop(bytes.drain(at..end)),
+            2 => {
+                let piece = bytes[at..end].to_vec();
+                bytes.splice(at..at, piece);
+            }
+            3 => bytes.truncate(at),
+            _ => {
+                // a number, if there is one ahead
+                let digit = |b: &u8| b.is_ascii_digit();
+                let Some(from) = bytes[at..].iter().position(digit).map(|k| at + k) else {
+                    bytes.splice(at..end, token.bytes());
+                    continue;
+                };
+                let part = |b: &u8| b.is_ascii_digit() || b"+-.eE".contains(b);
+                let to =
+                    bytes[from..].iter().position(|b| !part(b)).map_or(bytes.len(), |k| from + k);
+                bytes.splice(from..to, token.bytes());
+            }
+        }
+    }
+    bytes
+}
+
+/// Asserts that a verdict is reached, and told in one line.
+#[track_caller]
+fn judged<T, E: ToString>(
+    what: &dyn Fn() -> String,
+    verdict: impl FnOnce() -> Result<T, E>,
+) -> bool {
+    match catch_unwind(AssertUnwindSafe(verdict)) {
+        Ok(Ok(_)) => true,
+        Ok(Err(error)) => {
+            let text = error.to_string();
+            assert!(!text.contains('\n') && text.len() < 4000, "{}: {text}", what());
+            false
+        }
+        Err(_) => panic!("it panics: {}", what()),
+    }
+}
+
+#[test]
+fn changed_scenes() {
+    let corpus = corpus();
+    let (mut seed, mut taken) = (3, 0);
+    for round in 0..4000 {
+        let text = changed(&corpus[round % corpus.len()], &mut seed);
+        let told = || String::from_utf8_lossy(&text).into_owned();
+        taken += usize::from(judged(&told, || scene::parse(&text, "scene.json", &[])));
+    }
+    // some changes are within what is allowed: the rest of the check is reached as well
+    assert!((100..3000).contains(&taken), "{taken}");
+}
+
+#[test]
+fn changed_overrides() {
+    let text = corpus().remove(0).into_bytes();
+    let sets = [
+        "domain.cell_size=5e-6",
+        "bodies.flyer.velocity=[500]",
+        "materials.\"copper\".density=8930",
+        "output.checkpoint={\"every_steps\":7,\"at_times\":[1e-7]}",
+        "output.profiles.times[1]=6e-7",
+    ];
+    let mut seed = 4;
+    for round in 0..3000 {
+        let set =
+            String::from_utf8_lossy(&changed(sets[round % sets.len()], &mut seed)).into_owned();
+        let told = || format!("--set {set}");
+        judged(&told, || scene::parse(&text, "scene.json", std::slice::from_ref(&set)));
+        let allowed = flyer_mpm::checkpoint::fit::CHANGEABLE;
+        judged(&told, || scene::parse_changed(&text, "c", std::slice::from_ref(&set), &allowed));
+    }
+}
+
+#[test]
+fn changed_checkpoints() {
+    let home = tempfile::tempdir().unwrap();
+    let path = home.path().join("c.hdf5");
+    let whole = crate::damage::written(&path);
+    let mut seed = 5;
+    for _ in 0..1000 {
+        let mut bytes = whole.clone();
+        let at = random(&mut seed) as usize % bytes.len();
+        let to = (at + random(&mut seed) as usize % 5000).min(bytes.len());
+        match random(&mut seed) % 4 {
+            0 => drop(bytes.drain(at..to)),
+            1 => bytes[at..to].fill(0),
+            2 => bytes.rotate_left(at.max(1)),
+            _ => bytes[at..to].iter_mut().for_each(|b| *b ^= random(&mut seed) as u8 | 1),
+        }
+        if bytes == whole {
+            continue;
+        }
+        fs::write(&path, &bytes).unwrap();
+        assert!(!judged(&|| format!("at {at} to {to}"), || file::read(&path)));
+    }
+}
+
+/// What would not fit into the machine is refused before it is made.
+#[test]
+fn too_much_is_told_before_it_is_taken() {
+    const LEFT: Option<u64> = Some(8 << 30);
+    let text = |name: &str| {
+        fs::read(format!("{}/inputs/{name}.json", env!("CARGO_MANIFEST_DIR"))).unwrap()
+    };
+    let told = |verdict: Result<(), scene::SceneError>| {
+        let error = verdict.unwrap_err().to_string();
+        let words = ["need about ", "GiB of memory; allowed: 8.0 GiB", "--ignore-memory"];
+        assert!(words.iter().all(|w| error.contains(w)), "{error}");
+    };
+    // disks are cut into particles one by one as the scene is read
+    let size = |set: &str, left| scene::check_size(&text("disks"), "s", &[set.to_string()], left);
+    for set in ["domain.cell_size=5e-5", "bodies.lower.particles_per_cell=[300,300]"] {
+        told(size(set, LEFT));
+        size(set, None).unwrap();
+        size(set, Some(1 << 40)).unwrap();
+    }
+    size("domain.cell_size=0.02", LEFT).unwrap();
+    for (name, set) in [
+        ("flyer", "bodies.flyer.particles_per_cell=[1000000]"),
+        ("flyer", "domain.cell_size=1e-10"),
+        ("flyer_2d", "domain.patches=[300,180]"),
+    ] {
+        let scene = scene::parse(&text(name), "s", &[set.to_string()]).unwrap();
+        told(scene.check_memory(LEFT));
+        scene.check_memory(None).unwrap();
+    }
+}

@@ -1,0 +1,19 @@
+//! Checkpoints: a run goes on from one to the bits of a run that was never broken, on any layout;
+//! damage is seen; faults leave what was good.
+
+#[path = "../contract/home.rs"]
+#[allow(dead_code)] // shared with other targets
+mod home;
+#[path = "../contract/program.rs"]
+#[allow(dead_code)] // shared with other targets
+mod program;
+#[path = "../common/scenes.rs"]
+#[allow(dead_code)] // shared with other targets
+mod scenes;
+
+mod bits;
+mod damage;
+mod faults;
+mod hostile;
+mod restarts;
+mod stops;
