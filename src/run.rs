@@ -26,7 +26,7 @@ use crate::output::folder::{OutputFolder, checkpoint_folder};
 use crate::output::histories::HISTORIES_FILE;
 use crate::output::pictures::PictureError;
 use crate::output::report::report;
-use crate::output::summary::{Energy, Momentum, Outflow, ProfileSummary, Summary};
+use crate::output::summary::{Energy, FailureSummary, Momentum, Outflow, ProfileSummary, Summary};
 use crate::output::trace::write_trace;
 use crate::output::vtkhdf::{RESULTS_FILE, RunInfo, write_vtkhdf};
 use crate::recorder::Recorder;
@@ -345,6 +345,10 @@ where
         energy,
         momentum,
         outflow,
+        failure: simulation
+            .columns()
+            .failure
+            .map(|_| FailureSummary { particles: end.failed, released_energy: end.released }),
         profiles,
         warnings,
     };

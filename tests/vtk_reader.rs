@@ -93,6 +93,7 @@ fn write_run(folder: &Path, tables: &[ParticleTable]) {
             Vec::new(),
         ),
         effects: Vec::new(),
+        failure: None,
         energy: Energy::new([0.0; 2], [0.0; 2], 0.0),
         momentum: Momentum::new(&[0.0], &[0.0], &[0.0], 0.0),
         outflow: None,

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::decomposition::DecompositionSummary;
-use super::summary::{ProfileSummary, Summary};
+use super::summary::{FailureSummary, ProfileSummary, Summary};
 use crate::clock::Activity;
 use crate::effects::ledger_lines;
 
@@ -130,6 +130,13 @@ fn facts(summary: &Summary, folder: &Path) -> Vec<Vec<String>> {
     ];
     if let Some(out) = &summary.outflow {
         facts.push(("outflow", format!("{} particles, {:.6e} kg{per}", out.particles, out.mass)));
+    }
+    if let Some(failure) = &summary.failure {
+        let FailureSummary { particles, released_energy } = failure;
+        let text = format!(
+            "{particles} particles have failed; their elastic energy, {released_energy:.6e} J{per}, is heat"
+        );
+        facts.push(("failure", text));
     }
     facts.push((
         "run",

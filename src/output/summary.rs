@@ -57,6 +57,9 @@ pub struct Summary {
     /// What has left the domain; absent where nothing can.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outflow: Option<Outflow>,
+    /// What has failed; absent where nothing can.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failure: Option<FailureSummary>,
     /// One entry a profile, in the order of their times.
     pub profiles: Vec<ProfileSummary>,
     /// What the user should know, one line each.
@@ -171,6 +174,15 @@ pub struct Outflow {
     pub momentum: Vec<f64>,
     /// Their kinetic and internal energy, in the unit of [`Energy`].
     pub energy: f64,
+}
+
+/// What has failed by the end.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FailureSummary {
+    /// Number of particles that bear neither tension nor shear any more.
+    pub particles: u64,
+    /// Elastic energy that they have kept as heat, in the unit of [`Energy`].
+    pub released_energy: f64,
 }
 
 /// One profile.
@@ -291,6 +303,7 @@ pub(super) mod tests {
             energy: Energy::new([10.0, 4.0], [0.0, 7.0], 0.5),
             momentum: Momentum::new(&[8.0], &[8.0], &[0.0], 8.0),
             outflow: None,
+            failure: None,
             profiles: vec![
                 profile(5e-7, Some(json!({"l1": 0.0089, "plateau": -1e-5, "noise": null}))),
                 profile(1e-6, None),

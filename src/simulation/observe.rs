@@ -25,6 +25,10 @@ pub struct Totals<const D: usize> {
     pub body_force_impulse: [f64; D],
     /// Heat that sides held at a temperature have given so far [J].
     pub conducted: f64,
+    /// Particles that have failed.
+    pub failed: u64,
+    /// Elastic energy that failure has made heat so far [J].
+    pub released: f64,
 }
 
 /// What a particle that is followed tells.
@@ -44,35 +48,50 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
     /// Sums over all particles in the frame of the scene. Collective.
     pub fn totals(&self) -> Totals<D> {
         let c = &self.stepper.columns;
-        let [mass, absolute_momentum, kinetic, internal, x, y, work, pull_x, pull_y, conducted] =
-            exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
-                for patch in &self.patches {
-                    let column = |k: usize| &patch.block.columns[k];
-                    let (m, e) = (column(c.mass), column(c.energy));
-                    for r in 0..patch.block.own() {
-                        let v: [f64; D] = std::array::from_fn(|a| {
-                            column(c.velocity + a)[r] + self.grid_velocity[a]
-                        });
-                        let squared = v.iter().map(|v| v * v).sum::<f64>();
-                        let speed = if D == 1 { v[0].abs() } else { squared.sqrt() };
-                        add(0, m[r]);
-                        add(1, m[r] * speed);
-                        add(2, 0.5 * m[r] * squared);
-                        add(3, m[r] * e[r]);
-                        (0..D).for_each(|a| add(4 + a, m[r] * v[a]));
-                        if let Some(force) = &c.body_force {
-                            let impulse = |a: usize| column(force.impulse + a)[r];
-                            // seen from the scene, the grid's travel does work too
-                            let travel = |a: usize| impulse(a) * self.grid_velocity[a];
-                            add(6, column(force.work)[r] + (0..D).map(travel).sum::<f64>());
-                            (0..D).for_each(|a| add(7 + a, impulse(a)));
-                        }
-                        if let Some(received) = c.thermal.and_then(|c| c.received) {
-                            add(9, column(received)[r]);
-                        }
+        let [
+            mass,
+            absolute_momentum,
+            kinetic,
+            internal,
+            x,
+            y,
+            work,
+            pull_x,
+            pull_y,
+            conducted,
+            failed,
+            released,
+        ] = exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
+            for patch in &self.patches {
+                let column = |k: usize| &patch.block.columns[k];
+                let (m, e) = (column(c.mass), column(c.energy));
+                for r in 0..patch.block.own() {
+                    let v: [f64; D] =
+                        std::array::from_fn(|a| column(c.velocity + a)[r] + self.grid_velocity[a]);
+                    let squared = v.iter().map(|v| v * v).sum::<f64>();
+                    let speed = if D == 1 { v[0].abs() } else { squared.sqrt() };
+                    add(0, m[r]);
+                    add(1, m[r] * speed);
+                    add(2, 0.5 * m[r] * squared);
+                    add(3, m[r] * e[r]);
+                    (0..D).for_each(|a| add(4 + a, m[r] * v[a]));
+                    if let Some(force) = &c.body_force {
+                        let impulse = |a: usize| column(force.impulse + a)[r];
+                        // seen from the scene, the grid's travel does work too
+                        let travel = |a: usize| impulse(a) * self.grid_velocity[a];
+                        add(6, column(force.work)[r] + (0..D).map(travel).sum::<f64>());
+                        (0..D).for_each(|a| add(7 + a, impulse(a)));
+                    }
+                    if let Some(received) = c.thermal.and_then(|c| c.received) {
+                        add(9, column(received)[r]);
+                    }
+                    if let Some(failure) = c.failure {
+                        add(10, f64::from(u8::from(column(failure.damage)[r] >= 1.0)));
+                        add(11, column(failure.released)[r]);
                     }
                 }
-            });
+            }
+        });
         let momentum = std::array::from_fn(|a| [x, y][a]);
         Totals {
             mass,
@@ -83,6 +102,8 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             body_force_work: work,
             body_force_impulse: std::array::from_fn(|a| [pull_x, pull_y][a]),
             conducted,
+            failed: failed as u64,
+            released,
         }
     }
 

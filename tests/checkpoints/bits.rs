@@ -149,6 +149,30 @@ fn planes_with_forces_walls_and_joined_sides() {
     same_bits::<2>(&vortex, &[7], &[&[1, 2], &[3, 3]]);
 }
 
+#[test]
+fn strength_failure_heat_pores_and_fire() {
+    let coarse = |name: &str, cell: f64| {
+        let mut scene = shipped(name);
+        scene["domain"]["cell_size"] = json!(cell);
+        scene["output"] = json!({});
+        scene
+    };
+    let mut bar = coarse("taylor_bar.json", 8e-4);
+    let metal = &mut bar["materials"]["42CrMo4"];
+    metal["failure"] = json!({"type": "johnson_cook", "d1": 0.01});
+    metal["thermal"]["conductivity"] = json!(400.0);
+    bar["boundary"]["temperature"] = json!({"y_lower": 500.0});
+    same_bits::<2>(&bar, &[5, 16], &[&[2, 2], &[1, 3]]);
+    let mut spall = coarse("spall.json", 1e-4);
+    // hardly any tension, so that it fails within the steps
+    spall["materials"]["aluminium"]["failure"]["stress"] = json!(1e5);
+    spall["materials"]["aluminium"]["thermal"] =
+        json!({"specific_heat": 896.0, "reference_temperature": 293.0});
+    same_bits::<1>(&spall, &[3, 14], &[&[3], &[2]]);
+    same_bits::<1>(&coarse("porous_impact.json", 1e-4), &[9], &[&[3], &[2]]);
+    same_bits::<1>(&coarse("detonation.json", 4e-4), &[9], &[&[4], &[2]]);
+}
+
 /// Patches that sleep at the cut are awake after it.
 #[test]
 fn patches_at_rest() {

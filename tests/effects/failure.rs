@@ -35,6 +35,11 @@ fn a_scab_of_the_flyers_thickness_comes_off() {
     at_most("energy", outcome.energy_drift(), 1e-12);
     let [start, end] = outcome.totals;
     at_most("momentum", end.momentum[0] / start.momentum[0] - 1.0, 1e-12);
+    assert_eq!(end.failed as usize, failed.len());
+    // that of the tension at which each failed, (1 GPa)^2/2K with K = rho0 c0^2, or a little more
+    let each = 1.25e-5 * 1e18 / (2.0 * 2785.0 * 5386.0f64.powi(2));
+    let released = end.released / (failed.len() as f64 * each);
+    assert!((0.95..1.5).contains(&released), "{released}");
     // what has failed bears no tension
     let pressure = outcome.column("pressure");
     assert!(failed.iter().all(|&r| pressure[r] >= 0.0));
