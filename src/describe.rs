@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use decomp::Serial;
-use flyer_mpm::effects::{ledger, ledger_lines};
+use flyer_mpm::effects::{ledger, ledger_lines, ledger_rest};
 use flyer_mpm::exact::{Accuracy, Chain, Impact, Plate, Release, Solution, WaveKind};
 use flyer_mpm::figures::{self, PressureRow, plate_name};
 use flyer_mpm::output::folder::OutputFolder;
@@ -52,11 +52,13 @@ where
         let _ = writeln!(text, "  {name:<22} {state}");
     }
     text += "what each takes\n";
-    for line in ledger_lines(&ledger(scene, columns, None)) {
+    let all = ledger(scene, columns, None);
+    for line in ledger_lines(&all) {
         // without a run there are no shares
-        let [name, on, particle, ghost] = [0, 1, 2, 3].map(|k| line[k].as_str());
-        let _ = writeln!(text, "  {name:<22} {on:<4} {particle:>16} {ghost:>13}");
+        let [name, particle, ghost] = [0, 1, 2].map(|k| line[k].as_str());
+        let _ = writeln!(text, "  {name:<22} {particle:>16} {ghost:>13}");
     }
+    let _ = writeln!(text, "  {}", ledger_rest(&all));
     Ok(text)
 }
 

@@ -172,20 +172,26 @@ pub fn ledger(
     std::iter::once(None).chain(Effect::ALL.map(Some)).map(line).collect()
 }
 
-/// The ledger as lines of text.
+/// What is on, as lines of text.
 pub fn ledger_lines(ledger: &[EffectUse]) -> Vec<Vec<String>> {
-    let heading = ["effect", "", "bytes a particle", "bytes a ghost", "share of step"];
+    let heading = ["effect", "bytes a particle", "bytes a ghost", "share of step"];
     let mut lines = vec![heading.map(String::from).to_vec()];
-    lines.extend(ledger.iter().map(|line| {
+    lines.extend(ledger.iter().filter(|line| line.on).map(|line| {
         vec![
             line.effect.clone(),
-            if line.on { "on" } else { "off" }.to_string(),
             line.bytes_per_particle.to_string(),
             line.bytes_per_ghost.to_string(),
             line.step_share.map_or("-".into(), |share| format!("{:.1} %", 100.0 * share)),
         ]
     }));
     lines
+}
+
+/// What is off, in one line; it has no column, as the ledger's numbers are sums over those.
+pub fn ledger_rest(ledger: &[EffectUse]) -> String {
+    let off: Vec<&str> = ledger.iter().filter(|l| !l.on).map(|l| l.effect.as_str()).collect();
+    let bytes: usize = ledger.iter().filter(|l| !l.on).map(|l| l.bytes_per_particle).sum();
+    format!("off, {bytes} bytes and 0 % of the step: {}", off.join(", "))
 }
 
 #[cfg(test)]

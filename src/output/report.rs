@@ -6,7 +6,7 @@ use std::path::Path;
 use super::decomposition::DecompositionSummary;
 use super::summary::{FailureSummary, ProfileSummary, Summary};
 use crate::clock::Activity;
-use crate::effects::ledger_lines;
+use crate::effects::{ledger_lines, ledger_rest};
 
 /// Errors of a profile by name, with a heading and whether they are shown in per cent.
 const ERRORS: [(&str, &str, bool); 22] = [
@@ -47,6 +47,7 @@ pub fn report(summary: &Summary, folder: &Path) -> String {
         text += &table(&ranks(&summary.decomposition));
     }
     text += &table(&ledger_lines(&summary.effects));
+    text += &format!("  {}\n", ledger_rest(&summary.effects));
     text += &table(&facts(summary, folder));
     text
 }
@@ -242,6 +243,9 @@ warning: linear shape functions ring across cells
   ranks   patches  particles  compute s  exchange s  wait s  migrate s  balance s  output s  messages     bytes  migrated
   rank 0        2        850      0.600       0.000   0.100      0.000      0.000     0.000      5224  26120000         7
   rank 1        2        850      0.600       0.000   0.100      0.000      0.000     0.000      5224  26120000         7
+  effect    bytes a particle  bytes a ghost  share of step
+  strength                 8              0         12.5 %
+  off, 0 bytes and 0 % of the step: contact
   energy    start 1.000000e1  end 1.100000e1 J/m2  boundaries 5.00e-1  drift 5.0e-2
   momentum  start 8.000000e0  end 8.000000e0 kg m/s/m2  boundaries 0.000000e0  drift 0.0e0
   run       1700 particles, 1000 cells, 2612 steps, 2 ranks x 1 threads, 4 patches
