@@ -154,7 +154,7 @@ struct Plan<const D: usize> {
 /// What the side of a scene is to the decomposition.
 pub(crate) fn decomp_side(side: Side) -> decomp::Side {
     match side {
-        Side::Free | Side::Outflow | Side::Transmitting => decomp::Side::Open,
+        Side::Free | Side::Outflow | Side::Transmitting | Side::Pressure(_) => decomp::Side::Open,
         Side::Symmetry | Side::Wall | Side::NoSlip | Side::Friction(_) | Side::Velocity(_) => {
             decomp::Side::Mirror
         }

@@ -11,6 +11,7 @@ mod contact;
 mod failure;
 pub mod gather;
 pub mod leapfrog;
+mod load;
 pub mod midpoint;
 mod reach;
 pub mod relaxation;
