@@ -167,8 +167,8 @@ fn what_cannot_press_is_refused() {
     refused(json!(true), &[], &[path, "true", "a number"]);
     refused(json!([]), &[], &[path, "[]"]);
     refused(json!([[0.0, 1e9], [0.0, 2e9]]), &[], &[path, "[1]", "ascend"]);
-    refused(json!([[0.0]]), &[], &[path]);
-    refused(json!([[0.0, 1e9, 3.0]]), &[], &["pressure"]);
+    refused(json!([[0.0]]), &[], &[path, "[0] = [0.0]", "an array of 2 entries"]);
+    refused(json!([[0.0, 1e9, 3.0]]), &[], &[path, "3.0]", "an array of 2 entries"]);
     refused(json!("ramp.csv"), &[], &[path, "ramp.csv", "scene's own file"]);
     refused(json!(1e9), &["domain.lower=[-1e-5]"], &[path, "no body does"]);
     let set = "reference={\"wall_impact\": {\"body\": \"slab\"}}";
