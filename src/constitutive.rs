@@ -2,16 +2,39 @@
 //! inside knows its equation of state.
 //!
 //! Knows no grid, no messages, no dimension.
+//!
+//! # Adding a model from outside
+//!
+//! A program that uses this library may bring models of its own, without a change to it: an
+//! [`EquationOfState`] (linear in the energy) or [`GeneralEos`](crate::material::GeneralEos), and a
+//! [`Strength`](crate::strength::Strength). [`Outside`] makes them ready, and
+//! [`Simulation::with_models`](crate::simulation::Simulation::with_models) takes them in place of
+//! those that the scene names for a material:
+//!
+//! ```ignore
+//! let models = |material: &str| {
+//!     (material == "metal").then(|| Outside::fluid(MY_EOS).with_strength(MY_STRENGTH))
+//! };
+//! let simulation = Simulation::<_, 1>::with_models(&scene, &Serial, 1, &models)?;
+//! ```
+//!
+//! The scene goes on to say what a run has columns for, so a material with a strength from outside
+//! names one there, and one whose equation of state is from outside names a fluid without a history.
+//! The loops over rows are compiled for the model, as they are for those of the library. What is
+//! written to files, scored or drawn by `flyer-mpm SCENE.json` knows the scene alone.
+//! `examples/custom_material.rs` is a whole program.
 
 mod failure;
 mod general;
 mod heat;
+mod outside;
 mod plastic;
 mod solid;
 mod table;
 
 pub use failure::{Criterion, Ductile, Loaded};
 pub use heat::{Isentrope, Thermal};
+pub use outside::Outside;
 pub use plastic::{DeviatorRows, Flow, FlowRows, RateRows};
 pub use solid::{PlaneStrain, Solid, Strain, TensorRows};
 pub use table::{build, equation, products};

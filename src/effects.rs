@@ -35,6 +35,8 @@ pub enum Effect {
     BodyForce,
     /// Transmitting sides.
     TransmittingSides,
+    /// Sides loaded by a pressure.
+    LoadedSides,
 }
 
 impl Effect {
@@ -42,7 +44,7 @@ impl Effect {
     pub const COUNT: usize = Self::ALL.len();
 
     /// All of them, in order.
-    pub const ALL: [Effect; 13] = [
+    pub const ALL: [Effect; 14] = [
         Effect::Viscosity,
         Effect::Relaxation,
         Effect::Affine,
@@ -56,6 +58,7 @@ impl Effect {
         Effect::Contact,
         Effect::BodyForce,
         Effect::TransmittingSides,
+        Effect::LoadedSides,
     ];
 
     /// Its name in tables.
@@ -74,6 +77,7 @@ impl Effect {
             Effect::Contact => "contact",
             Effect::BodyForce => "body force",
             Effect::TransmittingSides => "transmitting sides",
+            Effect::LoadedSides => "loaded sides",
         }
     }
 
@@ -99,6 +103,7 @@ impl Effect {
             _ if name.starts_with("body_force") || name.starts_with("reference_position") => {
                 Effect::BodyForce
             }
+            "load_volume" | "load_mark" => Effect::LoadedSides,
             _ if name.starts_with("side_") => Effect::TransmittingSides,
             _ => return None,
         })
@@ -124,6 +129,7 @@ impl Effect {
             Effect::Contact => scene.velocity_fields() > 1,
             Effect::BodyForce => whole.body_force.is_some(),
             Effect::TransmittingSides => scene.transmits(),
+            Effect::LoadedSides => scene.is_loaded(),
         }
     }
 }

@@ -7,7 +7,7 @@ use decomp::{Block, ColumnSpec, IndexBox, Layout, Mirror};
 use nalgebra::SVector;
 
 use crate::burn::Front;
-use crate::scene::{BodyForce, CheckedScene, Eos, Stepping, Transfer};
+use crate::scene::{BodyForce, CheckedScene, Eos, Side, Stepping, Transfer};
 use crate::shape::Extent;
 
 /// Where each column stands in a block. Vectors take D columns that follow each other, tensors
@@ -76,6 +76,8 @@ pub struct Columns {
     pub body_force: Option<BodyForceColumns>,
     /// What a transmitting side looks at, with one.
     pub side: Option<SideColumns>,
+    /// What a side loaded by a pressure looks at, with one.
+    pub load: Option<LoadColumns>,
     /// Distension alpha = v/v_solid [-], where a body is porous.
     pub distension: Option<usize>,
     /// What an explosive takes, where one burns.
@@ -175,6 +177,21 @@ pub struct SideColumns {
     pub impedance: usize,
     /// Gradient of the velocity of the last step [1/s], a tensor.
     pub gradient: usize,
+}
+
+/// Where the columns that a side loaded by a pressure looks at stand.
+#[derive(Clone, Copy, Debug)]
+pub struct LoadColumns {
+    /// Volume at the time of the forces [m3], scratch.
+    pub volume: usize,
+    /// The sides that press on a particle of the surface, a sum of powers of two; see
+    /// [`load_bit`].
+    pub mark: usize,
+}
+
+/// What marks a particle that the side at the lower or upper `end` of direction `axis` presses on.
+pub fn load_bit(axis: usize, end: usize) -> u8 {
+    1 << (2 * axis + end)
 }
 
 impl Columns {
@@ -304,6 +321,10 @@ impl Columns {
                 &of_tensor,
             ),
         });
+        let load = scene.is_loaded().then(|| LoadColumns {
+            volume: add_all(&["load_volume"], "m3", true, false, &same),
+            mark: add_all(&["load_mark"], "", true, true, &same),
+        });
         let materials = || (0..scene.scene.bodies.len()).map(|i| scene.material_of(i));
         let shears = materials().any(|m| m.strength.is_some());
         let strength = shears.then(|| StrengthColumns {
@@ -363,6 +384,7 @@ impl Columns {
             pressed,
             body_force,
             side,
+            load,
             filled: volume.or(filled.then_some(domain)),
             half_edges,
             domain,
@@ -487,6 +509,9 @@ pub fn fill<const D: usize>(
             if let Some(burn) = columns.burn {
                 row[burn.lighting_time] = front.as_ref().map_or(-1.0, |f| f.lighting_time(&centre));
             }
+            if let Some(load) = columns.load {
+                row[load.mark] = f64::from(load_mark(scene, centre, size));
+            }
             row[columns.body] = number as f64;
             if let Some(column) = columns.pressed {
                 row[column] = pressed(number, pressure);
@@ -519,6 +544,17 @@ pub fn fill<const D: usize>(
         block.sort_own();
     }
     blocks
+}
+
+/// The mark of the sides that press on a particle.
+fn load_mark<const D: usize>(scene: &CheckedScene, centre: [f64; D], size: [f64; D]) -> u8 {
+    let (domain, sides) = (&scene.scene.domain, scene.sides::<D>());
+    let pressing = (0..D).flat_map(|a| [(a, 0), (a, 1)]).filter(|&(a, end)| {
+        let at = if end == 0 { domain.lower[a] } else { domain.upper[a] };
+        // of the particles of a body up to the side those at its end
+        matches!(sides[a][end], Side::Pressure(_)) && (centre[a] - at).abs() < 0.75 * size[a]
+    });
+    pressing.map(|(a, end)| load_bit(a, end)).sum()
 }
 
 /// Particles in each slice of cells across `axis`, counted without making them.

@@ -446,7 +446,7 @@ fn draw<C: Comm>(
 ///
 /// A wall's impulse on the particles is what their momentum has changed by, for nothing else
 /// acts on them from outside; a piston's work is its velocity times its impulse. What transmitting
-/// sides and friction on walls give is summed up as it is given.
+/// sides, pressures and friction on walls give is summed up as it is given.
 fn balance<const D: usize>(
     scene: &CheckedScene,
     [start, end]: [&Totals<D>; 2],

@@ -7,6 +7,7 @@ mod equations;
 mod explosives;
 mod heat;
 mod paths;
+mod plates;
 #[path = "../common/resident.rs"]
 mod resident;
 #[path = "../common/runs.rs"]
@@ -24,7 +25,7 @@ use table::Table;
 /// Checks one section.
 type Section = fn(&mut Table);
 
-const SECTIONS: [(&str, Section); 13] = [
+const SECTIONS: [(&str, Section); 15] = [
     ("equations", equations::check),
     ("porous", equations::porous),
     ("tables", tables::check),
@@ -38,6 +39,8 @@ const SECTIONS: [(&str, Section); 13] = [
     ("taylor_fine", strength::taylor_fine),
     ("spall", spall::check),
     ("heat", heat::check),
+    ("plates", plates::check),
+    ("window", plates::window),
 ];
 
 /// Sections that take long, run where they are named alone.

@@ -42,7 +42,7 @@ impl Terrain {
             particles: scene.particles as f64,
             longest: spans.iter().map(|s| 1.0 / s.particles_per_cell).fold(0.0, f64::max),
             spans,
-            sides: scene.sides::<1>()[0].map(crate::simulation::decomp_side),
+            sides: scene.sides::<1>()[0].clone().map(crate::simulation::decomp_side),
         }
     }
 

@@ -81,7 +81,8 @@ impl Conform<'_> {
 
     fn check_array(&self, schema: &Value, entries: &[Value], value: &Value) -> Result<(), Fault> {
         let least = schema.get("minItems").and_then(Value::as_u64).unwrap_or(0);
-        if (entries.len() as u64) < least {
+        let most = schema.get("maxItems").and_then(Value::as_u64).unwrap_or(u64::MAX);
+        if !(least..=most).contains(&(entries.len() as u64)) {
             return Err(self.wrong(schema, value));
         }
         let Some(items) = schema.get("items") else { return Ok(()) };
@@ -209,9 +210,15 @@ impl Conform<'_> {
             "array" => {
                 let entry = schema.get("items").map(|items| self.allowed(items));
                 let entry = entry.unwrap_or_else(|| "any value".to_string());
-                let empty = schema.get("minItems").and_then(Value::as_u64).unwrap_or(0) == 0;
-                let array = if empty { "an array" } else { "an array, not empty" };
-                format!("{array}, each entry {entry}")
+                let least = schema.get("minItems").and_then(Value::as_u64).unwrap_or(0);
+                let most = schema.get("maxItems").and_then(Value::as_u64);
+                match (least, most) {
+                    (0, _) => format!("an array, each entry {entry}"),
+                    (_, Some(most)) if most == least => {
+                        format!("an array of {least} entries, each {entry}")
+                    }
+                    _ => format!("an array, not empty, each entry {entry}"),
+                }
             }
             "object" => match schema.get("properties").and_then(Value::as_object) {
                 Some(keys) if keys.len() == 1 => {

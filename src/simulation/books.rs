@@ -119,8 +119,8 @@ impl<const D: usize> SideBooks<D> {
 }
 
 impl<C: Comm, const D: usize> Simulation<'_, C, D> {
-    /// What transmitting sides and friction on walls have given so far, as seen in the grid's
-    /// frame. Collective.
+    /// What transmitting sides, pressures and friction on walls have given so far, as seen in the
+    /// grid's frame. Collective.
     pub fn given(&self) -> Given<D> {
         let mut sums = self.side_books.sums.clone();
         ExactSum::over_ranks(self.comm, &mut sums);

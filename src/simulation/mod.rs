@@ -22,6 +22,7 @@ use decomp::{
 };
 
 use crate::clock::{Activity, Clock, Event};
+use crate::constitutive::Outside;
 use crate::effects::Effect;
 use crate::geometry::Tile;
 use crate::particles::{self, Columns};
@@ -74,6 +75,14 @@ pub enum RunError {
         dt: f64,
         /// Most steps.
         steps: f64,
+    },
+    /// A model from outside of this library has no place in the scene.
+    #[error("materials.{material}: {reason}")]
+    Model {
+        /// Name of the material.
+        material: String,
+        /// Why.
+        reason: String,
     },
     /// A row was lost by the decomposition.
     #[error(transparent)]
@@ -162,7 +171,7 @@ struct Plan<const D: usize> {
 /// What the side of a scene is to the decomposition.
 pub(crate) fn decomp_side(side: Side) -> decomp::Side {
     match side {
-        Side::Free | Side::Outflow | Side::Transmitting => decomp::Side::Open,
+        Side::Free | Side::Outflow | Side::Transmitting | Side::Pressure(_) => decomp::Side::Open,
         Side::Symmetry | Side::Wall | Side::NoSlip | Side::Friction(_) | Side::Velocity(_) => {
             decomp::Side::Mirror
         }
@@ -322,7 +331,23 @@ where
 
     /// Makes the particles of `scene`, to be run by `threads` threads on each rank. Collective.
     pub fn new(scene: &'a CheckedScene, comm: &'a C, threads: usize) -> Result<Self, RunError> {
-        let stepper = Stepper::new(scene);
+        Self::with_models(scene, comm, threads, &|_| None)
+    }
+
+    /// The same with models from outside of this library in place of those of the materials for
+    /// which `outside` has some; it is asked by name, once a body. Collective.
+    ///
+    /// # Errors
+    ///
+    /// As [`Simulation::new`], and where the scene has no place for them.
+    pub fn with_models(
+        scene: &'a CheckedScene,
+        comm: &'a C,
+        threads: usize,
+        outside: &dyn Fn(&str) -> Option<Outside>,
+    ) -> Result<Self, RunError> {
+        let stepper = Stepper::with_models(scene, outside)
+            .map_err(|(material, reason)| RunError::Model { material, reason })?;
         let layout = cut_domain(scene, comm.size(), threads);
         let order = curve_order(layout.parts());
         let weights: Vec<u64> =

@@ -28,13 +28,14 @@ impl<const D: usize> Stepper<D> {
             self.find_pressed(patch, self.columns.jacobian, dt);
             self.find_body_force(patch, time);
             self.find_impedance(patch, self.columns.jacobian);
+            self.find_loaded_volume(patch, self.columns.jacobian);
             self.find_conductance(patch, self.columns.jacobian);
             self.locate(patch, 0.0, self.columns.jacobian);
             self.find_active(patch);
         });
         if self.stress_update == StressUpdate::First {
             world.exchange_rows(|nodal| {
-                nodal.each("scatter", |patch| self.scatter(patch, false, dt));
+                nodal.each("scatter", |patch| self.scatter(patch, false, time, dt));
                 // no force yet: the acceleration's sums are zero
                 self.solve_velocity(nodal, 0.0, false);
                 nodal.each("update stress", |patch| {
@@ -47,7 +48,7 @@ impl<const D: usize> Stepper<D> {
         let last = self.stress_update == StressUpdate::Last;
         world.exchange_rows(|nodal| {
             nodal.each("scatter", |patch| {
-                self.scatter(patch, true, dt);
+                self.scatter(patch, true, time, dt);
                 self.scatter_heat(patch);
             });
             self.solve_velocity(nodal, dt, false);

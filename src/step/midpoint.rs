@@ -17,8 +17,8 @@ use decomp::RowError;
 use super::{Stepper, World};
 use crate::clock::spend;
 use crate::effects::Effect::{
-    BodyForce, Conduction, Contact, Failure, Relaxation, Strength, Stress, TransmittingSides,
-    Viscosity,
+    BodyForce, Conduction, Contact, Failure, LoadedSides, Relaxation, Strength, Stress,
+    TransmittingSides, Viscosity,
 };
 
 impl<const D: usize> Stepper<D> {
@@ -57,6 +57,9 @@ impl<const D: usize> Stepper<D> {
             if self.columns.side.is_some() {
                 spend(TransmittingSides, patch, |patch| self.find_impedance(patch, mid));
             }
+            if self.columns.load.is_some() {
+                spend(LoadedSides, patch, |patch| self.find_loaded_volume(patch, mid));
+            }
             if self.conduction.is_some() {
                 spend(Conduction, patch, |patch| self.find_conductance(patch, mid));
             }
@@ -65,7 +68,7 @@ impl<const D: usize> Stepper<D> {
         });
         world.exchange_rows(|nodal| {
             nodal.each("scatter", |patch| {
-                self.scatter(patch, true, dt);
+                self.scatter(patch, true, time + 0.5 * dt, dt);
                 if relax.is_some() {
                     spend(Relaxation, patch, |patch| self.start_pressure(patch));
                 }
@@ -119,7 +122,7 @@ impl<const D: usize> Stepper<D> {
             }
         });
         world.exchange_rows(|nodal| {
-            nodal.each("scatter", |patch| self.scatter(patch, false, 0.0));
+            nodal.each("scatter", |patch| self.scatter(patch, false, 0.0, 0.0));
             self.solve_velocity(nodal, 0.0, false);
             nodal.each("gather", |patch| {
                 self.gather_gradient(patch, self.fields.velocity_star);

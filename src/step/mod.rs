@@ -11,6 +11,7 @@ mod contact;
 mod failure;
 pub mod gather;
 pub mod leapfrog;
+mod load;
 pub mod midpoint;
 mod reach;
 pub mod relaxation;
@@ -26,7 +27,7 @@ mod world;
 pub use reach::Reach;
 pub use world::{Nodal, Sleep, World};
 
-use crate::constitutive::{self, Criterion, Flow, Matter, Thermal};
+use crate::constitutive::{self, Criterion, Flow, Matter, Outside, Thermal};
 use crate::contact::Contact;
 use crate::grid::{Fields, Wanted};
 use crate::particles::Columns;
@@ -201,6 +202,19 @@ impl Waves {
 impl<const D: usize> Stepper<D> {
     /// What `scene` chose.
     pub fn new(scene: &CheckedScene) -> Self {
+        Self::with_models(scene, &|_| None).expect("there is nothing to replace")
+    }
+
+    /// What `scene` chose, with the models of `outside` in place of those of materials; it is
+    /// asked by name, once a body.
+    ///
+    /// # Errors
+    ///
+    /// The material's name, and why it has no place for them.
+    pub fn with_models(
+        scene: &CheckedScene,
+        outside: &dyn Fn(&str) -> Option<Outside>,
+    ) -> Result<Self, (String, String)> {
         let method = &scene.scene.method;
         let viscosity = scene.scene.artificial_viscosity.as_ref();
         let bodies = &scene.scene.bodies;
@@ -208,10 +222,16 @@ impl<const D: usize> Stepper<D> {
         let cell: [f64; D] = std::array::from_fn(|a| scene.cell_size[a]);
         let volume: f64 = cell.iter().product();
         let smallest = cell.iter().copied().fold(f64::INFINITY, f64::min);
-        let models: Vec<Matter> =
+        let mut models: Vec<Matter> =
             bodies.iter().map(|b| constitutive::build(&materials[&b.material])).collect();
-        let flows: Vec<_> =
+        let mut flows: Vec<_> =
             bodies.iter().map(|b| constitutive::flow_of(&materials[&b.material])).collect();
+        for (b, (model, flow)) in bodies.iter().zip(models.iter_mut().zip(&mut flows)) {
+            if let Some(own) = outside(&b.material) {
+                own.replace(&materials[&b.material], model, flow)
+                    .map_err(|reason| (b.material.clone(), reason))?;
+            }
+        }
         let criteria = bodies.iter().map(|b| constitutive::criterion_of(&materials[&b.material]));
         let thermals = (bodies.iter().zip(&models))
             .map(|(b, model)| constitutive::thermal_of(&materials[&b.material], model));
@@ -254,7 +274,7 @@ impl<const D: usize> Stepper<D> {
         let columns = Columns::new(scene);
         let history = burn::histories(&columns, &models, scene);
         let (masked, sides) = (method.edge_mask.is_some(), Self::side_sums(scene));
-        Stepper {
+        Ok(Stepper {
             burns: burn::Burns::of(scene),
             history,
             columns,
@@ -300,7 +320,7 @@ impl<const D: usize> Stepper<D> {
             still_speed: fastest * STILL,
             still_acceleration: fastest * fastest * STILL / smallest,
             still_pressure: densest * fastest * fastest * STILL,
-        }
+        })
     }
 
     /// The specific internal energy at which `body` starts at `pressure` [J/kg].

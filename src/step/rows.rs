@@ -221,7 +221,7 @@ impl<const D: usize> Stepper<D> {
                     continue;
                 }
                 let side = usize::from(cell >= 0);
-                match self.sides[a][side] {
+                match &self.sides[a][side] {
                     Side::Periodic => {
                         patch.block.cells[row][a] = cell.rem_euclid(self.cells[a]) as i32;
                         continue;

@@ -9,12 +9,12 @@ use crate::transfer::{Scheme, cut, lines};
 
 impl<const D: usize> Stepper<D> {
     /// All sums of a patch at new places of its rows, with or without the force, and the lumped
-    /// velocity and acceleration from them in a step of `dt`.
-    pub(super) fn scatter(&self, patch: &mut Patch<D>, force: bool, dt: f64) {
+    /// velocity and acceleration from them in a step of `dt`, with the forces at `time` [s].
+    pub(super) fn scatter(&self, patch: &mut Patch<D>, force: bool, time: f64, dt: f64) {
         self.find_weights(patch);
         self.scatter_rows(patch, force);
         if force {
-            self.push_at_sides(patch, dt);
+            self.push_at_sides(patch, time, dt);
         }
         if let Some(contact) = &self.contact {
             spend(Effect::Contact, patch, |p| self.find_contact(p, contact, dt, force));

@@ -28,7 +28,9 @@
 use decomp::{IndexBox, Parity};
 
 use super::{MOST_NODES, Stepper, Waves, with_width};
+use crate::clock::spend;
 use crate::constitutive::Matter;
+use crate::effects::Effect;
 use crate::patch::{Given, Patch, SideForce};
 use crate::scene::{CheckedScene, Side};
 use crate::transfer::{Row, add};
@@ -75,7 +77,7 @@ impl<const D: usize> Rest<D> {
 impl<const D: usize> Stepper<D> {
     /// Fields that the sums of a side take.
     pub(super) fn side_sums(scene: &CheckedScene) -> usize {
-        match (scene.transmits(), scene.has_frictional_wall()) {
+        match (scene.transmits(), scene.has_frictional_wall() || scene.is_loaded()) {
             (true, _) => 1 + 3 * D,
             (false, true) => 2,
             (false, false) => 0,
@@ -112,13 +114,16 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// Adds the forces of the sides to those on the nodes, for a step of `dt`.
-    pub(super) fn push_at_sides(&self, patch: &mut Patch<D>, dt: f64) {
+    /// Adds the forces of the sides at `time` [s] to those on the nodes, for a step of `dt`.
+    pub(super) fn push_at_sides(&self, patch: &mut Patch<D>, time: f64, dt: f64) {
         patch.side_forces.clear();
         for (axis, end) in (0..D).flat_map(|a| [(a, 0), (a, 1)]) {
-            match self.sides[axis][end] {
+            match &self.sides[axis][end] {
                 Side::Transmitting => self.transmit(patch, axis, end, dt),
-                Side::Friction(coefficient) => self.rub_wall(patch, axis, end, coefficient, dt),
+                Side::Friction(coefficient) => self.rub_wall(patch, axis, end, *coefficient, dt),
+                Side::Pressure(load) => spend(Effect::LoadedSides, patch, |patch| {
+                    self.press(patch, axis, end, load.at(time));
+                }),
                 _ => {}
             }
         }
@@ -126,7 +131,7 @@ impl<const D: usize> Stepper<D> {
 
     /// The nodes that a patch computes whose index along `axis` is between two, a box a layer;
     /// `None` if there are none. The sums of a side are set to zero where there are some.
-    fn start_side(
+    pub(super) fn start_side(
         &self,
         patch: &mut Patch<D>,
         axis: usize,
@@ -253,7 +258,14 @@ impl<const D: usize> Stepper<D> {
     }
 
     /// Adds the force of a side to that on a node, and notes it.
-    fn push(&self, patch: &mut Patch<D>, at: usize, index: [i64; D], force: [f64; D], rubs: bool) {
+    pub(super) fn push(
+        &self,
+        patch: &mut Patch<D>,
+        at: usize,
+        index: [i64; D],
+        force: [f64; D],
+        rubs: bool,
+    ) {
         for (a, force) in force.iter().enumerate() {
             patch.nodes.fields[self.fields.acceleration + a][at] += force;
         }

@@ -3,6 +3,7 @@
 mod failure;
 mod heat;
 mod layouts;
+mod outside;
 mod refused;
 mod strength;
 mod temperature;

@@ -7,6 +7,7 @@ mod bodies;
 mod column;
 mod contact;
 mod layouts;
+mod loads;
 mod sides;
 mod symmetry;
 mod tools;

@@ -8,13 +8,20 @@ use super::{inputs, refused, shipped, tells, with};
 #[test]
 fn shipped_scenes_pass() {
     // made for layouts or for one law, and without an exact solution
-    const UNSCORED: [&str; 6] = [
+    const UNSCORED: [&str; 13] = [
         "crossing.json",
+        "detonation.json",
         "disks.json",
+        "flyer_strength.json",
+        "gas_gun_window.json",
+        "heat_rod.json",
+        "jwl_expansion.json",
+        "piston_elastic_plastic.json",
         "quarter.json",
         "sliding_block.json",
-        "detonation.json",
-        "jwl_expansion.json",
+        "spall.json",
+        "taylor_bar.json",
+        "three_plates.json",
     ];
     assert!(inputs().len() >= 11);
     for path in inputs() {

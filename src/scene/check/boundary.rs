@@ -1,7 +1,7 @@
 //! Sides of the domain that cannot stand opposite each other.
 
 use super::super::errors::Fault;
-use super::super::model::{Geometry, Scene, Side, Transfer};
+use super::super::model::{Geometry, Load, Scene, Side, Transfer};
 use super::CheckedScene;
 
 /// A rigid side of the domain: a plane of symmetry, a wall or a piston.
@@ -27,11 +27,11 @@ impl CheckedScene {
     pub fn walls(&self) -> Vec<Wall> {
         let Some(boundary) = &self.scene.boundary else { return Vec::new() };
         let domain = &self.scene.domain;
-        let wall = |side: Side, position, upper| {
+        let wall = |side: &Side, position, upper| {
             side.rigid_velocity().map(|velocity| Wall { upper, position, velocity })
         };
-        let lower = wall(boundary.x_lower, domain.lower[0], false);
-        let upper = wall(boundary.x_upper, domain.upper[0], true);
+        let lower = wall(&boundary.x_lower, domain.lower[0], false);
+        let upper = wall(&boundary.x_upper, domain.upper[0], true);
         lower.into_iter().chain(upper).collect()
     }
 
@@ -57,14 +57,14 @@ impl CheckedScene {
 
 pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
     let at_axis = scene.domain.geometry == Geometry::Axisymmetric && scene.domain.lower[0] == 0.0;
-    let inner = scene.boundary.map_or(Side::Free, |b| b.x_lower);
+    let inner = scene.boundary.as_ref().map_or(Side::Free, |b| b.x_lower.clone());
     if at_axis && inner != Side::Symmetry {
         let reason = "stands on the axis of domain.geometry = \"axisymmetric\"; allowed: \
                       \"symmetry\", or domain.lower[0] above 0";
         return Err(Fault::new("boundary.x_lower", inner, reason));
     }
     let Some(boundary) = &scene.boundary else { return Ok(()) };
-    let y = [("boundary.y_lower", boundary.y_lower), ("boundary.y_upper", boundary.y_upper)];
+    let y = [("boundary.y_lower", &boundary.y_lower), ("boundary.y_upper", &boundary.y_upper)];
     if scene.domain.lower.len() == 1 {
         for (path, side) in y {
             if let Some(side) = side {
@@ -74,7 +74,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
                 return Err(Fault::new(path, side, reason));
             }
         }
-        let x = [("boundary.x_lower", boundary.x_lower), ("boundary.x_upper", boundary.x_upper)];
+        let x = [("boundary.x_lower", &boundary.x_lower), ("boundary.x_upper", &boundary.x_upper)];
         for (path, side) in x {
             if matches!(side, Side::NoSlip | Side::Friction(_)) {
                 let reason = "holds what slides along it, but domain.lower has 1 number, which is \
@@ -87,16 +87,16 @@ pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
     if on_axis && (boundary.x_lower == Side::Periodic || boundary.x_upper == Side::Periodic) {
         let reason = "joins radii, which domain.geometry = \"axisymmetric\" has along x; allowed: \
                       any other side";
-        return Err(Fault::new("boundary.x_lower", boundary.x_lower, reason));
+        return Err(Fault::new("boundary.x_lower", &boundary.x_lower, reason));
     }
-    check_axis(["boundary.x_lower", "boundary.x_upper"], [boundary.x_lower, boundary.x_upper])?;
-    check_axis(y.map(|(path, _)| path), y.map(|(_, side)| side.unwrap_or_default()))
+    check_axis(["boundary.x_lower", "boundary.x_upper"], [&boundary.x_lower, &boundary.x_upper])?;
+    check_axis(y.map(|(path, _)| path), y.map(|(_, side)| side.as_ref().unwrap_or(&Side::Free)))
 }
 
 /// The two sides along one direction.
-fn check_axis([path, other_path]: [&str; 2], [lower, upper]: [Side; 2]) -> Result<(), Fault> {
+fn check_axis([path, other_path]: [&str; 2], [lower, upper]: [&Side; 2]) -> Result<(), Fault> {
     let other = serde_json::json!(upper);
-    if (lower == Side::Periodic) != (upper == Side::Periodic) {
+    if (*lower == Side::Periodic) != (*upper == Side::Periodic) {
         let reason = format!(
             "cannot stand opposite {other_path} = {other}; allowed: \"periodic\" on both sides or \
              on neither"
@@ -108,8 +108,8 @@ fn check_axis([path, other_path]: [&str; 2], [lower, upper]: [Side; 2]) -> Resul
             let reason = format!(
                 "cannot stand opposite {other_path} = {other}, since the grid travels with a \
                  piston; allowed: the same velocity on both sides (a wall and a plane of symmetry \
-                 are at rest), \"free\", \"outflow\" or \
-                 \"transmitting\""
+                 are at rest), \"free\", \"outflow\", \
+                 \"transmitting\" or a pressure"
             );
             Err(Fault::new(path, lower, reason))
         }
@@ -117,21 +117,26 @@ fn check_axis([path, other_path]: [&str; 2], [lower, upper]: [Side; 2]) -> Resul
     }
 }
 
+const PATHS: [[&str; 2]; 2] =
+    [["boundary.x_lower", "boundary.x_upper"], ["boundary.y_lower", "boundary.y_upper"]];
+
+/// Whether a body touches the side at the lower or upper `end` of direction `a`.
+fn is_touched(checked: &CheckedScene, a: usize, end: usize) -> bool {
+    let domain = &checked.scene.domain;
+    checked.bodies.iter().any(|body| match end {
+        0 => body.lower[a] - domain.lower[a] <= checked.tolerance(a),
+        _ => domain.upper[a] - body.upper[a] <= checked.tolerance(a),
+    })
+}
+
 /// A transmitting side stands for more of the material that touches it.
 pub(super) fn check_transmitting(checked: &mut CheckedScene) -> Result<(), Fault> {
-    const PATHS: [[&str; 2]; 2] =
-        [["boundary.x_lower", "boundary.x_upper"], ["boundary.y_lower", "boundary.y_upper"]];
     let sides = checked.sides::<2>();
     for (a, end) in (0..checked.dimension).flat_map(|a| [(a, 0), (a, 1)]) {
-        let domain = &checked.scene.domain;
-        let touches = |body: &super::CheckedBody| match end {
-            0 => body.lower[a] - domain.lower[a] <= checked.tolerance(a),
-            _ => domain.upper[a] - body.upper[a] <= checked.tolerance(a),
-        };
-        if sides[a][end] == Side::Transmitting && !checked.bodies.iter().any(touches) {
+        if sides[a][end] == Side::Transmitting && !is_touched(checked, a, end) {
             let reason = "stands for more of the material that touches it, but no body does; \
                           allowed: \"outflow\", or a body up to this side";
-            return Err(Fault::new(PATHS[a][end], sides[a][end], reason));
+            return Err(Fault::new(PATHS[a][end], &sides[a][end], reason));
         }
     }
     let method = &checked.scene.method;
@@ -141,6 +146,52 @@ pub(super) fn check_transmitting(checked: &mut CheckedScene) -> Result<(), Fault
             "boundary: the full mass matrix of \"fmpm\" beyond order 2 magnifies the force of a \
              side \"transmitting\" where a particle about to leave fills little of a node, which \
              may become unstable; method.edge_mask leaves those nodes out"
+                .to_string(),
+        );
+    }
+    Ok(())
+}
+
+/// A pressure presses on a body, at times that ascend.
+pub(super) fn check_loads(checked: &mut CheckedScene) -> Result<(), Fault> {
+    let sides = checked.sides::<2>();
+    for (a, end) in (0..checked.dimension).flat_map(|a| [(a, 0), (a, 1)]) {
+        let Side::Pressure(load) = &sides[a][end] else { continue };
+        let path = format!("{}.pressure", PATHS[a][end]);
+        match load {
+            Load::Constant(_) => {}
+            Load::Series(points) => {
+                let later = |pair: &[[f64; 2]]| pair[0][0] < pair[1][0];
+                if let Some(k) = points.windows(2).position(|pair| !later(pair)) {
+                    let reason = "the time is not after that of the pair before; allowed: times \
+                                  that ascend";
+                    return Err(Fault::new(format!("{path}[{}]", k + 1), points[k + 1], reason));
+                }
+            }
+            Load::File(_) => {
+                let reason = "is read with the scene's own file alone; allowed: to name it there, \
+                              a pressure, or pairs of time and pressure";
+                return Err(Fault::new(path, load, reason));
+            }
+        }
+        if !is_touched(checked, a, end) {
+            let reason = "presses on what touches this side, but no body does; allowed: \"free\", \
+                          or a body up to this side";
+            return Err(Fault::new(path, load, reason));
+        }
+        if checked.scene.reference.is_some() {
+            let reason = "is not in any exact solution; allowed: a scene without reference, or \
+                          another side";
+            return Err(Fault::new(path, load, reason));
+        }
+    }
+    let method = &checked.scene.method;
+    let sharp = matches!(method.transfer, Transfer::Fmpm(order) if order > 2);
+    if checked.is_loaded() && sharp && method.edge_mask.is_none() {
+        checked.warnings.push(
+            "boundary: the full mass matrix of \"fmpm\" beyond order 2 magnifies the force of a \
+             pressure where a particle fills little of a node, which may become unstable; \
+             method.edge_mask leaves those nodes out"
                 .to_string(),
         );
     }

@@ -18,14 +18,14 @@ pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
 
 /// Temperatures of sides need heat that is conducted, and a side that has images.
 fn check_sides(scene: &Scene) -> Result<(), Fault> {
-    let Some(boundary) = scene.boundary else { return Ok(()) };
+    let Some(boundary) = &scene.boundary else { return Ok(()) };
     let Some(held) = boundary.temperature else { return Ok(()) };
     let conducts = |m: &Material| m.thermal.is_some_and(|t| t.conductivity.is_some());
     for (key, temperature, side) in [
-        ("x_lower", held.x_lower, Some(boundary.x_lower)),
-        ("x_upper", held.x_upper, Some(boundary.x_upper)),
-        ("y_lower", held.y_lower, boundary.y_lower),
-        ("y_upper", held.y_upper, boundary.y_upper),
+        ("x_lower", held.x_lower, Some(&boundary.x_lower)),
+        ("x_upper", held.x_upper, Some(&boundary.x_upper)),
+        ("y_lower", held.y_lower, boundary.y_lower.as_ref()),
+        ("y_upper", held.y_upper, boundary.y_upper.as_ref()),
     ] {
         let Some(temperature) = temperature else { continue };
         let path = format!("boundary.temperature.{key}");

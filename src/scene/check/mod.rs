@@ -76,6 +76,7 @@ impl CheckedScene {
         memory::check_counts(&checked)?;
         method::check_bodies(&checked)?;
         boundary::check_transmitting(&mut checked)?;
+        boundary::check_loads(&mut checked)?;
         motion::check_body_force(&checked)?;
         output::check_tracers(&checked)?;
         output::check_checkpoints(&checked.scene)?;
@@ -91,10 +92,10 @@ impl CheckedScene {
 
     /// What stands at the sides, along each of `D` directions.
     pub fn sides<const D: usize>(&self) -> [[Side; 2]; D] {
-        let boundary = self.scene.boundary.unwrap_or_default();
+        let boundary = self.scene.boundary.clone().unwrap_or_default();
         let y = [boundary.y_lower, boundary.y_upper].map(Option::unwrap_or_default);
         let all = [[boundary.x_lower, boundary.x_upper], y];
-        std::array::from_fn(|a| all[a])
+        std::array::from_fn(|a| all[a].clone())
     }
 
     /// The velocity at which the grid travels with a piston [m/s], in the scene's directions.
@@ -125,6 +126,13 @@ impl CheckedScene {
         self.sides::<2>()[..self.dimension].as_flattened().contains(&Side::Transmitting)
     }
 
+    /// Whether a pressure loads one of the sides.
+    pub fn is_loaded(&self) -> bool {
+        let sides = self.sides::<2>();
+        let mut all = sides[..self.dimension].as_flattened().iter();
+        all.any(|side| matches!(side, Side::Pressure(_)))
+    }
+
     /// Whether one of the sides rubs.
     pub fn has_frictional_wall(&self) -> bool {
         let sides = self.sides::<2>();
@@ -147,9 +155,10 @@ impl CheckedScene {
         (0..self.bodies.len()).any(|i| such(&self.material_of(i).eos))
     }
 
-    /// Whether patches at rest may be left out: where heat flows nothing is at rest.
+    /// Whether patches at rest may be left out: where heat flows nothing is at rest, and what a
+    /// side is going to press on does not stay so.
     pub fn skips_quiet(&self) -> bool {
-        self.scene.decomposition.skip_quiet && !self.conducts()
+        self.scene.decomposition.skip_quiet && !self.conducts() && !self.is_loaded()
     }
 
     /// Whether a body conducts heat.
@@ -160,7 +169,7 @@ impl CheckedScene {
 
     /// Temperatures that the sides are held at [K], along each of `D` directions.
     pub fn held_temperatures<const D: usize>(&self) -> [[Option<f64>; 2]; D] {
-        let held = self.scene.boundary.and_then(|b| b.temperature).unwrap_or_default();
+        let held = self.scene.boundary.as_ref().and_then(|b| b.temperature).unwrap_or_default();
         let all = [[held.x_lower, held.x_upper], [held.y_lower, held.y_upper]];
         std::array::from_fn(|a| all[a])
     }

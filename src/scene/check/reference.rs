@@ -90,7 +90,7 @@ fn warn_of_flyer(checked: &mut CheckedScene, flyer: usize, target: usize, from_b
         let domain = &checked.scene.domain;
         let end = if from_below { domain.lower[0] } else { domain.upper[0] };
         let side = checked.scene.boundary.as_ref().map_or(Side::Free, |boundary| {
-            if from_below { boundary.x_lower } else { boundary.x_upper }
+            if from_below { boundary.x_lower.clone() } else { boundary.x_upper.clone() }
         });
         let beside = checked.bodies.iter().enumerate().any(|(j, body)| {
             let near = if from_below { body.upper[0] } else { body.lower[0] };

@@ -4,6 +4,7 @@
 //! checks them against that same schema. What two keys say of each other is not known here.
 
 mod contact;
+mod load;
 mod matter;
 mod method;
 mod motion;
@@ -16,6 +17,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use contact::*;
+pub use load::*;
 pub use matter::*;
 pub use method::*;
 pub use motion::*;
@@ -207,7 +209,7 @@ fn default_courant() -> f64 {
 }
 
 /// The sides of the domain; one left out is free.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Boundary {
     /// Side at the lower end of x.
@@ -249,7 +251,7 @@ pub struct SideTemperatures {
 }
 
 /// What stands at one side of the domain.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
     /// Nothing: a particle that passes it ends the run.
@@ -274,20 +276,28 @@ pub enum Side {
     Transmitting,
     /// A rigid piston with this velocity along x [m/s]; the grid travels with it.
     Velocity(f64),
+    /// A pressure [Pa] on the surface of the bodies that touch this side at the start, wherever it
+    /// moves: a number, pairs of time [s] and pressure, or the name of a CSV file of them. Free
+    /// otherwise.
+    Pressure(Load),
 }
 
 impl Side {
     /// Velocity of a side that lets nothing through [m/s].
-    pub fn rigid_velocity(self) -> Option<f64> {
-        match self {
+    pub fn rigid_velocity(&self) -> Option<f64> {
+        match *self {
             Side::Symmetry | Side::Wall | Side::NoSlip | Side::Friction(_) => Some(0.0),
             Side::Velocity(velocity) => Some(velocity),
-            Side::Free | Side::Periodic | Side::Outflow | Side::Transmitting => None,
+            Side::Free
+            | Side::Periodic
+            | Side::Outflow
+            | Side::Transmitting
+            | Side::Pressure(_) => None,
         }
     }
 
     /// Whether particles that pass it leave the run.
-    pub fn lets_out(self) -> bool {
+    pub fn lets_out(&self) -> bool {
         matches!(self, Side::Outflow | Side::Transmitting)
     }
 }

@@ -148,7 +148,7 @@ impl<const D: usize> Stepper<D> {
             return 0.0;
         }
         let mirrored = |a: usize| {
-            let [lower, upper] = self.sides[a].map(|side| side.rigid_velocity().is_some());
+            let [lower, upper] = [0, 1].map(|end| self.sides[a][end].rigid_velocity().is_some());
             (index[a] == 0 && lower) || (index[a] == self.cells[a] && upper)
         };
         (0..D).filter(|&a| mirrored(a)).fold(1.0, |share, _| 0.5 * share)
