@@ -158,12 +158,20 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// Distance of a row from the axis at the place of its weights [m]; negative for the image
-    /// beyond the axis.
+    /// Distance of a row from the axis at the place of its weights [m]; of an image beyond the axis
+    /// or a wall about it that of the row itself, negative, since what pushes the row outward
+    /// pushes its image inward.
     #[inline(always)]
     pub(super) fn radius(&self, patch: &Patch<D>, row: usize) -> f64 {
         let fraction = patch.block.columns[self.columns.fraction][row];
-        self.lower[0] + (f64::from(patch.block.cells[row][0]) + fraction) * self.cell[0]
+        let cell = patch.block.cells[row][0];
+        let (lower, edge) = (self.lower[0], self.cell[0]);
+        let at = lower + (f64::from(cell) + fraction) * edge;
+        match i64::from(cell) {
+            beyond if beyond < 0 => at - 2.0 * lower,
+            beyond if beyond >= self.cells[0] => at - 2.0 * (lower + self.cells[0] as f64 * edge),
+            _ => at,
+        }
     }
 
     /// Where the window of `row` from node `first` on starts, seen from the row [cells].

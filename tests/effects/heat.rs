@@ -36,7 +36,7 @@ fn a_rod_warms_up_from_its_end_to_second_order() {
 
 #[test]
 fn what_comes_in_by_the_side_is_booked() {
-    let outcome = run::<1>(&rod(1e-3));
+    let outcome = run::<1>(&rod(5e-4));
     let [start, end] = outcome.totals;
     let gained = end.internal - start.internal;
     at_most("energy", (gained - end.conducted) / gained, 1e-12);
@@ -83,7 +83,7 @@ fn in_a_plane_and_by_leapfrog_the_rod_is_the_same() {
         let (y, t) = (outcome.column("y"), outcome.column("temperature"));
         for r in 0..y.len() {
             let exact = 300.0 + 100.0 * erfc(y[r] / (2.0 * (1e-4f64 * 0.05).sqrt()));
-            at_most(&method.to_string(), t[r] - exact, 2.5);
+            at_most(&method.to_string(), t[r] - exact, 4.0);
         }
     }
 }
