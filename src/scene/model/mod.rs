@@ -4,6 +4,7 @@
 //! checks them against that same schema. What two keys say of each other is not known here.
 
 mod contact;
+mod effects;
 mod load;
 mod matter;
 mod method;
@@ -17,6 +18,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use contact::*;
+pub use effects::*;
 pub use load::*;
 pub use matter::*;
 pub use method::*;
