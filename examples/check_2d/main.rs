@@ -12,6 +12,8 @@ mod resident;
 #[path = "../common/runs.rs"]
 mod runs;
 mod schemes;
+#[path = "../common/sections.rs"]
+mod sections;
 mod sides;
 mod speed;
 #[path = "../common/table.rs"]
@@ -21,10 +23,7 @@ mod waves;
 
 use std::process::ExitCode;
 
-use table::Table;
-
-/// Checks one section.
-type Section = fn(&mut Table);
+use sections::Section;
 
 const SECTIONS: [(&str, Section); 13] = [
     ("column", column::check),
@@ -43,19 +42,5 @@ const SECTIONS: [(&str, Section); 13] = [
 ];
 
 fn main() -> ExitCode {
-    let wanted: Vec<String> = std::env::args().skip(1).collect();
-    let known = |name: &str| SECTIONS.iter().any(|(section, _)| *section == name);
-    if let Some(unknown) = wanted.iter().find(|name| !known(name)) {
-        let names: Vec<_> = SECTIONS.iter().map(|(name, _)| *name).collect();
-        eprintln!("{unknown}: expected one of {}", names.join(", "));
-        return ExitCode::from(2);
-    }
-    let mut table = Table::new();
-    for (name, section) in SECTIONS {
-        if wanted.is_empty() || wanted.iter().any(|w| w == name) {
-            section(&mut table);
-        }
-    }
-    println!("{} of {} bounds held", table.bounded - table.missed, table.bounded);
-    if table.missed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    sections::run(&SECTIONS, &[])
 }

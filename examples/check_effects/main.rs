@@ -12,6 +12,8 @@ mod plates;
 mod resident;
 #[path = "../common/runs.rs"]
 mod runs;
+#[path = "../common/sections.rs"]
+mod sections;
 mod spall;
 mod strength;
 #[path = "../common/table.rs"]
@@ -20,10 +22,7 @@ mod tables;
 
 use std::process::ExitCode;
 
-use table::Table;
-
-/// Checks one section.
-type Section = fn(&mut Table);
+use sections::Section;
 
 const SECTIONS: [(&str, Section); 15] = [
     ("equations", equations::check),
@@ -47,20 +46,5 @@ const SECTIONS: [(&str, Section); 15] = [
 const LONG: [&str; 1] = ["taylor_fine"];
 
 fn main() -> ExitCode {
-    let wanted: Vec<String> = std::env::args().skip(1).collect();
-    let known = |name: &str| SECTIONS.iter().any(|(section, _)| *section == name);
-    if let Some(unknown) = wanted.iter().find(|name| !known(name)) {
-        let names: Vec<_> = SECTIONS.iter().map(|(name, _)| *name).collect();
-        eprintln!("{unknown}: expected one of {}", names.join(", "));
-        return ExitCode::from(2);
-    }
-    let mut table = Table::new();
-    for (name, section) in SECTIONS {
-        let asked = wanted.iter().any(|w| w == name);
-        if asked || (wanted.is_empty() && !LONG.contains(&name)) {
-            section(&mut table);
-        }
-    }
-    println!("{} of {} bounds held", table.bounded - table.missed, table.bounded);
-    if table.missed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    sections::run(&SECTIONS, &LONG)
 }

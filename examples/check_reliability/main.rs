@@ -9,15 +9,14 @@ mod full;
 mod kills;
 mod program;
 mod restarts;
+#[path = "../common/sections.rs"]
+mod sections;
 #[path = "../common/table.rs"]
 mod table;
 
 use std::process::ExitCode;
 
-use table::Table;
-
-/// Checks one section.
-type Section = fn(&mut Table);
+use sections::Section;
 
 const SECTIONS: [(&str, Section); 5] = [
     ("restarts", restarts::check),
@@ -28,19 +27,5 @@ const SECTIONS: [(&str, Section); 5] = [
 ];
 
 fn main() -> ExitCode {
-    let wanted: Vec<String> = std::env::args().skip(1).collect();
-    let known = |name: &str| SECTIONS.iter().any(|(section, _)| *section == name);
-    if let Some(unknown) = wanted.iter().find(|name| !known(name)) {
-        let names: Vec<_> = SECTIONS.iter().map(|(name, _)| *name).collect();
-        eprintln!("{unknown}: expected one of {}", names.join(", "));
-        return ExitCode::from(2);
-    }
-    let mut table = Table::new();
-    for (name, section) in SECTIONS {
-        if wanted.is_empty() || wanted.iter().any(|w| w == name) {
-            section(&mut table);
-        }
-    }
-    println!("{} of {} bounds held", table.bounded - table.missed, table.bounded);
-    if table.missed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    sections::run(&SECTIONS, &[])
 }
