@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use super::conform::join;
 use super::errors::{Fault, SceneError, one_line, suggest};
-use super::model::Load;
+use super::model::Course;
 use crate::material::Table;
 
 /// The materials of the library; each file holds one as it stands in a scene.
@@ -129,17 +129,19 @@ fn inline_tables(material: &mut Value, folder: &Path) -> Result<bool, SceneError
     Ok(found)
 }
 
-/// Replaces files of the pressures on sides by what stands in them; `folder` is the scene's. Tells
-/// whether there was one.
-pub(super) fn inline_loads(scene: &mut Value, folder: &Path) -> Result<bool, SceneError> {
+/// Replaces files of the pressures and velocities of sides by what stands in them; `folder` is the
+/// scene's. Tells whether there was one.
+pub(super) fn inline_courses(scene: &mut Value, folder: &Path) -> Result<bool, SceneError> {
     let mut found = false;
     let sides = scene.get_mut("boundary").and_then(Value::as_object_mut);
     for side in sides.into_iter().flat_map(|sides| sides.values_mut()) {
-        let Some(Value::String(name)) = side.get("pressure") else { continue };
-        let file = folder.join(name);
-        let points = Load::read(&read_text(&file)?).map_err(|reason| fault(&file, reason))?;
-        side["pressure"] = serde_json::json!(points);
-        found = true;
+        for quantity in ["pressure", "velocity"] {
+            let Some(Value::String(name)) = side.get(quantity) else { continue };
+            let file = folder.join(name);
+            let points = Course::read(&read_text(&file)?, quantity);
+            side[quantity] = serde_json::json!(points.map_err(|reason| fault(&file, reason))?);
+            found = true;
+        }
     }
     Ok(found)
 }

@@ -14,7 +14,7 @@ mod overrides;
 mod schema;
 
 pub use check::{
-    BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, CheckedBody, CheckedScene, Wall,
+    BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, CheckedBody, CheckedScene, Piston, Wall,
     available_memory,
 };
 pub use errors::SceneError;
