@@ -16,13 +16,26 @@ use super::model::Course;
 use crate::material::Table;
 
 /// The materials of the library; each file holds one as it stands in a scene.
-pub const LIBRARY: [(&str, &str); 21] = [
+pub const LIBRARY: [(&str, &str); 27] = [
     ("aluminium_1100", include_str!("../../inputs/materials/aluminium_1100.json")),
     ("aluminium_2024", include_str!("../../inputs/materials/aluminium_2024.json")),
+    (
+        "aluminium_2024_johnson_cook",
+        include_str!("../../inputs/materials/aluminium_2024_johnson_cook.json"),
+    ),
     ("aluminium_6061", include_str!("../../inputs/materials/aluminium_6061.json")),
+    (
+        "aluminium_6061_steinberg_guinan",
+        include_str!("../../inputs/materials/aluminium_6061_steinberg_guinan.json"),
+    ),
     ("aluminium_tillotson", include_str!("../../inputs/materials/aluminium_tillotson.json")),
     ("composition_b", include_str!("../../inputs/materials/composition_b.json")),
     ("copper", include_str!("../../inputs/materials/copper.json")),
+    ("copper_johnson_cook", include_str!("../../inputs/materials/copper_johnson_cook.json")),
+    (
+        "copper_steinberg_guinan",
+        include_str!("../../inputs/materials/copper_steinberg_guinan.json"),
+    ),
     ("gold", include_str!("../../inputs/materials/gold.json")),
     ("iron", include_str!("../../inputs/materials/iron.json")),
     ("iron_tillotson", include_str!("../../inputs/materials/iron_tillotson.json")),
@@ -33,7 +46,15 @@ pub const LIBRARY: [(&str, &str); 21] = [
     ("pmma", include_str!("../../inputs/materials/pmma.json")),
     ("steel_304", include_str!("../../inputs/materials/steel_304.json")),
     ("steel_4340", include_str!("../../inputs/materials/steel_4340.json")),
+    (
+        "steel_4340_johnson_cook",
+        include_str!("../../inputs/materials/steel_4340_johnson_cook.json"),
+    ),
     ("tantalum", include_str!("../../inputs/materials/tantalum.json")),
+    (
+        "tantalum_steinberg_guinan",
+        include_str!("../../inputs/materials/tantalum_steinberg_guinan.json"),
+    ),
     ("titanium", include_str!("../../inputs/materials/titanium.json")),
     ("tnt", include_str!("../../inputs/materials/tnt.json")),
     ("tungsten", include_str!("../../inputs/materials/tungsten.json")),
@@ -162,9 +183,10 @@ fn fault(file: &Path, reason: String) -> SceneError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::constitutive::{equation, products};
+    use crate::constitutive::{equation, flow_of, products};
     use crate::exact::hugoniot::{MaterialState, piston};
     use crate::scene::Material;
+    use crate::strength::Condition;
     use serde_json::json;
 
     fn resolved(material: Value) -> Result<Value, Fault> {
@@ -189,6 +211,29 @@ mod tests {
         assert!(told.contains("did you mean copper?") && told.contains("tantalum"), "{told}");
         let told = resolved(json!({"file": "x"})).unwrap_err().within("s").to_string();
         assert!(told.contains("materials.m.file"), "{told}");
+    }
+
+    #[test]
+    fn strength_of_the_library_is_that_of_its_source() {
+        let yields = |name: &str, strain: f64, pressure: f64| {
+            let text = LIBRARY.iter().find(|(known, _)| *known == name).unwrap().1;
+            let material: Material = serde_json::from_str(text).unwrap();
+            let at = Condition { compression: 1.0, pressure, temperature: 298.0 };
+            flow_of(&material).unwrap().yield_stress(strain, &at)
+        };
+        // a + b ep^n at the reference rate; Y0 (1 + beta ep)^n up to Ymax, times 1 + A p
+        for (name, strain, pressure, want) in [
+            ("copper_johnson_cook", 1.0, 0.0, 382e6),
+            ("steel_4340_johnson_cook", 0.0, 0.0, 792e6),
+            ("aluminium_2024_johnson_cook", 1.0, 0.0, 691e6),
+            ("copper_steinberg_guinan", 0.0, 0.0, 0.12e9),
+            ("copper_steinberg_guinan", 10.0, 10e9, 0.64e9 * 1.283),
+            ("aluminium_6061_steinberg_guinan", 0.0, 10e9, 0.29e9 * 1.652),
+            ("tantalum_steinberg_guinan", 0.0, 100e9, 0.77e9 * 2.45),
+        ] {
+            let got = yields(name, strain, pressure);
+            assert!((got / want - 1.0).abs() < 1e-9, "{name}: {got:e}, {want:e}");
+        }
     }
 
     #[test]

@@ -1,11 +1,15 @@
 //! Inertia in a grid that accelerates with a piston: -m a of each row onto the nodes, a the mean
 //! acceleration of the frame over the step.
 //!
-//! A uniform force, given to the nodes as a body force is: before the piston it stands against the
-//! gradient of the pressure that moves the material, in the same quadrature, and images in the
-//! piston see the opposite of both. What it takes of the energy seen from the grid is booked row by
-//! row, with the nodal velocity with which the change of kinetic energy is counted, so that the
-//! books of the scene ([`crate::frame`]) close to rounding.
+//! A uniform force, given to the nodes as a body force is. What it takes of the energy seen from the
+//! grid is booked row by row, with the nodal velocity with which the change of kinetic energy is
+//! counted, so that the books of the scene ([`crate::frame`]) close to rounding.
+//!
+//! Before the piston inertia stands against the gradient of the pressure that moves the material,
+//! dp/dx = -rho a, and where a changes the velocity bends, d2u/dx2 = (da/dt)/c^2. Images in the
+//! piston have the same pressure and the opposite inertia and velocity: bends that a cell does not
+//! resolve. They leave an error of first order in the few cells beside the piston, some hundredths
+//! of rho a h, and of order 1.5 in L2; away from it order is second.
 
 use super::{MOST_NODES, Stepper, with_width};
 use crate::patch::{Given, Patch};
@@ -71,15 +75,19 @@ impl<const D: usize> Stepper<D> {
         with_width!(patch.stencils.width, go(patch, self, force, grid, dt));
     }
 
+    /// The middle of a step of `dt` whose forces are those at `time` [s].
+    fn middle(&self, time: f64, dt: f64) -> f64 {
+        match self.stepping {
+            Stepping::Midpoint => time,
+            Stepping::Leapfrog => time + 0.5 * dt,
+        }
+    }
+
     /// The velocity that the grid has gained from the start to the middle of a step of `dt` [m/s],
     /// whose forces are those at `time`.
     pub(super) fn gained_velocity(&self, time: f64, dt: f64) -> [f64; D] {
         let Some(frame) = &self.frame else { return [0.0; D] };
-        let middle = match self.stepping {
-            Stepping::Midpoint => time,
-            Stepping::Leapfrog => time + 0.5 * dt,
-        };
-        let (now, start) = (frame.velocity(middle), frame.velocity(0.0));
+        let (now, start) = (frame.velocity(self.middle(time, dt)), frame.velocity(0.0));
         std::array::from_fn(|a| now[a] - start[a])
     }
 }
