@@ -13,6 +13,7 @@ use serde_json::Value;
 use super::conform::join;
 use super::errors::{Fault, SceneError, one_line, suggest};
 use super::model::Course;
+use super::table::{is_hdf5, read_hdf5};
 use crate::material::Table;
 
 /// The materials of the library; each file holds one as it stands in a scene.
@@ -139,7 +140,12 @@ fn inline_tables(material: &mut Value, folder: &Path) -> Result<bool, SceneError
     for place in ["/eos/table", "/eos/solid/table"] {
         let Some(Value::String(name)) = material.pointer(place) else { continue };
         let file = folder.join(name);
-        let table = Table::read(&read_text(&file)?).map_err(|reason| fault(&file, reason))?;
+        let table = match is_hdf5(&file) {
+            // that it is a file at all is told in the same words
+            true => regular(&file)
+                .and_then(|()| read_hdf5(&file).map_err(|reason| fault(&file, reason))),
+            false => Table::read(&read_text(&file)?).map_err(|reason| fault(&file, reason)),
+        }?;
         *material.pointer_mut(place).expect("it is there") = serde_json::json!({
             "density": table.density,
             "specific_internal_energy": table.energy,
@@ -167,13 +173,21 @@ pub(super) fn inline_courses(scene: &mut Value, folder: &Path) -> Result<bool, S
     Ok(found)
 }
 
-fn read_text(file: &Path) -> Result<String, SceneError> {
-    let cannot = |error: std::io::Error| fault(file, format!("cannot be read: {error}"));
-    // a pipe or a device may have no end
-    if !std::fs::metadata(file).map_err(cannot)?.is_file() {
-        return Err(fault(file, "is no regular file; allowed: a file".into()));
+fn cannot(file: &Path, error: &std::io::Error) -> SceneError {
+    fault(file, format!("cannot be read: {error}"))
+}
+
+/// A pipe or a device may have no end.
+fn regular(file: &Path) -> Result<(), SceneError> {
+    match std::fs::metadata(file).map_err(|error| cannot(file, &error))?.is_file() {
+        true => Ok(()),
+        false => Err(fault(file, "is no regular file; allowed: a file".into())),
     }
-    std::fs::read_to_string(file).map_err(cannot)
+}
+
+fn read_text(file: &Path) -> Result<String, SceneError> {
+    regular(file)?;
+    std::fs::read_to_string(file).map_err(|error| cannot(file, &error))
 }
 
 fn fault(file: &Path, reason: String) -> SceneError {
