@@ -83,8 +83,10 @@ pub(super) fn to_velocity(
     u: f64,
 ) -> Result<State, ExactError> {
     for _ in 0..60 {
-        let d = side * (u - state.u) / sound_speed(m, &state);
-        if d.abs() <= 2e-16 {
+        let c = sound_speed(m, &state);
+        let d = side * (u - state.u) / c;
+        // a change that rounding in chi or in the velocity would swallow
+        if d.abs() <= 1e-15 * (1.0 + u.abs() / c) {
             return Ok(State { u, ..state });
         }
         let d = d.clamp(-0.2, 0.2 * (1.0 - m.s * state.chi).min(1.0));
