@@ -100,7 +100,7 @@ fn limit(base: &Value, shape: &str, transfer: &Value) -> f64 {
 }
 
 fn main() {
-    let bases = [short("flyer_uintah.json"), short("flyer.json")];
+    let bases = [short("flyer_defaults.json"), short("flyer.json")];
     println!("const LIMITS: [Row; 6] = [");
     for (shape, name) in SHAPES {
         println!("    (\n        ShapeKind::{name},");

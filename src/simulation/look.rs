@@ -90,6 +90,9 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
     /// Takes note of the start. Collective.
     pub(super) fn note_start(&mut self) {
         self.start = self.sums().0;
+        // conduction may ask for shorter steps than any wave
+        let own = self.scene.scene.watch.least_step * self.stable;
+        self.limits.least_step = self.limits.least_step.min(own);
         self.hold();
     }
 
@@ -163,7 +166,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             );
             return Err(self.alarm(Alarm::Courant, what, |s, b, r| s.wave_rate(b, r)));
         }
-        if stable < self.limits.least_step {
+        if dt > 0.0 && stable < self.limits.least_step {
             let what = format!(
                 "the stable time step has fallen to {stable:.3e} s, allowed: {:.1e} s",
                 self.limits.least_step

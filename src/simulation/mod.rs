@@ -473,6 +473,10 @@ where
             self.check_census()?;
         }
         self.balance();
+        if self.redoes() {
+            // where patches go, what they are redone from goes with them
+            self.hold();
+        }
         Ok(())
     }
 
@@ -503,7 +507,9 @@ where
         let due = self.step.is_multiple_of(self.scene.scene.watch.interval);
         if due || self.redoes() || self.time >= end {
             self.look()?;
-            self.hold();
+            if !self.redoes() {
+                self.hold();
+            }
         }
         Ok(())
     }

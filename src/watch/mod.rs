@@ -12,7 +12,7 @@ mod cause;
 mod limits;
 
 pub use cause::likely_cause;
-pub use limits::{Energies, Limits};
+pub use limits::{Energies, Limits, keeps_energy};
 
 /// What the watch has found, beside what particles tell of their own state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -96,7 +96,7 @@ fn a_step_that_was_too_long() {
 
 #[test]
 fn a_time_step_that_collapses() {
-    sets_off(&watched(json!({"least_step": 0.8})), Alarm::TimeStep, &["has fallen to"]);
+    sets_off(&watched(json!({"least_step": 1.0})), Alarm::TimeStep, &["has fallen to"]);
 }
 
 #[test]

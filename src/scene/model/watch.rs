@@ -20,7 +20,7 @@ pub struct Watch {
     pub interval: u64,
     /// Growth of the total energy, less what sides and forces have given, that ends a run, over
     /// the energy that bodies bring beside their common motion [-]; absent: 1e-3 where the scheme
-    /// keeps energy to rounding, 0.1 where it does not.
+    /// keeps energy to rounding, 0.5 where it does not, 10 with hat functions at particles' centres.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub energy_growth: Option<f64>,
@@ -48,7 +48,7 @@ impl Default for Watch {
             interval: 64,
             energy_growth: None,
             speed: 4.0,
-            courant: 1.0,
+            courant: 2.0,
             least_step: 1e-4,
             crowding: 64.0,
             above_limit: AboveLimit::Refuse,

@@ -94,7 +94,7 @@ pub fn tiny() -> Vec<Figure> {
     let flyer = |cells: f64| lump("flyer", "copper", [40.0 - cells, 40.0], 500.0);
     // a hundredth of a cell that stands before the target
     let mut sliver = lump("sliver", "aluminium", [39.99, 40.0], 0.0);
-    sliver["particles_per_cell"] = json!([1]);
+    sliver["particles_per_cell"] = json!([100]);
     for (what, bodies) in [
         ("one particle", json!([one, target()])),
         ("one cell", json!([flyer(1.0), target()])),

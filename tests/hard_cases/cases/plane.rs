@@ -75,7 +75,7 @@ pub fn check() -> Vec<Figure> {
     // two wedges of plates that meet under an angle jet
     let slab = |name: &str, sign: f64| {
         let y = |a: f64| (16.0 + sign * a) * CELL;
-        let points = [[6.0, 1.0], [24.0, 7.0], [24.0, 11.0], [6.0, 5.0]];
+        let points = [[32.0, 1.0], [50.0, 7.0], [50.0, 11.0], [32.0, 5.0]];
         let mut corners: Vec<[f64; 2]> = points.iter().map(|p| [p[0] * CELL, y(p[1])]).collect();
         if sign < 0.0 {
             corners.reverse();
