@@ -107,8 +107,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         let work = self.side_work(&now.momentum, &impulse, &left, &given) + forces;
         let growth = self.limits.growth(&self.start.energies, &now.energies, work);
         let bound = self.limits.energy_growth;
-        // a comparison with NaN is false
-        if !(growth <= bound) {
+        if growth.is_nan() || growth > bound {
             let what = format!(
                 "total energy has grown by {growth:.3e} of what the bodies bring, allowed: \
                  {bound:.1e}; this particle has most of it for its mass"
@@ -116,7 +115,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             return Err(self.alarm(Alarm::Energy, what, |s, b, r| s.specific_energy(b, r)));
         }
         let cold = self.limits.cold(&self.start.energies, &now.energies, work);
-        if self.limits.warm && !(cold <= bound.max(COLD)) {
+        if self.limits.warm && (cold.is_nan() || cold > bound.max(COLD)) {
             let what = format!(
                 "internal energy has fallen below none by {cold:.3e} of what the bodies bring, \
                  allowed: {:.1e}; this particle has least",
@@ -267,12 +266,11 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         RunError::Particle {
             id,
             body: self.scene.scene.bodies[body].name.clone(),
-            position: position.join(", "),
-            cell: format!("{cell:?}"),
+            position: format!("{}, cell {cell:?}", position.join(", ")),
             time: self.time,
             step: self.step,
             alarm,
-            cause: likely_cause(self.scene, alarm, &what),
+            cause: likely_cause(self.scene, alarm, &what).into(),
             what,
         }
     }

@@ -41,17 +41,15 @@ use look::{Held, Start};
 pub enum RunError {
     /// A particle's state is none that the run could go on from.
     #[error(
-        "particle {id} of body `{body}` at {position}, cell {cell}, time {time:.6e} s, step {step}: {what}; likely cause: {cause}"
+        "particle {id} of body `{body}` at {position}, time {time:.6e} s, step {step}: {what}; likely cause: {cause}"
     )]
     Particle {
         /// Its id.
         id: u64,
         /// Name of its body.
         body: String,
-        /// Its position, in words.
+        /// Its position and cell, in words.
         position: String,
-        /// Its cell, D numbers in brackets.
-        cell: String,
         /// Time [s].
         time: f64,
         /// Number of the step.
@@ -61,7 +59,7 @@ pub enum RunError {
         /// What is wrong.
         what: String,
         /// What is likely behind it, and what to try.
-        cause: String,
+        cause: Box<str>,
     },
     /// The time step has become too short to end.
     #[error(
