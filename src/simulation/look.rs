@@ -32,6 +32,8 @@ pub(super) struct Held<const D: usize> {
 pub(super) struct Start<const D: usize> {
     energies: Energies,
     momentum: [f64; D],
+    /// Mass [kg].
+    mass: f64,
 }
 
 impl<const D: usize> Start<D> {
@@ -39,6 +41,7 @@ impl<const D: usize> Start<D> {
     pub(super) const NONE: Self = Start {
         energies: Energies { kinetic: 0.0, internal: 0.0, common: 0.0 },
         momentum: [0.0; D],
+        mass: 0.0,
     };
 }
 
@@ -53,6 +56,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         let c = &self.stepper.columns;
         let force = c.body_force;
         let received = c.thermal.and_then(|c| c.received);
+        let grid = self.frame.velocity(self.time);
         let sums: [f64; SUMS] = exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
             for block in self.patches.iter().map(|p| &p.block) {
                 let n = block.own();
@@ -60,7 +64,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
                 let v: [&[f64]; D] = std::array::from_fn(|a| column(c.velocity + a));
                 let (m, e) = (column(c.mass), column(c.energy));
                 for r in 0..n {
-                    let v: [f64; D] = std::array::from_fn(|a| v[a][r] + self.grid_velocity[a]);
+                    let v: [f64; D] = std::array::from_fn(|a| v[a][r] + grid[a]);
                     add(0, 0.5 * m[r] * v.iter().map(|v| v * v).sum::<f64>());
                     add(1, m[r] * e[r]);
                     (0..D).for_each(|a| add(2 + a, m[r] * v[a]));
@@ -69,7 +73,9 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
                 if let Some(force) = &force {
                     for r in 0..n {
                         let impulse = |a: usize| column(force.impulse + a)[r];
-                        let travel = |a: usize| impulse(a) * self.grid_velocity[a];
+                        // see Simulation::totals
+                        let booked = c.frame_force.is_some();
+                        let travel = |a: usize| if booked { 0.0 } else { impulse(a) * grid[a] };
                         add(5, column(force.work)[r] + (0..D).map(travel).sum::<f64>());
                         (0..D).for_each(|a| add(6 + a, impulse(a)));
                     }
@@ -84,7 +90,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         let common = if sums[4] > 0.0 { 0.5 * squared / sums[4] } else { 0.0 };
         let energies = Energies { kinetic: sums[0], internal: sums[1], common };
         let impulse = std::array::from_fn(|a| sums[6 + a]);
-        (Start { energies, momentum }, sums[5] + sums[8], impulse)
+        (Start { energies, momentum, mass: sums[4] }, sums[5] + sums[8], impulse)
     }
 
     /// Takes note of the start. Collective.
@@ -104,7 +110,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             true => (Left::NONE, Given { work: 0.0, impulse: [0.0; D] }),
             false => (self.left(), self.given()),
         };
-        let work = self.side_work(&now.momentum, &impulse, &left, &given) + forces;
+        let work = self.side_work(&now, &impulse, &left, &given) + forces;
         let growth = self.limits.growth(&self.start.energies, &now.energies, work);
         let bound = self.limits.energy_growth;
         if growth.is_nan() || growth > bound {
@@ -141,16 +147,22 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
     /// Work of the sides so far, less what has left [J]; see [`crate::run`]'s account of it.
     fn side_work(
         &self,
-        momentum: &[f64; D],
+        now: &Start<D>,
         impulse: &[f64; D],
         left: &Left<D>,
         given: &Given<D>,
     ) -> f64 {
-        let pistons = (0..D).filter(|&a| self.grid_velocity[a] != 0.0).map(|a| {
-            let walls = momentum[a] + left.momentum[a] - self.start.momentum[a] - impulse[a];
-            self.grid_velocity[a] * walls
-        });
-        pistons.sum::<f64>() + given.work - (left.kinetic + left.internal)
+        let frame = &self.frame;
+        let pistons = if frame.accelerates() {
+            frame.energy_ahead(self.time, now.mass, &now.momentum)
+                - frame.energy_ahead(0.0, self.start.mass, &self.start.momentum)
+        } else {
+            let velocity = frame.velocity(0.0);
+            let walls =
+                |a: usize| now.momentum[a] + left.momentum[a] - self.start.momentum[a] - impulse[a];
+            (0..D).filter(|&a| velocity[a] != 0.0).map(|a| velocity[a] * walls(a)).sum::<f64>()
+        };
+        pistons + given.work - (left.kinetic + left.internal)
     }
 
     /// What the longest stable next step, `stable` [s] at a Courant number of 1, says of the step
@@ -260,7 +272,8 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         what: String,
     ) -> RunError {
         let names = ["x", "y"];
-        let x = |a: usize| place[a] + self.grid_velocity[a] * self.time;
+        let travel = self.frame.travel(self.time);
+        let x = |a: usize| place[a] + travel[a];
         let position: Vec<String> =
             (0..D).map(|a| format!("{} = {:.6e} m", names[a], x(a))).collect();
         RunError::Particle {

@@ -25,6 +25,7 @@ use decomp::{
 use crate::clock::{Activity, Clock, Event};
 use crate::constitutive::Outside;
 use crate::effects::Effect;
+use crate::frame::Frame;
 use crate::geometry::Tile;
 use crate::particles::{self, Columns};
 use crate::patch::Patch;
@@ -160,7 +161,9 @@ pub struct Simulation<'a, C: Comm, const D: usize> {
     limits: Limits,
     start: Start<D>,
     held: Held<D>,
-    grid_velocity: [f64; D],
+    frame: Frame<D>,
+    /// No step is longer, where the frame accelerates [s].
+    longest_step: f64,
     time: f64,
     step: u64,
     /// The step from which this run goes on; 0: the start.
@@ -254,6 +257,15 @@ fn may_sleep<const D: usize>(scene: &CheckedScene) -> bool {
     scene.skips_quiet()
         && scene.scene.body_force.is_none()
         && bodies.any(|(b, c)| c.motion.is_none() && c.velocity == velocity && b.pressure == 0.0)
+}
+
+/// The longest step, at a Courant number of 1, for a grid that accelerates [s]: material at rest
+/// is faster in the next step than it is in this one.
+fn longest_step<const D: usize>(scene: &CheckedScene, frame: &Frame<D>) -> f64 {
+    match frame.greatest_change() {
+        0.0 => f64::INFINITY,
+        change => scene.cell_size.iter().copied().fold(f64::INFINITY, f64::min) / change,
+    }
 }
 
 /// Particles in the cells of `cells`, counted without making them.
@@ -374,13 +386,13 @@ where
         let weights: Vec<u64> =
             layout.patches().iter().map(|p| count_particles(scene, p)).collect();
         let layout = layout.with_ranks(assign_patches(&weights, &order, comm.size()));
-        let grid_velocity = scene.grid_velocity();
+        let frame = scene.frame();
         let blocks = particles::fill(
             scene,
             &stepper.columns,
             &layout,
             comm.rank(),
-            grid_velocity,
+            frame.velocity(0.0),
             &|body, pressure| {
                 stepper.starting_energy(body, pressure, scene.scene.bodies[body].temperature)
             },
@@ -397,7 +409,7 @@ where
             patches: patches.map(|(p, block)| Patch::new(&layout, p, block)).collect(),
             plan: Plan::new(scene, &stepper, &layout, reach, comm.rank(), workers),
             sleep: stepper.sleep(),
-            outflow: Outflow::new(scene, grid_velocity),
+            outflow: Outflow::new(scene),
             side_books: SideBooks::new(scene, stepper.fastest),
             limits: Limits::new(scene, stepper.fastest, stepper.shortest_edge()),
             start: Start::NONE,
@@ -415,7 +427,8 @@ where
             tally: Tally::default(),
             forgone: 0.0,
             census: Census::default(),
-            grid_velocity,
+            longest_step: longest_step(scene, &frame),
+            frame,
             time: 0.0,
             step: 0,
             first_step: 0,
@@ -493,9 +506,12 @@ where
         } else if timed {
             self.patches.iter_mut().for_each(|p| p.watch.forget_step());
         }
-        self.outflow.take(&mut self.patches);
-        self.side_books.take(&mut self.patches);
         self.time = meets.unwrap_or(self.time + dt);
+        if self.frame.accelerates() {
+            self.side_books.take_leave(&self.patches, &self.frame, self.time);
+        }
+        self.outflow.take(&mut self.patches, self.frame.velocity(self.time));
+        self.side_books.take(&mut self.patches);
         self.agree(dt)
     }
 
@@ -610,7 +626,8 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             return Err(self.gather_fault());
         }
         self.look_at_step(told[0], dt)?;
-        (self.stable, self.longest, self.asked) = (told[0], -told[1], -told[4] as u8);
+        (self.stable, self.longest, self.asked) =
+            (told[0].min(self.longest_step), -told[1], -told[4] as u8);
         self.dt = self.scene.scene.time.courant * self.stable;
         self.follow_reach(self.longest);
         Ok(())

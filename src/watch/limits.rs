@@ -1,8 +1,7 @@
 //! The bounds of a scene.
 
 use crate::scene::{
-    BodyForce, Burn, CheckedScene, EnergyUpdate, Eos, Load, Scene, ShapeKind, Side, Stepping,
-    Transfer,
+    BodyForce, Burn, CheckedScene, EnergyUpdate, Eos, Scene, ShapeKind, Side, Stepping, Transfer,
 };
 
 /// Growth of energy that ends a run of a scheme that keeps it to rounding [-].
@@ -114,7 +113,9 @@ pub fn keeps_energy(scene: &Scene) -> bool {
 /// The speed that what drives a scene may bring a body to [m/s]: an ideal gas that runs out into
 /// the void, the loads on sides, gravity over the whole run.
 fn driven_speed(scene: &CheckedScene, fastest: f64) -> f64 {
-    let mut most: f64 = 0.0;
+    // a piston's speed, which may come only later
+    let [least, greatest] = scene.frame::<2>().extremes();
+    let mut most = least.iter().chain(&greatest).fold(0.0, |most: f64, v| most.max(v.abs()));
     for body in &scene.scene.bodies {
         let material = &scene.scene.materials[&body.material];
         if let Eos::IdealGas { gamma } | Eos::StiffenedGas { gamma, .. } = material.eos {
@@ -130,7 +131,7 @@ fn driven_speed(scene: &CheckedScene, fastest: f64) -> f64 {
             if let Side::Pressure(load) = side {
                 // twice p/(rho c) at a free surface, and with c at least that of the bodies' own
                 // motion for a load beyond the stiffness, sqrt(p/rho)
-                most = most.max(2.0 * (greatest(load).max(0.0) / material.density).sqrt());
+                most = most.max(2.0 * (load.range()[1].max(0.0) / material.density).sqrt());
             }
         }
     }
@@ -146,15 +147,6 @@ fn driven_speed(scene: &CheckedScene, fastest: f64) -> f64 {
         };
     }
     most
-}
-
-/// The greatest pressure of a load [Pa].
-fn greatest(load: &Load) -> f64 {
-    match load {
-        Load::Constant(pressure) => *pressure,
-        Load::Series(points) => points.iter().map(|p| p[1]).fold(0.0, f64::max),
-        Load::File(_) => 0.0,
-    }
 }
 
 /// Particles of a body that a cell holds at the start, at most.
