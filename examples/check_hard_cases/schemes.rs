@@ -73,7 +73,7 @@ fn cases() -> Vec<(&'static str, Value)> {
     ]
 }
 
-fn transfers() -> [(&'static str, Value); 7] {
+fn transfers() -> [(&'static str, Value); 8] {
     [
         ("flip", json!("flip")),
         ("pic", json!("pic")),
@@ -82,6 +82,7 @@ fn transfers() -> [(&'static str, Value); 7] {
         ("xpic 3", json!({"xpic": 3})),
         ("fmpm 4", json!({"fmpm": 4})),
         ("fmpm 6", json!({"fmpm": 6})),
+        ("fmpm 8", json!({"fmpm": 8})),
     ]
 }
 
