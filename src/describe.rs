@@ -44,6 +44,9 @@ where
     let columns = simulation.columns();
     let names: Vec<&str> = columns.specs.iter().map(|s| s.name).collect();
     line("columns a particle", format!("{} ({})", names.len(), names.join(", ")));
+    line("held by the watch", format!("{} bytes a particle", columns.held_bytes(D)));
+    let limit = scene.courant_limit();
+    line("courant", format!("{}, this method's limit {limit}", scene.scene.time.courant));
     for warning in &scene.warnings {
         line("warning", warning.clone());
     }

@@ -31,3 +31,4 @@ pub mod strength;
 pub mod threads;
 pub mod transfer;
 pub mod viscosity;
+pub mod watch;

@@ -250,6 +250,7 @@ fn run_scene<C: Comm>(comm: &C, args: &RunArgs, started: Instant) -> Outcome<()>
             }
             Err((STOPPED, String::new()))
         }
+        Err(error @ Failure::Alarm { .. }) => Err((FAILED, by_first(error.to_string()))),
         Err(
             error @ Failure::Run(
                 RunError::Particle { .. }

@@ -197,6 +197,11 @@ pub fn load_bit(axis: usize, end: usize) -> u8 {
 }
 
 impl Columns {
+    /// Bytes that the watch holds of a particle's last good state, in so many dimensions.
+    pub fn held_bytes(&self, dimension: usize) -> usize {
+        8 + 4 * dimension + 8 * self.specs.iter().filter(|s| s.state).count()
+    }
+
     /// The columns that `scene` calls for.
     pub fn new(scene: &CheckedScene) -> Self {
         let mut specs = Vec::new();

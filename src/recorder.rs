@@ -32,6 +32,16 @@ pub struct Recorder<'a> {
     due_profile: usize,
 }
 
+/// How far what is recorded goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Mark {
+    tables: usize,
+    waves: usize,
+    histories: usize,
+    due_history: u64,
+    due_wave: u64,
+}
+
 impl<'a> Recorder<'a> {
     /// The recorder of a run at its start. Collective.
     pub fn new<C: Comm, const D: usize>(
@@ -115,10 +125,38 @@ impl<'a> Recorder<'a> {
         saved: &'b Saved,
         columns: &'b [StateColumn],
     ) -> Contents<'b> {
+        self.contents_at(&self.mark(), self.histories(), scene, saved, columns)
+    }
+
+    /// How far what is recorded goes now.
+    pub fn mark(&self) -> Mark {
+        Mark {
+            tables: self.tables.len(),
+            waves: self.waves.len(),
+            histories: self.histories().map_or(0, Histories::len),
+            due_history: self.probes.as_ref().map_or(0, Probes::due),
+            due_wave: self.due_wave,
+        }
+    }
+
+    /// The histories up to a mark, if there are any.
+    pub fn histories_at(&self, mark: &Mark) -> Option<Histories> {
+        self.histories().map(|all| all.first(mark.histories))
+    }
+
+    /// What a checkpoint of the state at a mark holds, with the histories up to there.
+    pub fn contents_at<'b>(
+        &'b self,
+        mark: &Mark,
+        histories: Option<&'b Histories>,
+        scene: &'b str,
+        saved: &'b Saved,
+        columns: &'b [StateColumn],
+    ) -> Contents<'b> {
         let due = Due {
-            history: self.probes.as_ref().map_or(0, Probes::due),
+            history: mark.due_history,
             history_interval: self.scene.history_interval,
-            wave: self.due_wave,
+            wave: mark.due_wave,
             end: self.scene.scene.time.end,
         };
         Contents {
@@ -127,9 +165,9 @@ impl<'a> Recorder<'a> {
             saved,
             columns,
             due,
-            tables: &self.tables,
-            waves: &self.waves,
-            histories: self.histories(),
+            tables: &self.tables[..mark.tables],
+            waves: &self.waves[..mark.waves],
+            histories,
         }
     }
 }

@@ -29,7 +29,7 @@ use crate::output::report::report;
 use crate::output::summary::{Energy, FailureSummary, Momentum, Outflow, ProfileSummary, Summary};
 use crate::output::trace::write_trace;
 use crate::output::vtkhdf::{RESULTS_FILE, RunInfo, write_vtkhdf};
-use crate::recorder::Recorder;
+use crate::recorder::{Mark, Recorder};
 use crate::reference::Reference;
 use crate::scene::{CheckedScene, Side};
 use crate::simulation::{Given, Left, RunError, Simulation, Totals};
@@ -41,6 +41,14 @@ pub enum Failure {
     /// The run itself.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// The run itself, of which the last good state was looked after. All ranks know.
+    #[error("{error}; {next}")]
+    Alarm {
+        /// What ended it.
+        error: Box<RunError>,
+        /// Where it can go on.
+        next: String,
+    },
     /// Its files.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -166,10 +174,14 @@ where
     let mut progress = Progress::new([simulation.time(), end], first && !options.quiet);
     // the start and what the run goes on from need no checkpoint
     let mut fresh = true;
+    let mut mark = recorder.mark();
     loop {
         let time = simulation.time();
         let (start, waited) = (Instant::now(), comm.traffic().waited);
         recorder.record(simulation, first);
+        if simulation.held_at().1 == simulation.steps() {
+            mark = recorder.mark();
+        }
         let asked = simulation.asked();
         if !fresh && schedule.is_due(time, simulation.steps(), asked) {
             write_checkpoint(simulation, comm, scene, options, recorder, schedule)?;
@@ -186,11 +198,63 @@ where
             return Err(stopped(stop, time, simulation.steps(), options, schedule));
         }
         simulation.ask(schedule.asks(first));
-        simulation.advance(recorder.next_profile())?;
+        if let Err(error) = simulation.advance(recorder.next_profile()) {
+            progress.finish();
+            if !error.is_known_to_all() {
+                return Err(error.into());
+            }
+            let next =
+                save_last_good(simulation, comm, scene, options, (recorder, &mark), schedule);
+            return Err(Failure::Alarm { error: Box::new(error), next });
+        }
         progress.tell(simulation.time(), simulation.steps());
     }
     progress.finish();
     Ok(())
+}
+
+/// Writes the last state that the watch has passed; tells how to go on from it. Collective.
+fn save_last_good<C: Comm, const D: usize>(
+    simulation: &Simulation<'_, C, D>,
+    comm: &C,
+    scene: &CheckedScene,
+    options: &Options,
+    (recorder, mark): (&Recorder<'_>, &Mark),
+    schedule: &Schedule,
+) -> String {
+    let (time, step) = simulation.held_at();
+    if step == 0 {
+        return "no state but the start has passed the watch".into();
+    }
+    if schedule.keep == 0 {
+        return "no state was written, for output.checkpoint.keep is 0".into();
+    }
+    let Some(saved) = simulation.last_good() else { return String::new() };
+    let text = serde_json::to_string(&scene.scene).expect("a scene is plain data");
+    let columns = state_columns(simulation);
+    let histories = recorder.histories_at(mark);
+    let contents = recorder.contents_at(mark, histories.as_ref(), &text, &saved, &columns);
+    let written = checkpoint_folder(&options.output).map_err(CheckpointError::from);
+    let written = written
+        .and_then(|folder| folder::write(&folder, schedule.keep, &contents, &|| comm.heartbeat()));
+    match written {
+        Ok(path) => format!(
+            "the last good state, time {time:.6e} s, step {step}, is in {}: go on with --restart, \
+             and --set time or watch",
+            path.display()
+        ),
+        Err(error) => format!("the last good state could not be written: {error}"),
+    }
+}
+
+/// The columns of a checkpoint's rows.
+fn state_columns<C: Comm, const D: usize>(simulation: &Simulation<'_, C, D>) -> Vec<StateColumn> {
+    let all = simulation.columns();
+    let of = |k: &usize| StateColumn {
+        name: all.specs[*k].name.into(),
+        unit: all.specs[*k].unit.into(),
+    };
+    all.state().iter().map(of).collect()
 }
 
 /// Writes a checkpoint. Collective.
@@ -205,12 +269,7 @@ fn write_checkpoint<C: Comm, const D: usize>(
     let start = Instant::now();
     if let Some(saved) = simulation.save() {
         let text = serde_json::to_string(&scene.scene).expect("a scene is plain data");
-        let all = simulation.columns();
-        let of = |k: &usize| StateColumn {
-            name: all.specs[*k].name.into(),
-            unit: all.specs[*k].unit.into(),
-        };
-        let columns: Vec<StateColumn> = all.state().iter().map(of).collect();
+        let columns = state_columns(simulation);
         let contents = recorder.contents(&text, &saved, &columns);
         let folder = checkpoint_folder(&options.output)?;
         // the others wait for this rank
@@ -284,6 +343,7 @@ where
         before,
     );
     let shares = accounts::effect_shares(comm, &simulation);
+    let stretched = simulation.stretched();
     if let Some((path, _)) = &options.trace {
         let events = accounts::timeline(comm, &mut simulation);
         if comm.rank() == 0 {
@@ -324,6 +384,7 @@ where
     }
     let times = [0.0, simulation.time()];
     let (energy, momentum, outflow) = balance(scene, times, [&start, &end], &left, &given);
+    warnings.extend(inaccurate(&energy, stretched, simulation.tally().redone_steps));
     let particle_steps = scene.particles as f64 * simulation.steps_made() as f64;
     let layout = simulation.layout();
     let summary = Summary {
@@ -359,6 +420,32 @@ where
         folder::clear(&checkpoint_folder(&options.output)?);
     }
     Ok(Some(report(&summary, &place)))
+}
+
+/// Drift of energy beyond which a run says that it is inaccurate [-].
+const DRIFT_TOLD: f64 = 0.01;
+
+/// What a run that has ended well says against its accuracy, one line each.
+fn inaccurate(energy: &Energy, stretched: u64, redone: u64) -> Vec<String> {
+    let drift = energy.drift.filter(|d| d.abs() > DRIFT_TOLD).map(|drift| {
+        format!(
+            "energy has drifted by {:+.2} %: the scheme does not keep it, and shocks are wrong \
+             with it; method.stepping \"midpoint\" with method.energy \"compatible\" and \
+             method.filter_heat keep it to rounding",
+            100.0 * drift
+        )
+    });
+    let stretched = (stretched > 0).then(|| {
+        format!(
+            "{stretched} particles fill more than a cell each, further than the shape function \
+             takes them to reach: gaps may have opened between them; more particles a cell, or \
+             method.shape \"cpdi_bspline_quadratic\""
+        )
+    });
+    let redone = (redone > 0).then(|| {
+        format!("{redone} times a step was redone half as long, as watch.on_alarm = \"redo\" asks")
+    });
+    drift.into_iter().chain(stretched).chain(redone).collect()
 }
 
 /// Writes each profile and scores it.

@@ -36,7 +36,7 @@ impl ExactSum {
     /// Turns each of `sums` into that over all ranks. Collective.
     pub fn over_ranks<C: Comm + ?Sized>(comm: &C, sums: &mut [ExactSum]) {
         // limbs of 32 bits leave room for 2^31 ranks
-        let mut limbs: Vec<i64> = sums
+        let mut limbs: smallvec::SmallVec<[i64; 64]> = sums
             .iter()
             .flat_map(|s| {
                 let t = s.total;

@@ -62,6 +62,7 @@ impl Table {
     }
 
     /// A figure beside another one, without a bound.
+    #[allow(dead_code)] // likewise
     pub fn beside(&mut self, figure: &str, value: Option<f64>, other: &str, show: Show) {
         self.row(figure, shown(value, show), other, None);
     }
@@ -73,6 +74,7 @@ impl Table {
     }
 
     /// A run that failed, with what it said; nothing for one that did not.
+    #[allow(dead_code)] // likewise
     pub fn take<T>(&mut self, figure: &str, result: Result<T, String>) -> Option<T> {
         match result {
             Ok(value) => Some(value),

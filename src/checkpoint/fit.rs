@@ -10,7 +10,7 @@ use crate::scene::CheckedScene;
 use crate::simulation::saved_sums;
 
 /// Keys that may change after the start.
-pub const CHANGEABLE: [&str; 4] = ["time", "output", "domain.patches", "decomposition"];
+pub const CHANGEABLE: [&str; 5] = ["time", "watch", "output", "domain.patches", "decomposition"];
 
 impl Checkpoint {
     /// Refuses a scene that a run cannot go on with from here; what it has recorded and the scene

@@ -44,6 +44,15 @@ impl Histories {
         }
     }
 
+    /// The first `count` rows.
+    pub fn first(&self, count: usize) -> Histories {
+        let cut = |c: &TableColumn| TableColumn {
+            values: c.values[..count.min(c.values.len())].to_vec(),
+            ..c.clone()
+        };
+        Histories { columns: self.columns.iter().map(cut).collect() }
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.columns.first().map_or(0, |c| c.values.len())

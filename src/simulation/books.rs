@@ -25,6 +25,8 @@ pub struct Tally {
     pub balances: u64,
     /// Patches that this rank gave away.
     pub patches_moved: u64,
+    /// Times that a step was redone half as long, alike on all ranks.
+    pub redone_steps: u64,
     /// Particles that passed from a patch of this rank to another patch.
     pub migrated: u64,
 }
@@ -42,6 +44,12 @@ pub struct Left<const D: usize> {
     pub kinetic: f64,
     /// Internal energy [J].
     pub internal: f64,
+}
+
+impl<const D: usize> Left<D> {
+    /// Nothing.
+    pub const NONE: Self =
+        Left { count: 0, mass: 0.0, momentum: [0.0; D], kinetic: 0.0, internal: 0.0 };
 }
 
 /// What has left by outflows of this rank's patches: sums that do not depend on who counted.

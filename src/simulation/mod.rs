@@ -5,6 +5,7 @@
 
 mod balance;
 mod books;
+mod look;
 mod observe;
 mod save;
 
@@ -31,27 +32,35 @@ use crate::patch::Patch;
 use crate::scene::{CheckedBody, CheckedScene, FilterHalo, Side};
 use crate::step::{Reach, Sleep, Stepper, Steps, World};
 use crate::threads::make_pool;
+use crate::watch::{Alarm, Limits};
 
 use books::{CENSUS_EVERY, Outflow, SideBooks};
+use look::{Held, Start};
 
 /// Why a run ended before its time.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// A particle's state is none that the run could go on from.
-    #[error("particle {id} of body `{body}` at {position}, time {time:.6e} s, step {step}: {what}")]
+    #[error(
+        "particle {id} of body `{body}` at {position}, time {time:.6e} s, step {step}: {what}; likely cause: {cause}"
+    )]
     Particle {
         /// Its id.
         id: u64,
         /// Name of its body.
         body: String,
-        /// Its position, in words.
+        /// Its position and cell, in words.
         position: String,
         /// Time [s].
         time: f64,
         /// Number of the step.
         step: u64,
+        /// What has found it.
+        alarm: Alarm,
         /// What is wrong.
         what: String,
+        /// What is likely behind it, and what to try.
+        cause: Box<str>,
     },
     /// The time step has become too short to end.
     #[error(
@@ -110,6 +119,14 @@ pub enum RunError {
     Elsewhere,
 }
 
+impl RunError {
+    /// Whether all ranks know of it, so that they can do something together.
+    pub fn is_known_to_all(&self) -> bool {
+        use RunError::{Elsewhere, Lost, Particle, TimeStep};
+        matches!(self, Particle { .. } | TimeStep { .. } | Lost { .. } | Elsewhere)
+    }
+}
+
 /// A run in memory.
 pub struct Simulation<'a, C: Comm, const D: usize> {
     comm: &'a C,
@@ -140,6 +157,10 @@ pub struct Simulation<'a, C: Comm, const D: usize> {
     census: Census,
     outflow: Outflow<D>,
     side_books: SideBooks<D>,
+    /// What the watch holds the run to, the sums that it started with, and the last good state.
+    limits: Limits,
+    start: Start<D>,
+    held: Held<D>,
     frame: Frame<D>,
     /// No step is longer, where the frame accelerates [s].
     longest_step: f64,
@@ -390,6 +411,9 @@ where
             sleep: stepper.sleep(),
             outflow: Outflow::new(scene),
             side_books: SideBooks::new(scene, stepper.fastest),
+            limits: Limits::new(scene, stepper.fastest, stepper.shortest_edge()),
+            start: Start::NONE,
+            held: Held::default(),
             stepper,
             layout,
             order,
@@ -417,20 +441,22 @@ where
         simulation.follow_reach(longest);
         simulation.census = simulation.count();
         simulation.with_world(|stepper, world| stepper.prime(world))?;
-        simulation.agree()?;
+        simulation.agree(0.0)?;
+        simulation.note_start();
         // all ranks start their clocks together
         simulation.clock = Clock::new();
         Ok(simulation)
     }
 
     /// One step, the last one before `until` [s] shortened to meet it exactly; the step after is
-    /// as long as if it had not been. Collective.
+    /// as long as if it had not been. One that the watch does not let pass is an error, or is
+    /// redone half as long if the scene says so. Collective.
     pub fn advance(&mut self, until: f64) -> Result<(), RunError> {
         let left = until - self.time;
         let stable = self.dt;
         // a remainder below rounding of the time is no step of its own
-        let meets = stable * (1.0 + 1e-9) >= left;
-        let dt = if meets { left } else { stable };
+        let mut meets = stable * (1.0 + 1e-9) >= left;
+        let mut dt = if meets { left } else { stable };
         let (end, step) = (self.scene.scene.time.end, self.step);
         if dt * MOST_STEPS < end && !meets {
             return Err(match step {
@@ -438,6 +464,36 @@ where
                 _ => RunError::TimeStep { time: self.time, step, dt },
             });
         }
+        let mut redos = 0;
+        loop {
+            let passed = self.step_by(dt, meets.then_some(until)).and_then(|()| self.pass(end));
+            match passed {
+                Ok(()) => break,
+                Err(RunError::Row(error)) => return Err(error.into()),
+                Err(error) if !self.redoes() || redos == self.scene.scene.watch.most_redos => {
+                    return Err(error);
+                }
+                Err(_) => {}
+            }
+            self.go_back();
+            redos += 1;
+            self.tally.redone_steps += 1;
+            (dt, meets) = (0.5 * dt, false);
+        }
+        if self.step.is_multiple_of(CENSUS_EVERY) || self.time >= end {
+            self.check_census()?;
+        }
+        self.balance();
+        if self.redoes() {
+            // where patches go, what they are redone from goes with them
+            self.hold();
+        }
+        Ok(())
+    }
+
+    /// One step of `dt` [s], which meets a time if that is given, and what every step is looked at
+    /// for. Collective.
+    fn step_by(&mut self, dt: f64, meets: Option<f64>) -> Result<(), RunError> {
         self.step += 1;
         self.given_contact.clear();
         let (step, time) = (self.step, self.time);
@@ -450,17 +506,25 @@ where
         } else if timed {
             self.patches.iter_mut().for_each(|p| p.watch.forget_step());
         }
-        self.time = if meets { until } else { self.time + dt };
+        self.time = meets.unwrap_or(self.time + dt);
         if self.frame.accelerates() {
             self.side_books.take_leave(&self.patches, &self.frame, self.time);
         }
         self.outflow.take(&mut self.patches, self.frame.velocity(self.time));
         self.side_books.take(&mut self.patches);
-        self.agree()?;
-        if step.is_multiple_of(CENSUS_EVERY) || self.time >= end {
-            self.check_census()?;
+        self.agree(dt)
+    }
+
+    /// Looks at all particles if the step is one to do so at, and holds the state that has passed;
+    /// the run ends at `end` [s]. Collective.
+    fn pass(&mut self, end: f64) -> Result<(), RunError> {
+        let due = self.step.is_multiple_of(self.scene.scene.watch.interval);
+        if due || self.redoes() || self.time >= end {
+            self.look()?;
+            if !self.redoes() {
+                self.hold();
+            }
         }
-        self.balance();
         Ok(())
     }
 }
@@ -540,9 +604,10 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         &self.stepper.columns
     }
 
-    /// The longest stable step over all ranks, the verdict on all ranks' faults, what the busiest
-    /// rank computed, and what ranks ask for. Collective.
-    fn agree(&mut self) -> Result<(), RunError> {
+    /// The longest stable step over all ranks, the verdict on all ranks' faults and on the step of
+    /// `dt` [s] that has led here, what the busiest rank computed, and what ranks ask for.
+    /// Collective.
+    fn agree(&mut self, dt: f64) -> Result<(), RunError> {
         let start = Instant::now();
         let faulty = self.patches.iter().any(|p| p.told.fault.is_some());
         let shortest = self.patches.iter().map(|p| p.told.time_step).fold(f64::INFINITY, f64::min);
@@ -560,6 +625,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         if told[2] < 0.0 {
             return Err(self.gather_fault());
         }
+        self.look_at_step(told[0], dt)?;
         (self.stable, self.longest, self.asked) =
             (told[0].min(self.longest_step), -told[1], -told[4] as u8);
         self.dt = self.scene.scene.time.courant * self.stable;
@@ -607,18 +673,10 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             return RunError::Elsewhere;
         };
         let (place, what) = w[KEYS + 1..].split_at(D);
-        let travel = self.frame.travel(self.time);
-        let x = |a: usize| f64::from_bits(place[a]) + travel[a];
-        let names = ["x", "y"];
-        let place = (0..D).map(|a| format!("{} = {:.6e} m", names[a], x(a)));
-        RunError::Particle {
-            id: w[KEYS - 1],
-            body: self.scene.scene.bodies[w[KEYS] as usize].name.clone(),
-            position: place.collect::<Vec<_>>().join(", "),
-            time: self.time,
-            step: self.step,
-            what: String::from_utf8_lossy(&what.iter().map(|&b| b as u8).collect::<Vec<_>>())
-                .into_owned(),
-        }
+        let place = std::array::from_fn(|a| f64::from_bits(place[a]));
+        let cell = std::array::from_fn(|a| w[2 - a] as i64 + i64::from(i32::MIN));
+        let what = what.iter().map(|&b| b as u8).collect::<Vec<_>>();
+        let what = String::from_utf8_lossy(&what).into_owned();
+        self.particle_error(Alarm::State, w[KEYS - 1], w[KEYS] as usize, cell, place, what)
     }
 }

@@ -93,6 +93,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         self.plan.rows.take_migrated();
         self.tally = Tally::default();
         self.clock = Clock::new();
+        self.hold();
         match self.count() == self.census {
             true => Ok(()),
             false => Err(RunError::Foreign),

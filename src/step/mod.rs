@@ -429,6 +429,16 @@ impl<const D: usize> Stepper<D> {
         self.longest_within(Reach { nodes: most_nodes(D), products: 0 }) / STRETCH
     }
 
+    /// The shortest edge of a cell [m].
+    pub fn shortest_edge(&self) -> f64 {
+        self.cell.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether the shape function grows with the particle.
+    pub fn grows(&self) -> bool {
+        self.extent() == Extent::Current
+    }
+
     fn extent(&self) -> Extent {
         Extent::of(self.shape)
     }

@@ -530,6 +530,34 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
+    /// The most cells that a signal passes along a direction in a second at an own row, as the time
+    /// step has it [1/s].
+    pub fn wave_rate(&self, block: &decomp::Block<D>, row: usize) -> f64 {
+        let column = |k: usize| block.columns[k][row];
+        let speed = column(self.columns.sound_speed);
+        let added = self.viscosity.map_or(0.0, |q| q.speed(speed, column(self.columns.gradient)));
+        let along = |a: usize| {
+            (speed + column(self.columns.velocity + a).abs() + added) * self.inverse_cell[a]
+        };
+        (0..D).map(along).fold(0.0, f64::max)
+    }
+
+    /// The cells that an own row fills.
+    pub fn filled_cells(&self, block: &decomp::Block<D>, row: usize) -> f64 {
+        let column = |k: usize| block.columns[k][row];
+        let c = &self.columns;
+        let about = if self.axisymmetric { column(c.position) } else { 1.0 };
+        let scale: f64 = self.inverse_cell.iter().product();
+        column(c.volume0) * column(c.jacobian) * scale / about
+    }
+
+    /// Kinetic and internal energy of an own row over its mass [J/kg].
+    pub fn specific_energy(&self, block: &decomp::Block<D>, row: usize) -> f64 {
+        let column = |k: usize| block.columns[k][row];
+        let v = |a: usize| column(self.columns.velocity + a);
+        column(self.columns.energy) + 0.5 * (0..D).map(|a| v(a) * v(a)).sum::<f64>()
+    }
+
     /// The own row with the greatest extent along a direction, and that extent [cells].
     fn longest_row(&self, block: &decomp::Block<D>) -> (usize, f64) {
         let c = &self.columns;

@@ -12,6 +12,7 @@ mod program;
 mod replacing;
 mod scenes;
 mod steps;
+mod watch;
 
 #[cfg(feature = "mpi")]
 mod ranks;

@@ -51,6 +51,7 @@ pub fn unstable() -> Value {
     let mut scene = short();
     scene.as_object_mut().unwrap().remove("artificial_viscosity");
     scene["time"]["courant"] = json!(1.0);
+    scene["watch"] = json!({"above_limit": "allow"});
     scene["method"] = json!({"shape": "cpdi_bspline_quadratic", "transfer": {"fmpm": 6}});
     scene["bodies"][0]["velocity"] = json!([8000.0]);
     scene

@@ -11,6 +11,8 @@ mod in_process;
 #[path = "../common/layouts.rs"]
 mod layouts;
 mod random;
+#[path = "../common/random_scenes.rs"]
+mod random_scenes;
 #[path = "../common/scenes.rs"]
 mod scenes;
 mod schemes;

@@ -19,7 +19,8 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Fau
         let path = join("materials", name);
         check_eos(&material.eos, material.density, &format!("{path}.eos"), scene)?;
         if let Eos::MieGruneisen { c0, .. } = material.eos
-            && !(material.density * c0 * c0).is_normal()
+            // pressures are multiplied with each other
+            && !(material.density * c0 * c0).powi(2).is_normal()
         {
             let reason = format!(
                 "density * c0^2 with eos.c0 = {c0} is no finite stiffness; allowed: SI units, \

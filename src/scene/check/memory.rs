@@ -6,8 +6,8 @@ use super::CheckedScene;
 use super::domain::MOST;
 use crate::geometry::Shape;
 
-/// Memory that a run takes for one particle, outputs included [bytes].
-pub const BYTES_PER_PARTICLE: u64 = 600;
+/// Memory that a run takes for one particle, outputs and the last good state included [bytes].
+pub const BYTES_PER_PARTICLE: u64 = 800;
 
 /// Memory that a run takes for one cell [bytes].
 pub const BYTES_PER_CELL: u64 = 400;

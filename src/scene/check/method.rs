@@ -9,9 +9,6 @@ use super::super::model::{
 };
 use super::CheckedScene;
 
-/// Beyond this Courant number the schemes with a filter were seen to fail [-].
-const COURANT_TRIED: f64 = 0.8;
-
 const MIDPOINT: &str = "method.stepping = \"midpoint\"";
 
 pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Fault> {
@@ -60,12 +57,6 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Fau
              another cell; allowed all the same"
                 .to_string(),
         );
-    }
-    if scene.time.courant > COURANT_TRIED {
-        warnings.push(format!(
-            "time.courant = {}: beyond {COURANT_TRIED} most schemes were seen to be unstable",
-            scene.time.courant
-        ));
     }
     Ok(())
 }

@@ -4,6 +4,7 @@
 
 mod bodies;
 mod boundary;
+mod courant;
 mod domain;
 mod effects;
 mod front;
@@ -78,6 +79,7 @@ impl CheckedScene {
         method::check_bodies(&checked)?;
         boundary::check_transmitting(&mut checked)?;
         boundary::check_loads(&mut checked)?;
+        courant::check(&mut checked)?;
         motion::check_body_force(&checked)?;
         output::check_tracers(&checked)?;
         output::check_checkpoints(&checked.scene)?;
@@ -143,6 +145,14 @@ impl CheckedScene {
         let sides = self.sides::<2>();
         let mut all = sides[..self.dimension].as_flattened().iter();
         all.any(|side| matches!(side, Side::Pressure(_)))
+    }
+
+    /// Whether nothing gives the particles energy or lets them out but rigid sides.
+    pub fn keeps_all(&self) -> bool {
+        let sides = self.sides::<2>();
+        let mut all = sides[..self.dimension].as_flattened().iter();
+        let gives = |s: &Side| s.lets_out() || matches!(s, Side::Pressure(_) | Side::Friction(_));
+        !self.accelerates() && !all.any(gives)
     }
 
     /// Whether one of the sides rubs.

@@ -11,6 +11,7 @@ mod method;
 mod motion;
 mod output;
 mod region;
+mod watch;
 
 use std::collections::BTreeMap;
 
@@ -25,6 +26,7 @@ pub use method::*;
 pub use motion::*;
 pub use output::*;
 pub use region::*;
+pub use watch::*;
 
 /// A scene: everything that a run is told.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -63,6 +65,9 @@ pub struct Scene {
     /// What stands at the sides of the domain; absent: free on every side.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub boundary: Option<Boundary>,
+    /// The watch over the run; absent: with the bounds that hold for every scene.
+    #[serde(default, skip_serializing_if = "Watch::is_default")]
+    pub watch: Watch,
     /// What is written.
     #[serde(default)]
     pub output: Output,

@@ -1,0 +1,127 @@
+//! Measures the Courant numbers up to which each shape function is stable with each transfer, and
+//! prints the table that stands in `src/scene/check/courant.rs`.
+//!
+//! `cargo run --release --example courant_limits` takes some minutes.
+
+use std::path::Path;
+
+use decomp::Serial;
+use flyer_mpm::scene;
+use flyer_mpm::simulation::Simulation;
+use serde_json::{Value, json};
+
+const SHAPES: [(&str, &str); 6] = [
+    ("linear", "Linear"),
+    ("gimp", "Gimp"),
+    ("cpdi", "Cpdi"),
+    ("bspline_quadratic", "BsplineQuadratic"),
+    ("bspline_cubic", "BsplineCubic"),
+    ("cpdi_bspline_quadratic", "CpdiBsplineQuadratic"),
+];
+
+/// Courant numbers that are tried, in tenths.
+const TENTHS: std::ops::RangeInclusive<u32> = 2..=10;
+
+/// Pressures beyond this are no longer those of the impact [Pa]: twice 12.14 GPa.
+const MOST_PRESSURE: f64 = 24.3e9;
+
+fn transfers() -> [Value; 9] {
+    [
+        json!("flip"),
+        json!("pic"),
+        json!("apic"),
+        json!({"xpic": 2}),
+        json!({"xpic": 5}),
+        json!({"fmpm": 2}),
+        json!({"fmpm": 4}),
+        json!({"fmpm": 6}),
+        json!({"fmpm": 8}),
+    ]
+}
+
+/// The standard problem with a target of 2 mm, to 0.3 us: the shock, the release from the flyer's
+/// rear and both free surfaces.
+fn short(name: &str) -> Value {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs").join(name);
+    let text = std::fs::read(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+    let mut value: Value = serde_json::from_slice(&text).expect("a shipped scene");
+    value["domain"]["lower"] = json!([-0.0007]);
+    value["domain"]["upper"] = json!([0.0033]);
+    value["bodies"][1]["box"]["upper"] = json!([0.0026]);
+    value["time"]["end"] = json!(0.3e-6);
+    value["output"] = json!({});
+    value["watch"] = json!({"above_limit": "allow"});
+    value
+}
+
+/// The scene with a shape function and a transfer, and the options that they allow.
+fn scheme(base: &Value, shape: &str, transfer: &Value) -> Value {
+    let mut value = base.clone();
+    let method = value["method"].as_object_mut().expect("a method");
+    let fmpm = transfer.get("fmpm").is_some();
+    method.insert("shape".into(), json!(shape));
+    method.insert("transfer".into(), transfer.clone());
+    if method.get("stepping") == Some(&json!("midpoint")) {
+        let affine = transfer == "apic";
+        method.insert("filter_heat".into(), json!(!affine && transfer != "flip"));
+        method.insert("energy".into(), json!(if affine { "textbook" } else { "compatible" }));
+        if !fmpm {
+            method.remove("edge_mask");
+        }
+    }
+    value
+}
+
+/// Whether the scene runs to its end with the pressures of its impact.
+fn is_stable(value: &Value) -> bool {
+    let text = value.to_string();
+    let scene =
+        scene::parse(text.as_bytes(), "courant.json", &[]).unwrap_or_else(|e| panic!("{e}"));
+    let Ok(mut simulation) = Simulation::<_, 1>::new(&scene, &Serial, 1) else { return false };
+    let end = scene.scene.time.end;
+    while simulation.time() < end {
+        if simulation.advance(end).is_err() {
+            return false;
+        }
+    }
+    let (table, _) = simulation.gather().expect("one rank");
+    let pressure = table.column("pressure").expect("every table has it");
+    pressure.iter().all(|p| p.abs() < MOST_PRESSURE)
+}
+
+/// The greatest Courant number up to which all are stable; 0: none.
+fn limit(base: &Value, shape: &str, transfer: &Value) -> f64 {
+    let mut scene = scheme(base, shape, transfer);
+    let stable = |tenths: &u32| {
+        scene["time"]["courant"] = json!(f64::from(*tenths) / 10.0);
+        is_stable(&scene)
+    };
+    f64::from(TENTHS.take_while(stable).last().unwrap_or(0)) / 10.0
+}
+
+fn main() {
+    let bases = [short("flyer_defaults.json"), short("flyer.json")];
+    println!("const LIMITS: [Row; 6] = [");
+    for (shape, name) in SHAPES {
+        println!("    (\n        ShapeKind::{name},");
+        for base in &bases {
+            let row: Vec<String> =
+                transfers().iter().map(|t| format!("{:.1}", limit(base, shape, t))).collect();
+            println!("        [{}],", row.join(", "));
+        }
+        println!("    ),");
+    }
+    println!("];");
+    let mut open = short("flyer.json");
+    open["boundary"] = json!({"x_upper": "transmitting"});
+    open["domain"]["upper"] = json!([0.001]);
+    open["bodies"][1]["box"]["upper"] = json!([0.001]);
+    open.as_object_mut().expect("a scene").remove("reference");
+    for order in [2, 4, 6] {
+        let transfer = json!({"fmpm": order});
+        println!(
+            "transmitting, FMPM({order}): {:.1}",
+            limit(&open, "cpdi_bspline_quadratic", &transfer)
+        );
+    }
+}

@@ -1,0 +1,77 @@
+//! What is most likely behind an alarm, in words: a guess from the scene, and told as one.
+
+use super::Alarm;
+use crate::scene::{CheckedScene, Eos, Limiter, ShapeKind, Transfer};
+
+/// The likely cause of `alarm`, and what to try. `what` is what the particle tells of its state.
+pub fn likely_cause(scene: &CheckedScene, alarm: Alarm, what: &str) -> String {
+    let all = &scene.scene;
+    if what.contains("leaves the domain") {
+        return "the domain is too small for what moves in it; a larger domain, or a side \
+                \"outflow\""
+            .into();
+    }
+    let limit = scene.courant_limit();
+    if all.time.courant > limit {
+        return format!(
+            "time.courant = {} is above {limit}, up to which this scheme was measured to be stable",
+            all.time.courant
+        );
+    }
+    if pulled(scene, what) {
+        return "the material is pulled on more than it bears; an eos.tension_cutoff, failure, or \
+                contact where bodies are to part"
+            .into();
+    }
+    if all.artificial_viscosity.is_none() {
+        return "no artificial_viscosity: nothing widens a shock to what the cells resolve".into();
+    }
+    let few = scene
+        .bodies
+        .iter()
+        .any(|b| b.tiles.is_none() && cells_of(scene, b) > b.particles as f64 * 0.75);
+    let hats = matches!(all.method.shape, ShapeKind::Linear | ShapeKind::Gimp | ShapeKind::Cpdi);
+    let long = matches!(all.method.transfer, Transfer::Fmpm(m) if m > 2);
+    if few && hats && long {
+        return "one particle a cell leaves modes of a long filter on hat functions undamped; \
+                two or more a cell, or quadratic B-splines"
+            .into();
+    }
+    if matches!(all.method.shape, ShapeKind::Gimp) && long {
+        return "a long filter on particles of undeformed size; fewer particles a cell, \
+                method.edge_mask, or cpdi_bspline_quadratic"
+            .into();
+    }
+    match alarm {
+        Alarm::Crowding => "particles have clumped: the shape function does not hold them apart; \
+                            more cells, or a shape function of higher order"
+            .into(),
+        Alarm::Speed
+            if all
+                .artificial_viscosity
+                .is_some_and(|v| v.limiter == Some(Limiter::Christensen)) =>
+        {
+            "a node with little material, or a scheme that is not stable here; method.edge_mask, \
+             more artificial_viscosity, or a smaller time.courant"
+                .into()
+        }
+        _ => {
+            "the scheme is not stable here; a smaller time.courant, more artificial_viscosity, or \
+              a shape function of higher order"
+                .into()
+        }
+    }
+}
+
+/// Whether a fluid without a limit is in tension.
+fn pulled(scene: &CheckedScene, what: &str) -> bool {
+    let unlimited = |eos: &Eos| matches!(eos, Eos::MieGruneisen { tension_cutoff: None, .. });
+    let any = (0..scene.bodies.len()).any(|i| unlimited(&scene.material_of(i).eos));
+    any && (what.contains("pressure -") || what.contains("tension"))
+}
+
+/// Cells that a body fills.
+fn cells_of(scene: &CheckedScene, body: &crate::scene::CheckedBody) -> f64 {
+    let along = |a: usize| (body.upper[a] - body.lower[a]) / scene.cell_size[a];
+    (0..scene.dimension).map(along).product()
+}

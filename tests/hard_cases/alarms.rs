@@ -1,0 +1,174 @@
+//! Each alarm of the watch, set off; what it says, on any number of ranks; steps that are redone.
+
+use decomp::Serial;
+use decomp::comm::local::run_ranks;
+use flyer_mpm::simulation::{RunError, Simulation};
+use flyer_mpm::watch::Alarm;
+use serde_json::{Value, json};
+
+use crate::cases::tools::{checked, lump, metals, run, run_on, scene_of, short};
+use crate::scenes::with;
+
+/// The error that a scene ends with on so many ranks.
+fn error_on(value: &Value, ranks: usize) -> RunError {
+    let scene = checked(value).unwrap_or_else(|e| panic!("{e}"));
+    let ends = run_ranks(ranks, |comm| {
+        let mut simulation = Simulation::<_, 1>::new(&scene, comm, 1)?;
+        while simulation.time() < scene.scene.time.end {
+            simulation.advance(scene.scene.time.end)?;
+        }
+        Ok::<(), RunError>(())
+    });
+    let mut errors = ends.into_iter().map(|end| end.expect_err("it is to end"));
+    let first = errors.next().expect("rank 0");
+    assert!(errors.all(|e| e.is_known_to_all()));
+    first
+}
+
+/// The alarm that a scene sets off, which names particle, cell, place, time and cause alike on any
+/// number of ranks.
+#[track_caller]
+fn sets_off(value: &Value, expected: Alarm, words: &[&str]) {
+    let error = error_on(value, 1);
+    let RunError::Particle { alarm, .. } = &error else { panic!("{error}") };
+    let text = error.to_string();
+    assert_eq!(*alarm, expected, "{text}");
+    for word in ["particle ", "x = ", "cell [", "time ", "step ", "likely cause: "] {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+    for word in words {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+    for ranks in 2..=4 {
+        let value = with(value, &json!({"domain": {"patches": [7]}}));
+        assert_eq!(error_on(&value, ranks).to_string(), text, "{ranks} ranks");
+    }
+}
+
+fn watched(watch: Value) -> Value {
+    with(&short(1e-7), &json!({"watch": watch}))
+}
+
+/// Two halves of a body that fly apart.
+fn torn() -> Value {
+    let bodies = json!([
+        lump("left", "copper", [40.0, 70.0], -1500.0),
+        lump("right", "copper", [70.0, 100.0], 1500.0),
+    ]);
+    scene_of(140, 5e-8, &metals(), &bodies)
+}
+
+#[test]
+fn a_state_outside_of_its_model() {
+    sets_off(&torn(), Alarm::State, &["density ", "pressure -", "tension_cutoff"]);
+}
+
+#[test]
+fn a_density_past_the_limit_of_the_equation_of_state() {
+    // at this S a wave of the start cannot be compressed to a half of what the plates do
+    let mut value = short(1e-7);
+    value["bodies"][0]["velocity"] = json!([3000.0]);
+    value["artificial_viscosity"] = Value::Null;
+    value["method"]["pressure_relaxation"] = Value::Null;
+    value["materials"]["copper"]["eos"]["s"] = json!(40.0);
+    value.as_object_mut().unwrap().remove("artificial_viscosity");
+    value["method"].as_object_mut().unwrap().remove("pressure_relaxation");
+    value.as_object_mut().unwrap().remove("reference");
+    sets_off(&value, Alarm::State, &["compress", "no artificial_viscosity"]);
+}
+
+#[test]
+fn a_particle_that_leaves_the_domain() {
+    let mut value = short(1e-6);
+    value["domain"]["upper"] = json!([0.00262]);
+    sets_off(&value, Alarm::State, &["leaves the domain by its upper side", "a larger domain"]);
+}
+
+#[test]
+fn a_particle_that_is_too_fast() {
+    sets_off(&watched(json!({"speed": 0.1})), Alarm::Speed, &["faster than any wave"]);
+}
+
+#[test]
+fn a_step_that_was_too_long() {
+    sets_off(&watched(json!({"courant": 0.401})), Alarm::Courant, &["Courant number of 0.4"]);
+}
+
+#[test]
+fn a_time_step_that_collapses() {
+    sets_off(&watched(json!({"least_step": 1.0})), Alarm::TimeStep, &["has fallen to"]);
+}
+
+#[test]
+fn cells_that_are_crowded() {
+    sets_off(&watched(json!({"crowding": 1.0})), Alarm::Crowding, &["particles are in its cell"]);
+}
+
+#[test]
+fn energy_that_grows() {
+    let mut value = watched(json!({"above_limit": "allow", "energy_growth": 0.02}));
+    value["method"] = json!({
+        "shape": "bspline_quadratic", "transfer": "flip", "stepping": "leapfrog",
+        "stress_update": "first",
+    });
+    value["time"]["courant"] = json!(0.8);
+    value.as_object_mut().unwrap().remove("artificial_viscosity");
+    sets_off(&value, Alarm::Energy, &["total energy has grown by"]);
+}
+
+/// A step that turns out too long is made half as long, and the run goes on: the same bits on any
+/// ranks.
+#[test]
+fn a_step_is_redone() {
+    let bound = json!({"courant": 0.402, "on_alarm": "redo"});
+    let value = watched(bound);
+    let scene = checked(&value).unwrap();
+    let mut simulation = Simulation::<_, 1>::new(&scene, &Serial, 1).unwrap();
+    while simulation.time() < scene.scene.time.end {
+        simulation.advance(scene.scene.time.end).unwrap();
+    }
+    assert!(simulation.tally().redone_steps > 0);
+    let whole = run(&value).unwrap();
+    assert!(whole.energy_drift().abs() < 1e-12);
+    let plain = run(&short(1e-7)).unwrap();
+    assert!(whole.digest != plain.digest && whole.steps > plain.steps);
+    for ranks in 2..=4 {
+        let value = with(&value, &json!({"domain": {"patches": [9]}}));
+        let ends = run_ranks(ranks, |comm| run_on::<_, 1>(&value, comm).unwrap().digest);
+        assert_eq!(ends[0], whole.digest, "{ranks} ranks");
+    }
+}
+
+/// Where halves do not help the run ends after all.
+#[test]
+fn redoing_has_an_end() {
+    let value = with(&torn(), &json!({"watch": {"on_alarm": "redo", "most_redos": 3}}));
+    sets_off(&value, Alarm::State, &["tension_cutoff"]);
+}
+
+#[test]
+fn a_redo_that_nothing_calls_for_changes_no_bit() {
+    let plain = run(&short(1e-7)).unwrap().digest;
+    assert_eq!(run(&watched(json!({"on_alarm": "redo"}))).unwrap().digest, plain);
+}
+
+/// A Courant number above the limit is refused, reduced, or allowed, as the scene says.
+#[test]
+fn a_courant_number_above_the_limit() {
+    let mut value = short(1e-8);
+    value["method"] = json!({"shape": "cpdi", "transfer": "apic"});
+    value["time"]["courant"] = json!(1.0);
+    let told = checked(&value).unwrap_err();
+    for word in ["time.courant = 1", "measured to be stable", "watch.above_limit"] {
+        assert!(told.contains(word), "{told}");
+    }
+    value["watch"] = json!({"above_limit": "reduce"});
+    let reduced = checked(&value).unwrap();
+    assert_eq!(reduced.scene.time.courant, reduced.courant_limit());
+    assert!(reduced.scene.time.courant < 1.0);
+    assert!(reduced.warnings.iter().any(|w| w.contains("reduced to")));
+    value["watch"] = json!({"above_limit": "allow"});
+    let allowed = checked(&value).unwrap();
+    assert_eq!(allowed.scene.time.courant, 1.0);
+    assert!(allowed.warnings.iter().any(|w| w.contains("allows it")));
+}

@@ -1,0 +1,77 @@
+//! Runs of scenes drawn at random: how each ends, and whether that may be.
+
+use decomp::comm::local::run_ranks;
+use flyer_mpm::scene;
+use flyer_mpm::simulation::Simulation;
+use flyer_mpm::watch::keeps_energy;
+use serde_json::Value;
+
+/// Growth of energy that no run may end with [-]: of a scheme that keeps it, of one that does not,
+/// and of hat functions at particles' centres.
+const GROWTH: [f64; 3] = [1e-3, 0.5, 10.0];
+
+/// Steps beyond which a small scene hangs.
+const MOST_STEPS: u64 = 100_000;
+
+/// How a scene ends.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// Its check refuses it.
+    Refused(String),
+    /// The watch ends it.
+    Alarm(String),
+    /// It ends well: digest of the state.
+    Well(String),
+    /// It should not end as it does.
+    Wrong(String),
+}
+
+/// The end of a scene on so many ranks.
+pub fn verdict(value: &Value, ranks: usize) -> Verdict {
+    let scene = match scene::parse(value.to_string().as_bytes(), "random.json", &[]) {
+        Ok(scene) => scene,
+        Err(error) => return Verdict::Refused(error.to_string()),
+    };
+    let ends = run_ranks(ranks, |comm| {
+        let mut simulation = match Simulation::<_, 1>::new(&scene, comm, 1) {
+            Ok(simulation) => simulation,
+            Err(error) => return Verdict::Alarm(error.to_string()),
+        };
+        let start = simulation.totals();
+        let end = scene.scene.time.end;
+        while simulation.time() < end {
+            if let Err(error) = simulation.advance(end) {
+                let error = error.to_string();
+                let one_line = error.lines().count() == 1 && error.contains(char::is_alphabetic);
+                return if one_line { Verdict::Alarm(error) } else { Verdict::Wrong(error) };
+            }
+            if simulation.steps() > MOST_STEPS {
+                return Verdict::Wrong(format!("{MOST_STEPS} steps and no end"));
+            }
+        }
+        let (now, left, given) = (simulation.totals(), simulation.left(), simulation.given());
+        let Some((table, digest)) = simulation.gather() else {
+            return Verdict::Well(String::new());
+        };
+        let finite = table.columns.iter().all(|c| c.values.iter().all(|v| v.is_finite()));
+        if !finite {
+            return Verdict::Wrong("a value that is no number".into());
+        }
+        let piston = scene.grid_velocity::<1>()[0];
+        let walls = now.momentum[0] + left.momentum[0] - start.momentum[0];
+        let work = piston * walls + given.work - left.kinetic - left.internal;
+        let [e0, e1] = [start, now].map(|t| t.kinetic + t.internal);
+        let growth = e1 - e0 - work;
+        let bound = match keeps_energy(&scene.scene) {
+            true => GROWTH[0],
+            false => GROWTH[if value["method"]["shape"] == "linear" { 2 } else { 1 }],
+        };
+        if growth > bound * (e0.abs() + work.abs()) {
+            return Verdict::Wrong(format!(
+                "energy has grown from {e0:e} to {e1:e}, work {work:e}"
+            ));
+        }
+        Verdict::Well(digest)
+    });
+    ends.into_iter().next().expect("rank 0")
+}

@@ -1,0 +1,1 @@
+//! What the search has found, kept as it was found.
