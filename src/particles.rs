@@ -7,7 +7,7 @@ use decomp::{Block, ColumnSpec, IndexBox, Layout, Mirror};
 use nalgebra::SVector;
 
 use crate::burn::Front;
-use crate::scene::{BodyForce, CheckedScene, Eos, Side, Stepping, Transfer};
+use crate::scene::{BodyForce, CheckedScene, Eos, Frame, Side, Stepping, Transfer};
 use crate::shape::Extent;
 
 /// Where each column stands in a block. Vectors take D columns that follow each other, tensors
@@ -18,6 +18,11 @@ pub struct Columns {
     pub specs: Vec<ColumnSpec>,
     /// Position x [m], a vector.
     pub position: usize,
+    /// First place X [m], a vector, in the total-Lagrangian frame.
+    pub reference: Option<usize>,
+    /// Inverse of the deformation gradient that pushes gradients forward [-], a tensor, scratch, in
+    /// the total-Lagrangian frame.
+    pub push: Option<usize>,
     /// Velocity [m/s], a vector.
     pub velocity: usize,
     /// Mass [kg] (in 1-D per unit area, kg/m2; in a plane per unit depth, kg/m, or
@@ -222,6 +227,7 @@ impl Columns {
         let relaxed = method.pressure_relaxation.is_some();
         let touching = scene.velocity_fields() > 1;
         let transmits = scene.transmits();
+        let total = method.frame == Frame::TotalLagrangian;
         let same = |_: usize| Mirror::Same;
         let of_vector = |a: usize| Mirror::Negate(a);
         let of_tensor =
@@ -252,6 +258,14 @@ impl Columns {
             ["body_force_impulse", "body_force_impulse_x", "body_force_impulse_y"];
         const REFERENCE: [&str; 3] =
             ["reference_position", "reference_position_x", "reference_position_y"];
+        const FIRST: [&str; 3] =
+            ["material_position", "material_position_x", "material_position_y"];
+        const PUSH: [&str; 4] = [
+            "inverse_deformation_xx",
+            "inverse_deformation_xy",
+            "inverse_deformation_yx",
+            "inverse_deformation_yy",
+        ];
         const SIDE_GRADIENT: [&str; 4] =
             ["side_gradient_xx", "side_gradient_xy", "side_gradient_yx", "side_gradient_yy"];
         const DEVIATOR: [&str; 3] = ["deviator_xx", "deviator_yy", "deviator_xy"];
@@ -263,7 +277,7 @@ impl Columns {
         // where bodies touch is where their domains do, whatever the shape function looks at
         let deforms = seen || (plane && touching);
         let solids = scene.has_solids();
-        let strained = deforms || (plane && solids);
+        let strained = deforms || (plane && (solids || total));
         let position = vector(&["position", "position_x", "position_y"]);
         let velocity = vector(&["velocity", "velocity_x", "velocity_y"]);
         let fraction = vector(&["cell_fraction", "cell_fraction_x", "cell_fraction_y"]);
@@ -302,12 +316,16 @@ impl Columns {
         let is_length = !plane && (extent == Extent::Current || !touching);
         let volume = (filled && !is_length).then(|| add("cell_volume", "", true, false));
         let domain = add_all(domains, "", true, false, &of_domain);
+        let reference = total.then(|| add_all(vector(&FIRST), "m", false, true, &same));
+        let push = total
+            .then(|| add_all(if plane { &PUSH } else { &PUSH[..1] }, "", true, false, &of_tensor));
         let body_force = scene.scene.body_force.as_ref().map(|force| BodyForceColumns {
             force: add_all(vector(&FORCE), "N", true, false, &of_vector),
             work: add_all(&["body_force_work"], "J", false, true, &same),
             impulse: add_all(vector(&IMPULSE), "N s", false, true, &of_vector),
-            reference: matches!(force, BodyForce::Vortex(_))
-                .then(|| add_all(vector(&REFERENCE), "m", false, true, &same)),
+            reference: matches!(force, BodyForce::Vortex(_)).then(|| {
+                reference.unwrap_or_else(|| add_all(vector(&REFERENCE), "m", false, true, &same))
+            }),
         });
         let pressed = touching.then(|| add_all(&["contact_impulse"], "Pa s", true, true, &same));
         let side = transmits.then(|| SideColumns {
@@ -376,6 +394,8 @@ impl Columns {
             false => add_all(&HALF_EDGES, "", true, false, &of_edge),
         });
         Columns {
+            reference,
+            push,
             strength,
             failure,
             thermal,
@@ -492,7 +512,8 @@ pub fn fill<const D: usize>(
                 }
                 pressure = motion.pressure(place).unwrap_or(pressure);
             }
-            if let Some(reference) = columns.body_force.and_then(|c| c.reference) {
+            let first = columns.body_force.and_then(|c| c.reference).or(columns.reference);
+            if let Some(reference) = first {
                 (0..D).for_each(|a| row[reference + a] = centre[a]);
             }
             row[columns.mass] = density * volume;

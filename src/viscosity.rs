@@ -37,10 +37,10 @@ impl Viscosity {
     }
 
     /// q [Pa] of a particle with density [kg/m3], sound speed [m/s], divergence D [1/s] and
-    /// limiter phi.
+    /// limiter phi, where cells are `stretch` times as long as at the start.
     #[inline(always)]
-    pub fn q(&self, density: f64, sound_speed: f64, gradient: f64, phi: f64) -> f64 {
-        let jump = self.cell * (-gradient).max(0.0);
+    pub fn q(&self, density: f64, sound_speed: f64, gradient: f64, phi: f64, stretch: f64) -> f64 {
+        let jump = self.cell * stretch * (-gradient).max(0.0);
         let left = 1.0 - phi;
         let quadratic = if self.limits_both { left * self.quadratic } else { self.quadratic };
         density * jump * (self.linear * left * sound_speed + quadratic * jump)
@@ -48,8 +48,8 @@ impl Viscosity {
 
     /// The speed that q adds in the Courant bound, 2 (a1 c + a2 h |D|) [m/s].
     #[inline(always)]
-    pub fn speed(&self, sound_speed: f64, gradient: f64) -> f64 {
-        2.0 * (self.linear * sound_speed + self.quadratic * self.cell * gradient.abs())
+    pub fn speed(&self, sound_speed: f64, gradient: f64, stretch: f64) -> f64 {
+        2.0 * (self.linear * sound_speed + self.quadratic * self.cell * stretch * gradient.abs())
     }
 }
 
@@ -183,17 +183,17 @@ mod tests {
     #[test]
     fn q_is_the_documented_formula() {
         let v = Viscosity::new(&V, 1e-5);
-        let q = v.q(3000.0, 6000.0, -2e6, 0.25);
+        let q = v.q(3000.0, 6000.0, -2e6, 0.25, 1.0);
         let exact = 3000.0 * (0.1 * 0.75 * 6000.0 * 1e-5 * 2e6 + 1.25 * 1e-10 * 4e12);
         assert!((q / exact - 1.0).abs() < 1e-14);
-        assert_eq!(v.q(3000.0, 6000.0, 2e6, 0.0), 0.0, "none in expansion");
+        assert_eq!(v.q(3000.0, 6000.0, 2e6, 0.0, 1.0), 0.0, "none in expansion");
     }
 
     #[test]
     fn limiting_both_terms_takes_all_where_the_velocity_is_smooth() {
         let v = Viscosity::new(&ArtificialViscosity { limited: LimitedTerms::Both, ..V }, 1e-5);
-        assert_eq!(v.q(3000.0, 6000.0, -2e6, 1.0), 0.0);
-        assert!(Viscosity::new(&V, 1e-5).q(3000.0, 6000.0, -2e6, 1.0) > 0.0);
+        assert_eq!(v.q(3000.0, 6000.0, -2e6, 1.0, 1.0), 0.0);
+        assert!(Viscosity::new(&V, 1e-5).q(3000.0, 6000.0, -2e6, 1.0, 1.0) > 0.0);
     }
 
     fn line<'a>(velocity: &'a [f64], ones: &'a [f64]) -> Nodes<'a, 1> {

@@ -82,7 +82,11 @@ impl<const D: usize> Stepper<D> {
                 let flat = square.iter().any(|d| *d <= 1e-9);
                 for b in 0..D {
                     patch.block.columns[affine + D * a + b][r] = if flat {
-                        row.dot(row.gradient(b), star)
+                        let slopes = match self.total {
+                            true => patch.first_gradient::<K>(r, b),
+                            false => row.gradient(b),
+                        };
+                        row.dot(slopes, star)
                     } else if D == 1 {
                         moment(b) / square[b] * self.inverse_cell[b]
                     } else {
@@ -273,8 +277,12 @@ impl<const D: usize> Stepper<D> {
                 [(_, deformation), (_, gradient)] => {
                     let during = tensor_of(&row, mean);
                     let end = tensor_of(&row, |a, l| *row.line(star[a], l));
+                    if self.total {
+                        deform_linearly(deformation, gradient, r, &during, dt);
+                    } else {
+                        deform(deformation, r, &during, dt);
+                    }
                     put(gradient, 0, r, &end);
-                    deform(deformation, r, &during, dt);
                     (trace(&during), trace(&end))
                 }
                 _ => (
@@ -354,6 +362,27 @@ fn deform<const D: usize>(columns: &mut [Vec<f64>], row: usize, l: &[[f64; D]; D
         let (x, y) = (x + xx * x + xy * y, y + yx * x + yy * y);
         columns[k][row] = inverse * ((1.0 - yy) * x + xy * y);
         columns[k + 2][row] = inverse * (yx * x + (1.0 - xx) * y);
+    }
+}
+
+/// F + dt l F_h of a row, with F_h = (1 + dt/2 L) F that of the middle of the step, which the
+/// gradient `l` of the velocity has been pushed forward by, and L the gradient in `before`: F is that
+/// of the displacements on the grid.
+#[inline(always)]
+fn deform_linearly<const D: usize>(
+    columns: &mut [Vec<f64>],
+    before: &[Vec<f64>],
+    row: usize,
+    l: &[[f64; D]; D],
+    dt: f64,
+) {
+    let half = 0.5 * dt;
+    for k in [0, 1] {
+        let (x, y) = (columns[k][row], columns[k + 2][row]);
+        let at = |a: usize| half * (before[2 * a][row] * x + before[2 * a + 1][row] * y);
+        let (mid_x, mid_y) = (x + at(0), y + at(1));
+        columns[k][row] = x + dt * (l[0][0] * mid_x + l[0][D - 1] * mid_y);
+        columns[k + 2][row] = y + dt * (l[D - 1][0] * mid_x + l[D - 1][D - 1] * mid_y);
     }
 }
 

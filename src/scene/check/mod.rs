@@ -6,6 +6,7 @@ mod bodies;
 mod boundary;
 mod domain;
 mod effects;
+mod frame;
 mod front;
 mod impact;
 mod materials;
@@ -75,6 +76,7 @@ impl CheckedScene {
         };
         memory::check_counts(&checked)?;
         method::check_bodies(&checked)?;
+        frame::check(&checked)?;
         boundary::check_transmitting(&mut checked)?;
         boundary::check_loads(&mut checked)?;
         motion::check_body_force(&checked)?;
