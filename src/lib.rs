@@ -10,6 +10,7 @@ pub mod contact;
 pub mod effects;
 pub mod exact;
 pub mod figures;
+pub mod frame;
 pub mod geometry;
 pub mod grid;
 pub mod material;
