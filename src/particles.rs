@@ -7,7 +7,7 @@ use decomp::{Block, ColumnSpec, IndexBox, Layout, Mirror};
 use nalgebra::SVector;
 
 use crate::burn::Front;
-use crate::scene::{BodyForce, CheckedScene, Eos, Side, Stepping, Transfer};
+use crate::scene::{BodyForce, CheckedScene, Eos, Frame, Side, Stepping, Transfer};
 use crate::shape::Extent;
 
 /// Where each column stands in a block. Vectors take D columns that follow each other, tensors
@@ -18,6 +18,11 @@ pub struct Columns {
     pub specs: Vec<ColumnSpec>,
     /// Position x [m], a vector.
     pub position: usize,
+    /// First place X [m], a vector, in the total-Lagrangian frame.
+    pub reference: Option<usize>,
+    /// Inverse of the deformation gradient that pushes gradients forward [-], a tensor, scratch, in
+    /// the total-Lagrangian frame.
+    pub push: Option<usize>,
     /// Velocity [m/s], a vector.
     pub velocity: usize,
     /// Mass [kg] (in 1-D per unit area, kg/m2; in a plane per unit depth, kg/m, or
@@ -62,6 +67,14 @@ pub struct Columns {
     pub domain: usize,
     /// Volume [cells], scratch, with an edge mask or contact: on a line the deformed length itself.
     pub filled: Option<usize>,
+    /// Current volume [cells] that contact looks at, scratch: in the updated frame that of `filled`.
+    pub room: Option<usize>,
+    /// Displacement at the time of the forces [m], a vector, scratch, with contact in the
+    /// total-Lagrangian frame.
+    pub shift: Option<usize>,
+    /// Distance from the axis at the time of the forces [m], scratch, in the total-Lagrangian frame
+    /// about an axis; negative in images beyond it.
+    pub radius: Option<usize>,
     /// Half edges of the deformed parallelogram [cells], two vectors, scratch, where a plane's
     /// domains deform or touch: those of the shape function, if it looks at them.
     pub half_edges: Option<usize>,
@@ -229,6 +242,7 @@ impl Columns {
         let relaxed = method.pressure_relaxation.is_some();
         let touching = scene.velocity_fields() > 1;
         let transmits = scene.transmits();
+        let total = method.frame == Frame::TotalLagrangian;
         let same = |_: usize| Mirror::Same;
         let of_vector = |a: usize| Mirror::Negate(a);
         let of_tensor =
@@ -260,6 +274,15 @@ impl Columns {
         const INERTIA: [&str; 3] = ["frame_force", "frame_force_x", "frame_force_y"];
         const REFERENCE: [&str; 3] =
             ["reference_position", "reference_position_x", "reference_position_y"];
+        const FIRST: [&str; 3] =
+            ["material_position", "material_position_x", "material_position_y"];
+        const SHIFT: [&str; 3] = ["displacement", "displacement_x", "displacement_y"];
+        const PUSH: [&str; 4] = [
+            "inverse_deformation_xx",
+            "inverse_deformation_xy",
+            "inverse_deformation_yx",
+            "inverse_deformation_yy",
+        ];
         const SIDE_GRADIENT: [&str; 4] =
             ["side_gradient_xx", "side_gradient_xy", "side_gradient_yx", "side_gradient_yy"];
         const DEVIATOR: [&str; 3] = ["deviator_xx", "deviator_yy", "deviator_xy"];
@@ -269,9 +292,9 @@ impl Columns {
             ["stress_volume_xx", "stress_volume_yy", "stress_volume_xy", "stress_volume_zz"];
         let seen = plane && extent == Extent::Current;
         // where bodies touch is where their domains do, whatever the shape function looks at
-        let deforms = seen || (plane && touching);
+        let deforms = (seen && !total) || (plane && touching);
         let solids = scene.has_solids();
-        let strained = deforms || (plane && solids);
+        let strained = deforms || (plane && (solids || total));
         let position = vector(&["position", "position_x", "position_y"]);
         let velocity = vector(&["velocity", "velocity_x", "velocity_y"]);
         let fraction = vector(&["cell_fraction", "cell_fraction_x", "cell_fraction_y"]);
@@ -305,17 +328,26 @@ impl Columns {
         let jacobian_mid = midpoint.then(|| add("jacobian_mid", "", false, false));
         let pressure_mid = relaxed.then(|| add("pressure_mid", "Pa", true, false));
         let compliance = relaxed.then(|| add("compliance", "m3/Pa", true, false));
-        let filled = method.edge_mask.is_some() || touching;
+        let filled = method.edge_mask.is_some() || (touching && !total);
         // contact looks at what particles fill; of a mask on a line the length has to do
-        let is_length = !plane && (extent == Extent::Current || !touching);
+        let is_length = !plane && (extent == Extent::Current || !touching || total);
         let volume = (filled && !is_length).then(|| add("cell_volume", "", true, false));
+        let moves = total && touching;
+        let room = moves.then(|| add("current_volume", "", true, false));
+        let shift = moves.then(|| add_all(vector(&SHIFT), "m", true, false, &of_vector));
+        let radius = (total && scene.axisymmetric())
+            .then(|| add_all(&["radius"], "m", true, false, &|_| Mirror::Negate(0)));
         let domain = add_all(domains, "", true, false, &of_domain);
+        let reference = total.then(|| add_all(vector(&FIRST), "m", false, true, &same));
+        let push = total
+            .then(|| add_all(if plane { &PUSH } else { &PUSH[..1] }, "", true, false, &of_tensor));
         let body_force = scene.scene.body_force.as_ref().map(|force| BodyForceColumns {
             force: add_all(vector(&FORCE), "N", true, false, &of_vector),
             work: add_all(&["body_force_work"], "J", false, true, &same),
             impulse: add_all(vector(&IMPULSE), "N s", false, true, &of_vector),
-            reference: matches!(force, BodyForce::Vortex(_))
-                .then(|| add_all(vector(&REFERENCE), "m", false, true, &same)),
+            reference: matches!(force, BodyForce::Vortex(_)).then(|| {
+                reference.unwrap_or_else(|| add_all(vector(&REFERENCE), "m", false, true, &same))
+            }),
         });
         let frame_force =
             scene.accelerates().then(|| add_all(vector(&INERTIA), "N", true, false, &of_vector));
@@ -386,6 +418,8 @@ impl Columns {
             false => add_all(&HALF_EDGES, "", true, false, &of_edge),
         });
         Columns {
+            reference,
+            push,
             strength,
             failure,
             thermal,
@@ -396,6 +430,9 @@ impl Columns {
             frame_force,
             side,
             load,
+            room: room.or(volume).or(filled.then_some(domain)).filter(|_| touching),
+            shift,
+            radius,
             filled: volume.or(filled.then_some(domain)),
             half_edges,
             domain,
@@ -503,7 +540,8 @@ pub fn fill<const D: usize>(
                 }
                 pressure = motion.pressure(place).unwrap_or(pressure);
             }
-            if let Some(reference) = columns.body_force.and_then(|c| c.reference) {
+            let first = columns.body_force.and_then(|c| c.reference).or(columns.reference);
+            if let Some(reference) = first {
                 (0..D).for_each(|a| row[reference + a] = centre[a]);
             }
             row[columns.mass] = density * volume;

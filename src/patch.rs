@@ -8,37 +8,8 @@ use crate::clock::Watch;
 use crate::contact::ContactNodes;
 use crate::grid::Band;
 use crate::shape::{Domain, Shape, Weights};
-use crate::transfer::{Row, lines};
-
-/// The weights of every row of a patch, ghosts too, on windows of `width` nodes along each
-/// direction.
-#[derive(Clone, Debug, Default)]
-pub struct Stencils {
-    /// Nodes along one direction.
-    pub width: usize,
-    /// From a line of nodes to the next in the patch's arrays.
-    pub stride: usize,
-    /// First node of each row, in the patch's arrays.
-    pub first: Vec<u32>,
-    /// Values, `width`^D a row.
-    pub values: Vec<f64>,
-    /// Gradients [1/m], `width`^D a row for each direction.
-    pub gradients: Vec<f64>,
-}
-
-impl Stencils {
-    /// The weights of `row`.
-    #[inline(always)]
-    pub fn row<const K: usize, const D: usize>(&self, row: usize) -> Row<'_, K, D> {
-        let nodes = const { K * lines(K, D) };
-        Row {
-            first: self.first[row] as usize,
-            stride: self.stride,
-            values: self.values[row * nodes..(row + 1) * nodes].as_chunks().0,
-            gradients: self.gradients[row * nodes * D..(row + 1) * nodes * D].as_chunks().0,
-        }
-    }
-}
+use crate::stencils::Stencils;
+use crate::transfer::lines;
 
 /// What a patch tells of its step.
 #[derive(Clone, Debug, Default)]
@@ -247,6 +218,7 @@ impl<const D: usize> Patch<D> {
     ) {
         self.nodes = NodeArrays::layered(layout, index, depth, fields, layers);
         self.deeper = deeper;
+        self.stencils.forget();
         // what it held for its sleep is gone
         self.rest = Rest::default();
     }
@@ -333,13 +305,18 @@ impl<const D: usize> Patch<D> {
                 gy.iter_mut().for_each(|g| *g *= inverse_cell[D - 1]);
             }
         }
+        self.find_runs(layer, K as i64, least, most);
+    }
+
+    /// Finds the runs of rows in canonical order, and the nodes that they reach.
+    fn find_runs(&mut self, layer: Option<usize>, width: i64, least: [i32; D], most: [i32; D]) {
         self.block.runs(&mut self.runs);
         self.active.clear();
         self.active_lines.clear();
         self.span_lines.clear();
         match layer {
-            None => self.find_active(0, K as i64, least, most),
-            Some(column) => self.separate(column, K as i64),
+            None => self.find_active(0, width, least, most),
+            Some(column) => self.separate(column, width),
         }
     }
 

@@ -42,10 +42,10 @@ impl Viscosity {
     }
 
     /// q [Pa] of a particle with density [kg/m3], sound speed [m/s], divergence D [1/s] and
-    /// limiter phi.
+    /// limiter phi, where cells are `stretch` times as long as at the start.
     #[inline(always)]
-    pub fn q(&self, density: f64, sound_speed: f64, gradient: f64, phi: f64) -> f64 {
-        let jump = self.cell * (-gradient).max(0.0);
+    pub fn q(&self, density: f64, sound_speed: f64, gradient: f64, phi: f64, stretch: f64) -> f64 {
+        let jump = self.cell * stretch * (-gradient).max(0.0);
         let left = 1.0 - phi;
         let quadratic = self.quadratic(sound_speed, jump);
         let quadratic = if self.limits_both { left * quadratic } else { quadratic };
@@ -54,8 +54,8 @@ impl Viscosity {
 
     /// The speed that q adds in the Courant bound, 2 (a1 c + a2 h |D|) [m/s].
     #[inline(always)]
-    pub fn speed(&self, sound_speed: f64, gradient: f64) -> f64 {
-        let jump = self.cell * gradient.abs();
+    pub fn speed(&self, sound_speed: f64, gradient: f64, stretch: f64) -> f64 {
+        let jump = self.cell * stretch * gradient.abs();
         2.0 * (self.linear * sound_speed + self.quadratic(sound_speed, jump) * jump)
     }
 
@@ -154,12 +154,14 @@ pub fn christensen<const D: usize>(nodes: &Nodes<'_, D>, node: usize) -> f64 {
 const TOUCHES: f64 = 1e-3;
 
 /// phi = clamp(2 min_i D_i/D_p, 0, 1) over the nodes i that a particle touches, D_i the
-/// divergence of the nodal velocity by central differences: a form for any dimension.
+/// divergence of the nodal velocity by central differences: a form for any dimension. Differences
+/// of the first places are pushed forward with the inverse of the particle's F, `push`.
 #[inline(always)]
 pub fn nodal<const K: usize, const D: usize>(
     nodes: &Nodes<'_, D>,
     row: &Row<'_, K, D>,
     gradient: f64,
+    push: Option<[[f64; D]; D]>,
 ) -> f64 {
     if gradient == 0.0 {
         return 0.0;
@@ -172,12 +174,19 @@ pub fn nodal<const K: usize, const D: usize>(
             if value > least_weight {
                 let i = row.first + line * row.stride + k;
                 let mut divergence = 0.0;
-                for axis in 0..D {
-                    let step = nodes.steps[axis];
+                let mut add = |axis: usize, along: usize, share: f64| {
+                    let step = nodes.steps[along];
                     let ends = [i - step, i + step].map(|i| nodes.velocity(axis, i));
                     if let [Some(before), Some(after)] = ends {
-                        divergence += (after - before) * (0.5 * nodes.inverse_cell[axis]);
+                        divergence += (after - before) * (share * nodes.inverse_cell[along]);
                     }
+                };
+                match &push {
+                    None => (0..D).for_each(|axis| add(axis, axis, 0.5)),
+                    Some(push) => (0..D * D).for_each(|k| {
+                        let (axis, along) = (k / D, k % D);
+                        add(axis, along, 0.5 * push[along][axis]);
+                    }),
                 }
                 least = least.min(divergence / gradient);
             }
@@ -201,30 +210,31 @@ mod tests {
     #[test]
     fn q_is_the_documented_formula() {
         let v = Viscosity::new(&V, 1e-5);
-        let q = v.q(3000.0, 6000.0, -2e6, 0.25);
+        let q = v.q(3000.0, 6000.0, -2e6, 0.25, 1.0);
         let exact = 3000.0 * (0.1 * 0.75 * 6000.0 * 1e-5 * 2e6 + 1.25 * 1e-10 * 4e12);
         assert!((q / exact - 1.0).abs() < 1e-14);
-        assert_eq!(v.q(3000.0, 6000.0, 2e6, 0.0), 0.0, "none in expansion");
+        assert_eq!(v.q(3000.0, 6000.0, 2e6, 0.0, 1.0), 0.0, "none in expansion");
     }
 
     #[test]
     fn limiting_both_terms_takes_all_where_the_velocity_is_smooth() {
         let v = Viscosity::new(&ArtificialViscosity { limited: LimitedTerms::Both, ..V }, 1e-5);
-        assert_eq!(v.q(3000.0, 6000.0, -2e6, 1.0), 0.0);
-        assert!(Viscosity::new(&V, 1e-5).q(3000.0, 6000.0, -2e6, 1.0) > 0.0);
+        assert_eq!(v.q(3000.0, 6000.0, -2e6, 1.0, 1.0), 0.0);
+        assert!(Viscosity::new(&V, 1e-5).q(3000.0, 6000.0, -2e6, 1.0, 1.0) > 0.0);
     }
 
     #[test]
     fn the_quadratic_coefficient_grows_up_to_its_limit() {
         let growth = Some(ViscosityGrowth { rate: 6.0, most: 2.0 });
         let v = Viscosity::new(&ArtificialViscosity { linear: 0.0, growth, ..V }, 1e-5);
-        let coefficient = |d: f64, c: f64| v.q(1000.0, c, d, 0.0) / (1000.0 * (1e-5 * d).powi(2));
+        let coefficient =
+            |d: f64, c: f64| v.q(1000.0, c, d, 0.0, 1.0) / (1000.0 * (1e-5 * d).powi(2));
         assert!((coefficient(-1e7, 5000.0) - (1.25 + 6.0 * 0.02)).abs() < 1e-12);
         assert!((coefficient(-1e8, 5000.0) - 2.0).abs() < 1e-12);
         assert!((coefficient(-1e7, 0.0) - 2.0).abs() < 1e-12, "without sound");
-        assert_eq!(v.q(1000.0, 0.0, 0.0, 0.0), 0.0);
+        assert_eq!(v.q(1000.0, 0.0, 0.0, 0.0, 1.0), 0.0);
         let speed = 2.0 * 100.0 * (1.25 + 6.0 * 0.02);
-        assert!((v.speed(5000.0, -1e7) - speed).abs() < 1e-9);
+        assert!((v.speed(5000.0, -1e7, 1.0) - speed).abs() < 1e-9);
     }
 
     fn line<'a>(velocity: &'a [f64], ones: &'a [f64]) -> Nodes<'a, 1> {
@@ -246,8 +256,8 @@ mod tests {
         assert_eq!(christensen(&line(&jump, &ones), 2), 0.0);
         let row = |first, values| Row::<'_, 3, 1> { first, stride: 6, values, gradients: &[] };
         let (even, peaked) = ([[0.5, 0.5, 0.0]], [[0.2, 0.6, 0.2]]);
-        assert_eq!(nodal(&line(&linear, &ones), &row(2, &even), -1.0), 1.0);
-        assert_eq!(nodal(&line(&jump, &ones), &row(1, &peaked), -1.0), 0.0);
+        assert_eq!(nodal(&line(&linear, &ones), &row(2, &even), -1.0, None), 1.0);
+        assert_eq!(nodal(&line(&jump, &ones), &row(1, &peaked), -1.0, None), 0.0);
     }
 
     #[test]

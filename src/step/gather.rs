@@ -82,7 +82,11 @@ impl<const D: usize> Stepper<D> {
                 let flat = square.iter().any(|d| *d <= 1e-9);
                 for b in 0..D {
                     patch.block.columns[affine + D * a + b][r] = if flat {
-                        row.dot(row.gradient(b), star)
+                        let slopes = match self.total {
+                            true => patch.stencils.first_gradient::<K, D>(r, b),
+                            false => row.gradient(b),
+                        };
+                        row.dot(slopes, star)
                     } else if D == 1 {
                         moment(b) / square[b] * self.inverse_cell[b]
                     } else {
@@ -168,11 +172,8 @@ impl<const D: usize> Stepper<D> {
         let (count, layers) = (patch.nodes.nodes.count(), patch.nodes.layers);
         let first = &patch.stencils.first;
         let layer = |r: usize| if layers > 1 { first[r] as usize / count * count } else { 0 };
-        let [phi, gradient] = patch
-            .block
-            .columns
-            .get_disjoint_mut([column, self.columns.gradient])
-            .expect("columns differ");
+        let mut limiters = std::mem::take(&mut patch.block.columns[column]);
+        let (phi, gradient) = (&mut limiters, &patch.block.columns[self.columns.gradient]);
         for r in 0..n {
             // without compression there is no viscosity to limit
             phi[r] = if gradient[r] >= 0.0 {
@@ -188,11 +189,12 @@ impl<const D: usize> Stepper<D> {
                     }
                     Limiter::Nodal => {
                         let row = patch.stencils.row::<K, D>(r);
-                        viscosity::nodal(&nodes, &row, gradient[r])
+                        viscosity::nodal(&nodes, &row, gradient[r], self.push_of(patch, r))
                     }
                 }
             };
         }
+        patch.block.columns[column] = limiters;
     }
 
     /// All that the end of a mid-point step brings the own rows: volume and energy from the
@@ -273,8 +275,12 @@ impl<const D: usize> Stepper<D> {
                 [(_, deformation), (_, gradient)] => {
                     let during = tensor_of(&row, mean);
                     let end = tensor_of(&row, |a, l| *row.line(star[a], l));
+                    if self.total {
+                        deform_linearly(deformation, gradient, r, &during, dt);
+                    } else {
+                        deform(deformation, r, &during, dt);
+                    }
                     put(gradient, 0, r, &end);
-                    deform(deformation, r, &during, dt);
                     (trace(&during), trace(&end))
                 }
                 _ => (
@@ -354,6 +360,27 @@ fn deform<const D: usize>(columns: &mut [Vec<f64>], row: usize, l: &[[f64; D]; D
         let (x, y) = (x + xx * x + xy * y, y + yx * x + yy * y);
         columns[k][row] = inverse * ((1.0 - yy) * x + xy * y);
         columns[k + 2][row] = inverse * (yx * x + (1.0 - xx) * y);
+    }
+}
+
+/// F + dt l F_h of a row, with F_h = (1 + dt/2 L) F that of the middle of the step, which the
+/// gradient `l` of the velocity has been pushed forward by, and L the gradient in `before`: F is that
+/// of the displacements on the grid.
+#[inline(always)]
+fn deform_linearly<const D: usize>(
+    columns: &mut [Vec<f64>],
+    before: &[Vec<f64>],
+    row: usize,
+    l: &[[f64; D]; D],
+    dt: f64,
+) {
+    let half = 0.5 * dt;
+    for k in [0, 1] {
+        let (x, y) = (columns[k][row], columns[k + 2][row]);
+        let at = |a: usize| half * (before[2 * a][row] * x + before[2 * a + 1][row] * y);
+        let (mid_x, mid_y) = (x + at(0), y + at(1));
+        columns[k][row] = x + dt * (l[0][0] * mid_x + l[0][D - 1] * mid_y);
+        columns[k + 2][row] = y + dt * (l[D - 1][0] * mid_x + l[D - 1][D - 1] * mid_y);
     }
 }
 

@@ -25,6 +25,7 @@ impl<const D: usize> Stepper<D> {
         world.each("start", |patch| {
             patch.block.drop_ghosts();
             self.current_stress(patch);
+            self.find_push(patch, 0.0, self.columns.jacobian);
             self.find_pressed(patch, self.columns.jacobian, dt);
             self.find_body_force(patch, time);
             self.find_inertia(patch, time, dt);
@@ -71,7 +72,7 @@ impl<const D: usize> Stepper<D> {
         if self.stress_update == StressUpdate::ModifiedLast {
             world.exchange_rows(|nodal| {
                 nodal.each("scatter again", |patch| {
-                    self.scatter_rows(patch, false);
+                    self.scatter_rows(patch, false, true);
                     self.divide_by_mass(patch);
                     self.start_series(patch);
                 });

@@ -34,6 +34,7 @@ impl<const D: usize> Stepper<D> {
         world.each("start", |patch| {
             patch.block.drop_ghosts();
             self.half_step_volume(patch, dt);
+            self.find_push(patch, 0.5 * dt, mid);
             spend(Viscosity, patch, |patch| self.find_viscosity(patch, mid));
             if self.columns.strength.is_some() {
                 spend(Strength, patch, |patch| self.shear_to_middle(patch, 0.5 * dt, mid));
@@ -117,6 +118,7 @@ impl<const D: usize> Stepper<D> {
         let jacobian = self.columns.jacobian;
         world.each("start", |patch| {
             self.current_stress(patch);
+            self.find_push(patch, 0.0, jacobian);
             self.locate(patch, 0.0, jacobian);
             // ghosts carry every declared column
             for (spec, column) in self.columns.specs.iter().zip(&mut patch.block.columns) {

@@ -9,6 +9,7 @@ mod burn;
 mod conduction;
 mod contact;
 mod failure;
+mod frame;
 pub mod gather;
 mod inertia;
 pub mod leapfrog;
@@ -86,6 +87,8 @@ pub struct Stepper<const D: usize> {
     /// How it burns, one a body, if any does.
     burns: Option<Vec<Option<burn::Burns>>>,
     shape: ShapeKind,
+    /// Whether the shape functions are taken at the particles' first places.
+    total: bool,
     /// Edges of a cell [m] and their inverse.
     cell: [f64; D],
     inverse_cell: [f64; D],
@@ -308,6 +311,7 @@ impl<const D: usize> Stepper<D> {
             models,
             flows,
             shape: method.shape,
+            total: method.frame == crate::scene::Frame::TotalLagrangian,
             cell,
             inverse_cell: cell.map(|h| 1.0 / h),
             edge,
@@ -367,10 +371,7 @@ impl<const D: usize> Stepper<D> {
         fn nodes<S: Shape, const K: usize, const D: usize>(length: f64) -> usize {
             S::nodes(length)
         }
-        let length = match self.extent() {
-            Extent::Current => length * STRETCH,
-            _ => length,
-        };
+        let length = if self.domains_deform() { length * STRETCH } else { length };
         let nodes = with_shape!(self.shape, 4usize, nodes(length));
         (nodes <= most_nodes(D)).then_some(Reach { nodes, products: self.products() })
     }
@@ -443,13 +444,19 @@ impl<const D: usize> Stepper<D> {
         Extent::of(self.shape)
     }
 
+    /// Whether the shape function looks at a domain that deforms.
+    fn domains_deform(&self) -> bool {
+        self.extent() == Extent::Current && !self.total
+    }
+
     /// Whether step number `step` (from 1) relaxes the pressure.
     fn relaxes(&self, step: u64) -> Option<f64> {
         self.relaxation.filter(|r| step.is_multiple_of(r.interval as u64)).map(|r| r.rate)
     }
 
-    /// Weights of all rows of a patch, as wide as its longest row needs.
-    fn find_weights(&self, patch: &mut Patch<D>) {
+    /// Weights of all rows of a patch, as wide as its longest row needs. Tells whether they have
+    /// been found anew, not kept.
+    fn find_weights(&self, patch: &mut Patch<D>) -> bool {
         fn find<S: Shape, const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
             let layer = (s.layers > 1).then_some(s.columns.body);
             patch.find_weights::<S, K>(s.columns.fraction, s.columns.domain, s.inverse_cell, layer)
@@ -457,8 +464,21 @@ impl<const D: usize> Stepper<D> {
         fn nodes<S: Shape, const K: usize, const D: usize>(length: f64) -> usize {
             S::nodes(length)
         }
-        let width = with_shape!(self.shape, 4usize, nodes(self.longest(&patch.block)));
-        with_shape!(self.shape, width, find(patch, self));
+        fn push<const K: usize, const D: usize>(patch: &mut Patch<D>, push: usize) {
+            patch.stencils.push_gradients::<K, D>(&patch.block, push);
+        }
+        let anew = !(self.total && patch.stencils.are_kept(&patch.block));
+        if anew {
+            let width = with_shape!(self.shape, 4usize, nodes(self.longest(&patch.block)));
+            with_shape!(self.shape, width, find(patch, self));
+        }
+        if let Some(inverse) = self.columns.push {
+            if anew {
+                patch.stencils.keep(&patch.block);
+            }
+            with_width!(patch.stencils.width, push(patch, inverse));
+        }
+        anew
     }
 
     /// The greatest extent along a direction of the domains of all rows of a patch [cells].

@@ -29,31 +29,42 @@ pub(super) fn bodies(column: &[f64]) -> impl Iterator<Item = (usize, Range<usize
 
 impl<const D: usize> Stepper<D> {
     /// Finds the cell of each own row at x + `ahead` v, its place in it, and its domain for the
-    /// shape function at volume ratio `jacobian` (a column). Rows beyond an open side leave.
+    /// shape function at volume ratio `jacobian` (a column). Rows beyond an open side leave. In the
+    /// total-Lagrangian frame both are those of the start.
     pub(super) fn locate(&self, patch: &mut Patch<D>, ahead: f64, jacobian: usize) {
         patch.block.drop_ghosts();
         let c = &self.columns;
         let n = patch.block.own();
         let mut outside = false;
+        let (position, drift) = match c.reference {
+            Some(first) => (first, 0.0),
+            None => (c.position, ahead),
+        };
         for a in 0..D {
             let cells = &mut patch.block.cells;
             let [x, v, fraction] = patch
                 .block
                 .columns
-                .get_disjoint_mut([c.position + a, c.velocity + a, c.fraction + a])
+                .get_disjoint_mut([position + a, c.velocity + a, c.fraction + a])
                 .expect("columns differ");
             fraction.resize(n, 0.0);
             let (lower, inverse, count) =
                 (self.lower[a], self.inverse_cell[a], self.cells[a] as f64);
             for r in 0..n {
-                let place = (x[r] + ahead * v[r] - lower) * inverse;
+                let place = (x[r] + drift * v[r] - lower) * inverse;
                 let cell = floor(place);
                 fraction[r] = place - cell;
                 outside |= !(cell >= 0.0 && cell < count);
                 cells[r][a] = cell as i32;
             }
         }
-        self.find_domains(patch, ahead, jacobian);
+        if self.total {
+            self.find_first_domains(patch);
+            self.find_shift(patch, ahead, jacobian);
+            self.fault_beyond_walls(patch);
+        } else {
+            self.find_domains(patch, ahead, jacobian);
+        }
         if outside {
             self.leave(patch);
         }
@@ -123,8 +134,7 @@ impl<const D: usize> Stepper<D> {
         for k in 0..4 {
             patch.block.columns[half_edges + k].resize(n, 0.0);
         }
-        let limit =
-            if self.extent() == Extent::Current { patch.reach_length } else { f64::INFINITY };
+        let limit = if self.domains_deform() { patch.reach_length } else { f64::INFINITY };
         let mut torn = None;
         let columns = &mut patch.block.columns;
         for r in 0..n {
@@ -264,7 +274,7 @@ impl<const D: usize> Stepper<D> {
         for r in 0..j.len() {
             j_mid[r] = j[r] * (1.0 + 0.5 * dt * d[r]);
         }
-        if D > 1 || self.extent() != Extent::Current {
+        if D > 1 || !self.domains_deform() {
             return;
         }
         let volume0 = &patch.block.columns[c.volume0];
@@ -283,19 +293,15 @@ impl<const D: usize> Stepper<D> {
         let column = |k: usize| &patch.block.columns[k][..out.len()];
         let (mass, volume0, j) = (column(c.mass), column(c.volume0), column(jacobian));
         let (speed, d) = (column(c.sound_speed), column(c.gradient));
-        match c.limiter.map(column) {
-            Some(phi) => {
-                for r in 0..out.len() {
-                    let density = mass[r] / (volume0[r] * j[r]);
-                    out[r] = viscosity.q(density, speed[r], d[r], phi[r]);
-                }
-            }
-            None => {
-                for r in 0..out.len() {
-                    let density = mass[r] / (volume0[r] * j[r]);
-                    out[r] = viscosity.q(density, speed[r], d[r], 0.0);
-                }
-            }
+        let phi = c.limiter.map(column);
+        let of = |r: usize, stretch: f64| {
+            let density = mass[r] / (volume0[r] * j[r]);
+            viscosity.q(density, speed[r], d[r], phi.map_or(0.0, |phi| phi[r]), stretch)
+        };
+        match (self.total, D) {
+            (false, _) => (0..out.len()).for_each(|r| out[r] = of(r, 1.0)),
+            (true, 1) => (0..out.len()).for_each(|r| out[r] = of(r, j[r])),
+            (true, _) => (0..out.len()).for_each(|r| out[r] = of(r, self.stretch(patch, r))),
         }
         patch.block.columns[q] = out;
     }
@@ -415,6 +421,7 @@ impl<const D: usize> Stepper<D> {
         for r in 0..before.len() {
             j[r] = before[r] * (1.0 + dt * d[r]);
         }
+        self.find_push(patch, dt, c.jacobian);
         spend(Effect::Viscosity, patch, |patch| self.find_viscosity(patch, c.jacobian));
         let mut pressure = std::mem::take(&mut patch.block.columns[c.pressure]);
         let mut energy = std::mem::take(&mut patch.block.columns[c.energy]);
@@ -491,8 +498,17 @@ impl<const D: usize> Stepper<D> {
         // the most cells that a signal or particle passes along a direction in a second [1/s]
         let mut fastest = 0.0f64;
         let mut lost = false;
-        for r in 0..speed.len() {
-            let added = self.viscosity.map_or(0.0, |q| q.speed(speed[r], d[r]));
+        // how much shorter than at the start a cell that moves with the material is
+        let mut shortest = 1.0f64;
+        let stretched = if self.total { speed.len() } else { 0 };
+        for r in 0..stretched {
+            let (rate, shorter) = self.signal_rate(patch, r, speed[r]);
+            fastest = fastest.max(rate);
+            shortest = shortest.max(shorter);
+            lost |= rate.is_nan() || !velocity.iter().all(|v| v[r].is_finite());
+        }
+        for r in stretched..speed.len() {
+            let added = self.viscosity.map_or(0.0, |q| q.speed(speed[r], d[r], 1.0));
             for a in 0..D {
                 let total = speed[r] + velocity[a][r].abs() + added;
                 let rate = if D == 1 { total } else { total * self.inverse_cell[a] };
@@ -504,11 +520,12 @@ impl<const D: usize> Stepper<D> {
         let edge = if D == 1 { self.cell[0] } else { 1.0 };
         patch.told.time_step = if fastest > 0.0 { edge / fastest } else { f64::INFINITY };
         if let Some(conduction) = &self.conduction {
-            patch.told.time_step = patch.told.time_step.min(conduction.step);
+            patch.told.time_step =
+                patch.told.time_step.min(conduction.step / (shortest * shortest));
         }
         patch.told.length = self.longest_row(&patch.block).1;
         let limit = self.longest_ever();
-        if found.is_none() && patch.told.length > limit && self.extent() == Extent::Current {
+        if found.is_none() && patch.told.length > limit && self.domains_deform() {
             let (row, cells) = self.longest_row(&patch.block);
             found = Some((
                 row,
@@ -563,7 +580,11 @@ impl<const D: usize> Stepper<D> {
         let c = &self.columns;
         let column = |k: usize| &block.columns[k][..block.own()];
         let (volume0, j) = (column(c.volume0), column(c.jacobian));
-        let length = |r: usize| match (self.extent(), c.half_lengths, c.deformation) {
+        let extent = match self.extent() {
+            Extent::Current if self.total => Extent::Undeformed,
+            extent => extent,
+        };
+        let length = |r: usize| match (extent, c.half_lengths, c.deformation) {
             (Extent::Current, None, _) => volume0[r] * j[r] * self.inverse_cell[0],
             (_, None, _) if D == 1 => volume0[r] * self.inverse_cell[0],
             (Extent::Current, Some(half), Some(f)) => {
@@ -586,7 +607,7 @@ impl<const D: usize> Stepper<D> {
     }
 
     /// Notes a fault, if it comes before those that are known.
-    fn fault(&self, patch: &mut Patch<D>, phase: Phase, row: usize, what: String) {
+    pub(super) fn fault(&self, patch: &mut Patch<D>, phase: Phase, row: usize, what: String) {
         let block = &patch.block;
         let fault = Fault {
             phase,

@@ -11,8 +11,8 @@ impl<const D: usize> Stepper<D> {
     /// All sums of a patch at new places of its rows, with or without the force, and the lumped
     /// velocity and acceleration from them in a step of `dt`, with the forces at `time` [s].
     pub(super) fn scatter(&self, patch: &mut Patch<D>, force: bool, time: f64, dt: f64) {
-        self.find_weights(patch);
-        self.scatter_rows(patch, force);
+        let anew = self.find_weights(patch);
+        self.scatter_rows(patch, force, anew);
         if force {
             self.push_at_sides(patch, time, dt);
         }
@@ -35,8 +35,17 @@ impl<const D: usize> Stepper<D> {
     /// Mass and momentum of the nodes, the mass matrix and the filled volume where the scheme
     /// needs them, and with `force` the internal force f_i = sum_p (p + q) V G_i (pressure is
     /// positive in compression, so it pushes along the gradient): all in one pass over the rows.
-    pub(super) fn scatter_rows(&self, patch: &mut Patch<D>, force: bool) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, force: bool) {
+    /// Where the weights are not `anew`, mass, matrix and volume are those of the last step.
+    pub(super) fn scatter_rows(&self, patch: &mut Patch<D>, force: bool, anew: bool) {
+        fn go<const K: usize, const D: usize>(
+            patch: &mut Patch<D>,
+            s: &Stepper<D>,
+            force: bool,
+            anew: bool,
+        ) {
+            if !anew && s.columns.affine.is_none() && s.contact.is_none() {
+                return s.scatter_moving::<K>(patch, force);
+            }
             match (s.needs_matrix(), s.columns.affine) {
                 (true, None) => s.scatter_width::<K, true, false>(patch, force),
                 (false, None) => s.scatter_width::<K, false, false>(patch, force),
@@ -46,7 +55,7 @@ impl<const D: usize> Stepper<D> {
         }
         self.turn_images(patch);
         let tensor = self.tensor_stress();
-        with_width!(patch.stencils.width, go(patch, self, force && !tensor));
+        with_width!(patch.stencils.width, go(patch, self, force && !tensor, anew));
         if force && tensor {
             self.scatter_stress(patch);
         }
@@ -164,6 +173,9 @@ impl<const D: usize> Stepper<D> {
     /// pushes its image inward.
     #[inline(always)]
     pub(super) fn radius(&self, patch: &Patch<D>, row: usize) -> f64 {
+        if let Some(radius) = self.columns.radius {
+            return patch.block.columns[radius][row];
+        }
         let fraction = patch.block.columns[self.columns.fraction][row];
         let cell = patch.block.cells[row][0];
         let (lower, edge) = (self.lower[0], self.cell[0]);

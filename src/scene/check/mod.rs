@@ -7,6 +7,7 @@ mod boundary;
 mod courant;
 mod domain;
 mod effects;
+mod frame;
 mod front;
 mod impact;
 mod materials;
@@ -77,6 +78,7 @@ impl CheckedScene {
         };
         memory::check_counts(&checked)?;
         method::check_bodies(&checked)?;
+        frame::check(&checked)?;
         boundary::check_transmitting(&mut checked)?;
         boundary::check_loads(&mut checked)?;
         courant::check(&mut checked)?;

@@ -9,6 +9,9 @@ use serde::{Deserialize, Serialize};
 pub struct Method {
     /// Shape function.
     pub shape: ShapeKind,
+    /// Where shape functions see the particles.
+    #[serde(default, skip_serializing_if = "Frame::is_default")]
+    pub frame: Frame,
     /// Transfer of velocity from the grid to the particles.
     pub transfer: Transfer,
     /// When stress is updated within a leapfrog step.
@@ -62,6 +65,25 @@ pub enum ShapeKind {
     BsplineCubic,
     /// Quadratic B-splines averaged over the deforming particle.
     CpdiBsplineQuadratic,
+}
+
+/// Frames in which the grid's functions are taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Frame {
+    /// At the particles' current places: material moves through the grid.
+    #[default]
+    UpdatedLagrangian,
+    /// At the particles' first places: the grid moves with the material, so that no particle
+    /// changes cells, and gradients are pushed forward by the deformation (de Vaucorbeil, Nguyen
+    /// & Hutchinson 2020). For bodies that touch at the start.
+    TotalLagrangian,
+}
+
+impl Frame {
+    fn is_default(&self) -> bool {
+        *self == Frame::default()
+    }
 }
 
 /// Transfers of velocity.
