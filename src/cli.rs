@@ -197,6 +197,19 @@ pub enum Command {
     /// Predict the time of a step and of the whole run on more ranks, and where that stops being
     /// worth it, by the constants of `flyer-mpm calibrate`; no run.
     Predict(PredictArgs),
+    /// Sweep a scene over any of its keys, and show what accuracy costs: one table and pictures.
+    /// What an earlier call has run is not run again.
+    Study {
+        /// The study: a JSON file such as those in inputs/studies/.
+        #[arg(value_name = "STUDY.json")]
+        study: PathBuf,
+        /// Folder of the results [default: output/studies/<name of the study>/].
+        #[arg(long, value_name = "DIR")]
+        output: Option<PathBuf>,
+        /// Say nothing but errors.
+        #[arg(long)]
+        quiet: bool,
+    },
     /// Print the JSON schema of a scene.
     Schema,
     /// Compare the results of two runs: norms, and the first particle and column that differ.

@@ -27,6 +27,7 @@ pub mod shape;
 pub mod simulation;
 pub mod step;
 pub mod strength;
+pub mod study;
 pub mod threads;
 pub mod transfer;
 pub mod viscosity;

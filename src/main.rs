@@ -7,6 +7,7 @@ mod cli;
 mod describe;
 mod forecast;
 mod sheet;
+mod sweep;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -315,6 +316,9 @@ fn side_command(command: Command) -> Outcome<()> {
         Command::Predict(args) => {
             say(&forecast::predict(&args)?);
             Ok(())
+        }
+        Command::Study { study, output, quiet } => {
+            sweep::study(&study, output.as_deref(), quiet).map(|text| say(&text))
         }
         Command::Calibrate { .. } => unreachable!("all ranks calibrate"),
         Command::Compare { first, second } => {

@@ -337,6 +337,7 @@ where
         steps: simulation.steps(),
         wall_seconds: options.started.elapsed().as_secs_f64(),
         loop_wall_seconds,
+        loop_cpu_seconds: loop_cpu,
         cpu_seconds: user_cpu_seconds() + others_cpu,
         particle_steps_per_cpu_second: particle_steps / loop_cpu,
         phase_seconds: decomposition.seconds(),

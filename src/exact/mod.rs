@@ -43,7 +43,7 @@ pub use plane::{
 pub use profile::{History, HistoryPoint, Landmarks, Path, PathKind, Point, Profile};
 pub use release::Release;
 pub use riemann::{GasState, Riemann};
-pub use score::{Errors, Sample, cell_average, interface_errors, score, score_density};
+pub use score::{Errors, Sample, WaveErrors, cell_average, interface_errors, score, score_density};
 pub use wall::{WallImpact, WallMaterial};
 
 /// Why an exact solution could not be had.

@@ -39,6 +39,9 @@ pub struct Summary {
     pub wall_seconds: f64,
     /// Wall time of the time loop \[s\].
     pub loop_wall_seconds: f64,
+    /// User CPU time of the time loop, all ranks \[s\].
+    #[serde(default)]
+    pub loop_cpu_seconds: f64,
     /// User CPU time of all ranks \[s\].
     pub cpu_seconds: f64,
     /// Particles times steps, those left out at rest among them, over the CPU time of the time
@@ -288,6 +291,7 @@ pub(super) mod tests {
             steps: 2612,
             wall_seconds: 1.25,
             loop_wall_seconds: 0.75,
+            loop_cpu_seconds: 1.0,
             cpu_seconds: 2.0,
             particle_steps_per_cpu_second: 5.9e6,
             phase_seconds: [("compute".to_owned(), 0.5)].into(),
