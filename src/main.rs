@@ -6,6 +6,7 @@
 mod cli;
 mod describe;
 mod forecast;
+mod planner;
 mod sheet;
 mod sweep;
 
@@ -320,6 +321,7 @@ fn side_command(command: Command) -> Outcome<()> {
         Command::Study { study, output, quiet } => {
             sweep::study(&study, output.as_deref(), quiet).map(|text| say(&text))
         }
+        Command::Plan(args) => planner::plan(&args).map(|text| say(&text)),
         Command::Calibrate { .. } => unreachable!("all ranks calibrate"),
         Command::Compare { first, second } => {
             let comparison = compare(&first, &second).map_err(bad)?;

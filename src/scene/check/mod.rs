@@ -6,6 +6,7 @@ mod bodies;
 mod boundary;
 mod domain;
 mod effects;
+mod estimate;
 mod front;
 mod impact;
 mod materials;
@@ -81,6 +82,7 @@ impl CheckedScene {
         output::check_tracers(&checked)?;
         output::check_checkpoints(&checked.scene)?;
         reference::check(&mut checked)?;
+        estimate::check(&checked)?;
         if dimension == 1 {
             impact::check(&mut checked)?;
         }

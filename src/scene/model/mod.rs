@@ -5,6 +5,7 @@
 
 mod contact;
 mod effects;
+mod estimate;
 mod load;
 mod matter;
 mod method;
@@ -19,6 +20,7 @@ use serde::{Deserialize, Serialize};
 
 pub use contact::*;
 pub use effects::*;
+pub use estimate::*;
 pub use load::*;
 pub use matter::*;
 pub use method::*;
@@ -69,6 +71,9 @@ pub struct Scene {
     /// The exact solution that the run is held against.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reference: Option<Reference>,
+    /// A statement of the run's own errors; absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error_estimate: Option<ErrorEstimate>,
 }
 
 /// The domain, a box of cells cut into patches.
