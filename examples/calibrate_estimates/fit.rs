@@ -1,5 +1,5 @@
-//! Fits a law by least absolute deviations of the logarithms, and the factor that makes its
-//! intervals hold the truth.
+//! Fits a law by quantile regression of the logarithms (Koenker & Bassett 1978), and the factor that
+//! makes its intervals hold the truth.
 
 use flyer_mpm::estimate::law::{LEAST, Law};
 use nalgebra::{DMatrix, DVector};
@@ -9,7 +9,7 @@ use crate::estimates::Told;
 /// Errors below this are rounding \[in the evidence's unit\].
 const FLOOR: f64 = 1e-8;
 /// Rounds of reweighting.
-const ROUNDS: usize = 60;
+const ROUNDS: usize = 200;
 /// Folds by which the factor is found: none of its ratios is of a case that the weights saw.
 const FOLDS: usize = 10;
 
@@ -27,13 +27,14 @@ pub fn law(told: &[Told], evidence: &[&str], share: f64) -> Option<Law> {
             let of = usable.iter().enumerate().filter(|(k, _)| (k % FOLDS == fold) == own);
             of.map(|(_, t)| *t).collect()
         };
-        let law = with_factor(weights(&pick(false), evidence), evidence, 1.0, 0);
+        let law = with_factor(weights(&pick(false), evidence, share), evidence, 1.0, 0);
         ratios.extend(pick(true).iter().filter_map(|t| Some(size(t) / law.size(&t.evidence)?)));
     }
     ratios.sort_by(f64::total_cmp);
     let at = (share * ratios.len() as f64).ceil() as usize;
-    let factor = ratios[at.min(ratios.len() - 1)];
-    Some(with_factor(weights(&usable, evidence), evidence, factor, usable.len()))
+    // never tighter than the regression itself
+    let factor = ratios[at.min(ratios.len() - 1)].max(1.0);
+    Some(with_factor(weights(&usable, evidence, share), evidence, factor, usable.len()))
 }
 
 fn with_factor(weights: Vec<f64>, evidence: &[&str], factor: f64, cases: usize) -> Law {
@@ -46,8 +47,8 @@ fn size(told: &Told) -> f64 {
     (told.error / told.unit).max(FLOOR)
 }
 
-/// Weights of least absolute deviations, by least squares reweighted.
-fn weights(told: &[&Told], evidence: &[&str]) -> Vec<f64> {
+/// Weights of the quantile `share`, by least squares reweighted and damped.
+fn weights(told: &[&Told], evidence: &[&str], share: f64) -> Vec<f64> {
     let rows = told.len();
     let value = |row: usize, column: usize| match column {
         0 => 1.0,
@@ -55,21 +56,22 @@ fn weights(told: &[&Told], evidence: &[&str]) -> Vec<f64> {
     };
     let a = DMatrix::from_fn(rows, evidence.len() + 1, value);
     let b = DVector::from_fn(rows, |row, _| size(told[row]).ln());
-    let mut w = DVector::from_element(rows, 1.0);
-    let mut x = DVector::zeros(evidence.len() + 1);
-    for _ in 0..ROUNDS {
+    let mut x: DVector<f64> = DVector::zeros(evidence.len() + 1);
+    for round in 0..ROUNDS {
+        let rest = &b - &a * &x;
+        // from the middle to the quantile
+        let share = if round < ROUNDS / 4 { 0.5 } else { share };
+        let side = |r: f64| if r > 0.0 { share } else { 1.0 - share };
+        let w = rest.map(|r| if round == 0 { 1.0 } else { side(r) / r.abs().max(1e-2) });
         let scaled = DMatrix::from_fn(rows, a.ncols(), |r, c| w[r] * a[(r, c)]);
         let mut normal = a.transpose() * &scaled;
         // a breath of ridge, so that evidence that goes together does no harm
         for k in 1..normal.nrows() {
             normal[(k, k)] += 1e-3 * rows as f64;
         }
-        let right = scaled.transpose() * &b;
-        if let Some(solved) = normal.lu().solve(&right) {
-            x = solved;
+        if let Some(solved) = normal.lu().solve(&(scaled.transpose() * &b)) {
+            x = if round == 0 { solved } else { 0.5 * (x + solved) };
         }
-        let rest = &b - &a * &x;
-        w = rest.map(|r| 1.0 / r.abs().max(1e-2));
     }
     x.iter().copied().collect()
 }

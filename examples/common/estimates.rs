@@ -28,6 +28,8 @@ pub struct Told {
     pub half_width: Option<f64>,
     /// What sizes are fractions of.
     pub unit: f64,
+    /// The error in cells, of L1 and arrivals; over the plateau's length in cells, of its pressure.
+    pub in_cells: f64,
 }
 
 /// Runs `count` impacts on `threads` threads; what each quantity was told by each of them. Impacts
@@ -89,22 +91,29 @@ fn once(impact: &RandomImpact, folder: &Path) -> Result<Summary, String> {
 fn told(name: &str, summary: &Summary) -> Vec<(usize, Told)> {
     let mut all = Vec::new();
     let Some(estimate) = &summary.error_estimate else { return all };
-    let one = |evidence: &Evidence, error: f64, half_width: Option<f64>, unit: f64| Told {
+    let one = |evidence: &Evidence, error, half_width, unit, in_cells| Told {
         name: name.to_string(),
         evidence: evidence.clone(),
         error,
         half_width,
         unit,
+        in_cells,
     };
-    for profile in &estimate.profiles {
+    let h = summary.scene.pointer("/domain/cell_size").and_then(|v| v.as_f64());
+    let h = h.unwrap_or(f64::NAN);
+    for (profile, scored) in estimate.profiles.iter().zip(&summary.profiles) {
         if let Some(bounded) = &profile.plateau_pressure
             && let Some(exact) = bounded.exact
         {
             let error = (bounded.value - exact).abs();
-            all.push((0, one(&bounded.evidence, error, bounded.half_width, bounded.value)));
+            let cells = bounded.evidence.get("cells").copied().unwrap_or(f64::NAN);
+            let relative = error / bounded.value * cells;
+            let width = bounded.half_width;
+            all.push((0, one(&bounded.evidence, error, width, bounded.value, relative)));
         }
         if let Some(exact) = profile.l1.exact {
-            all.push((2, one(&profile.l1.evidence, exact, profile.l1.half_width, 1.0)));
+            let cells = scored.error("e1_cells").unwrap_or(f64::NAN);
+            all.push((2, one(&profile.l1.evidence, exact, profile.l1.half_width, 1.0, cells)));
         }
     }
     let courant = summary.scene.pointer("/time/courant").and_then(|v| v.as_f64()).unwrap_or(0.4);
@@ -115,7 +124,9 @@ fn told(name: &str, summary: &Summary) -> Vec<(usize, Told)> {
             && let Some(exact) = bounded.exact
         {
             let error = (bounded.value - exact).abs();
-            all.push((1, one(&bounded.evidence, error, bounded.half_width, cell_time)));
+            let cells = error * arrival.at / exact / h;
+            let width = bounded.half_width;
+            all.push((1, one(&bounded.evidence, error, width, cell_time, cells)));
         }
     }
     all

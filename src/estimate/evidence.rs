@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::Line;
-use super::plateau::{self, Plateau};
+use super::plateau::Plateau;
 
 /// Evidence by name.
 pub type Evidence = BTreeMap<String, f64>;
@@ -13,12 +13,15 @@ fn named(pairs: impl IntoIterator<Item = (String, f64)>) -> Evidence {
     pairs.into_iter().filter(|(_, v)| v.is_finite()).collect()
 }
 
-/// Of the plateau's pressure, as fractions of it: `difference_2`, `difference_4` from the
-/// companions, `noise`, and its length in `cells`.
+/// Of the plateau's pressure, as fractions of it: `difference_2`, `difference_4`, from the
+/// companions' mean over the same places, `noise`, and its length in `cells`.
 pub fn of_plateau(found: &Plateau, others: &[(f64, &Line)], h: f64) -> Evidence {
     let theirs = others.iter().filter_map(|(factor, line)| {
-        let other = plateau::find(line, factor * h)?;
-        Some((format!("difference_{factor}"), (other.pressure / found.pressure - 1.0).abs()))
+        let reach = found.reach.max(factor * h);
+        let within = line.iter().filter(|q| (q.0 - found.centre).abs() <= reach);
+        let (count, sum) = within.fold((0.0, 0.0), |(n, sum), q| (n + 1.0, sum + q.1));
+        let other: f64 = if count > 0.0 { sum / count } else { at(line, found.centre)? };
+        Some((format!("difference_{factor}"), (other / found.pressure - 1.0).abs()))
     });
     named(
         [("noise".to_string(), found.noise), ("cells".into(), found.cells)]

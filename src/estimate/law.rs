@@ -1,7 +1,8 @@
 //! How errors follow from evidence: laws fitted on random impacts.
 //!
-//! |error| is taken as exp(w0 + sum of w_k ln(evidence_k)) times a factor that is so large that
-//! the interval holds the truth; the weights are those of least absolute deviations of ln|error|.
+//! The half-width is exp(w0 + sum of w_k ln(evidence_k)) times a factor. The weights are those of a
+//! high quantile of ln|error| (Koenker & Bassett 1978), so that what is risky is given more room,
+//! and the factor makes the intervals hold the share that is wanted of cases left out of the fit.
 //! `scripts/calibrate_estimates.sh` fits them anew and writes [`DATA`]'s file.
 
 use serde::{Deserialize, Serialize};

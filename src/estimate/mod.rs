@@ -51,7 +51,7 @@ pub struct Bounded {
 pub struct ProfileEstimate {
     /// Time \[s\].
     pub time: f64,
-    /// Pressure of the plateau behind the shock \[Pa\]; none where there is none over eight cells.
+    /// Pressure of the plateau behind the shock \[Pa\]; none where there is none over 20 cells.
     pub plateau_pressure: Option<Bounded>,
     /// Relative L1 of the pressure: its value is 0, what no error would be, and its half-width the
     /// bound \[-\].

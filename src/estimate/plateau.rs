@@ -11,10 +11,14 @@ pub struct Plateau {
     pub noise: f64,
     /// Its length \[cells\].
     pub cells: f64,
+    /// Middle of it \[m\].
+    pub centre: f64,
+    /// How far the part that is averaged reaches from there \[m\].
+    pub reach: f64,
 }
 
-/// A plateau shorter than this is none \[cells\].
-const LEAST: usize = 8;
+/// A plateau shorter than this is none to tell errors of: there the fan's foot is in it \[cells\].
+const LEAST: usize = 20;
 /// Cells behind the shock's half height that belong to its rise and overshoot.
 const BEHIND: usize = 3;
 /// Cells over which the level behind the shock is taken, and compared on the way back.
@@ -46,8 +50,13 @@ fn from_ahead(mut cells: Line) -> Line {
 }
 
 /// The plateau behind the shock of a body's profile on cells of size `h` \[m\]; none where the
-/// pressure is not level over eight cells.
+/// pressure is not level over 20 cells.
 pub fn find(line: &Line, h: f64) -> Option<Plateau> {
+    find_over(line, h, LEAST)
+}
+
+/// The same over at least so many cells.
+pub fn find_over(line: &Line, h: f64, least: usize) -> Option<Plateau> {
     let ahead = from_ahead(cells(line, h));
     let peak = ahead.iter().map(|c| c.1).fold(0.0, f64::max);
     let half = ahead.iter().position(|c| c.1 >= 0.5 * peak)?;
@@ -65,7 +74,7 @@ pub fn find(line: &Line, h: f64) -> Option<Plateau> {
         last += 1;
     }
     let (from, to) = (half, last + WINDOW - 1);
-    if to - from < LEAST {
+    if to - from < least {
         return None;
     }
     let (a, b) = (ahead[from].0, ahead[to].0);
@@ -74,7 +83,8 @@ pub fn find(line: &Line, h: f64) -> Option<Plateau> {
         line.iter().copied().filter(|q| (q.0 - centre).abs() <= reach).collect();
     let (pressure, rest) = about_line(&inside)?;
     let noise = rest / pressure.abs();
-    Some(Plateau { pressure, noise, cells: (to - from) as f64 }).filter(|p| p.pressure > 0.0)
+    let found = Plateau { pressure, noise, cells: (to - from) as f64, centre, reach };
+    Some(found).filter(|p| p.pressure > 0.0)
 }
 
 /// Mean, and rms about the straight line of least squares.

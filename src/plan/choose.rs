@@ -184,7 +184,7 @@ impl Candidate {
 }
 
 /// Cells that a plateau or a way must have.
-const LEAST_PLATEAU: f64 = 12.0;
+const LEAST_PLATEAU: f64 = 26.0;
 
 /// Plans a scene.
 pub fn plan(scene: &Value, file: &str, wish: &Wish, data: &Data) -> Result<Plan, PlanError> {
@@ -253,7 +253,7 @@ pub fn plan(scene: &Value, file: &str, wish: &Wish, data: &Data) -> Result<Plan,
     let mut nearest: Option<(&Candidate, f64, f64)> = None;
     for candidate in &candidates {
         let Some(h) = candidate.cells_for(wish.quantity, &scale, wish.error) else {
-            return Err(fail(format!("{file}: no plateau over {LEAST_PLATEAU} cells of a pilot")));
+            return Err(fail(format!("{file}: no plateau in the body that a pilot sees")));
         };
         let floor = least * candidate.scheme.particles_per_cell as f64;
         let wall = candidate.wall(h, wish.ranks, extra);

@@ -10,6 +10,9 @@ use crate::run::user_cpu_seconds;
 use crate::scene::{self, CheckedScene};
 use crate::simulation::Simulation;
 
+/// A pilot's plateau has at least so many cells.
+const LEAST: usize = 6;
+
 /// What a pilot has shown.
 #[derive(Clone, Debug)]
 pub struct Pilot {
@@ -89,17 +92,19 @@ impl Pilot {
         let line = &self.profiles[k];
         let area: f64 =
             line.windows(2).map(|w| 0.5 * (w[0].1.abs() + w[1].1.abs()) * (w[1].0 - w[0].0)).sum();
-        let level = plateau::find(line, self.cell_size).map(|p| p.pressure).or_else(|| {
-            let mut all: Vec<f64> = line.iter().map(|q| q.1).collect();
-            all.sort_by(|a, b| b.total_cmp(a));
-            let strong = all.iter().filter(|p| **p > 0.1 * all[0]).count();
-            all.get(strong / 10).copied()
-        })?;
+        let level =
+            plateau::find_over(line, self.cell_size, LEAST).map(|p| p.pressure).or_else(|| {
+                let mut all: Vec<f64> = line.iter().map(|q| q.1).collect();
+                all.sort_by(|a, b| b.total_cmp(a));
+                let strong = all.iter().filter(|p| **p > 0.1 * all[0]).count();
+                all.get(strong / 10).copied()
+            })?;
         (level > 0.0 && area > 0.0).then_some(area / level)
     }
 
     /// Length of the plateau of profile `k` \[m\].
     pub fn plateau(&self, k: usize) -> Option<f64> {
-        plateau::find(&self.profiles[k], self.cell_size).map(|p| p.cells * self.cell_size)
+        plateau::find_over(&self.profiles[k], self.cell_size, LEAST)
+            .map(|p| p.cells * self.cell_size)
     }
 }
