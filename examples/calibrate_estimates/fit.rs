@@ -32,8 +32,7 @@ pub fn law(told: &[Told], evidence: &[&str], share: f64) -> Option<Law> {
     }
     ratios.sort_by(f64::total_cmp);
     let at = (share * ratios.len() as f64).ceil() as usize;
-    // never tighter than the regression itself
-    let factor = ratios[at.min(ratios.len() - 1)].max(1.0);
+    let factor = ratios[at.min(ratios.len() - 1)];
     Some(with_factor(weights(&usable, evidence, share), evidence, factor, usable.len()))
 }
 

@@ -73,6 +73,7 @@ impl Table {
     }
 
     /// A run that failed, with what it said; nothing for one that did not.
+    #[allow(dead_code)] // likewise
     pub fn take<T>(&mut self, figure: &str, result: Result<T, String>) -> Option<T> {
         match result {
             Ok(value) => Some(value),

@@ -14,7 +14,8 @@ fn named(pairs: impl IntoIterator<Item = (String, f64)>) -> Evidence {
 }
 
 /// Of the plateau's pressure, as fractions of it: `difference_2`, `difference_4`, from the
-/// companions' mean over the same places, `noise`, and its length in `cells`.
+/// companions' mean over the same places, `noise`, its length in `cells`, and how level it is:
+/// `halves`, `wide`.
 pub fn of_plateau(found: &Plateau, others: &[(f64, &Line)], h: f64) -> Evidence {
     let theirs = others.iter().filter_map(|(factor, line)| {
         let reach = found.reach.max(factor * h);
@@ -23,11 +24,13 @@ pub fn of_plateau(found: &Plateau, others: &[(f64, &Line)], h: f64) -> Evidence 
         let other: f64 = if count > 0.0 { sum / count } else { at(line, found.centre)? };
         Some((format!("difference_{factor}"), (other / found.pressure - 1.0).abs()))
     });
-    named(
-        [("noise".to_string(), found.noise), ("cells".into(), found.cells)]
-            .into_iter()
-            .chain(theirs),
-    )
+    let own = [
+        ("noise", found.noise),
+        ("cells", found.cells),
+        ("halves", found.halves),
+        ("wide", found.wide),
+    ];
+    named(own.map(|(name, value)| (name.to_string(), value)).into_iter().chain(theirs))
 }
 
 /// Of a profile: `difference_2`, `difference_4`, the relative L1 distance to the companions'.

@@ -11,6 +11,10 @@ pub struct Plateau {
     pub noise: f64,
     /// Its length \[cells\].
     pub cells: f64,
+    /// What the means of the averaged part's two halves differ by, over the pressure \[-\].
+    pub halves: f64,
+    /// What the mean over its middle 80 % differs by, over the pressure \[-\].
+    pub wide: f64,
     /// Middle of it \[m\].
     pub centre: f64,
     /// How far the part that is averaged reaches from there \[m\].
@@ -83,7 +87,16 @@ pub fn find_over(line: &Line, h: f64, least: usize) -> Option<Plateau> {
         line.iter().copied().filter(|q| (q.0 - centre).abs() <= reach).collect();
     let (pressure, rest) = about_line(&inside)?;
     let noise = rest / pressure.abs();
-    let found = Plateau { pressure, noise, cells: (to - from) as f64, centre, reach };
+    let mean_of = |keep: &dyn Fn(f64) -> bool| {
+        let kept = line.iter().filter(|q| keep(q.0 - centre));
+        let (count, sum) = kept.fold((0.0, 0.0), |(n, sum), q| (n + 1.0, sum + q.1));
+        sum / count
+    };
+    let left = mean_of(&|d| d < 0.0 && d >= -reach);
+    let right = mean_of(&|d| d >= 0.0 && d <= reach);
+    let halves = (left - right).abs() / pressure.abs();
+    let wide = (mean_of(&|d| d.abs() <= 2.0 * reach) / pressure - 1.0).abs();
+    let found = Plateau { pressure, noise, cells: (to - from) as f64, centre, reach, halves, wide };
     Some(found).filter(|p| p.pressure > 0.0)
 }
 

@@ -19,7 +19,7 @@ pub fn markdown(choices: &Choices, rows: &[Row]) -> String {
                     .iter()
                     .map(|(name, value)| match name.as_str() {
                         "scheme" => value.clone(),
-                        _ => format!("{} {value}", name.rsplit('.').next().unwrap_or(name)),
+                        _ => setting(name, value),
                     })
                     .collect();
                 (labels.join(", "), shown(error), format!("{cost:.3}"))
@@ -29,6 +29,16 @@ pub fn markdown(choices: &Choices, rows: &[Row]) -> String {
         text += &format!("| {:.2} {unit} | {choice} | {error} | {cost} |\n", wanted * factor);
     }
     text
+}
+
+/// A swept key and its value, in the unit that curves show it in.
+fn setting(name: &str, value: &str) -> String {
+    let (label, unit, factor) = quantity(name);
+    let shown = match value.parse::<f64>() {
+        Ok(number) => format!("{}", (number * factor * 1e9).round() / 1e9),
+        Err(_) => value.to_string(),
+    };
+    format!("{} {shown} {unit}", label.to_lowercase()).trim_end().to_string()
 }
 
 /// The cheapest row whose error is at most the one wanted, its error and its cost \[s\].

@@ -124,16 +124,20 @@ fn with_peers(
     error: &str,
     factor: f64,
 ) -> Panel {
+    let mut shown = false;
     for (k, peer) in study.peers.iter().enumerate() {
         let at = |pair: &&[f64; 2]| (pair[0] - picture.time).abs() <= 1e-9 * picture.time;
         let Some(value) = peer.errors.get(error).and_then(|e| e.iter().find(at)) else { continue };
         let color = Color::BLACK.mix(Color::palette(k), 0.55);
         let style = Style { mark: Some(9.0), ..Style::marks(color) }.hollow();
         let points = Points::new([peer.seconds], [value[1].abs() * factor]);
-        let name = format!("{} (elsewhere, like machine)", peer.name);
-        panel = panel.series(Series::new(name, points, style));
+        panel = panel.series(Series::new(&peer.name, points, style));
+        shown = true;
     }
-    panel
+    match shown {
+        true => panel.note("bold rings: other codes, measured elsewhere on a like machine"),
+        false => panel,
+    }
 }
 
 #[cfg(test)]

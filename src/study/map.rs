@@ -29,7 +29,9 @@ pub fn figure(picture: &MapPicture, rows: &[Row]) -> Figure {
         let (label, unit, _) = quantity(key);
         Axis::linear(label, unit).tight()
     };
-    let most = picture.most.map(|m| format!(", {:.3} {unit} and more alike", m * factor));
+    let most = picture
+        .most
+        .map(|m| format!(", {} {unit} and more alike", (m * factor * 1e6).round() / 1e6));
     TileMap {
         title: picture.title.clone(),
         x: axis(&picture.x).ticks(&xs[..]),

@@ -1,7 +1,8 @@
 //! A number over two others as tiles of colour.
 
+use super::color::Color;
 use super::color_map::ColorMap;
-use super::figure::{Axis, Figure, Label, Panel};
+use super::figure::{Axis, Figure, Panel, Points, Series, Style};
 use super::wave_diagram::Row;
 
 /// A table of values over two coordinates, a tile each.
@@ -43,11 +44,11 @@ impl TileMap {
         }
         let mut panel = Panel::new(ranged(self.y.clone(), &y_ends));
         panel.map = Some(ColorMap { label: self.label.clone(), unit: self.unit.clone(), rows });
-        panel.labels = self
-            .marks
-            .iter()
-            .map(|(text, x, y)| Label { text: text.clone(), x: *x, y: *y })
-            .collect();
+        let looks = [Color::WHITE, Color(0xff, 0x6e, 0x6e), Color(0xff, 0xc8, 0x5a)];
+        for ((text, x, y), color) in self.marks.iter().zip(looks.iter().cycle()) {
+            let look = Style { mark: Some(10.0), outlined: true, ..Style::marks(*color) };
+            panel.series.push(Series::new(text, Points::new([*x], [*y]), look));
+        }
         Figure::new(&self.title, ranged(self.x.clone(), &x_ends)).panel(panel)
     }
 }
