@@ -8,9 +8,12 @@
 //!
 //! a1 the linear and a2 the quadratic coefficient (von Neumann & Richtmyer 1950; Landshoff
 //! 1955; the form of Uintah, whose document calls them the first and the second). phi, between
-//! 0 and 1, is what a limiter takes away where the velocity is smooth.
+//! 0 and 1, is what a limiter takes away where the velocity is smooth. What keeps weak shocks
+//! sharp lets strong ones ring, so a2 may grow with the jump over a cell, as a share of the sound
+//! speed, up to a limit: a2 = min(most, a2 + rate h |D|/c). Kuropatenko's (1967) viscosity grows
+//! likewise, from the material's Hugoniot.
 
-use crate::scene::{ArtificialViscosity, LimitedTerms, Limiter};
+use crate::scene::{ArtificialViscosity, LimitedTerms, Limiter, ViscosityGrowth};
 use crate::transfer::Row;
 
 /// The viscosity of a scene on its grid.
@@ -18,6 +21,7 @@ use crate::transfer::Row;
 pub struct Viscosity {
     linear: f64,
     quadratic: f64,
+    growth: Option<ViscosityGrowth>,
     cell: f64,
     limits_both: bool,
     /// The limiter, if there is one.
@@ -30,6 +34,7 @@ impl Viscosity {
         Viscosity {
             linear: scene.linear,
             quadratic: scene.quadratic,
+            growth: scene.growth,
             cell,
             limits_both: scene.limited == LimitedTerms::Both,
             limiter: scene.limiter,
@@ -42,14 +47,26 @@ impl Viscosity {
     pub fn q(&self, density: f64, sound_speed: f64, gradient: f64, phi: f64) -> f64 {
         let jump = self.cell * (-gradient).max(0.0);
         let left = 1.0 - phi;
-        let quadratic = if self.limits_both { left * self.quadratic } else { self.quadratic };
+        let quadratic = self.quadratic(sound_speed, jump);
+        let quadratic = if self.limits_both { left * quadratic } else { quadratic };
         density * jump * (self.linear * left * sound_speed + quadratic * jump)
     }
 
     /// The speed that q adds in the Courant bound, 2 (a1 c + a2 h |D|) [m/s].
     #[inline(always)]
     pub fn speed(&self, sound_speed: f64, gradient: f64) -> f64 {
-        2.0 * (self.linear * sound_speed + self.quadratic * self.cell * gradient.abs())
+        let jump = self.cell * gradient.abs();
+        2.0 * (self.linear * sound_speed + self.quadratic(sound_speed, jump) * jump)
+    }
+
+    /// a2 where the velocity jumps by `jump` over a cell [m/s].
+    #[inline(always)]
+    fn quadratic(&self, sound_speed: f64, jump: f64) -> f64 {
+        match self.growth {
+            // a gas without pressure has no sound: the most that there is
+            Some(g) if jump > 0.0 => (self.quadratic + g.rate * (jump / sound_speed)).min(g.most),
+            _ => self.quadratic,
+        }
     }
 }
 
@@ -176,6 +193,7 @@ mod tests {
     const V: ArtificialViscosity = ArtificialViscosity {
         linear: 0.1,
         quadratic: 1.25,
+        growth: None,
         limiter: None,
         limited: LimitedTerms::Linear,
     };
@@ -194,6 +212,19 @@ mod tests {
         let v = Viscosity::new(&ArtificialViscosity { limited: LimitedTerms::Both, ..V }, 1e-5);
         assert_eq!(v.q(3000.0, 6000.0, -2e6, 1.0), 0.0);
         assert!(Viscosity::new(&V, 1e-5).q(3000.0, 6000.0, -2e6, 1.0) > 0.0);
+    }
+
+    #[test]
+    fn the_quadratic_coefficient_grows_up_to_its_limit() {
+        let growth = Some(ViscosityGrowth { rate: 6.0, most: 2.0 });
+        let v = Viscosity::new(&ArtificialViscosity { linear: 0.0, growth, ..V }, 1e-5);
+        let coefficient = |d: f64, c: f64| v.q(1000.0, c, d, 0.0) / (1000.0 * (1e-5 * d).powi(2));
+        assert!((coefficient(-1e7, 5000.0) - (1.25 + 6.0 * 0.02)).abs() < 1e-12);
+        assert!((coefficient(-1e8, 5000.0) - 2.0).abs() < 1e-12);
+        assert!((coefficient(-1e7, 0.0) - 2.0).abs() < 1e-12, "without sound");
+        assert_eq!(v.q(1000.0, 0.0, 0.0, 0.0), 0.0);
+        let speed = 2.0 * 100.0 * (1.25 + 6.0 * 0.02);
+        assert!((v.speed(5000.0, -1e7) - speed).abs() < 1e-9);
     }
 
     fn line<'a>(velocity: &'a [f64], ones: &'a [f64]) -> Nodes<'a, 1> {

@@ -22,6 +22,16 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Fau
         check_leapfrog(scene)?;
     }
     if let Some(viscosity) = &scene.artificial_viscosity
+        && let Some(growth) = viscosity.growth
+        && growth.most <= viscosity.quadratic
+    {
+        let reason = format!(
+            "leaves no room to grow from artificial_viscosity.quadratic {}; allowed: a greater number",
+            viscosity.quadratic
+        );
+        return Err(Fault::new("artificial_viscosity.growth.most", growth.most, reason));
+    }
+    if let Some(viscosity) = &scene.artificial_viscosity
         && viscosity.limited != LimitedTerms::Linear
         && viscosity.limiter.is_none()
     {

@@ -140,12 +140,28 @@ pub struct ArtificialViscosity {
     /// Coefficient of the quadratic term [-].
     #[schemars(range(min = 0.0))]
     pub quadratic: f64,
+    /// How the quadratic coefficient grows in strong shocks; absent: it is constant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub growth: Option<ViscosityGrowth>,
     /// Takes viscosity away where the velocity is smooth; absent: full viscosity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limiter: Option<Limiter>,
     /// The terms that the limiter acts on.
     #[serde(default)]
     pub limited: LimitedTerms,
+}
+
+/// How the quadratic coefficient of the artificial viscosity grows with the jump of velocity over a
+/// cell: a2 = min(`most`, `quadratic` + `rate` h |D|/c).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ViscosityGrowth {
+    /// Growth over the jump's share of the sound speed [-].
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub rate: f64,
+    /// The greatest quadratic coefficient, above `quadratic` [-].
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub most: f64,
 }
 
 /// Limiters of the artificial viscosity.
