@@ -1,8 +1,8 @@
 //! How errors follow from evidence: laws fitted on random impacts.
 //!
 //! The half-width is exp(w0 + sum of w_k ln(evidence_k)) times a factor. The weights are those of a
-//! high quantile of ln|error| (Koenker & Bassett 1978), so that what is risky is given more room,
-//! and the factor makes the intervals hold the share that is wanted of cases left out of the fit.
+//! high quantile of ln|error| (Koenker & Bassett 1978), so that what is risky is given more room;
+//! the factor is a margin for materials that were not fitted on.
 //! `scripts/calibrate_estimates.sh` fits them anew and writes [`DATA`]'s file.
 
 use serde::{Deserialize, Serialize};
