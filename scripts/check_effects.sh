@@ -2,7 +2,7 @@
 # Measures what materials and effects promise, and prints each figure
 # beside its bound; exit code 1 where one is missed. Arguments: sections (equations, porous,
 # tables, products, burn, paths, strength_paths, piston, flyer, taylor, taylor_fine, spall, heat,
-# plates, window);
+# plates, window, wave, books);
 # none: all but taylor_fine, which takes an hour.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

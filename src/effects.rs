@@ -33,6 +33,8 @@ pub enum Effect {
     Contact,
     /// A body force.
     BodyForce,
+    /// A grid that accelerates with a piston.
+    AcceleratedGrid,
     /// Transmitting sides.
     TransmittingSides,
     /// Sides loaded by a pressure.
@@ -44,7 +46,7 @@ impl Effect {
     pub const COUNT: usize = Self::ALL.len();
 
     /// All of them, in order.
-    pub const ALL: [Effect; 14] = [
+    pub const ALL: [Effect; 15] = [
         Effect::Viscosity,
         Effect::Relaxation,
         Effect::Affine,
@@ -57,6 +59,7 @@ impl Effect {
         Effect::Burn,
         Effect::Contact,
         Effect::BodyForce,
+        Effect::AcceleratedGrid,
         Effect::TransmittingSides,
         Effect::LoadedSides,
     ];
@@ -76,6 +79,7 @@ impl Effect {
             Effect::Burn => "burn",
             Effect::Contact => "contact",
             Effect::BodyForce => "body force",
+            Effect::AcceleratedGrid => "accelerated grid",
             Effect::TransmittingSides => "transmitting sides",
             Effect::LoadedSides => "loaded sides",
         }
@@ -103,6 +107,7 @@ impl Effect {
             _ if name.starts_with("body_force") || name.starts_with("reference_position") => {
                 Effect::BodyForce
             }
+            _ if name.starts_with("frame_force") => Effect::AcceleratedGrid,
             "load_volume" | "load_mark" => Effect::LoadedSides,
             _ if name.starts_with("side_") => Effect::TransmittingSides,
             _ => return None,
@@ -128,6 +133,7 @@ impl Effect {
             Effect::Burn => materials().any(|m| m.eos.burn().is_some_and(|b| b.front().is_some())),
             Effect::Contact => scene.velocity_fields() > 1,
             Effect::BodyForce => whole.body_force.is_some(),
+            Effect::AcceleratedGrid => scene.accelerates(),
             Effect::TransmittingSides => scene.transmits(),
             Effect::LoadedSides => scene.is_loaded(),
         }

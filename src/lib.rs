@@ -11,6 +11,7 @@ pub mod effects;
 pub mod estimate;
 pub mod exact;
 pub mod figures;
+pub mod frame;
 pub mod geometry;
 pub mod grid;
 pub mod material;

@@ -74,6 +74,8 @@ pub struct Columns {
     pub pressed: Option<usize>,
     /// What a body force takes, with one.
     pub body_force: Option<BodyForceColumns>,
+    /// Force of inertia at the middle of the step [N], a vector, scratch, where the grid accelerates.
+    pub frame_force: Option<usize>,
     /// What a transmitting side looks at, with one.
     pub side: Option<SideColumns>,
     /// What a side loaded by a pressure looks at, with one.
@@ -250,6 +252,7 @@ impl Columns {
         const FORCE: [&str; 3] = ["body_force", "body_force_x", "body_force_y"];
         const IMPULSE: [&str; 3] =
             ["body_force_impulse", "body_force_impulse_x", "body_force_impulse_y"];
+        const INERTIA: [&str; 3] = ["frame_force", "frame_force_x", "frame_force_y"];
         const REFERENCE: [&str; 3] =
             ["reference_position", "reference_position_x", "reference_position_y"];
         const SIDE_GRADIENT: [&str; 4] =
@@ -309,6 +312,8 @@ impl Columns {
             reference: matches!(force, BodyForce::Vortex(_))
                 .then(|| add_all(vector(&REFERENCE), "m", false, true, &same)),
         });
+        let frame_force =
+            scene.accelerates().then(|| add_all(vector(&INERTIA), "N", true, false, &of_vector));
         let pressed = touching.then(|| add_all(&["contact_impulse"], "Pa s", true, true, &same));
         let side = transmits.then(|| SideColumns {
             volume: add_all(&["side_volume"], "m3", true, false, &same),
@@ -383,6 +388,7 @@ impl Columns {
             burn,
             pressed,
             body_force,
+            frame_force,
             side,
             load,
             filled: volume.or(filled.then_some(domain)),

@@ -8,9 +8,10 @@ pub use plane::{PlaneReference, PlaneSolution};
 
 use crate::constitutive;
 use crate::exact::{
-    Accuracy, Chain, EdgeRelease, Errors, ExactError, GasState, History, Impact, ImpactBody,
-    MaterialState, PlanePoint, PlaneWave, Plate, Point, Profile, Riemann, Sample, Solution, Tracer,
-    WallImpact, WallMaterial, cell_average, hugoniot, interface_errors, score, score_density,
+    Accuracy, Chain, Drive, EdgeRelease, Errors, ExactError, GasState, History, Impact, ImpactBody,
+    MaterialState, PlanePoint, PlaneWave, Plate, Point, Profile, Riemann, Sample, SimpleWave,
+    Solution, Tracer, WallImpact, WallMaterial, cell_average, hugoniot, interface_errors, score,
+    score_density,
 };
 use crate::material::MieGruneisen;
 use crate::output::ParticleTable;
@@ -34,6 +35,13 @@ pub enum Reference {
     Wall {
         /// The solution.
         solution: WallImpact,
+        /// The body.
+        body: usize,
+    },
+    /// A piston sends a simple wave into a body.
+    SimpleWave {
+        /// The solution.
+        solution: SimpleWave<scene::Course>,
         /// The body.
         body: usize,
     },
@@ -113,6 +121,24 @@ pub fn impact_of(
     Ok((Impact::new(flyer, target)?, numbers))
 }
 
+impl Drive for scene::Course {
+    fn velocity(&self, t: f64) -> f64 {
+        self.at(t)
+    }
+
+    fn way(&self, t: f64) -> f64 {
+        self.integral(t)
+    }
+
+    fn acceleration(&self, t: f64) -> f64 {
+        self.slope(t)
+    }
+
+    fn kinks(&self) -> Vec<f64> {
+        scene::Course::kinks(self)
+    }
+}
+
 impl Reference {
     /// The solution that the scene names, at its profile times and for its tracers.
     pub fn new(scene: &CheckedScene) -> Result<Option<Reference>, ExactError> {
@@ -185,6 +211,20 @@ impl Reference {
                 )?;
                 Reference::Wall { solution, body }
             }
+            scene::Reference::SimpleWave(named) => {
+                let body = body_named(scene, &named.body);
+                let piston = scene.piston_at(body).expect("the check has found the piston");
+                let extent = &scene.bodies[body];
+                let solution = SimpleWave::new(
+                    solid(scene, body),
+                    extent.lower[0],
+                    extent.upper[0],
+                    !piston.upper,
+                    piston.course,
+                    scene.scene.time.end,
+                )?;
+                Reference::SimpleWave { solution, body }
+            }
             _ => return Ok(PlaneReference::new(scene).map(Reference::Plane)),
         }))
     }
@@ -199,6 +239,7 @@ impl Reference {
                 Some(solution.profile(*diaphragm, t, lower, upper))
             }
             Reference::Wall { solution, .. } => solution.profile(t),
+            Reference::SimpleWave { solution, .. } => solution.profile(t),
             Reference::Plane(_) => None,
         }
     }
@@ -237,7 +278,7 @@ impl Reference {
     fn scored(&self) -> Option<usize> {
         match self {
             Reference::Impact(all) => Some(all.target),
-            Reference::Wall { body, .. } => Some(*body),
+            Reference::Wall { body, .. } | Reference::SimpleWave { body, .. } => Some(*body),
             Reference::Plane(plane) => Some(plane.body),
             Reference::Riemann { .. } => None,
         }
@@ -288,6 +329,9 @@ impl Reference {
                 Some(errors)
             }
             Reference::Wall { solution, .. } => {
+                Some(score(samples, &exact, &solution.landmarks(time)?, h))
+            }
+            Reference::SimpleWave { solution, .. } => {
                 Some(score(samples, &exact, &solution.landmarks(time)?, h))
             }
             Reference::Plane(_) => None,

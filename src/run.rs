@@ -348,7 +348,8 @@ where
         let seconds = [loop_cpu, loop_wall_seconds];
         plan::verdict(planned, &profiles, error_estimate.as_ref(), seconds)
     });
-    let (energy, momentum, outflow) = balance(scene, [&start, &end], &left, &given);
+    let times = [0.0, simulation.time()];
+    let (energy, momentum, outflow) = balance(scene, times, [&start, &end], &left, &given);
     let particle_steps = scene.particles as f64 * simulation.steps_made() as f64;
     let layout = simulation.layout();
     let summary = Summary {
@@ -474,10 +475,12 @@ fn draw<C: Comm>(
 /// Energy and momentum at start and end, with what sides and outflows have given and taken.
 ///
 /// A wall's impulse on the particles is what their momentum has changed by, for nothing else
-/// acts on them from outside; a piston's work is its velocity times its impulse. What transmitting
-/// sides, pressures and friction on walls give is summed up as it is given.
+/// acts on them from outside; a piston's work is its velocity times its impulse, or where it
+/// changes its velocity what the frame of the grid gives and takes. What transmitting sides,
+/// pressures and friction on walls give is summed up as it is given.
 fn balance<const D: usize>(
     scene: &CheckedScene,
+    times: [f64; 2],
     [start, end]: [&Totals<D>; 2],
     left: &Left<D>,
     given: &Given<D>,
@@ -494,10 +497,16 @@ fn balance<const D: usize>(
         }
         false => given.impulse[a],
     });
-    let pistons = scene.grid_velocity::<D>();
     let impulse: [f64; D] = std::array::from_fn(|a| walls[a] - left.momentum[a]);
-    let work = (0..D).map(|a| pistons[a] * walls[a]).sum::<f64>() + given.work + end.conducted
-        - (left.kinetic + left.internal);
+    let frame = scene.frame::<D>();
+    let pistons = if frame.accelerates() {
+        let ahead = |k: usize, t: &Totals<D>| frame.energy_ahead(times[k], t.mass, &t.momentum);
+        ahead(1, end) - ahead(0, start)
+    } else {
+        let velocity = frame.velocity(0.0);
+        (0..D).map(|a| velocity[a] * walls[a]).sum::<f64>()
+    };
+    let work = pistons + given.work + end.conducted - (left.kinetic + left.internal);
     let energy = Energy::new([start.kinetic, end.kinetic], [start.internal, end.internal], work);
     let momentum = Momentum::new(&start.momentum, &end.momentum, &impulse, start.absolute_momentum);
     let (energy, momentum) = match scene.scene.body_force {

@@ -6,6 +6,7 @@
 mod equations;
 mod explosives;
 mod heat;
+mod motion;
 mod paths;
 mod plates;
 #[path = "../common/resident.rs"]
@@ -24,7 +25,7 @@ use std::process::ExitCode;
 
 use sections::Section;
 
-const SECTIONS: [(&str, Section); 15] = [
+const SECTIONS: [(&str, Section); 17] = [
     ("equations", equations::check),
     ("porous", equations::porous),
     ("tables", tables::check),
@@ -40,6 +41,8 @@ const SECTIONS: [(&str, Section); 15] = [
     ("heat", heat::check),
     ("plates", plates::check),
     ("window", plates::window),
+    ("wave", motion::wave),
+    ("books", motion::books),
 ];
 
 /// Sections that take long, run where they are named alone.

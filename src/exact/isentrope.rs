@@ -75,6 +75,24 @@ pub(super) fn to_pressure(
     Err(ExactError::State { what: "an isentrope does not reach its pressure", chi: state.chi })
 }
 
+/// Follows the isentrope through `state` to the velocity `u`.
+pub(super) fn to_velocity(
+    m: &MieGruneisen,
+    mut state: State,
+    side: f64,
+    u: f64,
+) -> Result<State, ExactError> {
+    for _ in 0..60 {
+        let d = side * (u - state.u) / sound_speed(m, &state);
+        if d.abs() <= 2e-16 {
+            return Ok(State { u, ..state });
+        }
+        let d = d.clamp(-0.2, 0.2 * (1.0 - m.s * state.chi).min(1.0));
+        state = to_compression(m, state, side, state.chi + d)?;
+    }
+    Err(ExactError::State { what: "an isentrope does not reach its velocity", chi: state.chi })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -89,6 +107,17 @@ mod tests {
         let back = to_compression(&COPPER, down, 1.0, top.chi).unwrap();
         assert!((back.p / top.p - 1.0).abs() < 1e-10 && (back.u - top.u).abs() < 1e-8);
         assert!((back.e / top.e - 1.0).abs() < 1e-10);
+    }
+
+    #[test]
+    fn a_velocity_is_reached_from_both_sides() {
+        let rest = State { u: 7.0, ..State::default() };
+        for (side, u) in [(1.0, 300.0), (-1.0, 300.0), (1.0, -100.0)] {
+            let there = to_velocity(&COPPER, rest, side, u).unwrap();
+            assert!((there.p > 0.0) == (side * u > 0.0), "{there:?}");
+            let back = to_compression(&COPPER, there, side, 0.0).unwrap();
+            assert!((back.u - 7.0).abs() < 1e-8 && back.p.abs() < 1.0, "{back:?}");
+        }
     }
 
     #[test]

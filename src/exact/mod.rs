@@ -5,6 +5,7 @@
 //!   (`tracking` stands behind it: front tracking in Lagrangian coordinates);
 //! - [`release`]: the closed-form states and times of that solution, by release isentropes;
 //! - [`hugoniot`]: shocks and isentropes of any equation of state;
+//! - [`simple_wave`]: a smooth wave that a piston sends into material at rest;
 //! - [`riemann`]: two ideal gases at a diaphragm; [`wall`]: one body run into a wall, and
 //!   [`elastic_plastic`]: one that has strength;
 //! - [`plane`]: references in two dimensions, and what a plate impact is there;
@@ -27,6 +28,7 @@ pub mod profile;
 pub mod release;
 pub mod riemann;
 pub mod score;
+pub mod simple_wave;
 mod smoothing;
 mod tracking;
 pub mod wall;
@@ -44,6 +46,7 @@ pub use profile::{History, HistoryPoint, Landmarks, Path, PathKind, Point, Profi
 pub use release::Release;
 pub use riemann::{GasState, Riemann};
 pub use score::{Errors, Sample, WaveErrors, cell_average, interface_errors, score, score_density};
+pub use simple_wave::{Drive, SimpleWave};
 pub use wall::{WallImpact, WallMaterial};
 
 /// Why an exact solution could not be had.

@@ -12,17 +12,31 @@ use serde_json::Value;
 
 use super::conform::join;
 use super::errors::{Fault, SceneError, one_line, suggest};
-use super::model::Load;
+use super::model::Course;
+use super::table::{is_hdf5, read_hdf5};
 use crate::material::Table;
 
 /// The materials of the library; each file holds one as it stands in a scene.
-pub const LIBRARY: [(&str, &str); 21] = [
+pub const LIBRARY: [(&str, &str); 27] = [
     ("aluminium_1100", include_str!("../../inputs/materials/aluminium_1100.json")),
     ("aluminium_2024", include_str!("../../inputs/materials/aluminium_2024.json")),
+    (
+        "aluminium_2024_johnson_cook",
+        include_str!("../../inputs/materials/aluminium_2024_johnson_cook.json"),
+    ),
     ("aluminium_6061", include_str!("../../inputs/materials/aluminium_6061.json")),
+    (
+        "aluminium_6061_steinberg_guinan",
+        include_str!("../../inputs/materials/aluminium_6061_steinberg_guinan.json"),
+    ),
     ("aluminium_tillotson", include_str!("../../inputs/materials/aluminium_tillotson.json")),
     ("composition_b", include_str!("../../inputs/materials/composition_b.json")),
     ("copper", include_str!("../../inputs/materials/copper.json")),
+    ("copper_johnson_cook", include_str!("../../inputs/materials/copper_johnson_cook.json")),
+    (
+        "copper_steinberg_guinan",
+        include_str!("../../inputs/materials/copper_steinberg_guinan.json"),
+    ),
     ("gold", include_str!("../../inputs/materials/gold.json")),
     ("iron", include_str!("../../inputs/materials/iron.json")),
     ("iron_tillotson", include_str!("../../inputs/materials/iron_tillotson.json")),
@@ -33,7 +47,15 @@ pub const LIBRARY: [(&str, &str); 21] = [
     ("pmma", include_str!("../../inputs/materials/pmma.json")),
     ("steel_304", include_str!("../../inputs/materials/steel_304.json")),
     ("steel_4340", include_str!("../../inputs/materials/steel_4340.json")),
+    (
+        "steel_4340_johnson_cook",
+        include_str!("../../inputs/materials/steel_4340_johnson_cook.json"),
+    ),
     ("tantalum", include_str!("../../inputs/materials/tantalum.json")),
+    (
+        "tantalum_steinberg_guinan",
+        include_str!("../../inputs/materials/tantalum_steinberg_guinan.json"),
+    ),
     ("titanium", include_str!("../../inputs/materials/titanium.json")),
     ("tnt", include_str!("../../inputs/materials/tnt.json")),
     ("tungsten", include_str!("../../inputs/materials/tungsten.json")),
@@ -118,7 +140,12 @@ fn inline_tables(material: &mut Value, folder: &Path) -> Result<bool, SceneError
     for place in ["/eos/table", "/eos/solid/table"] {
         let Some(Value::String(name)) = material.pointer(place) else { continue };
         let file = folder.join(name);
-        let table = Table::read(&read_text(&file)?).map_err(|reason| fault(&file, reason))?;
+        let table = match is_hdf5(&file) {
+            // that it is a file at all is told in the same words
+            true => regular(&file)
+                .and_then(|()| read_hdf5(&file).map_err(|reason| fault(&file, reason))),
+            false => Table::read(&read_text(&file)?).map_err(|reason| fault(&file, reason)),
+        }?;
         *material.pointer_mut(place).expect("it is there") = serde_json::json!({
             "density": table.density,
             "specific_internal_energy": table.energy,
@@ -129,28 +156,38 @@ fn inline_tables(material: &mut Value, folder: &Path) -> Result<bool, SceneError
     Ok(found)
 }
 
-/// Replaces files of the pressures on sides by what stands in them; `folder` is the scene's. Tells
-/// whether there was one.
-pub(super) fn inline_loads(scene: &mut Value, folder: &Path) -> Result<bool, SceneError> {
+/// Replaces files of the pressures and velocities of sides by what stands in them; `folder` is the
+/// scene's. Tells whether there was one.
+pub(super) fn inline_courses(scene: &mut Value, folder: &Path) -> Result<bool, SceneError> {
     let mut found = false;
     let sides = scene.get_mut("boundary").and_then(Value::as_object_mut);
     for side in sides.into_iter().flat_map(|sides| sides.values_mut()) {
-        let Some(Value::String(name)) = side.get("pressure") else { continue };
-        let file = folder.join(name);
-        let points = Load::read(&read_text(&file)?).map_err(|reason| fault(&file, reason))?;
-        side["pressure"] = serde_json::json!(points);
-        found = true;
+        for quantity in ["pressure", "velocity"] {
+            let Some(Value::String(name)) = side.get(quantity) else { continue };
+            let file = folder.join(name);
+            let points = Course::read(&read_text(&file)?, quantity);
+            side[quantity] = serde_json::json!(points.map_err(|reason| fault(&file, reason))?);
+            found = true;
+        }
     }
     Ok(found)
 }
 
-fn read_text(file: &Path) -> Result<String, SceneError> {
-    let cannot = |error: std::io::Error| fault(file, format!("cannot be read: {error}"));
-    // a pipe or a device may have no end
-    if !std::fs::metadata(file).map_err(cannot)?.is_file() {
-        return Err(fault(file, "is no regular file; allowed: a file".into()));
+fn cannot(file: &Path, error: &std::io::Error) -> SceneError {
+    fault(file, format!("cannot be read: {error}"))
+}
+
+/// A pipe or a device may have no end.
+fn regular(file: &Path) -> Result<(), SceneError> {
+    match std::fs::metadata(file).map_err(|error| cannot(file, &error))?.is_file() {
+        true => Ok(()),
+        false => Err(fault(file, "is no regular file; allowed: a file".into())),
     }
-    std::fs::read_to_string(file).map_err(cannot)
+}
+
+fn read_text(file: &Path) -> Result<String, SceneError> {
+    regular(file)?;
+    std::fs::read_to_string(file).map_err(|error| cannot(file, &error))
 }
 
 fn fault(file: &Path, reason: String) -> SceneError {
@@ -160,9 +197,10 @@ fn fault(file: &Path, reason: String) -> SceneError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::constitutive::{equation, products};
+    use crate::constitutive::{equation, flow_of, products};
     use crate::exact::hugoniot::{MaterialState, piston};
     use crate::scene::Material;
+    use crate::strength::Condition;
     use serde_json::json;
 
     fn resolved(material: Value) -> Result<Value, Fault> {
@@ -187,6 +225,29 @@ mod tests {
         assert!(told.contains("did you mean copper?") && told.contains("tantalum"), "{told}");
         let told = resolved(json!({"file": "x"})).unwrap_err().within("s").to_string();
         assert!(told.contains("materials.m.file"), "{told}");
+    }
+
+    #[test]
+    fn strength_of_the_library_is_that_of_its_source() {
+        let yields = |name: &str, strain: f64, pressure: f64| {
+            let text = LIBRARY.iter().find(|(known, _)| *known == name).unwrap().1;
+            let material: Material = serde_json::from_str(text).unwrap();
+            let at = Condition { compression: 1.0, pressure, temperature: 298.0 };
+            flow_of(&material).unwrap().yield_stress(strain, &at)
+        };
+        // a + b ep^n at the reference rate; Y0 (1 + beta ep)^n up to Ymax, times 1 + A p
+        for (name, strain, pressure, want) in [
+            ("copper_johnson_cook", 1.0, 0.0, 382e6),
+            ("steel_4340_johnson_cook", 0.0, 0.0, 792e6),
+            ("aluminium_2024_johnson_cook", 1.0, 0.0, 691e6),
+            ("copper_steinberg_guinan", 0.0, 0.0, 0.12e9),
+            ("copper_steinberg_guinan", 10.0, 10e9, 0.64e9 * 1.283),
+            ("aluminium_6061_steinberg_guinan", 0.0, 10e9, 0.29e9 * 1.652),
+            ("tantalum_steinberg_guinan", 0.0, 100e9, 0.77e9 * 2.45),
+        ] {
+            let got = yields(name, strain, pressure);
+            assert!((got / want - 1.0).abs() < 1e-9, "{name}: {got:e}, {want:e}");
+        }
     }
 
     #[test]

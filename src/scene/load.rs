@@ -13,7 +13,7 @@ use serde_json::{Map, Value};
 
 use super::check::tiles;
 use super::errors::{Fault, LONGEST_VALUE, SceneError, one_line, shorten};
-use super::library::{inline_files, inline_loads, resolve};
+use super::library::{inline_courses, inline_files, resolve};
 use super::overrides::{apply, check_allowed};
 use super::{BYTES_PER_PARTICLE, CheckedScene, Scene, conform::conform};
 use crate::geometry::read_points;
@@ -46,8 +46,8 @@ pub fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
     with_files(bytes, path)
 }
 
-/// The text of a scene with what its files of positions, materials, tables and pressures hold in their place:
-/// what the other ranks are sent is whole.
+/// The text of a scene with what its files of positions, materials, tables, pressures and velocities
+/// hold in their place: what the other ranks are sent is whole.
 fn with_files(bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>, SceneError> {
     // what is wrong with the text is told when it is parsed
     let Ok(mut scene) = serde_json::from_slice::<Value>(&bytes) else { return Ok(bytes) };
@@ -55,7 +55,7 @@ fn with_files(bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>, SceneError> {
         scene.pointer("/domain/lower").and_then(Value::as_array).is_some_and(|l| l.len() > 1);
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut found = inline_files(&mut scene, folder)?;
-    found |= inline_loads(&mut scene, folder)?;
+    found |= inline_courses(&mut scene, folder)?;
     for body in scene.get_mut("bodies").and_then(Value::as_array_mut).into_iter().flatten() {
         let Some(Value::String(name)) = body.get("positions") else { continue };
         let file = path.parent().unwrap_or(Path::new("")).join(name);

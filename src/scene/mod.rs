@@ -12,9 +12,10 @@ mod load;
 mod model;
 mod overrides;
 mod schema;
+mod table;
 
 pub use check::{
-    BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, CheckedBody, CheckedScene, Wall,
+    BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, CheckedBody, CheckedScene, Piston, Wall,
     available_memory,
 };
 pub use errors::SceneError;

@@ -5,6 +5,7 @@ use decomp::{Census, Comm, ExactSum};
 
 use super::{RunError, Simulation};
 use crate::clock::Event;
+use crate::frame::Frame;
 use crate::patch::{Given, Patch};
 use crate::scene::CheckedScene;
 
@@ -49,29 +50,24 @@ pub(super) struct Outflow<const D: usize> {
     pub(super) census: Census,
     /// Mass, kinetic and internal energy, momentum.
     pub(super) sums: Vec<ExactSum>,
-    grid_velocity: [f64; D],
 }
 
 impl<const D: usize> Outflow<D> {
     /// Nothing so far. The sums' resolution is chosen by the scene: 2^-80 of a particle at some
     /// times the fastest speed of the start, with room for 2^46 of that.
-    pub fn new(scene: &CheckedScene, grid_velocity: [f64; D]) -> Self {
+    pub fn new(scene: &CheckedScene) -> Self {
         let mass = largest_mass(scene);
         let speed = scene.bodies.iter().fold(1e3, |s: f64, c| s.max(c.top_speed)) * 1e3;
         let energy = mass * speed * speed;
         let largest = [mass, energy, energy].into_iter().chain([mass * speed; D]);
-        Outflow {
-            census: Census::default(),
-            sums: largest.map(ExactSum::new).collect(),
-            grid_velocity,
-        }
+        Outflow { census: Census::default(), sums: largest.map(ExactSum::new).collect() }
     }
 
-    /// Books what has left in a step.
-    pub fn take(&mut self, patches: &mut [Patch<D>]) {
+    /// Books what has left in a step, which `grid` says how the grid moves at the end of.
+    pub fn take(&mut self, patches: &mut [Patch<D>], grid: [f64; D]) {
         for gone in patches.iter_mut().flat_map(|p| p.departed.drain(..)) {
             let m = gone.mass;
-            let v: [f64; D] = std::array::from_fn(|a| gone.velocity[a] + self.grid_velocity[a]);
+            let v: [f64; D] = std::array::from_fn(|a| gone.velocity[a] + grid[a]);
             self.census.add(gone.id, m);
             let kinetic = 0.5 * m * v.iter().map(|v| v * v).sum::<f64>();
             let terms = [m, kinetic, m * gone.energy].into_iter().chain(v.map(|v| m * v));
@@ -109,6 +105,17 @@ impl<const D: usize> SideBooks<D> {
         SideBooks { sums: largest.map(ExactSum::new).collect() }
     }
 
+    /// Books what stays with those who leave a grid that accelerates, at the end of a step at
+    /// `time`: see [`Frame::energy_ahead`].
+    pub fn take_leave(&mut self, patches: &[Patch<D>], frame: &Frame<D>, time: f64) {
+        let grid = frame.velocity(time);
+        for gone in patches.iter().flat_map(|p| &p.departed) {
+            let m = gone.mass;
+            let momentum = std::array::from_fn(|a| m * (gone.velocity[a] + grid[a]));
+            self.sums[0].add(frame.energy_ahead(time, m, &momentum));
+        }
+    }
+
     /// Books what the sides have given in a step.
     pub fn take(&mut self, patches: &mut [Patch<D>]) {
         for given in patches.iter_mut().flat_map(|p| p.given.drain(..)) {
@@ -119,8 +126,8 @@ impl<const D: usize> SideBooks<D> {
 }
 
 impl<C: Comm, const D: usize> Simulation<'_, C, D> {
-    /// What transmitting sides, pressures and friction on walls have given so far, as seen in the
-    /// grid's frame. Collective.
+    /// What transmitting sides, pressures, friction on walls and the grid's own acceleration have
+    /// given so far, as seen in the grid's frame. Collective.
     pub fn given(&self) -> Given<D> {
         let mut sums = self.side_books.sums.clone();
         ExactSum::over_ranks(self.comm, &mut sums);

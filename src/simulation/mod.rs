@@ -24,6 +24,7 @@ use decomp::{
 use crate::clock::{Activity, Clock, Event};
 use crate::constitutive::Outside;
 use crate::effects::Effect;
+use crate::frame::Frame;
 use crate::geometry::Tile;
 use crate::particles::{self, Columns};
 use crate::patch::Patch;
@@ -139,7 +140,9 @@ pub struct Simulation<'a, C: Comm, const D: usize> {
     census: Census,
     outflow: Outflow<D>,
     side_books: SideBooks<D>,
-    grid_velocity: [f64; D],
+    frame: Frame<D>,
+    /// No step is longer, where the frame accelerates [s].
+    longest_step: f64,
     time: f64,
     step: u64,
     /// The step from which this run goes on; 0: the start.
@@ -233,6 +236,15 @@ fn may_sleep<const D: usize>(scene: &CheckedScene) -> bool {
     scene.skips_quiet()
         && scene.scene.body_force.is_none()
         && bodies.any(|(b, c)| c.motion.is_none() && c.velocity == velocity && b.pressure == 0.0)
+}
+
+/// The longest step, at a Courant number of 1, for a grid that accelerates [s]: material at rest
+/// is faster in the next step than it is in this one.
+fn longest_step<const D: usize>(scene: &CheckedScene, frame: &Frame<D>) -> f64 {
+    match frame.greatest_change() {
+        0.0 => f64::INFINITY,
+        change => scene.cell_size.iter().copied().fold(f64::INFINITY, f64::min) / change,
+    }
 }
 
 /// Particles in the cells of `cells`, counted without making them.
@@ -353,13 +365,13 @@ where
         let weights: Vec<u64> =
             layout.patches().iter().map(|p| count_particles(scene, p)).collect();
         let layout = layout.with_ranks(assign_patches(&weights, &order, comm.size()));
-        let grid_velocity = scene.grid_velocity();
+        let frame = scene.frame();
         let blocks = particles::fill(
             scene,
             &stepper.columns,
             &layout,
             comm.rank(),
-            grid_velocity,
+            frame.velocity(0.0),
             &|body, pressure| {
                 stepper.starting_energy(body, pressure, scene.scene.bodies[body].temperature)
             },
@@ -376,7 +388,7 @@ where
             patches: patches.map(|(p, block)| Patch::new(&layout, p, block)).collect(),
             plan: Plan::new(scene, &stepper, &layout, reach, comm.rank(), workers),
             sleep: stepper.sleep(),
-            outflow: Outflow::new(scene, grid_velocity),
+            outflow: Outflow::new(scene),
             side_books: SideBooks::new(scene, stepper.fastest),
             stepper,
             layout,
@@ -391,7 +403,8 @@ where
             tally: Tally::default(),
             forgone: 0.0,
             census: Census::default(),
-            grid_velocity,
+            longest_step: longest_step(scene, &frame),
+            frame,
             time: 0.0,
             step: 0,
             first_step: 0,
@@ -437,9 +450,12 @@ where
         } else if timed {
             self.patches.iter_mut().for_each(|p| p.watch.forget_step());
         }
-        self.outflow.take(&mut self.patches);
-        self.side_books.take(&mut self.patches);
         self.time = if meets { until } else { self.time + dt };
+        if self.frame.accelerates() {
+            self.side_books.take_leave(&self.patches, &self.frame, self.time);
+        }
+        self.outflow.take(&mut self.patches, self.frame.velocity(self.time));
+        self.side_books.take(&mut self.patches);
         self.agree()?;
         if step.is_multiple_of(CENSUS_EVERY) || self.time >= end {
             self.check_census()?;
@@ -544,7 +560,8 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         if told[2] < 0.0 {
             return Err(self.gather_fault());
         }
-        (self.stable, self.longest, self.asked) = (told[0], -told[1], -told[4] as u8);
+        (self.stable, self.longest, self.asked) =
+            (told[0].min(self.longest_step), -told[1], -told[4] as u8);
         self.dt = self.scene.scene.time.courant * self.stable;
         self.follow_reach(self.longest);
         Ok(())
@@ -590,7 +607,8 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             return RunError::Elsewhere;
         };
         let (place, what) = w[KEYS + 1..].split_at(D);
-        let x = |a: usize| f64::from_bits(place[a]) + self.grid_velocity[a] * self.time;
+        let travel = self.frame.travel(self.time);
+        let x = |a: usize| f64::from_bits(place[a]) + travel[a];
         let names = ["x", "y"];
         let place = (0..D).map(|a| format!("{} = {:.6e} m", names[a], x(a)));
         RunError::Particle {

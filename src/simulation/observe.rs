@@ -48,6 +48,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
     /// Sums over all particles in the frame of the scene. Collective.
     pub fn totals(&self) -> Totals<D> {
         let c = &self.stepper.columns;
+        let grid = self.frame.velocity(self.time);
         let [
             mass,
             absolute_momentum,
@@ -66,8 +67,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
                 let column = |k: usize| &patch.block.columns[k];
                 let (m, e) = (column(c.mass), column(c.energy));
                 for r in 0..patch.block.own() {
-                    let v: [f64; D] =
-                        std::array::from_fn(|a| column(c.velocity + a)[r] + self.grid_velocity[a]);
+                    let v: [f64; D] = std::array::from_fn(|a| column(c.velocity + a)[r] + grid[a]);
                     let squared = v.iter().map(|v| v * v).sum::<f64>();
                     let speed = if D == 1 { v[0].abs() } else { squared.sqrt() };
                     add(0, m[r]);
@@ -77,8 +77,10 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
                     (0..D).for_each(|a| add(4 + a, m[r] * v[a]));
                     if let Some(force) = &c.body_force {
                         let impulse = |a: usize| column(force.impulse + a)[r];
-                        // seen from the scene, the grid's travel does work too
-                        let travel = |a: usize| impulse(a) * self.grid_velocity[a];
+                        // seen from the scene, the grid's travel does work too, which is in the
+                        // books already where it accelerates
+                        let booked = c.frame_force.is_some();
+                        let travel = |a: usize| if booked { 0.0 } else { impulse(a) * grid[a] };
                         add(6, column(force.work)[r] + (0..D).map(travel).sum::<f64>());
                         (0..D).for_each(|a| add(7 + a, impulse(a)));
                     }
@@ -143,9 +145,9 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
 
     fn table<'b>(&self, ids: &[u64], column: impl Fn(usize) -> &'b Vec<f64>) -> ParticleTable {
         let c = &self.stepper.columns;
+        let (grid, travel) = (self.frame.velocity(self.time), self.frame.travel(self.time));
         let moved = |a: usize| -> Vec<f64> {
-            let shift = self.grid_velocity[a] * self.time;
-            column(c.position + a).iter().map(|x| x + shift).collect()
+            column(c.position + a).iter().map(|x| x + travel[a]).collect()
         };
         let place: [Vec<f64>; D] = std::array::from_fn(moved);
         let mut order: Vec<usize> = (0..ids.len()).collect();
@@ -164,7 +166,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         columns.push(named("pressure", "Pa", pick(&|r| column(c.pressure)[r])));
         let names = if D == 1 { ["velocity", ""] } else { ["velocity_x", "velocity_y"] };
         for (a, name) in names.into_iter().enumerate().take(D) {
-            let v = |r: usize| column(c.velocity + a)[r] + self.grid_velocity[a];
+            let v = |r: usize| column(c.velocity + a)[r] + grid[a];
             columns.push(named(name, "m/s", pick(&v)));
         }
         columns.extend([
@@ -251,6 +253,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
     /// Nothing elsewhere. Collective.
     pub fn follow(&self, wanted: &[u64]) -> Vec<Option<Followed<D>>> {
         let c = &self.stepper.columns;
+        let (grid, travel) = (self.frame.velocity(self.time), self.frame.travel(self.time));
         let mut words = Vec::new();
         for patch in &self.patches {
             let column = |k: usize, r: usize| patch.block.columns[k][r];
@@ -263,8 +266,8 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
                 let half = 0.5 * if D == 1 { volume } else { volume.sqrt() };
                 words.push(id);
                 for a in 0..D {
-                    let x = column(c.position + a, row) + self.grid_velocity[a] * self.time;
-                    let v = column(c.velocity + a, row) + self.grid_velocity[a];
+                    let x = column(c.position + a, row) + travel[a];
+                    let v = column(c.velocity + a, row) + grid[a];
                     words.extend([x, v].map(f64::to_bits));
                 }
                 words.extend([column(c.pressure, row), half].map(f64::to_bits));
@@ -293,7 +296,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
     /// elsewhere. Collective.
     pub fn sample_pressure(&self, stride: u64) -> Vec<(f64, f64)> {
         let c = &self.stepper.columns;
-        let shift = self.grid_velocity[0] * self.time;
+        let shift = self.frame.travel(self.time)[0];
         let mut words = Vec::new();
         for patch in &self.patches {
             for row in 0..patch.block.own() {

@@ -66,6 +66,13 @@ impl<const D: usize> Stepper<D> {
 
     /// The force of all rows onto the nodes.
     pub(super) fn scatter_body_force(&self, patch: &mut Patch<D>) {
+        if let Some(c) = &self.columns.body_force {
+            self.scatter_force(patch, c.force);
+        }
+    }
+
+    /// The force in the columns from `from` on of all rows onto the nodes.
+    pub(super) fn scatter_force(&self, patch: &mut Patch<D>, from: usize) {
         fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, from: usize) {
             for a in 0..D {
                 let field = s.fields.acceleration + a;
@@ -78,9 +85,7 @@ impl<const D: usize> Stepper<D> {
                 patch.nodes.fields[field] = nodal;
             }
         }
-        if let Some(c) = &self.columns.body_force {
-            with_width!(patch.stencils.width, go(patch, self, c.force));
-        }
+        with_width!(patch.stencils.width, go(patch, self, from));
     }
 
     /// Books the work and impulse of a step of `dt` for the own rows.

@@ -27,6 +27,7 @@ impl<const D: usize> Stepper<D> {
             self.current_stress(patch);
             self.find_pressed(patch, self.columns.jacobian, dt);
             self.find_body_force(patch, time);
+            self.find_inertia(patch, time, dt);
             self.find_impedance(patch, self.columns.jacobian);
             self.find_loaded_volume(patch, self.columns.jacobian);
             self.find_conductance(patch, self.columns.jacobian);
@@ -59,6 +60,7 @@ impl<const D: usize> Stepper<D> {
                 self.gather_velocity(patch);
                 self.move_rows(patch, dt);
                 self.book_body_force(patch, dt);
+                self.book_inertia(patch, time, dt);
                 self.book_sides(patch, dt);
                 if last {
                     self.gather_gradient(patch, star);

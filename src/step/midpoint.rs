@@ -17,8 +17,8 @@ use decomp::RowError;
 use super::{Stepper, World};
 use crate::clock::spend;
 use crate::effects::Effect::{
-    BodyForce, Conduction, Contact, Failure, LoadedSides, Relaxation, Strength, Stress,
-    TransmittingSides, Viscosity,
+    AcceleratedGrid, BodyForce, Conduction, Contact, Failure, LoadedSides, Relaxation, Strength,
+    Stress, TransmittingSides, Viscosity,
 };
 
 impl<const D: usize> Stepper<D> {
@@ -53,6 +53,9 @@ impl<const D: usize> Stepper<D> {
             }
             if self.columns.body_force.is_some() {
                 spend(BodyForce, patch, |patch| self.find_body_force(patch, time + 0.5 * dt));
+            }
+            if self.columns.frame_force.is_some() {
+                spend(AcceleratedGrid, patch, |patch| self.find_inertia(patch, time, dt));
             }
             if self.columns.side.is_some() {
                 spend(TransmittingSides, patch, |patch| self.find_impedance(patch, mid));
@@ -91,6 +94,7 @@ impl<const D: usize> Stepper<D> {
                     spend(Strength, patch, |patch| self.shear(patch, dt));
                 }
                 self.book_body_force(patch, dt);
+                self.book_inertia(patch, time, dt);
                 self.book_sides(patch, dt);
                 if let Some(rate) = relax {
                     spend(Relaxation, patch, |patch| self.relax_pressure(patch, rate));

@@ -10,6 +10,7 @@ mod conduction;
 mod contact;
 mod failure;
 pub mod gather;
+mod inertia;
 pub mod leapfrog;
 mod load;
 pub mod midpoint;
@@ -29,6 +30,7 @@ pub use world::{Nodal, Sleep, World};
 
 use crate::constitutive::{self, Criterion, Flow, Matter, Outside, Thermal};
 use crate::contact::Contact;
+use crate::frame::Frame;
 use crate::grid::{Fields, Wanted};
 use crate::particles::Columns;
 use crate::patch::Patch;
@@ -57,6 +59,8 @@ pub struct Stepper<const D: usize> {
     edge_mask: Option<f64>,
     viscosity: Option<Viscosity>,
     body_force: Option<body_force::Force>,
+    /// The grid's, if it accelerates.
+    frame: Option<Frame<D>>,
     /// Contact between velocity fields of the bodies' own.
     contact: Option<Contact>,
     /// Velocity fields, each in a layer of the nodal arrays: one for all bodies, or one a body.
@@ -293,6 +297,7 @@ impl<const D: usize> Stepper<D> {
             edge_mask: method.edge_mask,
             viscosity: viscosity.map(|v| Viscosity::new(v, edge)),
             body_force: body_force::Force::new(scene),
+            frame: scene.accelerates().then(|| scene.frame()),
             contact,
             layers: scene.velocity_fields(),
             stiffness,

@@ -53,6 +53,7 @@ impl<const D: usize> Stepper<D> {
         if force {
             self.turn_forces(patch);
             self.scatter_body_force(patch);
+            self.scatter_inertia(patch);
         }
     }
 

@@ -119,7 +119,7 @@ impl<const D: usize> Stepper<D> {
         patch.side_forces.clear();
         for (axis, end) in (0..D).flat_map(|a| [(a, 0), (a, 1)]) {
             match &self.sides[axis][end] {
-                Side::Transmitting => self.transmit(patch, axis, end, dt),
+                Side::Transmitting => self.transmit(patch, axis, end, time, dt),
                 Side::Friction(coefficient) => self.rub_wall(patch, axis, end, *coefficient, dt),
                 Side::Pressure(load) => spend(Effect::LoadedSides, patch, |patch| {
                     self.press(patch, axis, end, load.at(time));
@@ -157,12 +157,13 @@ impl<const D: usize> Stepper<D> {
     }
 
     /// The force of a transmitting side.
-    fn transmit(&self, patch: &mut Patch<D>, axis: usize, end: usize, dt: f64) {
+    fn transmit(&self, patch: &mut Patch<D>, axis: usize, end: usize, time: f64, dt: f64) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
             s: &Stepper<D>,
             axis: usize,
             end: usize,
+            gained: [f64; D],
             dt: f64,
         ) {
             // once a particle has left, what is next to it ends no further in than its own length;
@@ -173,24 +174,27 @@ impl<const D: usize> Stepper<D> {
                 if end == 0 { (i64::MIN, depth + 1) } else { (side - depth, i64::MAX) };
             let Some(boxes) = s.start_side(patch, axis, from, to, 1 + 3 * D) else { return };
             let reach = depth + K as i64 + 1;
-            s.sum_impedance::<K>(patch, axis, outward, |cell| (cell - side).abs() <= reach);
+            let near = |cell: i64| (cell - side).abs() <= reach;
+            s.sum_impedance::<K>(patch, axis, outward, gained, near);
             for (layer, part) in boxes.into_iter().enumerate().filter(|(_, p)| !p.is_empty()) {
                 for index in part.iter() {
                     s.transmit_at(patch, layer, index, dt);
                 }
             }
         }
-        with_width!(patch.stencils.width, go(patch, self, axis, end, dt));
+        let gained = self.gained_velocity(time, dt);
+        with_width!(patch.stencils.width, go(patch, self, axis, end, gained, dt));
     }
 
     /// Sums over the rows near a side: its surface sum V G.n, and for each direction sum m Z N,
     /// sum m N (n p0 - Z u0), and what the momentum grows by up to the nodes,
-    /// sum m N du/dn (x_i - x).
+    /// sum m N du/dn (x_i - x). The grid has `gained` a velocity since the start [m/s].
     fn sum_impedance<const K: usize>(
         &self,
         patch: &mut Patch<D>,
         axis: usize,
         outward: f64,
+        gained: [f64; D],
         near: impl Fn(i64) -> bool,
     ) {
         let c = &self.columns;
@@ -218,7 +222,7 @@ impl<const D: usize> Stepper<D> {
                     true => (column(side.impedance)[r], outward * rest.pressure),
                     false => (m / column(side.volume)[r] * rest.shear_speed, 0.0),
                 };
-                let still = pressure - z * rest.velocity[a];
+                let still = pressure - z * (rest.velocity[a] - gained[a]);
                 row.add(&mut sums[1 + a], row.values, |n| n * m * z);
                 row.add(&mut sums[1 + D + a], row.values, |n| n * m * still);
                 let growth = m * column(side.gradient + D * a + axis)[r] * self.cell[axis];
@@ -314,7 +318,8 @@ impl<const D: usize> Stepper<D> {
             let row = patch.stencils.row::<K, D>(r);
             let column = |k: usize| patch.block.columns[k][r];
             let m = column(c.mass);
-            let pulled = c.body_force.map_or(0.0, |c| column(c.force + axis));
+            let forces = c.body_force.map(|c| c.force).into_iter().chain(c.frame_force);
+            let pulled = forces.map(|k| column(k + axis)).fold(0.0, |sum, f| sum + f);
             let impulse = moved * m * column(c.velocity + axis) + dt * pulled;
             row.add(&mut masses, row.values, |n| n * m);
             row.add(&mut impulses, row.values, |n| n * impulse);
@@ -474,8 +479,8 @@ impl<const D: usize> Stepper<D> {
                 }
                 for a in (0..D).filter(|&a| a != axis) {
                     let affine = c.affine.map(|k| k + D * a..k + D * (a + 1));
-                    let force = c.body_force.map(|c| c.force + a);
-                    let vectors = std::iter::once(c.velocity + a).chain(force);
+                    let forces = c.body_force.map(|c| c.force).into_iter().chain(c.frame_force);
+                    let vectors = std::iter::once(c.velocity + a).chain(forces.map(|k| k + a));
                     for k in vectors.chain(affine.into_iter().flatten()) {
                         patch.block.columns[k][row] *= -1.0;
                     }

@@ -1,7 +1,13 @@
 //! Faults of the machine leave what was good, and say what to do.
 
 use std::fs;
+use std::io::Read;
+use std::os::unix::fs::OpenOptionsExt;
 use std::process::Command;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::{Duration, Instant};
+
+use nix::fcntl::OFlag;
 
 use crate::home::{Home, names};
 use crate::program::signal;
@@ -79,6 +85,57 @@ fn a_full_disk_leaves_the_last_good_checkpoint() {
     same(&home.results("run"), &whole);
 }
 
+/// Lets a run begin, does something to its folder, and lets it go on; how it ends.
+fn while_it_runs(home: &Home, what: impl FnOnce()) -> crate::program::Ended {
+    fifo(home, "fifo");
+    let mut run = home.call(["scene.json", "--quiet", "--trace", "fifo"]).start();
+    wait(&mut run, || home.at("output/.scene.flyer.lock").exists());
+    what();
+    let ended = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            // its timeline comes by the fifo, at its check and at its end if it comes to that
+            let mut options = fs::OpenOptions::new();
+            options.read(true).write(true).custom_flags(OFlag::O_NONBLOCK.bits());
+            let mut fifo = options.open(home.at("fifo")).unwrap();
+            let (mut timeline, since) = ([0; 4096], Instant::now());
+            while !ended.load(Relaxed) && since.elapsed() < Duration::from_secs(90) {
+                if fifo.read(&mut timeline).is_err() {
+                    std::thread::sleep(Duration::from_millis(2));
+                }
+            }
+        });
+        let end = run.end();
+        ended.store(true, Relaxed);
+        end
+    })
+}
+
+/// A folder that vanishes is made anew, and the results are whole.
+#[test]
+fn a_folder_that_vanishes_is_made_anew() {
+    let home = Home::with(&recorded(20));
+    let whole = home.run("output/scene", &[]);
+    fs::remove_dir_all(home.at("output")).unwrap();
+    let end = while_it_runs(&home, || fs::remove_dir_all(home.at("output")).unwrap());
+    end.succeeded();
+    same(&home.results("output/scene"), &whole);
+}
+
+/// Where nothing can be written any more the run says so, and leaves what is there as it is. A file
+/// in place of the folder is refused to everybody, as one without permission is to most.
+#[test]
+fn a_folder_that_cannot_be_written_any_more_is_told() {
+    let home = Home::with(&recorded(20));
+    let end = while_it_runs(&home, || {
+        fs::remove_dir_all(home.at("output")).unwrap();
+        fs::write(home.at("output"), "not a folder").unwrap();
+    });
+    assert_eq!(end.status.code(), Some(3), "{}", end.stderr);
+    assert!(end.stderr.contains("output") && !end.stderr.contains("panicked"), "{}", end.stderr);
+    assert_eq!(fs::read_to_string(home.at("output")).unwrap(), "not a folder");
+}
+
 /// What a scene calls things never leads out of its folder.
 #[test]
 fn names_lead_nowhere() {
@@ -122,7 +179,6 @@ fn a_rank_that_panics() {
 #[cfg(feature = "mpi")]
 #[test]
 fn a_panic_of_one_rank_ends_all() {
-    use std::time::{Duration, Instant};
     let mut run = Command::new("mpirun")
         .args(["--oversubscribe", "--bind-to", "none", "-n", "2"])
         .arg(std::env::current_exe().unwrap())

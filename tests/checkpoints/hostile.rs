@@ -5,8 +5,12 @@ use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
+use decomp::Comm;
+use decomp::comm::local::run_ranks;
 use flyer_mpm::checkpoint::file;
-use flyer_mpm::scene;
+use flyer_mpm::scene::{self, CheckedScene};
+use flyer_mpm::simulation::{RunError, Simulation};
+use flyer_mpm::step::{Stepper, Steps};
 
 use crate::damage::random;
 
@@ -189,4 +193,68 @@ fn too_much_is_told_before_it_is_taken() {
         told(scene.check_memory(LEFT));
         scene.check_memory(None).unwrap();
     }
+}
+
+/// Begins a run of a changed scene on two ranks of this process; what ends it.
+fn begun<const D: usize>(scene: &CheckedScene) -> Result<(), String>
+where
+    Stepper<D>: Steps<D>,
+{
+    fn of_rank<C: Comm, const D: usize>(scene: &CheckedScene, comm: &C) -> Result<(), RunError>
+    where
+        Stepper<D>: Steps<D>,
+    {
+        let mut simulation = Simulation::<C, D>::new(scene, comm, 1)?;
+        for _ in 0..3 {
+            if simulation.time() < scene.scene.time.end {
+                simulation.advance(scene.scene.time.end)?;
+            }
+        }
+        Ok(())
+    }
+    let ends = run_ranks(2, |comm| match of_rank::<_, D>(scene, comm) {
+        // one rank alone knows of it, and ends all in the program
+        Err(RunError::Row(error)) => panic!("{LOST}{error}"),
+        end => end,
+    });
+    let failed = ends.iter().filter(|end| end.is_err()).count();
+    assert!(failed == 0 || failed == ends.len(), "all ranks end alike: {ends:?}");
+    ends.into_iter().try_for_each(|end| end.map_err(|error| error.to_string()))
+}
+
+/// Begins the message of a rank that ends all.
+const LOST: &str = "a row is lost: ";
+
+/// Scenes that pass in spite of a change are run for some steps, on two ranks: they go on, or all
+/// ranks end with a message. FLYER_MPM_MUTANTS sets how many are made.
+#[test]
+fn changed_scenes_on_two_ranks() {
+    let wanted = std::env::var("FLYER_MPM_MUTANTS").ok().and_then(|n| n.parse().ok());
+    let corpus = corpus();
+    let (mut seed, mut ran) = (6, 0);
+    for round in 0..wanted.unwrap_or(600) {
+        let text = changed(&corpus[round % corpus.len()], &mut seed);
+        if scene::check_size(&text, "scene.json", &[], Some(64 << 20)).is_err() {
+            continue;
+        }
+        let Ok(scene) = scene::parse(&text, "scene.json", &[]) else { continue };
+        if scene.check_memory(Some(64 << 20)).is_err() {
+            continue;
+        }
+        ran += 1;
+        let end = catch_unwind(AssertUnwindSafe(|| match scene.dimension {
+            1 => begun::<1>(&scene),
+            _ => begun::<2>(&scene),
+        }));
+        let told = String::from_utf8_lossy(&text);
+        match end {
+            Ok(Ok(())) => {}
+            Ok(Err(error)) => assert_eq!(error.lines().count(), 1, "{error}: {told}"),
+            Err(fault) => {
+                let word = fault.downcast_ref::<String>().map_or("", String::as_str);
+                assert!(word.starts_with(LOST), "it panics, {word}: {told}");
+            }
+        }
+    }
+    assert!(ran >= 20, "{ran}");
 }

@@ -105,6 +105,40 @@ fn tables_stand_beside_the_scene() {
         "compaction_pressure": 1e8,
     });
     read(json!({"density": 1400.0, "eos": pores}), &text).unwrap();
+    // the same from HDF5, to the bit
+    let first = read(json!({"density": 1500.0, "eos": eos}), &text).unwrap();
+    let densities = [1200.0, 1500.0, 2000.0, 4000.0];
+    let energies = [-1e5, 0.0, 1e6, 2e6];
+    let write = |last: f64, rows: usize| {
+        let file = hdf5::File::create(at("table.h5")).unwrap();
+        let put = |name: &str, values: &[f64]| {
+            file.new_dataset_builder().with_data(values).create(name).map(drop).unwrap();
+        };
+        put("density", &densities[..3]);
+        put("specific_internal_energy", &energies);
+        let pressure: Vec<[f64; 4]> = [1200.0, 1500.0, last][..rows]
+            .iter()
+            .map(|rho| energies.map(|e| 1e7 * (rho - 1500.0) + 2e3 * e))
+            .collect();
+        file.new_dataset_builder().with_data(&pressure).create("pressure").map(drop).unwrap();
+    };
+    let named = json!({"type": "tabular", "table": "table.h5"});
+    let taken = |last: f64, rows: usize| {
+        write(last, rows);
+        read(json!({"density": 1500.0, "eos": named}), "")
+    };
+    let tables = [first, taken(2000.0, 3).unwrap()].map(|scene| {
+        let eos = serde_json::to_value(&scene.material_of(0).eos).unwrap();
+        eos["table"]["pressure"].as_array().unwrap()[..3].to_vec()
+    });
+    assert_eq!(tables[0], tables[1]);
+    let short = taken(2000.0, 2).unwrap_err();
+    assert!(short.contains("2 rows of pressure; allowed: 3"), "{short}");
+    let odd = taken(f64::NAN, 3).unwrap_err();
+    assert!(odd.contains("table.h5") && odd.contains("finite"), "{odd}");
+    fs::write(at("table.h5"), "no HDF5").unwrap();
+    let other = read(json!({"density": 1500.0, "eos": named}), "").unwrap_err();
+    assert!(other.contains("table.h5") && other.contains("data sets density"), "{other}");
     let holed = text.replacen("1500,0,0\n", "", 1);
     assert_ne!(holed, text);
     let error = read(json!({"density": 1500.0, "eos": eos}), &holed).unwrap_err();

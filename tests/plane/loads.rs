@@ -1,6 +1,6 @@
 //! Sides that press on what touches them.
 
-use flyer_mpm::scene::{self, CheckedScene, Load, Side};
+use flyer_mpm::scene::{self, CheckedScene, Course, Side};
 use flyer_mpm::step::{Stepper, Steps};
 use serde_json::{Value, json};
 
@@ -149,7 +149,7 @@ fn a_file_beside_the_scene_is_read() {
     std::fs::write(folder.path().join("ramp.csv"), "time,pressure\n0,1e9\n1e-8,2e9\n").unwrap();
     let read = scene::parse(&scene::read(&file).unwrap(), "scene.json", &[]).unwrap();
     let points = vec![[0.0, 1e9], [1e-8, 2e9]];
-    assert_eq!(read.sides::<1>()[0][0], Side::Pressure(Load::Series(points)));
+    assert_eq!(read.sides::<1>()[0][0], Side::Pressure(Course::Series(points)));
 }
 
 #[test]

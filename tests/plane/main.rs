@@ -8,6 +8,7 @@ mod column;
 mod contact;
 mod layouts;
 mod loads;
+mod pistons;
 mod sides;
 mod symmetry;
 mod tools;

@@ -1,7 +1,7 @@
 //! Sides of the domain that cannot stand opposite each other.
 
 use super::super::errors::Fault;
-use super::super::model::{Geometry, Load, Scene, Side, Transfer};
+use super::super::model::{Course, Geometry, Scene, Side, Transfer};
 use super::CheckedScene;
 
 /// A rigid side of the domain: a plane of symmetry, a wall or a piston.
@@ -11,8 +11,17 @@ pub struct Wall {
     pub upper: bool,
     /// Where it stands at the start [m].
     pub position: f64,
-    /// Its velocity along x [m/s].
+    /// Its velocity along x at the start [m/s].
     pub velocity: f64,
+}
+
+/// A side that moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Piston {
+    /// Whether it stands at the upper end of x.
+    pub upper: bool,
+    /// Its velocity along x over time [m/s].
+    pub course: Course,
 }
 
 impl Wall {
@@ -42,6 +51,20 @@ impl CheckedScene {
             .find(|w| self.gap_to(w, i) <= self.tolerance(0) && self.closing_speed(w, i) > 0.0)
     }
 
+    /// The piston that body `i` touches, if there is one.
+    pub fn piston_at(&self, i: usize) -> Option<Piston> {
+        let boundary = self.scene.boundary.as_ref()?;
+        let ends = [(&boundary.x_lower, false), (&boundary.x_upper, true)];
+        let domain = &self.scene.domain;
+        ends.into_iter().find_map(|(side, upper)| {
+            let Side::Velocity(course) = side else { return None };
+            let position = if upper { domain.upper[0] } else { domain.lower[0] };
+            let wall = Wall { upper, position, velocity: course.at(0.0) };
+            let touches = self.gap_to(&wall, i) <= self.tolerance(0);
+            touches.then(|| Piston { upper, course: course.clone() })
+        })
+    }
+
     /// Distance from body `i` to a wall [m].
     pub(super) fn gap_to(&self, wall: &Wall, i: usize) -> f64 {
         let extent = &self.bodies[i];
@@ -65,6 +88,15 @@ pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
     }
     let Some(boundary) = &scene.boundary else { return Ok(()) };
     let y = [("boundary.y_lower", &boundary.y_lower), ("boundary.y_upper", &boundary.y_upper)];
+    let x = [("boundary.x_lower", &boundary.x_lower), ("boundary.x_upper", &boundary.x_upper)];
+    let beside = y.iter().filter_map(|(path, side)| Some((*path, side.as_ref()?)));
+    for (path, side) in x.into_iter().chain(beside) {
+        match side {
+            Side::Velocity(v) => check_course(&format!("{path}.velocity"), "velocity", v)?,
+            Side::Pressure(p) => check_course(&format!("{path}.pressure"), "pressure", p)?,
+            _ => {}
+        }
+    }
     if scene.domain.lower.len() == 1 {
         for (path, side) in y {
             if let Some(side) = side {
@@ -74,7 +106,6 @@ pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
                 return Err(Fault::new(path, side, reason));
             }
         }
-        let x = [("boundary.x_lower", &boundary.x_lower), ("boundary.x_upper", &boundary.x_upper)];
         for (path, side) in x {
             if matches!(side, Side::NoSlip | Side::Friction(_)) {
                 let reason = "holds what slides along it, but domain.lower has 1 number, which is \
@@ -103,7 +134,7 @@ fn check_axis([path, other_path]: [&str; 2], [lower, upper]: [&Side; 2]) -> Resu
         );
         return Err(Fault::new(path, lower, reason));
     }
-    match (lower.rigid_velocity(), upper.rigid_velocity()) {
+    match (lower.rigid_course(), upper.rigid_course()) {
         (Some(a), Some(b)) if a != b => {
             let reason = format!(
                 "cannot stand opposite {other_path} = {other}, since the grid travels with a \
@@ -152,28 +183,33 @@ pub(super) fn check_transmitting(checked: &mut CheckedScene) -> Result<(), Fault
     Ok(())
 }
 
-/// A pressure presses on a body, at times that ascend.
+/// The times of a course ascend, and its file has been read.
+fn check_course(path: &str, quantity: &str, course: &Course) -> Result<(), Fault> {
+    match course {
+        Course::Constant(_) | Course::Ramp(_) => Ok(()),
+        Course::Series(points) => {
+            let later = |pair: &[[f64; 2]]| pair[0][0] < pair[1][0];
+            let Some(k) = points.windows(2).position(|pair| !later(pair)) else { return Ok(()) };
+            let reason =
+                "the time is not after that of the pair before; allowed: times that ascend";
+            Err(Fault::new(format!("{path}[{}]", k + 1), points[k + 1], reason))
+        }
+        Course::File(_) => {
+            let reason = format!(
+                "is read with the scene's own file alone; allowed: to name it there, a \
+                 {quantity}, pairs of time and {quantity}, or a ramp"
+            );
+            Err(Fault::new(path, course, reason))
+        }
+    }
+}
+
+/// A pressure presses on a body.
 pub(super) fn check_loads(checked: &mut CheckedScene) -> Result<(), Fault> {
     let sides = checked.sides::<2>();
     for (a, end) in (0..checked.dimension).flat_map(|a| [(a, 0), (a, 1)]) {
         let Side::Pressure(load) = &sides[a][end] else { continue };
         let path = format!("{}.pressure", PATHS[a][end]);
-        match load {
-            Load::Constant(_) => {}
-            Load::Series(points) => {
-                let later = |pair: &[[f64; 2]]| pair[0][0] < pair[1][0];
-                if let Some(k) = points.windows(2).position(|pair| !later(pair)) {
-                    let reason = "the time is not after that of the pair before; allowed: times \
-                                  that ascend";
-                    return Err(Fault::new(format!("{path}[{}]", k + 1), points[k + 1], reason));
-                }
-            }
-            Load::File(_) => {
-                let reason = "is read with the scene's own file alone; allowed: to name it there, \
-                              a pressure, or pairs of time and pressure";
-                return Err(Fault::new(path, load, reason));
-            }
-        }
         if !is_touched(checked, a, end) {
             let reason = "presses on what touches this side, but no body does; allowed: \"free\", \
                           or a body up to this side";

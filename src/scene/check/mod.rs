@@ -21,9 +21,10 @@ use serde::Serialize;
 
 use super::errors::{Fault, one_line};
 use super::model::{Contact, Eos, Geometry, Material, Scene, Side};
+use crate::frame::Frame;
 
 pub use bodies::CheckedBody;
-pub use boundary::Wall;
+pub use boundary::{Piston, Wall};
 pub(super) use memory::tiles;
 pub use memory::{BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, available_memory};
 
@@ -100,19 +101,30 @@ impl CheckedScene {
         std::array::from_fn(|a| all[a].clone())
     }
 
-    /// The velocity at which the grid travels with a piston [m/s], in the scene's directions.
-    pub fn grid_velocity<const D: usize>(&self) -> [f64; D] {
-        self.sides::<D>().map(|ends| {
-            let piston = |s: &Side| if let Side::Velocity(v) = s { Some(*v) } else { None };
-            ends.iter().find_map(piston).unwrap_or(0.0)
-        })
+    /// The frame of the grid, which travels with a piston.
+    pub fn frame<const D: usize>(&self) -> Frame<D> {
+        Frame::new(self)
     }
 
-    /// The greatest speed with which bodies and pistons can meet at the start [m/s].
+    /// The velocity at which the grid travels with a piston at the start [m/s], in the scene's
+    /// directions.
+    pub fn grid_velocity<const D: usize>(&self) -> [f64; D] {
+        self.frame().velocity(0.0)
+    }
+
+    /// Whether a piston's velocity changes, and the grid's with it.
+    pub fn accelerates(&self) -> bool {
+        self.sides::<2>()[..self.dimension]
+            .as_flattened()
+            .iter()
+            .any(|side| matches!(side, Side::Velocity(course) if course.changes()))
+    }
+
+    /// The greatest speed with which bodies, as they start, and pistons can meet [m/s].
     pub fn impact_speed<const D: usize>(&self) -> f64 {
         let pistons = self.sides::<D>();
         let moving = pistons.iter().flatten().any(|s| matches!(s, Side::Velocity(_)));
-        let piston = moving.then(|| self.grid_velocity::<D>());
+        let piston = moving.then(|| self.frame::<D>().extremes()).into_iter().flatten();
         let bodies = self.bodies.iter().map(|b| std::array::from_fn(|a| b.velocity[a]));
         let all: Vec<[f64; D]> = bodies.chain(piston).collect();
         let apart = |a: &[f64; D], b: &[f64; D]| {
@@ -157,10 +169,11 @@ impl CheckedScene {
         (0..self.bodies.len()).any(|i| such(&self.material_of(i).eos))
     }
 
-    /// Whether patches at rest may be left out: where heat flows nothing is at rest, and what a
-    /// side is going to press on does not stay so.
+    /// Whether patches at rest may be left out: where heat flows nothing is at rest, what a side
+    /// is going to press on does not stay so, and seen from a grid that accelerates all falls.
     pub fn skips_quiet(&self) -> bool {
-        self.scene.decomposition.skip_quiet && !self.conducts() && !self.is_loaded()
+        let quiet = !self.conducts() && !self.is_loaded() && !self.accelerates();
+        self.scene.decomposition.skip_quiet && quiet
     }
 
     /// Whether a body conducts heat.

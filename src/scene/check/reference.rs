@@ -11,6 +11,7 @@ pub(super) fn check(checked: &mut CheckedScene) -> Result<(), Fault> {
         Some(Reference::FlyerImpact(impact)) => check_flyer_impact(checked, &impact),
         Some(Reference::Riemann(riemann)) => check_riemann(checked, &riemann),
         Some(Reference::WallImpact(impact)) => check_wall_impact(checked, &impact),
+        Some(Reference::SimpleWave(named)) => check_simple_wave(checked, &named.body),
         Some(Reference::Vortex(named)) => plane_reference::check_vortex(checked, &named),
         Some(Reference::Rotation(named)) => plane_reference::check_rotation(checked, &named),
         Some(Reference::ShearLayer(named)) => plane_reference::check_shear_layer(checked, &named),
@@ -28,22 +29,7 @@ fn check_flyer_impact(checked: &mut CheckedScene, impact: &FlyerImpact) -> Resul
     check_unlike(TARGET, &impact.target, FLYER, flyer == target)?;
     for (path, i) in [(FLYER, flyer), (TARGET, target)] {
         check_eos(checked, path, i, "mie_gruneisen")?;
-        let body = &checked.scene.bodies[i];
-        let material = checked.material_of(i);
-        if material.eos.straight(material.density).is_none() {
-            let key = join("materials", &body.material);
-            let reason = format!(
-                "{key}.eos has s2, gruneisen \"gamma_constant\" or a tension_cutoff, which the exact \
-                 solution does not have; allowed: to leave them out, or the reference"
-            );
-            return Err(Fault::new(path, &body.name, reason));
-        }
-        if body.pressure != 0.0 {
-            let key = join(&join("bodies", &body.name), "pressure");
-            let reason =
-                format!("the exact solution of {path} starts without pressure; allowed: 0");
-            return Err(Fault::new(key, body.pressure, reason));
-        }
+        check_straight(checked, path, i)?;
     }
     // with contact nothing happens before a gap has closed
     let apart = checked.velocity_fields() > 1;
@@ -161,7 +147,7 @@ fn check_wall_impact(checked: &CheckedScene, impact: &WallImpact) -> Result<(), 
         return Err(Fault::new(BODY, &impact.body, reason));
     }
     if checked.wall_struck_by(body).is_some() {
-        return Ok(());
+        return check_steady(checked, BODY, body);
     }
     let box_path = join(&join("bodies", &impact.body), "box");
     let reason = format!(
@@ -170,6 +156,64 @@ fn check_wall_impact(checked: &CheckedScene, impact: &WallImpact) -> Result<(), 
          moving towards it"
     );
     Err(Fault::new(BODY, &impact.body, reason))
+}
+
+/// A steady shock has a piston of one velocity behind it.
+fn check_steady(checked: &CheckedScene, path: &str, body: usize) -> Result<(), Fault> {
+    match checked.piston_at(body) {
+        Some(piston) if piston.course.changes() => {
+            let reason = "is driven by a piston whose velocity changes; allowed: one number for \
+                          its velocity, or \"simple_wave\"";
+            Err(Fault::new(path, &checked.scene.bodies[body].name, reason))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn check_simple_wave(checked: &CheckedScene, name: &str) -> Result<(), Fault> {
+    const BODY: &str = "reference.simple_wave.body";
+    let body = find_even_body(checked, BODY, name)?;
+    check_eos(checked, BODY, body, "mie_gruneisen")?;
+    check_straight(checked, BODY, body)?;
+    let fault = |reason: &str| Err(Fault::new(BODY, name, reason));
+    if checked.dimension > 1 {
+        return fault("stands in a plane; allowed: a scene of one dimension");
+    }
+    let Some(piston) = checked.piston_at(body) else {
+        return fault(
+            "touches no piston; allowed: a body beside boundary.x_lower or boundary.x_upper \
+             {\"velocity\": ...}",
+        );
+    };
+    let (start, own) = (piston.course.at(0.0), checked.bodies[body].velocity[0]);
+    if start != own {
+        let key = join(&join("bodies", name), "velocity");
+        let reason = format!(
+            "the piston beside it starts at {start} m/s, which is a shock; allowed: the same"
+        );
+        return Err(Fault::new(key, own, reason));
+    }
+    Ok(())
+}
+
+/// The Hugoniot of a body is a straight line, and it starts without pressure.
+fn check_straight(checked: &CheckedScene, path: &str, i: usize) -> Result<(), Fault> {
+    let body = &checked.scene.bodies[i];
+    let material = checked.material_of(i);
+    if material.eos.straight(material.density).is_none() {
+        let key = join("materials", &body.material);
+        let reason = format!(
+            "{key}.eos has s2, gruneisen \"gamma_constant\" or a tension_cutoff, which the exact \
+             solution does not have; allowed: to leave them out, or the reference"
+        );
+        return Err(Fault::new(path, &body.name, reason));
+    }
+    if body.pressure != 0.0 {
+        let key = join(&join("bodies", &body.name), "pressure");
+        let reason = format!("the exact solution of {path} starts without pressure; allowed: 0");
+        return Err(Fault::new(key, body.pressure, reason));
+    }
+    Ok(())
 }
 
 /// The body of this name.

@@ -4,9 +4,9 @@
 //! checks them against that same schema. What two keys say of each other is not known here.
 
 mod contact;
+mod course;
 mod effects;
 mod estimate;
-mod load;
 mod matter;
 mod method;
 mod motion;
@@ -19,9 +19,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use contact::*;
+pub use course::*;
 pub use effects::*;
 pub use estimate::*;
-pub use load::*;
 pub use matter::*;
 pub use method::*;
 pub use motion::*;
@@ -281,20 +281,29 @@ pub enum Side {
     /// Open, as if the same material went on beyond it: waves pass it and do not come back, and a
     /// particle that passes it leaves the run, and is booked.
     Transmitting,
-    /// A rigid piston with this velocity along x [m/s]; the grid travels with it.
-    Velocity(f64),
+    /// A rigid piston with this velocity across the side [m/s]; the grid travels with it. A
+    /// number, pairs of time [s] and velocity, a ramp, or the name of a CSV file of columns time
+    /// and velocity.
+    Velocity(Course),
     /// A pressure [Pa] on the surface of the bodies that touch this side at the start, wherever it
-    /// moves: a number, pairs of time [s] and pressure, or the name of a CSV file of them. Free
-    /// otherwise.
-    Pressure(Load),
+    /// moves: a number, pairs of time [s] and pressure, a ramp, or the name of a CSV file of
+    /// columns time and pressure. Free otherwise.
+    Pressure(Course),
 }
 
 impl Side {
-    /// Velocity of a side that lets nothing through [m/s].
+    /// Velocity of a side that lets nothing through, at the start [m/s].
     pub fn rigid_velocity(&self) -> Option<f64> {
-        match *self {
-            Side::Symmetry | Side::Wall | Side::NoSlip | Side::Friction(_) => Some(0.0),
-            Side::Velocity(velocity) => Some(velocity),
+        self.rigid_course().map(|course| course.at(0.0))
+    }
+
+    /// Velocity of a side that lets nothing through, over time [m/s].
+    pub fn rigid_course(&self) -> Option<Course> {
+        match self {
+            Side::Symmetry | Side::Wall | Side::NoSlip | Side::Friction(_) => {
+                Some(Course::Constant(0.0))
+            }
+            Side::Velocity(course) => Some(course.clone()),
             Side::Free
             | Side::Periodic
             | Side::Outflow

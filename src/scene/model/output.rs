@@ -154,6 +154,8 @@ pub enum Reference {
     Riemann(Riemann),
     /// A body runs into a rigid wall or is driven by a piston: one steady shock.
     WallImpact(WallImpact),
+    /// A piston whose velocity changes smoothly drives a body (Courant & Friedrichs 1948).
+    SimpleWave(SimpleWave),
     /// The generalized vortex (Kamojjala et al. 2015): `displacement_l2`.
     Vortex(NamedBody),
     /// A free body that spins: `angular_momentum_loss`, `energy_loss`, `kinetic_energy_loss`.
@@ -244,6 +246,14 @@ pub struct Riemann {
     /// How the waves lie in a plane; absent: along x.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub front: Option<Front>,
+}
+
+/// The body that the piston drives.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SimpleWave {
+    /// The body.
+    pub body: String,
 }
 
 /// The body that runs into the wall.
