@@ -9,18 +9,15 @@ use crate::estimates::Told;
 const FLOOR: f64 = 1e-8;
 /// Rounds of reweighting.
 const ROUNDS: usize = 200;
-/// Room for materials that were not fitted on: what half-widths are multiplied by.
-const MARGIN: f64 = 1.05;
-
-/// The law of this evidence, with intervals that hold `share` of the cases, and a little margin;
+/// The law of this evidence, with intervals that hold `share` of the cases, times a margin;
 /// none where too few have it.
-pub fn law(told: &[Told], evidence: &[&str], share: f64) -> Option<Law> {
+pub fn law(told: &[Told], evidence: &[&str], share: f64, margin: f64) -> Option<Law> {
     let usable: Vec<&Told> =
         told.iter().filter(|t| evidence.iter().all(|e| t.evidence.contains_key(*e))).collect();
     if usable.len() < 12 * (evidence.len() + 1) {
         return None;
     }
-    Some(with_factor(weights(&usable, evidence, share), evidence, MARGIN, usable.len()))
+    Some(with_factor(weights(&usable, evidence, share), evidence, margin, usable.len()))
 }
 
 fn with_factor(weights: Vec<f64>, evidence: &[&str], factor: f64, cases: usize) -> Law {
