@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use flyer_mpm::scene::PlannedQuantity;
 
 /// Impact and shock waves by the material point method, held against exact solutions.
 ///
@@ -139,6 +140,39 @@ pub struct PredictArgs {
     pub against: Vec<PathBuf>,
 }
 
+/// A plan.
+#[derive(Clone, Debug, Args)]
+pub struct PlanArgs {
+    /// The scene; its method, viscosity, cell size, particles and Courant number are chosen anew.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+
+    /// What is wanted: plateau_pressure, l1 (of each profile) or arrival_time.
+    #[arg(long, value_name = "NAME", value_parser = quantity)]
+    pub quantity: PlannedQuantity,
+
+    /// Its relative error, at most: 0.5% or 0.005.
+    #[arg(long, value_name = "ERROR", value_parser = fraction)]
+    pub error: f64,
+
+    /// The place whose arrival is asked for, in the struck body at the start, in metres [default:
+    /// the first of error_estimate.arrivals].
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    pub at: Option<f64>,
+
+    /// Wall time of the time loop, at most.
+    #[arg(long, value_name = "SECONDS", default_value_t = 86400.0, value_parser = seconds)]
+    pub budget: f64,
+
+    /// Ranks that the run will have.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = ranks)]
+    pub ranks: usize,
+
+    /// File of the scene to run [default: output/plans/<name of the scene>.json].
+    #[arg(long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
 /// What else the program does.
 #[derive(Debug, Subcommand)]
 pub enum Command {
@@ -197,6 +231,23 @@ pub enum Command {
     /// Predict the time of a step and of the whole run on more ranks, and where that stops being
     /// worth it, by the constants of `flyer-mpm calibrate`; no run.
     Predict(PredictArgs),
+    /// Sweep a scene over any of its keys, and show what accuracy costs: one table and pictures.
+    /// What an earlier call has run is not run again.
+    Study {
+        /// The study: a JSON file such as those in inputs/studies/.
+        #[arg(value_name = "STUDY.json")]
+        study: PathBuf,
+        /// Folder of the results [default: output/studies/<name of the study>/].
+        #[arg(long, value_name = "DIR")]
+        output: Option<PathBuf>,
+        /// Say nothing but errors.
+        #[arg(long)]
+        quiet: bool,
+    },
+    /// Choose scheme, cell size, particles per cell and Courant number that reach an error for the
+    /// least time, foretell both, and write the scene to run, which at its end tells foretold
+    /// against actual. Times pilots of the scene: nothing else should run meanwhile.
+    Plan(PlanArgs),
     /// Print the JSON schema of a scene.
     Schema,
     /// Compare the results of two runs: norms, and the first particle and column that differ.
@@ -217,6 +268,26 @@ fn steps(text: &str) -> Result<std::ops::Range<u64>, String> {
     match ends {
         Some((a, b)) if 1 <= a && a <= b && b < u64::MAX => Ok(a..b + 1),
         _ => Err("two steps such as 1..200 are allowed".into()),
+    }
+}
+
+fn quantity(text: &str) -> Result<PlannedQuantity, String> {
+    serde_json::from_value(text.into())
+        .map_err(|_| "plateau_pressure, l1 or arrival_time is allowed".into())
+}
+
+/// A fraction, or per cent.
+fn fraction(text: &str) -> Result<f64, String> {
+    let (number, scale) = match text.strip_suffix('%') {
+        Some(number) => (number, 0.01),
+        None => (text, 1.0),
+    };
+    match number.trim().parse::<f64>().map(|n| n * scale) {
+        Ok(error) if error > 0.0 && error < 1.0 => Ok(error),
+        _ => {
+            Err("a fraction between 0 and 1 such as 0.005, or per cent such as 0.5%, is allowed"
+                .into())
+        }
     }
 }
 

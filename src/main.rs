@@ -6,7 +6,9 @@
 mod cli;
 mod describe;
 mod forecast;
+mod planner;
 mod sheet;
+mod sweep;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -317,6 +319,10 @@ fn side_command(command: Command) -> Outcome<()> {
             say(&forecast::predict(&args)?);
             Ok(())
         }
+        Command::Study { study, output, quiet } => {
+            sweep::study(&study, output.as_deref(), quiet).map(|text| say(&text))
+        }
+        Command::Plan(args) => planner::plan(&args).map(|text| say(&text)),
         Command::Calibrate { .. } => unreachable!("all ranks calibrate"),
         Command::Compare { first, second } => {
             let comparison = compare(&first, &second).map_err(bad)?;

@@ -3,6 +3,7 @@
 use decomp::Comm;
 
 use crate::checkpoint::{Checkpoint, Contents, Due, Record, StateColumn};
+use crate::estimate::Arrivals;
 use crate::figures::PressureRow;
 use crate::output::ParticleTable;
 use crate::output::histories::Histories;
@@ -28,6 +29,8 @@ pub struct Recorder<'a> {
     pub start: Option<ParticleTable>,
     /// Rows of the x-t diagram.
     pub waves: Vec<PressureRow>,
+    /// What comes to places; nothing unless the scene asks for it.
+    pub arrivals: Arrivals,
     due_wave: u64,
     due_profile: usize,
 }
@@ -58,6 +61,7 @@ impl<'a> Recorder<'a> {
             tables: Vec::new(),
             start: if needs_start { simulation.gather().map(|(table, _)| table) } else { None },
             waves: Vec::new(),
+            arrivals: Arrivals::default(),
             due_wave: 0,
             due_profile: 0,
         }
@@ -72,6 +76,7 @@ impl<'a> Recorder<'a> {
         let end = self.scene.scene.time.end;
         self.due_wave = if due.end == end { due.wave } else { wave_after(time, end) };
         self.due_profile = self.scene.profile_times.iter().filter(|&&t| t <= time).count();
+        self.arrivals.resume(due.arrivals);
         let Record { tables, waves, histories } =
             checkpoint.map_or_else(Record::default, |c| c.record);
         (self.tables, self.waves) = (tables, waves);
@@ -93,6 +98,7 @@ impl<'a> Recorder<'a> {
         if let Some(probes) = &mut self.probes {
             probes.sample(simulation);
         }
+        self.arrivals.look(simulation);
         let draws = self.scene.scene.output.pictures && D == 1;
         if draws && time >= self.due_wave as f64 * end / WAVE_ROWS as f64 {
             self.due_wave = wave_after(time, end);
@@ -158,6 +164,7 @@ impl<'a> Recorder<'a> {
             history_interval: self.scene.history_interval,
             wave: mark.due_wave,
             end: self.scene.scene.time.end,
+            arrivals: self.arrivals.state(),
         };
         Contents {
             scene,

@@ -8,7 +8,7 @@ pub use plane::{PlaneReference, PlaneSolution};
 
 use crate::constitutive;
 use crate::exact::{
-    Accuracy, Chain, Drive, EdgeRelease, Errors, ExactError, GasState, Impact, ImpactBody,
+    Accuracy, Chain, Drive, EdgeRelease, Errors, ExactError, GasState, History, Impact, ImpactBody,
     MaterialState, PlanePoint, PlaneWave, Plate, Point, Profile, Riemann, Sample, SimpleWave,
     Solution, Tracer, WallImpact, WallMaterial, cell_average, hugoniot, interface_errors, score,
     score_density,
@@ -159,6 +159,16 @@ impl Reference {
                         Some(Tracer { plate, x: t.at[0] })
                     })
                     .collect();
+                let arrivals = scene.scene.error_estimate.iter().flat_map(|e| &e.arrivals);
+                let plate = match scene.estimated_body() {
+                    Some(b) if b == flyer => Some(Plate::Flyer),
+                    Some(b) if b == target => Some(Plate::Target),
+                    _ => None,
+                };
+                let arrivals = plate
+                    .into_iter()
+                    .flat_map(|plate| arrivals.clone().map(move |&x| Tracer { plate, x }));
+                let tracers: Vec<Tracer> = tracers.into_iter().chain(arrivals).collect();
                 let mut times = scene.profile_times.clone();
                 times.push(scene.scene.time.end);
                 let solution = impact.solve(&times, &tracers, Accuracy::default())?;
@@ -232,6 +242,20 @@ impl Reference {
             Reference::SimpleWave { solution, .. } => solution.profile(t),
             Reference::Plane(_) => None,
         }
+    }
+
+    /// When the pressure at the places of `error_estimate` first passes half of its greatest
+    /// \[s\]; none where that is not known.
+    pub fn arrivals(&self, scene: &CheckedScene) -> Vec<Option<f64>> {
+        let Reference::Impact(all) = self else { return Vec::new() };
+        let count = scene.scene.error_estimate.as_ref().map_or(0, |e| e.arrivals.len());
+        // they stand after the tracers of the histories
+        let all = &all.solution.tracers;
+        let arrival = |history: &History| {
+            let peak = history.points.iter().map(|q| q.p).fold(0.0, f64::max);
+            history.points.iter().find(|q| peak > 0.0 && q.p >= 0.5 * peak).map(|q| q.t)
+        };
+        all[all.len().saturating_sub(count)..].iter().map(arrival).collect()
     }
 
     /// Whether, in a plane, releases from the edges of the plates have reached the strip that is

@@ -18,6 +18,7 @@ use crate::checkpoint::schedule::Stop;
 use crate::checkpoint::{Checkpoint, CheckpointError, Schedule, StateColumn, folder};
 use crate::clock::Activity;
 use crate::effects::ledger;
+use crate::estimate::{self, Answer, Laws, companion};
 use crate::figures;
 use crate::output::OutputError;
 use crate::output::ParticleTable;
@@ -29,6 +30,7 @@ use crate::output::report::report;
 use crate::output::summary::{Energy, FailureSummary, Momentum, Outflow, ProfileSummary, Summary};
 use crate::output::trace::write_trace;
 use crate::output::vtkhdf::{RESULTS_FILE, RunInfo, write_vtkhdf};
+use crate::plan;
 use crate::recorder::{Mark, Recorder};
 use crate::reference::Reference;
 use crate::scene::{CheckedScene, Side};
@@ -315,12 +317,21 @@ fn run_in<C: Comm, const D: usize>(
 where
     Stepper<D>: Steps<D>,
 {
+    // what the run's errors are told from
+    let estimated = scene.estimated_body();
+    let companions = match estimated {
+        Some(body) => Some(companion::run(comm, scene, body, options.threads)?),
+        None => None,
+    };
     let mut simulation = Simulation::<C, D>::new(scene, comm, options.threads)?;
     let start = simulation.totals();
     if let Some((_, steps)) = &options.trace {
         simulation.trace(steps.clone());
     }
     let mut recorder = Recorder::new(scene, &simulation);
+    if let Some((body, companions)) = estimated.zip(companions.as_ref()) {
+        recorder.arrivals = companion::arrivals(comm, scene, body, companions);
+    }
     if let Beginning::Checkpoint(checkpoint) = beginning {
         simulation.restore(checkpoint.as_ref().map(|c| &c.saved))?;
         recorder.resume(comm, checkpoint.map(|c| *c), simulation.time());
@@ -382,6 +393,21 @@ where
     if scene.scene.output.pictures {
         draw(comm, scene, reference.as_ref(), &recorder, &profiles, &folder)?;
     }
+    let error_estimate = estimated.zip(companions.as_ref()).map(|(body, companions)| {
+        let tables = recorder.tables.iter().map(|t| &t.0).collect();
+        let (arrivals, steps) = (&recorder.arrivals, simulation.steps());
+        let reference = reference.as_ref();
+        let answer = Answer { scene, body, tables, arrivals, steps, reference };
+        let mut told = estimate::estimate(&answer, companions, &Laws::shipped());
+        for (told, profile) in told.profiles.iter_mut().zip(&profiles) {
+            told.l1.exact = profile.error("l1");
+        }
+        told
+    });
+    let plan = scene.scene.output.plan.as_ref().map(|planned| {
+        let seconds = [loop_cpu, loop_wall_seconds];
+        plan::verdict(planned, &profiles, error_estimate.as_ref(), seconds)
+    });
     let times = [0.0, simulation.time()];
     let (energy, momentum, outflow) = balance(scene, times, [&start, &end], &left, &given);
     warnings.extend(inaccurate(&energy, stretched, simulation.tally().redone_steps));
@@ -399,6 +425,7 @@ where
         steps: simulation.steps(),
         wall_seconds: options.started.elapsed().as_secs_f64(),
         loop_wall_seconds,
+        loop_cpu_seconds: loop_cpu,
         cpu_seconds: user_cpu_seconds() + others_cpu,
         particle_steps_per_cpu_second: particle_steps / loop_cpu,
         phase_seconds: decomposition.seconds(),
@@ -412,6 +439,8 @@ where
             .failure
             .map(|_| FailureSummary { particles: end.failed, released_energy: end.released }),
         profiles,
+        error_estimate,
+        plan,
         warnings,
     };
     summary.write(folder.path())?;

@@ -80,6 +80,7 @@ fn write_run(folder: &Path, tables: &[ParticleTable]) {
         cells: 0,
         steps: 0,
         wall_seconds: 0.0,
+        loop_cpu_seconds: 0.0,
         loop_wall_seconds: 0.0,
         cpu_seconds: 0.0,
         particle_steps_per_cpu_second: 0.0,
@@ -98,6 +99,8 @@ fn write_run(folder: &Path, tables: &[ParticleTable]) {
         momentum: Momentum::new(&[0.0], &[0.0], &[0.0], 0.0),
         outflow: None,
         profiles,
+        error_estimate: None,
+        plan: None,
         warnings: vec![],
     };
     summary.write(folder).unwrap();

@@ -109,7 +109,7 @@ fn write_root(file: &Group, contents: &Contents, alive: &dyn Fn()) -> hdf5::Resu
         longest: saved.longest,
         left: [saved.left.rows, saved.left.marks],
         sums: saved.sums.iter().map(i128::to_string).collect(),
-        due: contents.due,
+        due: contents.due.clone(),
         materials: tables.first().map_or(Vec::new(), |t| t.0.materials.clone()),
         profiles: tables.len(),
         has_histories: contents.histories.is_some(),

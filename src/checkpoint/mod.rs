@@ -17,6 +17,7 @@ pub use schedule::Schedule;
 
 use serde::{Deserialize, Serialize};
 
+use crate::estimate::arrival::Passing;
 use crate::figures::PressureRow;
 use crate::output::ParticleTable;
 use crate::output::histories::Histories;
@@ -32,7 +33,7 @@ pub struct StateColumn {
 }
 
 /// What is due next of what a run records, alike on all ranks.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Due {
     /// The next row of the histories, in intervals.
     pub history: u64,
@@ -42,6 +43,9 @@ pub struct Due {
     pub wave: u64,
     /// The end of the run that its rows divide [s].
     pub end: f64,
+    /// What has come to the places whose arrivals are told.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub arrivals: Vec<[Passing; 2]>,
 }
 
 /// What a run has recorded.
@@ -75,7 +79,7 @@ pub struct Checkpoint {
 }
 
 /// A checkpoint that is written: what [`Checkpoint`] holds, not copied.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Contents<'a> {
     /// The scene as run, JSON.
     pub scene: &'a str,

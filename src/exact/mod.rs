@@ -45,7 +45,7 @@ pub use plane::{
 pub use profile::{History, HistoryPoint, Landmarks, Path, PathKind, Point, Profile};
 pub use release::Release;
 pub use riemann::{GasState, Riemann};
-pub use score::{Errors, Sample, cell_average, interface_errors, score, score_density};
+pub use score::{Errors, Sample, WaveErrors, cell_average, interface_errors, score, score_density};
 pub use simple_wave::{Drive, SimpleWave};
 pub use wall::{WallImpact, WallMaterial};
 

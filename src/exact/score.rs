@@ -57,6 +57,49 @@ pub struct Errors {
     pub density_interface: Option<f64>,
     /// Greatest error of specific internal energy there, fraction of e2.
     pub energy_interface: Option<f64>,
+    /// L1 by where it arises.
+    pub waves: Option<WaveErrors>,
+}
+
+/// L1 split by the regions of the exact solution: the parts add up to the whole.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct WaveErrors {
+    /// About the shock: ahead of it, and up to ten cells behind it.
+    pub shock: f64,
+    /// From there back to the head of the fan, or to the interface while there is no fan.
+    pub plateau_2: f64,
+    /// Within the fan, from its head to where the second plateau begins.
+    pub fan: f64,
+    /// On the second plateau and behind it.
+    pub plateau_4: f64,
+}
+
+/// Reach of the shock's region behind it [cells]: no scheme smears a shock further.
+const SHOCK_REACH: f64 = 10.0;
+
+/// Parts of L1 by region; none where there is no shock in the body or no pressure.
+fn wave_errors(
+    computed: &[(f64, f64)],
+    truth: &[(f64, f64)],
+    marks: &Landmarks,
+    size: f64,
+    h: f64,
+) -> Option<WaveErrors> {
+    let (lower, upper) = (marks.interface, marks.far_end);
+    let shock = (marks.shock? - SHOCK_REACH * h).max(lower);
+    let head = marks.plateau.map_or(lower, |zone| zone[0]).clamp(lower, shock);
+    // without a second plateau all that is behind the head is the fan
+    let tail = marks.plateau_4.map_or(lower, |zone| zone[1]).clamp(lower, head);
+    let part = |from: f64, to: f64| match to > from {
+        true => integrals(&cut(computed, from, to), &cut(truth, from, to), from, to)[0] / size,
+        false => 0.0,
+    };
+    (size > 0.0).then(|| WaveErrors {
+        shock: part(shock, upper),
+        plateau_2: part(head, shock),
+        fan: part(tail, head),
+        plateau_4: part(lower, tail),
+    })
 }
 
 /// Replaces the particles in each cell of the grid (cells of size `h`, one face at `origin`) by
@@ -235,6 +278,7 @@ pub fn score(samples: &[Sample], exact: &Profile, landmarks: &Landmarks, h: f64)
         overshoot: some_if(p2 > 0.0, (greatest(&computed) - greatest(&truth)) / p2),
         ..Errors::default()
     };
+    errors.waves = wave_errors(&computed, &truth, &marks, size, h);
     if let Some(shock) = marks.shock {
         let at = |share: f64| crossing(&computed, share * marks.behind_shock);
         errors.shock_position_cells = at(0.5).map(|x| (x - shock) / h);

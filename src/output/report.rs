@@ -7,6 +7,8 @@ use super::decomposition::DecompositionSummary;
 use super::summary::{FailureSummary, ProfileSummary, Summary};
 use crate::clock::Activity;
 use crate::effects::{ledger_lines, ledger_rest};
+use crate::estimate::{Bounded, ErrorEstimate};
+use crate::plan::Verdict;
 
 /// Errors of a profile by name, with a heading and whether they are shown in per cent.
 const ERRORS: [(&str, &str, bool); 22] = [
@@ -139,6 +141,10 @@ fn facts(summary: &Summary, folder: &Path) -> Vec<Vec<String>> {
         );
         facts.push(("failure", text));
     }
+    if let Some(told) = &summary.error_estimate {
+        facts.extend(estimate_facts(told));
+    }
+    facts.extend(summary.plan.iter().map(|plan| ("plan", plan_fact(plan))));
     facts.push((
         "run",
         format!(
@@ -178,6 +184,70 @@ fn facts(summary: &Summary, folder: &Path) -> Vec<Vec<String>> {
     facts.push(("sharing", shared));
     facts.push(("results", folder.display().to_string()));
     facts.into_iter().map(|(name, text)| vec![name.to_owned(), text]).collect()
+}
+
+/// What a plan has foretold beside what came.
+fn plan_fact(plan: &Verdict) -> String {
+    let percent = |v: f64| format!("{} %", significant(100.0 * v));
+    let actual = match (plan.actual, plan.is_true) {
+        (Some(error), true) => percent(error),
+        (Some(bound), false) => format!("at most {} by its own bound", percent(bound)),
+        (None, _) => "not known".into(),
+    };
+    format!(
+        "error wanted {}, foretold {}, actual {actual}; CPU seconds of the time loop foretold \
+         {:.3}, actual {:.3}; wall {:.3}, {:.3}",
+        percent(plan.wanted),
+        percent(plan.predicted),
+        plan.predicted_cpu_seconds,
+        plan.cpu_seconds,
+        plan.predicted_wall_seconds,
+        plan.wall_seconds
+    )
+}
+
+/// What a run tells of its own errors, a line a profile and a place.
+fn estimate_facts(told: &ErrorEstimate) -> Vec<(&'static str, String)> {
+    let within = |b: &Bounded, scale: f64, unit: &str| match b.half_width {
+        Some(width) => {
+            let exact = b.exact.map_or(String::new(), |e| {
+                format!(", in truth {}", significant_to((e * scale, width * scale)))
+            });
+            let value = significant_to((b.value * scale, width * scale));
+            format!("{value} +- {} {unit}{exact}", significant(width * scale))
+        }
+        None => format!("{} {unit}, too little evidence of its error", b.value * scale),
+    };
+    let mut facts = Vec::new();
+    for profile in &told.profiles {
+        let plateau = match &profile.plateau_pressure {
+            Some(bounded) => format!("plateau {}", within(bounded, 1e-9, "GPa")),
+            None => "no plateau".into(),
+        };
+        let l1 = match profile.l1.half_width {
+            Some(bound) => format!("L1 <= {} %", significant(100.0 * bound)),
+            None => "L1 not known".into(),
+        };
+        let exact = profile.l1.exact;
+        let exact =
+            exact.map_or(String::new(), |e| format!(", in truth {}", significant(100.0 * e)));
+        facts.push(("estimate", format!("{}: {plateau}; {l1}{exact}", seconds(profile.time))));
+    }
+    for arrival in &told.arrivals {
+        let time = match &arrival.time {
+            Some(bounded) => format!("arrival {}", within(bounded, 1e9, "ns")),
+            None => "nothing has arrived".into(),
+        };
+        facts.push(("estimate", format!("at {} mm: {time}", significant(1e3 * arrival.at))));
+    }
+    facts.extend(told.notes.iter().map(|note| ("estimate", note.clone())));
+    facts
+}
+
+/// A value with as many digits as its width asks for.
+fn significant_to((value, width): (f64, f64)) -> String {
+    let digits = (1 - width.abs().max(1e-12).log10().floor() as i32).clamp(0, 12) as usize;
+    format!("{value:.digits$}")
 }
 
 /// Lines of cells as columns: the first to the left, the others to the right.

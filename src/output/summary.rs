@@ -10,6 +10,8 @@ use serde_json::Value;
 use super::decomposition::DecompositionSummary;
 use super::error::OutputError;
 use crate::effects::EffectUse;
+use crate::estimate::ErrorEstimate;
+use crate::plan::Verdict;
 
 /// Name of the file in the folder of results.
 pub const SUMMARY_FILE: &str = "summary.json";
@@ -39,6 +41,9 @@ pub struct Summary {
     pub wall_seconds: f64,
     /// Wall time of the time loop \[s\].
     pub loop_wall_seconds: f64,
+    /// User CPU time of the time loop, all ranks \[s\].
+    #[serde(default)]
+    pub loop_cpu_seconds: f64,
     /// User CPU time of all ranks \[s\].
     pub cpu_seconds: f64,
     /// Particles times steps, those left out at rest among them, over the CPU time of the time
@@ -62,6 +67,12 @@ pub struct Summary {
     pub failure: Option<FailureSummary>,
     /// One entry a profile, in the order of their times.
     pub profiles: Vec<ProfileSummary>,
+    /// The run's own statement of its errors; absent unless the scene asks for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error_estimate: Option<ErrorEstimate>,
+    /// What a plan has foretold, and what came; absent without a plan.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plan: Option<Verdict>,
     /// What the user should know, one line each.
     pub warnings: Vec<String>,
 }
@@ -288,6 +299,7 @@ pub(super) mod tests {
             steps: 2612,
             wall_seconds: 1.25,
             loop_wall_seconds: 0.75,
+            loop_cpu_seconds: 1.0,
             cpu_seconds: 2.0,
             particle_steps_per_cpu_second: 5.9e6,
             phase_seconds: [("compute".to_owned(), 0.5)].into(),
@@ -318,6 +330,8 @@ pub(super) mod tests {
                 profile(5e-7, Some(json!({"l1": 0.0089, "plateau": -1e-5, "noise": null}))),
                 profile(1e-6, None),
             ],
+            error_estimate: None,
+            plan: None,
             warnings: vec!["linear shape functions ring across cells".into()],
         }
     }

@@ -53,7 +53,13 @@ fn example() -> Checkpoint {
         columns: ["mass", "pressure"]
             .map(|name| StateColumn { name: name.into(), unit: "kg".into() })
             .into(),
-        due: Due { history: 7, history_interval: Some(0.1), wave: 9, end: 1e-6 },
+        due: Due {
+            history: 7,
+            history_interval: Some(0.1),
+            wave: 9,
+            end: 1e-6,
+            arrivals: Vec::new(),
+        },
         record: Default::default(),
     };
     checkpoint.record.tables = vec![(table.clone(), "00ff".into()), (table, "ab".into())];
@@ -72,7 +78,7 @@ fn contents(c: &Checkpoint) -> Contents<'_> {
         dimension: c.dimension,
         saved: &c.saved,
         columns: &c.columns,
-        due: c.due,
+        due: c.due.clone(),
         tables: &c.record.tables,
         waves: &c.record.waves,
         histories: c.record.histories.as_ref(),

@@ -1,6 +1,7 @@
 //! The command line and the files as a contract, checked from outside: the built program is
 //! started in temporary folders, plain and by mpirun, each time under a limit.
 
+mod accuracy;
 mod bad_input;
 mod command_line;
 mod commands;

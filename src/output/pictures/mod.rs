@@ -45,6 +45,7 @@ mod stroke;
 mod text;
 mod thin;
 mod ticks;
+mod tile_map;
 mod wave_diagram;
 
 #[cfg(test)]
@@ -63,6 +64,7 @@ pub use hugoniot::{Hugoniot, HugoniotCurve, State};
 pub use limits::Shading;
 pub use line_out::{LineOut, LineOutCurve, Look};
 pub use profile::Profile;
+pub use tile_map::TileMap;
 pub use wave_diagram::{Row, WaveDiagram, WavePath};
 
 /// What can go wrong with a picture.

@@ -7,6 +7,7 @@ mod boundary;
 mod courant;
 mod domain;
 mod effects;
+mod estimate;
 mod frame;
 mod front;
 mod impact;
@@ -86,6 +87,7 @@ impl CheckedScene {
         output::check_tracers(&checked)?;
         output::check_checkpoints(&checked.scene)?;
         reference::check(&mut checked)?;
+        estimate::check(&checked)?;
         if dimension == 1 {
             impact::check(&mut checked)?;
         }

@@ -6,6 +6,7 @@
 mod contact;
 mod course;
 mod effects;
+mod estimate;
 mod matter;
 mod method;
 mod motion;
@@ -21,6 +22,7 @@ use serde::{Deserialize, Serialize};
 pub use contact::*;
 pub use course::*;
 pub use effects::*;
+pub use estimate::*;
 pub use matter::*;
 pub use method::*;
 pub use motion::*;
@@ -74,6 +76,9 @@ pub struct Scene {
     /// The exact solution that the run is held against.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reference: Option<Reference>,
+    /// A statement of the run's own errors; absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error_estimate: Option<ErrorEstimate>,
 }
 
 /// The domain, a box of cells cut into patches.

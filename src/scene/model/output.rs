@@ -20,6 +20,42 @@ pub struct Output {
     pub hdf5: bool,
     /// Draw the pictures.
     pub pictures: bool,
+    /// What `flyer-mpm plan` has foretold, which the run is held against at its end; absent:
+    /// nothing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plan: Option<Planned>,
+}
+
+/// What has been foretold of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Planned {
+    /// The quantity.
+    pub quantity: PlannedQuantity,
+    /// Its relative error that was wanted [-].
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub wanted: f64,
+    /// The error to expect [-].
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub error: f64,
+    /// User CPU time of the time loop [s].
+    #[schemars(range(min = 0.0))]
+    pub cpu_seconds: f64,
+    /// Its wall time [s].
+    #[schemars(range(min = 0.0))]
+    pub wall_seconds: f64,
+}
+
+/// What a plan is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PlannedQuantity {
+    /// Pressure of the plateau behind the shock.
+    PlateauPressure,
+    /// Relative L1 of each profile's pressure.
+    L1,
+    /// Time of arrival at a place.
+    ArrivalTime,
 }
 
 impl Default for Output {
@@ -30,6 +66,7 @@ impl Default for Output {
             checkpoint: None,
             hdf5: true,
             pictures: true,
+            plan: None,
         }
     }
 }

@@ -1,0 +1,39 @@
+//! Half-widths against true errors of the impacts that no law was fitted on.
+
+use std::path::Path;
+
+use flyer_mpm::output::pictures::{
+    Axis, Color, Figure, Panel, PictureError, Points, Series, Stroke, Style, draw as draw_figure,
+};
+
+use crate::estimates::{QUANTITIES, Told, judge};
+
+/// Draws a panel a quantity; cases whose interval does not hold the truth are red.
+pub fn draw(all: &[Vec<Told>], stem: &Path) -> Result<(), PictureError> {
+    let x = Axis::log("True error: fraction of the plateau, of the time through a cell, of L1", "");
+    let mut figure = Figure::new("What runs tell of their errors, on impacts not fitted on", x);
+    for (name, told) in QUANTITIES.iter().zip(all) {
+        let points = |held: bool| {
+            let of = told.iter().filter_map(|t| {
+                let (error, width) = (t.error / t.unit, t.half_width? / t.unit);
+                ((error <= width) == held && error > 0.0).then_some((error, width))
+            });
+            let (x, y): (Vec<f64>, Vec<f64>) = of.unzip();
+            Points::new(x, y)
+        };
+        let (cases, held, median) = judge(told);
+        let all: Vec<f64> = [points(true), points(false)].into_iter().flat_map(|p| p.x).collect();
+        let low = all.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = all.iter().copied().fold(0.0, f64::max);
+        let mark = |color| Style { mark: Some(4.0), ..Style::marks(color) };
+        let equal = Style::line(Color::BLACK).stroke(Stroke::Dashed).width(1.5);
+        let panel = Panel::new(Axis::log(format!("± {name}"), ""))
+            .series(Series::new("holds the truth", points(true), mark(Color::palette(0))))
+            .series(Series::new("does not", points(false), mark(Color::RED)))
+            .series(Series::new("half-width = error", Points::new([low, high], [low, high]), equal))
+            .note(format!("{cases} cases, {:.1} % held, median ratio {median:.1}", 100.0 * held));
+        figure = figure.panel(panel);
+    }
+    draw_figure(&figure, stem)?;
+    Ok(())
+}

@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# What accuracy costs in time: runs the studies of inputs/studies/ into output/studies/ (what an
+# earlier call has run is not run again), and checks what the document says of viscosity in words.
+# --quick: the shorter study of schemes and the viscosity sweep, a few minutes.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+# shellcheck source=scripts/mpi_env.sh
+. "$root/scripts/mpi_env.sh"
+cd "$root"
+
+studies=(schemes viscosity viscosity_default courant price)
+case "${1:-}" in
+    --quick) studies=(quick viscosity) ;;
+    "") ;;
+    *) echo "usage: scripts/accuracy_cost.sh [--quick]" >&2; exit 2 ;;
+esac
+scripts/setup.sh
+cargo build --release --quiet --bin flyer-mpm --example viscosity_claims
+target="${CARGO_TARGET_DIR:-target}/release"
+for study in "${studies[@]}"; do
+    "$target/flyer-mpm" study "inputs/studies/$study.json"
+done
+"$target/examples/viscosity_claims" output/studies/viscosity

@@ -1,0 +1,148 @@
+//! When a wave arrives at places in a body: looked at after every step.
+//!
+//! A place lies between two particles; what arrives at them is interpolated between their own
+//! places, so that runs on other cells tell of the same place.
+
+use decomp::Comm;
+use serde::{Deserialize, Serialize};
+
+use crate::scene::CheckedScene;
+use crate::simulation::Simulation;
+
+/// A particle near a place, and when its pressure has passed the two levels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Passing {
+    /// Time of the last look \[s\].
+    last_time: f64,
+    /// Pressure then \[Pa\].
+    last_pressure: f64,
+    /// When the pressure passed a fifth of the level \[s\].
+    toe: Option<f64>,
+    /// When it passed the level \[s\].
+    half: Option<f64>,
+}
+
+/// A place between two particles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Between {
+    /// Ids of the particles.
+    pub ids: [u64; 2],
+    /// Weights of what they tell, with sum 1.
+    pub weights: [f64; 2],
+}
+
+impl Between {
+    /// The particles about `at` \[m\] in a body that is a box filled evenly.
+    pub fn new(scene: &CheckedScene, body: usize, at: f64) -> Between {
+        let first: u64 = scene.bodies[..body].iter().map(|b| b.particles).sum();
+        let own = &scene.bodies[body];
+        let length = (own.upper[0] - own.lower[0]) / own.particles as f64;
+        // counted in particles from the centre of the first
+        let along = (at - own.lower[0]) / length - 0.5;
+        let before = along.floor().clamp(0.0, own.particles.saturating_sub(2) as f64);
+        let after = (before + 1.0).min(own.particles as f64 - 1.0);
+        let share = along - before;
+        Between {
+            ids: [first + before as u64, first + after as u64],
+            weights: [1.0 - share, share],
+        }
+    }
+}
+
+/// What is looked at, and what has come.
+#[derive(Clone, Debug, Default)]
+pub struct Arrivals {
+    places: Vec<Between>,
+    /// Levels, half of the greatest pressure that a companion has felt there \[Pa\]; none: nothing
+    /// came there.
+    levels: Vec<Option<f64>>,
+    wanted: Vec<u64>,
+    passings: Vec<[Passing; 2]>,
+}
+
+impl Arrivals {
+    /// Looks at places with these levels.
+    pub fn new(places: Vec<Between>, levels: Vec<Option<f64>>) -> Arrivals {
+        let mut wanted: Vec<u64> = places.iter().flat_map(|p| p.ids).collect();
+        wanted.sort_unstable();
+        wanted.dedup();
+        let passings = vec![[Passing::default(); 2]; places.len()];
+        Arrivals { places, levels, wanted, passings }
+    }
+
+    /// Looks at the particles. Collective.
+    pub fn look<C: Comm, const D: usize>(&mut self, simulation: &Simulation<'_, C, D>) {
+        if self.places.is_empty() {
+            return;
+        }
+        let followed = simulation.follow(&self.wanted);
+        // another rank than the first is told nothing
+        if followed.is_empty() {
+            return;
+        }
+        let time = simulation.time();
+        for ((place, level), passings) in
+            self.places.iter().zip(&self.levels).zip(&mut self.passings)
+        {
+            let Some(level) = level else { continue };
+            for (id, passing) in place.ids.iter().zip(passings) {
+                let at = self.wanted.binary_search(id).expect("a place's particle is wanted");
+                if let Some(followed) = &followed[at] {
+                    passing.see(time, followed.pressure, *level);
+                }
+            }
+        }
+    }
+
+    /// When the wave has come to place `k`, and how long it took to rise from a fifth of the level
+    /// to it \[s\]; none where it has not risen for thrice that time since.
+    pub fn time(&self, k: usize) -> Option<(f64, f64)> {
+        let (place, passings) = (self.places.get(k)?, self.passings.get(k)?);
+        let mean = |of: fn(&Passing) -> Option<f64>| {
+            let both = [of(&passings[0])?, of(&passings[1])?];
+            Some(place.weights[0] * both[0] + place.weights[1] * both[1])
+        };
+        let (toe, half) = (mean(|p| p.toe)?, mean(|p| p.half)?);
+        let rise = half - toe;
+        (passings[0].last_time >= half + 3.0 * rise).then_some((half, rise))
+    }
+
+    /// What a checkpoint keeps.
+    pub fn state(&self) -> Vec<[Passing; 2]> {
+        self.passings.clone()
+    }
+
+    /// Goes on from it.
+    pub fn resume(&mut self, state: Vec<[Passing; 2]>) {
+        if state.len() == self.passings.len() {
+            self.passings = state;
+        }
+    }
+}
+
+impl Passing {
+    fn see(&mut self, time: f64, pressure: f64, level: f64) {
+        let (t0, p0) = (self.last_time, self.last_pressure);
+        let cross = |level: f64| {
+            (p0 < level && pressure >= level)
+                .then(|| t0 + (time - t0) * (level - p0) / (pressure - p0))
+        };
+        self.toe = self.toe.or(cross(0.2 * level));
+        self.half = self.half.or(cross(level));
+        (self.last_time, self.last_pressure) = (time, pressure);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_passing_counts() {
+        let mut passing = Passing::default();
+        for (t, p) in [(1.0, 0.0), (2.0, 4.0), (3.0, 8.0), (4.0, 0.0), (5.0, 9.0)] {
+            passing.see(t, p, 6.0);
+        }
+        assert_eq!((passing.toe, passing.half), (Some(1.3), Some(2.5)));
+    }
+}

@@ -1,0 +1,179 @@
+//! The same scene on larger cells, run before it.
+
+use decomp::Comm;
+
+use super::arrival::{Arrivals, Between};
+use super::{Line, line};
+use crate::run::user_cpu_seconds;
+use crate::scene::{self, CellSize, CheckedScene};
+use crate::simulation::{RunError, Simulation};
+
+/// How much larger the companions' cells are.
+pub const FACTORS: [usize; 2] = [4, 2];
+
+/// What a companion has told.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Companion {
+    /// Its cells over the scene's.
+    pub factor: f64,
+    /// The body's pressures, a line a profile.
+    pub profiles: Vec<Line>,
+    /// When the wave came to the places \[s\].
+    pub arrivals: Vec<Option<f64>>,
+}
+
+/// All companions.
+#[derive(Clone, Debug, Default)]
+pub struct Companions {
+    /// Those that have reached the end; at the first rank.
+    pub done: Vec<Companion>,
+    /// Half of the greatest pressures that the finest of them has felt at the places \[Pa\].
+    pub levels: Vec<Option<f64>>,
+    /// What they took of this process \[s\].
+    pub cpu_seconds: f64,
+    /// Why one has not reached its end.
+    pub notes: Vec<String>,
+}
+
+/// The scene on cells `factor` times as large, without what costs; the domain grows at its upper
+/// end to a whole number of them. The message where that is no scene.
+pub fn coarser(scene: &CheckedScene, factor: usize) -> Result<CheckedScene, String> {
+    let mut new = scene.scene.clone();
+    let size = scene.cell_size[0] * factor as f64;
+    let cells = scene.cells[0].div_ceil(factor);
+    new.domain.upper[0] = new.domain.lower[0] + cells as f64 * size;
+    new.domain.cell_size = CellSize::Uniform(size);
+    new.domain.patches = None;
+    new.error_estimate = None;
+    new.reference = None;
+    new.time.wall_limit = None;
+    new.output = scene::Output {
+        profiles: new.output.profiles.clone(),
+        hdf5: false,
+        pictures: false,
+        ..scene::Output::default()
+    };
+    scene::check(new, &scene.file).map_err(|error| error.to_string())
+}
+
+/// Greatest pressures at places, looked at after every step.
+struct Peaks {
+    places: Vec<Between>,
+    /// Time and the two particles' pressures, a list a place.
+    series: Vec<Vec<(f64, [f64; 2])>>,
+}
+
+impl Peaks {
+    fn look<C: Comm>(&mut self, simulation: &Simulation<'_, C, 1>) {
+        for (place, series) in self.places.iter().zip(&mut self.series) {
+            if let [Some(a), Some(b)] = simulation.follow(&place.ids)[..] {
+                series.push((simulation.time(), [a.pressure, b.pressure]));
+            }
+        }
+    }
+
+    /// Half of the greatest pressure at place `k`.
+    fn level(&self, k: usize) -> Option<f64> {
+        let peak = self.series[k].iter().map(|s| s.1[0].min(s.1[1])).fold(0.0, f64::max);
+        (peak > 0.0).then_some(0.5 * peak)
+    }
+
+    /// When the pressure first passes `level` at place `k` \[s\].
+    fn passes(&self, k: usize, level: f64) -> Option<f64> {
+        let cross = |side: usize| {
+            self.series[k].windows(2).find_map(|w| {
+                let ((t0, p0), (t1, p1)) = ((w[0].0, w[0].1[side]), (w[1].0, w[1].1[side]));
+                (p0 < level && p1 >= level).then(|| t0 + (t1 - t0) * (level - p0) / (p1 - p0))
+            })
+        };
+        let weights = self.places[k].weights;
+        Some(weights[0] * cross(0)? + weights[1] * cross(1)?)
+    }
+}
+
+/// Runs the companions of a scene on a line. Collective; the first rank has what they told.
+pub fn run<C: Comm>(
+    comm: &C,
+    scene: &CheckedScene,
+    body: usize,
+    threads: usize,
+) -> Result<Companions, RunError> {
+    let start = user_cpu_seconds();
+    let places = scene.scene.error_estimate.as_ref().map_or(Vec::new(), |e| e.arrivals.clone());
+    let mut all = Companions::default();
+    let mut told: Vec<(f64, Vec<Line>, Peaks)> = Vec::new();
+    for factor in FACTORS {
+        let coarse = match coarser(scene, factor) {
+            Ok(coarse) => coarse,
+            Err(reason) => {
+                all.notes.push(format!("no companion on cells {factor} times as large: {reason}"));
+                continue;
+            }
+        };
+        let between = places.iter().map(|&at| Between::new(&coarse, body, at)).collect();
+        let mut peaks = Peaks { places: between, series: vec![Vec::new(); places.len()] };
+        match one(comm, &coarse, body, threads, &mut peaks) {
+            Ok(profiles) => told.push((factor as f64, profiles, peaks)),
+            // all ranks know of these
+            Err(
+                error @ (RunError::Particle { .. }
+                | RunError::TimeStep { .. }
+                | RunError::TooLong { .. }
+                | RunError::Lost { .. }),
+            ) => all.notes.push(format!("companion on cells {factor} times as large: {error}")),
+            Err(error) => return Err(error),
+        }
+    }
+    let finest = told.last();
+    all.levels =
+        (0..places.len()).map(|k| finest.and_then(|(_, _, peaks)| peaks.level(k))).collect();
+    all.done = told
+        .into_iter()
+        .map(|(factor, profiles, peaks)| Companion {
+            factor,
+            profiles,
+            arrivals: (0..places.len()).map(|k| peaks.passes(k, all.levels[k]?)).collect(),
+        })
+        .collect();
+    all.cpu_seconds = user_cpu_seconds() - start;
+    Ok(all)
+}
+
+/// One companion: the body's profiles.
+fn one<C: Comm>(
+    comm: &C,
+    scene: &CheckedScene,
+    body: usize,
+    threads: usize,
+    peaks: &mut Peaks,
+) -> Result<Vec<Line>, RunError> {
+    let mut simulation = Simulation::<_, 1>::new(scene, comm, threads)?;
+    let mut profiles = Vec::new();
+    for &time in &scene.profile_times {
+        while simulation.time() < time {
+            simulation.advance(time)?;
+            peaks.look(&simulation);
+        }
+        let table = simulation.gather();
+        profiles.push(table.map_or(Line::new(), |(table, _)| line(&table, body)));
+    }
+    while simulation.time() < scene.scene.time.end {
+        simulation.advance(scene.scene.time.end)?;
+        peaks.look(&simulation);
+    }
+    Ok(profiles)
+}
+
+/// What the run itself looks at, by the companions' levels, which all ranks need alike.
+pub fn arrivals<C: Comm>(
+    comm: &C,
+    scene: &CheckedScene,
+    body: usize,
+    companions: &Companions,
+) -> Arrivals {
+    let places = scene.scene.error_estimate.as_ref().map_or(&[][..], |e| &e.arrivals);
+    let between = places.iter().map(|&at| Between::new(scene, body, at)).collect();
+    let levels = serde_json::to_vec(&companions.levels).expect("levels are plain data");
+    let levels = serde_json::from_slice(&comm.broadcast(levels)).expect("rank 0 has told");
+    Arrivals::new(between, levels)
+}

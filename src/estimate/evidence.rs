@@ -1,0 +1,103 @@
+//! What tells of a run's error: how its answer differs from its companions', and its noise. All
+//! fractions, so that laws hold for any units and sizes.
+
+use std::collections::BTreeMap;
+
+use super::Line;
+use super::plateau::Plateau;
+
+/// Evidence by name.
+pub type Evidence = BTreeMap<String, f64>;
+
+fn named(pairs: impl IntoIterator<Item = (String, f64)>) -> Evidence {
+    pairs.into_iter().filter(|(_, v)| v.is_finite()).collect()
+}
+
+/// Of the plateau's pressure, as fractions of it: `difference_2`, `difference_4`, from the
+/// companions' mean over the same places, `noise`, its length in `cells`, and how level it is:
+/// `halves`, `wide`.
+pub fn of_plateau(found: &Plateau, others: &[(f64, &Line)], h: f64) -> Evidence {
+    let theirs = others.iter().filter_map(|(factor, line)| {
+        let reach = found.reach.max(factor * h);
+        let within = line.iter().filter(|q| (q.0 - found.centre).abs() <= reach);
+        let (count, sum) = within.fold((0.0, 0.0), |(n, sum), q| (n + 1.0, sum + q.1));
+        let other: f64 = if count > 0.0 { sum / count } else { at(line, found.centre)? };
+        Some((format!("difference_{factor}"), (other / found.pressure - 1.0).abs()))
+    });
+    let own = [
+        ("noise", found.noise),
+        ("cells", found.cells),
+        ("halves", found.halves),
+        ("wide", found.wide),
+    ];
+    named(own.map(|(name, value)| (name.to_string(), value)).into_iter().chain(theirs))
+}
+
+/// Of a profile: `difference_2`, `difference_4`, the relative L1 distance to the companions'.
+pub fn of_profile(own: &Line, others: &[(f64, &Line)]) -> Evidence {
+    named(others.iter().map(|(factor, line)| (format!("difference_{factor}"), distance(own, line))))
+}
+
+/// Of an arrival, in times that sound takes through a cell: `difference_2`, `difference_4` from
+/// the companions, and the `rise` from a tenth to half of the level's double.
+pub fn of_arrival(time: f64, rise: f64, others: &[(f64, f64)], cell_time: f64) -> Evidence {
+    let theirs = others
+        .iter()
+        .map(|(factor, t)| (format!("difference_{factor}"), (t - time).abs() / cell_time));
+    named([("rise".to_string(), rise / cell_time)].into_iter().chain(theirs))
+}
+
+/// int |a - b| dx / int |a| dx over where `a` is, values held beyond the ends.
+pub fn distance(a: &Line, b: &Line) -> f64 {
+    let (Some(first), Some(last)) = (a.first(), a.last()) else { return f64::NAN };
+    let mut places: Vec<f64> = a.iter().chain(b).map(|q| q.0).collect();
+    places.retain(|x| (first.0..=last.0).contains(x));
+    places.sort_by(f64::total_cmp);
+    let (mut difference, mut whole) = (0.0, 0.0);
+    let mut before: Option<(f64, f64, f64)> = None;
+    for x in places {
+        let (Some(pa), Some(pb)) = (at(a, x), at(b, x)) else { return f64::NAN };
+        if let Some((x0, d0, a0)) = before {
+            difference += (x - x0) * mean_size(d0, pa - pb);
+            whole += (x - x0) * mean_size(a0, pa);
+        }
+        before = Some((x, pa - pb, pa));
+    }
+    difference / whole
+}
+
+/// Value of a line at x; that of an end beyond it.
+fn at(line: &Line, x: f64) -> Option<f64> {
+    let k = line.partition_point(|q| q.0 < x);
+    let (Some(after), Some(before)) = (line.get(k), k.checked_sub(1).map(|k| line[k])) else {
+        return line.get(k).or(line.last()).map(|q| q.1);
+    };
+    let width = after.0 - before.0;
+    Some(if width > 0.0 {
+        before.1 + (after.1 - before.1) * (x - before.0) / width
+    } else {
+        after.1
+    })
+}
+
+/// Mean of |d| on a piece where d goes straight from `a` to `b`.
+fn mean_size(a: f64, b: f64) -> f64 {
+    match a * b >= 0.0 {
+        true => 0.5 * (a + b).abs(),
+        false => 0.5 * (a * a + b * b) / (a.abs() + b.abs()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_are_areas() {
+        let a: Line = vec![(0.0, 1.0), (1.0, 1.0), (2.0, 1.0)];
+        let b: Line = vec![(0.0, 1.0), (1.0, 1.5), (2.0, 1.0)];
+        assert!((distance(&a, &b) - 0.25).abs() < 1e-12);
+        assert_eq!(distance(&a, &a), 0.0);
+        assert!(distance(&Line::new(), &a).is_nan());
+    }
+}

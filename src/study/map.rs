@@ -1,0 +1,46 @@
+//! A map of a study: an error over two keys, as colour.
+
+use super::Row;
+use super::cases::fits;
+use super::curves::quantity;
+use super::spec::MapPicture;
+use crate::output::pictures::{Axis, Figure, TileMap};
+
+/// The figure of this map. Cases that failed leave their place empty.
+pub fn figure(picture: &MapPicture, rows: &[Row]) -> Figure {
+    let rows: Vec<&Row> = rows.iter().filter(|row| fits(&row.labels, &picture.only)).collect();
+    let places = |key: &str| {
+        let mut all: Vec<f64> = rows.iter().filter_map(|row| row.number(key, 0.0)).collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all
+    };
+    let (xs, ys) = (places(&picture.x), places(&picture.y));
+    let (label, unit, factor) = quantity(&picture.value);
+    let value = |x: f64, y: f64| {
+        let at = |row: &&&Row| {
+            row.number(&picture.x, 0.0) == Some(x) && row.number(&picture.y, 0.0) == Some(y)
+        };
+        let value = rows.iter().find(at)?.number(&picture.value, picture.time)?.abs();
+        Some(picture.most.map_or(value, |most| value.min(most)) * factor)
+    };
+    let values = ys.iter().map(|&y| xs.iter().map(|&x| value(x, y)).collect()).collect();
+    let axis = |key: &str| {
+        let (label, unit, _) = quantity(key);
+        Axis::linear(label, unit).tight()
+    };
+    let most = picture
+        .most
+        .map(|m| format!(", {} {unit} and more alike", (m * factor * 1e6).round() / 1e6));
+    TileMap {
+        title: picture.title.clone(),
+        x: axis(&picture.x).ticks(&xs[..]),
+        y: axis(&picture.y).ticks(&ys[..]),
+        places: [xs, ys],
+        values,
+        label: label + &most.unwrap_or_default(),
+        unit: unit.into(),
+        marks: picture.marks.clone(),
+    }
+    .figure()
+}

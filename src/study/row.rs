@@ -1,0 +1,102 @@
+//! A row of a study's table: labels, errors and seconds of a case.
+
+use std::collections::BTreeMap;
+
+use super::record::{Record, Seconds};
+
+/// A case and what became of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Its labels.
+    pub labels: BTreeMap<String, String>,
+    /// Ranks.
+    pub ranks: usize,
+    /// Threads a rank.
+    pub threads: usize,
+    /// What was measured.
+    pub record: Record,
+}
+
+/// Errors that the table has of each profile, as they are named in `summary.json`; a dot goes into
+/// an object.
+pub const ERRORS: [&str; 19] = [
+    "l1",
+    "l2",
+    "e1_cells",
+    "plateau",
+    "noise",
+    "rise_cells",
+    "shock_position_cells",
+    "overshoot",
+    "plateau_4",
+    "density_plateau",
+    "energy_plateau",
+    "density_l1",
+    "density_interface",
+    "energy_interface",
+    "mean_density_error",
+    "waves.shock",
+    "waves.fan",
+    "waves.plateau_2",
+    "waves.plateau_4",
+];
+
+impl Row {
+    /// Median over the repeats.
+    pub fn seconds(&self, of: fn(&Seconds) -> f64) -> Option<f64> {
+        let mut all: Vec<f64> = self.record.seconds.iter().map(of).collect();
+        all.sort_by(f64::total_cmp);
+        let middle = all.len() / 2;
+        match all.len() {
+            0 => None,
+            n if n % 2 == 1 => Some(all[middle]),
+            _ => Some(0.5 * (all[middle - 1] + all[middle])),
+        }
+    }
+
+    /// Least and greatest over the repeats.
+    pub fn spread(&self, of: fn(&Seconds) -> f64) -> Option<(f64, f64)> {
+        let all = self.record.seconds.iter().map(of);
+        all.fold(None, |range: Option<(f64, f64)>, s| match range {
+            None => Some((s, s)),
+            Some((low, high)) => Some((low.min(s), high.max(s))),
+        })
+    }
+
+    /// The error `name` of the profile at `time` \[s\], signed; none where it is undefined.
+    pub fn error(&self, name: &str, time: f64) -> Option<f64> {
+        let measured = self.record.measured.as_ref()?;
+        let near = |t: f64| (t - time).abs() <= 1e-9 * time.abs();
+        let profile = measured.profiles.iter().find(|p| near(p.time))?;
+        name.split('.').try_fold(profile.errors.as_ref()?, |v, key| v.get(key))?.as_f64()
+    }
+
+    /// A number by its name: `loop_cpu_seconds`, `loop_wall_seconds`, `cpu_seconds`,
+    /// `core_seconds` (wall time of the loop times cores held), `energy_drift`, `momentum_drift`,
+    /// `particles`, `steps`, a label that is a number, or an error at `time` \[s\].
+    pub fn number(&self, name: &str, time: f64) -> Option<f64> {
+        let measured = self.record.measured.as_ref();
+        match name {
+            "loop_cpu_seconds" => self.seconds(|s| s.loop_cpu),
+            "loop_wall_seconds" => self.seconds(|s| s.loop_wall),
+            "cpu_seconds" => self.seconds(|s| s.cpu),
+            "core_seconds" => {
+                self.seconds(|s| s.loop_wall).map(|s| s * (self.ranks * self.threads) as f64)
+            }
+            "energy_drift" => measured?.energy_drift,
+            "momentum_drift" => measured?.momentum_drift,
+            "particles" => Some(measured?.particles as f64),
+            "steps" => Some(measured?.steps as f64),
+            _ => match self.labels.get(name) {
+                Some(label) => label.parse().ok(),
+                None => self.error(name, time),
+            },
+        }
+    }
+
+    /// The values of these labels as one name.
+    pub fn name(&self, labels: &[String]) -> String {
+        let values = labels.iter().filter_map(|label| self.labels.get(label).map(String::as_str));
+        values.collect::<Vec<_>>().join(", ")
+    }
+}

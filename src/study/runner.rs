@@ -1,0 +1,247 @@
+//! Runs the cases of a study, each in a process of its own, and keeps what they give.
+
+use std::fs;
+use std::io::{IsTerminal, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use sha2::{Digest, Sha256};
+
+use super::cases::{Case, cases};
+use super::record::Record;
+use super::spec::Study;
+use super::{Row, StudyError};
+use crate::output::summary::Summary;
+use crate::scene;
+
+/// Starts the program and keeps its results.
+#[derive(Clone, Debug)]
+pub struct Runner {
+    /// The program.
+    pub program: PathBuf,
+    /// Folder of the study's results.
+    pub folder: PathBuf,
+    /// Say nothing.
+    pub quiet: bool,
+}
+
+/// How often a running case is looked at.
+const LOOK: Duration = Duration::from_millis(2);
+
+/// A case with what it runs and where its record is.
+struct Job {
+    case: Case,
+    /// The resolved scene and the record's key; the message where the scene is refused.
+    scene: Result<(String, String), String>,
+    /// Particles times cells: what a run's time goes with.
+    weight: f64,
+    record: Record,
+}
+
+impl Job {
+    fn is_done(&self, repeats: usize) -> bool {
+        self.record.failure.is_some() || self.record.seconds.len() >= repeats
+    }
+}
+
+impl Runner {
+    /// Runs what is missing; rows in the order of the cases.
+    pub fn run(&self, study: &Study) -> Result<Vec<Row>, StudyError> {
+        let records = self.folder.join("runs");
+        fs::create_dir_all(&records).map_err(StudyError::io("cannot be made", &records))?;
+        let mut jobs = self.jobs(study, &records)?;
+        let left = |jobs: &[Job], from: usize| -> f64 {
+            let missing = |j: &Job| match j.is_done(study.repeats) {
+                true => 0.0,
+                false => j.weight * (study.repeats - j.record.seconds.len().max(from)) as f64,
+            };
+            jobs.iter().map(missing).sum()
+        };
+        let mut progress = Progress::new(left(&jobs, 0), !self.quiet);
+        // all cases in turn, so that a machine that slows down slows all alike
+        for repeat in 0..study.repeats {
+            for k in 0..jobs.len() {
+                let job = &mut jobs[k];
+                if job.is_done(study.repeats) || job.record.seconds.len() > repeat {
+                    continue;
+                }
+                let Ok((scene, key)) = job.scene.clone() else { continue };
+                match self.once(&job.case, &scene, &key, study.limit_seconds)? {
+                    Ended::Well(summary) => job.record.add(&summary),
+                    Ended::Badly { reason, .. } => job.record.failure = Some(reason.clone()),
+                }
+                job.record.write(&records, &key)?;
+                let name = job.case.labels.values().cloned().collect::<Vec<_>>().join(", ");
+                progress.tell(left(&jobs, 0), &name);
+            }
+        }
+        progress.finish();
+        let row = |job: Job| Row {
+            labels: job.case.labels,
+            ranks: job.case.ranks,
+            threads: job.case.threads,
+            record: job.record,
+        };
+        Ok(jobs.into_iter().map(row).collect())
+    }
+
+    /// The cases, with what is known of them already.
+    fn jobs(&self, study: &Study, records: &Path) -> Result<Vec<Job>, StudyError> {
+        let refused =
+            |reason: String| StudyError::Study { file: study.scene.display().to_string(), reason };
+        let bytes = scene::read(&study.scene).map_err(|e| refused(e.to_string()))?;
+        let version = self.version()?;
+        let file = study.scene.display().to_string();
+        let job = |case: Case| {
+            let checked = case.scene(&bytes, &file);
+            let weight =
+                checked.as_ref().map_or(0.0, |c| c.particles as f64 * c.cell_count() as f64);
+            let scene = checked.map(|c| {
+                let text = serde_json::to_string_pretty(&c.scene).expect("a scene is plain data");
+                (text, case.key(&c, &version))
+            });
+            let record = match &scene {
+                Ok((_, key)) => Record::read(records, key).unwrap_or_default(),
+                Err(reason) => {
+                    Record { failure: Some(format!("refused: {reason}")), ..Record::default() }
+                }
+            };
+            Job { case, scene, weight, record }
+        };
+        Ok(cases(study).into_iter().map(job).collect())
+    }
+
+    /// The program's version: its number and what its file holds, for results are those of its
+    /// code.
+    fn version(&self) -> Result<String, StudyError> {
+        let bytes = fs::read(&self.program)
+            .map_err(StudyError::io("the program cannot be read", &self.program))?;
+        let digest: String =
+            Sha256::digest(&bytes).iter().take(8).map(|b| format!("{b:02x}")).collect();
+        Ok(format!("{} {digest}", env!("CARGO_PKG_VERSION")))
+    }
+
+    /// Runs a case once. A process that the system ended stops the study, for that says nothing
+    /// of the case.
+    fn once(&self, case: &Case, scene: &str, key: &str, limit: f64) -> Result<Ended, StudyError> {
+        let place = self.folder.join("running");
+        fs::create_dir_all(&place).map_err(StudyError::io("cannot be made", &place))?;
+        let (file, results) = (place.join(format!("{key}.json")), place.join(key));
+        fs::write(&file, scene).map_err(StudyError::io("cannot be written", &file))?;
+        let ended = self.wait(&mut self.command(case, &file, &results), limit);
+        let outcome = match ended? {
+            None => match Summary::read(&results) {
+                Ok(summary) => Ended::Well(Box::new(summary)),
+                Err(error) => Ended::Badly { reason: error.to_string() },
+            },
+            Some(reason) => Ended::Badly { reason },
+        };
+        let _ = fs::remove_dir_all(&place);
+        Ok(outcome)
+    }
+
+    /// The command that runs a case.
+    fn command(&self, case: &Case, file: &Path, results: &Path) -> Command {
+        let mut command = match case.ranks {
+            1 => Command::new(&self.program),
+            ranks => {
+                let mut mpirun = Command::new("mpirun");
+                mpirun.args(["--oversubscribe", "--bind-to", "none"]);
+                let cores = std::thread::available_parallelism().map_or(1, usize::from);
+                if ranks * case.threads >= cores {
+                    mpirun.args(["--mca", "mpi_yield_when_idle", "1"]);
+                }
+                mpirun.args(["-n", &ranks.to_string()]).arg(&self.program);
+                mpirun
+            }
+        };
+        command.arg(file).arg("--quiet").arg("--output").arg(results);
+        command.args(["--threads", &case.threads.to_string()]);
+        command
+    }
+
+    /// Waits for the end of a run; why it failed, if it did.
+    fn wait(&self, command: &mut Command, limit: f64) -> Result<Option<String>, StudyError> {
+        let program = command.get_program().to_string_lossy().into_owned();
+        let start = |source| StudyError::Start { program: program.clone(), source };
+        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
+        let mut child = command.spawn().map_err(start)?;
+        let started = Instant::now();
+        loop {
+            let status = child.try_wait().map_err(start)?;
+            match status {
+                Some(status) if status.success() => return Ok(None),
+                Some(status) => {
+                    let said = said(&mut child);
+                    let line =
+                        said.lines().find(|l| !l.trim().is_empty() && !l.starts_with("warning"));
+                    let line = line.unwrap_or("no message").trim_start_matches("error: ");
+                    return Ok(Some(format!("{status}: {line}")));
+                }
+                None if started.elapsed().as_secs_f64() > limit => {
+                    let _ = child.kill();
+                    let _ = child.wait();
+                    return Ok(Some(format!("longer than limit_seconds = {limit}")));
+                }
+                None => std::thread::sleep(LOOK),
+            }
+        }
+    }
+}
+
+/// What a run that has ended wrote as errors.
+fn said(child: &mut Child) -> String {
+    let mut text = String::new();
+    if let Some(stderr) = &mut child.stderr {
+        let _ = stderr.read_to_string(&mut text);
+    }
+    text
+}
+
+/// How a run has ended.
+enum Ended {
+    Well(Box<Summary>),
+    Badly { reason: String },
+}
+
+/// Tells how far a study is: a bar on a terminal, else a line now and then.
+struct Progress {
+    bar: Option<ProgressBar>,
+    whole: f64,
+    started: Instant,
+    told: Instant,
+    speaks: bool,
+}
+
+impl Progress {
+    fn new(whole: f64, speaks: bool) -> Progress {
+        let bar = (speaks && std::io::stderr().is_terminal()).then(|| {
+            let bar = ProgressBar::new(1000);
+            let style = "{bar:40} {percent:>3} %  {msg}";
+            bar.set_style(ProgressStyle::with_template(style).expect("the template is sound"));
+            bar
+        });
+        Progress { bar, whole, started: Instant::now(), told: Instant::now(), speaks }
+    }
+
+    /// `left` of the whole weight is left to do.
+    fn tell(&mut self, left: f64, name: &str) {
+        let share = if self.whole > 0.0 { 1.0 - left / self.whole } else { 1.0 };
+        let seconds = self.started.elapsed().as_secs_f64() * (1.0 / share.max(1e-9) - 1.0);
+        if let Some(bar) = &self.bar {
+            bar.set_position((1000.0 * share) as u64);
+            bar.set_message(format!("{seconds:.0} s left  {name}"));
+        } else if self.speaks && self.told.elapsed() > Duration::from_secs(10) {
+            self.told = Instant::now();
+            eprintln!("{:5.1} %  {seconds:.0} s left  {name}", 100.0 * share);
+        }
+    }
+
+    fn finish(self) {
+        if let Some(bar) = self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! The table of a study as CSV: one row a case, failed ones with their reason.
+
+use super::Row;
+use super::row::ERRORS;
+use super::spec::Study;
+
+/// The table. Times are written in the heads of the columns \[us\].
+pub fn csv(study: &Study, rows: &[Row]) -> String {
+    let mut times: Vec<f64> = rows
+        .iter()
+        .filter_map(|row| row.record.measured.as_ref())
+        .flat_map(|m| m.profiles.iter().map(|p| p.time))
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let has = |name: &str, time: f64| rows.iter().any(|row| row.error(name, time).is_some());
+    let columns: Vec<(&str, f64)> = times
+        .iter()
+        .flat_map(|&time| ERRORS.iter().map(move |&name| (name, time)))
+        .filter(|&(name, time)| has(name, time))
+        .collect();
+    let mut head: Vec<String> = study.labels().iter().map(|l| field(l)).collect();
+    head.extend(
+        [
+            "status",
+            "ranks",
+            "threads",
+            "repeats",
+            "particles",
+            "cells",
+            "steps",
+            "loop_cpu_seconds",
+            "loop_cpu_seconds_least",
+            "loop_cpu_seconds_greatest",
+            "loop_wall_seconds",
+            "cpu_seconds",
+            "wall_seconds",
+            "energy_drift",
+            "momentum_drift",
+        ]
+        .map(String::from),
+    );
+    head.extend(columns.iter().map(|(name, t)| format!("{name}@{}us", t * 1e12 / 1e6)));
+    let mut text = head.join(",") + "\n";
+    for row in rows {
+        let status = row.record.failure.as_deref().unwrap_or("done");
+        let mut line: Vec<String> = study
+            .labels()
+            .iter()
+            .map(|l| field(row.labels.get(*l).map_or("", String::as_str)))
+            .collect();
+        line.extend([
+            field(status),
+            row.ranks.to_string(),
+            row.threads.to_string(),
+            row.record.seconds.len().to_string(),
+        ]);
+        let measured = row.record.measured.as_ref();
+        let count = |n: Option<u64>| n.map_or(String::new(), |n| n.to_string());
+        line.push(count(measured.map(|m| m.particles)));
+        line.push(count(measured.map(|m| m.cells)));
+        line.push(count(measured.map(|m| m.steps)));
+        let spread = row.spread(|s| s.loop_cpu);
+        let numbers = [
+            row.seconds(|s| s.loop_cpu),
+            spread.map(|s| s.0),
+            spread.map(|s| s.1),
+            row.seconds(|s| s.loop_wall),
+            row.seconds(|s| s.cpu),
+            row.seconds(|s| s.wall),
+            measured.and_then(|m| m.energy_drift),
+            measured.and_then(|m| m.momentum_drift),
+        ];
+        line.extend(numbers.map(number));
+        line.extend(columns.iter().map(|&(name, time)| number(row.error(name, time))));
+        text += &(line.join(",") + "\n");
+    }
+    text
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or(String::new(), |v| format!("{v:e}"))
+}
+
+/// A text in quotes where CSV asks for it.
+fn field(text: &str) -> String {
+    match text.contains([',', '"', '\n']) {
+        true => format!("\"{}\"", text.replace('"', "\"\"").replace('\n', " ")),
+        false => text.to_string(),
+    }
+}
