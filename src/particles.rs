@@ -7,7 +7,7 @@ use decomp::{Block, ColumnSpec, IndexBox, Layout, Mirror};
 use nalgebra::SVector;
 
 use crate::burn::Front;
-use crate::scene::{BodyForce, CheckedScene, Eos, Frame, Side, Stepping, Transfer};
+use crate::scene::{BodyForce, CheckedScene, Eos, FrameKind, Side, Stepping, Transfer};
 use crate::shape::Extent;
 
 /// Where each column stands in a block. Vectors take D columns that follow each other, tensors
@@ -242,7 +242,7 @@ impl Columns {
         let relaxed = method.pressure_relaxation.is_some();
         let touching = scene.velocity_fields() > 1;
         let transmits = scene.transmits();
-        let total = method.frame == Frame::TotalLagrangian;
+        let total = method.frame == FrameKind::TotalLagrangian;
         let same = |_: usize| Mirror::Same;
         let of_vector = |a: usize| Mirror::Negate(a);
         let of_tensor =

@@ -13,6 +13,8 @@
 //! frame, at the current volumes. What the frame cannot do: bodies that are apart do not come
 //! together, and a body does not touch itself.
 
+use decomp::Block;
+
 use super::Stepper;
 use crate::patch::{Patch, Phase};
 use crate::shape::Extent;
@@ -187,15 +189,15 @@ impl<const D: usize> Stepper<D> {
     /// Cells of the start that a signal from a row passes in a second, at most [1/s], on a line times
     /// a cell's edge [m/s]; and how much shorter than at the start a cell is there.
     #[inline(always)]
-    pub(super) fn signal_rate(&self, patch: &Patch<D>, row: usize, sound: f64) -> (f64, f64) {
+    pub(super) fn signal_rate(&self, block: &Block<D>, row: usize, sound: f64) -> (f64, f64) {
         let c = &self.columns;
-        let d = patch.block.columns[c.gradient][row];
+        let d = block.columns[c.gradient][row];
         let of = |stretch: f64| sound + self.viscosity.map_or(0.0, |q| q.speed(sound, d, stretch));
         if D == 1 {
-            let j = patch.block.columns[c.jacobian][row];
+            let j = block.columns[c.jacobian][row];
             return (of(j) / j, 1.0 / j);
         }
-        let columns = &patch.block.columns;
+        let columns = &block.columns;
         let (push, _) = inverse(self.deformation(columns, row, 0.0));
         let first = c.velocity_gradient.expect("the frame has the column in a plane");
         let stretch = stretch_of(push, std::array::from_fn(|k| columns[first + k][row]));

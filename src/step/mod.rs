@@ -36,7 +36,7 @@ use crate::grid::{Fields, Wanted};
 use crate::particles::Columns;
 use crate::patch::Patch;
 use crate::scene::{
-    CheckedScene, EnergyUpdate, Material, PressureRelaxation, ShapeKind, Side, Stepping,
+    CheckedScene, EnergyUpdate, FrameKind, Material, PressureRelaxation, ShapeKind, Side, Stepping,
     StressUpdate,
 };
 use crate::shape::{self, Extent, Shape};
@@ -311,7 +311,7 @@ impl<const D: usize> Stepper<D> {
             models,
             flows,
             shape: method.shape,
-            total: method.frame == crate::scene::Frame::TotalLagrangian,
+            total: method.frame == FrameKind::TotalLagrangian,
             cell,
             inverse_cell: cell.map(|h| 1.0 / h),
             edge,

@@ -502,7 +502,7 @@ impl<const D: usize> Stepper<D> {
         let mut shortest = 1.0f64;
         let stretched = if self.total { speed.len() } else { 0 };
         for r in 0..stretched {
-            let (rate, shorter) = self.signal_rate(patch, r, speed[r]);
+            let (rate, shorter) = self.signal_rate(&patch.block, r, speed[r]);
             fastest = fastest.max(rate);
             shortest = shortest.max(shorter);
             lost |= rate.is_nan() || !velocity.iter().all(|v| v[r].is_finite());
@@ -552,20 +552,26 @@ impl<const D: usize> Stepper<D> {
     pub fn wave_rate(&self, block: &decomp::Block<D>, row: usize) -> f64 {
         let column = |k: usize| block.columns[k][row];
         let speed = column(self.columns.sound_speed);
-        let added = self.viscosity.map_or(0.0, |q| q.speed(speed, column(self.columns.gradient)));
+        if self.total {
+            let (rate, _) = self.signal_rate(block, row, speed);
+            return if D == 1 { rate * self.inverse_cell[0] } else { rate };
+        }
+        let gradient = column(self.columns.gradient);
+        let added = self.viscosity.map_or(0.0, |q| q.speed(speed, gradient, 1.0));
         let along = |a: usize| {
             (speed + column(self.columns.velocity + a).abs() + added) * self.inverse_cell[a]
         };
         (0..D).map(along).fold(0.0, f64::max)
     }
 
-    /// The cells that an own row fills.
+    /// The cells that an own row fills; of a grid that moves with the material, those of the start.
     pub fn filled_cells(&self, block: &decomp::Block<D>, row: usize) -> f64 {
         let column = |k: usize| block.columns[k][row];
         let c = &self.columns;
         let about = if self.axisymmetric { column(c.position) } else { 1.0 };
         let scale: f64 = self.inverse_cell.iter().product();
-        column(c.volume0) * column(c.jacobian) * scale / about
+        let jacobian = if self.total { 1.0 } else { column(c.jacobian) };
+        column(c.volume0) * jacobian * scale / about
     }
 
     /// Kinetic and internal energy of an own row over its mass [J/kg].

@@ -1,7 +1,7 @@
 //! What the total-Lagrangian frame cannot do, refused with the way out.
 
 use super::super::errors::Fault;
-use super::super::model::{Frame, Side};
+use super::super::model::{FrameKind, Side};
 use super::CheckedScene;
 
 /// The way out of most.
@@ -9,7 +9,7 @@ const UPDATED: &str = "method.frame \"updated_lagrangian\"";
 
 pub(super) fn check(checked: &CheckedScene) -> Result<(), Fault> {
     let method = &checked.scene.method;
-    if method.frame != Frame::TotalLagrangian {
+    if method.frame != FrameKind::TotalLagrangian {
         return Ok(());
     }
     let refuse = |path: &str, value: serde_json::Value, why: &str, allowed: &str| {

@@ -10,8 +10,8 @@ pub struct Method {
     /// Shape function.
     pub shape: ShapeKind,
     /// Where shape functions see the particles.
-    #[serde(default, skip_serializing_if = "Frame::is_default")]
-    pub frame: Frame,
+    #[serde(default, skip_serializing_if = "FrameKind::is_default")]
+    pub frame: FrameKind,
     /// Transfer of velocity from the grid to the particles.
     pub transfer: Transfer,
     /// When stress is updated within a leapfrog step.
@@ -70,7 +70,7 @@ pub enum ShapeKind {
 /// Frames in which the grid's functions are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Frame {
+pub enum FrameKind {
     /// At the particles' current places: material moves through the grid.
     #[default]
     UpdatedLagrangian,
@@ -80,9 +80,9 @@ pub enum Frame {
     TotalLagrangian,
 }
 
-impl Frame {
+impl FrameKind {
     fn is_default(&self) -> bool {
-        *self == Frame::default()
+        *self == FrameKind::default()
     }
 }
 
