@@ -9,6 +9,11 @@ mod estimates;
 mod plan;
 #[path = "../common/random_impacts.rs"]
 mod random_impacts;
+#[path = "../common/resident.rs"]
+mod resident;
+#[path = "../common/runs.rs"]
+mod runs;
+mod schemes;
 #[path = "../common/sections.rs"]
 mod sections;
 #[path = "../common/table.rs"]
@@ -18,7 +23,16 @@ use std::process::ExitCode;
 
 use sections::Section;
 
-const SECTIONS: [(&str, Section); 2] = [("estimate", estimate::check), ("plan", plan::check)];
+const SECTIONS: [(&str, Section); 8] = [
+    ("standard", schemes::standard),
+    ("order", schemes::order),
+    ("impacts", schemes::impacts),
+    ("noh", schemes::noh),
+    ("smooth", schemes::smooth),
+    ("cost", schemes::cost),
+    ("estimate", estimate::check),
+    ("plan", plan::check),
+];
 
 /// Sections that take long, run where they are named alone.
 const LONG: [&str; 0] = [];
