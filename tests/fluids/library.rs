@@ -38,6 +38,8 @@ fn each_of_the_library_starts_a_run() {
             value["materials"]["aluminium"]["eos"] = json!({"burn": "complete"});
         }
         value["bodies"][0]["velocity"] = json!([-50.0]);
+        // the exact solution knows no strength
+        value.as_object_mut().unwrap().remove("reference");
         let outcome = run(&value);
         assert!(outcome.column("pressure").iter().any(|&p| p > 1e6), "{name}");
     }
@@ -116,11 +118,12 @@ fn tables_stand_beside_the_scene() {
         };
         put("density", &densities[..3]);
         put("specific_internal_energy", &energies);
-        let pressure: Vec<[f64; 4]> = [1200.0, 1500.0, last][..rows]
+        let pressure: Vec<f64> = [1200.0, 1500.0, last][..rows]
             .iter()
-            .map(|rho| energies.map(|e| 1e7 * (rho - 1500.0) + 2e3 * e))
+            .flat_map(|rho| energies.map(|e| 1e7 * (rho - 1500.0) + 2e3 * e))
             .collect();
-        file.new_dataset_builder().with_data(&pressure).create("pressure").map(drop).unwrap();
+        let set = file.new_dataset::<f64>().shape([rows, 4]).create("pressure").unwrap();
+        set.write_raw(&pressure).unwrap();
     };
     let named = json!({"type": "tabular", "table": "table.h5"});
     let taken = |last: f64, rows: usize| {
