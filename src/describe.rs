@@ -69,6 +69,7 @@ fn effects(scene: &CheckedScene) -> Vec<(&'static str, String)> {
     let plain = |v: &dyn erased::Json| v.text();
     vec![
         ("shape", plain(&method.shape)),
+        ("frame", plain(&method.frame)),
         ("transfer", plain(&method.transfer)),
         ("stepping", plain(&method.stepping)),
         ("stress update", plain(&method.stress_update)),

@@ -98,7 +98,8 @@ impl Effect {
             "heat_capacity" | "heat_conductance" | "heat_received" => Effect::Conduction,
             "distension" => Effect::Pores,
             "lighting_time" | "burn_fraction" => Effect::Burn,
-            "contact_impulse" => Effect::Contact,
+            "contact_impulse" | "current_volume" => Effect::Contact,
+            _ if name.starts_with("displacement") => Effect::Contact,
             _ if name.starts_with("affine_") => Effect::Affine,
             _ if name.starts_with("deviator_") || name.starts_with("rate_") => Effect::Strength,
             // of the volume's stress the first component is the pressure's

@@ -26,6 +26,7 @@ pub mod run;
 pub mod scene;
 pub mod shape;
 pub mod simulation;
+pub mod stencils;
 pub mod step;
 pub mod strength;
 pub mod threads;

@@ -67,6 +67,14 @@ pub struct Columns {
     pub domain: usize,
     /// Volume [cells], scratch, with an edge mask or contact: on a line the deformed length itself.
     pub filled: Option<usize>,
+    /// Current volume [cells] that contact looks at, scratch: in the updated frame that of `filled`.
+    pub room: Option<usize>,
+    /// Displacement at the time of the forces [m], a vector, scratch, with contact in the
+    /// total-Lagrangian frame.
+    pub shift: Option<usize>,
+    /// Distance from the axis at the time of the forces [m], scratch, in the total-Lagrangian frame
+    /// about an axis; negative in images beyond it.
+    pub radius: Option<usize>,
     /// Half edges of the deformed parallelogram [cells], two vectors, scratch, where a plane's
     /// domains deform or touch: those of the shape function, if it looks at them.
     pub half_edges: Option<usize>,
@@ -263,6 +271,7 @@ impl Columns {
             ["reference_position", "reference_position_x", "reference_position_y"];
         const FIRST: [&str; 3] =
             ["material_position", "material_position_x", "material_position_y"];
+        const SHIFT: [&str; 3] = ["displacement", "displacement_x", "displacement_y"];
         const PUSH: [&str; 4] = [
             "inverse_deformation_xx",
             "inverse_deformation_xy",
@@ -278,7 +287,7 @@ impl Columns {
             ["stress_volume_xx", "stress_volume_yy", "stress_volume_xy", "stress_volume_zz"];
         let seen = plane && extent == Extent::Current;
         // where bodies touch is where their domains do, whatever the shape function looks at
-        let deforms = seen || (plane && touching);
+        let deforms = (seen && !total) || (plane && touching);
         let solids = scene.has_solids();
         let strained = deforms || (plane && (solids || total));
         let position = vector(&["position", "position_x", "position_y"]);
@@ -314,10 +323,15 @@ impl Columns {
         let jacobian_mid = midpoint.then(|| add("jacobian_mid", "", false, false));
         let pressure_mid = relaxed.then(|| add("pressure_mid", "Pa", true, false));
         let compliance = relaxed.then(|| add("compliance", "m3/Pa", true, false));
-        let filled = method.edge_mask.is_some() || touching;
+        let filled = method.edge_mask.is_some() || (touching && !total);
         // contact looks at what particles fill; of a mask on a line the length has to do
-        let is_length = !plane && (extent == Extent::Current || !touching);
+        let is_length = !plane && (extent == Extent::Current || !touching || total);
         let volume = (filled && !is_length).then(|| add("cell_volume", "", true, false));
+        let moves = total && touching;
+        let room = moves.then(|| add("current_volume", "", true, false));
+        let shift = moves.then(|| add_all(vector(&SHIFT), "m", true, false, &of_vector));
+        let radius = (total && scene.axisymmetric())
+            .then(|| add_all(&["radius"], "m", true, false, &|_| Mirror::Negate(0)));
         let domain = add_all(domains, "", true, false, &of_domain);
         let reference = total.then(|| add_all(vector(&FIRST), "m", false, true, &same));
         let push = total
@@ -411,6 +425,9 @@ impl Columns {
             frame_force,
             side,
             load,
+            room: room.or(volume).or(filled.then_some(domain)).filter(|_| touching),
+            shift,
+            radius,
             filled: volume.or(filled.then_some(domain)),
             half_edges,
             domain,

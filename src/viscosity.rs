@@ -154,12 +154,14 @@ pub fn christensen<const D: usize>(nodes: &Nodes<'_, D>, node: usize) -> f64 {
 const TOUCHES: f64 = 1e-3;
 
 /// phi = clamp(2 min_i D_i/D_p, 0, 1) over the nodes i that a particle touches, D_i the
-/// divergence of the nodal velocity by central differences: a form for any dimension.
+/// divergence of the nodal velocity by central differences: a form for any dimension. Differences
+/// of the first places are pushed forward with the inverse of the particle's F, `push`.
 #[inline(always)]
 pub fn nodal<const K: usize, const D: usize>(
     nodes: &Nodes<'_, D>,
     row: &Row<'_, K, D>,
     gradient: f64,
+    push: Option<[[f64; D]; D]>,
 ) -> f64 {
     if gradient == 0.0 {
         return 0.0;
@@ -172,12 +174,19 @@ pub fn nodal<const K: usize, const D: usize>(
             if value > least_weight {
                 let i = row.first + line * row.stride + k;
                 let mut divergence = 0.0;
-                for axis in 0..D {
-                    let step = nodes.steps[axis];
+                let mut add = |axis: usize, along: usize, share: f64| {
+                    let step = nodes.steps[along];
                     let ends = [i - step, i + step].map(|i| nodes.velocity(axis, i));
                     if let [Some(before), Some(after)] = ends {
-                        divergence += (after - before) * (0.5 * nodes.inverse_cell[axis]);
+                        divergence += (after - before) * (share * nodes.inverse_cell[along]);
                     }
+                };
+                match &push {
+                    None => (0..D).for_each(|axis| add(axis, axis, 0.5)),
+                    Some(push) => (0..D * D).for_each(|k| {
+                        let (axis, along) = (k / D, k % D);
+                        add(axis, along, 0.5 * push[along][axis]);
+                    }),
                 }
                 least = least.min(divergence / gradient);
             }
@@ -247,8 +256,8 @@ mod tests {
         assert_eq!(christensen(&line(&jump, &ones), 2), 0.0);
         let row = |first, values| Row::<'_, 3, 1> { first, stride: 6, values, gradients: &[] };
         let (even, peaked) = ([[0.5, 0.5, 0.0]], [[0.2, 0.6, 0.2]]);
-        assert_eq!(nodal(&line(&linear, &ones), &row(2, &even), -1.0), 1.0);
-        assert_eq!(nodal(&line(&jump, &ones), &row(1, &peaked), -1.0), 0.0);
+        assert_eq!(nodal(&line(&linear, &ones), &row(2, &even), -1.0, None), 1.0);
+        assert_eq!(nodal(&line(&jump, &ones), &row(1, &peaked), -1.0, None), 0.0);
     }
 
     #[test]

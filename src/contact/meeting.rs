@@ -5,7 +5,7 @@ use std::ops::Range;
 use decomp::IndexBox;
 use smallvec::SmallVec;
 
-use crate::patch::Stencils;
+use crate::stencils::Stencils;
 use crate::transfer::lines;
 
 /// A row that touches a meeting.

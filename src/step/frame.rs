@@ -25,8 +25,8 @@ fn inverse([xx, xy, yx, yy]: [f64; 4]) -> ([f64; 4], f64) {
     ([yy * scale, -xy * scale, -yx * scale, xx * scale], determinant)
 }
 
-/// 1/|F^-1 n| along the direction n that is compressed most, with the projector
-/// n n = (E - e2)/(e1 - e2) of the rate of strain E, whose eigenvalues are e1 < e2.
+/// 1/|F^-1 n| along the direction n that is compressed most, or where the volume grows stretched most,
+/// with the projector n n = (E - e2)/(e1 - e2) of the rate of strain E with eigenvalues e1 and e2.
 #[inline(always)]
 fn stretch_of([ixx, ixy, iyx, iyy]: [f64; 4], [lxx, lxy, lyx, lyy]: [f64; 4]) -> f64 {
     // C = F^-T F^-1
@@ -35,10 +35,23 @@ fn stretch_of([ixx, ixy, iyx, iyy]: [f64; 4], [lxx, lxy, lyx, lyy]: [f64; 4]) ->
     let radius = (half * half + shear * shear).sqrt();
     let mean = 0.5 * (cx + cy);
     let square = match radius > 0.0 {
+        true if lxx + lyy > 0.0 => mean + (half * 0.5 * (cx - cy) + shear * cs) / radius,
         true => mean - (half * 0.5 * (cx - cy) + shear * cs) / radius,
         false => mean,
     };
     1.0 / square.sqrt()
+}
+
+/// F of a row, `ahead` of its column, from the columns that start at `f` and at `l`: F itself and the
+/// gradient of the velocity.
+#[inline(always)]
+fn ahead_of(columns: &[Vec<f64>], row: usize, [f, l]: [usize; 2], ahead: f64) -> [f64; 4] {
+    let tensor = |first: usize| -> [f64; 4] { std::array::from_fn(|k| columns[first + k][row]) };
+    let (f, l) = (tensor(f), tensor(l));
+    std::array::from_fn(|k| {
+        let (a, b) = (k / 2, k % 2);
+        f[k] + ahead * (l[2 * a] * f[b] + l[2 * a + 1] * f[2 + b])
+    })
 }
 
 impl<const D: usize> Stepper<D> {
@@ -62,8 +75,7 @@ impl<const D: usize> Stepper<D> {
                 (0..4).for_each(|k| columns[push + k][r] = f[k]);
                 determinant
             };
-            // also where it is no number
-            if turned.is_none() && !(determinant > 0.0) {
+            if turned.is_none() && (determinant.is_nan() || determinant <= 0.0) {
                 turned = Some(r);
             }
         }
@@ -75,18 +87,27 @@ impl<const D: usize> Stepper<D> {
     /// F of a row in a plane, `ahead` of its column.
     #[inline(always)]
     fn deformation(&self, columns: &[Vec<f64>], row: usize, ahead: f64) -> [f64; 4] {
-        let first = |c: Option<usize>| c.expect("the frame has the columns in a plane");
-        let tensor =
-            |first: usize| -> [f64; 4] { std::array::from_fn(|k| columns[first + k][row]) };
-        let f = tensor(first(self.columns.deformation));
-        if ahead == 0.0 {
-            return f;
+        let both = self.columns.deformation.zip(self.columns.velocity_gradient);
+        let (f, l) = both.expect("the frame has the columns in a plane");
+        ahead_of(columns, row, [f, l], ahead)
+    }
+
+    /// The gradients of the own rows' velocity in the columns from `out` on taken with regard to
+    /// their first places, L F.
+    pub(super) fn pull_gradient(&self, patch: &mut Patch<D>, out: usize, jacobian: usize) {
+        for r in 0..patch.block.own() {
+            let columns = &mut patch.block.columns;
+            if D == 1 {
+                columns[out][r] *= columns[jacobian][r];
+                continue;
+            }
+            let f: [f64; 4] = self.deformation(columns, r, 0.0);
+            for a in 0..D {
+                let [x, y] = [columns[out + D * a][r], columns[out + D * a + D - 1][r]];
+                columns[out + D * a][r] = x * f[0] + y * f[2];
+                columns[out + D * a + D - 1][r] = x * f[1] + y * f[3];
+            }
         }
-        let l = tensor(first(self.columns.velocity_gradient));
-        std::array::from_fn(|k| {
-            let (a, b) = (k / 2, k % 2);
-            f[k] + ahead * (l[2 * a] * f[b] + l[2 * a + 1] * f[2 + b])
-        })
     }
 
     /// The own rows' domains at the start and the volume that they fill then [cells].
@@ -99,6 +120,10 @@ impl<const D: usize> Stepper<D> {
                 patch.block.columns.get_disjoint_mut([c.volume0, k]).expect("columns differ");
             out.clear();
             out.extend(volume0[..n].iter().map(|v| v * scale));
+        }
+        if let (true, Some(filled), Some(first)) = (self.axisymmetric, c.filled, c.reference) {
+            let [x, out] = patch.block.columns.get_disjoint_mut([first, filled]).expect("differ");
+            out.iter_mut().zip(x).for_each(|(out, x)| *out /= *x);
         }
         let Some(half_lengths) = c.half_lengths.filter(|_| D > 1) else { return };
         for a in 0..D {
@@ -116,6 +141,36 @@ impl<const D: usize> Stepper<D> {
                 }),
             }
         }
+    }
+
+    /// Where the own rows are, `ahead` of their places: their distance from an axis, and what contact
+    /// looks at, with what they fill at volume ratio `jacobian` (a column).
+    pub(super) fn find_shift(&self, patch: &mut Patch<D>, ahead: f64, jacobian: usize) {
+        let c = &self.columns;
+        if let Some(radius) = c.radius {
+            let [x, v, out] = patch
+                .block
+                .columns
+                .get_disjoint_mut([c.position, c.velocity, radius])
+                .expect("columns differ");
+            out.clear();
+            out.extend(x.iter().zip(&*v).map(|(x, v)| x + ahead * v));
+        }
+        let (Some(shift), Some(room), Some(first)) = (c.shift, c.room, c.reference) else { return };
+        let n = patch.block.own();
+        let scale: f64 = self.inverse_cell.iter().product();
+        let columns = &mut patch.block.columns;
+        for a in 0..D {
+            let [x, v, first, out] = columns
+                .get_disjoint_mut([c.position + a, c.velocity + a, first + a, shift + a])
+                .expect("columns differ");
+            out.clear();
+            out.extend((0..n).map(|r| x[r] + ahead * v[r] - first[r]));
+        }
+        let [volume0, j, out] =
+            columns.get_disjoint_mut([c.volume0, jacobian, room]).expect("columns differ");
+        out.clear();
+        out.extend((0..n).map(|r| volume0[r] * j[r] * scale));
     }
 
     /// How much longer a cell is at a row than at the start, along the direction in which it is
@@ -173,11 +228,23 @@ impl<const D: usize> Stepper<D> {
                     row.add(&mut nodal_force[a], row.gradient(a), |g| g * stress[r]);
                 }
             }
+            if force && D > 1 && self.axisymmetric {
+                let hoop = stress[r] / self.radius(patch, r);
+                row.add(&mut nodal_force[0], row.values, |n| n * hoop);
+            }
         }
         for (a, (momentum, force)) in momentum.into_iter().zip(nodal_force).enumerate() {
             patch.nodes.fields[f.lumped + a] = momentum;
             patch.nodes.fields[f.acceleration + a] = force;
         }
+    }
+
+    /// F^-1 of a row at the time of the forces, where the frame has it.
+    #[inline(always)]
+    pub(super) fn push_of(&self, patch: &Patch<D>, row: usize) -> Option<[[f64; D]; D]> {
+        let push = self.columns.push?;
+        let at = |a: usize, b: usize| patch.block.columns[push + D * a + b][row];
+        Some(std::array::from_fn(|a| std::array::from_fn(|b| at(a, b))))
     }
 
     /// Faults what has passed a rigid side: the frame knows walls where material stood at the start.
@@ -197,6 +264,53 @@ impl<const D: usize> Stepper<D> {
                             method.frame \"updated_lagrangian\" knows such a wall";
                 self.fault(patch, Phase::Locate, row, what.into());
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The inverse of F.
+    fn inverse_of(f: [f64; 4]) -> [f64; 4] {
+        inverse(f).0
+    }
+
+    #[test]
+    fn a_cell_shortens_along_what_is_compressed_most() {
+        // half as long along x, which is compressed, or along y, which is not
+        let (along, across) = (inverse_of([0.5, 0.0, 0.0, 1.0]), inverse_of([1.0, 0.0, 0.0, 0.5]));
+        let compression = [-2.0, 0.0, 0.0, -0.5];
+        assert!((stretch_of(along, compression) - 0.5).abs() < 1e-15);
+        assert!((stretch_of(across, compression) - 1.0).abs() < 1e-15);
+        // the same turned by 30 degrees: R F, with the rate R E R^T
+        let (s, c) = (0.5, 0.75f64.sqrt());
+        let turned = inverse_of([0.5 * c, -s, 0.5 * s, c]);
+        let rate =
+            [-2.0 * c * c - 0.5 * s * s, -1.5 * s * c, -1.5 * s * c, -2.0 * s * s - 0.5 * c * c];
+        assert!((stretch_of(turned, rate) - 0.5).abs() < 1e-15);
+        // what grows is looked at along what grows most
+        assert!((stretch_of(along, [2.0, 0.0, 0.0, 0.5]) - 0.5).abs() < 1e-15);
+        assert!((stretch_of(along, [0.5, 0.0, 0.0, 2.0]) - 1.0).abs() < 1e-15);
+        // no direction is compressed most
+        let even = inverse_of([0.8, 0.0, 0.0, 0.8]);
+        assert!((stretch_of(even, [-1.0, 0.0, 0.0, -1.0]) - 0.8).abs() < 1e-15);
+    }
+
+    #[test]
+    fn inverses_undo() {
+        let f = [1.2, 0.3, -0.4, 0.9];
+        let (i, determinant) = inverse(f);
+        assert!((determinant - 1.2).abs() < 1e-15);
+        let product = [
+            f[0] * i[0] + f[1] * i[2],
+            f[0] * i[1] + f[1] * i[3],
+            f[2] * i[0] + f[3] * i[2],
+            f[2] * i[1] + f[3] * i[3],
+        ];
+        for (value, one) in product.into_iter().zip([1.0, 0.0, 0.0, 1.0]) {
+            assert!((value - one).abs() < 1e-15);
         }
     }
 }

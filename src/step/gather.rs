@@ -83,7 +83,7 @@ impl<const D: usize> Stepper<D> {
                 for b in 0..D {
                     patch.block.columns[affine + D * a + b][r] = if flat {
                         let slopes = match self.total {
-                            true => patch.first_gradient::<K>(r, b),
+                            true => patch.stencils.first_gradient::<K, D>(r, b),
                             false => row.gradient(b),
                         };
                         row.dot(slopes, star)
@@ -172,11 +172,8 @@ impl<const D: usize> Stepper<D> {
         let (count, layers) = (patch.nodes.nodes.count(), patch.nodes.layers);
         let first = &patch.stencils.first;
         let layer = |r: usize| if layers > 1 { first[r] as usize / count * count } else { 0 };
-        let [phi, gradient] = patch
-            .block
-            .columns
-            .get_disjoint_mut([column, self.columns.gradient])
-            .expect("columns differ");
+        let mut limiters = std::mem::take(&mut patch.block.columns[column]);
+        let (phi, gradient) = (&mut limiters, &patch.block.columns[self.columns.gradient]);
         for r in 0..n {
             // without compression there is no viscosity to limit
             phi[r] = if gradient[r] >= 0.0 {
@@ -192,11 +189,12 @@ impl<const D: usize> Stepper<D> {
                     }
                     Limiter::Nodal => {
                         let row = patch.stencils.row::<K, D>(r);
-                        viscosity::nodal(&nodes, &row, gradient[r])
+                        viscosity::nodal(&nodes, &row, gradient[r], self.push_of(patch, r))
                     }
                 }
             };
         }
+        patch.block.columns[column] = limiters;
     }
 
     /// All that the end of a mid-point step brings the own rows: volume and energy from the

@@ -36,7 +36,7 @@ use crate::grid::{Fields, Wanted};
 use crate::particles::Columns;
 use crate::patch::Patch;
 use crate::scene::{
-    CheckedScene, EnergyUpdate, Frame, Material, PressureRelaxation, ShapeKind, Side, Stepping,
+    CheckedScene, EnergyUpdate, Material, PressureRelaxation, ShapeKind, Side, Stepping,
     StressUpdate,
 };
 use crate::shape::{self, Extent, Shape};
@@ -311,7 +311,7 @@ impl<const D: usize> Stepper<D> {
             models,
             flows,
             shape: method.shape,
-            total: method.frame == Frame::TotalLagrangian,
+            total: method.frame == crate::scene::Frame::TotalLagrangian,
             cell,
             inverse_cell: cell.map(|h| 1.0 / h),
             edge,
@@ -455,16 +455,16 @@ impl<const D: usize> Stepper<D> {
             S::nodes(length)
         }
         fn push<const K: usize, const D: usize>(patch: &mut Patch<D>, push: usize) {
-            patch.push_gradients::<K>(push);
+            patch.stencils.push_gradients::<K, D>(&patch.block, push);
         }
-        let anew = !(self.total && patch.keeps_weights());
+        let anew = !(self.total && patch.stencils.are_kept(&patch.block));
         if anew {
             let width = with_shape!(self.shape, 4usize, nodes(self.longest(&patch.block)));
             with_shape!(self.shape, width, find(patch, self));
         }
         if let Some(inverse) = self.columns.push {
             if anew {
-                patch.keep_weights();
+                patch.stencils.keep(&patch.block);
             }
             with_width!(patch.stencils.width, push(patch, inverse));
         }

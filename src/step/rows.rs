@@ -60,6 +60,7 @@ impl<const D: usize> Stepper<D> {
         }
         if self.total {
             self.find_first_domains(patch);
+            self.find_shift(patch, ahead, jacobian);
             self.fault_beyond_walls(patch);
         } else {
             self.find_domains(patch, ahead, jacobian);
@@ -133,8 +134,7 @@ impl<const D: usize> Stepper<D> {
         for k in 0..4 {
             patch.block.columns[half_edges + k].resize(n, 0.0);
         }
-        let limit =
-            if self.extent() == Extent::Current { patch.reach_length } else { f64::INFINITY };
+        let limit = if self.domains_deform() { patch.reach_length } else { f64::INFINITY };
         let mut torn = None;
         let columns = &mut patch.block.columns;
         for r in 0..n {

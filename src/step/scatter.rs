@@ -173,6 +173,9 @@ impl<const D: usize> Stepper<D> {
     /// pushes its image inward.
     #[inline(always)]
     pub(super) fn radius(&self, patch: &Patch<D>, row: usize) -> f64 {
+        if let Some(radius) = self.columns.radius {
+            return patch.block.columns[radius][row];
+        }
         let fraction = patch.block.columns[self.columns.fraction][row];
         let cell = patch.block.cells[row][0];
         let (lower, edge) = (self.lower[0], self.cell[0]);

@@ -112,6 +112,9 @@ impl<const D: usize> Stepper<D> {
             to.clear();
             to.extend_from_slice(&from[..n]);
         }
+        if self.total {
+            self.pull_gradient(patch, side.gradient, jacobian);
+        }
     }
 
     /// Adds the forces of the sides at `time` [s] to those on the nodes, for a step of `dt`.

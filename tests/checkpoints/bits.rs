@@ -92,6 +92,17 @@ fn a_line_with_all_that_mid_point_steps_have() {
 }
 
 #[test]
+fn the_total_lagrangian_frame() {
+    let frame = json!({"method": {"frame": "total_lagrangian", "domain_limit": null}});
+    let line = with(&small("flyer.json"), &frame);
+    same_bits::<1>(&line, &[1, 13], &[&[3], &[1], &[5]]);
+    same_bits::<1>(&with(&small("soft_flyer.json"), &frame), &[5, 18], &[&[4], &[2]]);
+    let mut disk = with(&shipped("spinning_disk.json"), &frame);
+    disk["output"] = json!({});
+    same_bits::<2>(&disk, &[4, 17], &[&[2, 2], &[1, 3]]);
+}
+
+#[test]
 fn lines_with_leapfrog_steps() {
     for (shape, transfer, update) in
         [("cpdi", json!("flip"), "last"), ("bspline_cubic", json!("apic"), "modified_last")]

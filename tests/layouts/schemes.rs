@@ -43,6 +43,25 @@ fn each_scheme_at_the_midpoint() {
     every_scheme(small_midpoint);
 }
 
+/// A scene in the total-Lagrangian frame.
+fn total(mut scene: Value) -> Value {
+    scene["method"]["frame"] = json!("total_lagrangian");
+    scene
+}
+
+#[test]
+fn each_scheme_in_the_total_lagrangian_frame() {
+    every_scheme(|shape, transfer| total(small_midpoint(shape, transfer)));
+    for shape in SHAPES {
+        let mut scene = total(small_leapfrog(shape, &json!("flip")));
+        ending(&mut scene, 3e-8);
+        same(&scene, &format!("{shape}, leapfrog"));
+    }
+    let mut parts = total(small("soft_flyer.json"));
+    parts["bodies"][0]["box"] = json!({"lower": [-0.00006], "upper": [0.0]});
+    same(&parts, "contact");
+}
+
 #[test]
 fn bodies_that_meet_and_part() {
     for method in [

@@ -22,6 +22,15 @@ fn schemes() -> Vec<Value> {
     }
     let nodal = json!({"artificial_viscosity": {"limiter": "nodal"}});
     scenes.push(with(&short("flyer.json", 0.3e-6), &nodal));
+    let total = json!({"frame": "total_lagrangian"});
+    for (name, edit) in [
+        ("flyer.json", json!({})),
+        ("flyer.json", nodal.clone()),
+        ("flyer_uintah.json", json!({"method": {"shape": "gimp", "transfer": "flip"}})),
+    ] {
+        let scene = with(&short(name, 0.3e-6), &json!({"method": total}));
+        scenes.push(with(&scene, &edit));
+    }
     scenes
 }
 

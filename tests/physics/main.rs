@@ -7,6 +7,7 @@ mod accuracy;
 mod bits;
 mod conservation;
 mod contact;
+mod frame;
 mod hard;
 mod invariance;
 mod options;

@@ -119,6 +119,10 @@ fn other_schemes() {
     ] {
         same_bits(&with(&short("flyer_uintah.json", 1e-7), &json!({"method": method})));
     }
+    let total = json!({"method": {"frame": "total_lagrangian"}});
+    for name in ["flyer.json", "flyer_uintah.json", "soft_flyer.json"] {
+        same_bits(&with(&short(name, 1e-7), &total));
+    }
     let limiter = json!({"artificial_viscosity": {"limiter": "nodal", "limited": "both"}});
     same_bits(&with(&short("flyer.json", 1e-7), &limiter));
 }

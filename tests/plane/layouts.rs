@@ -43,6 +43,20 @@ fn the_default_scheme() {
 }
 
 #[test]
+fn the_total_lagrangian_frame() {
+    for (shape, transfer) in
+        [("cpdi_bspline_quadratic", json!({"fmpm": 4})), ("gimp", json!("flip"))]
+    {
+        let mut scene = plates();
+        scene["method"] = json!({
+            "frame": "total_lagrangian", "shape": shape, "transfer": transfer,
+            "stepping": "midpoint"
+        });
+        same(scene, shape);
+    }
+}
+
+#[test]
 fn other_schemes() {
     for (shape, transfer) in [
         ("linear", json!("flip")),

@@ -129,6 +129,25 @@ fn options_that_cannot_go_together_are_named() {
 }
 
 #[test]
+fn what_the_total_lagrangian_frame_cannot_do() {
+    let total = "method.frame=total_lagrangian";
+    let name = "method.frame = \"total_lagrangian\"";
+    for (set, value) in [
+        ("method.volume_relaxation=0.1", "method.volume_relaxation = 0.1"),
+        ("boundary={\"x_upper\": \"outflow\"}", "boundary.x_upper = \"outflow\""),
+        ("bodies.flyer.box.upper=[-1e-5]", "bodies[1] = \"target\""),
+    ] {
+        refused("flyer.json", &[total, set], &[value, name, "updated_lagrangian"]);
+    }
+    refused("flyer_2d.json", &[total], &["method.domain_limit = 1", name]);
+    let slides = "contact={\"type\": \"frictionless\"}";
+    let sets = [total, "method.domain_limit=null", slides];
+    refused("flyer_2d.json", &sets, &["contact = {", name, "stick"]);
+    refused("flyer.json", &["method.frame=lagrangian"], &["method.frame", "total_lagrangian"]);
+    assert!(with("soft_flyer.json", &[total]).is_ok());
+}
+
+#[test]
 fn contact_that_says_nothing_or_too_much() {
     let edit = |set: &str, fragments: &[&str]| refused("soft_flyer.json", &[set], fragments);
     edit("contact.type=glue", &["contact", "glue", "frictionless"]);

@@ -27,14 +27,11 @@ pub(super) fn check(checked: &CheckedScene) -> Result<(), Fault> {
         let why = "which takes the domains of the start";
         return refuse("method.domain_limit", limit.into(), why, leave_out);
     }
-    if checked.axisymmetric() {
-        let why = "which is made for lines and planes";
-        return refuse("domain.geometry", "axisymmetric".into(), why, "\"plane\", or ");
-    }
-    if checked.velocity_fields() > 1 {
-        let why = "which joins bodies at their interface";
+    if checked.velocity_fields() > 1 && checked.dimension > 1 {
+        let why = "in which what slides keeps meeting what it met at the start";
         let contact = serde_json::json!(checked.scene.contact);
-        return refuse("contact", contact, why, leave_out);
+        let allowed = "{\"type\": \"stick\"}, to leave it out, or ";
+        return refuse("contact", contact, why, allowed);
     }
     let names = ["boundary.x_lower", "boundary.x_upper", "boundary.y_lower", "boundary.y_upper"];
     for (path, side) in names.into_iter().zip(checked.sides::<2>().as_flattened()) {
@@ -72,7 +69,7 @@ fn check_apart(checked: &CheckedScene) -> Result<(), Fault> {
                  {UPDATED}",
                 checked.scene.bodies[0].name
             );
-            Err(Fault::new(&format!("bodies[{i}]"), &checked.scene.bodies[i].name, reason))
+            Err(Fault::new(format!("bodies[{i}]"), &checked.scene.bodies[i].name, reason))
         }
     }
 }

@@ -76,7 +76,7 @@ impl<const D: usize> Stepper<D> {
         let layers = patch.nodes.layers;
         let mut members = meetings.members(meeting, self.empty_mass, layers, &fields[f.mass], sums);
         let touches = meetings.touches(meeting);
-        let filled = self.columns.filled.expect("contact has the column");
+        let filled = self.columns.room.expect("contact has the column");
         for touch in touches {
             let (r, at) = (touch.row as usize, touch.at as usize);
             let row = patch.stencils.row::<K, D>(r);
@@ -154,12 +154,15 @@ impl<const D: usize> Stepper<D> {
         (0..D).filter(|&a| mirrored(a)).fold(1.0, |share, _| 0.5 * share)
     }
 
-    /// The place of a row seen from a node [cells].
+    /// The place of a row seen from where a node was at the start [cells].
     fn place(&self, patch: &Patch<D>, row: usize, index: [i64; D]) -> [f64; D] {
         let cell = patch.block.cells[row];
         std::array::from_fn(|a| {
             let cells = (i64::from(cell[a]) - index[a]) as f64;
-            cells + patch.block.columns[self.columns.fraction + a][row]
+            let first = cells + patch.block.columns[self.columns.fraction + a][row];
+            self.columns.shift.map_or(first, |shift| {
+                first + patch.block.columns[shift + a][row] * self.inverse_cell[a]
+            })
         })
     }
 

@@ -136,7 +136,7 @@ impl<const D: usize> Stepper<D> {
     ) -> Option<Edge> {
         let c = &self.columns;
         let column = |k: usize| &patch.block.columns[k];
-        let filled = column(c.filled.expect("contact has the column"));
+        let filled = column(c.room.expect("contact has the column"));
         let pressed = column(c.pressed.expect("contact has the column"));
         let mut edge: Option<Edge> = None;
         let rows = touches.iter().map(|t| t.row as usize);
