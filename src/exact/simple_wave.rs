@@ -256,7 +256,7 @@ mod tests {
             let points = far.profile(t).unwrap().points;
             points.windows(2).any(|w| w[1].x < w[0].x)
         };
-        assert!(far.steepens > 1.2e-6 && far.steepens < 2.5e-6, "{}", far.steepens);
+        assert!(far.steepens > 2e-6 && far.steepens < 3e-6, "{}", far.steepens);
         assert!(!crosses(0.99 * far.steepens) && crosses(1.01 * far.steepens));
         let pulled = SimpleWave::new(COPPER, 0.0, 1e-2, true, swing(0.0, -50.0), 5e-7).unwrap();
         assert!(pulled.p < 0.0 && pulled.steepens > 1e-5, "{}", pulled.steepens);
