@@ -156,7 +156,7 @@ fn a_redo_that_nothing_calls_for_changes_no_bit() {
 #[test]
 fn a_courant_number_above_the_limit() {
     let mut value = short(1e-8);
-    value["method"] = json!({"shape": "cpdi", "transfer": "apic"});
+    value["method"] = json!({"shape": "gimp", "transfer": {"fmpm": 6}});
     value["time"]["courant"] = json!(1.0);
     let told = checked(&value).unwrap_err();
     for word in ["time.courant = 1", "measured to be stable", "watch.above_limit"] {

@@ -153,7 +153,8 @@ fn what_is_inaccurate_is_warned_of() {
         tells(&checked.warnings[0], &[fragment]);
     };
     warned(&["method.shape=linear"], "method.shape = \"linear\"");
-    warned(&["time.courant=0.95", "watch.above_limit=allow"], "time.courant = 0.95");
+    let above = ["method.shape=gimp", "time.courant=0.95", "watch.above_limit=allow"];
+    warned(&above, "time.courant = 0.95");
     warned(
         &["materials.spare={\"density\": 1, \"eos\": {\"type\": \"ideal_gas\", \"gamma\": 1.4}}"],
         "materials.spare",

@@ -48,7 +48,7 @@ impl Default for Watch {
             interval: 64,
             energy_growth: None,
             speed: 4.0,
-            courant: 2.0,
+            courant: 4.0,
             least_step: 1e-4,
             crowding: 64.0,
             above_limit: AboveLimit::Refuse,

@@ -19,7 +19,7 @@ const P2: f64 = 12.144294e9;
 pub fn viscosity() -> Vec<Figure> {
     let mut figures = Vec::new();
     let few = json!({"linear": 0.01, "quadratic": 0.125});
-    let most = json!({"linear": 4.0, "quadratic": 40.0});
+    let most = json!({"linear": 4.0, "quadratic": 40.0, "growth": null});
     for (what, viscosity) in [("none", json!(null)), ("a tenth", few), ("40 times", most)] {
         let value = with(&short(0.3e-6), &json!({"artificial_viscosity": viscosity}));
         match run(&value) {

@@ -88,7 +88,9 @@ pub fn check() -> Vec<Figure> {
             "particles_per_cell": [2, 2],
         })
     };
-    let jets = plane([60, 32], 6e-8, json!([slab("upper", 1.0), slab("lower", -1.0)]));
+    let mut jets = plane([60, 32], 6e-8, json!([slab("upper", 1.0), slab("lower", -1.0)]));
+    // what jets is pulled thin
+    jets["materials"]["aluminium"]["eos"]["tension_cutoff"] = json!(1e9);
     figures.push(energy("a jet of two plates", &jets));
     let mut triple = plane(
         [32, 32],
