@@ -4,6 +4,7 @@
 # cancels between two lengths of run. Counted by valgrind's callgrind, so that it is the same number
 # on a busy machine. Needs valgrind and jq.
 set -euo pipefail
+shopt -s inherit_errexit
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
 program=${PROGRAM:-${CARGO_TARGET_DIR:-target}/release/flyer-mpm}
@@ -52,6 +53,7 @@ row() {
 }
 
 none='decomposition.threads=1'
+textbook='method.edge_mask=null|method.filter_heat=false|method.energy=textbook'
 metal='materials.aluminium.thermal={"specific_heat":900,"reference_temperature":300}'
 warm='materials.aluminium.thermal={"specific_heat":900,"reference_temperature":300,"conductivity":200}'
 echo '| effect | scene | without | with | instructions more | bytes more |'
@@ -59,7 +61,7 @@ echo '|---|---|---|---|---|---|'
 row 'artificial viscosity' flyer 5e-8 'artificial_viscosity=null' "$none"
 row 'pressure relaxation' flyer 5e-8 'method.pressure_relaxation=null' "$none"
 row 'affine velocity (APIC against FLIP)' flyer 5e-8 \
-    'method.transfer=flip|method.edge_mask=null' 'method.transfer=apic|method.edge_mask=null'
+    "method.transfer=flip|$textbook" "method.transfer=apic|$textbook"
 row 'strength, von Mises, with its stress tensor' piston_elastic_plastic 5e-8 \
     'materials.aluminium.strength=null' "$none"
 row 'failure, tension limit' spall 5e-8 'materials.aluminium.failure=null' "$none"
