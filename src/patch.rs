@@ -318,6 +318,7 @@ impl<const D: usize> Patch<D> {
             None => self.find_active(0, width, least, most),
             Some(column) => self.separate(column, width),
         }
+        self.find_span(width);
     }
 
     /// Moves each row's window to the layer in `column`.
@@ -355,12 +356,27 @@ impl<const D: usize> Patch<D> {
                 IndexBox::new(active.lower, upper)
             }
         };
-        let span = active.grow(width).intersect(&all);
         let from = layer * all.count();
         let place = |line: Range<usize>| line.start + from..line.end + from;
         self.active_lines.extend(active.lines_in(&all).map(place));
-        self.span_lines.extend(span.lines_in(&all).map(place));
         self.active.push(active);
+    }
+
+    /// The nodes about those that are computed, alike in every layer: a limiter looks on in another
+    /// body's flow, of which the patch itself may compute nothing.
+    fn find_span(&mut self, width: i64) {
+        let all = self.nodes.nodes;
+        let filled = self.active.iter().filter(|active| active.count() > 0);
+        let hull = filled.copied().reduce(|a, b| IndexBox {
+            lower: std::array::from_fn(|k| a.lower[k].min(b.lower[k])),
+            upper: std::array::from_fn(|k| a.upper[k].max(b.upper[k])),
+        });
+        let Some(hull) = hull else { return };
+        let span = hull.grow(width).intersect(&all);
+        for from in (0..self.nodes.layers).map(|layer| layer * all.count()) {
+            let place = |line: Range<usize>| line.start + from..line.end + from;
+            self.span_lines.extend(span.lines_in(&all).map(place));
+        }
     }
 }
 

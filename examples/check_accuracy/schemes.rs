@@ -245,7 +245,8 @@ pub fn noh(table: &mut Table) {
 pub fn smooth(table: &mut Table) {
     let frame = r#"method.frame="total_lagrangian""#;
     let cpdi = r#"method.shape="cpdi""#;
-    let relaxed = r#"method.pressure_relaxation={"rate":1,"interval":1}"#;
+    // all of it in a step is unstable with hat functions where no viscosity damps
+    let relaxed = r#"method.pressure_relaxation={"rate":0.3,"interval":1}"#;
     let limited = r#"artificial_viscosity={"linear":0.1,"quadratic":1.25,"limiter":"christensen","limited":"both"}"#;
     let schemes: [(&str, &[&str]); 6] = [
         ("CPDI", &[cpdi, relaxed]),
@@ -273,12 +274,19 @@ pub fn smooth(table: &mut Table) {
     }
 }
 
-/// Seconds of the time loop for an error of 1 %.
+/// Seconds of the time loop for an error of 1 %: the total-Lagrangian frame, which needs no
+/// relaxation of the pressure.
 pub fn cost(table: &mut Table) {
-    let Some(run) = table.take("flyer.json", Job::new("flyer").run()) else { return };
+    let job = Job::new("flyer")
+        .set(r#"method.frame="total_lagrangian""#)
+        .set(r#"method.transfer={"fmpm":6}"#)
+        .set("method.pressure_relaxation=null")
+        .set("output.histories=null");
+    let name = "total-Lagrangian, FMPM(6), without relaxation";
+    let Some(run) = table.take(name, job.run()) else { return };
     let worst = run.summary.profiles.iter().filter(|p| p.time >= 0.5e-6);
     let worst = worst.filter_map(|p| p.error("l1")).fold(0.0, f64::max);
-    table.at_most("flyer.json: worst L1", Some(worst), 0.01, Show::Percent);
-    let seconds = Some(run.summary.cpu_seconds);
-    table.at_most("flyer.json: user CPU seconds of the time loop", seconds, 0.3, Show::Number);
+    table.at_most(&format!("{name}: worst L1"), Some(worst), 0.01, Show::Percent);
+    let seconds = Some(run.summary.loop_cpu_seconds);
+    table.at_most(&format!("{name}: user CPU seconds of the loop"), seconds, 0.3, Show::Number);
 }

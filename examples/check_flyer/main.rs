@@ -88,11 +88,12 @@ fn cpdi(table: &mut Table) {
         job.set(r#"method.transfer={"fmpm":4}"#).ranks(2)
     };
     let cheap = job()
-        .set("artificial_viscosity.quadratic=0.75")
+        .set(r#"artificial_viscosity={"linear":0.1,"quadratic":0.75,"limiter":"christensen"}"#)
         .set(r#"method.pressure_relaxation={"rate":0.3,"interval":1}"#);
     let both = job()
-        .set("artificial_viscosity.quadratic=0.5")
-        .set("artificial_viscosity.limited=both")
+        .set(
+            r#"artificial_viscosity={"linear":0.1,"quadratic":0.5,"limiter":"christensen","limited":"both"}"#,
+        )
         .set(r#"method.pressure_relaxation={"rate":1,"interval":1}"#);
     for (what, job) in [("", job()), (" (.1, .75) P .3/1", cheap), (" (.1, .5) both P 1/1", both)] {
         let name = format!("cpdi, FMPM(4){what}");

@@ -299,7 +299,7 @@ pub(crate) mod tests {
         machine.fits(&flyer(&["domain.cell_size=5e-6", "time.end=2e-6"]), file).unwrap();
         for set in ["method.shape=cpdi", "artificial_viscosity.limiter=null"] {
             let error = machine.fits(&flyer(&[set]), file).unwrap_err().to_string();
-            assert!(error.contains("m.json: calibrated for `cpdi_bspline_quadratic, fmpm 6"));
+            assert!(error.contains("m.json: calibrated for `cpdi_bspline_quadratic, fmpm 8"));
         }
     }
 

@@ -143,7 +143,8 @@ impl<const D: usize> Stepper<D> {
                 patch.nodes.fields.swap(scratch, last);
             }
         }
-        if self.contact.is_some() {
+        // bodies in contact exchange no heat
+        if self.contact.is_some() && series.matrix != Matrix::Capacity {
             self.join_series(patch, series, ends);
         }
         // the sum itself is not masked, what the next product takes from it is

@@ -84,7 +84,7 @@ fn what_cannot_be_predicted_is_refused() {
     refused(&["flyer.json"], &["output/machine.json", "flyer-mpm calibrate"]);
     refused(&["flyer.json", "--machine", "text.json"], &["text.json", "no machine file"]);
     refused(&["flyer.json", "--machine", "flyer.json"], &["flyer.json", "no machine file"]);
-    refused(&with(&["--set", "method.shape=cpdi"]), &["m.json", "cpdi, fmpm 6", "calibrate"]);
+    refused(&with(&["--set", "method.shape=cpdi"]), &["m.json", "cpdi, fmpm 8", "calibrate"]);
     refused(&with(&["--set", "time.end=0"]), &["time.end = 0"]);
     refused(&with(&["--ranks", "1,0"]), &["--ranks", "1 to 1000000"]);
     refused(&with(&["--threads", "0"]), &["--threads"]);

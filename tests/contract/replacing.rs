@@ -52,9 +52,9 @@ fn a_run_that_fails_leaves_the_earlier_result() {
 fn a_fault_names_the_particle_that_has_it() {
     let home = Home::with(&stray());
     // the last of 100 + 100 particles is the one that leaves
-    home.call(["scene.json"]).end().failed(&["particle 199 of body `target` at x = 2.0"]);
+    home.call(["scene.json"]).end().failed(&["particle 199 of body `target` at x = 1.99"]);
     let home = Home::with(&mirrored_stray());
-    home.call(["scene.json"]).end().failed(&["particle 100 of body `target` at x = -2.0"]);
+    home.call(["scene.json"]).end().failed(&["particle 100 of body `target` at x = -1.99"]);
 }
 
 #[test]

@@ -37,3 +37,40 @@ fn a_gas_that_expands_through_an_open_side() {
         assert_eq!(end_of(&scene, layout), whole, "{layout}");
     }
 }
+
+/// Gas that comes towards gas, with contact: a limiter looks on in the flow of the other body where a
+/// patch has no nodes of that body to compute.
+#[test]
+fn a_limiter_that_looks_into_another_body() {
+    let body = |name: &str, x: [f64; 2], velocity: f64| {
+        json!({
+            "name": name,
+            "material": "gas",
+            "box": {"lower": [x[0]], "upper": [x[1]]},
+            "velocity": [velocity],
+            "pressure": 1e8,
+            "particles_per_cell": [2],
+        })
+    };
+    let scene = json!({
+        "title": "gas that comes towards gas",
+        "domain": {"lower": [0.0], "upper": [6.2e-4], "cell_size": 1e-5},
+        "time": {"end": 4e-8, "courant": 0.4},
+        "method": {"shape": "linear", "transfer": {"flip_pic": 0.0}, "stepping": "midpoint"},
+        "materials": {"gas": {"density": 50.0, "eos": {"type": "ideal_gas", "gamma": 1.4}}},
+        "bodies": [
+            body("left", [2.392e-4, 2.992e-4], 1347.0),
+            body("right", [3.772e-4, 4.372e-4], -134.0),
+        ],
+        "artificial_viscosity": {"linear": 0.1, "quadratic": 1.0, "limiter": "christensen"},
+        "contact": {"type": "frictionless"},
+        // hat functions fling a particle at a surface
+        "watch": {"courant": 1e3, "speed": 1e3},
+    });
+    let whole = end_of(&scene, &Layout::WHOLE);
+    assert!(whole.is_ok(), "{whole:?}");
+    for patches in [7, 14, 19, 21, 30] {
+        let layout = Layout { patches, filter_halo: Some("exchange"), ..Layout::WHOLE };
+        assert_eq!(end_of(&scene, &layout), whole, "{layout}");
+    }
+}

@@ -47,8 +47,8 @@ fn the_error_falls_with_the_cells() {
         let scene = with(&shipped("flyer.json"), &json!({"domain": {"cell_size": cell}}));
         scored(&scene).1.last().unwrap().l1.unwrap()
     };
-    let order = (last(2e-5) / last(1e-5)).log2();
-    assert!(order >= 0.9, "order of convergence {order}");
+    let order = (last(2e-5) / last(5e-6)).log(4.0);
+    assert!(order >= 0.95, "order of convergence {order}");
 }
 
 #[test]

