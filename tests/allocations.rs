@@ -33,12 +33,13 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Memory asked for in `steps` steps of a scene after as many to warm up.
+/// Memory asked for in `steps` steps of a scene after twice as many to warm up, in which particles have
+/// begun to pass into other patches.
 fn asked(value: &Value, steps: usize) -> u64 {
     let checked = scene::parse(value.to_string().as_bytes(), "test.json", &[]).unwrap();
     let mut simulation = Simulation::<_, 1>::new(&checked, &Serial, 1).unwrap();
     let end = checked.scene.time.end;
-    (0..steps).for_each(|_| simulation.advance(end).unwrap());
+    (0..2 * steps).for_each(|_| simulation.advance(end).unwrap());
     let before = ASKED.load(Ordering::Relaxed);
     (0..steps).for_each(|_| simulation.advance(end).unwrap());
     ASKED.load(Ordering::Relaxed) - before
