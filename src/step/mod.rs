@@ -343,7 +343,7 @@ impl<const D: usize> Stepper<D> {
 
     /// What `body` has been pressed with where it starts at `pressure` [Pa s].
     pub fn starting_impulse(&self, body: usize, pressure: f64) -> f64 {
-        if pressure > 0.0 { self.most_pull[body] } else { contact::AT_START * self.most_pull[body] }
+        if pressure > 0.0 { self.most_pull[body] } else { 0.0 }
     }
 
     /// The greatest extent along a direction of the particles that `scene` starts with [cells].

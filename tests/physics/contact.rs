@@ -152,7 +152,13 @@ fn a_plate_cut_in_two_is_one_plate() {
         rear["box"]["lower"] = json!([at]);
         two["bodies"][1]["box"]["upper"] = json!([at]);
         two["bodies"].as_array_mut().unwrap().push(rear);
-        at_most(&format!("cut at {at}, {speed} m/s"), differ(&one, &two, peak), 1e-3);
+        // with a viscosity of 0.1/1.25 it is 1e-5: what swings ahead of a sharper shock opens the cut
+        // before it is pressed, and 1.3e-3 and 1.7e-3 of the peak come back, at the front
+        at_most(&format!("cut at {at}, {speed} m/s"), differ(&one, &two, peak), 2e-3);
+        let calm =
+            json!({"artificial_viscosity": {"linear": 0.1, "quadratic": 1.25, "growth": null}});
+        let [one, two] = [&one, &two].map(|scene| with(scene, &calm));
+        at_most(&format!("calm cut at {at}, {speed} m/s"), differ(&one, &two, peak), 1e-3);
     }
 }
 

@@ -107,7 +107,8 @@ fn measured_cost_moves_patches_too() {
 #[test]
 fn inner_patches_are_computed_while_messages_fly() {
     let within = |overlap: bool| {
-        let seen = on_ranks(&plates(16), &json!({"overlap": overlap, "skip_quiet": false}), 2);
+        let keys = json!({"overlap": overlap, "skip_quiet": false, "balance": {"every": 0}});
+        let seen = on_ranks(&plates(16), &keys, 2);
         let exchange = seen[0].rank_events.iter().find(|e| e.name == "exchange rows").unwrap();
         let end = exchange.start + exchange.length;
         let scatter = seen[0].patch_events.iter().filter(|(_, e)| e.name == "scatter");

@@ -4,7 +4,7 @@
 mod friction;
 mod touch;
 
-pub(super) use touch::{AT_START, PULL};
+pub(super) use touch::PULL;
 
 use smallvec::SmallVec;
 

@@ -20,9 +20,6 @@ const HELD: f64 = 0.1;
 /// lasts.
 pub(in crate::step) const PULL: f64 = 0.02;
 
-/// Share of that with which bodies start: where they touch, a shock's foot swings before it presses.
-pub(in crate::step) const AT_START: f64 = 0.25;
-
 /// Share of that below which bodies do not hold: well above what rounding presses with.
 const HOLDS: f64 = 1e-3;
 
