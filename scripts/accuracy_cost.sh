@@ -8,7 +8,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/scripts/mpi_env.sh"
 cd "$root"
 
-studies=(schemes impacts viscosity viscosity_default courant price)
+studies=(schemes impacts edge_mask viscosity viscosity_default courant price)
 case "${1:-}" in
     --quick) studies=(quick viscosity) ;;
     "") ;;

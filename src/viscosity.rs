@@ -52,6 +52,38 @@ impl Viscosity {
         density * jump * (self.linear * left * sound_speed + quadratic * jump)
     }
 
+    /// q [Pa] of a particle of `at`, likewise.
+    #[inline(always)]
+    pub fn of(&self, at: &Flow<'_>, row: usize, phi: f64, stretch: f64) -> f64 {
+        self.q(at.density(row), at.sound_speed[row], at.gradient[row], phi, stretch)
+    }
+
+    /// q [Pa] of particles in a row, into `q`; `phi` is the limiter's, `stretch` how long their
+    /// cells have become, where it is not 1.
+    #[inline(never)]
+    pub fn fill(&self, q: &mut [f64], at: &Flow<'_>, phi: Option<&[f64]>, stretch: Option<&[f64]>) {
+        // lengths and coefficients that are plain to see, and a loop for each choice: the compiler
+        // vectorises those without a branch
+        let (n, viscosity) = (q.len(), *self);
+        let at = Flow {
+            mass: &at.mass[..n],
+            volume0: &at.volume0[..n],
+            jacobian: &at.jacobian[..n],
+            sound_speed: &at.sound_speed[..n],
+            gradient: &at.gradient[..n],
+        };
+        match (phi.map(|phi| &phi[..n]), stretch.map(|stretch| &stretch[..n])) {
+            (None, None) => (0..n).for_each(|r| q[r] = viscosity.of(&at, r, 0.0, 1.0)),
+            (Some(phi), None) => (0..n).for_each(|r| q[r] = viscosity.of(&at, r, phi[r], 1.0)),
+            (None, Some(stretch)) => {
+                (0..n).for_each(|r| q[r] = viscosity.of(&at, r, 0.0, stretch[r]))
+            }
+            (Some(phi), Some(stretch)) => {
+                (0..n).for_each(|r| q[r] = viscosity.of(&at, r, phi[r], stretch[r]))
+            }
+        }
+    }
+
     /// The speed that q adds in the Courant bound, 2 (a1 c + a2 h |D|) [m/s].
     #[inline(always)]
     pub fn speed(&self, sound_speed: f64, gradient: f64, stretch: f64) -> f64 {
@@ -67,6 +99,29 @@ impl Viscosity {
             Some(g) if jump > 0.0 => (self.quadratic + g.rate * (jump / sound_speed)).min(g.most),
             _ => self.quadratic,
         }
+    }
+}
+
+/// Particles as the viscosity sees them, each a column.
+#[derive(Clone, Copy)]
+pub struct Flow<'a> {
+    /// [kg].
+    pub mass: &'a [f64],
+    /// Volumes at the start [m3].
+    pub volume0: &'a [f64],
+    /// Volumes over those at the start.
+    pub jacobian: &'a [f64],
+    /// [m/s].
+    pub sound_speed: &'a [f64],
+    /// Divergences of the velocity [1/s].
+    pub gradient: &'a [f64],
+}
+
+impl Flow<'_> {
+    /// The density of a particle [kg/m3].
+    #[inline(always)]
+    pub fn density(&self, row: usize) -> f64 {
+        self.mass[row] / (self.volume0[row] * self.jacobian[row])
     }
 }
 

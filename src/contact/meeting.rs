@@ -28,6 +28,8 @@ pub struct Member<const D: usize> {
     pub velocity: [f64; D],
     /// Its lumped acceleration without contact [m/s2].
     pub acceleration: [f64; D],
+    /// Its filled volume at the node, sum V N [cells].
+    pub volume: f64,
     /// The gradient of its filled volume, sum V G: it points out of the body [cells/m].
     pub gradient: [f64; D],
 }
@@ -164,7 +166,7 @@ impl<const D: usize> Meetings<D> {
             let i = at(layer);
             let [velocity, acceleration] =
                 [momentum, force].map(|sums| std::array::from_fn(|a| sums[a][i] / mass[i]));
-            Member { layer, mass: mass[i], velocity, acceleration, gradient: [0.0; D] }
+            Member { layer, mass: mass[i], velocity, acceleration, volume: 0.0, gradient: [0.0; D] }
         };
         (0..layers).filter(|&l| mass[at(l)] > least).map(member).collect()
     }

@@ -1,16 +1,27 @@
 //! Normals of the contact plane.
 
-/// The unit normal from the first of two bodies to the second by their volume gradients: the
-/// difference of the two gradients g = sum V G of the filled volume at the node, each of which
-/// points out of its body (after Lemiale, Hurmane & Nairn 2010, with the gradients of volume, as
-/// Nairn 2013 has them, that do not depend on density). Where the two bodies fill space g_b = -g_a,
-/// so the difference takes each as it is known. Antisymmetric in the bodies, bit by bit.
+/// The unit normal from the first of two bodies to the second by the gradient of the share that the
+/// first has of the volume filled at a node,
+///
+/// ```text
+/// n ~ V_b g_a - V_a g_b,   V = sum V_p N,   g = sum V_p G
+/// ```
+///
+/// with a body's filled volume V [cells] and its gradient g, which points out of the body (after
+/// Lemiale, Hurmane & Nairn 2010, with the gradients of volume, as Nairn 2013 has them, that do not
+/// depend on density). Where the two bodies fill space this is g_a = -g_b. Where a body only just
+/// reaches the node, its own edge tells the normal, and not how unevenly a wave has
+/// compressed the other one. Antisymmetric in the bodies, bit by bit.
 ///
 /// None where the gradients tell of no direction.
-pub fn volume_gradient<const D: usize>(a: &[f64; D], b: &[f64; D]) -> Option<[f64; D]> {
+pub fn volume_gradient<const D: usize>(
+    volume: [f64; 2],
+    [a, b]: [&[f64; D]; 2],
+) -> Option<[f64; D]> {
     let square = |v: &[f64; D]| v.iter().map(|x| x * x).sum::<f64>();
+    let (a, b) = (a.map(|x| volume[1] * x), b.map(|x| volume[0] * x));
     let difference = std::array::from_fn(|k| a[k] - b[k]);
-    let scale = square(a) + square(b);
+    let scale = square(&a) + square(&b);
     (square(&difference) > 1e-12 * scale).then(|| unit(difference))
 }
 
@@ -123,12 +134,19 @@ mod tests {
 
     #[test]
     fn a_normal_points_from_the_first_to_the_second() {
-        assert_eq!(volume_gradient(&[2.0], &[-1.5]), Some([1.0]));
-        assert_eq!(volume_gradient(&[0.0, -3.0], &[1e-14, 2.0]), Some([0.0, -1.0]));
-        assert_eq!(volume_gradient(&[0.0], &[0.0]), None);
+        assert_eq!(volume_gradient([0.5, 0.5], [&[2.0], &[-1.5]]), Some([1.0]));
+        let axis = volume_gradient([0.5, 0.5], [&[0.0, -3.0], &[1e-14, 2.0]]);
+        assert_eq!(axis, Some([0.0, -1.0]));
+        assert_eq!(volume_gradient([0.5, 0.5], [&[0.0], &[0.0]]), None);
         let (a, b) = ([0.3, 1.7], [-0.2, -1.1]);
-        let n = volume_gradient(&a, &b).unwrap();
-        assert_eq!(volume_gradient(&b, &a).unwrap(), n.map(|x| -x));
+        let n = volume_gradient([0.4, 0.7], [&a, &b]).unwrap();
+        assert_eq!(volume_gradient([0.7, 0.4], [&b, &a]).unwrap(), n.map(|x| -x));
+    }
+
+    #[test]
+    fn where_a_body_only_reaches_the_node_its_edge_tells_the_normal() {
+        // the other fills the node, and a wave has compressed it unevenly
+        assert_eq!(volume_gradient([1e-4, 1.0], [&[1e-3], &[0.02]]), Some([1.0]));
     }
 
     /// Corners of squares on both sides of a line through the origin with normal `n`, shifted

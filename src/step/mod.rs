@@ -68,6 +68,8 @@ pub struct Stepper<const D: usize> {
     pub layers: usize,
     /// rho c^2 of each body as it starts [Pa].
     stiffness: Vec<f64>,
+    /// The speed of the scene's impacts, the most of all its bodies [m/s].
+    impact: f64,
     /// The most impulse that each body may give back where it is pulled on [Pa s].
     most_pull: Vec<f64>,
     /// The state in which each body starts.
@@ -259,12 +261,15 @@ impl<const D: usize> Stepper<D> {
         };
         let stiffness = speeds().map(|(_, density, c)| density * c.powi(2)).collect();
         let impact = scene.impact_speed::<D>();
+        let speed =
+            |pressure: f64, density: f64, c: f64| impact.max(pressure.abs() / (density * c));
         let most_pull = speeds()
             .map(|(b, density, c)| {
-                let speed = impact.max(b.pressure.abs() / (density * c));
-                contact::PULL * density * smallest * speed
+                contact::PULL * density * smallest * speed(b.pressure, density, c)
             })
             .collect();
+        let impact =
+            speeds().map(|(b, density, c)| speed(b.pressure, density, c)).fold(0.0, f64::max);
         let densest = bodies.iter().map(|b| materials[&b.material].density).fold(0.0, f64::max);
         // exact where all are the same
         let edge = match cell.iter().all(|&h| h == cell[0]) {
@@ -304,6 +309,7 @@ impl<const D: usize> Stepper<D> {
             contact,
             layers: scene.velocity_fields(),
             stiffness,
+            impact,
             most_pull,
             rest: sides::Rest::of(scene, &models, &waves),
             criteria: criteria.collect(),
@@ -343,7 +349,7 @@ impl<const D: usize> Stepper<D> {
 
     /// What `body` has been pressed with where it starts at `pressure` [Pa s].
     pub fn starting_impulse(&self, body: usize, pressure: f64) -> f64 {
-        if pressure > 0.0 { self.most_pull[body] } else { 0.0 }
+        if pressure > 0.0 { self.most_pull[body] } else { self.starting_pull(body) }
     }
 
     /// The greatest extent along a direction of the particles that `scene` starts with [cells].

@@ -11,6 +11,7 @@ use crate::effects::Effect;
 use crate::patch::{Departed, Fault, Patch, Phase};
 use crate::scene::Side;
 use crate::shape::{Domain, Extent, floor};
+use crate::viscosity::Flow;
 
 /// Stiffness that pressure relaxation takes a gas to have at least, over the pressure that counts
 /// as none: 2^-30 of the scene's. What rounding leaves of pressure then moves no volume.
@@ -291,17 +292,21 @@ impl<const D: usize> Stepper<D> {
         let c = &self.columns;
         let mut out = std::mem::take(&mut patch.block.columns[q]);
         let column = |k: usize| &patch.block.columns[k][..out.len()];
-        let (mass, volume0, j) = (column(c.mass), column(c.volume0), column(jacobian));
-        let (speed, d) = (column(c.sound_speed), column(c.gradient));
-        let phi = c.limiter.map(column);
-        let of = |r: usize, stretch: f64| {
-            let density = mass[r] / (volume0[r] * j[r]);
-            viscosity.q(density, speed[r], d[r], phi.map_or(0.0, |phi| phi[r]), stretch)
+        let at = Flow {
+            mass: column(c.mass),
+            volume0: column(c.volume0),
+            jacobian: column(jacobian),
+            sound_speed: column(c.sound_speed),
+            gradient: column(c.gradient),
         };
-        match (self.total, D) {
-            (false, _) => (0..out.len()).for_each(|r| out[r] = of(r, 1.0)),
-            (true, 1) => (0..out.len()).for_each(|r| out[r] = of(r, j[r])),
-            (true, _) => (0..out.len()).for_each(|r| out[r] = of(r, self.stretch(patch, r))),
+        let phi = c.limiter.map(column);
+        if self.total && D > 1 {
+            for r in 0..out.len() {
+                let (limited, stretch) = (phi.map_or(0.0, |phi| phi[r]), self.stretch(patch, r));
+                out[r] = viscosity.of(&at, r, limited, stretch);
+            }
+        } else {
+            viscosity.fill(&mut out, &at, phi, self.total.then_some(at.jacobian));
         }
         patch.block.columns[q] = out;
     }
@@ -507,8 +512,9 @@ impl<const D: usize> Stepper<D> {
             shortest = shortest.max(shorter);
             lost |= rate.is_nan() || !velocity.iter().all(|v| v[r].is_finite());
         }
+        let viscosity = self.viscosity;
         for r in stretched..speed.len() {
-            let added = self.viscosity.map_or(0.0, |q| q.speed(speed[r], d[r], 1.0));
+            let added = viscosity.map_or(0.0, |q| q.speed(speed[r], d[r], 1.0));
             for a in 0..D {
                 let total = speed[r] + velocity[a][r].abs() + added;
                 let rate = if D == 1 { total } else { total * self.inverse_cell[a] };

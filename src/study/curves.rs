@@ -116,7 +116,7 @@ pub fn figure(study: &Study, picture: &CurvesPicture, rows: &[Row]) -> Figure {
     figure
 }
 
-/// Looks of the peers: black rings, told apart by their grey.
+/// Looks of the peers: bold rings, after a line of the legend that says whose they are.
 fn with_peers(
     mut panel: Panel,
     study: &Study,
@@ -124,20 +124,21 @@ fn with_peers(
     error: &str,
     factor: f64,
 ) -> Panel {
+    let ring = |color: Color| Style { mark: Some(9.0), ..Style::marks(color) }.hollow();
     let mut shown = false;
     for (k, peer) in study.peers.iter().enumerate() {
         let at = |pair: &&[f64; 2]| (pair[0] - picture.time).abs() <= 1e-9 * picture.time;
         let Some(value) = peer.errors.get(error).and_then(|e| e.iter().find(at)) else { continue };
-        let color = Color::BLACK.mix(Color::palette(k), 0.55);
-        let style = Style { mark: Some(9.0), ..Style::marks(color) }.hollow();
+        if !shown {
+            let whose = "other codes, measured elsewhere on a like machine:";
+            panel = panel.series(Series::new(whose, Points::new([], []), ring(Color::BLACK)));
+            shown = true;
+        }
         let points = Points::new([peer.seconds], [value[1].abs() * factor]);
-        panel = panel.series(Series::new(&peer.name, points, style));
-        shown = true;
+        let color = Color::BLACK.mix(Color::palette(k), 0.55);
+        panel = panel.series(Series::new(&peer.name, points, ring(color)));
     }
-    match shown {
-        true => panel.note("bold rings: other codes, measured elsewhere on a like machine"),
-        false => panel,
-    }
+    panel
 }
 
 #[cfg(test)]

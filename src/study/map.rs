@@ -21,24 +21,28 @@ pub fn figure(picture: &MapPicture, rows: &[Row]) -> Figure {
         let at = |row: &&&Row| {
             row.number(&picture.x, 0.0) == Some(x) && row.number(&picture.y, 0.0) == Some(y)
         };
-        let value = rows.iter().find(at)?.number(&picture.value, picture.time)?.abs();
-        Some(picture.most.map_or(value, |most| value.min(most)) * factor)
+        Some(rows.iter().find(at)?.number(&picture.value, picture.time)?.abs())
     };
-    let values = ys.iter().map(|&y| xs.iter().map(|&x| value(x, y)).collect()).collect();
+    let mut values: Vec<Vec<Option<f64>>> =
+        ys.iter().map(|&y| xs.iter().map(|&x| value(x, y)).collect()).collect();
     let axis = |key: &str| {
         let (label, unit, _) = quantity(key);
         Axis::linear(label, unit).tight()
     };
-    let most = picture
-        .most
-        .map(|m| format!(", {} {unit} and more alike", (m * factor * 1e6).round() / 1e6));
+    let all = || values.iter().flatten().flatten();
+    let most = picture.most.filter(|&most| all().any(|&value| value > most));
+    let beyond =
+        most.map(|m| format!(", {} {unit} and more alike", (m * factor * 1e6).round() / 1e6));
+    for value in values.iter_mut().flatten().flatten() {
+        *value = value.min(most.unwrap_or(f64::INFINITY)) * factor;
+    }
     TileMap {
         title: picture.title.clone(),
         x: axis(&picture.x).ticks(&xs[..]),
         y: axis(&picture.y).ticks(&ys[..]),
         places: [xs, ys],
         values,
-        label: label + &most.unwrap_or_default(),
+        label: label + &beyond.unwrap_or_default(),
         unit: unit.into(),
         marks: picture.marks.clone(),
     }

@@ -142,7 +142,9 @@ fn two_fields_in_contact_are_as_good_as_one() {
 #[test]
 fn a_plate_cut_in_two_is_one_plate() {
     let one = cut("flyer.json", 2e-7);
-    for (at, speed, peak) in [(0.5e-3, 1e3, P2[1]), (0.3e-3, 1e3, P2[1]), (0.505e-3, 100.0, 1.0e9)]
+    // a weak shock swings longest ahead of itself, and opens the cut before it is pressed
+    for (at, speed, peak, bound) in
+        [(0.5e-3, 1e3, P2[1], 1e-6), (0.3e-3, 1e3, P2[1], 1e-6), (0.505e-3, 100.0, 1.0e9, 2e-3)]
     {
         let mut one = one.clone();
         one["bodies"][0]["velocity"] = json!([speed]);
@@ -152,9 +154,7 @@ fn a_plate_cut_in_two_is_one_plate() {
         rear["box"]["lower"] = json!([at]);
         two["bodies"][1]["box"]["upper"] = json!([at]);
         two["bodies"].as_array_mut().unwrap().push(rear);
-        // with a viscosity of 0.1/1.25 it is 1e-5: what swings ahead of a sharper shock opens the cut
-        // before it is pressed, and 1.3e-3 and 1.7e-3 of the peak come back, at the front
-        at_most(&format!("cut at {at}, {speed} m/s"), differ(&one, &two, peak), 2e-3);
+        at_most(&format!("cut at {at}, {speed} m/s"), differ(&one, &two, peak), bound);
         let calm =
             json!({"artificial_viscosity": {"linear": 0.1, "quadratic": 1.25, "growth": null}});
         let [one, two] = [&one, &two].map(|scene| with(scene, &calm));

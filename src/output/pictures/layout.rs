@@ -91,14 +91,13 @@ fn right_edge(figure: &Figure) -> f64 {
 }
 
 fn areas(figure: &Figure) -> Areas {
-    let height = 0.7 * HEIGHT / figure.panels.len().max(1) as f64;
-    let rulers = figure.panels.iter().map(|panel| y_ruler(figure, panel, height));
+    // under a long legend panels are low, without one high: room for the numbers of both
+    let heights = [0.6, 0.9].map(|share| share * HEIGHT / figure.panels.len().max(1) as f64);
+    let panels = || heights.iter().flat_map(|&h| figure.panels.iter().map(move |p| (p, h)));
+    let rulers = panels().map(|(panel, height)| y_ruler(figure, panel, height));
     let numbers = rulers.map(|ruler| ruler.widest(TICK_EM)).fold(0.0, f64::max);
-    let bars = figure
-        .panels
-        .iter()
-        .filter_map(|panel| panel.map.as_ref())
-        .map(|map| color_bar::room_beside(&bar_ruler(map, height)));
+    let maps = panels().filter_map(|(panel, height)| Some((panel.map.as_ref()?, height)));
+    let bars = maps.map(|(map, height)| color_bar::room_beside(&bar_ruler(map, height)));
     Areas {
         left: MARGIN + LABEL_EM + 14.0 + numbers + 6.0 + TICK,
         right: right_edge(figure) - bars.fold(0.0, f64::max),

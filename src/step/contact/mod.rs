@@ -82,6 +82,7 @@ impl<const D: usize> Stepper<D> {
             let row = patch.stencils.row::<K, D>(r);
             let volume = patch.block.columns[filled][r];
             if let Some(member) = members.iter_mut().find(|m| m.layer == self.layer_of(patch, r)) {
+                member.volume += volume * row.values[at / K][at % K];
                 for a in 0..D {
                     member.gradient[a] += volume * row.gradient(a)[at / K][at % K];
                 }
@@ -96,7 +97,9 @@ impl<const D: usize> Stepper<D> {
             for b in &members[i + 1..] {
                 let pair = [a, b];
                 let normal = match contact.normals {
-                    Normals::VolumeGradient => volume_gradient(&a.gradient, &b.gradient),
+                    Normals::VolumeGradient => {
+                        volume_gradient([a.volume, b.volume], [&a.gradient, &b.gradient])
+                    }
                     Normals::LogisticRegression => {
                         self.find_corners(patch, index, touches, pair, &mut nodes.points);
                         logistic_regression(&nodes.points, &self.cell)

@@ -16,12 +16,20 @@ const HELD: f64 = 0.1;
 /// Share of rho h u, with u the speed of the scene's impacts and h a cell's edge, that bodies which
 /// were pressed together may pull on each other with before they part: what runs ahead of a shock
 /// swings, and an interface that opened at each swing would send some of it back. They never give
-/// back more than they were pressed with, so bodies that have not met part freely, and no pull
-/// lasts.
+/// back more than they were pressed with, or start with, so no pull lasts.
 pub(in crate::step) const PULL: f64 = 0.02;
 
 /// Share of that below which bodies do not hold: well above what rounding presses with.
 const HOLDS: f64 = 1e-3;
+
+/// Share of the most with which bodies start, though nothing has pressed them yet: what runs ahead
+/// of the first shock may swing to the pulling side first, and at a cut of a body into two it would
+/// open the cut.
+const AT_START: f64 = 0.1;
+
+/// Share of u at which bodies part that have no more than what they started with: a swing opens an
+/// interface slowly, and bodies that truly recede part at once.
+const PARTS: f64 = 0.05;
 
 /// The outermost part of a body at a meeting.
 #[derive(Clone, Copy)]
@@ -89,9 +97,19 @@ impl<const D: usize> Stepper<D> {
         // the force on both is the same: noise has taken from one what the other still has
         let pressed = first.pressed.max(second.pressed);
         let least = HOLDS * self.most_pull[a.layer].min(self.most_pull[b.layer]);
+        // rounding presses, too
+        let start = 2.0 * self.starting_pull(a.layer).max(self.starting_pull(b.layer));
+        let slow = -PARTS * self.impact;
         let mass = a.mass * b.mass / (a.mass + b.mass);
         mass * closing + self.area(index, [a, b]) * dt * stress > 0.0
-            || (pressed > least && pressed + dt * stress > 0.0)
+            || (pressed > least
+                && pressed + dt * stress > 0.0
+                && (pressed > start || closing > slow))
+    }
+
+    /// The impulse that a body may give back before anything has pressed it [Pa s].
+    pub(in crate::step) fn starting_pull(&self, body: usize) -> f64 {
+        AT_START * self.most_pull[body]
     }
 
     /// The node's share of the area between two bodies [m2], from the gradients of their volumes.
