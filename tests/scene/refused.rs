@@ -105,7 +105,7 @@ fn options_that_cannot_go_together_are_named() {
     edit("method.stepping=leapfrog", &["method.energy = \"compatible\"", leapfrog, "textbook"]);
     for (set, fragments) in [
         ("method.filter_heat=true", ["method.filter_heat = true", "false"]),
-        ("method.edge_mask=0.3", ["method.edge_mask = 0.4", "leave it out"]),
+        ("method.edge_mask=0.3", ["method.edge_mask = 0.3", "leave it out"]),
         (
             "method.pressure_relaxation={\"rate\": 0.2, \"interval\": 5}",
             ["method.pressure_relaxation = {", "leave it out"],
@@ -119,7 +119,7 @@ fn options_that_cannot_go_together_are_named() {
         refused("flyer.json", &sets, &["method.filter_heat = true", &value, "{\"xpic\": m}"]);
     }
     edit("method.transfer=apic", &["method.energy = \"compatible\"", "method.transfer = \"apic\""]);
-    edit("method.transfer=pic", &["method.edge_mask = 0.3", "method.transfer = \"pic\""]);
+    edit("method.transfer=pic", &["method.edge_mask = 0.4", "method.transfer = \"pic\""]);
     refused(
         "flyer_uintah.json",
         &["artificial_viscosity.limited=both"],
