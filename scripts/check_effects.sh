@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Measures what materials and effects promise, and prints each figure
 # beside its bound; exit code 1 where one is missed. Arguments: sections (equations, porous,
-# tables, products, burn, paths, strength_paths, piston, flyer, taylor, taylor_fine, spall, heat,
-# plates, window, wave, books);
+# tables, products, burn, paths, strength_paths, objectivity, piston, flyer, taylor, taylor_fine,
+# spall, heat, plates, window, wave, books);
 # none: all but taylor_fine, which takes an hour.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

@@ -65,6 +65,8 @@ row 'affine velocity (APIC against FLIP)' flyer 5e-8 \
 row 'strength, von Mises, with its stress tensor' piston_elastic_plastic 5e-8 \
     'materials.aluminium.strength=null' "$none"
 row 'failure, tension limit' spall 5e-8 'materials.aluminium.failure=null' "$none"
+row 'erosion, a limit that is not reached' piston_elastic_plastic 5e-8 "$none" \
+    'materials.aluminium.erosion={"plastic_strain":10}'
 row 'temperature' piston_elastic_plastic 5e-8 "$none" "$metal"
 row 'conduction' piston_elastic_plastic 5e-8 "$metal" "$warm"
 row 'pores, P-alpha' porous_impact 2e-7 \

@@ -24,6 +24,7 @@
 //! written to files, scored or drawn by `flyer-mpm SCENE.json` knows the scene alone.
 //! `examples/custom_material.rs` is a whole program.
 
+mod erosion;
 mod failure;
 mod general;
 mod heat;
@@ -32,6 +33,7 @@ mod plastic;
 mod solid;
 mod table;
 
+pub use erosion::Erosion;
 pub use failure::{Criterion, Ductile, Loaded};
 pub use heat::{Isentrope, Thermal};
 pub use outside::Outside;
@@ -220,6 +222,16 @@ pub fn criterion_of(material: &Material) -> Option<Criterion> {
             };
             Criterion::Ductile(Ductile { d: [d1, d2, d3, d4, d5], reference_rate, temperatures })
         }
+    })
+}
+
+/// When a material's particles are taken out, if its scene says so.
+pub fn erosion_of(material: &Material) -> Option<Erosion> {
+    let named = material.erosion?;
+    let limit = |named: Option<f64>| named.unwrap_or(f64::INFINITY);
+    Some(Erosion {
+        plastic_strain: limit(named.plastic_strain),
+        volume_ratio: limit(named.volume_ratio),
     })
 }
 

@@ -21,6 +21,8 @@ pub enum Effect {
     Strength,
     /// Failure.
     Failure,
+    /// Particles that are taken out at a limit.
+    Erosion,
     /// Temperature.
     Temperature,
     /// Conduction of heat.
@@ -46,13 +48,14 @@ impl Effect {
     pub const COUNT: usize = Self::ALL.len();
 
     /// All of them, in order.
-    pub const ALL: [Effect; 15] = [
+    pub const ALL: [Effect; 16] = [
         Effect::Viscosity,
         Effect::Relaxation,
         Effect::Affine,
         Effect::Stress,
         Effect::Strength,
         Effect::Failure,
+        Effect::Erosion,
         Effect::Temperature,
         Effect::Conduction,
         Effect::Pores,
@@ -73,6 +76,7 @@ impl Effect {
             Effect::Stress => "stress tensor",
             Effect::Strength => "strength",
             Effect::Failure => "failure",
+            Effect::Erosion => "erosion",
             Effect::Temperature => "temperature",
             Effect::Conduction => "conduction",
             Effect::Pores => "pores",
@@ -128,6 +132,7 @@ impl Effect {
             Effect::Stress => scene.has_solids(),
             Effect::Strength => materials().any(|m| m.strength.is_some()),
             Effect::Failure => materials().any(|m| m.failure.is_some()),
+            Effect::Erosion => scene.erodes(),
             Effect::Temperature => materials().any(|m| m.thermal.is_some()),
             Effect::Conduction => scene.conducts(),
             Effect::Pores => materials().any(|m| matches!(m.eos, Eos::PAlpha { .. })),

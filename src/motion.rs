@@ -191,6 +191,7 @@ mod tests {
             source: String::new(),
             strength: None,
             failure: None,
+            erosion: None,
             thermal: None,
         };
         let motion = Motion::new(&field, &material).unwrap();

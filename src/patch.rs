@@ -60,7 +60,7 @@ impl<const D: usize> Fault<D> {
     }
 }
 
-/// A particle that has left by an outflow, as seen in the grid's frame.
+/// A particle that has left by an outflow or was eroded, as seen in the grid's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Departed<const D: usize> {
     /// Its id.
@@ -71,6 +71,8 @@ pub struct Departed<const D: usize> {
     pub velocity: [f64; D],
     /// Specific internal energy [J/kg].
     pub energy: f64,
+    /// Whether it was eroded.
+    pub eroded: bool,
 }
 
 /// A force of a side of the domain on a node.

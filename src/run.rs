@@ -343,7 +343,7 @@ where
     step_to_end(&mut simulation, scene, comm, options, &mut recorder, &mut schedule)?;
     let loop_wall_seconds = loop_start.elapsed().as_secs_f64();
     let loop_cpu = user_cpu_seconds() - loop_cpu;
-    let (end, left, given) = (simulation.totals(), simulation.left(), simulation.given());
+    let (end, ways, given) = (simulation.totals(), simulation.ways(), simulation.given());
     let sharing = &scene.scene.decomposition;
     let decomposition = accounts::decomposition(
         comm,
@@ -409,7 +409,9 @@ where
         plan::verdict(planned, &profiles, error_estimate.as_ref(), seconds)
     });
     let times = [0.0, simulation.time()];
-    let (energy, momentum, outflow) = balance(scene, times, [&start, &end], &left, &given);
+    let left = ways.outflow.and(&ways.erosion);
+    let (energy, momentum) = balance(scene, times, [&start, &end], &left, &given);
+    let lets_out = scene.sides::<D>().as_flattened().iter().any(|side| side.lets_out());
     warnings.extend(inaccurate(&energy, stretched, simulation.tally().redone_steps));
     let particle_steps = scene.particles as f64 * simulation.steps_made() as f64;
     let layout = simulation.layout();
@@ -433,7 +435,8 @@ where
         effects: ledger(scene, simulation.columns(), shares),
         energy,
         momentum,
-        outflow,
+        outflow: lets_out.then(|| gone(&ways.outflow)),
+        erosion: scene.erodes().then(|| gone(&ways.erosion)),
         failure: simulation
             .columns()
             .failure
@@ -571,7 +574,7 @@ fn balance<const D: usize>(
     [start, end]: [&Totals<D>; 2],
     left: &Left<D>,
     given: &Given<D>,
-) -> (Energy, Momentum, Option<Outflow>) {
+) -> (Energy, Momentum) {
     let sides = scene.sides::<D>();
     let rigid = |a: usize| sides[a].iter().any(|s| s.rigid_velocity().is_some());
     let holds = sides.as_flattened().contains(&Side::NoSlip);
@@ -596,18 +599,21 @@ fn balance<const D: usize>(
     let work = pistons + given.work + end.conducted - (left.kinetic + left.internal);
     let energy = Energy::new([start.kinetic, end.kinetic], [start.internal, end.internal], work);
     let momentum = Momentum::new(&start.momentum, &end.momentum, &impulse, start.absolute_momentum);
-    let (energy, momentum) = match scene.scene.body_force {
+    match scene.scene.body_force {
         None => (energy, momentum),
         Some(_) => (
             energy.with_body_force(end.body_force_work),
             momentum.with_body_force(&end.body_force_impulse, start.absolute_momentum),
         ),
-    };
-    let outflow = sides.as_flattened().iter().any(|side| side.lets_out()).then(|| Outflow {
+    }
+}
+
+/// What has left in one way, as the summary has it.
+fn gone<const D: usize>(left: &Left<D>) -> Outflow {
+    Outflow {
         particles: left.count,
         mass: left.mass,
         momentum: left.momentum.to_vec(),
         energy: left.kinetic + left.internal,
-    });
-    (energy, momentum, outflow)
+    }
 }

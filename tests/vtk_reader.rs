@@ -98,6 +98,7 @@ fn write_run(folder: &Path, tables: &[ParticleTable]) {
         energy: Energy::new([0.0; 2], [0.0; 2], 0.0),
         momentum: Momentum::new(&[0.0], &[0.0], &[0.0], 0.0),
         outflow: None,
+        erosion: None,
         profiles,
         error_estimate: None,
         plan: None,

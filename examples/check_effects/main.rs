@@ -7,6 +7,7 @@ mod equations;
 mod explosives;
 mod heat;
 mod motion;
+mod objectivity;
 mod paths;
 mod plates;
 #[path = "../common/resident.rs"]
@@ -25,7 +26,7 @@ use std::process::ExitCode;
 
 use sections::Section;
 
-const SECTIONS: [(&str, Section); 17] = [
+const SECTIONS: [(&str, Section); 18] = [
     ("equations", equations::check),
     ("porous", equations::porous),
     ("tables", tables::check),
@@ -33,6 +34,7 @@ const SECTIONS: [(&str, Section); 17] = [
     ("burn", explosives::burn),
     ("paths", paths::check),
     ("strength_paths", strength::paths),
+    ("objectivity", objectivity::check),
     ("piston", strength::piston),
     ("flyer", strength::flyer),
     ("taylor", strength::taylor),

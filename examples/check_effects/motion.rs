@@ -35,7 +35,8 @@ pub fn wave(figures: &mut Table) {
     }
 }
 
-/// Momentum and energy in free fall, and of plates while the voids between them close.
+/// Momentum and energy in free fall, of plates while the voids between them close, and while they
+/// erode.
 pub fn books(figures: &mut Table) {
     let fall = Job::new("simple_wave")
         .set("boundary=null")
@@ -43,15 +44,23 @@ pub fn books(figures: &mut Table) {
         .set("domain.lower=[-2e-4]")
         .set("bodies.slab.velocity=[100]")
         .set("body_force={\"gravity\":[-2e8]}");
+    let erode = Job::new("flyer_strength")
+        .set("materials.copper.erosion={\"plastic_strain\":0.05}")
+        .set("materials.aluminium.erosion={\"plastic_strain\":0.05}");
     let jobs = [
         ("free fall, -2e8 m/s2 over 0.6 us", fall),
         ("`gap.json`, a void that closes", Job::new("gap")),
         ("`three_plates.json`, voids that close", Job::new("three_plates")),
+        ("`flyer_strength.json`, eroded at 5 %", erode),
     ];
     for (what, job) in jobs {
         let Some(run) = figures.take(what, job.run()) else { continue };
         let summary = &run.summary;
         figures.at_most(&format!("{what}: momentum"), summary.momentum.drift, 1e-12, Show::Tiny);
         figures.at_most(&format!("{what}: energy"), summary.energy.drift, 1e-12, Show::Tiny);
+        if let Some(gone) = &summary.erosion {
+            let gone = Some(gone.particles as f64);
+            figures.at_least(&format!("{what}: particles"), gone, 1.0, Show::Number);
+        }
     }
 }

@@ -155,7 +155,7 @@ pub fn paths(table: &mut Table) {
             }
             at
         };
-        let (exact, strain) = by_rates(&model, rate, 1e-6);
+        let (exact, strain) = by_rates(&model, Symmetric::default(), &rate, 1e-6);
         let (s, plastic) = end(400);
         let apart = Symmetric {
             xx: s.xx - exact.xx,
@@ -180,12 +180,17 @@ pub fn paths(table: &mut Table) {
     table.at_most("a whole turn in 16 exact increments", Some(error), 1e-10, Show::Tiny);
 }
 
-/// Deviator and plastic strain after `time` by the rate equations themselves with Jaumann's rate,
+/// Deviator and plastic strain after `time` from the deviator `start` by the rate equations themselves with Jaumann's rate,
 /// in steps of the first order so small that it does not matter.
-fn by_rates(model: &VonMises, rate: Path, time: f64) -> (Symmetric, f64) {
+pub fn by_rates(
+    model: &VonMises,
+    start: Symmetric,
+    rate: &dyn Fn(f64) -> Rate,
+    time: f64,
+) -> (Symmetric, f64) {
     let steps = 4_000_000;
     let dt = time / steps as f64;
-    let (mut s, mut strain) = (Symmetric::default(), 0.0f64);
+    let (mut s, mut strain) = (start, 0.0f64);
     for k in 0..steps {
         let Rate { plane: [xx, xy, yx, yy], across } = rate(k as f64 * dt);
         let (w, mean) = (0.5 * (yx - xy), (xx + yy + across) / 3.0);

@@ -49,7 +49,7 @@ impl Checkpoint {
                 |b: &f64| *b >= 0.0 && b.fract() == 0.0 && (*b as usize) < scene.bodies.len();
             rows.columns[k].iter().all(known)
         });
-        let sums = self.saved.sums.len() == saved_sums(dimension);
+        let sums = self.saved.sums.len() == saved_sums(scene);
         if !(counts && cells && bodies && sums && self.dimension == dimension) {
             return Some("its particles are not those of its scene".into());
         }

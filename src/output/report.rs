@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::decomposition::DecompositionSummary;
-use super::summary::{FailureSummary, ProfileSummary, Summary};
+use super::summary::{FailureSummary, Outflow, ProfileSummary, Summary};
 use crate::clock::Activity;
 use crate::effects::{ledger_lines, ledger_rest};
 use crate::estimate::{Bounded, ErrorEstimate};
@@ -133,6 +133,11 @@ fn facts(summary: &Summary, folder: &Path) -> Vec<Vec<String>> {
     ];
     if let Some(out) = &summary.outflow {
         facts.push(("outflow", format!("{} particles, {:.6e} kg{per}", out.particles, out.mass)));
+    }
+    if let Some(out) = &summary.erosion {
+        let Outflow { particles, mass, energy, .. } = out;
+        let what = format!("{particles} particles, {mass:.6e} kg{per}, {energy:.6e} J{per}");
+        facts.push(("erosion", format!("{what} taken out")));
     }
     if let Some(failure) = &summary.failure {
         let FailureSummary { particles, released_energy } = failure;
@@ -331,6 +336,15 @@ warning: linear shape functions ring across cells
         let mut summary = example();
         summary.profiles[0].errors = None;
         assert!(!report(&summary, Path::new("out")).contains("L1"));
+    }
+
+    #[test]
+    fn what_was_eroded_is_told() {
+        let mut summary = example();
+        let momentum = vec![0.25];
+        summary.erosion = Some(Outflow { particles: 7, mass: 0.5, momentum, energy: 2.0 });
+        let line = "  erosion   7 particles, 5.000000e-1 kg/m2, 2.000000e0 J/m2 taken out\n";
+        assert!(report(&summary, Path::new("out")).contains(line));
     }
 
     #[test]

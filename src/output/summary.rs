@@ -62,6 +62,9 @@ pub struct Summary {
     /// What has left the domain; absent where nothing can.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outflow: Option<Outflow>,
+    /// What was eroded; absent where nothing can be.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub erosion: Option<Outflow>,
     /// What has failed; absent where nothing can.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failure: Option<FailureSummary>,
@@ -174,7 +177,7 @@ impl Momentum {
     }
 }
 
-/// What has left the domain through open sides.
+/// What has left the domain through open sides, or was eroded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outflow {
     /// Number of particles.
@@ -190,7 +193,7 @@ pub struct Outflow {
 /// What has failed by the end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FailureSummary {
-    /// Number of particles that bear neither tension nor shear any more.
+    /// Number of particles that are there and bear neither tension nor shear any more.
     pub particles: u64,
     /// Elastic energy that they have kept as heat, in the unit of [`Energy`].
     pub released_energy: f64,
@@ -325,6 +328,7 @@ pub(super) mod tests {
             energy: Energy::new([10.0, 4.0], [0.0, 7.0], 0.5),
             momentum: Momentum::new(&[8.0], &[8.0], &[0.0], 8.0),
             outflow: None,
+            erosion: None,
             failure: None,
             profiles: vec![
                 profile(5e-7, Some(json!({"l1": 0.0089, "plateau": -1e-5, "noise": null}))),

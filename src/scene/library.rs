@@ -17,7 +17,7 @@ use super::table::{is_hdf5, read_hdf5};
 use crate::material::Table;
 
 /// The materials of the library; each file holds one as it stands in a scene.
-pub const LIBRARY: [(&str, &str); 27] = [
+pub const LIBRARY: [(&str, &str); 29] = [
     ("aluminium_1100", include_str!("../../inputs/materials/aluminium_1100.json")),
     ("aluminium_2024", include_str!("../../inputs/materials/aluminium_2024.json")),
     (
@@ -42,9 +42,11 @@ pub const LIBRARY: [(&str, &str); 27] = [
     ("iron_tillotson", include_str!("../../inputs/materials/iron_tillotson.json")),
     ("lead", include_str!("../../inputs/materials/lead.json")),
     ("lithium_fluoride", include_str!("../../inputs/materials/lithium_fluoride.json")),
+    ("lx_14", include_str!("../../inputs/materials/lx_14.json")),
     ("nickel", include_str!("../../inputs/materials/nickel.json")),
     ("pbx_9404", include_str!("../../inputs/materials/pbx_9404.json")),
     ("pmma", include_str!("../../inputs/materials/pmma.json")),
+    ("sapphire", include_str!("../../inputs/materials/sapphire.json")),
     ("steel_304", include_str!("../../inputs/materials/steel_304.json")),
     ("steel_4340", include_str!("../../inputs/materials/steel_4340.json")),
     (

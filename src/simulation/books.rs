@@ -31,7 +31,7 @@ pub struct Tally {
     pub migrated: u64,
 }
 
-/// What has left by outflows, in the frame of the scene.
+/// What has left, in the frame of the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Left<const D: usize> {
     /// Number of particles.
@@ -50,13 +50,34 @@ impl<const D: usize> Left<D> {
     /// Nothing.
     pub const NONE: Self =
         Left { count: 0, mass: 0.0, momentum: [0.0; D], kinetic: 0.0, internal: 0.0 };
+
+    /// With what has left in another way.
+    pub fn and(&self, other: &Self) -> Self {
+        Left {
+            count: self.count + other.count,
+            mass: self.mass + other.mass,
+            momentum: std::array::from_fn(|a| self.momentum[a] + other.momentum[a]),
+            kinetic: self.kinetic + other.kinetic,
+            internal: self.internal + other.internal,
+        }
+    }
 }
 
-/// What has left by outflows of this rank's patches: sums that do not depend on who counted.
+/// What has left, by the way that it took.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ways<const D: usize> {
+    /// By outflows.
+    pub outflow: Left<D>,
+    /// By erosion.
+    pub erosion: Left<D>,
+}
+
+/// What has left this rank's patches: sums that do not depend on who counted.
 #[derive(Clone, Debug)]
 pub(super) struct Outflow<const D: usize> {
     pub(super) census: Census,
-    /// Mass, kinetic and internal energy, momentum.
+    /// Mass, kinetic and internal energy, momentum of what has left by outflows, and where
+    /// particles may be eroded the same of those, and their number.
     pub(super) sums: Vec<ExactSum>,
 }
 
@@ -67,8 +88,10 @@ impl<const D: usize> Outflow<D> {
         let mass = largest_mass(scene);
         let speed = scene.bodies.iter().fold(1e3, |s: f64, c| s.max(c.top_speed)) * 1e3;
         let energy = mass * speed * speed;
-        let largest = [mass, energy, energy].into_iter().chain([mass * speed; D]);
-        Outflow { census: Census::default(), sums: largest.map(ExactSum::new).collect() }
+        let largest = || [mass, energy, energy].into_iter().chain([mass * speed; D]);
+        let eroded = scene.erodes().then(|| largest().chain([1.0]));
+        let all = largest().chain(eroded.into_iter().flatten());
+        Outflow { census: Census::default(), sums: all.map(ExactSum::new).collect() }
     }
 
     /// Books what has left in a step, which `grid` says how the grid moves at the end of.
@@ -79,9 +102,19 @@ impl<const D: usize> Outflow<D> {
             self.census.add(gone.id, m);
             let kinetic = 0.5 * m * v.iter().map(|v| v * v).sum::<f64>();
             let terms = [m, kinetic, m * gone.energy].into_iter().chain(v.map(|v| m * v));
-            self.sums.iter_mut().zip(terms).for_each(|(sum, term)| sum.add(term));
+            let first = if gone.eroded { left_sums(D) } else { 0 };
+            let book = self.sums[first..].iter_mut();
+            match gone.eroded {
+                true => book.zip(terms.chain([1.0])).for_each(|(sum, term)| sum.add(term)),
+                false => book.zip(terms).for_each(|(sum, term)| sum.add(term)),
+            }
         }
     }
+}
+
+/// Number of sums of what has left in one way, in so many dimensions.
+pub(super) fn left_sums(dimension: usize) -> usize {
+    3 + dimension
 }
 
 /// About the mass of the heaviest particle [kg].
@@ -180,17 +213,33 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         self.patches.iter().map(|p| p.block.own() as u64).sum()
     }
 
-    /// What has left by outflows. Collective.
+    /// What has left, by outflows and by erosion. Collective.
     pub fn left(&self) -> Left<D> {
+        let Ways { outflow, erosion } = self.ways();
+        outflow.and(&erosion)
+    }
+
+    /// What has left, by the way that it took. Collective.
+    pub fn ways(&self) -> Ways<D> {
         let mut sums = self.outflow.sums.clone();
         ExactSum::over_ranks(self.comm, &mut sums);
-        let value = |k: usize| sums[k].value();
-        Left {
-            count: self.outflow.census.over_ranks(self.comm).rows,
-            mass: value(0),
-            kinetic: value(1),
-            internal: value(2),
-            momentum: std::array::from_fn(|a| value(3 + a)),
+        let count = self.outflow.census.over_ranks(self.comm).rows;
+        let book = |first: usize, count: u64| {
+            let value = |k: usize| sums[first + k].value();
+            Left {
+                count,
+                mass: value(0),
+                kinetic: value(1),
+                internal: value(2),
+                momentum: std::array::from_fn(|a| value(3 + a)),
+            }
+        };
+        let second = left_sums(D);
+        // the last of its sums is the number of those eroded
+        let eroded = (sums.len() > second).then(|| sums[2 * second].value() as u64);
+        Ways {
+            outflow: book(0, count - eroded.unwrap_or(0)),
+            erosion: eroded.map_or(Left::NONE, |eroded| book(second, eroded)),
         }
     }
 

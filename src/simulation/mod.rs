@@ -10,7 +10,7 @@ mod observe;
 mod save;
 
 pub use crate::patch::Given;
-pub use books::{Left, Tally};
+pub use books::{Left, Tally, Ways};
 pub use observe::{Followed, Totals};
 pub use save::{Saved, saved_sums};
 

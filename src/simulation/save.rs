@@ -7,9 +7,11 @@
 
 use decomp::{Census, Comm, ExactSum, StoredRows, deal_rows, words_of};
 
+use super::books::left_sums;
 use super::{RunError, Simulation, Tally};
 use crate::clock::Clock;
 use crate::patch::Patch;
+use crate::scene::CheckedScene;
 
 /// What a run needs to go on.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,10 +32,13 @@ pub struct Saved {
     pub rows: StoredRows,
 }
 
-/// Number of [`Saved::sums`] of a run in so many dimensions.
-pub fn saved_sums(dimension: usize) -> usize {
-    // mass, two energies and momentum of what has left; work and impulse of the sides
-    4 + 2 * dimension
+/// Number of [`Saved::sums`] of a run of `scene`.
+pub fn saved_sums(scene: &CheckedScene) -> usize {
+    let dimension = scene.dimension;
+    // those of what was eroded, and its number
+    let eroded = if scene.erodes() { left_sums(dimension) + 1 } else { 0 };
+    // of what has left; work and impulse of the sides
+    left_sums(dimension) + eroded + 1 + dimension
 }
 
 impl<C: Comm, const D: usize> Simulation<'_, C, D> {

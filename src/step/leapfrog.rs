@@ -86,6 +86,9 @@ impl<const D: usize> Stepper<D> {
         }
         world.each("refresh", |patch| {
             self.burn(patch, time + dt, self.columns.jacobian);
+            if self.erosion.is_some() {
+                spend(Effect::Erosion, patch, |patch| self.erode(patch));
+            }
             self.refresh(patch);
             if self.columns.failure.is_some() {
                 spend(Effect::Failure, patch, |patch| self.fail(patch, dt));

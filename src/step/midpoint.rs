@@ -17,8 +17,8 @@ use decomp::RowError;
 use super::{Stepper, World};
 use crate::clock::spend;
 use crate::effects::Effect::{
-    AcceleratedGrid, BodyForce, Conduction, Contact, Failure, LoadedSides, Relaxation, Strength,
-    Stress, TransmittingSides, Viscosity,
+    AcceleratedGrid, BodyForce, Conduction, Contact, Erosion, Failure, LoadedSides, Relaxation,
+    Strength, Stress, TransmittingSides, Viscosity,
 };
 
 impl<const D: usize> Stepper<D> {
@@ -104,6 +104,9 @@ impl<const D: usize> Stepper<D> {
                     spend(Relaxation, patch, |patch| self.relax_volume(patch, rate));
                 }
                 self.burn(patch, time + dt, self.columns.jacobian);
+                if self.erosion.is_some() {
+                    spend(Erosion, patch, |patch| self.erode(patch));
+                }
                 self.refresh(patch);
                 if self.columns.failure.is_some() {
                     spend(Failure, patch, |patch| self.fail(patch, dt));

@@ -8,6 +8,7 @@ mod body_force;
 mod burn;
 mod conduction;
 mod contact;
+mod erosion;
 mod failure;
 mod frame;
 pub mod gather;
@@ -29,7 +30,7 @@ mod world;
 pub use reach::Reach;
 pub use world::{Nodal, Sleep, World};
 
-use crate::constitutive::{self, Criterion, Flow, Matter, Outside, Thermal};
+use crate::constitutive::{self, Criterion, Erosion, Flow, Matter, Outside, Thermal};
 use crate::contact::Contact;
 use crate::frame::Frame;
 use crate::grid::{Fields, Wanted};
@@ -80,6 +81,8 @@ pub struct Stepper<const D: usize> {
     flows: Vec<Option<Box<dyn Flow>>>,
     /// When each body's material fails.
     criteria: Vec<Option<Criterion>>,
+    /// When each body's particles are taken out, if those of any are.
+    erosion: Option<Vec<Option<Erosion>>>,
     /// How each body's temperature follows.
     thermals: Vec<Option<Thermal>>,
     /// How heat is conducted.
@@ -242,6 +245,9 @@ impl<const D: usize> Stepper<D> {
             }
         }
         let criteria = bodies.iter().map(|b| constitutive::criterion_of(&materials[&b.material]));
+        let erosion = scene.erodes().then(|| {
+            bodies.iter().map(|b| constitutive::erosion_of(&materials[&b.material])).collect()
+        });
         let thermals = (bodies.iter().zip(&models))
             .map(|(b, model)| constitutive::thermal_of(&materials[&b.material], model));
         let waves: Vec<Waves> = (bodies.iter().zip(models.iter().zip(&flows)))
@@ -313,6 +319,7 @@ impl<const D: usize> Stepper<D> {
             most_pull,
             rest: sides::Rest::of(scene, &models, &waves),
             criteria: criteria.collect(),
+            erosion,
             thermals: thermals.collect(),
             models,
             flows,

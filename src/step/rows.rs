@@ -250,19 +250,25 @@ impl<const D: usize> Stepper<D> {
             }
         }
         if keep.contains(&false) {
-            let c = &self.columns;
             let gone: Vec<usize> = (0..keep.len()).filter(|&r| !keep[r]).collect();
-            for &row in &gone {
-                let column = |k: usize| patch.block.columns[k][row];
-                patch.departed.push(Departed {
-                    id: patch.block.ids[row],
-                    mass: column(c.mass),
-                    velocity: std::array::from_fn(|a| column(c.velocity + a)),
-                    energy: column(c.energy),
-                });
-            }
-            patch.block.remove(&gone);
+            self.depart(patch, &gone, false);
         }
+    }
+
+    /// Takes out and books the own rows of `gone`, which ascend. There must be no ghosts.
+    pub(super) fn depart(&self, patch: &mut Patch<D>, gone: &[usize], eroded: bool) {
+        let c = &self.columns;
+        for &row in gone {
+            let column = |k: usize| patch.block.columns[k][row];
+            patch.departed.push(Departed {
+                id: patch.block.ids[row],
+                mass: column(c.mass),
+                velocity: std::array::from_fn(|a| column(c.velocity + a)),
+                energy: column(c.energy),
+                eroded,
+            });
+        }
+        patch.block.remove(gone);
     }
 
     /// Volume ratio at the middle of the step, J_h = J (1 + dt/2 D).

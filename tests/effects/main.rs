@@ -1,5 +1,6 @@
-//! Effects that a scene names: strength, failure, temperature.
+//! Effects that a scene names: strength, failure, erosion, temperature.
 
+mod erosion;
 mod failure;
 mod heat;
 mod layouts;

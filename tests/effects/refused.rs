@@ -57,6 +57,31 @@ fn failure() {
 }
 
 #[test]
+fn erosion() {
+    let path = "materials.aluminium.erosion";
+    refused(&["erosion={\"plastic_strain\": 0}"], &["erosion.plastic_strain = 0", "above 0"]);
+    refused(&["erosion={\"volume_ratio\": 1}"], &["erosion.volume_ratio = 1", "above 1"]);
+    refused(&["erosion={}"], &[path, "has no limit", "volume_ratio or both"]);
+    refused(&["erosion={\"strain\": 1}"], &["erosion.strain", "plastic_strain, volume_ratio"]);
+    let strain = "erosion={\"plastic_strain\": 1.5}";
+    refused(&["strength=null", strain], &["erosion.plastic_strain", "needs plastic strain"]);
+    let solid =
+        "eos={\"type\": \"linear_elastic\", \"youngs_modulus\": 1e9, \"poissons_ratio\": 0.3}";
+    let spread = "erosion={\"volume_ratio\": 2}";
+    refused(&["strength=null", solid, spread], &[path, "an elastic solid does not erode"]);
+    let among = |sets: &[&str], why: &str| {
+        let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
+        let text = shipped("heat_rod.json").to_string();
+        let error = scene::parse(text.as_bytes(), "h.json", &sets).unwrap_err().to_string();
+        assert!(error.contains("materials.rod.erosion") && error.contains(why), "{error}");
+    };
+    let spread = "materials.rod.erosion={\"volume_ratio\": 2}";
+    among(&[spread], "heat that sides have given");
+    let pulled = "body_force={\"gravity\": [1]}";
+    among(&[spread, "boundary.temperature=null", pulled], "work of a body force");
+}
+
+#[test]
 fn temperature() {
     refused(
         &["thermal={\"specific_heat\": -1, \"reference_temperature\": 300}"],

@@ -4,12 +4,7 @@ use flyer_mpm::scene::{self, CheckedScene, Course, Side};
 use flyer_mpm::step::{Stepper, Steps};
 use serde_json::{Value, json};
 
-use crate::tools::{checked, default_method, digest_on, metals, run};
-
-#[track_caller]
-fn at_most(what: &str, value: f64, bound: f64) {
-    assert!(value.abs() <= bound, "{what}: {value:e}, allowed {bound:e}");
-}
+use crate::tools::{at_most, checked, default_method, metals, run, same_bits};
 
 /// Density and sound speed of the aluminium.
 const RHO: f64 = 2785.0;
@@ -116,15 +111,7 @@ fn any_layout_has_the_same_bits() {
     scene["boundary"] = json!({
         "x_lower": {"pressure": [[0.0, 2e9], [2e-8, 4e9]]}, "y_upper": {"pressure": 3e9}
     });
-    let on = |patches: [usize; 2], ranks: usize| {
-        let mut scene = scene.clone();
-        scene["domain"]["patches"] = json!(patches);
-        digest_on(&scene, ranks, 1)
-    };
-    let whole = on([1, 1], 1);
-    for (patches, ranks) in [([4, 1], 2), ([3, 5], 4), ([6, 4], 1)] {
-        assert_eq!(on(patches, ranks), whole, "{patches:?} on {ranks}");
-    }
+    same_bits(&scene);
     let outcome = run::<2>(&scene);
     at_most("energy", outcome.unbooked_energy(), 1e-12);
     let impulse = outcome.given.impulse;

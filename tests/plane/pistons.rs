@@ -4,12 +4,7 @@ use flyer_mpm::scene::{self, Course, Side};
 use flyer_mpm::step::{Stepper, Steps};
 use serde_json::{Value, json};
 
-use crate::tools::{Outcome, checked, default_method, digest_on, metals, run};
-
-#[track_caller]
-fn at_most(what: &str, value: f64, bound: f64) {
-    assert!(value.abs() <= bound, "{what}: {value:e}, allowed {bound:e}");
-}
+use crate::tools::{Outcome, at_most, checked, default_method, metals, run, same_bits};
 
 /// Density and sound speed of the copper.
 const RHO: f64 = 8930.0;
@@ -187,15 +182,7 @@ fn any_layout_has_the_same_bits() {
     scene["boundary"]["x_upper"] = json!("transmitting");
     scene["bodies"][0]["box"]["upper"] = json!([6e-4, 4e-4]);
     scene["boundary"]["y_upper"] = json!({"velocity": [[0.0, 0.0], [5e-8, -200.0]]});
-    let on = |patches: [usize; 2], ranks: usize| {
-        let mut scene = scene.clone();
-        scene["domain"]["patches"] = json!(patches);
-        digest_on(&scene, ranks, 1)
-    };
-    let whole = on([1, 1], 1);
-    for (patches, ranks) in [([4, 1], 2), ([3, 5], 4), ([6, 4], 1)] {
-        assert_eq!(on(patches, ranks), whole, "{patches:?} on {ranks}");
-    }
+    same_bits(&scene);
 }
 
 #[test]

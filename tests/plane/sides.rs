@@ -4,12 +4,7 @@ use flyer_mpm::scene;
 use flyer_mpm::step::{Stepper, Steps};
 use serde_json::{Value, json};
 
-use crate::tools::{Outcome, default_method, metals, run};
-
-#[track_caller]
-fn at_most(what: &str, value: f64, bound: f64) {
-    assert!(value.abs() <= bound, "{what}: {value:e}, allowed {bound:e}");
-}
+use crate::tools::{Outcome, at_most, default_method, metals, run};
 
 /// A flyer on a target of aluminium that ends at `length` [m]; there is what `side` says, or more
 /// of the target.

@@ -97,6 +97,26 @@ pub fn digest_on(scene: &Value, ranks: usize, threads: usize) -> String {
     format!("{} {:?} {:?}", outcome.digest, outcome.left, outcome.given)
 }
 
+/// Asserts that a scene leaves the same bits, books and all, on some layouts as on one patch.
+#[track_caller]
+pub fn same_bits(scene: &Value) {
+    let on = |patches: [usize; 2], ranks: usize| {
+        let mut scene = scene.clone();
+        scene["domain"]["patches"] = json!(patches);
+        digest_on(&scene, ranks, 1)
+    };
+    let whole = on([1, 1], 1);
+    for (patches, ranks) in [([4, 1], 2), ([3, 5], 4), ([6, 4], 1)] {
+        assert_eq!(on(patches, ranks), whole, "{patches:?} on {ranks}");
+    }
+}
+
+/// Asserts a magnitude.
+#[track_caller]
+pub fn at_most(what: &str, value: f64, bound: f64) {
+    assert!(value.abs() <= bound, "{what}: {value:e}, allowed {bound:e}");
+}
+
 /// Copper and aluminium.
 pub fn metals() -> Value {
     let eos = |c0: f64, s: f64, gamma0: f64| json!({"type": "mie_gruneisen", "c0": c0, "s": s, "gamma0": gamma0});

@@ -4,7 +4,7 @@ use decomp::Serial;
 use flyer_mpm::output::ParticleTable;
 use flyer_mpm::reference::PlaneReference;
 use flyer_mpm::scene::{self, CheckedScene};
-use flyer_mpm::simulation::{Simulation, Totals};
+use flyer_mpm::simulation::{Simulation, Totals, Ways};
 use flyer_mpm::step::{Stepper, Steps};
 use serde_json::{Value, json};
 
@@ -31,14 +31,19 @@ pub struct Outcome<const D: usize> {
     pub digest: String,
     /// Sums at the start and at the end.
     pub totals: [Totals<D>; 2],
+    /// What has left.
+    pub ways: Ways<D>,
     /// Score of the end, where the scene names a solution.
     pub score: Value,
 }
 
 impl<const D: usize> Outcome<D> {
-    /// Change of the total energy less the work of a body force, over the greater of the energies.
+    /// Change of the total energy, what has left counted, less the work of a body force, over the
+    /// greater of the energies.
     pub fn energy_drift(&self) -> f64 {
         let [start, end] = self.totals.map(|t| t.kinetic + t.internal);
+        let left = self.ways.outflow.and(&self.ways.erosion);
+        let end = end + (left.kinetic + left.internal);
         (end - start - self.totals[1].body_force_work) / start.max(end)
     }
 
@@ -83,7 +88,8 @@ where
     let score = PlaneReference::new(&scene)
         .and_then(|r| r.score(&scene, &last, start.as_ref()))
         .unwrap_or_default();
-    Outcome { last, digest, totals: [first, simulation.totals()], score }
+    let ways = simulation.ways();
+    Outcome { last, digest, totals: [first, simulation.totals()], ways, score }
 }
 
 /// The method of mid-point steps with this shape function and transfer, and all that keeps energy.

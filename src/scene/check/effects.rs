@@ -11,6 +11,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
         let path = join("materials", name);
         check_strength(&path, material)?;
         check_failure(&path, material)?;
+        check_erosion(&path, material, scene)?;
         check_thermal(&path, material)?;
     }
     Ok(())
@@ -137,6 +138,33 @@ fn check_failure(path: &str, material: &Material) -> Result<(), Fault> {
         let reason = "needs the temperatures of strength.softening of \"johnson_cook\"; allowed: \
                       0, or those";
         return Err(Fault::new(format!("{path}.d5"), d5, reason));
+    }
+    Ok(())
+}
+
+fn check_erosion(path: &str, material: &Material, scene: &Scene) -> Result<(), Fault> {
+    let Some(erosion) = material.erosion else { return Ok(()) };
+    let path = format!("{path}.erosion");
+    let refuse = |why: &str, allowed: &str| {
+        Err(Fault::new(&path, erosion, format!("{why}; allowed: to leave it out, or {allowed}")))
+    };
+    if material.eos.is_solid() {
+        let allowed = "the eos of a fluid, such as \"mie_gruneisen\", with strength";
+        return refuse("an elastic solid does not erode", allowed);
+    }
+    if erosion.plastic_strain.is_none() && erosion.volume_ratio.is_none() {
+        return refuse("has no limit", "plastic_strain, volume_ratio or both");
+    }
+    if let (Some(limit), None) = (erosion.plastic_strain, material.strength) {
+        let reason = "needs plastic strain; allowed: volume_ratio, or strength beside it";
+        return Err(Fault::new(format!("{path}.plastic_strain"), limit, reason));
+    }
+    if scene.body_force.is_some() {
+        return refuse("the work of a body force on what goes is not booked", "no body_force");
+    }
+    if scene.boundary.as_ref().is_some_and(|b| b.temperature.is_some()) {
+        let why = "the heat that sides have given what goes is not booked";
+        return refuse(why, "no boundary.temperature");
     }
     Ok(())
 }

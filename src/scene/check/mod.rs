@@ -151,12 +151,17 @@ impl CheckedScene {
         all.any(|side| matches!(side, Side::Pressure(_)))
     }
 
+    /// Whether particles of a body may be taken out of the run.
+    pub fn erodes(&self) -> bool {
+        (0..self.bodies.len()).any(|i| self.material_of(i).erosion.is_some())
+    }
+
     /// Whether nothing gives the particles energy or lets them out but rigid sides.
     pub fn keeps_all(&self) -> bool {
         let sides = self.sides::<2>();
         let mut all = sides[..self.dimension].as_flattened().iter();
         let gives = |s: &Side| s.lets_out() || matches!(s, Side::Pressure(_) | Side::Friction(_));
-        !self.accelerates() && !all.any(gives)
+        !self.accelerates() && !self.erodes() && !all.any(gives)
     }
 
     /// Whether one of the sides rubs.

@@ -144,6 +144,21 @@ pub enum TensionMeasure {
     MeanStress,
 }
 
+/// When a particle is taken out of the run: at the first limit that it reaches. What it has is
+/// booked as having left.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Erosion {
+    /// Equivalent plastic strain [-], which needs `strength`; absent: no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub plastic_strain: Option<f64>,
+    /// Volume over that at the start [-]; absent: no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 1.0))]
+    pub volume_ratio: Option<f64>,
+}
+
 /// The temperature of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

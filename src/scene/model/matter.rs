@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::region::{Annulus, Disk, Ellipse, HalfPlane, Polygon, Region, Rotation};
-use super::{Failure, HeatSource, Strength, Thermal, VelocityField};
+use super::{Erosion, Failure, HeatSource, Strength, Thermal, VelocityField};
 
 /// A material.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -21,6 +21,9 @@ pub struct Material {
     /// When it fails, to bear neither tension nor shear any more; absent: never.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failure: Option<Failure>,
+    /// When its particles are taken out of the run; absent: never.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub erosion: Option<Erosion>,
     /// Its temperature; absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal: Option<Thermal>,
