@@ -316,6 +316,28 @@ mod tests {
     }
 
     #[test]
+    fn christensen_looks_to_both_sides() {
+        let ones = [1.0; 6];
+        // a third of the slope on one side, a twentieth on the other: twice the least
+        let bent = [7.0, 6.0, 3.0, 2.85, 2.0, 1.0];
+        let back: Vec<f64> = bent.iter().rev().map(|v| -v).collect();
+        for (v, node) in [(&bent[..], 1), (&back, 3)] {
+            assert!((christensen(&line(v, &ones), node) - 0.1).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn limiters_see_the_velocity_of_another_body_where_their_own_has_no_mass() {
+        // two layers of six nodes: the first body ends at the fourth node, the second goes on
+        let inverse = [1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        let v = [6.0, 5.0, 4.0, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0, 2.0, 1.0];
+        let nodes = Nodes { layer: 6, ..line(&v, &inverse) };
+        assert_eq!(christensen(&nodes, 2), 1.0);
+        let alone = [&inverse[..6], &[0.0; 6]].concat();
+        assert_eq!(christensen(&Nodes { layer: 6, ..line(&v, &alone) }, 2), 0.0, "an edge");
+    }
+
+    #[test]
     fn in_a_plane_a_wave_along_an_axis_is_limited_as_on_a_line() {
         let ones = [1.0; 36];
         for v in [

@@ -298,6 +298,21 @@ mod tests {
     ];
 
     #[test]
+    fn images_turn_vectors_and_shear() {
+        let of = |mirror, flip: [bool; 2]| ColumnSpec { mirror, ..SPECS[0] }.image(0.25, &flip);
+        let sides = [[false, false], [true, false], [false, true], [true, true]];
+        for (mirror, wanted) in [
+            (Mirror::Same, [0.25, 0.25, 0.25, 0.25]),
+            (Mirror::Negate(0), [0.25, -0.25, 0.25, -0.25]),
+            // in a corner it is turned back
+            (Mirror::NegatePair(0, 1), [0.25, -0.25, -0.25, 0.25]),
+            (Mirror::Complement(1), [0.25, 0.25, 0.75, 0.75]),
+        ] {
+            assert_eq!(sides.map(|flip| of(mirror, flip)), wanted, "{mirror:?}");
+        }
+    }
+
+    #[test]
     fn sorting_moves_whole_rows() {
         let mut block = Block::<2>::new(&SPECS);
         block.push(7, [1, 0], &[7.0, 70.0]);

@@ -105,6 +105,12 @@ mod tests {
         assert_eq!(mean.damage(0.0, &row(-0.9e9, 0.2e9, 0.0)), 0.0);
         assert_eq!(mean.damage(0.0, &row(-1.1e9, -0.2e9, 0.0)), 1.0);
         assert_eq!(mean.damage(1.0, &row(5e9, 0.0, 0.0)), 1.0, "failed stays failed");
+        // the greatest stress is that across: -0.5 xx
+        assert_eq!(stress.damage(0.0, &row(-0.9e9, -0.19e9, 0.0)), 0.0);
+        assert_eq!(stress.damage(0.0, &row(-0.9e9, -0.21e9, 0.0)), 1.0);
+        let mut across = row(-0.9e9, -0.1e9, 0.0);
+        (across.deviator.yy, across.deviator.zz) = (-0.1e9, 0.2e9);
+        assert_eq!(stress.damage(0.0, &across), 1.0);
     }
 
     #[test]
@@ -125,6 +131,8 @@ mod tests {
         let damage = law.damage(0.25, &row(-0.2e9, 0.2e9, 0.001));
         assert!((damage - (0.25 + 0.001 / fracture)).abs() < 1e-15, "{damage}");
         assert_eq!(law.damage(0.25, &row(-0.2e9, 0.2e9, 0.0)), 0.25);
+        let most = ductile.fracture_strain(1.5, rate, 300.0);
+        assert_eq!(ductile.fracture_strain(2.5, rate, 300.0), most, "triaxiality is bounded");
         assert_eq!(law.damage(0.9999999, &row(-0.2e9, 0.2e9, 0.1)), 1.0);
     }
 }

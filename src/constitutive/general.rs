@@ -143,13 +143,23 @@ mod tests {
         to: f64,
         state: [f64; 2],
     ) -> [f64; 2] {
+        change_against(model, None, history, [from, to], state)
+    }
+
+    fn change_against(
+        model: &dyn Model,
+        q: Option<&[f64]>,
+        history: Option<&[f64]>,
+        [from, to]: [f64; 2],
+        state: [f64; 2],
+    ) -> [f64; 2] {
         let ([mut p], [mut e]) = ([[state[0]]], [[state[1]]]);
         model.change_volume(VolumeChange {
             mass: &[2.0],
             volume0: &[1e-3],
             before: &[from],
             after: &[to],
-            q: None,
+            q,
             pressure: &mut p,
             energy: &mut e,
             history,
@@ -170,6 +180,10 @@ mod tests {
         for (a, b) in both[0].into_iter().zip(both[1]) {
             assert!((a / b - 1.0).abs() < 1e-14, "{a} {b}");
         }
+        let viscous: [&dyn Model; 2] = [&Implicit(GAS), &Point(GAS)];
+        let [a, b] =
+            viscous.map(|model| change_against(model, Some(&[300.0]), None, [1.0, 0.9], start)[1]);
+        assert!((a / b - 1.0).abs() < 1e-14 && a > both[0][1], "{a} {b}");
     }
 
     /// Of a smooth path in n steps: pressure and energy at its end.

@@ -133,6 +133,16 @@ mod tests {
     }
 
     #[test]
+    fn shear_is_faster_where_stretch_has_softened_the_solid() {
+        let l = 0.6f64.exp();
+        let f = Deformation { plane: [l, 0.0, 0.0, l], across: 1.0 };
+        let even = Hencky { rho0: 3.0, lame: Lame { lambda: 2.0, mu: 2.0 } };
+        // along: lambda (1 - 1.2) + 2 mu (1 - 0.6) = 0.6 mu
+        assert_eq!(even.fault(&f), None);
+        assert!((even.sound_speed_squared(&f) - 2.0 / 3.0).abs() < 1e-14);
+    }
+
+    #[test]
     fn small_strains_give_hookes_law() {
         let (e, g) = (1e-6, 3e-6);
         let f = Deformation { plane: [1.0 + e, g, 0.0, 1.0], across: 1.0 };

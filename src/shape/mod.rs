@@ -178,6 +178,14 @@ mod tests {
     }
 
     #[test]
+    fn a_place_off_a_knot_by_a_rounding_lies_on_it() {
+        for (x, at) in [(2.0 - 1e-15, 2.0), (2.0 + 1e-15, 2.0), (-1e-17, 0.0), (1e-17, 0.0)] {
+            assert_eq!(split(x), (at, 0.0), "{x}");
+        }
+        assert_eq!(split(1.75), (1.0, 0.75));
+    }
+
+    #[test]
     fn floor_is_the_librarys() {
         for x in [-3.5, -3.0, -0.2, -0.0, 0.0, 0.9, 1.0, 7.3, -1e-300, 2e9, -2e9] {
             assert_eq!(floor(x), x.floor(), "{x}");

@@ -239,5 +239,8 @@ mod tests {
             assert!((a - b).abs() < 1e-13);
         }
         assert_eq!(TILTED.limited(1.0), TILTED);
+        // an edge turned about is the same domain, with its diagonals exchanged
+        let turned = Domain { half_edges: [[3.0, 1.0], [-0.2, -0.4]] };
+        assert_eq!(turned.limited(2.0).half_edges, [r1, r2.map(|x| -x)]);
     }
 }

@@ -234,6 +234,16 @@ mod tests {
     }
 
     #[test]
+    fn plastic_work_is_that_of_the_stress_after() {
+        let rate = Rate { plane: [-1e6, 0.0, 0.0, 0.0], across: 0.0 };
+        let start = advance(&SOFT, &Symmetric::default(), 0.0, &rate, 1e-8, &REST);
+        let after = advance(&SOFT, &start.deviator, start.plastic_strain, &rate, 1e-8, &REST);
+        let strain = after.plastic_strain - start.plastic_strain;
+        let work = SOFT.yield_stress(after.plastic_strain, 0.0, &REST) * strain;
+        assert!(strain > 0.0 && (after.plastic_work / work - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
     fn uniaxial_strain_ends_two_thirds_of_the_yield_stress_apart() {
         let hard = VonMises { hardening: 0.0, ..SOFT };
         let rate = Rate { plane: [-1e6, 0.0, 0.0, 0.0], across: 0.0 };

@@ -137,6 +137,35 @@ fn a_folder_that_cannot_be_written_any_more_is_told() {
     assert_eq!(fs::read_to_string(home.at("output")).unwrap(), "not a folder");
 }
 
+/// Permission does not bind root, a disk mounted to be read only binds everybody. A mount of the
+/// test's own needs root or user namespaces; where neither is, the test says so and ends.
+#[test]
+fn a_folder_on_a_disk_that_is_read_only_is_told() {
+    let home = Home::with(&recorded(20));
+    fs::create_dir_all(home.at("disk/there")).unwrap();
+    let mounted = r#"mount --bind disk disk && mount -o remount,bind,ro disk && exec "$0" "$@""#;
+    let call = |by: &str, args: &[&str]| {
+        let mut run = Command::new("unshare");
+        run.args([by, "sh", "-c", mounted]).args(args).current_dir(home.path()).output()
+    };
+    let works = |by: &&str| call(by, &["true"]).is_ok_and(|out| out.status.success());
+    let Some(by) = ["-m", "-rm"].into_iter().find(works) else {
+        eprintln!("skipped: no mount of its own is allowed here");
+        return;
+    };
+    let before = home.contents();
+    // the folder of results, and its parent
+    for output in ["disk/there", "disk/new/run"] {
+        let program = env!("CARGO_BIN_EXE_flyer-mpm");
+        let out = call(by, &[program, "scene.json", "--quiet", "--output", output]).unwrap();
+        let said = String::from_utf8_lossy(&out.stderr);
+        assert_eq!(out.status.code(), Some(2), "{said}");
+        assert_eq!(said.lines().count(), 1, "{said}");
+        assert!(said.contains("disk/") && said.contains("Read-only file system"), "{said}");
+        assert_eq!(home.contents(), before);
+    }
+}
+
 /// What a scene calls things never leads out of its folder.
 #[test]
 fn names_lead_nowhere() {

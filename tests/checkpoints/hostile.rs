@@ -195,8 +195,8 @@ fn too_much_is_told_before_it_is_taken() {
     }
 }
 
-/// Begins a run of a changed scene on two ranks of this process; what ends it.
-fn begun<const D: usize>(scene: &CheckedScene) -> Result<(), String>
+/// Begins a run of a changed scene on ranks of this process; what ends it.
+fn begun<const D: usize>(scene: &CheckedScene, ranks: usize) -> Result<(), String>
 where
     Stepper<D>: Steps<D>,
 {
@@ -212,7 +212,7 @@ where
         }
         Ok(())
     }
-    let ends = run_ranks(2, |comm| match of_rank::<_, D>(scene, comm) {
+    let ends = run_ranks(ranks, |comm| match of_rank::<_, D>(scene, comm) {
         // one rank alone knows of it, and ends all in the program
         Err(RunError::Row(error)) => panic!("{LOST}{error}"),
         end => end,
@@ -226,13 +226,15 @@ where
 const LOST: &str = "a row is lost: ";
 
 /// Scenes that pass in spite of a change are run for some steps, on two ranks: they go on, or all
-/// ranks end with a message. FLYER_MPM_MUTANTS sets how many are made.
+/// ranks end with a message. FLYER_MPM_MUTANTS sets how many are made, FLYER_MPM_MUTANT_RANKS on how
+/// many ranks they run.
 #[test]
 fn changed_scenes_on_two_ranks() {
-    let wanted = std::env::var("FLYER_MPM_MUTANTS").ok().and_then(|n| n.parse().ok());
+    let set = |name: &str| std::env::var(name).ok().and_then(|n| n.parse().ok());
+    let ranks = set("FLYER_MPM_MUTANT_RANKS").unwrap_or(2);
     let corpus = corpus();
     let (mut seed, mut ran) = (6, 0);
-    for round in 0..wanted.unwrap_or(600) {
+    for round in 0..set("FLYER_MPM_MUTANTS").unwrap_or(600) {
         let text = changed(&corpus[round % corpus.len()], &mut seed);
         if scene::check_size(&text, "scene.json", &[], Some(64 << 20)).is_err() {
             continue;
@@ -243,8 +245,8 @@ fn changed_scenes_on_two_ranks() {
         }
         ran += 1;
         let end = catch_unwind(AssertUnwindSafe(|| match scene.dimension {
-            1 => begun::<1>(&scene),
-            _ => begun::<2>(&scene),
+            1 => begun::<1>(&scene, ranks),
+            _ => begun::<2>(&scene, ranks),
         }));
         let told = String::from_utf8_lossy(&text);
         match end {

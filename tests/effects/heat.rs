@@ -34,6 +34,15 @@ fn a_rod_warms_up_from_its_end_to_second_order() {
     assert!((coarse / fine).log2() > 1.7, "{coarse} {fine}");
 }
 
+/// Where sound is slow a step is as long as conduction allows.
+#[test]
+fn slow_sound_makes_no_step_too_long_for_conduction() {
+    let mut scene = rod(5e-4);
+    scene["materials"]["rod"]["eos"]["bulk_modulus"] = json!(1.0);
+    let found = error(&run::<1>(&scene), 0.1);
+    assert!(found < 5e-3, "{found}");
+}
+
 #[test]
 fn what_comes_in_by_the_side_is_booked() {
     let outcome = run::<1>(&rod(5e-4));

@@ -1,10 +1,12 @@
 //! Strength in runs: waves in uniaxial strain, turning, every kind of step.
 
+use decomp::Serial;
 use flyer_mpm::exact::{ElasticPlastic, Plastic};
 use flyer_mpm::material::MieGruneisen;
+use flyer_mpm::simulation::Simulation;
 use serde_json::{Value, json};
 
-use crate::tools::{Outcome, at_most, midpoint, run, shipped};
+use crate::tools::{Outcome, at_most, checked, midpoint, run, shipped};
 
 const ALUMINIUM: Plastic<MieGruneisen> = Plastic {
     eos: MieGruneisen { rho0: 2790.0, c0: 5330.0, s: 1.34, gamma0: 2.0 },
@@ -58,6 +60,27 @@ fn a_precursor_runs_ahead_of_a_plastic_shock() {
         let most = if x[r] > 0.0041 { 0.0 } else { 2e-4 };
         assert!(x[r] < 0.0035 || strain[r] <= most, "{} {}", x[r], strain[r]);
     }
+}
+
+/// Sound of a metal with strength is that along: c^2 = c0^2 + 4 G/(3 rho).
+#[test]
+fn shear_stiffness_shortens_the_step() {
+    let step = |strong: bool| {
+        let mut scene = piston();
+        scene.as_object_mut().unwrap().remove("reference");
+        if !strong {
+            let materials = scene["materials"].as_object_mut().unwrap();
+            materials
+                .values_mut()
+                .for_each(|m| drop(m.as_object_mut().unwrap().remove("strength")));
+        }
+        let scene = checked(&scene);
+        Simulation::<_, 1>::new(&scene, &Serial, 1).unwrap().time_step()
+    };
+    let ratio = step(true) / step(false);
+    let exact = 5330.0 / (5330.0f64.powi(2) + 4.0 / 3.0 * 28.6e9 / 2790.0).sqrt();
+    // the metal comes in at 100 m/s, which counts too
+    at_most("step", ratio / exact - 1.0, 0.02);
 }
 
 #[test]

@@ -29,6 +29,10 @@ fn fault(base: &Value, method: &Value, gain: f64) -> Option<String> {
             return Some(format!("density {ratio} of that at rest"));
         }
     }
+    // all sides are free
+    if outcome.momentum_drift().abs() > 1e-12 {
+        return Some(format!("momentum drift {}", outcome.momentum_drift()));
+    }
     (outcome.energy_drift() > gain).then(|| format!("energy drift {}", outcome.energy_drift()))
 }
 

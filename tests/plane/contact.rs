@@ -1,8 +1,10 @@
 //! Bodies with velocity fields of their own in a plane.
 
+use decomp::Serial;
+use flyer_mpm::simulation::Simulation;
 use serde_json::{Value, json};
 
-use crate::tools::{Outcome, default_method, impact, metals, run};
+use crate::tools::{Outcome, checked, default_method, impact, metals, run};
 
 /// Momentum of each body at the end [kg m/s per m].
 fn momenta(outcome: &Outcome<2>) -> [[f64; 2]; 2] {
@@ -73,6 +75,26 @@ fn coulombs_friction_slows_a_block() {
             let given = momenta(&outcome)[0][0];
             assert!((given / exact - 1.0).abs() < bound, "{transfer}: {given:e} of {exact:e}");
         }
+    }
+}
+
+#[test]
+fn the_force_told_is_that_of_pressure_and_friction() {
+    let friction = json!({"type": "friction", "coefficient": 0.1});
+    for (sides, contact, speed, share) in
+        [("periodic", friction, 200.0, 0.1), ("wall", json!({"type": "frictionless"}), 0.0, 0.0)]
+    {
+        let mut scene = blocks(contact, json!("pic"), speed, 1e9);
+        scene["boundary"]["x_lower"] = json!(sides);
+        scene["boundary"]["x_upper"] = json!(sides);
+        let scene = checked(&scene);
+        let mut simulation = Simulation::<_, 2>::new(&scene, &Serial, 1).unwrap();
+        for _ in 0..5 {
+            simulation.advance(scene.scene.time.end).unwrap();
+        }
+        let [normal, across] = simulation.contact_force();
+        assert!((normal / (1e9 * 5e-4) - 1.0).abs() < 0.03, "{sides}: {normal:e}");
+        assert!((across / normal - share).abs() < 0.01, "{sides}: {across:e} of {normal:e}");
     }
 }
 

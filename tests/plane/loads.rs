@@ -64,6 +64,13 @@ fn a_ramp_runs_in_as_sound() {
     }
 }
 
+/// The pressure of a step is that of its middle: exact while it grows evenly.
+#[test]
+fn a_ramp_gives_the_impulse_under_it() {
+    let outcome = run::<1>(&slab(json!([[2e-8, 0.0], [1.2e-7, 1e7]]), 2.2e-7));
+    at_most("impulse", outcome.given.impulse[0] / (1e7 * 1.5e-7) - 1.0, 1e-3);
+}
+
 /// A body under the pressure of its sides stays as it is.
 #[test]
 fn a_body_under_its_own_pressure_is_at_rest() {

@@ -67,6 +67,19 @@ fn leapfrog_steps_fall_too() {
 }
 
 #[test]
+fn a_leapfrog_step_moves_by_the_velocity_at_its_end() {
+    let mut scene = falling(true, json!({"shape": "gimp", "transfer": "flip"}));
+    // less than a step
+    let end = 1e-3;
+    scene["time"]["end"] = json!(end);
+    let outcome = run::<2>(&scene);
+    let x = outcome.column("x");
+    let rows = || (0..x.len()).filter(|&r| outcome.last.body[r] == 0);
+    let mean = rows().map(|r| x[r]).sum::<f64>() / rows().count() as f64;
+    at_most("moved", mean - (0.25 + 0.7 * end - 3.0 * end * end), 1e-12);
+}
+
+#[test]
 fn a_vortex_keeps_its_booked_energy() {
     let mut value = shipped("vortex.json");
     value["domain"]["cell_size"] = json!(0.125);

@@ -351,3 +351,21 @@ fn deadlocked(ranks: &[usize], waited: Duration) -> String {
     let seconds = waited.as_secs_f64();
     format!("no progress for {seconds} s: ranks {} wait for each other, a deadlock", list(ranks))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_ranks_that_wait_without_progress_are_stuck() {
+        let asked = |answer| Asked { question: 1, at: Duration::ZERO, answer, followed: true };
+        let waits = |finished| asked(Some((finished, Awaited::Rank(2))));
+        assert!(stuck(Some(&waits(7)), &waits(7)));
+        assert!(!stuck(Some(&waits(6)), &waits(7)), "it has got on between two questions");
+        let other = asked(Some((7, Awaited::All)));
+        assert!(!stuck(Some(&other), &waits(7)), "it waits for another");
+        let works = asked(Some((7, Awaited::Nobody)));
+        assert!(!stuck(Some(&works), &works));
+        assert!(!stuck(None, &waits(7)) && !stuck(Some(&waits(7)), &asked(None)));
+    }
+}
