@@ -158,6 +158,20 @@ fn planes_of_solids_gases_and_contact() {
 }
 
 #[test]
+fn marks_of_loads_and_what_contact_has_pressed() {
+    let mut loaded = small("flyer.json");
+    loaded.as_object_mut().unwrap().remove("reference");
+    loaded["domain"]["lower"] = json!([-0.00012]);
+    loaded["boundary"] = json!({"x_lower": {"pressure": 1e9}});
+    same_bits::<1>(&loaded, &[1, 12], &[&[3], &[2]]);
+    // a plate of two cells bounces off: until then what was pressed has held it
+    let mut plate = small("soft_flyer.json");
+    plate.as_object_mut().unwrap().remove("reference");
+    plate["bodies"][0]["box"]["lower"] = json!([-0.00002]);
+    same_bits::<1>(&plate, &[4, 8, 12, 16], &[&[3], &[2]]);
+}
+
+#[test]
 fn planes_with_forces_walls_and_joined_sides() {
     let mut block = shipped("sliding_block.json");
     block["output"] = json!({});
