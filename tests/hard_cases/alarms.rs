@@ -2,6 +2,8 @@
 
 use decomp::Serial;
 use decomp::comm::local::run_ranks;
+use flyer_mpm::constitutive::Outside;
+use flyer_mpm::material::{EquationOfState, Linear};
 use flyer_mpm::simulation::{RunError, Simulation};
 use flyer_mpm::watch::Alarm;
 use serde_json::{Value, json};
@@ -114,6 +116,50 @@ fn energy_that_grows() {
     value["time"]["courant"] = json!(0.8);
     value.as_object_mut().unwrap().remove("artificial_viscosity");
     sets_off(&value, Alarm::Energy, &["total energy has grown by"]);
+}
+
+/// A material that pushes as hard however far it has expanded and however cold it is: a spring
+/// without end, as none of the scene's models is.
+#[derive(Clone, Copy)]
+struct Endless;
+
+impl EquationOfState for Endless {
+    fn reference_density(&self) -> f64 {
+        8930.0
+    }
+
+    fn linear(&self, _jacobian: f64) -> Linear {
+        Linear { cold: 1e9, energy_factor: 1.0 }
+    }
+
+    fn sound_speed_squared(&self, _jacobian: f64, _pressure: f64) -> f64 {
+        4000.0 * 4000.0
+    }
+
+    fn fault(&self, _jacobian: f64, _pressure: f64) -> Option<&'static str> {
+        None
+    }
+}
+
+/// What has given away more energy than it had is seen, though the sum of all energies is right.
+#[test]
+fn energy_that_falls_below_none() {
+    let mut bodies =
+        [lump("left", "copper", [60.0, 70.0], -50.0), lump("right", "copper", [90.0, 100.0], 50.0)];
+    bodies.iter_mut().for_each(|body| body["pressure"] = json!(1e9));
+    let value = scene_of(160, 2e-7, &metals(), &json!(bodies));
+    let scene = checked(&value).unwrap();
+    let models = |_: &str| Some(Outside::fluid(Endless));
+    let mut simulation = Simulation::<_, 1>::with_models(&scene, &Serial, 1, &models).unwrap();
+    let error = loop {
+        assert!(simulation.time() < scene.scene.time.end, "it is to end");
+        if let Err(error) = simulation.advance(scene.scene.time.end) {
+            break error;
+        }
+    };
+    let RunError::Particle { alarm, .. } = &error else { panic!("{error}") };
+    assert_eq!(*alarm, Alarm::Cold, "{error}");
+    assert!(error.to_string().contains("internal energy has fallen below none"), "{error}");
 }
 
 /// A step that turns out too long is made half as long, and the run goes on: the same bits on any
