@@ -158,6 +158,12 @@ impl<const D: usize> Nodes<'_, D> {
     }
 }
 
+/// -0 as 0: which of two zeros a minimum takes is left open, and patches differ in it.
+#[inline(always)]
+fn positive(phi: f64) -> f64 {
+    phi + 0.0
+}
+
 /// phi of Christensen (1990) along one direction: with the gradients D_c over the cells, r =
 /// D_(c+-1)/D_c on both sides, phi = max(0, min(1, (rl + rr)/2, 2 rl, 2 rr)). `v` are the
 /// velocities of four nodes in a row about the cell; beyond the material's end r is 0.
@@ -171,7 +177,7 @@ fn christensen_line(v: [f64; 4], ends: [bool; 2]) -> f64 {
     let left = if ends[0] { (v[1] - v[0]) / centre } else { 0.0 };
     let right = if ends[1] { (v[3] - v[2]) / centre } else { 0.0 };
     let least = (0.5 * (left + right)).min(2.0 * left).min(2.0 * right);
-    least.clamp(0.0, 1.0)
+    positive(least.clamp(0.0, 1.0))
 }
 
 /// phi of Christensen (1990) for a particle in the cell above node `node`. In a plane it is found
@@ -247,7 +253,7 @@ pub fn nodal<const K: usize, const D: usize>(
             }
         }
     }
-    (2.0 * least).clamp(0.0, 1.0)
+    positive((2.0 * least).clamp(0.0, 1.0))
 }
 
 #[cfg(test)]
@@ -335,6 +341,16 @@ mod tests {
         assert_eq!(christensen(&nodes, 2), 1.0);
         let alone = [&inverse[..6], &[0.0; 6]].concat();
         assert_eq!(christensen(&Nodes { layer: 6, ..line(&v, &alone) }, 2), 0.0, "an edge");
+    }
+
+    #[test]
+    fn nothing_is_a_positive_zero() {
+        let (ones, even) = ([1.0; 6], [[0.5, 0.5, 0.0]]);
+        let row = Row::<'_, 3, 1> { first: 2, stride: 6, values: &even, gradients: &[] };
+        let rest = nodal(&line(&[1.0; 6], &ones), &row, -1.0, None);
+        assert!(rest == 0.0 && rest.is_sign_positive());
+        let jump = christensen(&line(&[1.0, 1.0, 1.0, 0.0, 0.0, 0.0], &ones), 2);
+        assert!(jump == 0.0 && jump.is_sign_positive());
     }
 
     #[test]
