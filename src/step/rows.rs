@@ -501,8 +501,7 @@ impl<const D: usize> Stepper<D> {
                 of_solids = self.refresh_solids(patch, &mut pressure, &mut speed);
             });
         }
-        let first = found.iter().chain(&of_solids).min_by_key(|(row, _)| *row).cloned();
-        let mut found = first;
+        let mut found: Vec<(usize, String)> = found.into_iter().chain(of_solids).collect();
         let column = |k: usize| &patch.block.columns[k];
         let velocity: [&[f64]; D] = std::array::from_fn(|a| &column(c.velocity + a)[..]);
         let d = column(c.gradient);
@@ -535,23 +534,28 @@ impl<const D: usize> Stepper<D> {
             patch.told.time_step =
                 patch.told.time_step.min(conduction.step / (shortest * shortest));
         }
-        patch.told.length = self.longest_row(&patch.block).1;
+        let lengths = self.row_lengths(&patch.block);
+        patch.told.length = (0..speed.len()).map(lengths).fold(0.0, f64::max);
         let limit = self.longest_ever();
-        if found.is_none() && patch.told.length > limit && self.domains_deform() {
-            let (row, cells) = self.longest_row(&patch.block);
-            found = Some((
-                row,
-                format!(
+        if patch.told.length > limit && self.domains_deform() {
+            let cells = self.row_lengths(&patch.block);
+            let first = (0..speed.len()).map(|r| (r, cells(r))).find(|(_, cells)| *cells > limit);
+            found.extend(first.map(|(row, cells)| {
+                let what = format!(
                     "it has been stretched over {cells:.1} cells, further than its shape function reaches; more particles a cell stretch less"
-                ),
-            ));
+                );
+                (row, what)
+            }));
         }
-        if found.is_none() && lost {
-            let finite =
-                |r: &usize| velocity.iter().all(|v| v[*r].is_finite()) && d[*r].is_finite();
+        if lost {
+            let finite = |r: &usize| {
+                velocity.iter().all(|v| v[*r].is_finite()) && d[*r].is_finite() && !speed[*r].is_nan()
+            };
             let row = (0..d.len()).find(|r| !finite(r));
-            found = Some((row.unwrap_or(0), "its velocity is not a number".into()));
+            found.push((row.unwrap_or(0), "its velocity is not a number".into()));
         }
+        // the first row of all, for a patch that begins elsewhere has others before and after it
+        let found = found.into_iter().min_by_key(|(row, _)| *row);
         patch.block.columns[c.pressure] = pressure;
         patch.block.columns[c.sound_speed] = speed;
         if let Some((row, what)) = found {
@@ -593,8 +597,8 @@ impl<const D: usize> Stepper<D> {
         column(self.columns.energy) + 0.5 * (0..D).map(|a| v(a) * v(a)).sum::<f64>()
     }
 
-    /// The own row with the greatest extent along a direction, and that extent [cells].
-    fn longest_row(&self, block: &decomp::Block<D>) -> (usize, f64) {
+    /// Each own row's greatest extent along a direction [cells].
+    fn row_lengths(&self, block: &decomp::Block<D>) -> impl Fn(usize) -> f64 {
         let c = &self.columns;
         let column = |k: usize| &block.columns[k][..block.own()];
         let (volume0, j) = (column(c.volume0), column(c.jacobian));
@@ -602,7 +606,7 @@ impl<const D: usize> Stepper<D> {
             Extent::Current if self.total => Extent::Undeformed,
             extent => extent,
         };
-        let length = |r: usize| match (extent, c.half_lengths, c.deformation) {
+        move |r: usize| match (extent, c.half_lengths, c.deformation) {
             (Extent::Current, None, _) => volume0[r] * j[r] * self.inverse_cell[0],
             (_, None, _) if D == 1 => volume0[r] * self.inverse_cell[0],
             (Extent::Current, Some(half), Some(f)) => {
@@ -617,11 +621,7 @@ impl<const D: usize> Stepper<D> {
                 lengths.fold(0.0, f64::max)
             }
             _ => 0.0,
-        };
-        (0..block.own()).fold((0, 0.0), |longest, r| {
-            let length = length(r);
-            if length > longest.1 { (r, length) } else { longest }
-        })
+        }
     }
 
     /// Notes a fault, if it comes before those that are known.

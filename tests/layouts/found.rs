@@ -110,3 +110,39 @@ fn a_limiter_that_takes_nothing_away() {
         assert_eq!(end_of(&scene, layout), whole, "{layout}");
     }
 }
+
+/// A gas in the middle of its periodic domain spreads to both sides alike, and its two outer particles
+/// are stretched too far in the same step: which of them is named must not depend on the patches.
+#[test]
+fn two_particles_that_fail_at_once() {
+    let body = json!({
+        "name": "gas",
+        "material": "gas",
+        "box": {"lower": [0.0], "upper": [6e-5]},
+        "pressure": 1e8,
+        "particles_per_cell": [1],
+    });
+    let scene = json!({
+        "title": "two particles that fail at once",
+        "domain": {"lower": [0.0], "upper": [3.6e-4], "cell_size": 1e-5},
+        "time": {"end": 5.480768856297618e-8, "courant": 0.8089017170206839},
+        "method": {
+            "shape": "cpdi",
+            "transfer": "apic",
+            "stepping": "midpoint",
+            "filter_heat": false,
+            "pressure_relaxation": {"rate": 0.2, "interval": 1},
+        },
+        "materials": {"gas": {"density": 50.0, "eos": {"type": "ideal_gas", "gamma": 1.4}}},
+        "bodies": [body],
+        "boundary": {"x_lower": "periodic", "x_upper": "periodic"},
+        "artificial_viscosity": {"linear": 0.1, "quadratic": 1.0},
+        "watch": {"above_limit": "reduce"},
+    });
+    let whole = end_of(&scene, &Layout::WHOLE);
+    let stretched = |message: &String| message.contains("further than its shape function reaches");
+    assert!(whole.as_ref().is_err_and(stretched), "{whole:?}");
+    for layout in Layout::covering().iter().filter(|l| l.patches <= 36) {
+        assert_eq!(end_of(&scene, layout), whole, "{layout}");
+    }
+}
