@@ -549,7 +549,9 @@ impl<const D: usize> Stepper<D> {
         }
         if lost {
             let finite = |r: &usize| {
-                velocity.iter().all(|v| v[*r].is_finite()) && d[*r].is_finite() && !speed[*r].is_nan()
+                velocity.iter().all(|v| v[*r].is_finite())
+                    && d[*r].is_finite()
+                    && !speed[*r].is_nan()
             };
             let row = (0..d.len()).find(|r| !finite(r));
             found.push((row.unwrap_or(0), "its velocity is not a number".into()));
