@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
+use flyer_mpm::output::vtkhdf::RESULTS_FILE;
 use serde_json::Value;
 
 /// Longest that any run here takes; one that takes longer hangs.
@@ -38,11 +39,11 @@ fn target() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or(root.join("target"), PathBuf::from)
 }
 
-/// A shipped scene with the keys that make it short, without pictures.
+/// A shipped scene with the keys that make it short, without pictures; with HDF5 if they say so.
 pub fn scene(name: &str, sets: &[&str]) -> Vec<String> {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("inputs/{name}.json"));
     let mut args = vec![file.display().to_string()];
-    for set in sets.iter().chain(&["output.pictures=false", "output.hdf5=false"]) {
+    for set in ["output.pictures=false", "output.hdf5=false"].iter().chain(sets) {
         args.extend(["--set".to_string(), set.to_string()]);
     }
     args
@@ -112,11 +113,32 @@ pub fn left(folder: &Path) -> Result<Left, String> {
         let name = entry.file_name().to_string_lossy().into_owned();
         files.insert(name, fs::read(entry.path()).map_err(|e| e.to_string())?);
     }
+    // the scene that stands in it tells of the layout
+    if let Some(of_fields) = files.get_mut(RESULTS_FILE) {
+        let file = hdf5::File::open(folder.join(RESULTS_FILE)).map_err(|e| e.to_string())?;
+        of_fields.clear();
+        contents(&file, of_fields).map_err(|e| format!("{RESULTS_FILE}: {e}"))?;
+    }
     let text = files.remove("summary.json").ok_or("no summary.json")?;
     let summary: Value = serde_json::from_slice(&text).map_err(|e| e.to_string())?;
     let keys =
         ["title", "particles", "cells", "steps", "energy", "momentum", "outflow", "profiles"];
     Ok(Left { files, summary: keys.iter().map(|key| summary[*key].clone()).collect() })
+}
+
+/// The names and values of all data sets of a group and of those in it.
+fn contents(group: &hdf5::Group, into: &mut Vec<u8>) -> hdf5::Result<()> {
+    for name in group.member_names()? {
+        into.extend(name.bytes());
+        match group.dataset(&name) {
+            Ok(data) if data.dtype()?.is::<f64>() => {
+                into.extend(data.read_raw::<f64>()?.iter().flat_map(|v| v.to_bits().to_le_bytes()));
+            }
+            Ok(data) => into.extend(data.read_raw::<i64>()?.iter().flat_map(|v| v.to_le_bytes())),
+            Err(_) => contents(&group.group(&name)?, into)?,
+        }
+    }
+    Ok(())
 }
 
 impl Left {

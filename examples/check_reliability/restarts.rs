@@ -1,5 +1,7 @@
 //! Runs that go on from a random step, with other ranks, threads and patches before and after.
 
+use serde_json::{Value, json};
+
 use crate::program::{Random, folder, good, left, scene, steps, with};
 use crate::table::Table;
 
@@ -9,21 +11,53 @@ const RESTARTS: u64 = 20;
 /// Ranks before and after.
 const RANKS: u64 = 4;
 
-/// Scenes that are cut short, and the layouts that they are run on.
-fn scenes() -> [(&'static str, Vec<String>, [&'static str; 3]); 3] {
+/// A metal that yields, softens, fails and is warm.
+fn metal(density: f64, c0: f64, limit: f64) -> Value {
+    json!({
+        "density": density,
+        "eos": {"type": "mie_gruneisen", "c0": c0, "s": 1.4, "gamma0": 2.0},
+        "strength": {"type": "johnson_cook", "shear_modulus": 40e9, "a": 0.3e9, "b": 0.4e9,
+            "n": 0.3, "c": 0.01, "softening":
+            {"m": 1.1, "reference_temperature": 293.0, "melt_temperature": 1300.0}},
+        "failure": {"type": "tension_limit", "stress": limit},
+        "thermal": {"specific_heat": 400.0, "reference_temperature": 293.0,
+            "taylor_quinney": 0.9, "conductivity": 2e3}
+    })
+}
+
+/// Scenes that are cut short, and the layouts that they are run on. The files of fields are written:
+/// their data are the same, too.
+fn scenes() -> [(&'static str, Vec<String>, [&'static str; 3]); 4] {
     let flyer = ["time.end=3e-7", "output.profiles.times=[1e-7,2e-7,3e-7]"];
     let histories = "output.histories={\"interval\":1e-8}";
     let plate = ["domain.cell_size=1e-4", "time.end=2.5e-7", "output.profiles.times=[1e-7,2.5e-7]"];
     let soft = ["time.end=2e-7", "output.profiles.times=[1e-7,2e-7]"];
     let line = ["[1]", "[7]", "[16]"];
+    let copper = format!("materials.copper={}", metal(8930.0, 3940.0, 1e9));
+    let aluminium = format!("materials.aluminium={}", metal(2785.0, 5386.0, 0.5e9));
+    let effects = [
+        &copper,
+        &aluminium,
+        "reference=null",
+        "domain.cell_size=2e-5",
+        "domain.upper=[0.002]",
+        "bodies.target.box.upper=[0.002]",
+        "time.end=6e-7",
+        "output.profiles.times=[3e-7,6e-7]",
+        "boundary.x_upper=wall",
+        "boundary.temperature={\"x_upper\":400}",
+        "body_force={\"gravity\":[-9.81]}",
+    ];
+    let of = |name: &str, sets: &[&str]| scene(name, &[sets, &["output.hdf5=true"]].concat());
     [
-        ("flyer", scene("flyer", &flyer), line),
-        ("soft_flyer", scene("soft_flyer", &soft), line),
+        ("flyer", of("flyer", &flyer), line),
+        ("soft_flyer", of("soft_flyer", &soft), line),
         (
             "flyer_2d",
-            scene("flyer_2d", &[&plate[..], &[histories]].concat()),
+            of("flyer_2d", &[&plate[..], &[histories]].concat()),
             ["[1,1]", "[3,2]", "[4,4]"],
         ),
+        ("soft_flyer with every effect that fits it", of("soft_flyer", &effects), line),
     ]
 }
 
