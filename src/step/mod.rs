@@ -103,6 +103,8 @@ pub struct Stepper<const D: usize> {
     lower: [f64; D],
     cells: [i64; D],
     sides: [[Side; 2]; D],
+    /// Directions with a wall without slip.
+    no_slip: [bool; D],
     /// Whether x is a radius: what moves outward is strained about the axis.
     axisymmetric: bool,
     /// Longest half diagonal of a particle's domain [cells], with a limit.
@@ -330,6 +332,7 @@ impl<const D: usize> Stepper<D> {
             edge,
             lower: std::array::from_fn(|a| scene.scene.domain.lower[a]),
             cells: std::array::from_fn(|a| scene.cells[a] as i64),
+            no_slip: scene.sides().map(|ends| ends.contains(&Side::NoSlip)),
             sides: scene.sides(),
             axisymmetric: scene.axisymmetric(),
             domain_limit: method.domain_limit,

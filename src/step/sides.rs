@@ -461,11 +461,6 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// Whether a wall without slip stands across `axis`.
-    fn has_no_slip(&self, axis: usize) -> bool {
-        self.sides[axis].contains(&Side::NoSlip)
-    }
-
     /// Whether a row is the image of one in walls without slip across `axis`.
     fn is_turned(&self, patch: &Patch<D>, row: usize, axis: usize) -> bool {
         self.seen(axis, 2 * i64::from(patch.block.cells[row][axis]) + 1) == Seen::Turned
@@ -475,7 +470,7 @@ impl<const D: usize> Stepper<D> {
     /// decomposition turn that across alone. To be called once they have come.
     pub(super) fn turn_images(&self, patch: &mut Patch<D>) {
         let c = &self.columns;
-        for axis in (0..D).filter(|&a| self.has_no_slip(a)) {
+        for axis in (0..D).filter(|&a| self.no_slip[a]) {
             for row in patch.block.own()..patch.block.rows() {
                 if !self.is_turned(patch, row, axis) {
                     continue;
@@ -508,7 +503,7 @@ impl<const D: usize> Stepper<D> {
                 patch.nodes.fields[field] = force;
             }
         }
-        for axis in (0..D).filter(|&a| self.has_no_slip(a)) {
+        for axis in (0..D).filter(|&a| self.no_slip[a]) {
             with_width!(patch.stencils.width, go(patch, self, axis));
         }
     }
@@ -516,7 +511,7 @@ impl<const D: usize> Stepper<D> {
     /// Sets the vectors among `fields`, just made whole, to zero along walls without slip, and
     /// turns them beyond.
     pub(super) fn hold(&self, patch: &mut Patch<D>, fields: &[(usize, Parity)]) {
-        for axis in (0..D).filter(|&a| self.has_no_slip(a)) {
+        for axis in (0..D).filter(|&a| self.no_slip[a]) {
             let all = patch.nodes.nodes;
             for index in all.lower[axis]..all.upper[axis] {
                 let seen = self.seen(axis, 2 * index);
