@@ -534,18 +534,14 @@ impl<const D: usize> Stepper<D> {
             patch.told.time_step =
                 patch.told.time_step.min(conduction.step / (shortest * shortest));
         }
-        let lengths = self.row_lengths(&patch.block);
-        patch.told.length = (0..speed.len()).map(lengths).fold(0.0, f64::max);
         let limit = self.longest_ever();
+        patch.told.length = self.longest_row::<false>(&patch.block, limit).1;
         if patch.told.length > limit && self.domains_deform() {
-            let cells = self.row_lengths(&patch.block);
-            let first = (0..speed.len()).map(|r| (r, cells(r))).find(|(_, cells)| *cells > limit);
-            found.extend(first.map(|(row, cells)| {
-                let what = format!(
-                    "it has been stretched over {cells:.1} cells, further than its shape function reaches; more particles a cell stretch less"
-                );
-                (row, what)
-            }));
+            let (row, cells) = self.longest_row::<true>(&patch.block, limit);
+            let what = format!(
+                "it has been stretched over {cells:.1} cells, further than its shape function reaches; more particles a cell stretch less"
+            );
+            found.push((row, what));
         }
         if lost {
             let finite = |r: &usize| {
@@ -599,8 +595,10 @@ impl<const D: usize> Stepper<D> {
         column(self.columns.energy) + 0.5 * (0..D).map(|a| v(a) * v(a)).sum::<f64>()
     }
 
-    /// Each own row's greatest extent along a direction [cells].
-    fn row_lengths(&self, block: &decomp::Block<D>) -> impl Fn(usize) -> f64 {
+    /// The own row with the greatest extent along a direction, and that extent [cells]; with `FIRST`
+    /// the first row of more than `limit`.
+    #[inline(never)]
+    fn longest_row<const FIRST: bool>(&self, block: &decomp::Block<D>, limit: f64) -> (usize, f64) {
         let c = &self.columns;
         let column = |k: usize| &block.columns[k][..block.own()];
         let (volume0, j) = (column(c.volume0), column(c.jacobian));
@@ -608,7 +606,7 @@ impl<const D: usize> Stepper<D> {
             Extent::Current if self.total => Extent::Undeformed,
             extent => extent,
         };
-        move |r: usize| match (extent, c.half_lengths, c.deformation) {
+        let length = |r: usize| match (extent, c.half_lengths, c.deformation) {
             (Extent::Current, None, _) => volume0[r] * j[r] * self.inverse_cell[0],
             (_, None, _) if D == 1 => volume0[r] * self.inverse_cell[0],
             (Extent::Current, Some(half), Some(f)) => {
@@ -623,7 +621,13 @@ impl<const D: usize> Stepper<D> {
                 lengths.fold(0.0, f64::max)
             }
             _ => 0.0,
-        }
+        };
+        (0..block.own()).fold((0, 0.0), |longest, r| {
+            let length = length(r);
+            let longer =
+                if FIRST { length > limit && longest.1 <= limit } else { length > longest.1 };
+            if longer { (r, length) } else { longest }
+        })
     }
 
     /// Notes a fault, if it comes before those that are known.
