@@ -327,6 +327,32 @@ fn every_side_serves_alike() {
     }
 }
 
+/// A block thrown at a wall slantwise loses along it the coefficient times what it loses across
+/// it, as long as all of it slides: to rounding, for transfers of lumped masses.
+#[test]
+fn a_block_thrown_at_a_wall_is_slowed_by_coulombs_law() {
+    for (shape, transfer, stepping) in [
+        ("bspline_cubic", json!("pic"), "leapfrog"),
+        ("bspline_cubic", json!("flip"), "midpoint"),
+        ("cpdi_bspline_quadratic", json!("flip"), "leapfrog"),
+        ("cpdi_bspline_quadratic", json!("apic"), "leapfrog"),
+        ("bspline_cubic", json!("apic"), "midpoint"),
+    ] {
+        let what = format!("{shape} {transfer} {stepping}");
+        let method = json!({"shape": shape, "transfer": transfer, "stepping": stepping});
+        let mut scene = column(0.01, method, json!({"friction": 0.3}), [0.0; 2]);
+        scene["domain"]["upper"] = json!([0.8, 0.2]);
+        scene["bodies"][0]["box"] = json!({"lower": [0.1, 0.0], "upper": [0.3, 0.04]});
+        scene["bodies"][0]["velocity"] = json!([10.0, -3.0]);
+        scene["boundary"] = json!({"y_lower": {"friction": 0.3}});
+        scene["time"]["end"] = json!(4e-4);
+        let [start, end] = run::<2>(&scene).totals.map(|t| t.momentum);
+        let [along, across] = [0, 1].map(|a| end[a] - start[a]);
+        assert!(across > 0.1 * start[1].abs(), "{what}: {across}");
+        at_most(&what, along / (0.3 * across) + 1.0, 1e-9);
+    }
+}
+
 #[test]
 fn sides_that_are_refused() {
     let told = |scene: &Value, fragments: &[&str]| {
