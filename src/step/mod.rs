@@ -279,6 +279,11 @@ impl<const D: usize> Stepper<D> {
         let impact =
             speeds().map(|(b, density, c)| speed(b.pressure, density, c)).fold(0.0, f64::max);
         let densest = bodies.iter().map(|b| materials[&b.material].density).fold(0.0, f64::max);
+        // of a cell, and of a radian about an axis: that of the outermost
+        let around = match scene.axisymmetric() {
+            true => scene.scene.domain.lower[0] + scene.cells[0] as f64 * cell[0],
+            false => 1.0,
+        };
         // exact where all are the same
         let edge = match cell.iter().all(|&h| h == cell[0]) {
             true => cell[0],
@@ -339,7 +344,7 @@ impl<const D: usize> Stepper<D> {
             may_sleep: scene.skips_quiet(),
             fastest,
             // what such a node holds is below rounding of its neighbours
-            empty_mass: densest * volume * 2f64.powi(-90),
+            empty_mass: densest * volume * around * 2f64.powi(-90),
             // far ahead of a wave values would fall and fall, until they are denormal; at this
             // share of the scene's speeds they are below rounding of what is behind it
             still_speed: fastest * STILL,

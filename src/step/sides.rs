@@ -19,7 +19,10 @@
 //! place a third of a cell within, where a wave that leaves has been earlier.
 //!
 //! A wall with friction takes from each of its nodes no more momentum along it than it holds, and
-//! no more than the coefficient times what the wall gives across it (Coulomb).
+//! no more than the coefficient times what the wall gives across it (Coulomb): on lumped masses, so
+//! to rounding for FLIP, PIC and APIC. XPIC and FMPM take less from a body that strikes the wall than
+//! lumped masses would in a step: its friction is up to 1.9 times Coulomb's in the first steps of a
+//! blow, and 1.1 to 1.3 times over all of it.
 //!
 //! Before a wall without slip particles have images that move the opposite way in each direction
 //! and are under the opposite forces; nodes on it are at rest, and those beyond move as images do.
@@ -326,6 +329,20 @@ impl<const D: usize> Stepper<D> {
             let impulse = moved * m * column(c.velocity + axis) + dt * pulled;
             row.add(&mut masses, row.values, |n| n * m);
             row.add(&mut impulses, row.values, |n| n * impulse);
+            if let Some(affine) = c.affine {
+                // APIC: m N C (x_i - x_p), as in the nodal sums
+                let offset = self.offset(patch, r, row.first);
+                let mc: [f64; D] =
+                    std::array::from_fn(|b| m * column(affine + D * axis + b) * self.cell[b]);
+                for line in 0..Row::<K, D>::LINES {
+                    let across =
+                        if D == 1 { 0.0 } else { mc[D - 1] * (offset[D - 1] + line as f64) };
+                    let terms = std::array::from_fn(|k| {
+                        row.values[line][k] * (across + mc[0] * (offset[0] + k as f64))
+                    });
+                    add::<K>(&mut impulses, row.first + line * row.stride, terms);
+                }
+            }
             self.add_stress(patch, &row, r, axis, dt, &mut impulses);
         }
         patch.nodes.fields[first] = masses;

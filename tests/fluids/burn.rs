@@ -106,3 +106,29 @@ fn compression_burns_where_asked() {
     let burnt = run(true);
     assert!(burnt > 0.05 && burnt < 1.0, "{burnt}");
 }
+
+/// A charge that burns by being thrown on a wall, before any front comes, and then spreads far
+/// past its first volume.
+#[test]
+fn what_has_burnt_stays_burnt() {
+    let fractions = |time: f64| {
+        let mut value = coarse("detonation.json", 2e-4, time);
+        let burn = &mut value["materials"]["tnt"]["eos"]["burn"];
+        burn["start"] = json!(1.0);
+        burn["compression"] = json!(true);
+        value["domain"]["upper"] = json!([0.012]);
+        value["bodies"][0]["box"]["upper"] = json!([0.002]);
+        value["bodies"][0]["velocity"] = json!([-1000.0]);
+        let outcome = run(&value);
+        [outcome.column("burn_fraction"), outcome.column("density")].map(<[f64]>::to_vec)
+    };
+    let times = [0.3e-6, 0.6e-6, 1.2e-6, 2.4e-6];
+    let states = times.map(fractions);
+    for pair in states.windows(2) {
+        for (before, after) in pair[0][0].iter().zip(&pair[1][0]) {
+            assert!(after >= before, "{after} of {before}");
+        }
+    }
+    let [burnt, density] = &states[3];
+    assert!(burnt.iter().all(|f| *f > 0.05) && density.iter().all(|rho| *rho < 1630.0));
+}

@@ -223,6 +223,40 @@ fn every_scheme_has_contact_in_leapfrog() {
     }
 }
 
+/// Gases that have been pressed to within a twentieth of a cell of each other press on each other:
+/// the faces between them are held, those outside fly off.
+#[test]
+fn compressed_gases_a_hair_apart_press_on_each_other() {
+    for method in [
+        json!({"shape": "cpdi_bspline_quadratic", "transfer": {"fmpm": 4}, "stepping": "midpoint"}),
+        json!({"shape": "cpdi", "transfer": "flip"}),
+    ] {
+        let gas = |name: &str, lower: f64| {
+            json!({
+                "name": name, "material": "gas", "velocity": [0.0], "pressure": 1e5,
+                "particles_per_cell": [2],
+                "box": {"lower": [lower], "upper": [lower + 0.5]}
+            })
+        };
+        let outcome = run(&json!({
+            "title": "two gases",
+            "domain": {"lower": [-0.1], "upper": [1.1], "cell_size": 0.01},
+            "time": {"end": 1e-6},
+            "method": method,
+            "materials": {"gas": {"density": 1.0, "eos": {"type": "ideal_gas", "gamma": 1.4}}},
+            "bodies": [gas("left", 0.0), gas("right", 0.5005)],
+            "output": {"profiles": {"times": [1e-6]}},
+            "contact": {"type": "frictionless"}
+        }));
+        let velocity = column(outcome.last(), "velocity");
+        let outer = velocity[velocity.len() - 1];
+        assert!(outer > 10.0, "{outer}");
+        for inner in &velocity[99..101] {
+            at_most(&method.to_string(), inner / outer, 0.05);
+        }
+    }
+}
+
 /// A patch that moves to another rank at a step's end takes nothing away from the force of that
 /// step.
 #[test]

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::tools::{
-    SHAPES, at_most, checked, column, run, run_scene, scored, shipped, short, with,
+    SHAPES, apart, at_most, checked, column, greatest, run, run_scene, scored, shipped, short, with,
 };
 
 /// It runs through, or its error is one line that names a particle, a place and a time.
@@ -126,6 +126,44 @@ fn the_largest_courant_number() {
                 "time": {"courant": 1.0}, "method": {"shape": shape}, "watch": watch,
             });
             ends(&format!("courant 1, {shape}, {name}"), &with(&short(name, 0.2e-6), &edit));
+        }
+    }
+}
+
+/// What a particle that reaches past a knot by a rounding gives the node there is nothing to go by:
+/// a limiter must see the end of the body where it is.
+#[test]
+fn a_rounding_beyond_a_knot_moves_no_edge() {
+    let slab = |beyond: f64, transfer: &str| {
+        let cell = 0.01;
+        // the last particle stands on a node, but for what is given
+        let upper = 0.6 + (0.25 + beyond) * cell;
+        // each cell is faster than the one above it: the slab is compressed up to its end
+        let part = |k: usize| {
+            let top = upper - k as f64 * cell;
+            json!({
+                "name": format!("part {k}"), "material": "gas", "pressure": 1e5,
+                "velocity": [10.0 * k as f64], "particles_per_cell": [2],
+                "box": {"lower": [top - if k < 5 { cell } else { 0.2 }], "upper": [top]}
+            })
+        };
+        run(&json!({
+            "title": "a slab that ends on a node",
+            "domain": {"lower": [0.0], "upper": [1.0], "cell_size": cell},
+            "time": {"end": 1e-6},
+            "method": {"shape": "bspline_cubic", "transfer": transfer, "stepping": "midpoint"},
+            "materials": {"gas": {"density": 1.0, "eos": {"type": "ideal_gas", "gamma": 1.4}}},
+            "bodies": (0..6).rev().map(part).collect::<Vec<_>>(),
+            "artificial_viscosity": {"linear": 0.5, "quadratic": 1.5, "limiter": "nodal"},
+            "output": {"profiles": {"times": [1e-6]}}
+        }))
+    };
+    for transfer in ["flip", "apic"] {
+        let [on, off] = [0.0, 1e-10].map(|beyond| slab(beyond, transfer));
+        for name in ["pressure", "velocity", "artificial_viscosity"] {
+            let [on, off] = [&on, &off].map(|outcome| column(outcome.last(), name));
+            assert!(greatest(on) > 0.0, "{name}");
+            at_most(&format!("{transfer}: {name}"), apart(off, on), 1e-8);
         }
     }
 }

@@ -115,6 +115,36 @@ fn what_is_at_rest_stays_at_rest() {
     assert_eq!(seen, 40);
 }
 
+/// A transmitting side that travels with the grid knows how fast it does at the middle of a step:
+/// what no wave has reached passes it, or comes off it, without being pushed.
+#[test]
+fn a_transmitting_side_that_travels_leaves_what_rests_at_rest() {
+    for method in [
+        json!({"shape": "cpdi", "transfer": "flip"}),
+        json!({"shape": "cpdi", "transfer": "flip", "stress_update": "first"}),
+        json!({"shape": "cpdi", "transfer": "flip", "stepping": "midpoint"}),
+    ] {
+        for speed in [300.0, -300.0] {
+            let mut scene = slab(json!([[0.0, 0.0], [2e-7, speed]]), 1.4e-7);
+            scene["method"] = method.clone();
+            scene["artificial_viscosity"] = json!({"linear": 0.2, "quadratic": 2.0});
+            scene["domain"]["upper"] = json!([2e-3]);
+            scene["bodies"][0]["pressure"] = json!(1e9);
+            scene["boundary"]["x_upper"] = json!("transmitting");
+            let outcome = run::<1>(&scene);
+            let rows = outcome.column("velocity").iter().zip(outcome.column("pressure"));
+            let far = rows.zip(outcome.column("x")).filter(|(_, x)| **x > 1.5e-3);
+            let mut seen = 0;
+            for ((v, p), _) in far {
+                seen += 1;
+                at_most(&format!("{method}: velocity"), v / 300.0, 1e-10);
+                at_most(&format!("{method}: pressure"), p / 1e9 - 1.0, 1e-10);
+            }
+            assert!(seen > 40, "{seen}");
+        }
+    }
+}
+
 #[test]
 fn one_velocity_is_a_course_that_does_not_change() {
     for method in [

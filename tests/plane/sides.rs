@@ -327,6 +327,67 @@ fn every_side_serves_alike() {
     }
 }
 
+/// A block thrown at a wall slantwise loses along it the coefficient times what it loses across
+/// it, as long as all of it slides: to rounding, for transfers of lumped masses.
+#[test]
+fn a_block_thrown_at_a_wall_is_slowed_by_coulombs_law() {
+    for (shape, transfer, stepping) in [
+        ("bspline_cubic", json!("pic"), "leapfrog"),
+        ("bspline_cubic", json!("flip"), "midpoint"),
+        ("cpdi_bspline_quadratic", json!("flip"), "leapfrog"),
+        ("cpdi_bspline_quadratic", json!("apic"), "leapfrog"),
+        ("bspline_cubic", json!("apic"), "midpoint"),
+    ] {
+        let what = format!("{shape} {transfer} {stepping}");
+        let method = json!({"shape": shape, "transfer": transfer, "stepping": stepping});
+        let mut scene = column(0.01, method, json!({"friction": 0.3}), [0.0; 2]);
+        scene["domain"]["upper"] = json!([0.8, 0.2]);
+        scene["bodies"][0]["box"] = json!({"lower": [0.1, 0.0], "upper": [0.3, 0.04]});
+        scene["bodies"][0]["velocity"] = json!([10.0, -3.0]);
+        scene["boundary"] = json!({"y_lower": {"friction": 0.3}});
+        scene["time"]["end"] = json!(4e-4);
+        let [start, end] = run::<2>(&scene).totals.map(|t| t.momentum);
+        let [along, across] = [0, 1].map(|a| end[a] - start[a]);
+        assert!(across > 0.1 * start[1].abs(), "{what}: {across}");
+        at_most(&what, along / (0.3 * across) + 1.0, 1e-9);
+    }
+}
+
+/// A gas at rest within a round wall: what drives it is what the particles' sum misses of the
+/// integrals over their cells, of second order in their size.
+#[test]
+fn a_gas_within_a_round_wall_stays_at_rest() {
+    for shape in ["bspline_cubic", "cpdi_bspline_quadratic"] {
+        let [coarse, fine] = [4, 8].map(|count| {
+            let corner = |x: f64| json!([x, 0.02]);
+            let outcome = run::<2>(&json!({
+                "title": "a gas at rest",
+                "domain": {
+                    "lower": [0.1, 0.0], "upper": corner(0.2), "cell_size": 0.01,
+                    "geometry": "axisymmetric"
+                },
+                "time": {"end": 3e-5},
+                "method": {"shape": shape, "transfer": "flip"},
+                "materials": {"gas": {"density": 1.0, "eos": {"type": "ideal_gas", "gamma": 1.4}}},
+                "bodies": [{
+                    "name": "gas", "material": "gas", "velocity": [0.0, 0.0], "pressure": 1e5,
+                    "particles_per_cell": [count, 2],
+                    "box": {"lower": [0.1, 0.0], "upper": corner(0.2)}
+                }],
+                "boundary": {
+                    "x_lower": "wall", "x_upper": "wall", "y_lower": "symmetry",
+                    "y_upper": "symmetry"
+                }
+            }));
+            let speed = outcome.column("velocity_x").iter().zip(outcome.column("x"));
+            // by the speed of sound, in the outer half
+            speed.filter(|(_, x)| **x > 0.15).fold(0.0f64, |m, (v, _)| m.max(v.abs())) / 374.2
+        });
+        at_most(shape, fine, 1e-4);
+        assert!(fine < 0.3 * coarse, "{shape}: {fine:e} of {coarse:e}");
+    }
+}
+
 #[test]
 fn sides_that_are_refused() {
     let told = |scene: &Value, fragments: &[&str]| {
