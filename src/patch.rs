@@ -122,8 +122,8 @@ pub struct Patch<const D: usize> {
     pub active_lines: Vec<Range<usize>>,
     /// Places of the nodes whose values its own rows or products on active nodes may take.
     pub span_lines: Vec<Range<usize>>,
-    /// Whether it computes a node with little material, which filters leave out.
-    pub has_edge: bool,
+    /// Places of the nodes with little material that it computes, which filters leave out.
+    pub edge: Vec<usize>,
     /// Where its bodies' velocity fields touch, with contact.
     pub contact: ContactNodes<D>,
     /// How far beyond its own nodes it computes [nodes].
@@ -191,7 +191,7 @@ impl<const D: usize> Patch<D> {
             active: Vec::new(),
             active_lines: Vec::new(),
             span_lines: Vec::new(),
-            has_edge: false,
+            edge: Vec::new(),
             contact: ContactNodes::default(),
             deeper: 0,
             told: Told::default(),

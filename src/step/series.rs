@@ -90,28 +90,27 @@ fn copy<const D: usize>(patch: &mut Patch<D>, from: usize, to: usize) {
 }
 
 impl<const D: usize> Stepper<D> {
-    /// Notes whether a patch computes a node that the mask takes out: where none is, no field has
-    /// to be looked through. Nodes without material hold zeros anyway.
+    /// Notes the nodes that a patch computes and the mask takes out, so that no field has to be looked
+    /// through: chi = 0 where the filled fraction of the node's volume is below the edge mask. Nodes
+    /// without material hold zeros anyway.
     pub(super) fn find_edge(&self, patch: &mut Patch<D>) {
         let Some(least) = self.edge_mask else { return };
         let [volume, inverse] = patch.nodes.fields_mut([self.fields.volume, self.fields.inverse]);
-        let mut nodes = patch.active_lines.iter().cloned().flatten();
-        patch.has_edge = nodes.any(|i| volume[i] < least && inverse[i] > 0.0);
+        let nodes = patch.active_lines.iter().cloned().flatten();
+        patch.edge.clear();
+        patch.edge.extend(nodes.filter(|&i| volume[i] < least && inverse[i] > 0.0));
     }
 
-    /// Takes nodes with little material out of a sum: chi = 0 where the filled fraction of the
-    /// node's volume is below the edge mask. What a product has just made becomes t_0 there.
+    /// Takes nodes with little material out of a sum: what a product has just made becomes t_0 there,
+    /// or 0.
     fn mask(&self, patch: &mut Patch<D>, series: &Series) {
-        let Some(least) = self.edge_mask else { return };
-        if patch.has_edge {
-            for (series, _) in series.components::<D>() {
-                let [volume, sum, first] =
-                    patch.nodes.fields_mut([self.fields.volume, series.sum, series.first]);
-                for i in patch.active_lines.iter().cloned().flatten() {
-                    if volume[i] < least {
-                        sum[i] = if series.mask == Mask::After { first[i] } else { 0.0 };
-                    }
-                }
+        if self.edge_mask.is_none() {
+            return;
+        }
+        for (series, _) in series.components::<D>() {
+            let [sum, first] = patch.nodes.fields_mut([series.sum, series.first]);
+            for &i in &patch.edge {
+                sum[i] = if series.mask == Mask::After { first[i] } else { 0.0 };
             }
         }
         if self.contact.is_some() {
