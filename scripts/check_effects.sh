@@ -3,7 +3,7 @@
 # beside its bound; exit code 1 where one is missed. Arguments: sections (equations, porous,
 # tables, products, burn, paths, strength_paths, objectivity, piston, flyer, taylor, taylor_fine,
 # spall, heat, plates, window, wave, books);
-# none: all but taylor_fine, which takes an hour.
+# none: all but taylor_fine, which takes hours.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # shellcheck source=scripts/mpi_env.sh
