@@ -45,7 +45,7 @@ pub fn check(table: &mut Table) {
             0.02,
             Show::Percent,
         );
-        let size = files.first().and_then(|f| fs::metadata(&f.1).ok()).map(|m| m.len() as f64);
+        let size = files.last().and_then(|f| fs::metadata(&f.1).ok()).map(|m| m.len() as f64);
         table.beside("  bytes a particle", size.map(|s| s / particles), "", Show::Number);
     }
 }

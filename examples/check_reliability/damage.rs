@@ -12,12 +12,12 @@ use crate::table::Table;
 const CUTS: u64 = 100;
 const BITS: u64 = 1000;
 
-/// Damages a checkpoint of the flyer after some hundred steps, with profiles and histories.
+/// Damages a checkpoint of the flyer after two hundred steps, with profiles and histories.
 pub fn check(table: &mut Table) {
     let home = folder("damage");
     let args = scene(
         "flyer",
-        &["output.profiles.times=[5e-8,1e-6]", "output.checkpoint={\"every_steps\":300}"],
+        &["output.profiles.times=[5e-8,1e-6]", "output.checkpoint={\"every_steps\":200}"],
     );
     let at = home.join("run").display().to_string();
     let run = with(
