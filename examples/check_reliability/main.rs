@@ -7,6 +7,8 @@ mod cost;
 mod damage;
 mod full;
 mod kills;
+#[path = "../../tests/effects/metal.rs"]
+mod metal;
 mod program;
 mod restarts;
 #[path = "../common/sections.rs"]

@@ -1,7 +1,6 @@
 //! Runs that go on from a random step, with other ranks, threads and patches before and after.
 
-use serde_json::{Value, json};
-
+use crate::metal::metal;
 use crate::program::{Random, folder, good, left, scene, steps, with};
 use crate::table::Table;
 
@@ -10,20 +9,6 @@ const RESTARTS: u64 = 20;
 
 /// Ranks before and after.
 const RANKS: u64 = 4;
-
-/// A metal that yields, softens, fails and is warm.
-fn metal(density: f64, c0: f64, limit: f64) -> Value {
-    json!({
-        "density": density,
-        "eos": {"type": "mie_gruneisen", "c0": c0, "s": 1.4, "gamma0": 2.0},
-        "strength": {"type": "johnson_cook", "shear_modulus": 40e9, "a": 0.3e9, "b": 0.4e9,
-            "n": 0.3, "c": 0.01, "softening":
-            {"m": 1.1, "reference_temperature": 293.0, "melt_temperature": 1300.0}},
-        "failure": {"type": "tension_limit", "stress": limit},
-        "thermal": {"specific_heat": 400.0, "reference_temperature": 293.0,
-            "taylor_quinney": 0.9, "conductivity": 2e3}
-    })
-}
 
 /// Scenes that are cut short, and the layouts that they are run on. The files of fields are written:
 /// their data are the same, too.

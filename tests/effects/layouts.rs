@@ -7,6 +7,7 @@ use flyer_mpm::simulation::Simulation;
 use flyer_mpm::step::{Stepper, Steps};
 use serde_json::{Value, json};
 
+use crate::metal::metal;
 use crate::tools::{checked, midpoint, shipped};
 
 fn digest<C: Comm, const D: usize>(scene: &CheckedScene, comm: &C) -> Option<String>
@@ -29,20 +30,6 @@ where
     let scene = checked(&scene);
     let all = run_ranks(ranks, |comm| digest::<_, D>(&scene, comm));
     all.into_iter().flatten().next().expect("rank 0")
-}
-
-/// A metal that yields, softens, fails and is warm.
-fn metal(density: f64, c0: f64, limit: f64) -> Value {
-    json!({
-        "density": density,
-        "eos": {"type": "mie_gruneisen", "c0": c0, "s": 1.4, "gamma0": 2.0},
-        "strength": {"type": "johnson_cook", "shear_modulus": 40e9, "a": 0.3e9, "b": 0.4e9,
-            "n": 0.3, "c": 0.01, "softening":
-            {"m": 1.1, "reference_temperature": 293.0, "melt_temperature": 1300.0}},
-        "failure": {"type": "tension_limit", "stress": limit},
-        "thermal": {"specific_heat": 400.0, "reference_temperature": 293.0,
-            "taylor_quinney": 0.9, "conductivity": 2e3}
-    })
 }
 
 #[test]

@@ -4,6 +4,7 @@ mod erosion;
 mod failure;
 mod heat;
 mod layouts;
+mod metal;
 mod outside;
 mod refused;
 mod strength;
