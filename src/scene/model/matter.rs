@@ -56,7 +56,6 @@ impl Material {
 /// Where a material comes from, in the JSON schema alone: reading a scene makes it whole.
 #[derive(JsonSchema)]
 #[serde(untagged)]
-#[allow(dead_code)] // it stands for what is read
 pub enum MaterialSource {
     /// The material itself.
     Whole(Box<Material>),
