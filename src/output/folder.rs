@@ -6,7 +6,7 @@
 //! Knows no MPI: called on one rank alone.
 
 use std::fs;
-use std::io::{self, ErrorKind::NotADirectory};
+use std::io::{self, ErrorKind::AlreadyExists, ErrorKind::NotADirectory, ErrorKind::NotFound};
 use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -61,9 +61,8 @@ impl OutputFolder {
             keep,
             committed: false,
         };
-        folder.made = make_parents(parent)?;
-        fs::create_dir(&folder.partial)
-            .map_err(OutputError::io("write into the folder", parent))?;
+        let what = ("write into the folder", parent);
+        within(parent, &mut folder.made, what, || fs::create_dir(&folder.partial))?;
         Ok(folder)
     }
 
@@ -120,21 +119,46 @@ impl Drop for OutputFolder {
     }
 }
 
-/// Makes `folder` and the parents that it needs; returns those that were not there, outermost first.
-pub(super) fn make_parents(folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
-    let mut made: Vec<PathBuf> = Vec::new();
+/// How often what needs a folder is tried where somebody takes it away meanwhile.
+const TRIES: usize = 100;
+
+/// What `act` gives, which is `doing` with `path` in `folder`. The folder is made, and the parents
+/// that it needs; those that were not there are added to `made`, outermost first. Where somebody
+/// takes the folder away before `act` is done, both are done again.
+pub(super) fn within<T>(
+    folder: &Path,
+    made: &mut Vec<PathBuf>,
+    (doing, path): (&'static str, &Path),
+    mut act: impl FnMut() -> io::Result<T>,
+) -> Result<T, OutputError> {
+    for left in (0..TRIES).rev() {
+        let vanished = |e: &io::Error| left > 0 && e.kind() == NotFound;
+        match make_parents(folder, made) {
+            Err((_, e)) if vanished(&e) => continue,
+            Err((at, e)) => return Err(OutputError::io("create the folder", &at)(e)),
+            Ok(()) => {}
+        }
+        match act() {
+            Err(e) if vanished(&e) => {}
+            done => return done.map_err(OutputError::io(doing, path)),
+        }
+    }
+    unreachable!("the last try returns");
+}
+
+/// Makes `folder` and the parents that it needs; or where that failed, and how.
+fn make_parents(folder: &Path, made: &mut Vec<PathBuf>) -> Result<(), (PathBuf, io::Error)> {
     let missing: Vec<&Path> = folder.ancestors().take_while(|p| !p.exists()).collect();
     for path in missing.into_iter().rev() {
         match fs::create_dir(path) {
+            Ok(()) if made.iter().any(|p| p == path) => {}
             Ok(()) => made.push(path.to_path_buf()),
-            Err(e) if e.kind() == io::ErrorKind::AlreadyExists && path.is_dir() => {}
-            Err(e) => {
-                made.iter().rev().for_each(|path| drop(fs::remove_dir(path)));
-                return Err(OutputError::io("create the folder", path)(e));
-            }
+            // made by somebody else, who may have taken it away again
+            Err(e) if e.kind() == AlreadyExists && (path.is_dir() || !path.exists()) => {}
+            Err(e) => return Err((path.to_path_buf(), e)),
         }
     }
-    Ok(made)
+    Ok(())
 }
 
 fn remove(folder: &Path) -> Result<(), OutputError> {

@@ -15,7 +15,7 @@ use std::time::{Duration, SystemTime};
 use serde::{Deserialize, Serialize};
 
 use super::error::OutputError;
-use super::folder::{aside_prefix, check_folder, host, is_dead, make_parents, resolve};
+use super::folder::{aside_prefix, check_folder, host, is_dead, resolve, within};
 
 /// Time between two signs of life.
 const TOUCHED: Duration = Duration::from_secs(15);
@@ -53,8 +53,8 @@ impl Lock {
         };
         check_folder(target, &place)?;
         let path = parent.join(format!("{}lock", aside_prefix(&place)));
-        let made = make_parents(parent)?;
-        match Lock::open(target, &path) {
+        let mut made = Vec::new();
+        match Lock::open(target, parent, &path, &mut made) {
             Ok(file) => Ok(Lock::keep(path, file, made)),
             Err(error) => {
                 made.iter().rev().for_each(|parent| drop(fs::remove_dir(parent)));
@@ -63,16 +63,19 @@ impl Lock {
         }
     }
 
-    fn open(target: &Path, path: &Path) -> Result<File, OutputError> {
-        let fail = OutputError::io;
+    /// Opens the file at `path` in `parent` for this process alone; parents that it needs are made
+    /// and added to `made`.
+    fn open(
+        target: &Path,
+        parent: &Path,
+        path: &Path,
+        made: &mut Vec<PathBuf>,
+    ) -> Result<File, OutputError> {
+        let mut options = OpenOptions::new();
+        options.read(true).write(true).create(true).truncate(false);
+        let what = ("write the lock file", path);
         loop {
-            let mut file = OpenOptions::new()
-                .read(true)
-                .write(true)
-                .create(true)
-                .truncate(false)
-                .open(path)
-                .map_err(fail("write the lock file", path))?;
+            let mut file = within(parent, made, what, || options.open(path))?;
             let taken = match file.try_lock() {
                 Ok(()) => false,
                 Err(TryLockError::WouldBlock) => true,
@@ -93,7 +96,7 @@ impl Lock {
                     lock: path.into(),
                 });
             }
-            // one that ended meanwhile may have taken the file away
+            // one that ended meanwhile may have taken the file away, or somebody the folder
             let same = fs::metadata(path).is_ok_and(|now| {
                 file.metadata().is_ok_and(|mine| (mine.dev(), mine.ino()) == (now.dev(), now.ino()))
             });
@@ -105,7 +108,7 @@ impl Lock {
             file.set_len(0)
                 .and_then(|()| std::io::Seek::rewind(&mut file))
                 .and_then(|()| file.write_all(text.as_bytes()))
-                .map_err(fail("write the lock file", path))?;
+                .map_err(OutputError::io(what.0, path))?;
             return Ok(file);
         }
     }
@@ -153,6 +156,8 @@ fn said_by_dead(file: &mut File) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
     use super::*;
 
     fn entries(folder: &Path) -> usize {
@@ -173,6 +178,25 @@ mod tests {
         assert_eq!(entries(home.path()), 0);
         drop(Lock::take(&target).unwrap());
         assert_eq!(entries(home.path()), 0);
+    }
+
+    /// Somebody cleans up while runs start: none of them is refused for it.
+    #[test]
+    fn a_folder_that_is_taken_away_meanwhile_is_made_anew() {
+        let home = tempfile::tempdir().unwrap();
+        let above = home.path().join("a");
+        let target = above.join("b/run");
+        let ended = AtomicBool::new(false);
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                while !ended.load(Relaxed) {
+                    let _ = fs::remove_dir_all(&above);
+                }
+            });
+            let refused = (0..300).find_map(|_| Lock::take(&target).err());
+            ended.store(true, Relaxed);
+            assert!(refused.is_none(), "{}", refused.unwrap());
+        });
     }
 
     #[test]
