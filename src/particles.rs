@@ -183,15 +183,17 @@ pub struct BodyForceColumns {
     pub reference: Option<usize>,
 }
 
-/// Where the columns that a transmitting side looks at stand, all of them scratch.
+/// Where the columns that a transmitting side looks at stand.
 #[derive(Clone, Copy, Debug)]
 pub struct SideColumns {
-    /// Volume at the time of the forces [m3].
+    /// Volume at the time of the forces [m3], scratch.
     pub volume: usize,
-    /// Impedance of a compression wave that leaves [Pa s/m].
+    /// Impedance of a compression wave that leaves [Pa s/m], scratch.
     pub impedance: usize,
-    /// Gradient of the velocity of the last step [1/s], a tensor.
+    /// Gradient of the velocity at the middle of the step [1/s], a tensor, scratch.
     pub gradient: usize,
+    /// The same at the end of the step before the last.
+    pub gradient_before: usize,
 }
 
 /// Where the columns that a side loaded by a pressure looks at stand.
@@ -285,6 +287,12 @@ impl Columns {
         ];
         const SIDE_GRADIENT: [&str; 4] =
             ["side_gradient_xx", "side_gradient_xy", "side_gradient_yx", "side_gradient_yy"];
+        const SIDE_GRADIENT_BEFORE: [&str; 4] = [
+            "side_gradient_before_xx",
+            "side_gradient_before_xy",
+            "side_gradient_before_yx",
+            "side_gradient_before_yy",
+        ];
         const DEVIATOR: [&str; 3] = ["deviator_xx", "deviator_yy", "deviator_xy"];
         const RATE: [&str; 5] = ["rate_xx", "rate_xy", "rate_yx", "rate_yy", "rate_divergence"];
         const STRESS: [&str; 3] = ["stress_xx", "stress_yy", "stress_xy"];
@@ -360,6 +368,13 @@ impl Columns {
                 "1/s",
                 true,
                 false,
+                &of_tensor,
+            ),
+            gradient_before: add_all(
+                if plane { &SIDE_GRADIENT_BEFORE } else { &SIDE_GRADIENT_BEFORE[..1] },
+                "1/s",
+                false,
+                true,
                 &of_tensor,
             ),
         });

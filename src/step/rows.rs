@@ -377,7 +377,9 @@ impl<const D: usize> Stepper<D> {
         let c = &self.columns;
         let n = patch.block.own();
         let column = |k: usize| &patch.block.columns[k][..n];
-        let tensors = c.affine.into_iter().chain(c.velocity_gradient).flat_map(|k| k..k + D * D);
+        let foretold = c.side.map(|side| side.gradient);
+        let tensors = c.affine.into_iter().chain(c.velocity_gradient).chain(foretold);
+        let tensors = tensors.flat_map(|k| k..k + D * D);
         let vector = c.velocity..c.velocity + D;
         let stress = c.stress_volume..c.stress_volume + c.stress_volumes;
         let pulled = c.body_force.map(|c| c.force..c.force + D).into_iter().flatten();

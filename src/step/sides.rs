@@ -15,8 +15,10 @@
 //! quadrature of the internal force: a uniform pressure is held to rounding wherever the outermost
 //! particle ends, so that nothing is felt as one leaves. The velocity is that of the middle of the
 //! step, found together with the force on lumped masses, which no step is too long for. It is
-//! taken to the node with each particle's gradient of it across the side: without, it is that of a
-//! place a third of a cell within, where a wave that leaves has been earlier.
+//! taken to the node with each particle's gradient of it across the side, which the last two steps
+//! foretell for the middle of this one: without, it is that of a place a third of a cell within,
+//! where a wave that leaves has been earlier; and by the gradient of the last step alone a shock's
+//! front of three cells gives back 2.0 % instead of 1.5 %.
 //!
 //! A wall with friction takes from each of its nodes no more momentum along it than it holds, and
 //! no more than the coefficient times what the wall gives across it (Coulomb): on lumped masses, so
@@ -107,13 +109,15 @@ impl<const D: usize> Stepper<D> {
         patch.block.columns[side.impedance] = impedance;
         let whole = c.velocity_gradient.unwrap_or(c.gradient);
         for k in 0..D * D {
-            let [from, to] = patch
+            let [last, before, to] = patch
                 .block
                 .columns
-                .get_disjoint_mut([whole + k, side.gradient + k])
+                .get_disjoint_mut([whole + k, side.gradient_before + k, side.gradient + k])
                 .expect("columns differ");
             to.clear();
-            to.extend_from_slice(&from[..n]);
+            // a step of much less than the one before only sees a little too far ahead
+            to.extend((0..n).map(|r| last[r] + 0.5 * (last[r] - before[r])));
+            before[..n].copy_from_slice(&last[..n]);
         }
         if self.total {
             self.pull_gradient(patch, side.gradient, jacobian);
