@@ -8,6 +8,7 @@ mod body_force;
 mod burn;
 mod conduction;
 mod contact;
+mod domains;
 mod erosion;
 mod failure;
 mod frame;

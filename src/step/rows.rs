@@ -4,13 +4,14 @@ use std::ops::Range;
 
 use decomp::IndexBox;
 
+use super::domains::greatest;
 use super::{Stepper, failure};
 use crate::clock::spend;
 use crate::constitutive::{Matter, MidStep, VolumeChange};
 use crate::effects::Effect;
 use crate::patch::{Departed, Fault, Patch, Phase};
 use crate::scene::Side;
-use crate::shape::{Domain, Extent, floor};
+use crate::shape::floor;
 use crate::viscosity::Flow;
 
 /// Stiffness that pressure relaxation takes a gas to have at least, over the pressure that counts
@@ -68,156 +69,6 @@ impl<const D: usize> Stepper<D> {
         }
         if outside {
             self.leave(patch);
-        }
-    }
-
-    /// The own rows' domains [cells] at volume ratio `jacobian` (a column), and the volume that
-    /// they fill where an edge mask asks for it.
-    fn find_domains(&self, patch: &mut Patch<D>, ahead: f64, jacobian: usize) {
-        let c = &self.columns;
-        let n = patch.block.own();
-        let scale: f64 = self.inverse_cell.iter().product();
-        let filled = c.filled.filter(|&k| k != c.domain);
-        for k in filled.into_iter().chain((D == 1).then_some(c.domain)) {
-            let [volume0, j, out] = patch
-                .block
-                .columns
-                .get_disjoint_mut([c.volume0, jacobian, k])
-                .expect("columns differ");
-            out.resize(n, 0.0);
-            match self.extent() {
-                Extent::Undeformed if k == c.domain => {
-                    (0..n).for_each(|r| out[r] = volume0[r] * scale);
-                }
-                Extent::Point if k == c.domain => {}
-                _ => (0..n).for_each(|r| out[r] = volume0[r] * j[r] * scale),
-            }
-        }
-        if let (true, Some(filled)) = (D > 1 && self.axisymmetric, filled) {
-            let [x, v, out] = patch
-                .block
-                .columns
-                .get_disjoint_mut([c.position, c.velocity, filled])
-                .expect("columns differ");
-            (0..n).for_each(|r| out[r] /= x[r] + ahead * v[r]);
-        }
-        let deforms = c.deformation.filter(|_| c.half_edges.is_some());
-        if let (Some(half_lengths), Some(deformation)) = (c.half_lengths, deforms) {
-            self.find_parallelograms(patch, half_lengths, deformation, ahead, jacobian);
-        }
-        if let (Some(half_lengths), Extent::Undeformed) = (c.half_lengths, self.extent()) {
-            for a in 0..D {
-                let [half, out] = patch
-                    .block
-                    .columns
-                    .get_disjoint_mut([half_lengths + a, c.domain + a])
-                    .expect("differ");
-                out.clear();
-                out.extend(half.iter().map(|h| 2.0 * h * self.inverse_cell[a]));
-            }
-        }
-    }
-
-    /// The own rows' parallelograms [cells] `ahead` of their state in time, with the area of
-    /// their volume, and as long as the scene lets them be.
-    fn find_parallelograms(
-        &self,
-        patch: &mut Patch<D>,
-        half_lengths: usize,
-        deformation: usize,
-        ahead: f64,
-        jacobian: usize,
-    ) {
-        let c = &self.columns;
-        let whole = c.velocity_gradient.expect("a domain that deforms has the column");
-        let half_edges = c.half_edges.expect("likewise");
-        let n = patch.block.own();
-        for k in 0..4 {
-            patch.block.columns[half_edges + k].resize(n, 0.0);
-        }
-        let limit = if self.domains_deform() { patch.reach_length } else { f64::INFINITY };
-        let mut torn = None;
-        let columns = &mut patch.block.columns;
-        for r in 0..n {
-            let tensor =
-                |first: usize| -> [f64; 4] { std::array::from_fn(|k| columns[first + k][r]) };
-            let (l, f) = (tensor(whole), tensor(deformation));
-            let f: [f64; 4] = std::array::from_fn(|k| {
-                let (a, b) = (k / 2, k % 2);
-                f[k] + ahead * (l[2 * a] * f[b] + l[2 * a + 1] * f[2 + b])
-            });
-            let half = [columns[half_lengths][r], columns[half_lengths + 1][r]];
-            let volume = columns[c.volume0][r] * columns[jacobian][r];
-            let at = if self.axisymmetric {
-                columns[c.position][r] + ahead * columns[c.velocity][r]
-            } else {
-                1.0
-            };
-            let domain = self.domain(f, half, volume / at);
-            let extent = domain.extent();
-            if torn.is_none() && extent[0].max(extent[1]) > limit {
-                torn = Some(r);
-            }
-            let [a, b] = domain.half_edges;
-            for (k, value) in [a[0], a[1], b[0], b[1]].into_iter().enumerate() {
-                columns[half_edges + k][r] = value;
-            }
-        }
-        if let Some(row) = torn {
-            self.fault(patch, Phase::Start, row, "it is torn apart within one step".into());
-        }
-    }
-
-    /// The parallelogram [cells] of a particle with deformation gradient `f`, half lengths at the
-    /// start [m] and `area` [m2].
-    ///
-    /// What F and J differ by, the relaxation's share of the volume and rounding of the time
-    /// step, goes to the directions that have been strained, with the squares of their strains:
-    /// what is compressed along one direction alone keeps its width, as on a line.
-    #[inline(always)]
-    fn domain(&self, f: [f64; 4], half: [f64; 2], area: f64) -> Domain {
-        let [xx, xy, yx, yy] = f;
-        let determinant = xx * yy - xy * yx;
-        let q = area / (4.0 * half[0] * half[1] * determinant);
-        // E = (F F^T - 1)/2 and its square
-        let (ex, ey, es) = (
-            0.5 * (xx * xx + xy * xy - 1.0),
-            0.5 * (yx * yx + yy * yy - 1.0),
-            0.5 * (xx * yx + xy * yy),
-        );
-        let (sx, sy, ss) = (ex * ex + es * es, ey * ey + es * es, es * (ex + ey));
-        let trace = sx + sy;
-        let share = if trace > 0.0 { (q - 1.0) / trace } else { 0.0 };
-        let (ax, ay, axy) = (1.0 + share * sx, 1.0 + share * sy, share * ss);
-        let rest = (q / (ax * ay - axy * axy)).sqrt();
-        let edge = |x: f64, y: f64, half: f64| {
-            let scale = rest * half;
-            [
-                scale * (ax * x + axy * y) * self.inverse_cell[0],
-                scale * (axy * x + ay * y) * self.inverse_cell[D - 1],
-            ]
-        };
-        let domain = Domain { half_edges: [edge(xx, yx, half[0]), edge(xy, yy, half[1])] };
-        match self.domain_limit {
-            Some(limit) => domain.limited(limit),
-            None => domain,
-        }
-    }
-
-    /// The deformation of the own rows after a leapfrog step, (1 + dt L) F: what the places within
-    /// a particle move by as it does, at the velocity of the step's end about its start.
-    fn deform_forward(&self, patch: &mut Patch<D>, dt: f64) {
-        let (Some(f), Some(l)) = (self.columns.deformation, self.columns.velocity_gradient) else {
-            return;
-        };
-        let columns = &mut patch.block.columns;
-        for r in 0..columns[f].len() {
-            let l: [f64; 4] = std::array::from_fn(|k| dt * columns[l + k][r]);
-            for k in [f, f + 1] {
-                let (x, y) = (columns[k][r], columns[k + 2][r]);
-                columns[k][r] = x + (l[0] * x + l[1] * y);
-                columns[k + 2][r] = y + (l[2] * x + l[3] * y);
-            }
         }
     }
 
@@ -520,16 +371,22 @@ impl<const D: usize> Stepper<D> {
             lost |= rate.is_nan() || !velocity.iter().all(|v| v[r].is_finite());
         }
         let viscosity = self.viscosity;
-        for r in stretched..speed.len() {
-            let added = viscosity.map_or(0.0, |q| q.speed(speed[r], d[r], 1.0));
-            for a in 0..D {
-                let total = speed[r] + velocity[a][r].abs() + added;
-                let rate = if D == 1 { total } else { total * self.inverse_cell[a] };
-                fastest = fastest.max(rate);
-                // max() passes over NaN
-                lost |= total.is_nan();
+        let mut total = std::mem::take(&mut patch.kept);
+        total.resize(speed.len() - stretched, 0.0);
+        for a in 0..if self.total { 0 } else { D } {
+            // slices of one length, so that the loops have no checks within
+            let (total, d) = (&mut total[..], &d[..speed.len()]);
+            let (speed, v) = (&speed[..total.len()], &velocity[a][..total.len()]);
+            for r in 0..total.len() {
+                let added = viscosity.map_or(0.0, |q| q.speed(speed[r], d[r], 1.0));
+                total[r] = speed[r] + v[r].abs() + added;
             }
+            // which passes over NaN
+            let most = greatest(total);
+            fastest = fastest.max(if D == 1 { most } else { most * self.inverse_cell[a] });
+            lost |= total.iter().fold(false, |lost, total| lost | total.is_nan());
         }
+        patch.kept = total;
         let edge = if D == 1 { self.cell[0] } else { 1.0 };
         patch.told.time_step = if fastest > 0.0 { edge / fastest } else { f64::INFINITY };
         if let Some(conduction) = &self.conduction {
@@ -537,13 +394,13 @@ impl<const D: usize> Stepper<D> {
                 patch.told.time_step.min(conduction.step / (shortest * shortest));
         }
         let limit = self.longest_ever();
-        patch.told.length = self.longest_row::<false>(&patch.block, limit).1;
+        patch.told.length = self.longest_own(&patch.block);
         if patch.told.length > limit && self.domains_deform() {
-            let (row, cells) = self.longest_row::<true>(&patch.block, limit);
-            let what = format!(
-                "it has been stretched over {cells:.1} cells, further than its shape function reaches; more particles a cell stretch less"
-            );
-            found.push((row, what));
+            found.extend(self.first_longer(&patch.block, limit).map(|(row, cells)| {
+                (row, format!(
+                    "it has been stretched over {cells:.1} cells, further than its shape function reaches; more particles a cell stretch less"
+                ))
+            }));
         }
         if lost {
             let finite = |r: &usize| {
@@ -595,41 +452,6 @@ impl<const D: usize> Stepper<D> {
         let column = |k: usize| block.columns[k][row];
         let v = |a: usize| column(self.columns.velocity + a);
         column(self.columns.energy) + 0.5 * (0..D).map(|a| v(a) * v(a)).sum::<f64>()
-    }
-
-    /// The own row with the greatest extent along a direction, and that extent [cells]; with `FIRST`
-    /// the first row of more than `limit`.
-    #[inline(never)]
-    fn longest_row<const FIRST: bool>(&self, block: &decomp::Block<D>, limit: f64) -> (usize, f64) {
-        let c = &self.columns;
-        let column = |k: usize| &block.columns[k][..block.own()];
-        let (volume0, j) = (column(c.volume0), column(c.jacobian));
-        let extent = match self.extent() {
-            Extent::Current if self.total => Extent::Undeformed,
-            extent => extent,
-        };
-        let length = |r: usize| match (extent, c.half_lengths, c.deformation) {
-            (Extent::Current, None, _) => volume0[r] * j[r] * self.inverse_cell[0],
-            (_, None, _) if D == 1 => volume0[r] * self.inverse_cell[0],
-            (Extent::Current, Some(half), Some(f)) => {
-                let f = std::array::from_fn(|k| column(f + k)[r]);
-                let half = [column(half)[r], column(half + 1)[r]];
-                let at = if self.axisymmetric { column(c.position)[r] } else { 1.0 };
-                let extent = self.domain(f, half, volume0[r] * j[r] / at).extent();
-                extent[0].max(extent[1])
-            }
-            (Extent::Undeformed, Some(half), _) => {
-                let lengths = (0..D).map(|a| 2.0 * column(half + a)[r] * self.inverse_cell[a]);
-                lengths.fold(0.0, f64::max)
-            }
-            _ => 0.0,
-        };
-        (0..block.own()).fold((0, 0.0), |longest, r| {
-            let length = length(r);
-            let longer =
-                if FIRST { length > limit && longest.1 <= limit } else { length > longest.1 };
-            if longer { (r, length) } else { longest }
-        })
     }
 
     /// Notes a fault, if it comes before those that are known.
