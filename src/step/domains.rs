@@ -71,12 +71,15 @@ struct Strained<'a> {
 
 /// Columns that the extents of rows' domains come from.
 enum Outlines<'a> {
-    /// A length: the volume at the start, and its ratio where it counts.
+    /// Lengths: the volume at the start and its ratio.
     Length([&'a [f64]; 2]),
+    /// Lengths that stay: the volume at the start.
     FirstLength(&'a [f64]),
-    /// Half lengths of boxes [m].
+    /// Half lengths of boxes that stay [m].
     Boxes([&'a [f64]; 2]),
+    /// What deforms in a plane.
     Parallelograms(Strained<'a>),
+    /// No extent.
     Points,
 }
 
@@ -402,6 +405,42 @@ fn limit(edges: [&mut [f64]; 4], most: f64) {
         for r in 0..n {
             let domain = Domain { half_edges: [[ax[r], ay[r]], [bx[r], by[r]]] };
             [[ax[r], ay[r]], [bx[r], by[r]]] = domain.limited(most).half_edges;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_greatest_is_found_in_any_place_beside_what_is_no_number() {
+        assert_eq!(greatest(&[]), 0.0);
+        for n in 1..=9 {
+            for place in 0..n {
+                let mut values = vec![f64::NAN; n];
+                values[place] = 2.0;
+                values[(place + 5) % n] = if n > 1 && (place + 5) % n != place { 1.0 } else { 2.0 };
+                assert_eq!(greatest(&values), 2.0, "{values:?}");
+            }
+        }
+    }
+
+    /// What only some of a patch's rows need may not change the others.
+    #[test]
+    fn long_parallelograms_are_shortened_alone() {
+        let short = [0.25, 0.0, 0.0, 0.25];
+        let long = [3.0, 0.5, -0.1, 0.25];
+        let mut rows: Vec<[f64; 4]> = vec![short; 7];
+        rows[3] = long;
+        let mut columns: [Vec<f64>; 4] =
+            std::array::from_fn(|k| rows.iter().map(|r| r[k]).collect());
+        limit(columns.each_mut().map(|column| &mut column[..]), 1.0);
+        let alone = Domain { half_edges: [[3.0, 0.5], [-0.1, 0.25]] }.limited(1.0).half_edges;
+        for (r, row) in rows.iter().enumerate() {
+            let found: [f64; 4] = std::array::from_fn(|k| columns[k][r]);
+            let expected = if r == 3 { alone.as_flattened() } else { &row[..] };
+            assert_eq!(found, expected, "{r}");
         }
     }
 }

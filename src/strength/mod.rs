@@ -73,6 +73,12 @@ pub fn equivalent(s: &Symmetric) -> f64 {
     (1.5 * s.along(s)).sqrt()
 }
 
+/// `scale` times s.
+#[inline(always)]
+fn scaled(s: &Symmetric, scale: f64) -> Symmetric {
+    Symmetric { xx: scale * s.xx, yy: scale * s.yy, xy: scale * s.xy, zz: scale * s.zz }
+}
+
 /// R s R^T, R the turn by Cayley's form of `half` = dt/2 times the spin W_yx.
 #[inline(always)]
 fn turned(s: &Symmetric, half: f64) -> Symmetric {
@@ -121,14 +127,17 @@ pub fn advance(
     if !yields {
         return Yielded { deviator: trial, plastic_strain: strain, plastic_work: 0.0 };
     }
+    if shear == 0.0 {
+        // molten: what it bore as a solid is gone, and no strain answers to that
+        let deviator = scaled(&trial, still / size);
+        return Yielded { deviator, plastic_strain: strain, plastic_work: 0.0 };
+    }
     let yields = |d: f64| model.yield_stress(strain + d, d / dt, at);
     // what flows mostly flows on: then all strain of a step is plastic
     let guess = equivalent(&elastic) / (3.0 * shear);
     let (increment, stress) = plastic_increment(size, still, 3.0 * shear, guess, yields);
-    let scale = (stress / size).min(1.0);
-    let Symmetric { xx, yy, xy, zz } = trial;
     Yielded {
-        deviator: Symmetric { xx: scale * xx, yy: scale * yy, xy: scale * xy, zz: scale * zz },
+        deviator: scaled(&trial, (stress / size).min(1.0)),
         plastic_strain: strain + increment,
         plastic_work: stress * increment,
     }
@@ -280,6 +289,30 @@ mod tests {
         let after = advance(&melting, &Symmetric::default(), 0.0, &rate, 1e-9, &at);
         assert_eq!(equivalent(&after.deviator), 0.0);
         assert!(after.plastic_work == 0.0 && after.plastic_strain > 0.0);
+    }
+
+    /// Steinberg and Guinan's moduli fall to nothing together.
+    #[test]
+    fn what_melts_loses_the_shear_that_it_bore() {
+        let model = SteinbergGuinan {
+            shear_modulus: 47.7e9,
+            yield_stress: 0.12e9,
+            beta: 36.0,
+            n: 0.45,
+            initial_strain: 0.0,
+            most: 0.64e9,
+            by_pressure: 28.3e-12,
+            by_temperature: Some(0.377e-3),
+        };
+        let hot = Condition { temperature: 9000.0, ..REST };
+        let borne = Symmetric { xx: 1e8, yy: -4e7, xy: 3e7, zz: -6e7 };
+        let rate = Rate { plane: [-1e6, 0.0, 2e5, 0.0], across: 0.0 };
+        for dt in [0.0, 1e-9] {
+            let after = advance(&model, &borne, 0.2, &rate, dt, &hot);
+            let left = equivalent(&after.deviator);
+            assert!(left == 0.0 || dt == 0.0, "{left:e}");
+            assert_eq!((after.plastic_strain, after.plastic_work), (0.2, 0.0));
+        }
     }
 
     #[test]
