@@ -54,7 +54,7 @@ struct Left {
     digests: Vec<String>,
     /// Profiles and histories as they stand in their files.
     files: Vec<(String, Vec<u8>)>,
-    /// Lines printed, those apart that tell of the layout and its times.
+    /// Lines printed, but those that tell of the layout, and times.
     lines: Vec<String>,
 }
 
@@ -73,10 +73,15 @@ fn left_by(job: &Job, layout: &Layout) -> Result<Left, String> {
     let tells = |line: &&str| {
         line.split_whitespace().next().is_some_and(|first| !of_layout.contains(&first))
     };
+    // an effect's share of the step, last in its line, is measured
+    let unmeasured = |line: &str| match line.strip_suffix(" %").and_then(|l| l.rsplit_once(' ')) {
+        Some((rest, _)) => rest.trim_end().to_owned(),
+        None => line.to_owned(),
+    };
     Ok(Left {
         digests: summary.profiles.iter().map(|p| p.state_sha256.clone()).collect(),
         files: files.collect::<Result<_, _>>()?,
-        lines: said.lines().filter(tells).map(str::to_owned).collect(),
+        lines: said.lines().filter(tells).map(unmeasured).collect(),
     })
 }
 
