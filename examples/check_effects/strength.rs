@@ -98,7 +98,7 @@ pub fn taylor(table: &mut Table) {
     }
 }
 
-/// The same on cells of 0.1 and 0.05 mm: half an hour, and some four hours.
+/// The same on cells of 0.1 and 0.05 mm: half an hour, and some three hours.
 pub fn taylor_fine(table: &mut Table) {
     for (cell, name) in [("1e-4", "0.1 mm"), ("5e-5", "0.05 mm")] {
         bar(table, cell, name);

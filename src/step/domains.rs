@@ -376,8 +376,8 @@ impl<const D: usize> Stepper<D> {
         limit: f64,
     ) -> Option<(usize, f64)> {
         let from = self.outlines(block);
-        let lengths = (0..block.own()).map(|row| (row, self.lengths(&from, row..row + 1)[0]));
-        lengths.into_iter().find(|(_, length)| *length > limit)
+        let mut lengths = (0..block.own()).map(|row| (row, self.lengths(&from, row..row + 1)[0]));
+        lengths.find(|(_, length)| *length > limit)
     }
 }
 

@@ -294,25 +294,13 @@ mod tests {
     /// Steinberg and Guinan's moduli fall to nothing together.
     #[test]
     fn what_melts_loses_the_shear_that_it_bore() {
-        let model = SteinbergGuinan {
-            shear_modulus: 47.7e9,
-            yield_stress: 0.12e9,
-            beta: 36.0,
-            n: 0.45,
-            initial_strain: 0.0,
-            most: 0.64e9,
-            by_pressure: 28.3e-12,
-            by_temperature: Some(0.377e-3),
-        };
+        let model = steinberg_guinan::COPPER;
         let hot = Condition { temperature: 9000.0, ..REST };
         let borne = Symmetric { xx: 1e8, yy: -4e7, xy: 3e7, zz: -6e7 };
         let rate = Rate { plane: [-1e6, 0.0, 2e5, 0.0], across: 0.0 };
-        for dt in [0.0, 1e-9] {
-            let after = advance(&model, &borne, 0.2, &rate, dt, &hot);
-            let left = equivalent(&after.deviator);
-            assert!(left == 0.0 || dt == 0.0, "{left:e}");
-            assert_eq!((after.plastic_strain, after.plastic_work), (0.2, 0.0));
-        }
+        let after = advance(&model, &borne, 0.2, &rate, 1e-9, &hot);
+        assert_eq!(equivalent(&after.deviator), 0.0);
+        assert_eq!((after.plastic_strain, after.plastic_work), (0.2, 0.0));
     }
 
     #[test]

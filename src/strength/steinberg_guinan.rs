@@ -55,23 +55,26 @@ impl Strength for SteinbergGuinan {
     }
 }
 
+/// Copper, Steinberg (1996).
+#[cfg(test)]
+pub(super) const COPPER: SteinbergGuinan = SteinbergGuinan {
+    shear_modulus: 47.7e9,
+    yield_stress: 0.12e9,
+    beta: 36.0,
+    n: 0.45,
+    initial_strain: 0.0,
+    most: 0.64e9,
+    by_pressure: 28.3e-12,
+    by_temperature: Some(0.377e-3),
+};
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn both_moduli_follow_the_paper() {
-        // copper, Steinberg (1996)
-        let model = SteinbergGuinan {
-            shear_modulus: 47.7e9,
-            yield_stress: 0.12e9,
-            beta: 36.0,
-            n: 0.45,
-            initial_strain: 0.0,
-            most: 0.64e9,
-            by_pressure: 28.3e-12,
-            by_temperature: Some(0.377e-3),
-        };
+        let model = COPPER;
         let at = Condition { compression: 1.331, pressure: 30e9, temperature: 700.0 };
         let growth = 1.0 + 28.3e-12 * 30e9 / 1.1 - 0.377e-3 * 400.0;
         assert!((model.shear_modulus(&at) / (47.7e9 * growth) - 1.0).abs() < 1e-14);
