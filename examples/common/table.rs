@@ -68,7 +68,6 @@ impl Table {
     }
 
     /// Something that holds or does not.
-    #[allow(dead_code)] // likewise
     pub fn holds(&mut self, figure: &str, measured: &str, bound: &str, ok: bool) {
         self.row(figure, measured, bound, Some(ok));
     }
