@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use crate::transfer::{Row, lines};
+use crate::transfer::{Row, add_product, lines};
 
 /// Where each nodal field stands in a patch's arrays. A vector takes D fields that follow each
 /// other; its number is that of the first.
@@ -168,18 +168,19 @@ impl Band {
         let count = const { diagonals(K, D) };
         for line in 0..const { lines(K, D) } {
             let from = row.first + line * row.stride;
-            let rows = &mut self.rows[from * count..(from + K) * count];
+            // of a length known at compile time, so that no place in it is checked
+            let rows = &mut self.rows[from * count..][..const { K * diagonals(K, D) }];
+            let (here, later) = row.values[..const { lines(K, D) }][line..]
+                .split_first()
+                .expect("the lines from this one on");
             for i in 0..K {
-                let term = mass * row.values[line][i];
+                let term = mass * here[i];
                 for k in i..K {
-                    rows[i * count + k - i] += term * row.values[line][k];
+                    rows[i * count + k - i] += term * here[k];
                 }
-                for other in line + 1..const { lines(K, D) } {
-                    let at = i * count + K + (other - line - 1) * (2 * K - 1) + K - 1 - i;
-                    let rows = &mut rows[at..at + K];
-                    for k in 0..K {
-                        rows[k] += term * row.values[other][k];
-                    }
+                let across = rows[i * count + K..(i + 1) * count].chunks_exact_mut(2 * K - 1);
+                for (sums, values) in across.zip(later) {
+                    add_product(sums, K - 1 - i, term, values);
                 }
             }
         }

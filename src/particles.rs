@@ -337,8 +337,8 @@ impl Columns {
         let pressure_mid = relaxed.then(|| add("pressure_mid", "Pa", true, false));
         let compliance = relaxed.then(|| add("compliance", "m3/Pa", true, false));
         let filled = method.edge_mask.is_some() || (touching && !total);
-        // contact looks at what particles fill; of a mask on a line the length has to do
-        let is_length = !plane && (extent == Extent::Current || !touching || total);
+        // on a line what they fill is the length that such shape functions look at
+        let is_length = !plane && (extent == Extent::Current || total);
         let volume = (filled && !is_length).then(|| add("cell_volume", "", true, false));
         let moves = total && touching;
         let room = moves.then(|| add("current_volume", "", true, false));

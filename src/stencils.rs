@@ -2,6 +2,8 @@
 //!
 //! Knows no materials, no time stepping, no messages.
 
+use std::ops::Range;
+
 use decomp::Block;
 
 use crate::transfer::{Row, lines};
@@ -46,6 +48,25 @@ impl Stencils {
             values: self.values[row * nodes..(row + 1) * nodes].as_chunks().0,
             gradients: self.gradients[row * nodes * D..(row + 1) * nodes * D].as_chunks().0,
         }
+    }
+
+    /// The weights of `rows`, one after the other: without the checks of looking each up.
+    #[inline(always)]
+    pub fn rows<const K: usize, const D: usize>(
+        &self,
+        rows: Range<usize>,
+    ) -> impl Iterator<Item = Row<'_, K, D>> {
+        let nodes = const { K * lines(K, D) };
+        let first = self.first[rows.clone()].iter();
+        let values = self.values[rows.start * nodes..rows.end * nodes].chunks_exact(nodes);
+        let gradients =
+            self.gradients[rows.start * nodes * D..rows.end * nodes * D].chunks_exact(nodes * D);
+        first.zip(values).zip(gradients).map(|((&first, values), gradients)| Row {
+            first: first as usize,
+            stride: self.stride,
+            values: values.as_chunks().0,
+            gradients: gradients.as_chunks().0,
+        })
     }
 
     /// Whether all rows of `block`, ghosts too, are those whose weights were last kept.

@@ -5,10 +5,15 @@
 //!
 //! Knows no materials, no time stepping, no messages.
 
+use wide::f64x4;
+
 /// Lines of nodes in a window of `width` nodes along each of `dimension` directions.
 pub const fn lines(width: usize, dimension: usize) -> usize {
     width.pow(dimension as u32 - 1)
 }
+
+/// Most nodes along one direction that a particle may touch.
+pub const MOST_NODES: usize = 18;
 
 /// The weights of one particle on its window of nodes.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +44,23 @@ impl<'a, const K: usize, const D: usize> Row<'a, K, D> {
         window(field, self.first + line * self.stride)
     }
 
+    /// All `L` lines of the window in each of `N` fields, where several sums want them.
+    #[inline(always)]
+    pub fn windows<const L: usize, const N: usize>(
+        &self,
+        fields: [&[f64]; N],
+    ) -> [[[f64; K]; L]; N] {
+        debug_assert_eq!(L, const { lines(K, D) });
+        // plain loops: closures over arrays stay calls
+        let mut windows = [[[0.0; K]; L]; N];
+        for (window, field) in windows.iter_mut().zip(fields) {
+            for (line, nodes) in window.iter_mut().enumerate() {
+                *nodes = *self.line(field, line);
+            }
+        }
+        windows
+    }
+
     /// Adds `term` of each line of weights to the nodes of `field`.
     #[inline(always)]
     pub fn add(&self, field: &mut [f64], weights: &[[f64; K]], term: impl Fn(f64) -> f64) {
@@ -57,14 +79,38 @@ impl<'a, const K: usize, const D: usize> Row<'a, K, D> {
     /// in them, then over the places from +0 on, so that weights of zero at the end change no bit.
     #[inline(always)]
     pub fn sum(&self, weights: &[[f64; K]], of: impl Fn(usize) -> [f64; K]) -> f64 {
-        let mut sums = [0.0; K];
+        let mut sums = [f64x4::ZERO; MOST_NODES.div_ceil(4)];
         for line in 0..Self::LINES {
             let values = of(line);
-            for k in 0..K {
-                sums[k] += weights[line][k] * values[k];
+            for (four, sums) in sums[..K.div_ceil(4)].iter_mut().enumerate() {
+                *sums += fours(&weights[line], four) * fours(&values, four);
             }
         }
-        sums.iter().fold(0.0, |sum, s| sum + s)
+        let mut total = 0.0;
+        for k in 0..K {
+            total += sums[k / 4].as_array()[k % 4];
+        }
+        total
+    }
+}
+
+/// Four places of a line from place 4 `four` on, zeros beyond its end. Compilers take sums over
+/// arrays apart into single numbers.
+#[inline(always)]
+fn fours<const K: usize>(line: &[f64; K], four: usize) -> f64x4 {
+    let at = |k: usize| if k < K { line[k] } else { 0.0 };
+    f64x4::new(std::array::from_fn(|k| at(4 * four + k)))
+}
+
+/// Adds `factor` times a line of values to the numbers of `sums` from `first` on.
+#[inline(always)]
+pub fn add_product<const K: usize>(sums: &mut [f64], first: usize, factor: f64, values: &[f64; K]) {
+    let sums: &mut [f64; K] = (&mut sums[first..first + K]).try_into().expect("K numbers");
+    for four in 0..const { K.div_ceil(4) } {
+        let four_sums = fours(sums, four) + f64x4::splat(factor) * fours(values, four);
+        for (k, sum) in (4 * four..K).zip(four_sums.to_array()) {
+            sums[k] = sum;
+        }
     }
 }
 
@@ -119,5 +165,54 @@ impl From<crate::scene::Transfer> for Scheme {
             Transfer::Xpic(order) => Scheme::Series { order, force: false },
             Transfer::Fmpm(order) => Scheme::Series { order, force: true },
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers without a pattern that a sum could hide in, of either sign.
+    fn line<const K: usize>(seed: usize) -> [f64; K] {
+        std::array::from_fn(|k| ((seed * 31 + k * 17) % 97) as f64 / 7.0 - 6.0)
+    }
+
+    /// Sums by fours are those of one number after the other, bit by bit.
+    fn check<const K: usize, const D: usize>() {
+        let count = lines(K, D);
+        let weights: Vec<[f64; K]> = (0..3 * count).map(line).collect();
+        let (values, gradients) = weights.split_at(count);
+        let stride = K + 3;
+        let field: Vec<f64> = (0..5 + count * stride).map(|i| line::<1>(i * i)[0]).collect();
+        let row: Row<'_, K, D> = Row { first: 5, stride, values, gradients };
+        let mut sums = [0.0; K];
+        for (l, weights) in values.iter().enumerate() {
+            for k in 0..K {
+                sums[k] += weights[k] * field[5 + l * stride + k];
+            }
+        }
+        let sum = sums.iter().fold(0.0, |sum, s| sum + s);
+        assert_eq!(row.dot(values, &field), sum, "{K} nodes");
+        let (mut fast, mut plain) = (field.clone(), field.clone());
+        add_product(&mut fast, 2, 1.3, &values[0]);
+        for k in 0..K {
+            plain[2 + k] += 1.3 * values[0][k];
+        }
+        assert_eq!(fast, plain, "{K} nodes");
+    }
+
+    #[test]
+    fn sums_by_fours_are_those_one_by_one() {
+        check::<2, 1>();
+        check::<3, 1>();
+        check::<4, 1>();
+        check::<6, 1>();
+        check::<10, 1>();
+        check::<18, 1>();
+        check::<2, 2>();
+        check::<3, 2>();
+        check::<4, 2>();
+        check::<6, 2>();
+        check::<10, 2>();
     }
 }

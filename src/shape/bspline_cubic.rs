@@ -1,7 +1,7 @@
 //! Cubic B-splines at the particle's centre (Steffen, Kirby & Berzins 2008). The splines run on
 //! beyond a body's ends; at a wall they are mirrored, which is their right boundary form.
 
-use super::{Extent, Shape, Weights, split};
+use super::{Extent, Shape, Weights, integer, split};
 
 /// Cubic B-splines.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +19,7 @@ impl Shape for BsplineCubic {
         let (cell, t) = split(fraction);
         let r = 1.0 - t;
         let sixth = 1.0 / 6.0;
-        let mut w = Weights::none(cell as i32 - 1);
+        let mut w = Weights::none(integer(cell) - 1);
         w.values[0] = r * r * r * sixth;
         w.values[1] = (3.0 * t * t * t - 6.0 * t * t + 4.0) * sixth;
         w.values[2] = (3.0 * r * r * r - 6.0 * r * r + 4.0) * sixth;

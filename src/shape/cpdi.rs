@@ -6,7 +6,7 @@
 //! trapezoidal rule along its edges, which is exact for what hat functions are interpolated to.
 
 use super::plane::{RulePoint, by_rule, product};
-use super::{Domain, Extent, Plane, Shape, Weights, split};
+use super::{Domain, Extent, Plane, Shape, Weights, integer, split};
 
 /// The corners.
 const RULE: [RulePoint; 4] = {
@@ -32,7 +32,7 @@ impl Shape for Cpdi {
         let (first, a) = split(fraction - 0.5 * length);
         let (last, b) = split(fraction + 0.5 * length);
         let inverse = 1.0 / length;
-        let mut w = Weights::none(first as i32);
+        let mut w = Weights::none(integer(first));
         // nodes of the upper end, from the first node of the lower end
         let apart = last - first;
         for k in 0..K {
@@ -68,7 +68,7 @@ impl Shape for Cpdi {
         }
         let hats = |x: f64| {
             let (first, t) = split(x);
-            (first as i32, [1.0 - t, t])
+            (integer(first), [1.0 - t, t])
         };
         by_rule(fraction, domain, &RULE, hats, out)
     }

@@ -49,22 +49,14 @@ impl Shape for CpdiBsplineQuadratic {
         let (c, u) = ((middle - first) as usize, (last - first) as usize);
         let (sixth, inverse) = (1.0 / 6.0, 1.0 / length);
         let mut w = Weights::none(first);
-        let pick = |values: &[f64; 3], from: usize, k: usize| {
-            let at = k.wrapping_sub(from);
-            if at == 0 {
-                values[0]
-            } else if at == 1 {
-                values[1]
-            } else if at == 2 {
-                values[2]
-            } else {
-                0.0
-            }
-        };
+        // each on the whole window: to choose by place is to guess branches
+        let [mut at_lower, mut at_centre, mut at_upper] = [[0.0; K]; 3];
+        at_lower[..3].copy_from_slice(&lower);
+        at_centre[c..c + 3].copy_from_slice(&centre);
+        at_upper[u..u + 3].copy_from_slice(&upper);
         for k in 0..K {
-            let (at_lower, at_upper) = (pick(&lower, 0, k), pick(&upper, u, k));
-            w.values[k] = (at_lower + 4.0 * pick(&centre, c, k) + at_upper) * sixth;
-            w.gradients[k] = (at_upper - at_lower) * inverse;
+            w.values[k] = (at_lower[k] + 4.0 * at_centre[k] + at_upper[k]) * sixth;
+            w.gradients[k] = (at_upper[k] - at_lower[k]) * inverse;
         }
         w
     }

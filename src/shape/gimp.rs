@@ -1,7 +1,7 @@
 //! Hat functions averaged over the particle's undeformed length (Bardenhagen & Kober 2004, the
 //! generalized interpolation material point method with particles of constant size).
 
-use super::{Extent, Shape, Weights, split};
+use super::{Extent, Shape, Weights, integer, split};
 
 /// Hat functions averaged over the undeformed particle.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +33,7 @@ impl Shape for Gimp {
         let (first, a) = split(fraction - 0.5 * length);
         let (last, b) = split(fraction + 0.5 * length);
         let (lower, upper) = (first + a, last + b);
-        let mut w = Weights::none(first as i32);
+        let mut w = Weights::none(integer(first));
         // of the length between them, so that the values sum to 1
         let inverse = 1.0 / (upper - lower);
         for k in 0..K {

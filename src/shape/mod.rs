@@ -98,12 +98,25 @@ impl Extent {
     }
 }
 
-/// The greatest whole number not above `x`, for |x| < 2^31 (beyond, that limit). The library's
-/// own is a call where the processor's instruction cannot be taken for granted.
+/// 3 * 2^51: doubles of its size are whole numbers, and the low half of their bits holds the number
+/// that has been added, rounded to the nearest one.
+const ROUNDING: f64 = (3u64 << 51) as f64;
+
+/// The greatest whole number not above `x`, for |x| < 2^51. The library's own is a call where the
+/// processor's instruction cannot be taken for granted, and a cast to a whole number and back is not
+/// taken for some numbers at a time, since casts saturate.
 #[inline(always)]
 pub(crate) fn floor(x: f64) -> f64 {
-    let toward_zero = x as i32 as f64;
-    if toward_zero > x { toward_zero - 1.0 } else { toward_zero }
+    let nearest = (x + ROUNDING) - ROUNDING;
+    nearest - if nearest > x { 1.0 } else { 0.0 }
+}
+
+/// A whole number as an integer; beyond 2^30 that limit with its sign.
+#[inline(always)]
+pub(crate) fn integer(whole: f64) -> i32 {
+    const MOST: f64 = (1u32 << 30) as f64;
+    let within = whole.clamp(-MOST, MOST);
+    (within + ROUNDING).to_bits() as i32
 }
 
 /// Distance from a knot within which a place counts as on it [cells]: more than rounding leaves
@@ -131,7 +144,7 @@ fn split(x: f64) -> (f64, f64) {
 fn quadratic(x: f64) -> (i32, f64, [f64; 3]) {
     let (first, t) = split(x - 0.5);
     let r = 1.0 - t;
-    (first as i32, t, [0.5 * r * r, 0.5 + t * r, 0.5 * t * t])
+    (integer(first), t, [0.5 * r * r, 0.5 + t * r, 0.5 * t * t])
 }
 
 #[cfg(test)]
@@ -190,6 +203,17 @@ mod tests {
         for x in [-3.5, -3.0, -0.2, -0.0, 0.0, 0.9, 1.0, 7.3, -1e-300, 2e9, -2e9] {
             assert_eq!(floor(x), x.floor(), "{x}");
         }
+    }
+
+    #[test]
+    fn integers_are_those_of_a_cast_up_to_their_limit() {
+        for x in [-3.0, -1.0, -0.0, 0.0, 7.0, 1e9, -1e9] {
+            assert_eq!(integer(x), x as i32, "{x}");
+        }
+        for beyond in [2e9, 1e18, f64::INFINITY] {
+            assert_eq!([integer(beyond), integer(-beyond)], [1 << 30, -(1 << 30)]);
+        }
+        assert_eq!(integer(f64::NAN), 0);
     }
 
     #[test]

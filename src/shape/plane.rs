@@ -1,6 +1,7 @@
 //! Particles' domains in a plane, and weights by a rule over the points of a parallelogram.
 
 use super::{Extent, ON_KNOT, Shape, Weights};
+use crate::transfer::add_product;
 
 /// The parallelogram of a particle: its half edges r1 and r2 [cells], so that its corners lie at
 /// +-r1 +-r2 from its centre.
@@ -139,9 +140,7 @@ pub(super) fn by_rule<const P: usize, const N: usize, const K: usize>(
             let lines = [&mut values, &mut gx, &mut gy];
             for (lines, share) in lines.into_iter().zip([point.value, gradient[0], gradient[1]]) {
                 let (line, share) = (&mut lines[from_y + l], share * y);
-                for k in 0..K {
-                    line[k] += share * across[k];
-                }
+                add_product(line, 0, share, &across);
             }
         }
     }

@@ -1,8 +1,8 @@
 //! Grid to particles: own rows alone.
 
-use smallvec::SmallVec;
+use std::ops::DerefMut;
 
-use super::solid::Taken;
+use super::solid::{Taken, put_back};
 use super::{MOST_NODES, Stepper, with_width};
 use crate::clock::spend;
 use crate::effects::Effect;
@@ -17,38 +17,140 @@ fn times<const K: usize>(a: &[f64; K], b: &[f64; K]) -> [f64; K] {
     std::array::from_fn(|k| a[k] * b[k])
 }
 
+/// The own rows, the first `rows`, of `N` columns.
+#[inline(always)]
+fn own<const N: usize>(columns: &mut [Vec<f64>], rows: usize) -> [&mut [f64]; N] {
+    let mut columns = columns.iter_mut().map(|column| &mut column[..rows]);
+    std::array::from_fn(|_| columns.next().expect("as many columns"))
+}
+
+/// Those of a tensor in a plane, if there is one.
+#[inline(always)]
+fn own_tensor(columns: &mut [Vec<f64>], rows: usize) -> Option<[&mut [f64]; 4]> {
+    (!columns.is_empty()).then(|| own(columns, rows))
+}
+
+/// Half the sum of two lines of nodes.
+#[inline(always)]
+fn half_sum<const K: usize>(a: &[f64; K], b: &[f64; K]) -> [f64; K] {
+    std::array::from_fn(|k| 0.5 * (a[k] + b[k]))
+}
+
 impl<const D: usize> Stepper<D> {
-    /// New velocity of the own rows by the scheme, and the affine part with it.
-    pub(super) fn gather_velocity(&self, patch: &mut Patch<D>) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
-            let (c, f) = (&s.columns, &s.fields);
-            let n = patch.block.own();
-            for a in 0..D {
-                let lumped = &patch.nodes.fields[f.lumped + a][..];
-                let star = &patch.nodes.fields[f.velocity_star + a][..];
-                let velocity = &mut patch.block.columns[c.velocity + a][..n];
-                match s.scheme {
-                    Scheme::Blend(share) => {
-                        for (r, v) in velocity.iter_mut().enumerate() {
-                            let row = patch.stencils.row::<K, D>(r);
-                            let old = row.dot(row.values, lumped);
-                            let new = row.dot(row.values, star);
-                            *v = share * *v + (1.0 - share) * old + (new - old);
-                        }
-                    }
-                    Scheme::Series { .. } | Scheme::Affine => {
-                        for (r, v) in velocity.iter_mut().enumerate() {
-                            let row = patch.stencils.row::<K, D>(r);
-                            *v = row.dot(row.values, star);
-                        }
-                    }
+    /// What the end of a leapfrog step brings the own rows: velocity by the scheme, the affine part
+    /// with it, and position x += dt N v'; with `strain` what [`Self::gather_gradient`] brings.
+    pub(super) fn gather_leapfrog(&self, patch: &mut Patch<D>, dt: f64, strain: bool) {
+        fn go<const K: usize, const D: usize>(
+            patch: &mut Patch<D>,
+            s: &Stepper<D>,
+            dt: f64,
+            strain: bool,
+        ) {
+            if const { D == 1 } {
+                match strain {
+                    false => s.gather_end::<K, 1, true, false>(patch, dt),
+                    true => s.gather_end::<K, 1, true, true>(patch, dt),
+                }
+            } else {
+                match strain {
+                    false => s.gather_end::<K, K, true, false>(patch, dt),
+                    true => s.gather_end::<K, K, true, true>(patch, dt),
                 }
             }
-            if let Some(affine) = c.affine {
+            if let Some(affine) = s.columns.affine {
                 spend(Effect::Affine, patch, |patch| s.gather_affine::<K>(patch, affine));
             }
         }
+        with_width!(patch.stencils.width, go(patch, self, dt, strain));
+    }
+
+    /// Divergence of v' at the own rows, its whole gradient where domains deform, and the limiter
+    /// from it.
+    pub(super) fn gather_gradient(&self, patch: &mut Patch<D>) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
+            if const { D == 1 } {
+                s.gather_end::<K, 1, false, true>(patch, 0.0);
+            } else {
+                s.gather_end::<K, K, false, true>(patch, 0.0);
+            }
+        }
         with_width!(patch.stencils.width, go(patch, self));
+    }
+
+    /// Moves the own rows by `dt`, strains them, or both: in one pass, since finding a row's weights
+    /// and nodes takes as long as a sum over them.
+    fn gather_end<const K: usize, const L: usize, const MOVE: bool, const STRAIN: bool>(
+        &self,
+        patch: &mut Patch<D>,
+        dt: f64,
+    ) {
+        let (c, f) = (&self.columns, &self.fields);
+        let n = patch.block.own();
+        let fields = &patch.nodes.fields;
+        // of one length, so that a window is looked up once for all of them
+        let nodes = fields[f.mass].len();
+        let vector = |k: usize| std::array::from_fn::<&[f64], D, _>(|a| &fields[k + a][..nodes]);
+        let (lumped, star) = (vector(f.lumped), vector(f.velocity_star));
+        // columns that are written leave the block while the others are read
+        let columns = &mut patch.block.columns;
+        let mut x: [Vec<f64>; D] =
+            std::array::from_fn(|a| std::mem::take(&mut columns[c.position + a]));
+        let mut v: [Vec<f64>; D] =
+            std::array::from_fn(|a| std::mem::take(&mut columns[c.velocity + a]));
+        let mut divergence = std::mem::take(&mut columns[c.gradient]);
+        let mut tensor: Taken = match c.velocity_gradient {
+            Some(first) => {
+                (first..first + D * D).map(|k| std::mem::take(&mut columns[k])).collect()
+            }
+            None => Taken::new(),
+        };
+        let (own_x, own_v) = (&mut own::<D>(&mut x, n), &mut own::<D>(&mut v, n));
+        let own_divergence = &mut divergence[..n];
+        let mut own_gradient = own_tensor(&mut tensor, n);
+        for (r, row) in patch.stencils.rows::<K, D>(0..n).enumerate() {
+            let star = row.windows::<L, D>(star);
+            if MOVE {
+                for a in 0..D {
+                    let new = row.sum(row.values, |line| star[a][line]);
+                    let v = &mut own_v[a][r];
+                    *v = match self.scheme {
+                        Scheme::Blend(share) => {
+                            let old = row.dot(row.values, lumped[a]);
+                            share * *v + (1.0 - share) * old + (new - old)
+                        }
+                        Scheme::Series { .. } | Scheme::Affine => new,
+                    };
+                    own_x[a][r] += dt * new;
+                }
+            }
+            if STRAIN {
+                let plane = match &mut own_gradient {
+                    Some(gradient) => {
+                        let l = tensor_of(&row, |a, line| star[a][line]);
+                        put(gradient, 0, r, &l);
+                        trace(&l)
+                    }
+                    None => {
+                        let along = |a: usize| row.sum(row.gradient(a), |line| star[a][line]);
+                        (1..D).fold(along(0), |sum, a| sum + along(a))
+                    }
+                };
+                let radial = |line: usize| star[0][line];
+                own_divergence[r] = self.with_hoop(patch, &row, r, plane, radial);
+            }
+        }
+        let columns = &mut patch.block.columns;
+        for (a, (x, v)) in x.into_iter().zip(v).enumerate() {
+            columns[c.position + a] = x;
+            columns[c.velocity + a] = v;
+        }
+        columns[c.gradient] = divergence;
+        if let Some(first) = c.velocity_gradient {
+            put_back(columns, first, tensor);
+        }
+        if STRAIN {
+            self.gather_limiter::<K>(patch);
+        }
     }
 
     /// C = B D^-1 with B = sum N v' (x_i - x_p) and D = sum N (x_i - x_p) (x_i - x_p) (Jiang et
@@ -116,52 +218,16 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// Gradient of the velocity in the fields from `field` on at a row, as far as a scene needs it.
-    #[inline(always)]
-    fn tensor<const K: usize>(
-        &self,
-        patch: &Patch<D>,
-        row: &Row<'_, K, D>,
-        field: usize,
-    ) -> [[f64; D]; D] {
-        tensor_of(row, |a, line| *row.line(&patch.nodes.fields[field + a], line))
-    }
-
-    /// Divergence of the nodal velocity in the fields from `field` on at the own rows, its whole
-    /// gradient where domains deform, and the limiter from it.
-    pub(super) fn gather_gradient(&self, patch: &mut Patch<D>, field: usize) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, field: usize) {
-            let column = s.columns.gradient;
-            let mut gradient = std::mem::take(&mut patch.block.columns[column]);
-            for (r, d) in gradient.iter_mut().enumerate() {
-                let row = patch.stencils.row::<K, D>(r);
-                let radial = |line| *row.line(&patch.nodes.fields[field], line);
-                if let Some(whole) = s.columns.velocity_gradient {
-                    let l = s.tensor(patch, &row, field);
-                    *d = s.with_hoop(patch, &row, r, trace(&l), radial);
-                    put(&mut patch.block.columns, whole, r, &l);
-                } else {
-                    let along = |a: usize| row.dot(row.gradient(a), &patch.nodes.fields[field + a]);
-                    let sum = (1..D).fold(along(0), |sum, a| sum + along(a));
-                    *d = s.with_hoop(patch, &row, r, sum, radial);
-                }
-            }
-            patch.block.columns[column] = gradient;
-            s.gather_limiter::<K>(patch, field);
-        }
-        with_width!(patch.stencils.width, go(patch, self, field));
-    }
-
-    fn gather_limiter<const K: usize>(&self, patch: &mut Patch<D>, field: usize) {
+    fn gather_limiter<const K: usize>(&self, patch: &mut Patch<D>) {
         let (Some(limiter), Some(column)) =
             (self.viscosity.and_then(|v| v.limiter), self.columns.limiter)
         else {
             return;
         };
-        let fields = &patch.nodes.fields;
+        let (fields, star) = (&patch.nodes.fields, self.fields.velocity_star);
         let stride = patch.stencils.stride;
         let nodes = Nodes {
-            velocity: std::array::from_fn::<&[f64], D, _>(|a| &fields[field + a]),
+            velocity: std::array::from_fn::<&[f64], D, _>(|a| &fields[star + a]),
             inverse_mass: &fields[self.fields.inverse],
             steps: std::array::from_fn(|a| if a == 0 { 1 } else { stride }),
             inverse_cell: self.inverse_cell,
@@ -202,23 +268,33 @@ impl<const D: usize> Stepper<D> {
     pub(super) fn gather_midpoint(&self, patch: &mut Patch<D>, dt: f64) {
         self.gather_contact(patch, dt);
         fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, dt: f64) {
-            match s.tensor_stress() {
-                false => s.gather_rows::<K, false>(patch, dt),
-                true => s.gather_rows::<K, true>(patch, dt),
+            if const { D == 1 } {
+                s.gather_rows::<K, 1, false>(patch, dt);
+            } else {
+                match s.tensor_stress() {
+                    false => s.gather_rows::<K, K, false>(patch, dt),
+                    true => s.gather_rows::<K, K, true>(patch, dt),
+                }
             }
             if let Some(affine) = s.columns.affine {
                 spend(Effect::Affine, patch, |patch| s.gather_affine::<K>(patch, affine));
             }
-            s.gather_limiter::<K>(patch, s.fields.velocity_star);
+            s.gather_limiter::<K>(patch);
         }
         with_width!(patch.stencils.width, go(patch, self, dt));
     }
 
-    fn gather_rows<const K: usize, const TENSOR: bool>(&self, patch: &mut Patch<D>, dt: f64) {
+    fn gather_rows<const K: usize, const L: usize, const TENSOR: bool>(
+        &self,
+        patch: &mut Patch<D>,
+        dt: f64,
+    ) {
         let (c, f) = (&self.columns, &self.fields);
         let n = patch.block.own();
         let fields = &patch.nodes.fields;
-        let vector = |k: usize| std::array::from_fn::<&[f64], D, _>(|a| &fields[k + a]);
+        // of one length, so that a window is looked up once for all of them
+        let nodes = fields[f.mass].len();
+        let vector = |k: usize| std::array::from_fn::<&[f64], D, _>(|a| &fields[k + a][..nodes]);
         let (lumped, start, star) = (vector(f.lumped), vector(f.velocity), vector(f.velocity_star));
         let work = vector(f.work);
         let remainder = f.remainder.filter(|_| self.filter_heat).map(vector);
@@ -228,39 +304,49 @@ impl<const D: usize> Stepper<D> {
         let mut x: [Vec<f64>; D] = std::array::from_fn(|a| take(c.position + a));
         let mut v: [Vec<f64>; D] = std::array::from_fn(|a| take(c.velocity + a));
         let [mut j, mut e, mut d] = [c.jacobian, c.energy, c.gradient].map(&mut take);
-        let tensors = [c.deformation, c.velocity_gradient].into_iter().flatten();
-        let mut strain: SmallVec<[(usize, Taken); 2]> =
-            tensors.map(|first| (first, (first..first + D * D).map(&mut take).collect())).collect();
+        let mut tensor = |first: Option<usize>| -> Taken {
+            first.into_iter().flat_map(|first| first..first + D * D).map(&mut take).collect()
+        };
+        let (mut deformation, mut gradient) = (tensor(c.deformation), tensor(c.velocity_gradient));
+        let (own_x, own_v) = (&mut own::<D>(&mut x, n), &mut own::<D>(&mut v, n));
+        let [own_j, own_e, own_d] = [&mut j, &mut e, &mut d].map(|column| &mut column[..n]);
+        let mut own_deformation = own_tensor(&mut deformation, n);
+        let mut own_gradient = own_tensor(&mut gradient, n);
         let column = |k: usize| &patch.block.columns[k][..n];
         let mid = c.jacobian_mid.expect("mid-point stepping has the column");
         let (mass, j_mid, stress) = (column(c.mass), column(mid), column(c.stress_volume));
-        for r in 0..n {
-            let row = patch.stencils.row::<K, D>(r);
-            let mean = |a: usize, line: usize| -> [f64; K] {
-                let (v0, v1) = (row.line(start[a], line), row.line(star[a], line));
-                std::array::from_fn(|k| 0.5 * (v0[k] + v1[k]))
-            };
+        for (r, row) in patch.stencils.rows::<K, D>(0..n).enumerate() {
+            // looked up once, for they are summed many times
+            let (start, star) = (row.windows::<L, D>(start), row.windows::<L, D>(star));
+            let mut means = start;
+            for a in 0..D {
+                for line in 0..L {
+                    means[a][line] = half_sum(&start[a][line], &star[a][line]);
+                }
+            }
+            let mean = |a: usize, line: usize| means[a][line];
             let (mut heat, mut new) = (0.0, [0.0; D]);
             for a in 0..D {
-                let old = v[a][r];
-                new[a] = row.dot(row.values, star[a]);
+                let old = own_v[a][r];
+                new[a] = row.sum(row.values, |line| star[a][line]);
                 match self.scheme {
                     Scheme::Series { .. } => {
                         if let Some(lost) = remainder {
-                            let both = |l: usize| times(row.line(lost[a], l), &mean(a, l));
-                            let rest = old - row.dot(row.values, start[a]);
+                            let [lost] = row.windows::<L, 1>([lost[a]]);
+                            let both = |l: usize| times(&lost[l], &mean(a, l));
+                            let rest = old - row.sum(row.values, |l| start[a][l]);
                             heat += 0.5 * rest * rest
                                 + (row.sum(row.values, both)
-                                    - row.dot(row.values, lost[a])
+                                    - row.sum(row.values, |l| lost[l])
                                         * row.sum(row.values, |l| mean(a, l)));
                         }
                     }
                     Scheme::Blend(share) => {
-                        let on_grid = row.dot(row.values, lumped[a]);
+                        let [lumped] = row.windows::<L, 1>([lumped[a]]);
+                        let on_grid = row.sum(row.values, |l| lumped[l]);
                         let change = new[a] - on_grid;
                         if self.filter_heat {
-                            let square =
-                                |l: usize| times(row.line(lumped[a], l), row.line(lumped[a], l));
+                            let square = |l: usize| times(&lumped[l], &lumped[l]);
                             let rest = old - on_grid;
                             heat += 0.5 * (1.0 - share * share) * rest * rest
                                 + (1.0 - share) * (row.sum(row.values, square) - on_grid * on_grid);
@@ -271,50 +357,51 @@ impl<const D: usize> Stepper<D> {
                 }
             }
             // where domains deform the whole gradients are needed, else their traces
-            let (plane, end) = match &mut strain[..] {
-                [(_, deformation), (_, gradient)] => {
+            let plane = match (&mut own_deformation, &own_gradient) {
+                (Some(deformation), Some(gradient)) => {
                     let during = tensor_of(&row, mean);
-                    let end = tensor_of(&row, |a, l| *row.line(star[a], l));
                     if self.total {
                         deform_linearly(deformation, gradient, r, &during, dt);
                     } else {
                         deform(deformation, r, &during, dt);
                     }
-                    put(gradient, 0, r, &end);
-                    (trace(&during), trace(&end))
+                    trace(&during)
                 }
-                _ => (
-                    (0..D).map(|a| row.sum(row.gradient(a), |l| mean(a, l))).sum(),
-                    (0..D).map(|a| row.dot(row.gradient(a), star[a])).sum(),
-                ),
+                _ => (0..D).map(|a| row.sum(row.gradient(a), |l| mean(a, l))).sum(),
+            };
+            let end = match &mut own_gradient {
+                Some(gradient) => {
+                    let end = tensor_of(&row, |a, l| star[a][l]);
+                    put(gradient, 0, r, &end);
+                    trace(&end)
+                }
+                None => (0..D).map(|a| row.sum(row.gradient(a), |l| star[a][l])).sum(),
             };
             let divergence = self.with_hoop(patch, &row, r, plane, |l| mean(0, l));
+            // the velocity that does the work
+            let does = if self.compatible { row.windows::<L, D>(work) } else { means };
             let work_done = if TENSOR {
-                let of = |a: usize, line: usize| match self.compatible {
-                    true => *row.line(work[a], line),
-                    false => mean(a, line),
-                };
-                dt * self.stress_power(patch, &row, r, of)
+                dt * self.stress_power(patch, &row, r, |a, line| does[a][line])
             } else {
                 let working = if self.compatible {
-                    let plane = (0..D).map(|a| row.dot(row.gradient(a), work[a])).sum();
-                    self.with_hoop(patch, &row, r, plane, |l| *row.line(work[0], l))
+                    let along = |a: usize| row.sum(row.gradient(a), |line| does[a][line]);
+                    self.with_hoop(patch, &row, r, (0..D).map(along).sum(), |line| does[0][line])
                 } else {
                     divergence
                 };
                 stress[r] * dt * working
             };
             for a in 0..D {
-                x[a][r] += match self.scheme {
+                own_x[a][r] += match self.scheme {
                     // with the grid: the particles' own velocities would tear their tiling
                     Scheme::Blend(_) => dt * row.sum(row.values, |l| mean(a, l)),
-                    _ => 0.5 * dt * (v[a][r] + new[a]),
+                    _ => 0.5 * dt * (own_v[a][r] + new[a]),
                 };
-                v[a][r] = new[a];
+                own_v[a][r] = new[a];
             }
-            j[r] += dt * j_mid[r] * divergence;
-            e[r] += heat - work_done / mass[r];
-            d[r] = self.with_hoop(patch, &row, r, end, |l| *row.line(star[0], l));
+            own_j[r] += dt * j_mid[r] * divergence;
+            own_e[r] += heat - work_done / mass[r];
+            own_d[r] = self.with_hoop(patch, &row, r, end, |l| star[0][l]);
         }
         let columns = &mut patch.block.columns;
         for (a, (x, v)) in x.into_iter().zip(v).enumerate() {
@@ -324,9 +411,9 @@ impl<const D: usize> Stepper<D> {
         columns[c.jacobian] = j;
         columns[c.energy] = e;
         columns[c.gradient] = d;
-        for (first, tensor) in strain {
-            for (k, column) in tensor.into_iter().enumerate() {
-                columns[first + k] = column;
+        for (first, taken) in [(c.deformation, deformation), (c.velocity_gradient, gradient)] {
+            if let Some(first) = first {
+                put_back(columns, first, taken);
             }
         }
     }
@@ -351,7 +438,7 @@ pub(super) fn tensor_of<const K: usize, const D: usize>(
 /// The deformation gradient F in `columns` of a row after `dt` at the gradient `l` of the velocity, by
 /// Cayley's form (1 - dt/2 l)^-1 (1 + dt/2 l) F, which turns without stretching.
 #[inline(always)]
-fn deform<const D: usize>(columns: &mut [Vec<f64>], row: usize, l: &[[f64; D]; D], dt: f64) {
+fn deform<const D: usize>(columns: &mut [&mut [f64]; 4], row: usize, l: &[[f64; D]; D], dt: f64) {
     let half = 0.5 * dt;
     let [xx, xy, yx, yy] = [l[0][0], l[0][D - 1], l[D - 1][0], l[D - 1][D - 1]].map(|l| half * l);
     let inverse = 1.0 / ((1.0 - xx) * (1.0 - yy) - xy * yx);
@@ -368,8 +455,8 @@ fn deform<const D: usize>(columns: &mut [Vec<f64>], row: usize, l: &[[f64; D]; D
 /// of the displacements on the grid.
 #[inline(always)]
 fn deform_linearly<const D: usize>(
-    columns: &mut [Vec<f64>],
-    before: &[Vec<f64>],
+    columns: &mut [&mut [f64]; 4],
+    before: &[&mut [f64]; 4],
     row: usize,
     l: &[[f64; D]; D],
     dt: f64,
@@ -393,7 +480,7 @@ pub(super) fn trace<const D: usize>(tensor: &[[f64; D]; D]) -> f64 {
 /// Writes a tensor into its columns from `first` on.
 #[inline(always)]
 pub(super) fn put<const D: usize>(
-    columns: &mut [Vec<f64>],
+    columns: &mut [impl DerefMut<Target = [f64]>],
     first: usize,
     row: usize,
     tensor: &[[f64; D]; D],

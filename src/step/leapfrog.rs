@@ -7,7 +7,6 @@ use decomp::RowError;
 use super::{Stepper, World};
 use crate::clock::spend;
 use crate::effects::Effect;
-use crate::patch::Patch;
 use crate::scene::StressUpdate;
 
 impl<const D: usize> Stepper<D> {
@@ -21,7 +20,6 @@ impl<const D: usize> Stepper<D> {
         time: f64,
         dt: f64,
     ) -> Result<(), RowError> {
-        let star = self.fields.velocity_star;
         world.each("start", |patch| {
             patch.block.drop_ghosts();
             self.current_stress(patch);
@@ -41,7 +39,7 @@ impl<const D: usize> Stepper<D> {
                 // no force yet: the acceleration's sums are zero
                 self.solve_velocity(nodal, 0.0, false);
                 nodal.each("update stress", |patch| {
-                    self.gather_gradient(patch, star);
+                    self.gather_gradient(patch);
                     self.update_stress(patch, dt);
                     self.current_stress(patch);
                 });
@@ -58,13 +56,11 @@ impl<const D: usize> Stepper<D> {
             self.solve_friction_heat(nodal, dt);
             nodal.each("gather", |patch| {
                 self.gather_contact(patch, dt);
-                self.gather_velocity(patch);
-                self.move_rows(patch, dt);
+                self.gather_leapfrog(patch, dt, last);
                 self.book_body_force(patch, dt);
                 self.book_inertia(patch, time, dt);
                 self.book_sides(patch, dt);
                 if last {
-                    self.gather_gradient(patch, star);
                     self.update_stress(patch, dt);
                 }
             });
@@ -79,7 +75,7 @@ impl<const D: usize> Stepper<D> {
                 // no force yet: the acceleration's sums are zero
                 self.solve_velocity(nodal, 0.0, false);
                 nodal.each("update stress", |patch| {
-                    self.gather_gradient(patch, star);
+                    self.gather_gradient(patch);
                     self.update_stress(patch, dt);
                 });
             })?;
@@ -95,22 +91,5 @@ impl<const D: usize> Stepper<D> {
             }
         });
         Ok(())
-    }
-
-    /// x += dt N v'.
-    fn move_rows(&self, patch: &mut Patch<D>, dt: f64) {
-        use super::{MOST_NODES, with_width};
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, dt: f64) {
-            let n = patch.block.own();
-            for a in 0..D {
-                let star = &patch.nodes.fields[s.fields.velocity_star + a][..];
-                let x = &mut patch.block.columns[s.columns.position + a][..n];
-                for (r, x) in x.iter_mut().enumerate() {
-                    let row = patch.stencils.row::<K, D>(r);
-                    *x += dt * row.dot(row.values, star);
-                }
-            }
-        }
-        with_width!(patch.stencils.width, go(patch, self, dt));
     }
 }

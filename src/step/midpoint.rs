@@ -134,7 +134,7 @@ impl<const D: usize> Stepper<D> {
             nodal.each("scatter", |patch| self.scatter(patch, false, 0.0, 0.0));
             self.solve_velocity(nodal, 0.0, false);
             nodal.each("gather", |patch| {
-                self.gather_gradient(patch, self.fields.velocity_star);
+                self.gather_gradient(patch);
             });
         })
     }

@@ -43,7 +43,7 @@ use crate::scene::{
 };
 use crate::shape::{self, Extent, Shape};
 use crate::strength::Condition;
-use crate::transfer::Scheme;
+use crate::transfer::{MOST_NODES, Scheme};
 use crate::viscosity::Viscosity;
 
 /// What a scene chose, made ready for stepping.
@@ -168,9 +168,6 @@ macro_rules! with_width {
     };
 }
 use with_width;
-
-/// Most nodes along one direction that a particle may touch, on a line.
-const MOST_NODES: usize = 18;
 
 /// Most nodes along one direction that a particle may touch, in a plane.
 const MOST_NODES_IN_PLANE: usize = 10;

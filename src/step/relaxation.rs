@@ -68,8 +68,7 @@ impl<const D: usize> Stepper<D> {
         inverse.fill(0.0);
         term.fill(0.0);
         for run in &patch.runs {
-            for r in run.clone() {
-                let row = patch.stencils.row::<K, D>(r);
+            for (r, row) in run.clone().zip(patch.stencils.rows::<K, D>(run.clone())) {
                 let wp = w[r] * p[r];
                 row.add(weight, row.values, |n| n * w[r]);
                 row.add(term, row.values, |n| n * wp);
@@ -97,8 +96,7 @@ impl<const D: usize> Stepper<D> {
             let n = patch.block.own();
             let [j, e, mass, volume0, p, w] =
                 patch.block.columns_mut([c.jacobian, c.energy, c.mass, c.volume0, p, w]);
-            for r in 0..n {
-                let row = patch.stencils.row::<K, D>(r);
+            for (r, row) in patch.stencils.rows::<K, D>(0..n).enumerate() {
                 let mean = row.dot(row.values, projected);
                 let product = row.sum(row.values, |line| {
                     let (u, nodal) = (row.line(last, line), row.line(projected, line));

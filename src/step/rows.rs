@@ -11,12 +11,39 @@ use crate::constitutive::{Matter, MidStep, VolumeChange};
 use crate::effects::Effect;
 use crate::patch::{Departed, Fault, Patch, Phase};
 use crate::scene::Side;
-use crate::shape::floor;
+use crate::shape::{floor, integer};
 use crate::viscosity::Flow;
 
 /// Stiffness that pressure relaxation takes a gas to have at least, over the pressure that counts
 /// as none: 2^-30 of the scene's. What rounding leaves of pressure then moves no volume.
 const COLD: f64 = (1u64 << 20) as f64;
+
+/// Rows whose cells along a direction are kept at a time.
+const BLOCK: usize = 128;
+
+/// Cells of rows at x + `drift` v along a direction of the grid, which has a lower end, an inverse
+/// edge and a count of cells, and the rows' places in them; whether any lies outside the grid.
+// inlined it is no longer computed for some rows at a time
+#[inline(never)]
+fn find_cells(
+    [x, v]: [&[f64]; 2],
+    drift: f64,
+    (lower, inverse, count): (f64, f64, f64),
+    fraction: &mut [f64],
+    cells: &mut [i32; BLOCK],
+) -> bool {
+    let n = fraction.len();
+    let (x, v, cells) = (&x[..n], &v[..n], &mut cells[..n]);
+    let mut outside = false;
+    for r in 0..n {
+        let place = (x[r] + drift * v[r] - lower) * inverse;
+        let cell = floor(place);
+        fraction[r] = place - cell;
+        outside |= !(cell >= 0.0 && cell < count);
+        cells[r] = integer(cell);
+    }
+    outside
+}
 
 /// Ranges of rows of one body.
 pub(super) fn bodies(column: &[f64]) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
@@ -43,21 +70,23 @@ impl<const D: usize> Stepper<D> {
             None => (c.position, ahead),
         };
         for a in 0..D {
-            let cells = &mut patch.block.cells;
-            let [x, v, fraction] = patch
-                .block
-                .columns
-                .get_disjoint_mut([position + a, c.velocity + a, c.fraction + a])
-                .expect("columns differ");
-            fraction.resize(n, 0.0);
-            let (lower, inverse, count) =
-                (self.lower[a], self.inverse_cell[a], self.cells[a] as f64);
-            for r in 0..n {
-                let place = (x[r] + drift * v[r] - lower) * inverse;
-                let cell = floor(place);
-                fraction[r] = place - cell;
-                outside |= !(cell >= 0.0 && cell < count);
-                cells[r][a] = cell as i32;
+            patch.block.columns[c.fraction + a].resize(n, 0.0);
+        }
+        for start in (0..n).step_by(BLOCK) {
+            let rows = start..n.min(start + BLOCK);
+            let mut cells = [[0; BLOCK]; D];
+            for (a, cells) in cells.iter_mut().enumerate() {
+                let [x, v, fraction] = patch
+                    .block
+                    .columns
+                    .get_disjoint_mut([position + a, c.velocity + a, c.fraction + a])
+                    .expect("columns differ");
+                let grid = (self.lower[a], self.inverse_cell[a], self.cells[a] as f64);
+                let from = [&x[rows.clone()], &v[rows.clone()]];
+                outside |= find_cells(from, drift, grid, &mut fraction[rows.clone()], cells);
+            }
+            for (r, cell) in patch.block.cells[rows].iter_mut().enumerate() {
+                *cell = std::array::from_fn(|a| cells[a][r]);
             }
         }
         if self.total {

@@ -84,10 +84,16 @@ impl<const D: usize> Stepper<D> {
         }
         // fields leave the list while the others are read and written
         let mut take = |k: usize| std::mem::take(&mut patch.nodes.fields[k]);
-        let mut volume = self.edge_mask.map(|_| take(f.volume));
-        let mut nodal_mass = take(f.mass);
-        let mut momentum: [Vec<f64>; D] = std::array::from_fn(|a| take(f.lumped + a));
-        let mut nodal_force: [Vec<f64>; D] = std::array::from_fn(|a| take(f.acceleration + a));
+        let mut masses = take(f.mass);
+        let mut momenta: [Vec<f64>; D] = std::array::from_fn(|a| take(f.lumped + a));
+        let mut forces: [Vec<f64>; D] = std::array::from_fn(|a| take(f.acceleration + a));
+        let mut volumes = self.edge_mask.map(|_| take(f.volume));
+        // of one length, so that a window is looked up once for all of them
+        let nodes = masses.len();
+        let nodal_mass = &mut masses[..];
+        let momentum = &mut momenta.each_mut().map(|field| &mut field[..nodes]);
+        let nodal_force = &mut forces.each_mut().map(|field| &mut field[..nodes]);
+        let mut volume = volumes.as_mut().map(|field| &mut field[..nodes]);
         if let Some(volume) = &mut volume {
             volume.fill(0.0);
         }
@@ -99,15 +105,14 @@ impl<const D: usize> Stepper<D> {
         let filled = c.filled.map_or(&[][..], column);
         let affine = c.affine.filter(|_| AFFINE);
         for run in &patch.runs {
-            for r in run.clone() {
-                let row = patch.stencils.row::<K, D>(r);
+            for (r, row) in run.clone().zip(patch.stencils.rows::<K, D>(run.clone())) {
                 let m = mass[r];
-                row.add(&mut nodal_mass, row.values, |n| n * m);
+                row.add(nodal_mass, row.values, |n| n * m);
                 match affine {
                     None => {
                         for a in 0..D {
                             let mv = m * velocity[a][r];
-                            row.add(&mut momentum[a], row.values, |n| n * mv);
+                            row.add(momentum[a], row.values, |n| n * mv);
                         }
                     }
                     Some(affine) => {
@@ -144,12 +149,12 @@ impl<const D: usize> Stepper<D> {
                 if force {
                     let s = stress[r];
                     for a in 0..D {
-                        row.add(&mut nodal_force[a], row.gradient(a), |g| g * s);
+                        row.add(nodal_force[a], row.gradient(a), |g| g * s);
                     }
                     // what moves a node outward strains the material about the axis
                     if D > 1 && self.axisymmetric {
                         let hoop = s / self.radius(patch, r);
-                        row.add(&mut nodal_force[0], row.values, |n| n * hoop);
+                        row.add(nodal_force[0], row.values, |n| n * hoop);
                     }
                 }
             }
@@ -158,12 +163,12 @@ impl<const D: usize> Stepper<D> {
             patch.band.finish();
         }
         let fields = &mut patch.nodes.fields;
-        fields[f.mass] = nodal_mass;
-        for (a, (momentum, force)) in momentum.into_iter().zip(nodal_force).enumerate() {
+        fields[f.mass] = masses;
+        for (a, (momentum, force)) in momenta.into_iter().zip(forces).enumerate() {
             fields[f.lumped + a] = momentum;
             fields[f.acceleration + a] = force;
         }
-        if let Some(volume) = volume {
+        if let Some(volume) = volumes {
             fields[f.volume] = volume;
         }
     }

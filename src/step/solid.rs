@@ -43,7 +43,7 @@ fn take(columns: &mut [Vec<f64>], first: usize, count: usize, rows: usize) -> Ta
 }
 
 /// Puts columns back.
-fn put_back(columns: &mut [Vec<f64>], first: usize, taken: Taken) {
+pub(super) fn put_back(columns: &mut [Vec<f64>], first: usize, taken: Taken) {
     for (k, column) in taken.into_iter().enumerate() {
         columns[first + k] = column;
     }

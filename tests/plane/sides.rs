@@ -90,6 +90,37 @@ fn waves_do_not_come_back_from_a_transmitting_side() {
     assert!(pulse("outflow") > 0.9 && shock("outflow", false) > 0.9);
 }
 
+/// What leaves a line leaves a column in the plane, whatever the shape function looks at.
+#[test]
+fn waves_leave_a_column_as_they_leave_a_line() {
+    const HEIGHT: f64 = 2e-5;
+    for shape in ["gimp", "cpdi", "bspline_quadratic", "bspline_cubic", "cpdi_bspline_quadratic"] {
+        let mut line = plates("copper", 2e-4, 1000.0, Some("transmitting"));
+        line["method"]["shape"] = json!(shape);
+        line["time"]["end"] = json!(6e-8);
+        let mut column = line.clone();
+        let widen = |vector: &mut Value, y: f64| vector.as_array_mut().unwrap().push(json!(y));
+        widen(&mut column["domain"]["lower"], 0.0);
+        widen(&mut column["domain"]["upper"], HEIGHT);
+        for body in column["bodies"].as_array_mut().unwrap() {
+            widen(&mut body["box"]["lower"], 0.0);
+            widen(&mut body["box"]["upper"], HEIGHT);
+            widen(&mut body["velocity"], 0.0);
+            body["particles_per_cell"] = json!([2, 2]);
+        }
+        column["boundary"]["y_lower"] = json!("symmetry");
+        column["boundary"]["y_upper"] = json!("symmetry");
+        let (line, column) = (run::<1>(&line), run::<2>(&column));
+        let place = line.column("x").iter().zip(line.column("pressure"));
+        let place: Vec<(f64, f64)> = place.map(|(x, p)| (*x, *p)).collect();
+        for (x, p) in column.column("x").iter().zip(column.column("pressure")) {
+            let at = place.partition_point(|o| o.0 < x - 1e-9);
+            at_most(&format!("{shape} at {x}"), (place[at].0 - x) / 1e-5, 1e-9);
+            at_most(&format!("{shape} at {x}"), (place[at].1 - p) / 12.144e9, 1e-9);
+        }
+    }
+}
+
 /// A shear wave in a solid leaves as well as one of compression.
 #[test]
 fn shear_waves_leave_too() {

@@ -2,10 +2,10 @@
 //!
 //! The numbers are data: `cargo run --release --example courant_limits` measures them anew and
 //! prints this table. It runs the standard problem cut short, at Courant numbers from 0.1 to 1 in
-//! steps of 0.1, with the options of `inputs/flyer.json` (mid-point) and
-//! `inputs/flyer_defaults.json` (leapfrog) that the transfer allows. A number is stable where the
-//! run ends under the watch, its pressures stay below twice that of the impact, and so at every
-//! smaller number.
+//! steps of 0.1, with the options of `inputs/flyer.json` (mid-point; with its viscosity and with one
+//! that does not grow) and `inputs/flyer_defaults.json` (leapfrog) that the transfer allows. A number is
+//! stable where the run ends under the watch, its pressures stay below twice that of the impact, and
+//! so at every smaller number.
 
 use super::super::errors::Fault;
 use super::super::model::{AboveLimit, ShapeKind, Stepping, Transfer};
@@ -23,7 +23,7 @@ const LIMITS: [Row; 6] = [
     (
         ShapeKind::Linear,
         [1.0, 1.0, 0.3, 1.0, 1.0, 0.8, 0.4, 0.3, 0.2],
-        [0.8, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0],
+        [0.8, 1.0, 1.0, 1.0, 0.9, 0.9, 0.7, 0.7, 0.7],
     ),
     (
         ShapeKind::Gimp,
@@ -53,7 +53,7 @@ const LIMITS: [Row; 6] = [
 ];
 
 /// Limit of FMPM beyond order 2 with a transmitting side, whose impedance acts on single nodes [-].
-const TRANSMITTING: f64 = 0.6;
+const TRANSMITTING: f64 = 0.8;
 
 /// Schemes that were seen to fail at less than this fail at any number, only later: what they lack
 /// is no shorter step [-].
