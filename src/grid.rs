@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use crate::transfer::{Row, add_product, lines};
+use crate::transfer::{NARROW, Row, add_product, lines};
 
 /// Where each nodal field stands in a patch's arrays. A vector takes D fields that follow each
 /// other; its number is that of the first.
@@ -165,22 +165,38 @@ impl Band {
     /// Adds one particle of mass `mass`.
     #[inline(always)]
     pub fn add<const K: usize, const D: usize>(&mut self, row: &Row<'_, K, D>, mass: f64) {
+        if row.is_narrow() {
+            self.add_part::<K, D, NARROW>(row, mass);
+        } else {
+            self.add_part::<K, D, K>(row, mass);
+        }
+    }
+
+    /// Adds the products of the first `M` nodes along each direction.
+    #[inline(always)]
+    fn add_part<const K: usize, const D: usize, const M: usize>(
+        &mut self,
+        row: &Row<'_, K, D>,
+        mass: f64,
+    ) {
         let count = const { diagonals(K, D) };
-        for line in 0..const { lines(K, D) } {
+        let first_nodes =
+            |values: &[f64; K]| -> [f64; M] { *values.first_chunk().expect("as many nodes") };
+        for line in 0..const { lines(M, D) } {
             let from = row.first + line * row.stride;
             // of a length known at compile time, so that no place in it is checked
             let rows = &mut self.rows[from * count..][..const { K * diagonals(K, D) }];
-            let (here, later) = row.values[..const { lines(K, D) }][line..]
+            let (here, later) = row.values[..const { lines(M, D) }][line..]
                 .split_first()
                 .expect("the lines from this one on");
-            for i in 0..K {
+            for i in 0..M {
                 let term = mass * here[i];
-                for k in i..K {
+                for k in i..M {
                     rows[i * count + k - i] += term * here[k];
                 }
                 let across = rows[i * count + K..(i + 1) * count].chunks_exact_mut(2 * K - 1);
                 for (sums, values) in across.zip(later) {
-                    add_product(sums, K - 1 - i, term, values);
+                    add_product(sums, K - 1 - i, term, &first_nodes(values));
                 }
             }
         }
@@ -308,7 +324,7 @@ mod tests {
         let mut full = vec![vec![0.0; nodes]; nodes];
         for (first, mass, values) in particles {
             let row: Row<'_, K, D> =
-                Row { first: *first, stride: extent[0], values, gradients: &[] };
+                Row { first: *first, stride: extent[0], narrow: false, values, gradients: &[] };
             band.add(&row, *mass);
             let place = |l: usize, k: usize| first + l * extent[0] + k;
             for (l, k) in (0..values.len()).flat_map(|l| (0..K).map(move |k| (l, k))) {

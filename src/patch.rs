@@ -9,7 +9,7 @@ use crate::contact::ContactNodes;
 use crate::grid::Band;
 use crate::shape::{Domain, Shape, Weights};
 use crate::stencils::Stencils;
-use crate::transfer::lines;
+use crate::transfer::{NARROW, lines};
 
 /// What a patch tells of its step.
 #[derive(Clone, Debug, Default)]
@@ -262,10 +262,12 @@ impl<const D: usize> Patch<D> {
         stencils.first.resize(rows, 0);
         stencils.values.resize(rows * nodes, 0.0);
         stencils.gradients.resize(rows * nodes * D, 0.0);
+        stencils.narrow.resize(if K > NARROW { rows } else { 0 }, false);
         let lower = self.nodes.nodes.lower.map(|l| l as i32);
         let column = |k: usize| &self.block.columns[k][..rows];
         let cells = &self.block.cells[..rows];
         let (mut least, mut most) = ([i32::MAX; D], [i32::MIN; D]);
+        let narrow = &mut stencils.narrow;
         let out = stencils
             .first
             .iter_mut()
@@ -278,6 +280,9 @@ impl<const D: usize> Patch<D> {
                 let at = cells[row][0] + w.first - lower[0];
                 (least[0], most[0]) = (least[0].min(at), most[0].max(at));
                 *first = at as u32;
+                if K > NARROW {
+                    narrow[row] = S::nodes(lengths[row]) <= NARROW;
+                }
                 values.copy_from_slice(&w.values);
                 for (out, g) in gradients.iter_mut().zip(w.gradients) {
                     *out = g * inverse_cell[0];
@@ -303,6 +308,10 @@ impl<const D: usize> Patch<D> {
                     (least[a], most[a]) = (least[a].min(at[a]), most[a].max(at[a]));
                 }
                 *first = (at[0] + stride * at[D - 1]) as u32;
+                if K > NARROW {
+                    let [width, height] = domain.extent();
+                    narrow[row] = S::nodes(width.max(height)) <= NARROW;
+                }
                 gx.iter_mut().for_each(|g| *g *= inverse_cell[0]);
                 gy.iter_mut().for_each(|g| *g *= inverse_cell[D - 1]);
             }

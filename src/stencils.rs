@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use decomp::Block;
 
-use crate::transfer::{Row, lines};
+use crate::transfer::{NARROW, Row, lines};
 
 /// The weights of every row of a patch, ghosts too, on windows of `width` nodes along each
 /// direction.
@@ -18,6 +18,8 @@ pub struct Stencils {
     pub stride: usize,
     /// First node of each row, in the patch's arrays.
     pub first: Vec<u32>,
+    /// Whether a row's weights beyond the first [`NARROW`] nodes are zero, where windows are wider.
+    pub narrow: Vec<bool>,
     /// Values, `width`^D a row.
     pub values: Vec<f64>,
     /// Gradients [1/m], `width`^D a row for each direction.
@@ -45,6 +47,7 @@ impl Stencils {
         Row {
             first: self.first[row] as usize,
             stride: self.stride,
+            narrow: K > NARROW && self.narrow[row],
             values: self.values[row * nodes..(row + 1) * nodes].as_chunks().0,
             gradients: self.gradients[row * nodes * D..(row + 1) * nodes * D].as_chunks().0,
         }
@@ -61,9 +64,13 @@ impl Stencils {
         let values = self.values[rows.start * nodes..rows.end * nodes].chunks_exact(nodes);
         let gradients =
             self.gradients[rows.start * nodes * D..rows.end * nodes * D].chunks_exact(nodes * D);
-        first.zip(values).zip(gradients).map(|((&first, values), gradients)| Row {
+        // none where windows are not wider
+        let narrow = self.narrow.get(rows).unwrap_or_default();
+        let weights = first.zip(values).zip(gradients).enumerate();
+        weights.map(move |(at, ((&first, values), gradients))| Row {
             first: first as usize,
             stride: self.stride,
+            narrow: K > NARROW && narrow[at],
             values: values.as_chunks().0,
             gradients: gradients.as_chunks().0,
         })

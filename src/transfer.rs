@@ -15,6 +15,10 @@ pub const fn lines(width: usize, dimension: usize) -> usize {
 /// Most nodes along one direction that a particle may touch.
 pub const MOST_NODES: usize = 18;
 
+/// Nodes along a direction from which on a window is wide: in a patch with a long particle most of
+/// the others fill only as many nodes of theirs.
+pub const NARROW: usize = 4;
+
 /// The weights of one particle on its window of nodes.
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'a, const K: usize, const D: usize> {
@@ -22,6 +26,8 @@ pub struct Row<'a, const K: usize, const D: usize> {
     pub first: usize,
     /// From a line of the window to the next, in the patch's arrays.
     pub stride: usize,
+    /// Whether weights beyond the first [`NARROW`] nodes along each direction are zero.
+    pub narrow: bool,
     /// Values, a line after the other.
     pub values: &'a [[f64; K]],
     /// Gradients [1/m]: those along x, then those along y.
@@ -44,6 +50,18 @@ impl<'a, const K: usize, const D: usize> Row<'a, K, D> {
         window(field, self.first + line * self.stride)
     }
 
+    /// Whether only the first [`NARROW`] nodes of more along each direction count.
+    #[inline(always)]
+    pub fn is_narrow(&self) -> bool {
+        K > NARROW && self.narrow
+    }
+
+    /// Lines of the window that count.
+    #[inline(always)]
+    fn lines(&self) -> usize {
+        if self.is_narrow() { const { lines(NARROW, D) } } else { Self::LINES }
+    }
+
     /// All `L` lines of the window in each of `N` fields, where several sums want them.
     #[inline(always)]
     pub fn windows<const L: usize, const N: usize>(
@@ -54,7 +72,7 @@ impl<'a, const K: usize, const D: usize> Row<'a, K, D> {
         // plain loops: closures over arrays stay calls
         let mut windows = [[[0.0; K]; L]; N];
         for (window, field) in windows.iter_mut().zip(fields) {
-            for (line, nodes) in window.iter_mut().enumerate() {
+            for (line, nodes) in window.iter_mut().enumerate().take(self.lines()) {
                 *nodes = *self.line(field, line);
             }
         }
@@ -64,8 +82,12 @@ impl<'a, const K: usize, const D: usize> Row<'a, K, D> {
     /// Adds `term` of each line of weights to the nodes of `field`.
     #[inline(always)]
     pub fn add(&self, field: &mut [f64], weights: &[[f64; K]], term: impl Fn(f64) -> f64) {
-        for line in 0..Self::LINES {
-            add(field, self.first + line * self.stride, weights[line].map(&term));
+        for line in 0..self.lines() {
+            let (at, weights) = (self.first + line * self.stride, &weights[line]);
+            match weights.first_chunk::<NARROW>() {
+                Some(weights) if self.is_narrow() => add(field, at, weights.map(&term)),
+                _ => add(field, at, weights.map(&term)),
+            }
         }
     }
 
@@ -79,19 +101,29 @@ impl<'a, const K: usize, const D: usize> Row<'a, K, D> {
     /// in them, then over the places from +0 on, so that weights of zero at the end change no bit.
     #[inline(always)]
     pub fn sum(&self, weights: &[[f64; K]], of: impl Fn(usize) -> [f64; K]) -> f64 {
-        let mut sums = [f64x4::ZERO; MOST_NODES.div_ceil(4)];
-        for line in 0..Self::LINES {
-            let values = of(line);
-            for (four, sums) in sums[..K.div_ceil(4)].iter_mut().enumerate() {
-                *sums += fours(&weights[line], four) * fours(&values, four);
-            }
+        if self.is_narrow() {
+            sum(&weights[..const { lines(NARROW, D) }], NARROW, of)
+        } else {
+            sum(&weights[..Self::LINES], K, of)
         }
-        let mut total = 0.0;
-        for k in 0..K {
-            total += sums[k / 4].as_array()[k % 4];
-        }
-        total
     }
+}
+
+/// [`Row::sum`] over the first `nodes` places of lines.
+#[inline(always)]
+fn sum<const K: usize>(weights: &[[f64; K]], nodes: usize, of: impl Fn(usize) -> [f64; K]) -> f64 {
+    let mut sums = [f64x4::ZERO; MOST_NODES.div_ceil(4)];
+    for (line, weights) in weights.iter().enumerate() {
+        let values = of(line);
+        for (four, sums) in sums[..nodes.div_ceil(4)].iter_mut().enumerate() {
+            *sums += fours(weights, four) * fours(&values, four);
+        }
+    }
+    let mut total = 0.0;
+    for k in 0..nodes {
+        total += sums[k / 4].as_array()[k % 4];
+    }
+    total
 }
 
 /// Four places of a line from place 4 `four` on, zeros beyond its end. Compilers take sums over
@@ -177,14 +209,20 @@ mod tests {
         std::array::from_fn(|k| ((seed * 31 + k * 17) % 97) as f64 / 7.0 - 6.0)
     }
 
-    /// Sums by fours are those of one number after the other, bit by bit.
-    fn check<const K: usize, const D: usize>() {
+    /// Sums by fours, of narrow rows too, are those of one number after the other, bit by bit.
+    fn check<const K: usize, const D: usize>(narrow: bool) {
         let count = lines(K, D);
-        let weights: Vec<[f64; K]> = (0..3 * count).map(line).collect();
+        let mut weights: Vec<[f64; K]> = (0..3 * count).map(line).collect();
+        if narrow {
+            for (at, weights) in weights.iter_mut().enumerate() {
+                let from = if at % count < lines(NARROW, D) { NARROW } else { 0 };
+                weights[from..].fill(0.0);
+            }
+        }
         let (values, gradients) = weights.split_at(count);
         let stride = K + 3;
         let field: Vec<f64> = (0..5 + count * stride).map(|i| line::<1>(i * i)[0]).collect();
-        let row: Row<'_, K, D> = Row { first: 5, stride, values, gradients };
+        let row: Row<'_, K, D> = Row { first: 5, stride, narrow, values, gradients };
         let mut sums = [0.0; K];
         for (l, weights) in values.iter().enumerate() {
             for k in 0..K {
@@ -193,6 +231,14 @@ mod tests {
         }
         let sum = sums.iter().fold(0.0, |sum, s| sum + s);
         assert_eq!(row.dot(values, &field), sum, "{K} nodes");
+        let (mut fast, mut plain) = (field.clone(), field.clone());
+        row.add(&mut fast, values, |n| 0.7 * n);
+        for (l, weights) in values.iter().enumerate() {
+            for k in 0..K {
+                plain[5 + l * stride + k] += 0.7 * weights[k];
+            }
+        }
+        assert_eq!(fast, plain, "{K} nodes");
         let (mut fast, mut plain) = (field.clone(), field.clone());
         add_product(&mut fast, 2, 1.3, &values[0]);
         for k in 0..K {
@@ -203,16 +249,21 @@ mod tests {
 
     #[test]
     fn sums_by_fours_are_those_one_by_one() {
-        check::<2, 1>();
-        check::<3, 1>();
-        check::<4, 1>();
-        check::<6, 1>();
-        check::<10, 1>();
-        check::<18, 1>();
-        check::<2, 2>();
-        check::<3, 2>();
-        check::<4, 2>();
-        check::<6, 2>();
-        check::<10, 2>();
+        check::<2, 1>(false);
+        check::<3, 1>(false);
+        check::<4, 1>(false);
+        check::<6, 1>(false);
+        check::<6, 1>(true);
+        check::<10, 1>(false);
+        check::<10, 1>(true);
+        check::<18, 1>(false);
+        check::<18, 1>(true);
+        check::<2, 2>(false);
+        check::<3, 2>(false);
+        check::<4, 2>(false);
+        check::<6, 2>(false);
+        check::<6, 2>(true);
+        check::<10, 2>(false);
+        check::<10, 2>(true);
     }
 }

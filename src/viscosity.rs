@@ -315,7 +315,13 @@ mod tests {
         let jump = [1.0, 1.0, 1.0, 0.0, 0.0, 0.0];
         assert_eq!(christensen(&line(&linear, &ones), 2), 1.0);
         assert_eq!(christensen(&line(&jump, &ones), 2), 0.0);
-        let row = |first, values| Row::<'_, 3, 1> { first, stride: 6, values, gradients: &[] };
+        let row = |first, values| Row::<'_, 3, 1> {
+            first,
+            stride: 6,
+            narrow: false,
+            values,
+            gradients: &[],
+        };
         let (even, peaked) = ([[0.5, 0.5, 0.0]], [[0.2, 0.6, 0.2]]);
         assert_eq!(nodal(&line(&linear, &ones), &row(2, &even), -1.0, None), 1.0);
         assert_eq!(nodal(&line(&jump, &ones), &row(1, &peaked), -1.0, None), 0.0);
@@ -346,7 +352,8 @@ mod tests {
     #[test]
     fn nothing_is_a_positive_zero() {
         let (ones, even) = ([1.0; 6], [[0.5, 0.5, 0.0]]);
-        let row = Row::<'_, 3, 1> { first: 2, stride: 6, values: &even, gradients: &[] };
+        let row =
+            Row::<'_, 3, 1> { first: 2, stride: 6, narrow: false, values: &even, gradients: &[] };
         let rest = nodal(&line(&[1.0; 6], &ones), &row, -1.0, None);
         assert!(rest == 0.0 && rest.is_sign_positive());
         let jump = christensen(&line(&[1.0, 1.0, 1.0, 0.0, 0.0, 0.0], &ones), 2);

@@ -203,12 +203,17 @@ impl<const D: usize> Block<D> {
             return;
         }
         let mut order: Vec<usize> = (from..to).collect();
-        order.sort_unstable_by_key(|&r| self.key(r));
-        permute(&mut self.ids, from, &order);
-        permute(&mut self.cells, from, &order);
+        // a stable sort knows stretches that are in order, which is most of them
+        order.sort_by_key(|&r| self.key(r));
+        // where a row goes, and which; those that stay are not touched
+        let moved = (from..to).zip(order).filter(|(to, row)| to != row);
+        let moved: Vec<(usize, usize)> = moved.collect();
+        permute(&mut self.ids, &moved, &mut Vec::new());
+        permute(&mut self.cells, &moved, &mut Vec::new());
+        let mut sorted = Vec::new();
         for column in &mut self.columns {
             if column.len() >= to {
-                permute(column, from, &order);
+                permute(column, &moved, &mut sorted);
             }
         }
     }
@@ -283,9 +288,13 @@ fn take_out<T: Copy>(values: &mut Vec<T>, gone: &[usize]) {
     values.truncate(to);
 }
 
-fn permute<T: Copy>(values: &mut [T], from: usize, order: &[usize]) {
-    let sorted: Vec<T> = order.iter().map(|&r| values[r]).collect();
-    values[from..from + sorted.len()].copy_from_slice(&sorted);
+/// Puts at each first place of `moved` what is at the second; `sorted` is a buffer.
+fn permute<T: Copy>(values: &mut [T], moved: &[(usize, usize)], sorted: &mut Vec<T>) {
+    sorted.clear();
+    sorted.extend(moved.iter().map(|&(_, from)| values[from]));
+    for (&(to, _), value) in moved.iter().zip(&*sorted) {
+        values[to] = *value;
+    }
 }
 
 #[cfg(test)]
