@@ -29,8 +29,11 @@ pub struct Fields {
     pub work: usize,
     /// K^(k-1) vL, the last term of the filter's series [m/s], a vector; with a filter.
     pub remainder: Option<usize>,
-    /// Scratch for a product.
+    /// Scratch for products: as many fields that follow each other as vectors are multiplied at a
+    /// time.
     pub scratch: usize,
+    /// Their number.
+    pub scratches: usize,
     /// First terms of the series of force and work, a vector.
     pub first: usize,
     /// Fraction of the node's volume that holds material [-], with an edge mask.
@@ -64,8 +67,8 @@ pub struct ConductionFields {
 /// What of the fields a scheme and its effects ask for.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wanted {
-    /// A filter.
-    pub filtered: bool,
+    /// Series of vectors that a filter sums up together, 0 without one.
+    pub series: usize,
     /// An edge mask.
     pub masked: bool,
     /// Pressure relaxation.
@@ -81,14 +84,17 @@ pub struct Wanted {
 impl Fields {
     /// The fields in `dimension` directions.
     pub fn new(dimension: usize, wanted: Wanted) -> Self {
-        let Wanted { filtered, masked, relaxed, rubs, conducts, sides } = wanted;
+        let Wanted { series, masked, relaxed, rubs, conducts, sides } = wanted;
+        let filtered = series > 0;
         let mut count = 0;
         let mut add = |n: usize, wanted: bool| {
             let at = if wanted { count } else { usize::MAX / 2 };
             count += if wanted { n } else { 0 };
             at
         };
-        let [mass, inverse, scratch] = [1; 3].map(|n| add(n, true));
+        let [mass, inverse] = [1; 2].map(|n| add(n, true));
+        let scratches = (series * dimension).max(1);
+        let scratch = add(scratches, true);
         let [lumped, velocity_star, acceleration, work, first] =
             [dimension; 5].map(|n| add(n, true));
         let velocity = if filtered { add(dimension, true) } else { lumped };
@@ -113,6 +119,7 @@ impl Fields {
             work,
             remainder,
             scratch,
+            scratches,
             first,
             volume,
             relaxation: [r, r + 1, r + 2, r + 3],
@@ -124,16 +131,22 @@ impl Fields {
     }
 }
 
+/// Nodes whose sums are made at a time: what they take of a matrix stays in the nearest cache.
+const BLOCK: usize = 64;
+
 /// A symmetric matrix M_ij = sum_p m_p N_ip N_jp over the nodes of a patch, one diagonal after
 /// the other: a diagonal holds M_(i,i+offset) at i, for the offsets to nodes that come later.
 #[derive(Clone, Debug, Default)]
 pub struct Band {
+    /// The same, a node after the other, while particles are added; else zeros.
     rows: Vec<f64>,
+    /// Blocks of nodes that have been added to.
+    touched: Vec<bool>,
     diagonals: Vec<Vec<f64>>,
+    /// For each block of nodes, the diagonals that are not zero throughout.
+    filled: Vec<bool>,
     /// From a node to the other of each diagonal, in the patch's arrays.
     offsets: Vec<usize>,
-    /// Nodes along one direction that a particle touches.
-    width: usize,
 }
 
 /// Diagonals for windows of `width` nodes along each of `dimension` directions.
@@ -142,24 +155,37 @@ const fn diagonals(width: usize, dimension: usize) -> usize {
 }
 
 impl Band {
-    /// Sets to zero over `nodes` nodes for particles that touch `width` nodes along each of
+    /// Makes ready for a sum over `nodes` nodes of particles that touch `width` nodes along each of
     /// `dimension` directions, in arrays whose lines are `stride` long.
     pub fn clear(&mut self, nodes: usize, width: usize, dimension: usize, stride: usize) {
-        self.width = width;
         let count = diagonals(width, dimension);
-        self.rows.clear();
-        self.rows.resize(nodes * count, 0.0);
         let across = if dimension == 1 { 1 } else { width };
         let place = |line: usize, k: usize| match line {
             0 => k,
             _ => line * stride + k + 1 - width,
         };
-        self.offsets.clear();
-        for line in 0..across {
-            let length = if line == 0 { width } else { 2 * width - 1 };
-            self.offsets.extend((0..length).map(|k| place(line, k)));
+        let lengths = (0..across).map(|line| (line, if line == 0 { width } else { 2 * width - 1 }));
+        let offsets = lengths.flat_map(|(line, length)| (0..length).map(move |k| (line, k)));
+        let offsets = offsets.map(|(line, k)| place(line, k));
+        if self.rows.len() == nodes * count && offsets.clone().eq(self.offsets.iter().copied()) {
+            // what was added before has left zeros behind
+            return;
         }
+        self.offsets.clear();
+        self.offsets.extend(offsets);
         debug_assert_eq!(self.offsets.len(), count);
+        let blocks = nodes.div_ceil(BLOCK);
+        for (list, length) in [(&mut self.touched, blocks), (&mut self.filled, blocks * count)] {
+            list.clear();
+            list.resize(length, false);
+        }
+        self.rows.clear();
+        self.rows.resize(nodes * count, 0.0);
+        self.diagonals.resize_with(count, Vec::new);
+        for diagonal in &mut self.diagonals {
+            diagonal.clear();
+            diagonal.resize(nodes, 0.0);
+        }
     }
 
     /// Adds one particle of mass `mass`.
@@ -184,6 +210,9 @@ impl Band {
             |values: &[f64; K]| -> [f64; M] { *values.first_chunk().expect("as many nodes") };
         for line in 0..const { lines(M, D) } {
             let from = row.first + line * row.stride;
+            for node in [from, from + M - 1] {
+                self.touched[node / BLOCK] = true;
+            }
             // of a length known at compile time, so that no place in it is checked
             let rows = &mut self.rows[from * count..][..const { K * diagonals(K, D) }];
             let (here, later) = row.values[..const { lines(M, D) }][line..]
@@ -205,105 +234,145 @@ impl Band {
     /// Must be called once all particles are in.
     pub fn finish(&mut self) {
         let count = self.offsets.len();
-        let nodes = self.rows.len() / count;
-        self.diagonals.resize_with(count, Vec::new);
-        for (d, diagonal) in self.diagonals.iter_mut().enumerate() {
-            diagonal.resize(nodes, 0.0);
-            for (value, row) in diagonal.iter_mut().zip(self.rows.chunks_exact(count)) {
-                *value = row[d];
+        let blocks = self.touched.iter_mut().zip(self.filled.chunks_exact_mut(count));
+        for (block, (touched, filled)) in blocks.enumerate() {
+            let from = block * BLOCK;
+            let to = self.diagonals[0].len().min(from + BLOCK);
+            if !std::mem::take(touched) {
+                for (diagonal, filled) in self.diagonals.iter_mut().zip(filled) {
+                    if std::mem::take(filled) {
+                        diagonal[from..to].fill(0.0);
+                    }
+                }
+                continue;
             }
+            // a block at a time, so that its rows are fetched once
+            let rows = &mut self.rows[from * count..to * count];
+            for (d, (diagonal, filled)) in self.diagonals.iter_mut().zip(filled).enumerate() {
+                let mut bits = 0;
+                for (value, row) in diagonal[from..to].iter_mut().zip(rows.chunks_exact(count)) {
+                    *value = row[d];
+                    bits |= value.to_bits();
+                }
+                *filled = bits != 0;
+            }
+            rows.fill(0.0);
         }
     }
 
     /// y = M x on the nodes `range`, which must lie at least the band's width from the ends.
     pub fn product(&self, x: &[f64], range: Range<usize>, y: &mut [f64]) {
-        self.each_product(x, range, y, |product, _| product);
+        self.each_product([x], range, [y], |product, _, _| product);
     }
 
-    /// y = t + x - d M x on the nodes `range`, d a diagonal matrix: a sum of a series and its
-    /// next by Horner's rule.
-    pub fn next_sum(&self, x: &[f64], d: &[f64], t: &[f64], range: Range<usize>, y: &mut [f64]) {
-        let (x_here, d, t) = (&x[range.clone()], &d[range.clone()], &t[range.clone()]);
-        self.each_product(x, range, y, |product, i| t[i] + (x_here[i] - d[i] * product));
-    }
-
-    /// y = f((M x)_i, i) on the nodes of `range`, i counted from its start.
-    #[inline(always)]
-    fn each_product(
+    /// y = t + x - d M x on the nodes `range` for several vectors at a time, d a diagonal matrix: a
+    /// sum of a series and its next by Horner's rule.
+    pub fn next_sums<'a, const V: usize>(
         &self,
-        x: &[f64],
+        x: [&'a [f64]; V],
+        d: &[f64],
+        t: [&'a [f64]; V],
         range: Range<usize>,
-        y: &mut [f64],
-        f: impl Fn(f64, usize) -> f64,
+        y: [&mut [f64]; V],
     ) {
-        let (from, to) = (range.start, range.end);
+        let cut = |fields: [&'a [f64]; V]| fields.map(|field| &field[range.clone()]);
+        let (x_here, d, t) = (cut(x), &d[range.clone()], cut(t));
+        self.each_product(x, range, y, |product, v, i| t[v][i] + (x_here[v][i] - d[i] * product));
+    }
+
+    /// y = f((M x)_i, v, i) on the nodes of `range` for each vector v, i counted from its start.
+    #[inline(always)]
+    fn each_product<const V: usize>(
+        &self,
+        x: [&[f64]; V],
+        range: Range<usize>,
+        y: [&mut [f64]; V],
+        f: impl Fn(f64, usize, usize) -> f64,
+    ) {
         match self.offsets.len() {
-            3 => self.product_of::<3>(x, from, to, y, f),
-            4 => self.product_of::<4>(x, from, to, y, f),
-            _ => self.product_by_diagonals(x, range, y, f),
+            3 => self.products_of::<3, V>(x, range, y, f),
+            4 => self.products_of::<4, V>(x, range, y, f),
+            _ => self.products_by_diagonals(x, range, y, f),
         }
     }
 
-    /// The same sums in the same order, a diagonal after the other: for many of them.
+    /// The same sums in the same order, a diagonal after the other: for many of them. Blocks without
+    /// anything on a diagonal are passed over, which changes no bit: sums start from +0.
     #[inline(always)]
-    fn product_by_diagonals(
+    fn products_by_diagonals<const V: usize>(
         &self,
-        x: &[f64],
+        x: [&[f64]; V],
         range: Range<usize>,
-        y: &mut [f64],
-        f: impl Fn(f64, usize) -> f64,
+        y: [&mut [f64]; V],
+        f: impl Fn(f64, usize, usize) -> f64,
     ) {
-        let (from, to) = (range.start, range.end);
-        if from >= to {
-            return;
-        }
-        let sums = &mut y[range];
-        let n = sums.len();
-        let (main, centre) = (&self.diagonals[0][from..to], &x[from..to]);
-        for i in 0..n {
-            sums[i] = main[i] * centre[i];
-        }
-        for (diagonal, &o) in self.diagonals.iter().zip(&self.offsets).skip(1) {
-            let (above, x_above) = (&diagonal[from..to], &x[from + o..to + o]);
-            let (below, x_below) = (&diagonal[from - o..to - o], &x[from - o..to - o]);
-            for i in 0..n {
-                sums[i] += above[i] * x_above[i];
-                sums[i] += below[i] * x_below[i];
+        let count = self.offsets.len();
+        let mut from = range.start;
+        while from < range.end {
+            let to = range.end.min((from / BLOCK + 1) * BLOCK);
+            let n = to - from;
+            let mut sums = [[0.0; BLOCK]; V];
+            let main = &self.diagonals[0][from..to];
+            for (sums, x) in sums.iter_mut().zip(x) {
+                for ((sum, m), x) in sums.iter_mut().zip(main).zip(&x[from..to]) {
+                    *sum += m * x;
+                }
             }
-        }
-        for (i, sum) in sums.iter_mut().enumerate() {
-            *sum = f(*sum, i);
+            for (d, (diagonal, &o)) in self.diagonals.iter().zip(&self.offsets).enumerate().skip(1)
+            {
+                let is_filled = |node: usize| self.filled[node / BLOCK * count + d];
+                if !(is_filled(from) || is_filled(from - o) || is_filled(to - 1 - o)) {
+                    continue;
+                }
+                let (above, below) = (&diagonal[from..to], &diagonal[from - o..to - o]);
+                for (sums, x) in sums.iter_mut().zip(x) {
+                    let (x_above, x_below) = (&x[from + o..to + o], &x[from - o..to - o]);
+                    let sums = &mut sums[..n];
+                    for i in 0..n {
+                        sums[i] += above[i] * x_above[i];
+                        sums[i] += below[i] * x_below[i];
+                    }
+                }
+            }
+            for v in 0..V {
+                let y = &mut y[v][from..to];
+                for i in 0..n {
+                    y[i] = f(sums[v][i], v, from - range.start + i);
+                }
+            }
+            from = to;
         }
     }
 
     /// The same sums in the same order, with few diagonals known so that they run in vectors.
     #[inline(always)]
-    fn product_of<const W: usize>(
+    fn products_of<const W: usize, const V: usize>(
         &self,
-        x: &[f64],
-        from: usize,
-        to: usize,
-        y: &mut [f64],
-        f: impl Fn(f64, usize) -> f64,
+        x: [&[f64]; V],
+        range: Range<usize>,
+        y: [&mut [f64]; V],
+        f: impl Fn(f64, usize, usize) -> f64,
     ) {
+        let (from, to) = (range.start, range.end);
         if from >= to {
             return;
         }
         let n = to - from;
-        let y = &mut y[from..to];
         let main = &self.diagonals[0][from..to];
-        let above: [(&[f64], &[f64]); W] =
-            std::array::from_fn(|d| (&self.diagonals[d][from..to], &x[from + d..to + d]));
-        let below: [(&[f64], &[f64]); W] =
-            std::array::from_fn(|d| (&self.diagonals[d][from - d..to - d], &x[from - d..to - d]));
-        let centre = &x[from..to];
-        for i in 0..n {
-            let mut sum = main[i] * centre[i];
-            for d in 1..W {
-                sum += above[d].0[i] * above[d].1[i];
-                sum += below[d].0[i] * below[d].1[i];
+        let above: [&[f64]; W] = std::array::from_fn(|d| &self.diagonals[d][from..to]);
+        let below: [&[f64]; W] = std::array::from_fn(|d| &self.diagonals[d][from - d..to - d]);
+        for (v, y) in y.into_iter().enumerate() {
+            let y = &mut y[from..to];
+            let x_above: [&[f64]; W] = std::array::from_fn(|d| &x[v][from + d..to + d]);
+            let x_below: [&[f64]; W] = std::array::from_fn(|d| &x[v][from - d..to - d]);
+            for i in 0..n {
+                let mut sum = main[i] * x_above[0][i];
+                for d in 1..W {
+                    sum += above[d][i] * x_above[d][i];
+                    sum += below[d][i] * x_below[d][i];
+                }
+                y[i] = f(sum, v, i);
             }
-            y[i] = f(sum, i);
         }
     }
 }

@@ -57,6 +57,7 @@ pub fn draw_fields(
     let domain = &scene.scene.domain;
     let corner = |corner: &[f64]| [corner[0], corner[1]];
     let axes = if scene.axisymmetric() { ["r", "z"] } else { ["x", "y"] };
+    let joined = joined_sides(scene);
     for Drawn { stem, label, unit, shading, values } in drawn {
         let tile = |(k, value): (usize, f64)| Tile {
             centre: [x[k], y[k]],
@@ -65,7 +66,7 @@ pub fn draw_fields(
             body: table.body[k],
         };
         let tiles = values.into_iter().enumerate().map(tile);
-        let tiles = tiles.flat_map(|tile| in_domain(scene, tile)).collect();
+        let tiles = tiles.flat_map(|tile| in_domain(scene, joined, tile)).collect();
         let quantity = Quantity::new(label, unit, shading);
         let field = Field {
             extent: Some([corner(&domain.lower), corner(&domain.upper)]),
@@ -108,15 +109,17 @@ fn compact([a, b]: [[f64; 2]; 2], cell: &[f64]) -> [[f64; 2]; 2] {
     [[half, 0.0], [0.0, half]]
 }
 
-/// The tile where it lies in a domain that is joined to itself, and once more at the opposite
-/// side where it crosses one.
-fn in_domain(scene: &CheckedScene, tile: Tile) -> Vec<Tile> {
+/// Along which directions the domain is joined to itself.
+fn joined_sides(scene: &CheckedScene) -> [bool; 2] {
+    scene.sides::<2>().map(|ends| ends.contains(&Side::Periodic))
+}
+
+/// The tile where it lies in a domain that is joined to itself along some directions, and once more
+/// at the opposite side where it crosses one.
+fn in_domain(scene: &CheckedScene, joined: [bool; 2], tile: Tile) -> Vec<Tile> {
     let domain = &scene.scene.domain;
     let mut tiles = vec![tile];
-    for (d, ends) in scene.sides::<2>().iter().enumerate() {
-        if !ends.contains(&Side::Periodic) {
-            continue;
-        }
+    for d in (0..2).filter(|&d| joined[d]) {
         let (lower, upper) = (domain.lower[d], domain.upper[d]);
         let length = upper - lower;
         for k in 0..tiles.len() {
@@ -194,7 +197,7 @@ mod tests {
         let half_edges = [[0.02, 0.0], [0.0, 0.01]];
         let tile = |x, y| Tile { centre: [x, y], half_edges, value: 1.0, body: 0 };
         let centres = |x, y| -> Vec<[f64; 2]> {
-            in_domain(&scene, tile(x, y)).iter().map(|t| t.centre).collect()
+            in_domain(&scene, joined_sides(&scene), tile(x, y)).iter().map(|t| t.centre).collect()
         };
         assert_eq!(centres(3.25, 0.5), [[0.25, 0.5]]);
         assert_eq!(centres(-0.25, 0.5), [[0.75, 0.5]]);

@@ -224,7 +224,7 @@ const SHARED_CELLS: [usize; 2] = [256, 64];
 
 /// The number of patches for a scene on so many ranks and threads: the scene's own, or at least
 /// one for each thread of each rank unless they would be too narrow, and several where patches
-/// may sleep.
+/// may sleep or a plane is shared.
 pub fn patch_counts(scene: &CheckedScene, ranks: usize, threads: usize) -> Vec<usize> {
     match scene.dimension {
         1 => patch_parts::<1>(scene, ranks, threads).to_vec(),
@@ -239,15 +239,22 @@ fn patch_parts<const D: usize>(scene: &CheckedScene, ranks: usize, threads: usiz
     let cells: [usize; D] = std::array::from_fn(|a| scene.cells[a]);
     let workers = ranks * threads;
     let of_edge = |edge: [usize; 2]| cells.iter().map(|n| (n / edge[D - 1]).max(1)).product();
-    let wanted = match workers {
-        _ if !may_sleep::<D>(scene) => workers,
-        1 => of_edge(SLEEPING_CELLS),
-        _ => {
+    let parts = |wanted: usize| choose_cuts(cells, wanted, LEAST_CELLS);
+    match workers {
+        1 if may_sleep::<D>(scene) => parts(of_edge(SLEEPING_CELLS)),
+        _ if may_sleep::<D>(scene) => {
             let several: usize = of_edge(SHARED_CELLS);
-            several.clamp(workers, PATCHES_A_WORKER * workers)
+            parts(several.clamp(workers, PATCHES_A_WORKER * workers))
         }
-    };
-    choose_cuts(cells, wanted, LEAST_CELLS)
+        1 => [1; D],
+        _ => {
+            // in a plane four for each: a long particle widens the windows of fewer others, and what
+            // lies inside is computed while messages travel
+            let parts = parts(workers);
+            let halves = D > 1 && (0..D).all(|a| cells[a] / parts[a] >= 2 * SHARED_CELLS[D - 1]);
+            if halves { parts.map(|n| 2 * n) } else { parts }
+        }
+    }
 }
 
 /// Whether a body is at rest and free of stress, so that patches can sleep.

@@ -212,7 +212,8 @@ impl<const D: usize> Stepper<D> {
     pub(super) fn scatter_moving<const K: usize>(&self, patch: &mut Patch<D>, force: bool) {
         let (c, f) = (&self.columns, &self.fields);
         let vectors = [f.lumped, f.acceleration].into_iter().chain(f.remainder);
-        for field in vectors.flat_map(|v| v..v + D).chain([f.scratch]) {
+        let scratches = f.scratch..f.scratch + f.scratches;
+        for field in vectors.flat_map(|v| v..v + D).chain(scratches) {
             patch.nodes.fields[field].fill(0.0);
         }
         let mut take = |k: usize| std::mem::take(&mut patch.nodes.fields[k]);

@@ -17,6 +17,16 @@ fn times<const K: usize>(a: &[f64; K], b: &[f64; K]) -> [f64; K] {
     std::array::from_fn(|k| a[k] * b[k])
 }
 
+/// The columns of a vector, out of their block: what is written leaves it while the others are read.
+fn take_vector<const D: usize>(columns: &mut [Vec<f64>], first: usize) -> [Vec<f64>; D] {
+    std::array::from_fn(|a| std::mem::take(&mut columns[first + a]))
+}
+
+/// Those of a tensor with `count` components, if there is one.
+fn take_tensor(columns: &mut [Vec<f64>], first: Option<usize>, count: usize) -> Taken {
+    first.into_iter().flat_map(|k| k..k + count).map(|k| std::mem::take(&mut columns[k])).collect()
+}
+
 /// The own rows, the first `rows`, of `N` columns.
 #[inline(always)]
 fn own<const N: usize>(columns: &mut [Vec<f64>], rows: usize) -> [&mut [f64]; N] {
@@ -91,19 +101,10 @@ impl<const D: usize> Stepper<D> {
         let nodes = fields[f.mass].len();
         let vector = |k: usize| std::array::from_fn::<&[f64], D, _>(|a| &fields[k + a][..nodes]);
         let (lumped, star) = (vector(f.lumped), vector(f.velocity_star));
-        // columns that are written leave the block while the others are read
         let columns = &mut patch.block.columns;
-        let mut x: [Vec<f64>; D] =
-            std::array::from_fn(|a| std::mem::take(&mut columns[c.position + a]));
-        let mut v: [Vec<f64>; D] =
-            std::array::from_fn(|a| std::mem::take(&mut columns[c.velocity + a]));
+        let [mut x, mut v] = [c.position, c.velocity].map(|k| take_vector::<D>(columns, k));
         let mut divergence = std::mem::take(&mut columns[c.gradient]);
-        let mut tensor: Taken = match c.velocity_gradient {
-            Some(first) => {
-                (first..first + D * D).map(|k| std::mem::take(&mut columns[k])).collect()
-            }
-            None => Taken::new(),
-        };
+        let mut tensor = take_tensor(columns, c.velocity_gradient, D * D);
         let (own_x, own_v) = (&mut own::<D>(&mut x, n), &mut own::<D>(&mut v, n));
         let own_divergence = &mut divergence[..n];
         let mut own_gradient = own_tensor(&mut tensor, n);
@@ -140,10 +141,8 @@ impl<const D: usize> Stepper<D> {
             }
         }
         let columns = &mut patch.block.columns;
-        for (a, (x, v)) in x.into_iter().zip(v).enumerate() {
-            columns[c.position + a] = x;
-            columns[c.velocity + a] = v;
-        }
+        put_back(columns, c.position, x);
+        put_back(columns, c.velocity, v);
         columns[c.gradient] = divergence;
         if let Some(first) = c.velocity_gradient {
             put_back(columns, first, tensor);
@@ -298,16 +297,12 @@ impl<const D: usize> Stepper<D> {
         let (lumped, start, star) = (vector(f.lumped), vector(f.velocity), vector(f.velocity_star));
         let work = vector(f.work);
         let remainder = f.remainder.filter(|_| self.filter_heat).map(vector);
-        // columns that are written leave the block while the others are read
         let columns = &mut patch.block.columns;
-        let mut take = |k: usize| std::mem::take(&mut columns[k]);
-        let mut x: [Vec<f64>; D] = std::array::from_fn(|a| take(c.position + a));
-        let mut v: [Vec<f64>; D] = std::array::from_fn(|a| take(c.velocity + a));
-        let [mut j, mut e, mut d] = [c.jacobian, c.energy, c.gradient].map(&mut take);
-        let mut tensor = |first: Option<usize>| -> Taken {
-            first.into_iter().flat_map(|first| first..first + D * D).map(&mut take).collect()
-        };
-        let (mut deformation, mut gradient) = (tensor(c.deformation), tensor(c.velocity_gradient));
+        let [mut x, mut v] = [c.position, c.velocity].map(|k| take_vector::<D>(columns, k));
+        let [mut j, mut e, mut d] =
+            [c.jacobian, c.energy, c.gradient].map(|k| std::mem::take(&mut columns[k]));
+        let [mut deformation, mut gradient] =
+            [c.deformation, c.velocity_gradient].map(|k| take_tensor(columns, k, D * D));
         let (own_x, own_v) = (&mut own::<D>(&mut x, n), &mut own::<D>(&mut v, n));
         let [own_j, own_e, own_d] = [&mut j, &mut e, &mut d].map(|column| &mut column[..n]);
         let mut own_deformation = own_tensor(&mut deformation, n);
@@ -404,10 +399,8 @@ impl<const D: usize> Stepper<D> {
             own_d[r] = self.with_hoop(patch, &row, r, end, |l| star[0][l]);
         }
         let columns = &mut patch.block.columns;
-        for (a, (x, v)) in x.into_iter().zip(v).enumerate() {
-            columns[c.position + a] = x;
-            columns[c.velocity + a] = v;
-        }
+        put_back(columns, c.position, x);
+        put_back(columns, c.velocity, v);
         columns[c.jacobian] = j;
         columns[c.energy] = e;
         columns[c.gradient] = d;

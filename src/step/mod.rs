@@ -288,7 +288,10 @@ impl<const D: usize> Stepper<D> {
             false => volume.powf(1.0 / D as f64),
         };
         let scheme: Scheme = method.transfer.into();
-        let filtered = matches!(scheme, Scheme::Series { .. });
+        let series = match scheme {
+            Scheme::Series { force, .. } => 1 + usize::from(force),
+            Scheme::Blend(_) | Scheme::Affine => 0,
+        };
         let relaxed = method.pressure_relaxation.is_some();
         let contact = scene.scene.contact.as_ref().and_then(Contact::new);
         let contact = contact.filter(|_| scene.velocity_fields() > 1);
@@ -303,7 +306,7 @@ impl<const D: usize> Stepper<D> {
             columns,
             fields: Fields::new(
                 D,
-                Wanted { filtered, masked, relaxed, rubs, conducts: scene.conducts(), sides },
+                Wanted { series, masked, relaxed, rubs, conducts: scene.conducts(), sides },
             ),
             conduction: conduction::Conduction::new(scene),
             scheme,

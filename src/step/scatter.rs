@@ -72,10 +72,10 @@ impl<const D: usize> Stepper<D> {
         force: bool,
     ) {
         let (c, f) = (&self.columns, &self.fields);
-        let scalars = [f.mass, f.scratch];
+        let scalars = [f.mass].into_iter().chain(f.scratch..f.scratch + f.scratches);
         let vectors = [f.lumped, f.acceleration].into_iter().chain(f.remainder);
         let components = vectors.flat_map(|v| v..v + D);
-        for field in scalars.into_iter().chain(components) {
+        for field in scalars.chain(components) {
             patch.nodes.fields[field].fill(0.0);
         }
         if MATRIX {

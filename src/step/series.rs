@@ -119,10 +119,40 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// The sum of a series with one more term, on the nodes that the patch computes; beyond them
-    /// it is what the next exchange makes of it. `ends` tells that it is the last term.
-    fn next_sum(&self, patch: &mut Patch<D>, series: &Series, ends: bool) {
-        let (band, inverse) = match series.matrix {
+    /// The sums of series of one matrix with one more term, on the nodes that the patch computes;
+    /// beyond them they are what the next exchange makes of them. `ends` tells for which it is the
+    /// last term.
+    fn next_sums(&self, patch: &mut Patch<D>, all: &[&Series], ends: impl Fn(&Series) -> bool) {
+        let vectors: SmallVec<[Series; 4]> =
+            all.iter().flat_map(|s| s.components::<D>()).map(|(series, _)| series).collect();
+        match vectors[..] {
+            [a] => self.next_terms(patch, [a]),
+            [a, b] => self.next_terms(patch, [a, b]),
+            [a, b, c, d] => self.next_terms(patch, [a, b, c, d]),
+            _ => unreachable!("one or two series, of one or two components"),
+        }
+        for (series, scratch) in vectors.iter().zip(self.fields.scratch..) {
+            // nodes without material hold zeros in both
+            patch.nodes.fields.swap(series.sum, scratch);
+            if let (true, Some(last)) = (ends(series), series.last) {
+                patch.nodes.fields.swap(scratch, last);
+            }
+        }
+        for series in all {
+            // bodies in contact exchange no heat
+            if self.contact.is_some() && series.matrix != Matrix::Capacity {
+                self.join_series(patch, series, ends(series));
+            }
+            // the sum itself is not masked, what the next product takes from it is
+            if series.mask == Mask::After || (series.mask == Mask::Before && !ends(series)) {
+                self.mask(patch, series);
+            }
+        }
+    }
+
+    /// The next sums of series of one matrix, one a vector, into as many scratches.
+    fn next_terms<const V: usize>(&self, patch: &mut Patch<D>, all: [Series; V]) {
+        let (band, inverse) = match all[0].matrix {
             Matrix::Mass => (&patch.band, self.fields.inverse),
             Matrix::Compliance => (&patch.compliance_band, self.fields.relaxation[1]),
             Matrix::Capacity => {
@@ -130,25 +160,16 @@ impl<const D: usize> Stepper<D> {
                 (&patch.capacity_band, fields.inverse)
             }
         };
-        let scratch = self.fields.scratch;
-        for (Series { sum, first, last, .. }, _) in series.components::<D>() {
-            let [inverse, x, t, y] = patch.nodes.fields_mut([inverse, sum, first, scratch]);
-            for line in &patch.active_lines {
-                band.next_sum(x, inverse, t, line.clone(), y);
-            }
-            // nodes without material hold zeros in both
-            patch.nodes.fields.swap(sum, scratch);
-            if let (true, Some(last)) = (ends, last) {
-                patch.nodes.fields.swap(scratch, last);
-            }
+        let fields = &mut patch.nodes.fields;
+        let mut next: [Vec<f64>; V] =
+            std::array::from_fn(|v| std::mem::take(&mut fields[self.fields.scratch + v]));
+        let (x, t) = (all.map(|s| &fields[s.sum][..]), all.map(|s| &fields[s.first][..]));
+        for line in &patch.active_lines {
+            let y = next.each_mut().map(|y| &mut y[..]);
+            band.next_sums(x, &fields[inverse], t, line.clone(), y);
         }
-        // bodies in contact exchange no heat
-        if self.contact.is_some() && series.matrix != Matrix::Capacity {
-            self.join_series(patch, series, ends);
-        }
-        // the sum itself is not masked, what the next product takes from it is
-        if series.mask == Mask::After || (series.mask == Mask::Before && !ends) {
-            self.mask(patch, series);
+        for (v, next) in next.into_iter().enumerate() {
+            fields[self.fields.scratch + v] = next;
         }
     }
 
@@ -175,15 +196,19 @@ impl<const D: usize> Stepper<D> {
                 if self.conduction.is_some() {
                     self.hold_temperature(patch, &fields);
                 }
-                for series in going() {
-                    if l + 1 < series.order {
-                        self.next_sum(patch, series, l + 2 == series.order);
-                    } else {
-                        for (series, _) in series.components::<D>() {
-                            if let Some(last) = series.last {
-                                find_last(patch, series.sum, last);
-                            }
+                for series in going().filter(|s| s.order == l + 1) {
+                    for (series, _) in series.components::<D>() {
+                        if let Some(last) = series.last {
+                            find_last(patch, series.sum, last);
                         }
+                    }
+                }
+                // of one matrix together, so that it is looked up once
+                for matrix in [Matrix::Mass, Matrix::Compliance, Matrix::Capacity] {
+                    let goes_on = |s: &&Series| s.matrix == matrix && s.order > l + 1;
+                    let some: SmallVec<[&Series; 2]> = all.iter().filter(goes_on).collect();
+                    if !some.is_empty() {
+                        self.next_sums(patch, &some, |s| s.order == l + 2);
                     }
                 }
                 if l + 1 == rounds {

@@ -43,7 +43,11 @@ fn take(columns: &mut [Vec<f64>], first: usize, count: usize, rows: usize) -> Ta
 }
 
 /// Puts columns back.
-pub(super) fn put_back(columns: &mut [Vec<f64>], first: usize, taken: Taken) {
+pub(super) fn put_back(
+    columns: &mut [Vec<f64>],
+    first: usize,
+    taken: impl IntoIterator<Item = Vec<f64>>,
+) {
     for (k, column) in taken.into_iter().enumerate() {
         columns[first + k] = column;
     }
