@@ -140,13 +140,27 @@ const BLOCK: usize = 64;
 pub struct Band {
     /// The same, a node after the other, while particles are added; else zeros.
     rows: Vec<f64>,
-    /// Blocks of nodes that have been added to.
-    touched: Vec<bool>,
+    /// What has been added to in each block of nodes.
+    touched: Vec<Touched>,
     diagonals: Vec<Vec<f64>>,
     /// For each block of nodes, the diagonals that are not zero throughout.
     filled: Vec<bool>,
     /// From a node to the other of each diagonal, in the patch's arrays.
     offsets: Vec<usize>,
+    /// Whether narrow particles add to each diagonal.
+    near: Vec<bool>,
+}
+
+/// What particles have added to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+enum Touched {
+    /// Nothing.
+    #[default]
+    No,
+    /// The diagonals of narrow ones.
+    Near,
+    /// All diagonals.
+    All,
 }
 
 /// Diagonals for windows of `width` nodes along each of `dimension` directions.
@@ -165,8 +179,8 @@ impl Band {
             _ => line * stride + k + 1 - width,
         };
         let lengths = (0..across).map(|line| (line, if line == 0 { width } else { 2 * width - 1 }));
-        let offsets = lengths.flat_map(|(line, length)| (0..length).map(move |k| (line, k)));
-        let offsets = offsets.map(|(line, k)| place(line, k));
+        let places = lengths.flat_map(|(line, length)| (0..length).map(move |k| (line, k)));
+        let offsets = places.clone().map(|(line, k)| place(line, k));
         if self.rows.len() == nodes * count && offsets.clone().eq(self.offsets.iter().copied()) {
             // what was added before has left zeros behind
             return;
@@ -174,11 +188,17 @@ impl Band {
         self.offsets.clear();
         self.offsets.extend(offsets);
         debug_assert_eq!(self.offsets.len(), count);
+        let is_near = |(line, k): (usize, usize)| match line {
+            0 => k < NARROW,
+            _ => line < NARROW && (k + 1).abs_diff(width) < NARROW,
+        };
+        self.near.clear();
+        self.near.extend(places.map(is_near));
         let blocks = nodes.div_ceil(BLOCK);
-        for (list, length) in [(&mut self.touched, blocks), (&mut self.filled, blocks * count)] {
-            list.clear();
-            list.resize(length, false);
-        }
+        self.touched.clear();
+        self.touched.resize(blocks, Touched::No);
+        self.filled.clear();
+        self.filled.resize(blocks * count, false);
         self.rows.clear();
         self.rows.resize(nodes * count, 0.0);
         self.diagonals.resize_with(count, Vec::new);
@@ -211,7 +231,8 @@ impl Band {
         for line in 0..const { lines(M, D) } {
             let from = row.first + line * row.stride;
             for node in [from, from + M - 1] {
-                self.touched[node / BLOCK] = true;
+                let touched = &mut self.touched[node / BLOCK];
+                *touched = (*touched).max(if M < K { Touched::Near } else { Touched::All });
             }
             // of a length known at compile time, so that no place in it is checked
             let rows = &mut self.rows[from * count..][..const { K * diagonals(K, D) }];
@@ -238,17 +259,16 @@ impl Band {
         for (block, (touched, filled)) in blocks.enumerate() {
             let from = block * BLOCK;
             let to = self.diagonals[0].len().min(from + BLOCK);
-            if !std::mem::take(touched) {
-                for (diagonal, filled) in self.diagonals.iter_mut().zip(filled) {
-                    if std::mem::take(filled) {
-                        diagonal[from..to].fill(0.0);
-                    }
-                }
-                continue;
-            }
+            let touched = std::mem::take(touched);
             // a block at a time, so that its rows are fetched once
             let rows = &mut self.rows[from * count..to * count];
             for (d, (diagonal, filled)) in self.diagonals.iter_mut().zip(filled).enumerate() {
+                if touched == Touched::No || (touched == Touched::Near && !self.near[d]) {
+                    if std::mem::take(filled) {
+                        diagonal[from..to].fill(0.0);
+                    }
+                    continue;
+                }
                 let mut bits = 0;
                 for (value, row) in diagonal[from..to].iter_mut().zip(rows.chunks_exact(count)) {
                     *value = row[d];
@@ -256,7 +276,9 @@ impl Band {
                 }
                 *filled = bits != 0;
             }
-            rows.fill(0.0);
+            if touched != Touched::No {
+                rows.fill(0.0);
+            }
         }
     }
 
@@ -381,19 +403,26 @@ impl Band {
 mod tests {
     use super::*;
 
-    /// Particles: their first node, mass and values.
-    fn check<const K: usize, const D: usize>(
+    /// A particle: its first node, mass and values.
+    type Particle<const K: usize> = (usize, f64, Vec<[f64; K]>);
+
+    /// Adds particles to `band` and holds its products with several vectors at a time against those
+    /// of a full matrix.
+    fn check_with<const K: usize, const D: usize>(
+        band: &mut Band,
         extent: [usize; 2],
-        particles: &[(usize, f64, Vec<[f64; K]>)],
+        particles: &[Particle<K>],
         inner: Range<usize>,
     ) {
         let nodes = extent[0] * extent[1];
-        let mut band = Band::default();
         band.clear(nodes, K, D, extent[0]);
         let mut full = vec![vec![0.0; nodes]; nodes];
         for (first, mass, values) in particles {
+            let beyond = |l: usize, k: usize| l >= NARROW || k >= NARROW;
+            let mut places = (0..values.len()).flat_map(|l| (0..K).map(move |k| (l, k)));
+            let narrow = K > NARROW && places.all(|(l, k)| !beyond(l, k) || values[l][k] == 0.0);
             let row: Row<'_, K, D> =
-                Row { first: *first, stride: extent[0], narrow: false, values, gradients: &[] };
+                Row { first: *first, stride: extent[0], narrow, values, gradients: &[] };
             band.add(&row, *mass);
             let place = |l: usize, k: usize| first + l * extent[0] + k;
             for (l, k) in (0..values.len()).flat_map(|l| (0..K).map(move |k| (l, k))) {
@@ -403,14 +432,37 @@ mod tests {
             }
         }
         band.finish();
-        let x: Vec<f64> = (0..nodes).map(|i| (i * i % 17) as f64).collect();
+        let vector = |v: usize| (0..nodes).map(|i| (i * i % (17 + v)) as f64).collect::<Vec<_>>();
+        let (x, t) = ([vector(0), vector(1)], [vector(2), vector(3)]);
+        let of = |i: usize, x: &[f64]| (0..nodes).map(|j| full[i][j] * x[j]).sum::<f64>();
+        let is_close = |y: f64, exact: f64| (y - exact).abs() < 1e-12 * exact.abs().max(1.0);
         let mut y = vec![0.0; nodes];
-        band.product(&x, inner.clone(), &mut y);
-        assert!(inner.clone().any(|i| y[i] != 0.0));
-        for i in inner {
-            let exact: f64 = (0..nodes).map(|j| full[i][j] * x[j]).sum();
-            assert!((y[i] - exact).abs() < 1e-12 * exact.abs().max(1.0), "{i}");
+        band.product(&x[0], inner.clone(), &mut y);
+        assert!(particles.is_empty() || inner.clone().any(|i| y[i] != 0.0));
+        for i in inner.clone() {
+            assert!(is_close(y[i], of(i, &x[0])), "node {i}: {} {}", y[i], of(i, &x[0]));
         }
+        let (d, mut next) = (vector(4), [vec![0.0; nodes], vec![0.0; nodes]]);
+        let into = next.each_mut().map(|y| &mut y[..]);
+        band.next_sums(
+            x.each_ref().map(|x| &x[..]),
+            &d,
+            t.each_ref().map(|t| &t[..]),
+            inner.clone(),
+            into,
+        );
+        for (v, i) in (0..2).flat_map(|v| inner.clone().map(move |i| (v, i))) {
+            let exact = t[v][i] + (x[v][i] - d[i] * of(i, &x[v]));
+            assert!(is_close(next[v][i], exact), "vector {v}, node {i}: {} {exact}", next[v][i]);
+        }
+    }
+
+    fn check<const K: usize, const D: usize>(
+        extent: [usize; 2],
+        particles: &[Particle<K>],
+        inner: Range<usize>,
+    ) {
+        check_with::<K, D>(&mut Band::default(), extent, particles, inner);
     }
 
     #[test]
@@ -428,5 +480,33 @@ mod tests {
         let lines = |a: f64| vec![[0.1, 0.2, 0.05], [a, 0.25, 0.1], [0.0, 0.07, 0.3 - a]];
         let particles = [(40, 2.0, lines(0.1)), (41, 1.5, lines(0.2)), (52, 0.7, lines(0.05))];
         check::<3, 2>([12, 9], &particles, 36..80);
+    }
+
+    /// One matrix for one sum after the other: what is left of the last is in none, where particles
+    /// are narrow, where they are wide, and where there are none.
+    #[test]
+    fn a_matrix_holds_its_last_sum_alone() {
+        const K: usize = 6;
+        let extent = [40, 23];
+        let values = |nodes: usize, seed: usize| -> Vec<[f64; K]> {
+            let value = |l: usize, k: usize| {
+                if l.max(k) < nodes { ((l * 7 + k * 5 + seed) % 11) as f64 / 40.0 } else { 0.0 }
+            };
+            (0..K).map(|l| std::array::from_fn(|k| value(l, k))).collect()
+        };
+        let inner = 6 * extent[0]..16 * extent[0];
+        let at = |x: usize, y: usize| y * extent[0] + x;
+        let narrow = |x, y| (at(x, y), 1.5, values(NARROW, x));
+        let wide = |x, y| (at(x, y), 0.8, values(K, y));
+        let mut band = Band::default();
+        for particles in [
+            vec![narrow(4, 7), narrow(5, 7), wide(20, 8), wide(7, 9)],
+            vec![narrow(4, 7), narrow(21, 8), narrow(30, 10)],
+            vec![wide(11, 10)],
+            vec![],
+            vec![narrow(30, 12)],
+        ] {
+            check_with::<K, 2>(&mut band, extent, &particles, inner.clone());
+        }
     }
 }

@@ -302,15 +302,19 @@ impl<const D: usize> Patch<D> {
                     values: values.as_chunks_mut::<K>().0,
                     gradients: [gx.as_chunks_mut::<K>().0, gy.as_chunks_mut::<K>().0],
                 };
-                let corner = S::plane(place, &domain, &mut lines);
+                let [width, height] = domain.extent();
+                let is_narrow = K > NARROW && S::nodes(width.max(height)) <= NARROW;
+                let corner = match is_narrow {
+                    true => lines.fill_first::<S, NARROW>(place, &domain),
+                    false => S::plane(place, &domain, &mut lines),
+                };
                 let at: [i32; D] = std::array::from_fn(|a| cells[row][a] + corner[a] - lower[a]);
                 for a in 0..D {
                     (least[a], most[a]) = (least[a].min(at[a]), most[a].max(at[a]));
                 }
                 *first = (at[0] + stride * at[D - 1]) as u32;
                 if K > NARROW {
-                    let [width, height] = domain.extent();
-                    narrow[row] = S::nodes(width.max(height)) <= NARROW;
+                    narrow[row] = is_narrow;
                 }
                 gx.iter_mut().for_each(|g| *g *= inverse_cell[0]);
                 gy.iter_mut().for_each(|g| *g *= inverse_cell[D - 1]);

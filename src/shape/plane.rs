@@ -70,6 +70,29 @@ pub struct Plane<'a, const K: usize> {
     pub gradients: [&'a mut [[f64; K]]; 2],
 }
 
+impl<const K: usize> Plane<'_, K> {
+    /// As [`Shape::plane`], of a particle that gives weight to the first `M` nodes along each direction
+    /// alone: as many are computed.
+    #[inline(always)]
+    pub fn fill_first<S: Shape, const M: usize>(
+        &mut self,
+        fraction: [f64; 2],
+        domain: &Domain,
+    ) -> [i32; 2] {
+        let [mut values, mut gx, mut gy] = [[[0.0; M]; M]; 3];
+        let mut out = Plane { values: &mut values, gradients: [&mut gx, &mut gy] };
+        let first = S::plane(fraction, domain, &mut out);
+        let [to_x, to_y] = &mut self.gradients;
+        for (to, from) in [(&mut *self.values, &values), (to_x, &gx), (to_y, &gy)] {
+            to.fill([0.0; K]);
+            for (to, from) in to.iter_mut().zip(from) {
+                to[..M].copy_from_slice(from);
+            }
+        }
+        first
+    }
+}
+
 /// The weights of a box: the products of those along each direction.
 #[inline(always)]
 pub(super) fn product<S: Shape, const K: usize>(

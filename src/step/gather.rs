@@ -312,11 +312,16 @@ impl<const D: usize> Stepper<D> {
         let (mass, j_mid, stress) = (column(c.mass), column(mid), column(c.stress_volume));
         for (r, row) in patch.stencils.rows::<K, D>(0..n).enumerate() {
             // looked up once, for they are summed many times
-            let (start, star) = (row.windows::<L, D>(start), row.windows::<L, D>(star));
-            let mut means = start;
+            let (mut means, star) = (row.windows::<L, D>(start), row.windows::<L, D>(star));
+            let mut filtered = [0.0; D];
+            if remainder.is_some() {
+                for a in 0..D {
+                    filtered[a] = row.sum(row.values, |line| means[a][line]);
+                }
+            }
             for a in 0..D {
                 for line in 0..L {
-                    means[a][line] = half_sum(&start[a][line], &star[a][line]);
+                    means[a][line] = half_sum(&means[a][line], &star[a][line]);
                 }
             }
             let mean = |a: usize, line: usize| means[a][line];
@@ -329,7 +334,7 @@ impl<const D: usize> Stepper<D> {
                         if let Some(lost) = remainder {
                             let [lost] = row.windows::<L, 1>([lost[a]]);
                             let both = |l: usize| times(&lost[l], &mean(a, l));
-                            let rest = old - row.sum(row.values, |l| start[a][l]);
+                            let rest = old - filtered[a];
                             heat += 0.5 * rest * rest
                                 + (row.sum(row.values, both)
                                     - row.sum(row.values, |l| lost[l])
