@@ -134,6 +134,12 @@ impl Fields {
 /// Nodes whose sums are made at a time: what they take of a matrix stays in the nearest cache.
 const BLOCK: usize = 64;
 
+/// Numbers of a page of memory: those as far apart share a place in the nearest cache, ...
+const PAGE: usize = 512;
+
+/// ... so those of a node on all diagonals are this much further apart.
+const APART: usize = 24;
+
 /// A symmetric matrix M_ij = sum_p m_p N_ip N_jp over the nodes of a patch, one diagonal after
 /// the other: a diagonal holds M_(i,i+offset) at i, for the offsets to nodes that come later.
 #[derive(Clone, Debug, Default)]
@@ -142,7 +148,9 @@ pub struct Band {
     rows: Vec<f64>,
     /// What has been added to in each block of nodes.
     touched: Vec<Touched>,
-    diagonals: Vec<Vec<f64>>,
+    /// One after the other, `stride` apart.
+    diagonals: Vec<f64>,
+    stride: usize,
     /// For each block of nodes, the diagonals that are not zero throughout.
     filled: Vec<bool>,
     /// From a node to the other of each diagonal, in the patch's arrays.
@@ -201,11 +209,15 @@ impl Band {
         self.filled.resize(blocks * count, false);
         self.rows.clear();
         self.rows.resize(nodes * count, 0.0);
-        self.diagonals.resize_with(count, Vec::new);
-        for diagonal in &mut self.diagonals {
-            diagonal.clear();
-            diagonal.resize(nodes, 0.0);
-        }
+        self.stride = nodes.next_multiple_of(PAGE) + APART;
+        self.diagonals.clear();
+        self.diagonals.resize(self.stride * count, 0.0);
+    }
+
+    /// Some nodes of a diagonal.
+    #[inline(always)]
+    fn diagonal(&self, d: usize, nodes: Range<usize>) -> &[f64] {
+        &self.diagonals[d * self.stride + nodes.start..d * self.stride + nodes.end]
     }
 
     /// Adds one particle of mass `mass`.
@@ -255,14 +267,16 @@ impl Band {
     /// Must be called once all particles are in.
     pub fn finish(&mut self) {
         let count = self.offsets.len();
+        let nodes = self.rows.len() / count;
         let blocks = self.touched.iter_mut().zip(self.filled.chunks_exact_mut(count));
         for (block, (touched, filled)) in blocks.enumerate() {
             let from = block * BLOCK;
-            let to = self.diagonals[0].len().min(from + BLOCK);
+            let to = nodes.min(from + BLOCK);
             let touched = std::mem::take(touched);
             // a block at a time, so that its rows are fetched once
             let rows = &mut self.rows[from * count..to * count];
-            for (d, (diagonal, filled)) in self.diagonals.iter_mut().zip(filled).enumerate() {
+            let diagonals = self.diagonals.chunks_exact_mut(self.stride);
+            for (d, (diagonal, filled)) in diagonals.zip(filled).enumerate() {
                 if touched == Touched::No || (touched == Touched::Near && !self.near[d]) {
                     if std::mem::take(filled) {
                         diagonal[from..to].fill(0.0);
@@ -334,19 +348,19 @@ impl Band {
             let to = range.end.min((from / BLOCK + 1) * BLOCK);
             let n = to - from;
             let mut sums = [[0.0; BLOCK]; V];
-            let main = &self.diagonals[0][from..to];
+            let main = self.diagonal(0, from..to);
             for (sums, x) in sums.iter_mut().zip(x) {
                 for ((sum, m), x) in sums.iter_mut().zip(main).zip(&x[from..to]) {
                     *sum += m * x;
                 }
             }
-            for (d, (diagonal, &o)) in self.diagonals.iter().zip(&self.offsets).enumerate().skip(1)
-            {
+            for (d, &o) in self.offsets.iter().enumerate().skip(1) {
                 let is_filled = |node: usize| self.filled[node / BLOCK * count + d];
                 if !(is_filled(from) || is_filled(from - o) || is_filled(to - 1 - o)) {
                     continue;
                 }
-                let (above, below) = (&diagonal[from..to], &diagonal[from - o..to - o]);
+                let (above, below) =
+                    (self.diagonal(d, from..to), self.diagonal(d, from - o..to - o));
                 for (sums, x) in sums.iter_mut().zip(x) {
                     let (x_above, x_below) = (&x[from + o..to + o], &x[from - o..to - o]);
                     let sums = &mut sums[..n];
@@ -380,9 +394,9 @@ impl Band {
             return;
         }
         let n = to - from;
-        let main = &self.diagonals[0][from..to];
-        let above: [&[f64]; W] = std::array::from_fn(|d| &self.diagonals[d][from..to]);
-        let below: [&[f64]; W] = std::array::from_fn(|d| &self.diagonals[d][from - d..to - d]);
+        let main = self.diagonal(0, from..to);
+        let above: [&[f64]; W] = std::array::from_fn(|d| self.diagonal(d, from..to));
+        let below: [&[f64]; W] = std::array::from_fn(|d| self.diagonal(d, from - d..to - d));
         for (v, y) in y.into_iter().enumerate() {
             let y = &mut y[from..to];
             let x_above: [&[f64]; W] = std::array::from_fn(|d| &x[v][from + d..to + d]);

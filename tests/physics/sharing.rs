@@ -3,7 +3,7 @@
 use decomp::Comm;
 use decomp::comm::local::run_ranks;
 use flyer_mpm::clock::Event;
-use flyer_mpm::simulation::{Simulation, Tally};
+use flyer_mpm::simulation::{Simulation, Tally, patch_counts};
 use serde_json::{Value, json};
 
 use crate::tools::{checked, ending, shipped, with};
@@ -61,6 +61,25 @@ fn flight() -> Value {
     value["bodies"][0]["box"] = json!({"lower": [-0.0009], "upper": [-0.0004]});
     ending(&mut value, 4e-7);
     value
+}
+
+/// Left out, patches are chosen: several where some may sleep, and where a plane is shared and wide
+/// enough for it.
+#[test]
+fn patches_follow_the_workers() {
+    let counts = |value: &Value, ranks, threads| patch_counts(&checked(value), ranks, threads);
+    let awake = json!({"decomposition": {"skip_quiet": false}});
+    let plane = with(&shipped("flyer_2d.json"), &awake);
+    assert_eq!(plane["domain"]["patches"], Value::Null);
+    assert_eq!(counts(&plane, 1, 1), [1, 1]);
+    assert_eq!(counts(&plane, 2, 1), [4, 2]);
+    assert_eq!(counts(&plane, 2, 2), counts(&plane, 4, 1));
+    assert!(counts(&shipped("flyer_2d.json"), 1, 1).iter().product::<usize>() > 1);
+    // halves would be too narrow
+    let coarse = with(&plane, &json!({"domain": {"cell_size": 5e-5}}));
+    assert_eq!(counts(&coarse, 2, 1), [2, 1]);
+    let line = with(&shipped("flyer.json"), &awake);
+    assert_eq!(counts(&line, 2, 1), [2]);
 }
 
 #[test]
