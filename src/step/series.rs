@@ -72,6 +72,34 @@ enum Mask {
     After,
 }
 
+/// Series of one matrix whose next terms are found together, so that it is looked up once.
+struct Together {
+    series: SmallVec<[Series; 2]>,
+    /// Their components.
+    vectors: SmallVec<[Series; 4]>,
+    /// Terms that they have then.
+    terms: u32,
+}
+
+impl Together {
+    /// Those of `all` that have as many terms as `terms`, a matrix after the other.
+    fn all<const D: usize>(all: &[Series], terms: u32) -> SmallVec<[Self; 2]> {
+        let of = |matrix: Matrix| {
+            let some = all.iter().filter(|s| s.matrix == matrix && s.order >= terms);
+            let series: SmallVec<[Series; 2]> = some.copied().collect();
+            let components = series.iter().flat_map(|s| s.components::<D>());
+            Together { vectors: components.map(|(vector, _)| vector).collect(), series, terms }
+        };
+        let together = [Matrix::Mass, Matrix::Compliance, Matrix::Capacity].map(of);
+        together.into_iter().filter(|together| !together.series.is_empty()).collect()
+    }
+
+    /// Whether these are the last terms of a series.
+    fn ends(&self, series: &Series) -> bool {
+        series.order == self.terms
+    }
+}
+
 /// The last term of a series, from its sum and the sum before, which `last` holds.
 fn find_last<const D: usize>(patch: &mut Patch<D>, sum: usize, last: usize) {
     let [sum, last] = patch.nodes.fields_mut([sum, last]);
@@ -120,31 +148,29 @@ impl<const D: usize> Stepper<D> {
     }
 
     /// The sums of series of one matrix with one more term, on the nodes that the patch computes;
-    /// beyond them they are what the next exchange makes of them. `ends` tells for which it is the
-    /// last term.
-    fn next_sums(&self, patch: &mut Patch<D>, all: &[&Series], ends: impl Fn(&Series) -> bool) {
-        let vectors: SmallVec<[Series; 4]> =
-            all.iter().flat_map(|s| s.components::<D>()).map(|(series, _)| series).collect();
-        match vectors[..] {
+    /// beyond them they are what the next exchange makes of them.
+    fn next_sums(&self, patch: &mut Patch<D>, together: &Together) {
+        match together.vectors[..] {
             [a] => self.next_terms(patch, [a]),
             [a, b] => self.next_terms(patch, [a, b]),
             [a, b, c, d] => self.next_terms(patch, [a, b, c, d]),
             _ => unreachable!("one or two series, of one or two components"),
         }
-        for (series, scratch) in vectors.iter().zip(self.fields.scratch..) {
+        for (vector, scratch) in together.vectors.iter().zip(self.fields.scratch..) {
             // nodes without material hold zeros in both
-            patch.nodes.fields.swap(series.sum, scratch);
-            if let (true, Some(last)) = (ends(series), series.last) {
+            patch.nodes.fields.swap(vector.sum, scratch);
+            if let (true, Some(last)) = (together.ends(vector), vector.last) {
                 patch.nodes.fields.swap(scratch, last);
             }
         }
-        for series in all {
+        for series in &together.series {
             // bodies in contact exchange no heat
             if self.contact.is_some() && series.matrix != Matrix::Capacity {
-                self.join_series(patch, series, ends(series));
+                self.join_series(patch, series, together.ends(series));
             }
             // the sum itself is not masked, what the next product takes from it is
-            if series.mask == Mask::After || (series.mask == Mask::Before && !ends(series)) {
+            let goes_on = !together.ends(series);
+            if series.mask == Mask::After || (series.mask == Mask::Before && goes_on) {
                 self.mask(patch, series);
             }
         }
@@ -191,25 +217,24 @@ impl<const D: usize> Stepper<D> {
             let components = going().flat_map(|s| s.components::<D>());
             fields.extend(components.map(|(s, parity)| (s.sum, parity)));
             nodal.refresh(&fields);
+            let finished: SmallVec<[Series; 8]> = going()
+                .filter(|s| s.order == l + 1)
+                .flat_map(|s| s.components::<D>())
+                .map(|(vector, _)| vector)
+                .collect();
+            let next = Together::all::<D>(all, l + 2);
             nodal.each(name, |patch| {
                 self.hold(patch, &fields);
                 if self.conduction.is_some() {
                     self.hold_temperature(patch, &fields);
                 }
-                for series in going().filter(|s| s.order == l + 1) {
-                    for (series, _) in series.components::<D>() {
-                        if let Some(last) = series.last {
-                            find_last(patch, series.sum, last);
-                        }
+                for vector in &finished {
+                    if let Some(last) = vector.last {
+                        find_last(patch, vector.sum, last);
                     }
                 }
-                // of one matrix together, so that it is looked up once
-                for matrix in [Matrix::Mass, Matrix::Compliance, Matrix::Capacity] {
-                    let goes_on = |s: &&Series| s.matrix == matrix && s.order > l + 1;
-                    let some: SmallVec<[&Series; 2]> = all.iter().filter(goes_on).collect();
-                    if !some.is_empty() {
-                        self.next_sums(patch, &some, |s| s.order == l + 2);
-                    }
+                for together in &next {
+                    self.next_sums(patch, together);
                 }
                 if l + 1 == rounds {
                     last(patch);
