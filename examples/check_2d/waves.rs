@@ -1,5 +1,6 @@
 //! Plates of finite width, and waves at an angle to the grid.
 
+use flyer_mpm::output::csv::CsvTable;
 use flyer_mpm::output::summary::ProfileSummary;
 
 use crate::runs::{Job, Outcome};
@@ -56,6 +57,8 @@ pub fn oblique(table: &mut Table) {
     let Some(turned) = table.take("oblique_impact.json", Job::new("oblique_impact").run()) else {
         return;
     };
+    // the folder is the same
+    let turned_interface = interface_errors(&turned, 30.0);
     let sets = [
         "bodies.flyer.rotation=null",
         "bodies.target.rotation=null",
@@ -66,6 +69,7 @@ pub fn oblique(table: &mut Table) {
     ];
     let aligned = sets.iter().fold(Job::new("oblique_impact"), |job, set| job.set(*set)).run();
     let Some(aligned) = table.take("the same along x", aligned) else { return };
+    let aligned_interface = interface_errors(&aligned, 0.0);
     let l1 = |run: &Outcome| last(run, |p| p.error("l1"));
     let ratio = l1(&turned).zip(l1(&aligned)).map(|(a, b)| a / b);
     table.beside("along x: L1", l1(&aligned), "", Show::Percent);
@@ -73,6 +77,48 @@ pub fn oblique(table: &mut Table) {
     table.at_most("L1 at 30 degrees over that along x", ratio, 1.3, Show::Number);
     let noise = last(&turned, |p| p.error("noise"));
     table.at_most("at 30 degrees: plateau noise", noise, 1e-3, Show::Percent);
+    let interface =
+        |of: &str, time: usize| format!("{of}: interface, {} us", 0.1 * (time + 1) as f64);
+    let at = |errors: &Option<Vec<f64>>, k: usize| errors.as_ref().map(|all| all[k]);
+    table.at_most(&interface("at 30 degrees", 0), at(&turned_interface, 0), 0.01, Show::Percent);
+    table.beside(&interface("along x", 0), at(&aligned_interface, 0), "", Show::Percent);
+    // the head of the fan is 4 cells away by then, and smeared over them
+    table.beside(&interface("at 30 degrees", 1), at(&turned_interface, 1), "", Show::Percent);
+    table.beside(&interface("along x", 1), at(&aligned_interface, 1), "", Show::Percent);
+    for (of, run) in [("at 30 degrees", &turned), ("along x", &aligned)] {
+        let (density, energy) = (
+            last(run, |p| p.error("density_interface")),
+            last(run, |p| p.error("energy_interface")),
+        );
+        table.beside(&format!("{of}: density there"), density, "", Show::Percent);
+        table.beside(&format!("{of}: energy there"), energy, "", Show::Percent);
+    }
     let drift = turned.summary.energy.drift;
     table.at_most("at 30 degrees: energy drift", drift, 1e-10, Show::Tiny);
+}
+
+/// Greatest error of pressure among the particles within ten cells of the interface, of P2, at
+/// each profile time; on the target's side alone once the release is near on the flyer's.
+/// `angle` [degrees] is that of the waves.
+fn interface_errors(run: &Outcome, angle: f64) -> Option<Vec<f64>> {
+    // state 2 of copper at 1 km/s on aluminium
+    let (u2, p2) = (690.935777, 12.144294e9);
+    let (normal_y, normal_x) = angle.to_radians().sin_cos();
+    let near = 10.0 * 2e-5;
+    let release = 1.5e-7;
+    let times = run.summary.profiles.iter().map(|p| p.time);
+    let tables = run.tables().ok()?;
+    let of_time = |(time, table): (f64, &CsvTable)| -> Option<f64> {
+        let (x, y) = (table.numbers("x")?, table.numbers("y")?);
+        let p = table.numbers("pressure")?;
+        let from = if time < release { -near } else { 0.0 };
+        let errors = (0..x.len()).filter_map(|k| {
+            let along = x[k] * normal_x + y[k] * normal_y - u2 * time;
+            let across = y[k] * normal_x - x[k] * normal_y;
+            let looked_at = (from..near).contains(&along) && across.abs() < 1e-3;
+            looked_at.then_some((p[k] - p2).abs() / p2)
+        });
+        errors.reduce(f64::max)
+    };
+    times.zip(&tables).map(of_time).collect()
 }
