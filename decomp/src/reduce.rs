@@ -5,6 +5,10 @@ use crate::Comm;
 /// Bits below the largest term that a sum keeps: with 2^40 terms it stays within an `i128`.
 const KEPT: i32 = 80;
 
+/// Bits of a term's lower half, and its unit's value.
+const HALF_BITS: i32 = KEPT / 2;
+const HALF: f64 = (1u64 << HALF_BITS) as f64;
+
 /// A set of sums over all ranks that do not depend on the order of their terms.
 ///
 /// Each term is rounded to a whole multiple of 2^-80 of the largest, and the multiples are added
@@ -30,7 +34,11 @@ impl ExactSum {
 
     /// Adds a term.
     pub fn add(&mut self, term: f64) {
-        self.total += (term * self.inverse).round_ties_even() as i128;
+        // in two halves, each of which the processor makes an integer of, without an error
+        let multiple = (term * self.inverse).round_ties_even();
+        let high = (multiple / HALF).floor();
+        let low = multiple - high * HALF;
+        self.total += (i128::from(high as i64) << HALF_BITS) + i128::from(low as i64);
     }
 
     /// Turns each of `sums` into that over all ranks. Collective.
@@ -103,6 +111,16 @@ mod tests {
             prop_assert_eq!(forward.to_bits(), sum(&terms).to_bits());
             terms.sort_by(f64::total_cmp);
             prop_assert_eq!(forward.to_bits(), sum(&terms).to_bits());
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn halves_make_the_whole(term in -1.0f64..1.0, down in 0..90i32) {
+            let mut sum = ExactSum::new(1.0);
+            let term = term * 2f64.powi(-down);
+            sum.add(term);
+            prop_assert_eq!(sum.total(), (term * 2f64.powi(79)).round_ties_even() as i128);
         }
     }
 

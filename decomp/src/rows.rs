@@ -316,41 +316,6 @@ fn settle<const D: usize>(
     }
 }
 
-/// The own rows of all ranks at rank 0, by id: the ids, and the columns in `which`; empty
-/// elsewhere. Collective.
-pub fn gather_rows<'a, const D: usize, C: Comm + ?Sized>(
-    comm: &C,
-    blocks: impl Iterator<Item = &'a Block<D>> + Clone,
-    which: &[usize],
-) -> (Vec<u64>, Vec<Vec<f64>>) {
-    // column after column, so that each is copied in one stretch
-    let mut words: Vec<u64> = Vec::new();
-    words.extend(blocks.clone().flat_map(|b| &b.ids[..b.own()]));
-    for &column in which {
-        for block in blocks.clone() {
-            words.extend(block.columns[column][..block.own()].iter().map(|v| v.to_bits()));
-        }
-    }
-    let width = 1 + which.len();
-    let all = comm.gather(&words);
-    let ids: Vec<u64> = all.iter().flat_map(|w| &w[..w.len() / width]).copied().collect();
-    let mut order: Vec<usize> = (0..ids.len()).collect();
-    if !ids.is_sorted() {
-        order.sort_unstable_by_key(|&r| ids[r]);
-    }
-    let column = |c: usize| {
-        let of = |w: &'_ Vec<u64>| (c * w.len() / width, (c + 1) * w.len() / width);
-        let values: Vec<u64> = all.iter().flat_map(|w| &w[of(w).0..of(w).1]).copied().collect();
-        order.iter().map(|&r| f64::from_bits(values[r])).collect()
-    };
-    let columns = if all.is_empty() {
-        vec![Vec::new(); which.len()]
-    } else {
-        (1..width).map(column).collect()
-    };
-    (order.iter().map(|&r| ids[r]).collect(), columns)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

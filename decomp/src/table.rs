@@ -180,10 +180,16 @@ impl<const D: usize> Block<D> {
         self.sort(self.own, self.rows());
     }
 
-    fn key(&self, row: usize) -> ([i32; D], u64) {
-        let mut cell = self.cells[row];
-        cell.reverse();
-        (cell, self.ids[row])
+    /// What the canonical order goes by: cell, the last direction first, then id; one number, for
+    /// those compare without a branch.
+    fn key(&self, row: usize) -> u128 {
+        const { assert!(D <= 2, "two cell numbers and an id fill the key") }
+        // as numbers without sign in the same order
+        let cell = self.cells[row]
+            .iter()
+            .rev()
+            .fold(0, |high, &c| (high << 32) | u128::from(c as u32 ^ (1 << 31)));
+        (cell << 64) | u128::from(self.ids[row])
     }
 
     fn sort(&mut self, from: usize, to: usize) {
@@ -202,10 +208,11 @@ impl<const D: usize> Block<D> {
             }
             return;
         }
-        let mut order: Vec<usize> = (from..to).collect();
-        // a stable sort knows stretches that are in order, which is most of them
-        order.sort_by_key(|&r| self.key(r));
+        // most rows still are in order among themselves: the others are sorted and merged in
+        let mut order: Vec<_> = (from..to).map(|r| (self.key(r), r)).collect();
+        dmsort::sort_by(&mut order, |a, b| a.0.cmp(&b.0));
         // where a row goes, and which; those that stay are not touched
+        let order = order.into_iter().map(|(_, row)| row);
         let moved = (from..to).zip(order).filter(|(to, row)| to != row);
         let moved: Vec<(usize, usize)> = moved.collect();
         permute(&mut self.ids, &moved, &mut Vec::new());
@@ -328,10 +335,12 @@ mod tests {
         block.push(3, [1, 0], &[3.0, 30.0]);
         block.push(9, [0, 1], &[9.0, 90.0]);
         block.push(8, [0, 0], &[8.0, 80.0]);
+        // images lie before the first cell
+        block.push(4, [-1, 0], &[4.0, 40.0]);
         block.sort_own();
-        assert_eq!(block.ids, [8, 3, 7, 9]);
-        assert_eq!(block.columns[0], [8.0, 3.0, 7.0, 9.0]);
-        assert_eq!(block.columns[1], [80.0, 30.0, 70.0, 90.0]);
+        assert_eq!(block.ids, [4, 8, 3, 7, 9]);
+        assert_eq!(block.columns[0], [4.0, 8.0, 3.0, 7.0, 9.0]);
+        assert_eq!(block.columns[1], [40.0, 80.0, 30.0, 70.0, 90.0]);
     }
 
     #[test]

@@ -130,17 +130,10 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         if self.comm.rank() != 0 {
             return None;
         }
-        let mut digest = Sha256::new();
-        let mut bytes = Vec::with_capacity(8 * (columns.len() + 1));
-        for (row, id) in ids.iter().enumerate() {
-            bytes.clear();
-            bytes.extend(id.to_le_bytes());
-            columns.iter().for_each(|c| bytes.extend(c[row].to_le_bytes()));
-            digest.update(&bytes);
-        }
-        let digest = digest.finalize().iter().map(|b| format!("{b:02x}")).collect();
-        let column = |k: usize| &columns[state.iter().position(|&s| s == k).expect("state")];
-        Some((self.table(&ids, column), digest))
+        let digest = digest(&ids, &columns);
+        let mut places = vec![usize::MAX; self.stepper.columns.specs.len()];
+        state.iter().enumerate().for_each(|(place, &k)| places[k] = place);
+        Some((self.table(&ids, |k| &columns[places[k]]), digest))
     }
 
     fn table<'b>(&self, ids: &[u64], column: impl Fn(usize) -> &'b Vec<f64>) -> ParticleTable {
@@ -150,9 +143,11 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             column(c.position + a).iter().map(|x| x + travel[a]).collect()
         };
         let place: [Vec<f64>; D] = std::array::from_fn(moved);
-        let mut order: Vec<usize> = (0..ids.len()).collect();
-        order.sort_by(|&a, &b| place[0][a].total_cmp(&place[0][b]).then(ids[a].cmp(&ids[b])));
-        let pick = |f: &dyn Fn(usize) -> f64| order.iter().map(|&r| f(r)).collect::<Vec<f64>>();
+        // rows stand in order of id
+        let mut order: Vec<(f64, usize)> = place[0].iter().copied().zip(0..).collect();
+        order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let order: Vec<usize> = order.into_iter().map(|(_, row)| row).collect();
+        let taken = |values: &Vec<f64>| pick(&order, |r| values[r]);
         let named = |name: &str, unit: &str, values| TableColumn {
             name: name.into(),
             unit: unit.into(),
@@ -162,56 +157,57 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         let q = c.viscosity.map(&column);
         let coordinates = ["x", "y"].into_iter().zip(&place);
         let mut columns: Vec<TableColumn> =
-            coordinates.map(|(name, x)| named(name, "m", pick(&|r| x[r]))).collect();
-        columns.push(named("pressure", "Pa", pick(&|r| column(c.pressure)[r])));
+            coordinates.map(|(name, x)| named(name, "m", taken(x))).collect();
+        columns.push(named("pressure", "Pa", taken(column(c.pressure))));
         let names = if D == 1 { ["velocity", ""] } else { ["velocity_x", "velocity_y"] };
         for (a, name) in names.into_iter().enumerate().take(D) {
-            let v = |r: usize| column(c.velocity + a)[r] + grid[a];
-            columns.push(named(name, "m/s", pick(&v)));
+            let v = column(c.velocity + a);
+            columns.push(named(name, "m/s", pick(&order, |r| v[r] + grid[a])));
         }
         columns.extend([
-            named("density", "kg/m3", pick(&|r| m[r] / (v0[r] * j[r]))),
-            named("specific_internal_energy", "J/kg", pick(&|r| column(c.energy)[r])),
-            named("artificial_viscosity", "Pa", pick(&|r| q.map_or(0.0, |q| q[r]))),
+            named("density", "kg/m3", pick(&order, |r| m[r] / (v0[r] * j[r]))),
+            named("specific_internal_energy", "J/kg", taken(column(c.energy))),
+            named("artificial_viscosity", "Pa", q.map_or_else(|| vec![0.0; ids.len()], taken)),
         ]);
         if let Some(reference) = c.body_force.and_then(|c| c.reference) {
             for (a, name) in ["reference_x", "reference_y"].into_iter().enumerate() {
-                columns.push(named(name, "m", pick(&|r| column(reference + a)[r])));
+                columns.push(named(name, "m", taken(column(reference + a))));
             }
         }
         if let Some(stress) = c.stress {
             let names = ["stress_xx", "stress_yy", "stress_xy"];
             let count = if D == 1 { 1 } else { 3 };
-            let of = |k: usize, r: usize| column(stress + k)[r];
             for (k, name) in names.into_iter().enumerate().take(count) {
-                columns.push(named(name, "Pa", pick(&|r| of(k, r))));
+                columns.push(named(name, "Pa", taken(column(stress + k))));
             }
             // across, the trace leaves what is not in the plane; on a line half of it
+            let (p, xx) = (column(c.pressure), column(stress));
+            let yy = (D > 1).then(|| column(stress + 1));
             let across = |r: usize| {
-                let rest = -3.0 * column(c.pressure)[r] - of(0, r);
-                if D == 1 { 0.5 * rest } else { rest - of(1, r) }
+                let rest = -3.0 * p[r] - xx[r];
+                yy.map_or(0.5 * rest, |yy| rest - yy[r])
             };
-            columns.push(named("stress_zz", "Pa", pick(&across)));
+            columns.push(named("stress_zz", "Pa", pick(&order, across)));
         }
         if let Some(strength) = c.strength {
-            let strain = column(strength.plastic_strain);
-            columns.push(named("plastic_strain", "", pick(&|r| strain[r])));
+            columns.push(named("plastic_strain", "", taken(column(strength.plastic_strain))));
         }
         if let Some(failure) = c.failure {
-            columns.push(named("damage", "", pick(&|r| column(failure.damage)[r])));
+            columns.push(named("damage", "", taken(column(failure.damage))));
         }
         if let Some(thermal) = c.thermal {
-            columns.push(named("temperature", "K", pick(&|r| column(thermal.temperature)[r])));
+            columns.push(named("temperature", "K", taken(column(thermal.temperature))));
         }
         let histories =
             [("distension", c.distension), ("burn_fraction", c.burn.map(|c| c.fraction))];
         for (name, k) in histories.into_iter().filter_map(|(name, k)| Some((name, k?))) {
-            columns.push(named(name, "", pick(&|r| column(k)[r])));
+            columns.push(named(name, "", taken(column(k))));
         }
         if D > 1 {
-            columns.push(named("volume", "m3", pick(&|r| v0[r] * j[r])));
+            columns.push(named("volume", "m3", pick(&order, |r| v0[r] * j[r])));
         }
-        let body: Vec<u32> = order.iter().map(|&r| column(c.body)[r] as u32).collect();
+        let bodies = column(c.body);
+        let body: Vec<u32> = order.iter().map(|&r| bodies[r] as u32).collect();
         ParticleTable {
             time: self.time,
             dimension: D,
@@ -235,14 +231,16 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         if D == 1 {
             return Vec::new();
         }
+        if let (Some(half), Some(f)) = (c.half_lengths, c.deformation) {
+            let half = [column(half), column(half + 1)];
+            let f: [&Vec<f64>; 4] = std::array::from_fn(|k| column(f + k));
+            let edge = |a: usize, r: usize| [f[a][r] * half[a][r], f[a + 2][r] * half[a][r]];
+            return order.iter().map(|&r| [edge(0, r), edge(1, r)]).collect();
+        }
+        let (v0, j) = (column(c.volume0), column(c.jacobian));
+        let about = self.scene.axisymmetric().then(|| column(c.position));
         let edges = |r: usize| {
-            if let (Some(half), Some(f)) = (c.half_lengths, c.deformation) {
-                let half = [column(half)[r], column(half + 1)[r]];
-                let f = |k: usize| column(f + k)[r];
-                return [[f(0) * half[0], f(2) * half[0]], [f(1) * half[1], f(3) * half[1]]];
-            }
-            let about = if self.scene.axisymmetric() { column(c.position)[r] } else { 1.0 };
-            let area = column(c.volume0)[r] * column(c.jacobian)[r] / about;
+            let area = v0[r] * j[r] / about.map_or(1.0, |radius| radius[r]);
             let half = 0.5 * area.max(0.0).sqrt();
             [[half, 0.0], [0.0, half]]
         };
@@ -314,5 +312,54 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             .collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         points
+    }
+}
+
+/// What `of` says of each row, in the order of a table.
+fn pick(order: &[usize], of: impl Fn(usize) -> f64) -> Vec<f64> {
+    order.iter().map(|&r| of(r)).collect()
+}
+
+/// SHA-256 of rows: id and columns of each, as the bytes that a little-endian machine has of them.
+fn digest(ids: &[u64], columns: &[Vec<f64>]) -> String {
+    // many rows at a time, so that the digest runs over long stretches
+    const ROWS: usize = 256;
+    let width = 1 + columns.len();
+    let mut words = vec![[0; 8]; ROWS * width];
+    let mut digest = Sha256::new();
+    for from in (0..ids.len()).step_by(ROWS) {
+        let rows = from..ids.len().min(from + ROWS);
+        let words = &mut words[..rows.len() * width];
+        let places = words.iter_mut().step_by(width);
+        places.zip(&ids[rows.clone()]).for_each(|(word, id)| *word = id.to_le_bytes());
+        for (k, column) in columns.iter().enumerate() {
+            let places = words[1 + k..].iter_mut().step_by(width);
+            places.zip(&column[rows.clone()]).for_each(|(word, v)| *word = v.to_le_bytes());
+        }
+        digest.update(words.as_flattened());
+    }
+    digest.finalize().iter().map(|b| format!("{b:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_digest_is_that_of_rows_one_after_the_other() {
+        // more than are taken at a time, and not a multiple
+        let ids: Vec<u64> = (0..700).map(|k| 3 * k).collect();
+        let column = |c: usize| (0..700).map(|r| 0.1 * (c as f64 + 2.0) * f64::from(r)).collect();
+        let columns: Vec<Vec<f64>> = (0..3).map(column).collect();
+        let mut bytes = Vec::new();
+        for (row, id) in ids.iter().enumerate() {
+            bytes.extend(id.to_le_bytes());
+            columns.iter().for_each(|c| bytes.extend(c[row].to_le_bytes()));
+        }
+        let whole = Sha256::digest(&bytes);
+        assert_eq!(
+            digest(&ids, &columns),
+            whole.iter().map(|b| format!("{b:02x}")).collect::<String>()
+        );
     }
 }
