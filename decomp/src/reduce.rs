@@ -9,6 +9,10 @@ const KEPT: i32 = 80;
 const HALF_BITS: i32 = KEPT / 2;
 const HALF: f64 = (1u64 << HALF_BITS) as f64;
 
+/// Terms whose halves a double sums up without an error, and how many such sums run side by side.
+const MOST_TERMS: usize = 1 << (f64::MANTISSA_DIGITS as i32 - HALF_BITS - 1);
+const LANES: usize = 8;
+
 /// A set of sums over all ranks that do not depend on the order of their terms.
 ///
 /// Each term is rounded to a whole multiple of 2^-80 of the largest, and the multiples are added
@@ -26,18 +30,53 @@ impl ExactSum {
     /// A sum whose terms are no larger than `largest` in magnitude. All parts of one sum must be
     /// given the same `largest`.
     pub fn new(largest: f64) -> Self {
-        let exponent = if largest > 0.0 { largest.log2().ceil() as i32 + 1 } else { 0 };
+        let bits = largest.log2().ceil() as i32;
+        let exponent = if largest > 0.0 { bits.saturating_add(1) } else { 0 };
         // a quantum too small for a double loses nothing that a double could show
         let scale = (exponent - KEPT).max(-1000);
         ExactSum { quantum: 2f64.powi(scale), inverse: 2f64.powi(-scale), total: 0 }
     }
 
     /// Adds a term.
+    #[inline]
     pub fn add(&mut self, term: f64) {
-        // in two halves, each of which the processor makes an integer of, without an error
+        let [high, low] = self.halves(term);
+        self.add_halves(high, low);
+    }
+
+    /// Adds terms.
+    pub fn add_all(&mut self, terms: &[f64]) {
+        for terms in terms.chunks(MOST_TERMS) {
+            let (mut highs, mut lows) = ([0.0; LANES], [0.0; LANES]);
+            let (several, rest) = terms.as_chunks::<LANES>();
+            for terms in several {
+                for lane in 0..LANES {
+                    let [high, low] = self.halves(terms[lane]);
+                    highs[lane] += high;
+                    lows[lane] += low;
+                }
+            }
+            let (high, low) = (highs.iter().sum::<f64>(), lows.iter().sum::<f64>());
+            match high.is_nan() {
+                false => self.add_halves(high, low),
+                // what is not a number counts as none, and leaves the others alone
+                true => several.as_flattened().iter().for_each(|&term| self.add(term)),
+            }
+            rest.iter().for_each(|&term| self.add(term));
+        }
+    }
+
+    /// A term's multiple of the quantum in two halves, whole numbers of which the upper counts
+    /// 2^40, without an error.
+    #[inline(always)]
+    fn halves(&self, term: f64) -> [f64; 2] {
         let multiple = (term * self.inverse).round_ties_even();
         let high = (multiple / HALF).floor();
-        let low = multiple - high * HALF;
+        [high, multiple - high * HALF]
+    }
+
+    #[inline(always)]
+    fn add_halves(&mut self, high: f64, low: f64) {
         self.total += (i128::from(high as i64) << HALF_BITS) + i128::from(low as i64);
     }
 
@@ -80,20 +119,32 @@ impl ExactSum {
 }
 
 /// Sums of several quantities over the terms of all ranks, to the same bits for any way of
-/// dealing terms to ranks. `terms` calls its argument for each term with the quantity's number;
+/// dealing terms to ranks. `terms` calls its argument with a quantity's number and some of its terms;
 /// it is run twice. Collective.
 pub fn exact_sums<C: Comm + ?Sized, const N: usize>(
     comm: &C,
-    terms: impl Fn(&mut dyn FnMut(usize, f64)),
+    terms: impl Fn(&mut dyn FnMut(usize, &[f64])),
 ) -> [f64; N] {
     let mut largest = [0.0f64; N];
-    terms(&mut |k, term| largest[k] = largest[k].max(term.abs()));
+    terms(&mut |k, terms| largest[k] = largest[k].max(greatest(terms)));
     largest = largest.map(|l| -l);
     comm.min(&mut largest);
     let mut sums = largest.map(|l| ExactSum::new(-l));
-    terms(&mut |k, term| sums[k].add(term));
+    terms(&mut |k, terms| sums[k].add_all(terms));
     ExactSum::over_ranks(comm, &mut sums);
     sums.map(|s| s.value())
+}
+
+/// The greatest magnitude of some terms; what is not a number has none.
+fn greatest(terms: &[f64]) -> f64 {
+    let mut lanes = [0.0f64; LANES];
+    let (several, rest) = terms.as_chunks::<LANES>();
+    for terms in several {
+        for lane in 0..LANES {
+            lanes[lane] = lanes[lane].max(terms[lane].abs());
+        }
+    }
+    lanes.iter().chain(rest).fold(0.0, |most, term| most.max(term.abs()))
 }
 
 #[cfg(test)]
@@ -105,7 +156,7 @@ mod tests {
     proptest! {
         #[test]
         fn order_does_not_matter(mut terms in prop::collection::vec(-1e20f64..1e20, 1..60)) {
-            let sum = |t: &[f64]| exact_sums::<_, 1>(&Serial, |add| t.iter().for_each(|&x| add(0, x)))[0];
+            let sum = |t: &[f64]| exact_sums::<_, 1>(&Serial, |add| add(0, t))[0];
             let forward = sum(&terms);
             terms.reverse();
             prop_assert_eq!(forward.to_bits(), sum(&terms).to_bits());
@@ -124,12 +175,33 @@ mod tests {
         }
     }
 
+    proptest! {
+        #[test]
+        fn many_terms_at_a_time_are_one_after_the_other(
+            mut terms in prop::collection::vec(-1.0f64..1.0, 0..60),
+            repeated in 1..400usize,
+            broken in 0..90usize,
+        ) {
+            // what is not a number counts as none
+            if let Some(term) = terms.get_mut(broken) {
+                *term = f64::NAN;
+            }
+            let terms = terms.repeat(repeated);
+            let (mut one, mut all) = (ExactSum::new(1.0), ExactSum::new(1.0));
+            terms.iter().for_each(|&term| one.add(term));
+            all.add_all(&terms);
+            prop_assert_eq!(one.total(), all.total());
+            let most = terms.iter().fold(0.0f64, |most, term| most.max(term.abs()));
+            prop_assert_eq!(greatest(&terms), most);
+        }
+    }
+
     #[test]
     fn cancellation_is_exact() {
         let terms = [1e10, 1.0, -1e10, 3e-9];
-        let [sum] = exact_sums(&Serial, |add| terms.iter().for_each(|&x| add(0, x)));
+        let [sum] = exact_sums(&Serial, |add| add(0, &terms));
         assert!((sum - (1.0 + 3e-9)).abs() < 1e-13);
-        let [tiny, none] = exact_sums(&Serial, |add| add(0, 5e-200));
+        let [tiny, none] = exact_sums(&Serial, |add| add(0, &[5e-200]));
         assert_eq!((tiny, none), (5e-200, 0.0));
     }
 }

@@ -4,9 +4,9 @@
 //! them the state is copied, so that where a run goes wrong the last good one can be written. The
 //! verdicts are the same on all ranks, whatever the layout.
 
-use decomp::{Block, Census, Comm, ExactSum, StoredRows, exact_sums};
+use decomp::{Block, Census, Comm, ExactSum, StoredRows};
 
-use super::{Given, Left, RunError, Saved, Simulation};
+use super::{Given, Left, RunError, Saved, Simulation, Totals};
 use crate::patch::Patch;
 use crate::scene::OnAlarm;
 use crate::step::Stepper;
@@ -45,52 +45,17 @@ impl<const D: usize> Start<D> {
     };
 }
 
-/// Sums of the books that a look needs: energies, momentum, mass, work and impulse of a body
-/// force, heat conducted.
-const SUMS: usize = 9;
-
 impl<C: Comm, const D: usize> Simulation<'_, C, D> {
     /// Energies and momentum of all particles, and what forces and heat have given them but for
     /// the sides [J]. Collective.
     fn sums(&self) -> (Start<D>, f64, [f64; D]) {
-        let c = &self.stepper.columns;
-        let force = c.body_force;
-        let received = c.thermal.and_then(|c| c.received);
-        let grid = self.frame.velocity(self.time);
-        let sums: [f64; SUMS] = exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
-            for block in self.patches.iter().map(|p| &p.block) {
-                let n = block.own();
-                let column = |k: usize| &block.columns[k][..n];
-                let v: [&[f64]; D] = std::array::from_fn(|a| column(c.velocity + a));
-                let (m, e) = (column(c.mass), column(c.energy));
-                for r in 0..n {
-                    let v: [f64; D] = std::array::from_fn(|a| v[a][r] + grid[a]);
-                    add(0, 0.5 * m[r] * v.iter().map(|v| v * v).sum::<f64>());
-                    add(1, m[r] * e[r]);
-                    (0..D).for_each(|a| add(2 + a, m[r] * v[a]));
-                    add(4, m[r]);
-                }
-                if let Some(force) = &force {
-                    for r in 0..n {
-                        let impulse = |a: usize| column(force.impulse + a)[r];
-                        // see Simulation::totals
-                        let booked = c.frame_force.is_some();
-                        let travel = |a: usize| if booked { 0.0 } else { impulse(a) * grid[a] };
-                        add(5, column(force.work)[r] + (0..D).map(travel).sum::<f64>());
-                        (0..D).for_each(|a| add(6 + a, impulse(a)));
-                    }
-                }
-                if let Some(received) = received {
-                    column(received).iter().for_each(|&heat| add(8, heat));
-                }
-            }
-        });
-        let momentum: [f64; D] = std::array::from_fn(|a| sums[2 + a]);
+        let all = self.totals();
+        let Totals { mass, momentum, kinetic, internal, .. } = all;
         let squared = momentum.iter().map(|p| p * p).sum::<f64>();
-        let common = if sums[4] > 0.0 { 0.5 * squared / sums[4] } else { 0.0 };
-        let energies = Energies { kinetic: sums[0], internal: sums[1], common };
-        let impulse = std::array::from_fn(|a| sums[6 + a]);
-        (Start { energies, momentum, mass: sums[4] }, sums[5] + sums[8], impulse)
+        let common = if mass > 0.0 { 0.5 * squared / mass } else { 0.0 };
+        let energies = Energies { kinetic, internal, common };
+        let given = all.body_force_work + all.conducted;
+        (Start { energies, momentum, mass }, given, all.body_force_impulse)
     }
 
     /// Takes note of the start. Collective.

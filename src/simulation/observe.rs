@@ -62,34 +62,44 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             conducted,
             failed,
             released,
-        ] = exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
-            for patch in &self.patches {
-                let column = |k: usize| &patch.block.columns[k];
-                let (m, e) = (column(c.mass), column(c.energy));
-                for r in 0..patch.block.own() {
-                    let v: [f64; D] = std::array::from_fn(|a| column(c.velocity + a)[r] + grid[a]);
-                    let squared = v.iter().map(|v| v * v).sum::<f64>();
-                    let speed = if D == 1 { v[0].abs() } else { squared.sqrt() };
-                    add(0, m[r]);
-                    add(1, m[r] * speed);
-                    add(2, 0.5 * m[r] * squared);
-                    add(3, m[r] * e[r]);
-                    (0..D).for_each(|a| add(4 + a, m[r] * v[a]));
+        ] = exact_sums(self.comm, |add: &mut dyn FnMut(usize, &[f64])| {
+            for block in self.patches.iter().map(|patch| &patch.block) {
+                for from in (0..block.own()).step_by(ROWS) {
+                    let rows = from..block.own().min(from + ROWS);
+                    let n = rows.len();
+                    let column = |k: usize| &block.columns[k][rows.clone()][..n];
+                    let (m, e) = (column(c.mass), column(c.energy));
+                    let v: [&[f64]; D] = std::array::from_fn(|a| column(c.velocity + a));
+                    let v = |a: usize, r: usize| v[a][r] + grid[a];
+                    let squared = |r: usize| (0..D).map(|a| v(a, r) * v(a, r)).sum::<f64>();
+                    let speed = |r| if D == 1 { v(0, r).abs() } else { squared(r).sqrt() };
+                    let mut terms = Terms { add, n };
+                    terms.each(0, |r| m[r]);
+                    terms.each(1, |r| m[r] * speed(r));
+                    terms.each(2, |r| 0.5 * m[r] * squared(r));
+                    terms.each(3, |r| m[r] * e[r]);
+                    for a in 0..D {
+                        terms.each(4 + a, |r| m[r] * v(a, r));
+                    }
                     if let Some(force) = &c.body_force {
-                        let impulse = |a: usize| column(force.impulse + a)[r];
+                        let (work, pull) = (column(force.work), column(force.impulse));
+                        let pull = [pull, column(force.impulse + D - 1)];
                         // seen from the scene, the grid's travel does work too, which is in the
                         // books already where it accelerates
                         let booked = c.frame_force.is_some();
-                        let travel = |a: usize| if booked { 0.0 } else { impulse(a) * grid[a] };
-                        add(6, column(force.work)[r] + (0..D).map(travel).sum::<f64>());
-                        (0..D).for_each(|a| add(7 + a, impulse(a)));
+                        let travel = |a: usize, r| if booked { 0.0 } else { pull[a][r] * grid[a] };
+                        terms.each(6, |r| work[r] + (0..D).map(|a| travel(a, r)).sum::<f64>());
+                        for a in 0..D {
+                            terms.each(7 + a, |r| pull[a][r]);
+                        }
                     }
                     if let Some(received) = c.thermal.and_then(|c| c.received) {
-                        add(9, column(received)[r]);
+                        add(9, column(received));
                     }
                     if let Some(failure) = c.failure {
-                        add(10, f64::from(u8::from(column(failure.damage)[r] >= 1.0)));
-                        add(11, column(failure.released)[r]);
+                        let damage = column(failure.damage);
+                        Terms { add, n }.each(10, |r| f64::from(u8::from(damage[r] >= 1.0)));
+                        add(11, column(failure.released));
                     }
                 }
             }
@@ -113,10 +123,10 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
     /// per unit depth: the sums over all places of contact of what presses across the plane of
     /// contact, and of what drags along it. Zero without contact. Collective.
     pub fn contact_force(&self) -> [f64; 2] {
-        exact_sums(self.comm, |add: &mut dyn FnMut(usize, f64)| {
+        exact_sums(self.comm, |add: &mut dyn FnMut(usize, &[f64])| {
             let told = self.patches.iter().flat_map(|p| &p.contact.told);
             for told in told.chain(&self.given_contact) {
-                told.iter().enumerate().for_each(|(k, &force)| add(k, force));
+                told.iter().enumerate().for_each(|(k, &force)| add(k, &[force]));
             }
         })
     }
@@ -253,11 +263,13 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         let c = &self.stepper.columns;
         let (grid, travel) = (self.frame.velocity(self.time), self.frame.travel(self.time));
         let mut words = Vec::new();
+        // most ids differ from all wanted ones in their last bits already
+        let bit = |id: u64| 1u64 << (id % 64);
+        let some = wanted.iter().fold(0, |bits, &id| bits | bit(id));
         for patch in &self.patches {
             let column = |k: usize, r: usize| patch.block.columns[k][r];
-            for row in 0..patch.block.own() {
-                let id = patch.block.ids[row];
-                if !wanted.contains(&id) {
+            for (row, &id) in patch.block.ids[..patch.block.own()].iter().enumerate() {
+                if some & bit(id) == 0 || !wanted.contains(&id) {
                     continue;
                 }
                 let volume = column(c.volume0, row) * column(c.jacobian, row);
@@ -312,6 +324,28 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             .collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         points
+    }
+}
+
+/// Rows whose terms of a sum are found at a time.
+const ROWS: usize = 128;
+
+/// Takes the terms of some rows to their sums.
+struct Terms<'a> {
+    add: &'a mut dyn FnMut(usize, &[f64]),
+    /// Rows.
+    n: usize,
+}
+
+impl Terms<'_> {
+    /// Adds what `of` says of each row to sum number `sum`.
+    #[inline(always)]
+    fn each(&mut self, sum: usize, of: impl Fn(usize) -> f64) {
+        let mut terms = [0.0; ROWS];
+        for r in 0..self.n {
+            terms[r] = of(r);
+        }
+        (self.add)(sum, &terms[..self.n]);
     }
 }
 
