@@ -194,7 +194,13 @@ impl<const D: usize> Block<D> {
 
     fn sort(&mut self, from: usize, to: usize) {
         // most steps leave the order as it was, or move few rows
-        let misplaced = (from + 1..to).filter(|&r| self.key(r - 1) > self.key(r)).count();
+        let mut misplaced = 0;
+        let mut before = 0;
+        for r in from..to {
+            let key = self.key(r);
+            misplaced += usize::from(before > key);
+            before = key;
+        }
         if misplaced == 0 {
             return;
         }
