@@ -23,6 +23,9 @@ pub fn check(table: &mut Table) {
     ];
     let turned = axis.iter().fold(small("flyer_2d"), |job, set| job.set(*set));
     one_digest(table, "the same about an axis", &turned);
+    let rubbing = "contact={\"type\": \"friction\", \"coefficient\": 0.3}";
+    one_digest(table, "flyer_2d.json with contact", &plates.set(rubbing));
+    one_digest(table, "the same about an axis, with contact", &turned.set(rubbing));
 }
 
 /// Coarser and shorter, so that the layouts are many.
