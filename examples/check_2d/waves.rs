@@ -77,8 +77,9 @@ pub fn oblique(table: &mut Table) {
     table.at_most("L1 at 30 degrees over that along x", ratio, 1.3, Show::Number);
     let noise = last(&turned, |p| p.error("noise"));
     table.at_most("at 30 degrees: plateau noise", noise, 1e-3, Show::Percent);
-    let interface =
-        |of: &str, time: usize| format!("{of}: interface, {} us", 0.1 * (time + 1) as f64);
+    let interface = |of: &str, time: usize| {
+        format!("{of}: pressure at the interface, {} us", 0.1 * (time + 1) as f64)
+    };
     let at = |errors: &Option<Vec<f64>>, k: usize| errors.as_ref().map(|all| all[k]);
     table.at_most(&interface("at 30 degrees", 0), at(&turned_interface, 0), 0.01, Show::Percent);
     table.beside(&interface("along x", 0), at(&aligned_interface, 0), "", Show::Percent);
@@ -90,8 +91,8 @@ pub fn oblique(table: &mut Table) {
             last(run, |p| p.error("density_interface")),
             last(run, |p| p.error("energy_interface")),
         );
-        table.beside(&format!("{of}: density there"), density, "", Show::Percent);
-        table.beside(&format!("{of}: energy there"), energy, "", Show::Percent);
+        table.beside(&format!("{of}: density at the interface"), density, "", Show::Percent);
+        table.beside(&format!("{of}: energy at the interface"), energy, "", Show::Percent);
     }
     let drift = turned.summary.energy.drift;
     table.at_most("at 30 degrees: energy drift", drift, 1e-10, Show::Tiny);
