@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Measures what runs in a plane promise, and prints each figure
-# beside its bound; exit code 1 where one is missed. Arguments: sections (column, bits, finite,
-# oblique, sides, vortex, disk, shear, gresho, disks, noh, sod, speed).
+# Measures what runs in a plane and bodies in contact promise, and prints each figure beside its
+# bound; exit code 1 where one is missed. Arguments: sections (column, bits, finite, oblique, sides,
+# contact, vortex, disk, shear, gresho, disks, noh, sod, speed).
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # shellcheck source=scripts/mpi_env.sh
