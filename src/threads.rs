@@ -1,13 +1,22 @@
 //! Threads of a rank, each on a core of its own where that is known to be free.
 
+use std::sync::OnceLock;
+
 use nix::sched::{CpuSet, sched_getaffinity, sched_setaffinity};
 use nix::unistd::Pid;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// The cores that this process may use.
-fn allowed_cores() -> Vec<usize> {
+/// The cores that this thread may use.
+fn own_cores() -> Vec<usize> {
     let set = sched_getaffinity(Pid::from_raw(0)).unwrap_or_default();
     (0..CpuSet::count()).filter(|&c| set.is_set(c).unwrap_or(false)).collect()
+}
+
+/// The cores that this process may use: those before a thread of it was kept on one of them, for
+/// threads begin with those of the one that starts them.
+fn allowed_cores() -> &'static [usize] {
+    static ALLOWED: OnceLock<Vec<usize>> = OnceLock::new();
+    ALLOWED.get_or_init(own_cores)
 }
 
 /// Which core each of `threads` threads of this rank is to stay on; `None` where that would be
@@ -16,7 +25,7 @@ fn allowed_cores() -> Vec<usize> {
 ///
 /// A scheduler may well leave two threads on one core and the other idle: they sleep and wake too
 /// often for it to notice.
-fn choose_cores(allowed: Vec<usize>, threads: usize, ranks_here: usize) -> Option<Vec<usize>> {
+fn choose_cores(allowed: &[usize], threads: usize, ranks_here: usize) -> Option<&[usize]> {
     let alone = ranks_here <= 1 && allowed.len() >= threads;
     let bound = allowed.len() == threads;
     (alone || bound).then_some(allowed)
@@ -30,10 +39,11 @@ fn ranks_here() -> usize {
         .unwrap_or(1)
 }
 
-fn stay_on(core: usize) {
+/// Keeps this thread on some cores.
+fn stay_on(cores: &[usize]) {
     let mut set = CpuSet::new();
     // where the system refuses, threads run as it likes
-    if set.set(core).is_ok() {
+    if cores.iter().all(|&core| set.set(core).is_ok()) {
         let _ = sched_setaffinity(Pid::from_raw(0), &set);
     }
 }
@@ -42,19 +52,13 @@ fn stay_on(core: usize) {
 /// others to wake. A thread can belong to one such pool in its life; for a later run it stands
 /// beside.
 pub fn make_pool(threads: usize) -> ThreadPool {
-    let builder = || ThreadPoolBuilder::new().num_threads(threads);
-    let cores = choose_cores(allowed_cores(), threads, ranks_here());
-    let places = cores.clone();
-    let with_this = builder().use_current_thread().start_handler(move |thread| {
-        if let Some(cores) = &places {
-            stay_on(cores[thread]);
-        }
-    });
-    match with_this.build() {
+    let allowed = allowed_cores();
+    let cores = choose_cores(allowed, threads, ranks_here());
+    let stay = move |thread: usize| stay_on(cores.map_or(allowed, |c| &c[thread..=thread]));
+    let builder = || ThreadPoolBuilder::new().num_threads(threads).start_handler(stay);
+    match builder().use_current_thread().build() {
         Ok(pool) => {
-            if let Some(cores) = &cores {
-                stay_on(cores[0]);
-            }
+            stay(0);
             pool
         }
         Err(_) => builder().build().expect("the system gives threads"),
@@ -67,10 +71,20 @@ mod tests {
 
     #[test]
     fn threads_get_cores_that_are_surely_free() {
-        assert_eq!(choose_cores(vec![2, 3], 2, 1), Some(vec![2, 3]));
-        assert_eq!(choose_cores(vec![0, 1, 2, 3], 2, 1), Some(vec![0, 1, 2, 3]));
-        assert_eq!(choose_cores(vec![0, 1], 3, 1), None, "too few");
-        assert_eq!(choose_cores(vec![0, 1, 2, 3], 2, 2), None, "not bound");
-        assert_eq!(choose_cores(vec![4, 5], 2, 8), Some(vec![4, 5]), "bound by the launcher");
+        assert_eq!(choose_cores(&[2, 3], 2, 1), Some(&[2, 3][..]));
+        assert_eq!(choose_cores(&[0, 1, 2, 3], 2, 1), Some(&[0, 1, 2, 3][..]));
+        assert_eq!(choose_cores(&[0, 1], 3, 1), None, "too few");
+        assert_eq!(choose_cores(&[0, 1, 2, 3], 2, 2), None, "not bound");
+        assert_eq!(choose_cores(&[4, 5], 2, 8), Some(&[4, 5][..]), "bound by the launcher");
+    }
+
+    #[test]
+    fn a_later_pool_has_the_cores_of_the_first() {
+        let cores = || {
+            let pool = make_pool(2);
+            pool.broadcast(|_| own_cores())
+        };
+        let both = std::thread::spawn(move || [cores(), cores()]).join().expect("no panic");
+        assert_eq!(both[0], both[1]);
     }
 }
