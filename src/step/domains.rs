@@ -103,6 +103,9 @@ impl<const D: usize> Stepper<D> {
                     (0..n).for_each(|r| out[r] = volume0[r] * scale);
                 }
                 Extent::Point if k == c.domain => {}
+                Extent::Current if D == 1 => {
+                    (0..n).for_each(|r| out[r] = self.domain_length(volume0[r] * j[r] * scale));
+                }
                 _ => (0..n).for_each(|r| out[r] = volume0[r] * j[r] * scale),
             }
         }
@@ -128,6 +131,14 @@ impl<const D: usize> Stepper<D> {
                 out.extend(half.iter().map(|h| 2.0 * h * self.inverse_cell[a]));
             }
         }
+    }
+
+    /// Length of a particle's domain on a line that fills `length` [cells]: at most twice the
+    /// greatest half diagonal that the scene allows. What is not a number stays so.
+    #[inline(always)]
+    pub(super) fn domain_length(&self, length: f64) -> f64 {
+        let most = self.domain_limit.map_or(f64::INFINITY, |limit| 2.0 * limit);
+        if length > most { most } else { length }
     }
 
     /// The own rows' parallelograms [cells] `ahead` of their state in time, with the area of
@@ -330,7 +341,7 @@ impl<const D: usize> Stepper<D> {
             Outlines::Length(volume) => {
                 let [volume0, jacobian] = volume.map(|column| &column[rows.clone()]);
                 for ((length, v), j) in out.iter_mut().zip(volume0).zip(jacobian) {
-                    *length = v * j * inverse[0];
+                    *length = self.domain_length(v * j * inverse[0]);
                 }
             }
             Outlines::FirstLength(volume0) => {

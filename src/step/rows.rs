@@ -166,8 +166,9 @@ impl<const D: usize> Stepper<D> {
         }
         let volume0 = &patch.block.columns[c.volume0];
         let j_mid = &patch.block.columns[mid];
-        let limit = patch.reach_length * self.cell[0];
-        if let Some(row) = (0..j_mid.len()).find(|&r| volume0[r] * j_mid[r] > limit) {
+        let (limit, scale) = (patch.reach_length, self.inverse_cell[0]);
+        let torn = |r: &usize| self.domain_length(volume0[*r] * j_mid[*r] * scale) > limit;
+        if let Some(row) = (0..j_mid.len()).find(torn) {
             self.fault(patch, Phase::Start, row, "it is torn apart within one step".into());
         }
     }
@@ -427,7 +428,7 @@ impl<const D: usize> Stepper<D> {
         if patch.told.length > limit && self.domains_deform() {
             found.extend(self.first_longer(&patch.block, limit).map(|(row, cells)| {
                 (row, format!(
-                    "it has been stretched over {cells:.1} cells, further than its shape function reaches; more particles a cell stretch less"
+                    "it has been stretched over {cells:.1} cells, further than its shape function reaches"
                 ))
             }));
         }

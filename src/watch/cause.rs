@@ -11,6 +11,9 @@ pub fn likely_cause(scene: &CheckedScene, alarm: Alarm, what: &str) -> String {
                 \"outflow\""
             .into();
     }
+    if what.contains("stretched over") || what.contains("torn apart") {
+        return expansion(scene);
+    }
     let limit = scene.courant_limit();
     if all.time.courant > limit {
         return format!(
@@ -61,6 +64,20 @@ pub fn likely_cause(scene: &CheckedScene, alarm: Alarm, what: &str) -> String {
                 .into()
         }
     }
+}
+
+/// Why a particle is longer than the stencil of its shape function, and what to try.
+fn expansion(scene: &CheckedScene) -> String {
+    let limit = match (scene.scene.method.domain_limit, scene.dimension) {
+        (Some(_), _) => "a smaller method.domain_limit",
+        (None, 1) => "method.domain_limit 4",
+        (None, _) => "method.domain_limit 1",
+    };
+    format!(
+        "the material expands freely, as a gas does into empty space: the finer the cells, the \
+         more cells a particle comes to fill; method.frame \"total_lagrangian\", {limit}, an \
+         \"outflow\" nearer to the body, or more particles per cell"
+    )
 }
 
 /// Whether a fluid without a limit is in tension.

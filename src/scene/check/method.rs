@@ -38,10 +38,9 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Fau
     }
     if let Some(limit) = method.domain_limit {
         let deforms = matches!(method.shape, ShapeKind::Cpdi | ShapeKind::CpdiBsplineQuadratic);
-        if scene.domain.lower.len() == 1 || !deforms {
-            let reason = "says nothing: no particle has a parallelogram; allowed: to leave it \
-                          out, or two dimensions and method.shape \"cpdi\" or \
-                          \"cpdi_bspline_quadratic\"";
+        if !deforms {
+            let reason = "has no effect: no particle's domain deforms; allowed: to leave it out, \
+                          or method.shape \"cpdi\" or \"cpdi_bspline_quadratic\"";
             return Err(Fault::new("method.domain_limit", limit, reason));
         }
     }
