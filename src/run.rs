@@ -354,7 +354,7 @@ where
         before,
     );
     let shares = accounts::effect_shares(comm, &simulation);
-    let stretched = simulation.stretched();
+    let (stretched, energy_change) = (simulation.stretched(), simulation.energy_change());
     if let Some((path, _)) = &options.trace {
         let events = accounts::timeline(comm, &mut simulation);
         if comm.rank() == 0 {
@@ -410,9 +410,11 @@ where
     });
     let times = [0.0, simulation.time()];
     let left = ways.outflow.and(&ways.erosion);
-    let (energy, momentum) = balance(scene, times, [&start, &end], &left, &given);
+    let rounding = simulation.rounding_energy();
+    let (energy, momentum) = balance(scene, times, [&start, &end], &left, &given, rounding);
     let lets_out = scene.sides::<D>().as_flattened().iter().any(|side| side.lets_out());
-    warnings.extend(inaccurate(&energy, stretched, simulation.tally().redone_steps));
+    warnings.extend(inaccurate(energy_change, stretched, simulation.tally().redone_steps));
+    warnings.extend(simulation.peaks().warnings());
     let particle_steps = scene.particles as f64 * simulation.steps_made() as f64;
     let layout = simulation.layout();
     let summary = Summary {
@@ -458,13 +460,13 @@ where
 const DRIFT_TOLD: f64 = 0.01;
 
 /// What a run that has ended well says against its accuracy, one line each.
-fn inaccurate(energy: &Energy, stretched: u64, redone: u64) -> Vec<String> {
-    let drift = energy.drift.filter(|d| d.abs() > DRIFT_TOLD).map(|drift| {
+fn inaccurate(energy_change: f64, stretched: u64, redone: u64) -> Vec<String> {
+    let drift = (energy_change.abs() > DRIFT_TOLD).then(|| {
         format!(
-            "energy has drifted by {:+.2} %: the scheme does not keep it, and shocks are wrong \
+            "energy has drifted by {:+.2} % of what the bodies bring: the scheme does not keep it, and shocks are wrong \
              with it; method.stepping \"midpoint\" with method.energy \"compatible\" and \
              method.filter_heat keep it to rounding",
-            100.0 * drift
+            100.0 * energy_change
         )
     });
     let stretched = (stretched > 0).then(|| {
@@ -574,6 +576,7 @@ fn balance<const D: usize>(
     [start, end]: [&Totals<D>; 2],
     left: &Left<D>,
     given: &Given<D>,
+    rounding: f64,
 ) -> (Energy, Momentum) {
     let sides = scene.sides::<D>();
     let rigid = |a: usize| sides[a].iter().any(|s| s.rigid_velocity().is_some());
@@ -597,12 +600,13 @@ fn balance<const D: usize>(
         (0..D).map(|a| velocity[a] * walls[a]).sum::<f64>()
     };
     let work = pistons + given.work + end.conducted - (left.kinetic + left.internal);
-    let energy = Energy::new([start.kinetic, end.kinetic], [start.internal, end.internal], work);
+    let energy =
+        Energy::new([start.kinetic, end.kinetic], [start.internal, end.internal], work, rounding);
     let momentum = Momentum::new(&start.momentum, &end.momentum, &impulse, start.absolute_momentum);
     match scene.scene.body_force {
         None => (energy, momentum),
         Some(_) => (
-            energy.with_body_force(end.body_force_work),
+            energy.with_body_force(end.body_force_work, rounding),
             momentum.with_body_force(&end.body_force_impulse, start.absolute_momentum),
         ),
     }

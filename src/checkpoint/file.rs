@@ -18,6 +18,7 @@ use crate::figures::PressureRow;
 use crate::output::histories::Histories;
 use crate::output::{OutputError, ParticleTable, TableColumn};
 use crate::simulation::Saved;
+use crate::watch::Peaks;
 
 /// All single numbers.
 #[derive(Serialize, Deserialize)]
@@ -32,6 +33,8 @@ struct Books {
     left: [u64; 2],
     /// Whole numbers of 128 bits, which JSON's readers seldom have.
     sums: Vec<String>,
+    #[serde(default)]
+    peaks: Peaks,
     due: Due,
     materials: Vec<String>,
     profiles: usize,
@@ -109,6 +112,7 @@ fn write_root(file: &Group, contents: &Contents, alive: &dyn Fn()) -> hdf5::Resu
         longest: saved.longest,
         left: [saved.left.rows, saved.left.marks],
         sums: saved.sums.iter().map(i128::to_string).collect(),
+        peaks: saved.peaks,
         due: contents.due.clone(),
         materials: tables.first().map_or(Vec::new(), |t| t.0.materials.clone()),
         profiles: tables.len(),
@@ -238,6 +242,7 @@ fn read_root(file: &Group, length: u64) -> hdf5::Result<Checkpoint> {
             longest: books.longest,
             left: Census { rows: books.left[0], marks: books.left[1] },
             sums: sums.collect::<Result<_, _>>()?,
+            peaks: books.peaks,
             rows: StoredRows {
                 ids: get.values(&rows, "id")?,
                 cells: get.values(&rows, "cell")?,

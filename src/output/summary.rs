@@ -106,9 +106,11 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// Totals and drift from kinetic and internal energy at \[start, end\].
-    pub fn new(kinetic: [f64; 2], internal: [f64; 2], boundary_work: f64) -> Energy {
+    /// Totals and drift from kinetic and internal energy at \[start, end\]; no drift where there
+    /// is no more energy than `rounding` may make.
+    pub fn new(kinetic: [f64; 2], internal: [f64; 2], boundary_work: f64, rounding: f64) -> Energy {
         let [total_start, total_end] = [kinetic[0] + internal[0], kinetic[1] + internal[1]];
+        let scale = if total_start == 0.0 { total_end } else { total_start }.abs();
         Energy {
             kinetic_start: kinetic[0],
             internal_start: internal[0],
@@ -120,16 +122,16 @@ impl Energy {
             body_force_work: None,
             drift: ratio(
                 total_end - total_start - boundary_work,
-                if total_start == 0.0 { total_end } else { total_start },
+                if scale > rounding { scale } else { 0.0 },
             ),
         }
     }
 
     /// The same with the work of a body force.
-    pub fn with_body_force(self, work: f64) -> Energy {
+    pub fn with_body_force(self, work: f64, rounding: f64) -> Energy {
         let kinetic = [self.kinetic_start, self.kinetic_end];
         let internal = [self.internal_start, self.internal_end];
-        let drift = Energy::new(kinetic, internal, self.boundary_work + work).drift;
+        let drift = Energy::new(kinetic, internal, self.boundary_work + work, rounding).drift;
         Energy { body_force_work: Some(work), drift, ..self }
     }
 }
@@ -325,7 +327,7 @@ pub(super) mod tests {
                     step_share: Some(0.0),
                 },
             ],
-            energy: Energy::new([10.0, 4.0], [0.0, 7.0], 0.5),
+            energy: Energy::new([10.0, 4.0], [0.0, 7.0], 0.5, 0.0),
             momentum: Momentum::new(&[8.0], &[8.0], &[0.0], 8.0),
             outflow: None,
             erosion: None,
@@ -347,8 +349,11 @@ pub(super) mod tests {
         let momentum = Momentum::new(&[1.0, 0.0], &[4.5, 4.0], &[0.5, 0.0], 10.0);
         assert_eq!(momentum.drift, Some(0.5));
         assert_eq!(Momentum::new(&[0.0], &[0.0], &[0.0], 0.0).drift, None);
-        assert_eq!(Energy::new([0.0, 3.0], [0.0, 1.0], 3.0).drift, Some(0.25));
-        assert_eq!(Energy::new([0.0; 2], [0.0; 2], 0.0).drift, None);
+        assert_eq!(Energy::new([0.0, 3.0], [0.0, 1.0], 3.0, 0.0).drift, Some(0.25));
+        assert_eq!(Energy::new([0.0; 2], [0.0; 2], 0.0, 0.0).drift, None);
+        // a body colder than its reference has a negative energy
+        assert_eq!(Energy::new([1.0; 2], [-5.0, -4.0], 0.0, 0.0).drift, Some(0.25));
+        assert_eq!(Energy::new([0.0; 2], [0.0, 1e-11], 0.0, 1e-9).drift, None);
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! them the state is copied, so that where a run goes wrong the last good one can be written. The
 //! verdicts are the same on all ranks, whatever the layout.
 
-use decomp::{Block, Census, Comm, ExactSum, StoredRows};
+use decomp::{Block, Census, Comm, ExactSum, StoredRows, exact_sums};
 
 use super::{Given, Left, RunError, Saved, Simulation, Totals};
 use crate::patch::Patch;
@@ -39,7 +39,14 @@ pub(super) struct Start<const D: usize> {
 impl<const D: usize> Start<D> {
     /// Before anything is there.
     pub(super) const NONE: Self = Start {
-        energies: Energies { kinetic: 0.0, internal: 0.0, common: 0.0 },
+        energies: Energies {
+            kinetic: 0.0,
+            internal: 0.0,
+            common: 0.0,
+            available: 0.0,
+            above_least: 0.0,
+            below_zero_kelvin: 0.0,
+        },
         momentum: [0.0; D],
         mass: 0.0,
     };
@@ -53,9 +60,44 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         let Totals { mass, momentum, kinetic, internal, .. } = all;
         let squared = momentum.iter().map(|p| p * p).sum::<f64>();
         let common = if mass > 0.0 { 0.5 * squared / mass } else { 0.0 };
-        let energies = Energies { kinetic, internal, common };
+        let [available, above_least, below_zero_kelvin] = self.admissible_energies(internal);
+        let energies =
+            Energies { kinetic, internal, common, available, above_least, below_zero_kelvin };
         let given = all.body_force_work + all.conducted;
         (Start { energies, momentum, mass }, given, all.body_force_impulse)
+    }
+
+    /// Sums of [`Energies::available`], [`Energies::above_least`] and
+    /// [`Energies::below_zero_kelvin`] over all particles, whose internal energy is `internal` [J].
+    /// Collective.
+    fn admissible_energies(&self, internal: f64) -> [f64; 3] {
+        let c = &self.stepper.columns;
+        // the usual case, bodies that start without pressure and temperature, needs no pass
+        if c.thermal.is_none() && self.least_energies.iter().all(|least| *least == 0.0) {
+            return [internal.max(0.0), internal, 0.0];
+        }
+        exact_sums(self.comm, |add: &mut dyn FnMut(usize, &[f64])| {
+            for block in self.patches.iter().map(|p| &p.block) {
+                for r in 0..block.own() {
+                    let (m, e) = (block.columns[c.mass][r], block.columns[c.energy][r]);
+                    let body = block.columns[c.body][r] as usize;
+                    let above = e - self.least_energies[body];
+                    add(0, &[m * above.max(e).max(0.0)]);
+                    // heat that a conductor holds makes up for no lack elsewhere
+                    add(
+                        1,
+                        &[m * if self.stepper.conducts_heat(body) {
+                            above.min(0.0)
+                        } else {
+                            above
+                        }],
+                    );
+                    if let Some(lack) = self.stepper.heat_below_zero_kelvin(block, r) {
+                        add(2, &[m * lack]);
+                    }
+                }
+            }
+        })
     }
 
     /// Takes note of the start. Collective.
@@ -69,31 +111,33 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
 
     /// Looks at the energy of all particles, and at how they crowd. Collective.
     pub(super) fn look(&self) -> Result<(), RunError> {
-        let (now, forces, impulse) = self.sums();
-        // sides that give or let nothing out have nothing booked
-        let (left, given) = match self.scene.keeps_all() {
-            true => (Left::NONE, Given { work: 0.0, impulse: [0.0; D] }),
-            false => (self.left(), self.given()),
-        };
-        let work = self.side_work(&now, &impulse, &left, &given) + forces;
-        let growth = self.limits.growth(&self.start.energies, &now.energies, work);
-        let bound = self.limits.energy_growth;
-        if growth.is_nan() || growth > bound {
+        let (now, work) = self.sums_and_work();
+        let (start, limits) = (&self.start.energies, &self.limits);
+        let change = limits.change(start, &now.energies, work, self.start.mass);
+        if change.is_nan() || change > limits.energy_growth || change < -limits.energy_loss {
+            let (verb, bound) = match change < 0.0 {
+                true => ("fallen", limits.energy_loss),
+                false => ("grown", limits.energy_growth),
+            };
             let what = format!(
-                "total energy has grown by {growth:.3e} of what the bodies bring, allowed: \
-                 {bound:.1e}; this particle has most of it for its mass"
+                "total energy has {verb} by {:.3e} of the energy of the start and of the work \
+                 done, allowed: {bound:.1e}; this particle has the most energy per mass",
+                change.abs()
             );
             return Err(self.alarm(Alarm::Energy, what, |s, b, r| s.specific_energy(b, r)));
         }
-        let cold = self.limits.cold(&self.start.energies, &now.energies, work);
-        if self.limits.warm && (cold.is_nan() || cold > bound.max(COLD)) {
+        let lack = limits.lack(start, &now.energies, work, self.start.mass);
+        if lack.is_nan() || lack > limits.energy_lack {
             let what = format!(
-                "internal energy has fallen below none by {cold:.3e} of what the bodies bring, \
-                 allowed: {:.1e}; this particle has least",
-                bound.max(COLD)
+                "internal energy has fallen below the least that the materials admit by \
+                 {lack:.3e} of the energy of the start, allowed: {:.1e}; this particle is the \
+                 furthest below",
+                limits.energy_lack
             );
-            let energy = self.stepper.columns.energy;
-            return Err(self.alarm(Alarm::Cold, what, |_, b, r| -b.columns[energy][r]));
+            let c = &self.stepper.columns;
+            return Err(self.alarm(Alarm::Cold, what, |_, b, r| {
+                self.least_energies[b.columns[c.body][r] as usize] - b.columns[c.energy][r]
+            }));
         }
         let mut crowd =
             [-(self.patches.iter().map(|p| crowd(&p.block).0).max().unwrap_or(0) as f64)];
@@ -107,6 +151,30 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             return Err(self.alarm(Alarm::Crowding, what, |_, b, r| cell(b, r)));
         }
         Ok(())
+    }
+
+    /// Change of energy since the start, less all work, over the energy that the bodies bring [-].
+    /// Collective.
+    pub fn energy_change(&self) -> f64 {
+        let (now, work) = self.sums_and_work();
+        self.limits.change(&self.start.energies, &now.energies, work, self.start.mass)
+    }
+
+    /// Energy that rounding alone may make of the scene's particles [J].
+    pub fn rounding_energy(&self) -> f64 {
+        self.limits.rounding * self.start.mass
+    }
+
+    /// Sums over all particles, and the work of sides, forces and heat. Collective.
+    fn sums_and_work(&self) -> (Start<D>, f64) {
+        let (now, forces, impulse) = self.sums();
+        // sides that give or let nothing out have nothing booked
+        let (left, given) = match self.scene.keeps_all() {
+            true => (Left::NONE, Given { work: 0.0, impulse: [0.0; D] }),
+            false => (self.left(), self.given()),
+        };
+        let work = self.side_work(&now, &impulse, &left, &given) + forces;
+        (now, work)
     }
 
     /// Work of the sides so far, less what has left [J]; see [`crate::run`]'s account of it.
@@ -324,6 +392,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             longest: held.longest,
             left,
             sums: sums.iter().map(ExactSum::total).collect(),
+            peaks: self.peaks,
             rows,
         })
     }
@@ -370,9 +439,6 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
 
 /// Cells that a particle fills where it is told to be stretched, with room for rounding.
 const STRETCHED: f64 = 1.0 + 1e-6;
-
-/// Least share of energy below none that counts [-]: what tension stores and rounding leaves.
-const COLD: f64 = 0.02;
 
 /// Appends `from` to `to`, which asks for memory for all `rows` and some at once.
 fn extend<T: Copy>(to: &mut Vec<T>, from: &[T], rows: usize) {

@@ -7,6 +7,7 @@ mod balance;
 mod books;
 mod look;
 mod observe;
+mod peaks;
 mod save;
 
 pub use crate::patch::Given;
@@ -32,10 +33,11 @@ use crate::patch::Patch;
 use crate::scene::{CheckedBody, CheckedScene, FilterHalo, Side};
 use crate::step::{Reach, Sleep, Stepper, Steps, World};
 use crate::threads::make_pool;
-use crate::watch::{Alarm, Limits};
+use crate::watch::{Alarm, Limits, Peaks};
 
 use books::{CENSUS_EVERY, Outflow, SideBooks};
 use look::{Held, Start};
+use peaks::Expected;
 
 /// Why a run ended before its time.
 #[derive(Debug, thiserror::Error)]
@@ -159,6 +161,10 @@ pub struct Simulation<'a, C: Comm, const D: usize> {
     side_books: SideBooks<D>,
     /// What the watch holds the run to, the sums that it started with, and the last good state.
     limits: Limits,
+    /// Least admissible specific internal energy of each body's particles [J/kg].
+    least_energies: Vec<f64>,
+    expected: Vec<Expected<D>>,
+    peaks: Peaks,
     start: Start<D>,
     held: Held<D>,
     frame: Frame<D>,
@@ -419,6 +425,9 @@ where
             outflow: Outflow::new(scene),
             side_books: SideBooks::new(scene, stepper.fastest),
             limits: Limits::new(scene, stepper.fastest, stepper.shortest_edge()),
+            least_energies: stepper.least_energies(scene),
+            expected: Expected::of(scene, &stepper),
+            peaks: Peaks::default(),
             start: Start::NONE,
             held: Held::default(),
             stepper,
@@ -528,6 +537,7 @@ where
         let due = self.step.is_multiple_of(self.scene.scene.watch.interval);
         if due || self.redoes() || self.time >= end {
             self.look()?;
+            self.note_peaks();
             if !self.redoes() {
                 self.hold();
             }

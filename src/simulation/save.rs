@@ -12,6 +12,7 @@ use super::{RunError, Simulation, Tally};
 use crate::clock::Clock;
 use crate::patch::Patch;
 use crate::scene::CheckedScene;
+use crate::watch::Peaks;
 
 /// What a run needs to go on.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -28,6 +29,8 @@ pub struct Saved {
     pub left: Census,
     /// Totals of the sums over what has left and what the sides have given.
     pub sums: Vec<i128>,
+    /// Greatest values so far.
+    pub peaks: Peaks,
     /// All particles.
     pub rows: StoredRows,
 }
@@ -57,6 +60,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             longest: self.longest,
             left,
             sums: sums.iter().map(ExactSum::total).collect(),
+            peaks: self.peaks,
             rows,
         })
     }
@@ -69,13 +73,15 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
     pub fn restore(&mut self, saved: Option<&Saved>) -> Result<(), RunError> {
         let head = saved.map_or(Vec::new(), |s| {
             let floats = [s.time, s.stable, s.longest].map(f64::to_bits);
-            [&floats[..], &[s.step]].concat().iter().flat_map(|w| w.to_le_bytes()).collect()
+            let peaks = s.peaks.values().map(f64::to_bits);
+            [&floats[..], &[s.step], &peaks].concat().iter().flat_map(|w| w.to_le_bytes()).collect()
         });
         let head = self.comm.broadcast(head);
         let words = &words_of(&head)[1..];
         let float = |k: usize| f64::from_bits(words[k]);
         (self.time, self.stable, self.longest, self.step) =
             (float(0), float(1), float(2), words[3]);
+        self.peaks = Peaks::of(std::array::from_fn(|k| float(4 + k)));
         self.dt = self.scene.scene.time.courant * self.stable;
         self.first_step = self.step;
         let books = self.outflow.sums.iter_mut().chain(&mut self.side_books.sums);

@@ -70,6 +70,8 @@ pub struct Stepper<const D: usize> {
     pub layers: usize,
     /// rho c^2 of each body as it starts [Pa].
     stiffness: Vec<f64>,
+    /// Acoustic impedance rho c of each body as it starts [Pa s/m].
+    impedances: Vec<f64>,
     /// The speed of the scene's impacts, the most of all its bodies [m/s].
     impact: f64,
     /// The most impulse that each body may give back where it is pulled on [Pa s].
@@ -266,6 +268,7 @@ impl<const D: usize> Stepper<D> {
             })
         };
         let stiffness = speeds().map(|(_, density, c)| density * c.powi(2)).collect();
+        let impedances = speeds().map(|(_, density, c)| density * c).collect();
         let impact = scene.impact_speed::<D>();
         let speed =
             |pressure: f64, density: f64, c: f64| impact.max(pressure.abs() / (density * c));
@@ -323,6 +326,7 @@ impl<const D: usize> Stepper<D> {
             contact,
             layers: scene.velocity_fields(),
             stiffness,
+            impedances,
             impact,
             most_pull,
             rest: sides::Rest::of(scene, &models, &waves),
@@ -361,6 +365,33 @@ impl<const D: usize> Stepper<D> {
             (Some(t), Some(thermal)) if thermal.isentrope.is_some() => thermal.energy_at(t),
             _ => self.models[body].energy_at(pressure),
         }
+    }
+
+    /// The least specific internal energy that the particles of each body may have [J/kg]: what
+    /// adiabatic flow leaves of the energy of the start, or where heat is conducted absolute zero.
+    pub fn least_energies(&self, scene: &CheckedScene) -> Vec<f64> {
+        let bodies = scene.scene.bodies.iter().zip(&self.models).enumerate();
+        bodies
+            .map(|(i, (body, model))| {
+                let density = scene.scene.materials[&body.material].density;
+                let start = self.starting_energy(i, body.pressure, body.temperature);
+                let least = constitutive::least_energy(model, density, start);
+                match &self.thermals[i] {
+                    Some(thermal) if self.conducts_heat(i) => least.min(thermal.energy_at(0.0)),
+                    _ => least,
+                }
+            })
+            .collect()
+    }
+
+    /// Acoustic impedance rho c of `body` as it starts [Pa s/m].
+    pub fn impedance(&self, body: usize) -> f64 {
+        self.impedances[body]
+    }
+
+    /// Whether conduction moves heat into and out of `body`.
+    pub fn conducts_heat(&self, body: usize) -> bool {
+        self.thermals[body].as_ref().is_some_and(|thermal| thermal.conductivity.is_some())
     }
 
     /// What `body` has been pressed with where it starts at `pressure` [Pa s].

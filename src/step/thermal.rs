@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::Stepper;
 use super::rows::bodies;
-use crate::patch::Patch;
+use crate::patch::{Patch, Phase};
 
 impl<const D: usize> Stepper<D> {
     /// What the plastic work of a step on the rows of `body` does to their temperature, where it
@@ -31,19 +31,35 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
+    /// Heat that own particle `r` lacks to absolute zero, per unit mass [J/kg]: cv max(0, -T);
+    /// `None` without a temperature.
+    pub fn heat_below_zero_kelvin(&self, block: &decomp::Block<D>, r: usize) -> Option<f64> {
+        let temperature = block.columns[self.columns.thermal?.temperature][r];
+        let thermal = self.thermals[block.columns[self.columns.body][r] as usize].as_ref()?;
+        // max() would pass over NaN
+        Some(if temperature >= 0.0 { 0.0 } else { -thermal.specific_heat * temperature })
+    }
+
     /// Temperature of the own rows from their energy, where it follows from that.
     pub(super) fn refresh_temperature(&self, patch: &mut Patch<D>, pressure: &[f64]) {
         let Some(thermal) = self.columns.thermal else { return };
         let mut temperature = std::mem::take(&mut patch.block.columns[thermal.temperature]);
+        let mut lost = None;
         let body = &patch.block.columns[self.columns.body][..patch.block.own()];
         for (body, rows) in bodies(body) {
             for r in rows {
                 if let Some(t) = self.temperature(patch, body, r, pressure[r], temperature[r]) {
                     temperature[r] = t;
+                    if lost.is_none() && !t.is_finite() {
+                        lost = Some(r);
+                    }
                 }
             }
         }
         patch.block.columns[thermal.temperature] = temperature;
+        if let Some(r) = lost {
+            self.fault(patch, Phase::End, r, "its temperature is not a number".into());
+        }
     }
 
     /// Temperature of a row from its energy, if it follows from that; `before` is what its

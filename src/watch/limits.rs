@@ -1,7 +1,8 @@
 //! The bounds of a scene.
 
 use crate::scene::{
-    BodyForce, Burn, CheckedScene, EnergyUpdate, Eos, Scene, ShapeKind, Side, Stepping, Transfer,
+    Body, BodyForce, Burn, CheckedScene, EnergyUpdate, Eos, Scene, ShapeKind, Side, Stepping,
+    Transfer,
 };
 
 /// Growth of energy that ends a run of a scheme that keeps it to rounding [-].
@@ -15,10 +16,22 @@ const LOSSY_GROWTH: f64 = 0.5;
 /// another cell: up to 3 was seen, bounded.
 const KICKED_GROWTH: f64 = 10.0;
 
+/// Loss of energy that ends a run of such a scheme: filters and explicit stress may take all the
+/// energy that there is, but not more.
+const LOSSY_LOSS: f64 = 1.02;
+
+/// Least share of energy below the least admissible one that counts [-]: elastic energy of tension
+/// and rounding.
+const COLD: f64 = 0.02;
+
 /// Least share of all energy that counts as what a common motion leaves [-].
 const REST_OF_MOTION: f64 = 1e-6;
 
-/// Sums over a run's particles that the watch looks at.
+/// Energy that rounding may create in a run, over m c^2 and, with conduction, over the heat above
+/// absolute zero [-]: the least scale of energy, also where nothing moves.
+const ROUNDING: f64 = 1e-12;
+
+/// Sums over a run's particles that the monitor checks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energies {
     /// Kinetic energy [J].
@@ -27,6 +40,13 @@ pub struct Energies {
     pub internal: f64,
     /// Kinetic energy of the common motion [J].
     pub common: f64,
+    /// Internal energy that adiabatic flow can turn into motion, or the internal energy where that
+    /// is more [J].
+    pub available: f64,
+    /// Internal energy above the least admissible one of each particle [J].
+    pub above_least: f64,
+    /// Thermal energy that particles below absolute zero lack [J].
+    pub below_zero_kelvin: f64,
 }
 
 impl Energies {
@@ -47,11 +67,14 @@ pub struct Limits {
     pub least_step: f64,
     /// Most particles in a cell.
     pub crowd: usize,
-    /// Greatest growth of energy, over what there is of it [-].
+    /// Greatest growth of energy, over the energy at the start [-].
     pub energy_growth: f64,
-    /// Whether internal energy below none is a fault: the equations of state have their zero
-    /// where the material is at rest.
-    pub warm: bool,
+    /// Greatest loss of energy, over the same [-].
+    pub energy_loss: f64,
+    /// Greatest lack of internal energy below the least admissible one, over the same [-].
+    pub energy_lack: f64,
+    /// Energy per unit mass that rounding may create [J/kg]: the least scale of energy.
+    pub rounding: f64,
     /// Whether nothing holds the bodies, so that their common motion drives nothing.
     pub free: bool,
 }
@@ -64,40 +87,45 @@ impl Limits {
         let reference = fastest.max(driven_speed(scene, fastest));
         let most = scene.bodies.iter().map(|b| most_in_a_cell(scene, b)).fold(1.0, f64::max);
         let exact = keeps_energy(&scene.scene);
+        let energy_growth = watch.energy_growth.unwrap_or(match exact {
+            true => EXACT_GROWTH,
+            false if scene.scene.method.shape == ShapeKind::Linear => KICKED_GROWTH,
+            false => LOSSY_GROWTH,
+        });
         Limits {
             speed: watch.speed * reference,
             courant: watch.courant,
             least_step: watch.least_step * cell / reference,
             crowd: (watch.crowding * most).min(1e15) as usize,
-            energy_growth: watch.energy_growth.unwrap_or(match exact {
-                true => EXACT_GROWTH,
-                false if scene.scene.method.shape == ShapeKind::Linear => KICKED_GROWTH,
-                false => LOSSY_GROWTH,
-            }),
-            warm: scene.scene.bodies.iter().all(|body| {
-                let eos = &scene.scene.materials[&body.material].eos;
-                body.pressure >= 0.0 && zero_at_rest(eos)
-            }),
+            energy_growth,
+            energy_loss: if exact { energy_growth } else { LOSSY_LOSS },
+            energy_lack: energy_growth.max(COLD),
+            rounding: ROUNDING * (fastest * fastest + heat_of_conductors(scene)),
             free: is_free(scene),
         }
     }
 
-    /// Growth of the energy since the `start`, less the `work` that came from outside, over what
-    /// there is of it: what bodies bring beside their common motion, or the work [-].
-    pub fn growth(&self, start: &Energies, now: &Energies, work: f64) -> f64 {
-        let grown = now.total() - start.total() - work;
-        if grown <= 0.0 { grown } else { grown / self.scale(start, work) }
+    /// Change of the energy since the `start`, less the `work` that came from outside, over the
+    /// energy that bodies of total `mass` [kg] bring beside their common motion, and the work [-].
+    pub fn change(&self, start: &Energies, now: &Energies, work: f64, mass: f64) -> f64 {
+        (now.total() - start.total() - work) / self.scale(start, work, mass)
     }
 
-    /// Internal energy below none, over the same [-].
-    pub fn cold(&self, start: &Energies, now: &Energies, work: f64) -> f64 {
-        if now.internal >= 0.0 { 0.0 } else { -now.internal / self.scale(start, work) }
+    /// Internal energy below the least admissible one, further than at the `start`, over the same
+    /// [-].
+    pub fn lack(&self, start: &Energies, now: &Energies, work: f64, mass: f64) -> f64 {
+        let lack = |e: &Energies| (-e.above_least).max(e.below_zero_kelvin).max(0.0);
+        // max() passes over NaN
+        if now.above_least.is_nan() || now.below_zero_kelvin.is_nan() {
+            return f64::NAN;
+        }
+        (lack(now) - lack(start)).max(0.0) / self.scale(start, work, mass)
     }
 
-    fn scale(&self, start: &Energies, work: f64) -> f64 {
+    fn scale(&self, start: &Energies, work: f64, mass: f64) -> f64 {
         let common = if self.free { start.common } else { 0.0 };
-        let own = start.total() - common;
-        own.abs().max(REST_OF_MOTION * start.total().abs()) + work.abs()
+        let all = start.kinetic + start.available;
+        (all - common).max(REST_OF_MOTION * all) + work.abs() + self.rounding * mass
     }
 }
 
@@ -161,15 +189,18 @@ fn most_in_a_cell(scene: &CheckedScene, body: &crate::scene::CheckedBody) -> f64
     }
 }
 
-/// Whether the energy of a material at rest is none, and that of any state above it.
-fn zero_at_rest(eos: &Eos) -> bool {
-    matches!(
-        eos,
-        Eos::MieGruneisen { .. }
-            | Eos::IdealGas { .. }
-            | Eos::LinearElastic { .. }
-            | Eos::NeoHookean { .. }
-    )
+/// Heat of the bodies that conduct above absolute zero, the most of all [J/kg]; conduction rounds
+/// differences of it. Zero without conduction.
+fn heat_of_conductors(scene: &CheckedScene) -> f64 {
+    let held = scene.held_temperatures::<2>();
+    let held = held.as_flattened().iter().flatten().copied().fold(0.0, f64::max);
+    let heat = |body: &Body| {
+        let thermal = scene.scene.materials[&body.material].thermal?;
+        thermal.conductivity?;
+        let own = body.temperature.unwrap_or(thermal.reference_temperature);
+        Some(thermal.specific_heat * own.max(held))
+    };
+    scene.scene.bodies.iter().filter_map(heat).fold(0.0, f64::max)
 }
 
 /// Whether no side holds or drives a body.
@@ -189,21 +220,47 @@ mod tests {
         least_step: 1.0,
         crowd: 1,
         energy_growth: 0.1,
-        warm: true,
+        energy_loss: 0.1,
+        energy_lack: 0.1,
+        rounding: 0.0,
         free: true,
     };
 
+    fn energies(kinetic: f64, internal: f64, common: f64) -> Energies {
+        let (available, above_least) = (internal.max(0.0), internal);
+        Energies { kinetic, internal, common, available, above_least, below_zero_kelvin: 0.0 }
+    }
+
     #[test]
-    fn growth_is_held_against_what_moves_apart() {
-        let start = Energies { kinetic: 100.0, internal: 0.0, common: 99.0 };
-        let now = Energies { kinetic: 100.0, internal: 0.5, common: 99.0 };
-        assert_eq!(LIMITS.growth(&start, &now, 0.0), 0.5);
-        assert_eq!(Limits { free: false, ..LIMITS }.growth(&start, &now, 0.0), 0.005);
-        // what sides have given is no growth
-        assert_eq!(LIMITS.growth(&start, &now, 0.5), 0.0);
-        assert_eq!(LIMITS.growth(&start, &now, 0.75), -0.25);
-        let cold = Energies { internal: -0.2, ..now };
-        assert_eq!(LIMITS.cold(&start, &cold, 1.0), 0.1);
-        assert_eq!(LIMITS.cold(&start, &now, 0.0), 0.0);
+    fn change_of_energy_is_relative_to_motion_against_each_other() {
+        let start = energies(100.0, 0.0, 99.0);
+        let now = energies(100.0, 0.5, 99.0);
+        assert_eq!(LIMITS.change(&start, &now, 0.0, 1.0), 0.5);
+        assert_eq!(Limits { free: false, ..LIMITS }.change(&start, &now, 0.0, 1.0), 0.005);
+        // work of the sides is no growth
+        assert_eq!(LIMITS.change(&start, &now, 0.5, 1.0), 0.0);
+        assert_eq!(LIMITS.change(&start, &now, 1.0, 1.0), -0.25);
+        let cold = Energies { internal: -0.2, above_least: -0.2, ..now };
+        assert_eq!(LIMITS.lack(&start, &cold, 1.0, 1.0), 0.1);
+        assert_eq!(LIMITS.lack(&start, &now, 0.0, 1.0), 0.0);
+        assert!(LIMITS.lack(&start, &Energies { above_least: f64::NAN, ..now }, 0.0, 1.0).is_nan());
+    }
+
+    #[test]
+    fn a_body_colder_than_its_reference_lacks_nothing_at_the_start() {
+        let start = Energies { internal: -86.0, ..energies(1.0, 0.0, 0.0) };
+        let now = Energies { internal: -85.5, ..energies(0.5, 0.0, 0.0) };
+        assert_eq!(LIMITS.change(&start, &now, 0.0, 1.0), 0.0);
+        assert_eq!(LIMITS.lack(&start, &now, 0.0, 1.0), 0.0);
+        let frozen = Energies { below_zero_kelvin: 0.25, ..now };
+        assert_eq!(LIMITS.lack(&start, &frozen, 0.0, 1.0), 0.25);
+    }
+
+    #[test]
+    fn a_scene_at_rest_has_a_scale() {
+        let limits = Limits { rounding: 1e-6, ..LIMITS };
+        let rest = Energies::default();
+        let now = energies(0.0, 1e-9, 0.0);
+        assert!((limits.change(&rest, &now, 0.0, 2.0) - 5e-4).abs() < 1e-18);
     }
 }

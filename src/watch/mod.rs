@@ -10,9 +10,11 @@
 
 mod cause;
 mod limits;
+mod peaks;
 
 pub use cause::likely_cause;
 pub use limits::{Energies, Limits, keeps_energy};
+pub use peaks::Peaks;
 
 /// What the watch has found, beside what particles tell of their own state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,9 +27,9 @@ pub enum Alarm {
     Courant,
     /// The stable time step has collapsed.
     TimeStep,
-    /// Total energy has grown.
+    /// Total energy has grown, or fallen further than the scheme explains.
     Energy,
-    /// Internal energy has fallen below none.
+    /// Internal energy has fallen below the least that the materials admit.
     Cold,
     /// A cell holds more particles than compression could bring there.
     Crowding,

@@ -159,7 +159,7 @@ fn energy_that_falls_below_none() {
     };
     let RunError::Particle { alarm, .. } = &error else { panic!("{error}") };
     assert_eq!(*alarm, Alarm::Cold, "{error}");
-    assert!(error.to_string().contains("internal energy has fallen below none"), "{error}");
+    assert!(error.to_string().contains("internal energy has fallen below the least"), "{error}");
 }
 
 /// A step that turns out too long is made half as long, and the run goes on: the same bits on any

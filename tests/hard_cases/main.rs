@@ -2,7 +2,8 @@
 //! random, none of which may end in NaN, a hang, a panic, or with energy that nobody told of.
 //!
 //! Cases that take long run where `HARD_CASES=all` is set, as `.ci/run` does;
-//! `PROPTEST_CASES=100000 cargo test --release --test hard_cases search` searches further.
+//! `PROPTEST_CASES=100000 cargo test --release --test hard_cases search` searches further, and
+//! `VALID_SCENES=5000 cargo test --release --test hard_cases valid` over all that a scene may name.
 
 mod alarms;
 mod cases;
@@ -10,6 +11,9 @@ mod found;
 #[path = "../common/random_scenes.rs"]
 mod random_scenes;
 mod search;
+mod valid;
+#[path = "../common/valid_scenes.rs"]
+mod valid_scenes;
 
 use cases::CASES;
 use cases::scenes;

@@ -11,6 +11,7 @@ mod layouts;
 mod loads;
 mod pistons;
 mod sides;
+mod sphere;
 mod symmetry;
 mod tools;
 mod waves;

@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A statement of the run's own errors, made from companion runs on cells two and four times as
-/// large, which take about a third of the run's time. On a line.
+/// An estimate of the run's own errors, from companion runs on cells two and four times as large,
+/// which take 43 % of the run's time. On a line.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ErrorEstimate {
