@@ -1,8 +1,10 @@
 //! Explosives: products that expand, and fronts that light them.
 
+use decomp::Serial;
+use flyer_mpm::simulation::Simulation;
 use serde_json::{Value, json};
 
-use crate::tools::{at_most, leapfrog, run, shipped};
+use crate::tools::{at_most, checked, leapfrog, run, shipped};
 
 const TNT: [f64; 6] = [371.2e9, 3.231e9, 4.15, 0.95, 0.3, 7.0e9];
 
@@ -131,4 +133,52 @@ fn what_has_burnt_stays_burnt() {
     }
     let [burnt, density] = &states[3];
     assert!(burnt.iter().all(|f| *f > 0.05) && density.iter().all(|rho| *rho < 1630.0));
+}
+
+/// The greatest pressure, over that of Chapman and Jouguet, after a front has passed so many cells
+/// of 25 um, and what the run warns of.
+fn front_pressure(value: &Value, cells: f64) -> (f64, Vec<String>) {
+    let mut value = value.clone();
+    let (cell, length) = (2.5e-5, cells * 2.5e-5);
+    value["domain"] = json!({"lower": [0.0], "upper": [length + 0.002], "cell_size": cell});
+    value["bodies"][0]["box"]["upper"] = json!([length + 0.001]);
+    value["materials"]["tnt"]["eos"]["burn"]["width"] = json!(4.0 * cell);
+    let end = length / 6930.0;
+    value["time"]["end"] = json!(end);
+    value["output"] = json!({"profiles": {"times": [end]}});
+    let scene = checked(&value);
+    let mut simulation = Simulation::<_, 1>::new(&scene, &Serial, 1).unwrap();
+    while simulation.time() < end {
+        simulation.advance(end).unwrap();
+    }
+    let (table, _) = simulation.gather().unwrap();
+    let greatest = table.column("pressure").unwrap().iter().copied().fold(0.0, f64::max);
+    (greatest / 21.0e9, simulation.peaks().warnings())
+}
+
+#[test]
+fn the_front_does_not_grow_with_the_cells_that_it_passes() {
+    let shipped = shipped("detonation.json");
+    let [(near, _), (far, warnings)] = [200.0, 800.0].map(|n| front_pressure(&shipped, n));
+    assert!(near > 0.85 && far < 1.02 && far / near < 1.1, "{near} {far}");
+    assert_eq!(warnings, Vec::<String>::new());
+}
+
+/// With a filter of high order it grows still: the check and the run warn of it.
+#[test]
+fn a_front_that_grows_is_warned_of() {
+    let mut value = shipped("detonation.json");
+    let of_filter = |value: &Value| {
+        checked(value).warnings.iter().any(|w| w.contains("grows with the number of cells"))
+    };
+    assert!(!of_filter(&value));
+    value["method"]["transfer"] = json!({"xpic": 8});
+    value["method"].as_object_mut().unwrap().remove("edge_mask");
+    assert!(!of_filter(&value));
+    value["method"]["transfer"] = json!({"fmpm": 8});
+    value["method"]["edge_mask"] = json!(0.3);
+    assert!(of_filter(&value));
+    let (pressure, warnings) = front_pressure(&value, 800.0);
+    assert!(pressure > 1.15, "{pressure}");
+    assert!(warnings.iter().any(|w| w.contains("Chapman-Jouguet")), "{warnings:?}");
 }
