@@ -137,7 +137,7 @@ pub fn hugoniot(scene: &CheckedScene, output: &Path) -> Outcome<String> {
     }));
     let title = format!("{}: exact pressure and wave paths", scene.scene.title);
     let stem = folder.file("x_t_diagram");
-    figures::draw_waves(&title, &rows(&solution), Some(&reference), &stem)
+    figures::draw_waves(&title, &rows(&solution), Some(end), Some(&reference), &stem)
         .map_err(|e| failed(&e))?;
     let summary = json!({
         "title": scene.scene.title,
@@ -152,7 +152,8 @@ pub fn hugoniot(scene: &CheckedScene, output: &Path) -> Outcome<String> {
     let text = serde_json::to_string_pretty(&summary).map_err(bad)?;
     std::fs::write(folder.file(SUMMARY_FILE), text).map_err(bad)?;
     let place = folder.commit().map_err(bad)?;
-    Ok(table(&impact, &chain, &release) + &format!("pictures in {}\n", place.display()))
+    let text = table(&impact, &chain, &release) + &limits(&impact, &solution, end);
+    Ok(text + &format!("pictures in {}\n", place.display()))
 }
 
 /// The exact pressure over both plates, row by row.
@@ -161,13 +162,35 @@ fn rows(solution: &Solution) -> Vec<PressureRow> {
         .snapshots
         .iter()
         .filter_map(|s| {
-            let profile = s.profile.as_ref()?;
+            let profile = s.whole.as_ref()?;
             let (lower, upper) = profile.span()?;
             let x = |k: usize| lower + (upper - lower) * (k as f64 + 0.5) / 1500.0;
             let points = (0..1500).filter_map(|k| Some((x(k), profile.at(x(k))?.p)));
             Some(PressureRow { time: s.time, points: points.collect() })
         })
         .collect()
+}
+
+/// When the shock reaches the target's rear, and how far the exact lines of the x-t diagram go.
+fn limits(impact: &Impact, solution: &Solution, end: f64) -> String {
+    let mut text = String::new();
+    if solution.valid_until < end {
+        let _ = writeln!(
+            text,
+            "the shock reaches the target's rear at {:.6} us{}",
+            solution.valid_until * 1e6,
+            if impact.free_rear { "; its release from there is drawn too" } else { "" },
+        );
+    }
+    if let Some((stopped, why)) = &solution.stopped {
+        let _ = writeln!(
+            text,
+            "exact lines end at {:.6} us, before the end at {:.6} us: {why}",
+            stopped * 1e6,
+            end * 1e6
+        );
+    }
+    text
 }
 
 fn table(impact: &Impact, chain: &Chain, release: &Release) -> String {

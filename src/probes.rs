@@ -12,6 +12,10 @@ enum Part {
     Lower,
     Centre,
     Upper,
+    /// The lower face, a free surface.
+    FreeLower,
+    /// The upper face, a free surface.
+    FreeUpper,
 }
 
 /// A probe: the mean over some particles' parts.
@@ -36,6 +40,13 @@ impl Probes {
     ///
     /// An impact has `interface` (the mean of both faces), `free_surface` (the target's rear) and
     /// `flyer_rear`; other scenes the two ends of each body. Tracers follow.
+    ///
+    /// Place and velocity [m/s] of a face are those of the outermost particle, moved to its edge.
+    /// On a free surface ([`CheckedScene::face_is_free`]) the traction is zero, so the pressure [Pa]
+    /// is 0, or the deviator's xx component where the material has strength; elsewhere it is the
+    /// particle's. The particle's own would not do on a free surface: its centre lies half a
+    /// particle inside, where a shock raises the pressure for as long as the computed front takes
+    /// to pass.
     pub fn new(scene: &CheckedScene) -> Option<Self> {
         let interval = scene.history_interval?;
         let mut first = 0;
@@ -48,9 +59,11 @@ impl Probes {
                 range
             })
             .collect();
-        let end = |body: usize, upper: bool| match upper {
-            true => (ranges[body].1, Part::Upper),
-            false => (ranges[body].0, Part::Lower),
+        let end = |body: usize, upper: bool| match (upper, scene.face_is_free(body, upper)) {
+            (true, false) => (ranges[body].1, Part::Upper),
+            (true, true) => (ranges[body].1, Part::FreeUpper),
+            (false, false) => (ranges[body].0, Part::Lower),
+            (false, true) => (ranges[body].0, Part::FreeLower),
         };
         let bodies = &scene.scene.bodies;
         let mut probes = Vec::new();
@@ -186,13 +199,17 @@ impl Probes {
 /// Position, velocity and pressure of a part.
 fn place<const D: usize>(followed: &Followed<D>, part: Part) -> Vec<f64> {
     let shift = match part {
-        Part::Lower => -followed.half_length,
+        Part::Lower | Part::FreeLower => -followed.half_length,
         Part::Centre => 0.0,
-        Part::Upper => followed.half_length,
+        Part::Upper | Part::FreeUpper => followed.half_length,
+    };
+    let pressure = match part {
+        Part::FreeLower | Part::FreeUpper => followed.free_pressure,
+        Part::Lower | Part::Centre | Part::Upper => followed.pressure,
     };
     let mut values = followed.position.to_vec();
     values[0] += shift;
     values.extend(followed.velocity);
-    values.push(followed.pressure);
+    values.push(pressure);
     values
 }

@@ -118,7 +118,11 @@ pub fn impact_of(
         let velocity = scene.speed_along(b);
         ImpactBody { material: solid(scene, b), lower, upper, velocity }
     });
-    Ok((Impact::new(flyer, target)?, numbers))
+    let impact = Impact::new(flyer, target)?;
+    // a rear that breaks off is another one
+    let whole = scene.material_of(numbers[1]).failure.is_none();
+    let free_rear = whole && scene.face_is_free(numbers[1], !impact.mirrored);
+    Ok((Impact { free_rear, ..impact }, numbers))
 }
 
 impl Drive for scene::Course {

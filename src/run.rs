@@ -556,7 +556,8 @@ fn draw<C: Comm>(
         return Ok(());
     }
     let title = format!("{}: pressure and wave paths", scene.scene.title);
-    figures::draw_waves(&title, &recorded.waves, reference, &folder.file("x_t_diagram"))?;
+    let stem = folder.file("x_t_diagram");
+    figures::draw_waves(&title, &recorded.waves, None, reference, &stem)?;
     comm.heartbeat();
     if let Some(histories) = recorded.histories() {
         figures::draw_histories(scene, histories, reference, &folder.file("histories"))?;

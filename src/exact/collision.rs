@@ -2,8 +2,10 @@
 //! two materials, and against a free surface.
 //!
 //! Left-going wave of strength a, right-going wave of strength b; equal pressure and velocity
-//! between them. Newton's rule from the strengths of the fronts that came in.
+//! between them. Newton's rule from the strengths of the fronts that came in; where it fails, as in
+//! strong impacts of compressible materials, bisection for the pressure.
 
+use super::isentrope::least_pressure;
 use super::wave::{Jump, State, wave};
 use crate::material::MieGruneisen;
 
@@ -73,7 +75,7 @@ pub(super) fn collide(
         let dp = l.behind.p - r.behind.p;
         let du = l.behind.u - r.behind.u;
         if !(dp.is_finite() && du.is_finite()) {
-            return None;
+            break;
         }
         if dp.abs() <= tolerance && du.abs() * impedance <= tolerance {
             return Some(Outgoing {
@@ -88,7 +90,92 @@ pub(super) fn collide(
         a = bounded(left.0, left.1, a + (r.dp * du - r.du * dp) / determinant);
         b = bounded(right.0, right.1, b + (l.dp * du + l.du * dp) / determinant);
     }
-    None
+    collide_by_bisection(left, right, quantum)
+}
+
+/// As [`collide`], by bisection for the pressure between the waves. `None` if the two sides part
+/// faster than tension can stretch them.
+fn collide_by_bisection(left: Side, right: Side, quantum: f64) -> Option<Outgoing> {
+    let at = |p: f64| {
+        let l = reach(left.0, left.1, p, -1.0, quantum)?;
+        let r = reach(right.0, right.1, p, 1.0, quantum)?;
+        Some((l, r))
+    };
+    // the left side's velocity falls with the pressure, the right side's rises
+    let rises = |p: f64| at(p).is_some_and(|(l, r)| l.2.u > r.2.u);
+    let scale = left.1.p.abs().max(right.1.p.abs()).max(left.0.rho0 * left.0.c0 * left.0.c0);
+    let least = least_pressure(left.0).max(least_pressure(right.0));
+    let (mut low, mut high) = (0.0, scale);
+    if rises(0.0) {
+        while rises(high) {
+            (low, high) = (high, 2.0 * high);
+        }
+    } else {
+        (low, high) = if least.is_finite() { (least, 0.0) } else { (-scale, 0.0) };
+        // Mie-Grueneisen without gamma0 stretches without a bound
+        while !least.is_finite() && !rises(low) {
+            (low, high) = (2.0 * low, low);
+            if low < -1e3 * scale {
+                return None;
+            }
+        }
+    }
+    loop {
+        let middle = 0.5 * (low + high);
+        if !(middle > low && middle < high) {
+            break;
+        }
+        if rises(middle) { low = middle } else { high = middle }
+    }
+    let ((a, na, left_star), (b, nb, right_star)) = at(high)?;
+    // without a root the search ends at the least pressure, where the velocities still differ
+    let speed = left.0.c0.max(right.0.c0);
+    let meets = (left_star.u - right_star.u).abs() <= 1e-9 * speed;
+    meets.then_some(Outgoing { left: (a, na), right: (b, nb), left_star, right_star })
+}
+
+/// The wave that brings `state` to the pressure `p`: strength, steps, state. By bisection.
+fn reach(
+    m: &MieGruneisen,
+    state: &State,
+    p: f64,
+    side: f64,
+    quantum: f64,
+) -> Option<(f64, usize, State)> {
+    if p == state.p {
+        return Some((0.0, 1, *state));
+    }
+    let count = steps(p - state.p, quantum);
+    let too_much = |d: f64| {
+        let there = wave(m, state, d, side, count).behind.p;
+        // past its limit density a material has no state
+        there >= p || !there.is_finite()
+    };
+    let (mut low, mut high);
+    if p > state.p {
+        let limit = 1.0f64.min(m.limiting_compression()) - state.chi;
+        let shock = if m.gamma0 > 0.0 { 2.0 / m.gamma0 } else { f64::INFINITY };
+        (low, high) = (0.0, limit.min(shock));
+    } else {
+        (low, high) = (-0.1, 0.0);
+        while too_much(low) {
+            (low, high) = (2.0 * low, low);
+            if low < -100.0 {
+                return None;
+            }
+        }
+    }
+    loop {
+        let middle = 0.5 * (low + high);
+        if !(middle > low && middle < high) {
+            break;
+        }
+        if too_much(middle) { high = middle } else { low = middle }
+    }
+    // both ends differ by rounding; the lower one is inside of the limit density
+    let behind = wave(m, state, low, side, count).behind;
+    let close = (behind.p - p).abs() <= 1e-9 * (p.abs() + state.p.abs());
+    (close && behind.u.is_finite()).then_some((low, count, State { p, ..behind }))
 }
 
 /// The wave that brings `state` to the pressure 0 of a free surface: strength, steps, state.
@@ -103,14 +190,14 @@ pub(super) fn set_free(
     for round in 0..60 {
         let out = stepped((m, state), d, side, quantum, &mut count, round > 4);
         if !out.behind.p.is_finite() {
-            return None;
+            break;
         }
         if out.behind.p.abs() <= tolerance {
             return Some((d, count, State { p: 0.0, ..out.behind }));
         }
         d = bounded(m, state, d - out.behind.p / out.dp);
     }
-    None
+    reach(m, state, 0.0, side, quantum)
 }
 
 #[cfg(test)]

@@ -3,14 +3,14 @@
 //!
 //! The frame of `super::tracking` and [`super::chain`] has the flyer on the left and the
 //! target at rest at x >= 0, contact at t = 0. Here the flyer may come from either side, both
-//! bodies may move, and there may be a gap. Holds while the target's shock has not reached its
-//! rear.
+//! bodies may move, and there may be a gap. Profiles are scored while the target's shock has not
+//! reached its rear; the waves are followed beyond, off the free rear.
 
 use super::chain::{Chain, Plate};
 use super::profile::{History, HistoryPoint, Landmarks, Path, PathKind, Point, Profile};
 use super::release::Release;
 use super::tracking::{
-    FIRST_PROBE, FLYER_FACE_RECORD, INTERFACE_RECORD, REAR_RECORD, Setup, Tracker,
+    END_RECORD, FIRST_PROBE, FLYER_FACE_RECORD, INTERFACE_RECORD, REAR_RECORD, Setup, Tracker,
 };
 use super::{ExactError, finite};
 use crate::material::MieGruneisen;
@@ -58,6 +58,9 @@ pub struct Snapshot {
     pub time: f64,
     /// Both plates by x; `None` once the shock has reached the target's rear.
     pub profile: Option<Profile>,
+    /// Both plates by x, also after the shock has reached the target's rear; `None` once the waves
+    /// are not followed any further ([`Solution::stopped`]).
+    pub whole: Option<Profile>,
     /// The target alone.
     pub target: Option<Profile>,
     /// What stands out in the target; `None` before contact and with the profile.
@@ -75,7 +78,7 @@ pub struct Solution {
     pub flyer_face: History,
     /// The flyer's free rear.
     pub flyer_rear: History,
-    /// The target's rear, as long as nothing has reached it.
+    /// The target's free rear.
     pub target_rear: History,
     /// One for each tracer, in the order asked.
     pub tracers: Vec<History>,
@@ -88,6 +91,9 @@ pub struct Solution {
     pub separation_time: Option<f64>,
     /// When the shock reaches the target's rear: infinite if that is after the last time asked.
     pub valid_until: f64,
+    /// Time from which the waves are not followed any further [s], and the reason; `None` if they
+    /// are followed to the last time asked. Histories and paths end there.
+    pub stopped: Option<(f64, ExactError)>,
     /// Wave interactions followed.
     pub interactions: usize,
 }
@@ -107,6 +113,9 @@ pub struct Impact {
     pub contact_time: f64,
     /// No shock is at the target's rear before this; see [`Solution::valid_until`] [s].
     pub valid_until: f64,
+    /// Whether the target's rear is a free surface; otherwise waves are followed only until one
+    /// reaches it.
+    pub free_rear: bool,
 }
 
 impl Impact {
@@ -142,6 +151,7 @@ impl Impact {
             speed,
             contact_time: gap / speed,
             valid_until: f64::INFINITY,
+            free_rear: true,
         };
         let shock = impact.release(4)?.target_shock;
         impact.valid_until = impact.contact_time + (target.upper - target.lower) / shock;
@@ -214,7 +224,7 @@ impl Impact {
     }
 
     /// The true solution at `times` (in any order) and at the `tracers`; histories and paths
-    /// reach to the last of the times.
+    /// reach to the last of the times, or to [`Solution::stopped`].
     pub fn solve(
         &self,
         times: &[f64],
@@ -238,26 +248,20 @@ impl Impact {
             thickness: self.thickness(),
             target_thickness: self.target.upper - self.target.lower,
             wavelets: accuracy.wavelets,
+            free_rear: self.free_rear,
         };
         let mut tracker = Tracker::new(setup, &probes)?;
         let mut order: Vec<usize> = (0..times.len()).collect();
         order.sort_by(|&a, &b| times[a].total_cmp(&times[b]));
         let mut snapshots: Vec<Option<Snapshot>> = vec![None; times.len()];
         for k in order {
-            snapshots[k] = Some(self.snapshot(times[k], &mut tracker, &release)?);
+            snapshots[k] = Some(self.snapshot(times[k], &mut tracker, &release));
         }
         let thickness = self.thickness();
-        let end = self.contact_time + tracker.time;
-        let at_rest = |t: f64| HistoryPoint {
-            t,
-            x: self.to_lab_x(t, setup.target_thickness),
-            u: self.to_lab_u(0.0),
-            p: 0.0,
-        };
         let interface = self.history(&tracker, INTERFACE_RECORD, Plate::Target, 0.0);
         let flyer_face = self.history(&tracker, FLYER_FACE_RECORD, Plate::Flyer, 0.0);
         let flyer_rear = self.history(&tracker, REAR_RECORD, Plate::Flyer, -thickness);
-        let target_rear = History { points: vec![at_rest(0.0), at_rest(end)] };
+        let target_rear = self.history(&tracker, END_RECORD, Plate::Target, setup.target_thickness);
         let lines = [
             (&interface, Plate::Target, PathKind::Interface),
             (&flyer_rear, Plate::Flyer, PathKind::FreeSurface),
@@ -277,36 +281,35 @@ impl Impact {
             paths,
             release,
             separation_time: tracker.separation_time.map(|t| t + self.contact_time),
-            valid_until: tracker.ended.map_or(f64::INFINITY, |t| t + self.contact_time),
+            valid_until: tracker.reached_end.map_or(f64::INFINITY, |end| end.0 + self.contact_time),
             interactions: tracker.events,
+            stopped: tracker.stopped.take().map(|why| (tracker.time + self.contact_time, why)),
         })
     }
 
-    fn snapshot(
-        &self,
-        time: f64,
-        tracker: &mut Tracker,
-        release: &Release,
-    ) -> Result<Snapshot, ExactError> {
+    fn snapshot(&self, time: f64, tracker: &mut Tracker, release: &Release) -> Snapshot {
         let since = time - self.contact_time;
-        tracker.advance(since.max(0.0))?;
-        if tracker.ended.is_some() {
-            return Ok(Snapshot { time, profile: None, target: None, landmarks: None });
+        tracker.advance(since.max(0.0));
+        if tracker.stopped.is_some() {
+            return Snapshot { time, profile: None, whole: None, target: None, landmarks: None };
         }
-        let (mut flyer, mut target, landmarks);
-        if since <= 0.0 {
-            (flyer, target) =
-                (self.untouched(Plate::Flyer, since), self.untouched(Plate::Target, 0.0));
-            landmarks = None;
+        let (mut flyer, mut target) = if since <= 0.0 {
+            (self.untouched(Plate::Flyer, since), self.untouched(Plate::Target, 0.0))
         } else {
-            flyer = tracker.profile(Plate::Flyer);
-            target = tracker.profile(Plate::Target);
-            landmarks = Some(self.landmarks(time, &target, release));
-        }
+            (tracker.profile(Plate::Flyer), tracker.profile(Plate::Target))
+        };
+        let scored = tracker.reached_end.is_none();
+        let landmarks = (scored && since > 0.0).then(|| self.landmarks(time, &target, release));
         let target_profile = self.profile_to_lab(time, &target);
         flyer.append(&mut target);
-        let profile = Some(self.profile_to_lab(time, &flyer));
-        Ok(Snapshot { time, profile, target: Some(target_profile), landmarks })
+        let whole = self.profile_to_lab(time, &flyer);
+        Snapshot {
+            time,
+            profile: scored.then(|| whole.clone()),
+            whole: Some(whole),
+            target: scored.then_some(target_profile),
+            landmarks,
+        }
     }
 
     /// The ends of a plate that nothing has touched, `since` contact.
@@ -423,11 +426,13 @@ impl Impact {
             .into_iter()
             .map(|(history, plate, kind)| {
                 let points = history.points.iter().map(|h| [h.t, h.x]).collect();
-                Path { plate, kind, points }
+                Path { plate, kind, points, steepened: false }
             })
             .collect();
-        for (plate, kind, points) in tracker.drawn() {
-            paths.push(Path { plate, kind, points: points.iter().map(lab).collect() });
+        for (number, (plate, kind, points)) in tracker.drawn().into_iter().enumerate() {
+            let points = points.iter().map(lab).collect();
+            let steepened = tracker.steepened.contains(&number);
+            paths.push(Path { plate, kind, points, steepened });
         }
         paths
     }

@@ -55,44 +55,109 @@ pub(super) fn to_compression(
     }
 }
 
-/// Follows the isentrope through `state` to the pressure `p`.
+/// Lower bound of the pressure on every isentrope [Pa]: -rho0 c0^2/gamma0, which the pressure
+/// approaches as the density falls to 0, since dp/dchi = rho0 c0^2 + gamma0 p in tension.
+pub(super) fn least_pressure(m: &MieGruneisen) -> f64 {
+    if m.gamma0 > 0.0 { -m.rho0 * m.c0 * m.c0 / m.gamma0 } else { f64::NEG_INFINITY }
+}
+
+/// Follows the isentrope through `state` to the pressure `p` [Pa].
+///
+/// # Errors
+///
+/// [`ExactError::State`] if no state of the isentrope has this pressure, or if the sound speed
+/// becomes imaginary on the way.
 pub(super) fn to_pressure(
     m: &MieGruneisen,
-    mut state: State,
+    state: State,
     side: f64,
     p: f64,
 ) -> Result<State, ExactError> {
-    for _ in 0..60 {
-        let c = sound_speed(m, &state);
-        let d = (p - state.p) / (m.rho0 * c * c);
-        // a change that rounding in chi would swallow
-        if d.abs() <= 2e-16 {
-            return Ok(State { p, ..state });
-        }
-        let d = d.clamp(-0.2, 0.2 * (1.0 - m.s * state.chi).min(1.0));
-        state = to_compression(m, state, side, state.chi + d)?;
+    if p <= least_pressure(m) {
+        return Err(ExactError::State {
+            what: "no isentrope reaches a tension of rho0 c0^2/gamma0 or more",
+            chi: state.chi,
+        });
     }
-    Err(ExactError::State { what: "an isentrope does not reach its pressure", chi: state.chi })
+    let remaining = |state: &State| {
+        let c = sound_speed(m, state);
+        // a change that rounding in chi would swallow
+        ((p - state.p) / (m.rho0 * c * c), 2e-16)
+    };
+    let end = search(m, state, side, "an isentrope does not reach its pressure", remaining)?;
+    Ok(State { p, ..end })
 }
 
-/// Follows the isentrope through `state` to the velocity `u`.
+/// Follows the isentrope through `state` to the velocity `u` [m/s].
+///
+/// # Errors
+///
+/// [`ExactError::State`] if no state of the isentrope has this velocity, or if the sound speed
+/// becomes imaginary on the way.
 pub(super) fn to_velocity(
     m: &MieGruneisen,
-    mut state: State,
+    state: State,
     side: f64,
     u: f64,
 ) -> Result<State, ExactError> {
-    for _ in 0..60 {
-        let c = sound_speed(m, &state);
-        let d = side * (u - state.u) / c;
+    let remaining = |state: &State| {
+        let c = sound_speed(m, state);
         // a change that rounding in chi or in the velocity would swallow
-        if d.abs() <= 1e-15 * (1.0 + u.abs() / c) {
-            return Ok(State { u, ..state });
+        (side * (u - state.u) / c, 1e-15 * (1.0 + u.abs() / c))
+    };
+    let end = search(m, state, side, "an isentrope does not reach its velocity", remaining)?;
+    Ok(State { u, ..end })
+}
+
+/// Changes of compression tried before a search ends.
+const ROUNDS: usize = 200;
+
+/// Newton's rule along the isentrope through `state`, kept within a bracket. `remaining` gives
+/// Newton's change of compression from a state, and the change below which the state is accepted.
+fn search(
+    m: &MieGruneisen,
+    mut state: State,
+    side: f64,
+    what: &'static str,
+    remaining: impl Fn(&State) -> (f64, f64),
+) -> Result<State, ExactError> {
+    // pressure and velocity rise with chi wherever the sound speed is real
+    let (mut low, mut high) = (f64::NEG_INFINITY, m.limiting_compression());
+    let mut nearest = (f64::INFINITY, state);
+    for _ in 0..ROUNDS {
+        let (d, enough) = remaining(&state);
+        if d.abs() <= enough {
+            return Ok(state);
+        }
+        if d.is_nan() {
+            return Err(ExactError::State {
+                what: "the sound speed becomes imaginary on an isentrope",
+                chi: state.chi,
+            });
+        }
+        if d.abs() < nearest.0 {
+            nearest = (d.abs(), state);
+        }
+        if d > 0.0 {
+            low = state.chi
+        } else {
+            high = high.min(state.chi)
         }
         let d = d.clamp(-0.2, 0.2 * (1.0 - m.s * state.chi).min(1.0));
-        state = to_compression(m, state, side, state.chi + d)?;
+        let mut chi = state.chi + d;
+        // rounding may put the root beside a bracket that has closed on it
+        let slack = 1e-12 * (1.0 + chi.abs());
+        if chi < low - slack || chi > high + slack {
+            chi = 0.5 * (low + high);
+        }
+        state = to_compression(m, state, side, chi)?;
     }
-    Err(ExactError::State { what: "an isentrope does not reach its velocity", chi: state.chi })
+    // far from rest, rounding in the pressure is more than that in chi
+    let (d, state) = nearest;
+    if d <= 1e-13 * (1.0 + state.chi.abs()) {
+        return Ok(state);
+    }
+    Err(ExactError::State { what, chi: state.chi })
 }
 
 #[cfg(test)]

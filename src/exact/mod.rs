@@ -84,13 +84,22 @@ pub enum ExactError {
         limit: f64,
     },
     /// The search for a state between two waves did not end.
-    #[error("no state found between two waves meeting at t = {time} s, X = {place} m")]
+    #[error(
+        "no state found between two waves meeting at t = {time} s, X = {place} m: the equation of \
+         state does not stretch so far"
+    )]
     NoConvergence {
         /// Time [s].
         time: f64,
         /// Lagrangian place [m].
         place: f64,
     },
+    /// What the waves meet at the target's rear is not known.
+    #[error(
+        "the target's rear is not a free surface throughout: a body or a side of the domain lies \
+         beyond it, or its material can fail"
+    )]
+    RearNotFree,
     /// More waves than can be followed.
     #[error("more than {limit} wave interactions before t = {time} s")]
     TooManyWaves {

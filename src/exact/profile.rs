@@ -181,6 +181,8 @@ pub struct Path {
     pub kind: PathKind,
     /// The corners: time [s], place [m].
     pub points: Vec<[f64; 2]>,
+    /// Whether it ends, as the edge of a fan, within its own wave, which has steepened.
+    pub steepened: bool,
 }
 
 #[cfg(test)]

@@ -37,7 +37,7 @@ pub struct ReleaseState {
 pub struct Release {
     /// States 2, 3, 4 and on, as many as were asked for; fewer if the plates part or rest.
     pub states: Vec<ReleaseState>,
-    /// Whether the plates part during the first release (softer flyer).
+    /// Whether the plates part within the states asked for (softer flyer: at state 4).
     pub separates: bool,
     /// Shock speed in the flyer [m/s].
     pub flyer_shock: f64,
@@ -93,13 +93,19 @@ impl Release {
         for number in (3..=last_state.max(4)).step_by(2) {
             let free = to_pressure(&flyer, in_flyer, 1.0, 0.0)?;
             states.push(named(number, Some(&free), None));
-            let (a, b) = meet(&flyer, &target, free, in_target)?;
-            let part = b.p < -1e-9 * target_2.p;
+            let unloaded = to_pressure(&target, in_target, 1.0, 0.0)?;
+            // both curves are steep at P = 0: where they cross below it, the plates part, however
+            // deep in tension the crossing lies
+            let zf = flyer.rho0 * sound_speed(&flyer, &free);
+            let zt = target.rho0 * sound_speed(&target, &unloaded);
+            let crossing = (free.u - unloaded.u) / (1.0 / zf + 1.0 / zt);
+            let part = crossing < -1e-9 * target_2.p;
             if part {
                 separates = true;
-                in_target = to_pressure(&target, in_target, 1.0, 0.0)?;
+                in_target = unloaded;
                 states.push(named(number + 1, None, Some(&in_target)));
             } else {
+                let (a, b) = meet(&flyer, &target, free, in_target)?;
                 (in_flyer, in_target) = (a, b);
                 states.push(named(number + 1, Some(&a), Some(&b)));
             }
@@ -152,7 +158,8 @@ impl Release {
 }
 
 /// Where the flyer's left-going isentrope through `free` meets the target's right-going one
-/// through `behind`: the flyer's state and the target's.
+/// through `behind`: the flyer's state and the target's. The pressure lies between 0 and that of
+/// `behind`.
 fn meet(
     flyer: &MieGruneisen,
     target: &MieGruneisen,
@@ -160,16 +167,25 @@ fn meet(
     mut behind: State,
 ) -> Result<(State, State), ExactError> {
     let scale = behind.p;
-    for _ in 0..60 {
+    // rounding may put the meeting of equal plates a little below 0
+    let slack = 1e-8 * scale;
+    let (mut low, mut high) = (0.0, scale);
+    for _ in 0..100 {
         let zf = flyer.rho0 * sound_speed(flyer, &free);
         let zt = target.rho0 * sound_speed(target, &behind);
-        let p = (free.p / zf + behind.p / zt + free.u - behind.u) / (1.0 / zf + 1.0 / zt);
+        let mut p = (free.p / zf + behind.p / zt + free.u - behind.u) / (1.0 / zf + 1.0 / zt);
         let done = (p - free.p).abs() + (p - behind.p).abs() <= 1e-14 * scale;
         if done || !p.is_finite() {
             break;
         }
+        // Newton's rule, kept within its bracket: a strong release curves far beyond P = 0
+        if p < low - slack || p > high + slack {
+            p = 0.5 * (low + high);
+        }
         free = to_pressure(flyer, free, -1.0, p)?;
         behind = to_pressure(target, behind, 1.0, p)?;
+        // the flyer's velocity falls with the pressure, the target's rises
+        if free.u > behind.u { low = p } else { high = p }
     }
     if (free.u - behind.u).abs() > 1e-8 * behind.u.abs().max(free.u.abs()).max(1.0) {
         return Err(ExactError::State { what: "no state 4 found", chi: behind.chi });

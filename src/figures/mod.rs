@@ -7,7 +7,7 @@ pub use plane::{draw_along, draw_fields};
 use std::path::Path;
 
 use crate::exact::chain::{centre_left, centre_right, hugoniot_left, hugoniot_right};
-use crate::exact::{Chain, History, Impact, PathKind, Plate};
+use crate::exact::{self, Chain, ExactError, History, Impact, PathKind, Plate};
 use crate::output::ParticleTable;
 use crate::output::histories::Histories;
 use crate::output::pictures::{self, Color, PictureError, Points, Stroke};
@@ -149,19 +149,36 @@ pub fn draw_profile(
     Ok(())
 }
 
-/// The x-t diagram: computed pressure under the exact wave paths.
+/// The part of a line of the x-t diagram up to the time `end` [s], the last piece cut on its
+/// straight line.
+fn until(points: &[[f64; 2]], end: f64) -> Vec<[f64; 2]> {
+    let inside = points.partition_point(|q| q[0] <= end);
+    let mut part = points[..inside].to_vec();
+    if let (Some(&[t, x]), Some(&[later, x_later])) = (part.last(), points.get(inside)) {
+        part.push([end, x + (x_later - x) * (end - t) / (later - t)]);
+    }
+    part
+}
+
+/// The x-t diagram: computed pressure under the exact wave paths, up to the last row or to `end`
+/// [s], if that is later. Where the exact lines end before it, the picture says so.
+///
+/// # Errors
+///
+/// [`PictureError`] if a file cannot be written.
 pub fn draw_waves(
     title: &str,
     rows: &[PressureRow],
+    end: Option<f64>,
     reference: Option<&Reference>,
     stem: &Path,
 ) -> Result<(), PictureError> {
-    let end = rows.iter().map(|r| r.time).fold(0.0, f64::max);
-    let mut paths = Vec::new();
+    let end = rows.iter().map(|r| r.time).fold(end.unwrap_or(0.0), f64::max);
+    let (mut paths, mut notes) = (Vec::new(), Vec::new());
     if let Some(Reference::Impact(all)) = reference {
         for path in &all.solution.paths {
             let (name, stroke) = path_style(path.kind);
-            let points: Vec<_> = path.points.iter().filter(|q| end == 0.0 || q[0] <= end).collect();
+            let points = until(&path.points, end);
             paths.push(pictures::WavePath {
                 name: name.into(),
                 points: Points::new(
@@ -170,6 +187,21 @@ pub fn draw_waves(
                 ),
                 stroke,
             });
+        }
+        if let Some((stopped, why)) = &all.solution.stopped
+            && *stopped < end
+        {
+            notes.push(format!("exact lines end at {:.4} µs:", stopped * 1e6));
+            let why = match why {
+                ExactError::RearNotFree => "the target's rear is not free",
+                ExactError::TooManyWaves { .. } => "too many waves",
+                _ => "more tension than the equation of state has",
+            };
+            notes.push(why.into());
+        }
+        let inside = |p: &exact::Path| p.steepened && p.points.last().is_some_and(|q| q[0] < end);
+        if all.solution.paths.iter().any(inside) {
+            notes.push("a fan's line ends where the fan steepens".into());
         }
     }
     let rows = rows
@@ -180,7 +212,7 @@ pub fn draw_waves(
             pressure: row.points.iter().map(|p| p.1).collect(),
         })
         .collect();
-    let diagram = pictures::WaveDiagram { title: title.into(), rows, paths };
+    let diagram = pictures::WaveDiagram { title: title.into(), rows, paths, end: Some(end), notes };
     pictures::draw(&diagram.figure(), stem)?;
     Ok(())
 }

@@ -40,6 +40,9 @@ pub struct Followed<const D: usize> {
     pub velocity: [f64; D],
     /// Its pressure [Pa].
     pub pressure: f64,
+    /// Its pressure if the traction across x were zero, as on a free face [Pa]: 0 in a fluid, the
+    /// deviator's xx component where a material has strength.
+    pub free_pressure: f64,
     /// Half of its length [m]; in a plane that of a square of its volume.
     pub half_length: f64,
 }
@@ -280,14 +283,16 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
                     let v = column(c.velocity + a, row) + grid[a];
                     words.extend([x, v].map(f64::to_bits));
                 }
-                words.extend([column(c.pressure, row), half].map(f64::to_bits));
+                let p = column(c.pressure, row);
+                let free = c.stress.map_or(0.0, |stress| p + column(stress, row));
+                words.extend([p, free, half].map(f64::to_bits));
             }
         }
         let all = self.comm.gather(&words);
         if self.comm.rank() != 0 {
             return Vec::new();
         }
-        let rows: Vec<&[u64]> = all.iter().flat_map(|w| w.chunks(3 + 2 * D)).collect();
+        let rows: Vec<&[u64]> = all.iter().flat_map(|w| w.chunks(4 + 2 * D)).collect();
         let value = |w: &[u64], k: usize| f64::from_bits(w[k]);
         wanted
             .iter()
@@ -296,7 +301,8 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
                     position: std::array::from_fn(|a| value(w, 1 + 2 * a)),
                     velocity: std::array::from_fn(|a| value(w, 2 + 2 * a)),
                     pressure: value(w, 1 + 2 * D),
-                    half_length: value(w, 2 + 2 * D),
+                    free_pressure: value(w, 2 + 2 * D),
+                    half_length: value(w, 3 + 2 * D),
                 })
             })
             .collect()

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::home::{Home, contents, names};
 use crate::pictures::has_pictures;
@@ -99,6 +99,70 @@ fn a_softer_flyer_separates() {
     let sets = ["bodies.flyer.material=aluminium", "bodies.target.material=copper"];
     let args = ["hugoniot", "flyer.json", "--set", sets[0], "--set", sets[1]];
     assert!(home.call(args).end().succeeded().contains("separate"));
+}
+
+/// The flyer scene with other materials (density, c0, s, gamma0), speed [m/s] and thicknesses [m].
+fn plates(materials: [[f64; 4]; 2], speed: f64, thickness: [f64; 2]) -> Value {
+    let mut scene = whole();
+    let material = |[density, c0, s, gamma0]: [f64; 4]| {
+        json!({"density": density,
+            "eos": {"type": "mie_gruneisen", "c0": c0, "s": s, "gamma0": gamma0}})
+    };
+    scene["materials"] = json!({"a": material(materials[0]), "b": material(materials[1])});
+    scene["domain"] = json!({"lower": [-4e-3], "upper": [1e-2], "cell_size": 1e-5});
+    let boxes = [[-thickness[0], 0.0], [0.0, thickness[1]]];
+    for (k, (name, [lower, upper])) in ["a", "b"].into_iter().zip(boxes).enumerate() {
+        scene["bodies"][k]["material"] = json!(name);
+        scene["bodies"][k]["box"] = json!({"lower": [lower], "upper": [upper]});
+    }
+    scene["bodies"][0]["velocity"] = json!([speed]);
+    scene["time"]["end"] = json!(1.5e-6);
+    scene["output"] = json!({"profiles": {"times": [1e-7]}, "pictures": false, "hdf5": false});
+    scene
+}
+
+const LEAD: [f64; 4] = [11350.0, 2051.0, 1.46, 2.77];
+const MERCURY: [f64; 4] = [13540.0, 1490.0, 2.047, 1.96];
+const PMMA: [f64; 4] = [1186.0, 2598.0, 1.516, 0.97];
+const STEEL: [f64; 4] = [7896.0, 4569.0, 1.49, 2.17];
+const TUNGSTEN: [f64; 4] = [19224.0, 4029.0, 1.237, 1.54];
+const TANTALUM: [f64; 4] = [16654.0, 3414.0, 1.201, 1.6];
+
+#[test]
+fn fast_impacts_that_part_have_their_chain() {
+    for (materials, speed) in
+        [([LEAD, MERCURY], 3552.4), ([PMMA, STEEL], 3896.7), ([STEEL, TUNGSTEN], 6100.0)]
+    {
+        let home = Home::with(&plates(materials, speed, [0.35e-3, 4e-3]));
+        let text = home.call(["hugoniot", "scene.json", "--output", "chain"]).end().succeeded();
+        assert!(text.contains("separate"), "{text}");
+    }
+}
+
+/// The text of the x-t diagram of a scene, and what the command prints.
+fn waves(scene: &Value) -> [String; 2] {
+    let home = Home::with(scene);
+    let text = home.call(["hugoniot", "scene.json", "--output", "chain"]).end().succeeded();
+    [fs::read_to_string(home.at("chain/x_t_diagram.svg")).unwrap(), text]
+}
+
+#[test]
+fn the_x_t_diagram_goes_on_past_the_targets_rear() {
+    let mut scene = plates([TUNGSTEN, TANTALUM], 1000.0, [1e-3, 3e-3]);
+    let [svg, text] = waves(&scene);
+    assert!(text.contains("reaches the target's rear at 0.733421 us"), "{text}");
+    assert!(!text.contains("exact lines end") && !svg.contains("exact lines end"));
+    assert!(svg.lines().any(|line| line.trim() == "1.4"), "the axis ends with the scene");
+    // with a third plate behind it the rear is not free
+    scene["bodies"].as_array_mut().unwrap().push(json!({
+        "name": "third", "material": "a", "box": {"lower": [3e-3], "upper": [4e-3]},
+        "velocity": [0.0], "particles_per_cell": [2]
+    }));
+    let [svg, text] = waves(&scene);
+    assert!(text.contains("exact lines end at 0.733421 us"), "{text}");
+    assert!(text.contains("not a free surface"), "{text}");
+    assert!(svg.contains("exact lines end at 0.7334 µs"));
+    assert!(svg.lines().any(|line| line.trim() == "1.4"), "the axis ends with the scene");
 }
 
 #[test]

@@ -195,6 +195,48 @@ fn histories_follow_surfaces_and_tracers() {
     assert!(energy.iter().all(|e| (e / energy[0] - 1.0).abs() < 1e-12));
 }
 
+/// The pressure of a free surface is zero, also while a shock passes its outermost particle, and
+/// its velocity comes to that of the release; a face with something beyond it keeps its particle's.
+#[test]
+fn free_surfaces_have_no_pressure() {
+    let library = ["tantalum", "pmma", "steel_304", "titanium"];
+    for (k, (flyer, target)) in [(2, 0), (0, 1), (1, 2), (2, 3)].into_iter().enumerate() {
+        let mut scene = short();
+        let material = |k: usize| json!({"library": library[k]});
+        scene["materials"] = json!({"copper": material(flyer), "aluminium": material(target)});
+        scene["bodies"][1]["box"]["upper"] = json!([0.3e-3]);
+        scene["time"]["end"] = json!(0.2e-6);
+        scene["output"]["profiles"]["times"] = json!([0.2e-6]);
+        scene["output"]["histories"] = json!({"interval": 1e-9});
+        if k == 3 {
+            // the mirror image, and contact
+            scene["bodies"][0]["box"] = json!({"lower": [0.3e-3], "upper": [0.8e-3]});
+            scene["bodies"][0]["velocity"] = json!([-1000.0]);
+            scene["domain"] = json!({"lower": [-1.5e-3], "upper": [2e-3], "cell_size": 1e-5});
+        }
+        let run = Home::with(&scene).run("run", &[]);
+        for face in ["free_surface", "flyer_rear"] {
+            let pressure = run.history(&format!("{face}_pressure"));
+            assert!(pressure.iter().all(|&p| p == 0.0), "{target} {face} {pressure:?}");
+        }
+        let interface = run.history("interface_pressure");
+        assert!(interface.iter().fold(0.0, |a: f64, &b| a.max(b)) > 1e9);
+        let moved = run.history("free_surface_velocity");
+        assert!(moved.iter().fold(0.0, |a: f64, &b| a.max(b.abs())) > 100.0, "{moved:?}");
+    }
+    // a wall behind the target presses on it
+    let mut scene = short();
+    scene["bodies"][1]["box"]["upper"] = json!([0.3e-3]);
+    scene["domain"]["upper"] = json!([0.3e-3]);
+    scene["boundary"] = json!({"x_upper": "wall"});
+    scene["time"]["end"] = json!(0.1e-6);
+    scene["output"]["profiles"]["times"] = json!([0.1e-6]);
+    scene["output"]["histories"] = json!({"interval": 1e-9});
+    let run = Home::with(&scene).run("run", &[]);
+    let pressure = run.history("free_surface_pressure");
+    assert!(pressure.iter().fold(0.0, |a: f64, &b| a.max(b)) > 1e10, "{pressure:?}");
+}
+
 #[test]
 fn outputs_that_are_not_asked_for_are_left_out() {
     let home = Home::with(&whole());

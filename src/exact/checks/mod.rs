@@ -3,6 +3,7 @@
 
 mod characteristics;
 mod fitted;
+mod pairs;
 
 use super::samples::{ALUMINIUM, COPPER};
 use super::score::difference;

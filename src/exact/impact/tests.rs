@@ -192,3 +192,120 @@ fn refuses_what_cannot_be() {
     assert!(impact.solve(&[f64::NAN], &[], Accuracy::default()).is_err());
     assert!(impact.solve(&[1e-7], &[], Accuracy { wavelets: 1 }).is_err());
 }
+
+/// The number of points that are the flyer's, whose mass is `mass` [kg/m2].
+fn flyer_points(points: &[Point], mass: f64) -> usize {
+    let mut sum = 0.0;
+    let full = points.windows(2).position(|w| {
+        sum += 0.5 * (w[0].rho + w[1].rho) * (w[1].x - w[0].x);
+        sum > (1.0 - 1e-4) * mass && w[1].x > w[0].x
+    });
+    // the flyer's face is doubled by the target's
+    let mut k = full.unwrap() + 1;
+    while sum < (1.0 - 1e-9) * mass && points[k + 1].x - points[k].x < 1e-3 * mass / points[k].rho {
+        sum += 0.5 * (points[k].rho + points[k + 1].rho) * (points[k + 1].x - points[k].x);
+        k += 1;
+    }
+    k + 1
+}
+
+#[test]
+fn the_rear_of_the_target_releases_the_shock() {
+    for (flyer, target, speed, thickness) in [
+        (COPPER, ALUMINIUM, 1000.0, 2e-3),
+        (ALUMINIUM, COPPER, 1500.0, 1e-3),
+        (COPPER, COPPER, 3000.0, 0.3e-3),
+    ] {
+        let body =
+            |material, lower, upper, velocity| ImpactBody { material, lower, upper, velocity };
+        let impact =
+            Impact::new(body(flyer, -0.5e-3, 0.0, speed), body(target, 0.0, thickness, 0.0))
+                .unwrap();
+        let arrival = impact.valid_until;
+        let times: Vec<f64> = (1..8).map(|k| arrival * (0.9 + 0.2 * f64::from(k))).collect();
+        let solution = solve(&impact, &times);
+        assert!(solution.stopped.is_none());
+        let sum = |f: &dyn Fn(&Point) -> f64, points: &[Point]| -> f64 {
+            points.windows(2).map(|w| 0.5 * (f(&w[0]) + f(&w[1])) * (w[1].x - w[0].x)).sum()
+        };
+        let mass = [flyer.rho0 * 0.5e-3, target.rho0 * thickness];
+        for snapshot in &solution.snapshots {
+            assert_eq!(snapshot.profile.is_some(), snapshot.time < arrival);
+            let points = &snapshot.whole.as_ref().unwrap().points;
+            let (a, b) = points.split_at(flyer_points(points, mass[0]));
+            let both = |f: &dyn Fn(&Point) -> f64| sum(f, a) + sum(f, b);
+            let close = |a: f64, b: f64| {
+                assert!((a / b - 1.0).abs() < 1e-4, "{speed} {} {a} {b}", snapshot.time)
+            };
+            close(sum(&|q| q.rho, a), mass[0]);
+            close(sum(&|q| q.rho, b), mass[1]);
+            close(both(&|q| q.rho * q.u), mass[0] * speed);
+            close(both(&|q| q.rho * (q.e + 0.5 * q.u * q.u)), 0.5 * mass[0] * speed * speed);
+            let rear = solution.target_rear.at(snapshot.time).unwrap();
+            assert!((points.last().unwrap().x - rear.x).abs() < 1e-9 && rear.p == 0.0);
+        }
+        // directly after its arrival the shock has been released along the isentrope
+        let two = super::super::wave::shocked(&target, solution.release.states[0].u);
+        let free = super::super::isentrope::to_pressure(&target, two, -1.0, 0.0).unwrap();
+        let rear = solution.target_rear.at(1.001 * arrival).unwrap();
+        assert!((rear.u / free.u - 1.0).abs() < 1e-5, "{} {}", rear.u, free.u);
+    }
+}
+
+/// Every line of the x-t diagram goes on to the last time, or ends where it meets another line, or
+/// at the time from which the waves are not followed, for which the solution has a reason.
+#[test]
+fn lines_reach_the_end_or_have_a_reason() {
+    let tungsten = MieGruneisen { rho0: 19224.0, c0: 4029.0, s: 1.237, gamma0: 1.54 };
+    let tantalum = MieGruneisen { rho0: 16654.0, c0: 3414.0, s: 1.201, gamma0: 1.6 };
+    let lead = MieGruneisen { rho0: 11350.0, c0: 2051.0, s: 1.46, gamma0: 2.77 };
+    let body = |material, lower, upper, velocity| ImpactBody { material, lower, upper, velocity };
+    for (flyer, target, speed, thickness, free_rear) in [
+        (tungsten, tantalum, 1000.0, [1e-3, 3e-3], true),
+        (tungsten, tantalum, 1000.0, [1e-3, 3e-3], false),
+        (tungsten, tantalum, 4000.0, [3e-3, 1e-3], true),
+        (tungsten, tantalum, 1000.0, [2.8e-3, 1e-3], true),
+        (ALUMINIUM, COPPER, 1500.0, [1e-3, 0.7e-3], true),
+        (ALUMINIUM, lead, 4200.0, [0.6e-3, 0.5e-3], true),
+        (COPPER, COPPER, 500.0, [1e-3, 1e-3], true),
+    ] {
+        let impact = Impact::new(
+            body(flyer, -thickness[0], 0.0, speed),
+            body(target, 0.0, thickness[1], 0.0),
+        )
+        .unwrap();
+        let impact = Impact { free_rear, ..impact };
+        let end = 2.2 * impact.valid_until.max(thickness[0] / flyer.c0);
+        let solution = solve(&impact, &[end]);
+        let until = solution.stopped.as_ref().map_or(end, |(t, _)| *t);
+        if !free_rear {
+            let (t, why) = solution.stopped.as_ref().unwrap();
+            assert!(
+                (t / impact.valid_until - 1.0).abs() < 1e-12 && *why == ExactError::RearNotFree
+            );
+        }
+        let last = |path: &Path| *path.points.last().unwrap();
+        let shock_reaches_rear = |path: &Path| {
+            path.plate == Plate::Target
+                && path.kind == PathKind::Shock
+                && (last(path)[0] / impact.valid_until - 1.0).abs() < 1e-9
+        };
+        assert!(solution.paths.iter().any(shock_reaches_rear));
+        for (k, path) in solution.paths.iter().enumerate() {
+            let [t, x] = last(path);
+            let meets = |other: &Path| {
+                other.points.windows(2).any(|w| {
+                    let ([t0, x0], [t1, x1]) = (w[0], w[1]);
+                    let inside = t0 <= t * (1.0 + 1e-9) && t <= t1 * (1.0 + 1e-9);
+                    let along = if t1 > t0 { (t - t0) / (t1 - t0) } else { 0.0 };
+                    inside && (x0 + along * (x1 - x0) - x).abs() < 1e-4 * thickness[1]
+                })
+            };
+            let others = solution.paths.iter().enumerate().filter(|(j, _)| *j != k);
+            let ends = path.steepened
+                || (t / until - 1.0).abs() < 1e-9
+                || others.map(|(_, p)| p).any(meets);
+            assert!(ends, "{speed} {:?} {:?} ends at {t} {x}", path.plate, path.kind);
+        }
+    }
+}

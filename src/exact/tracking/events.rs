@@ -4,7 +4,10 @@ use super::super::ExactError;
 use super::super::collision::{Outgoing, collide, set_free};
 use super::super::wave::{State, jump};
 use super::sending::{Leaving, Trail};
-use super::{FLYER_FACE_RECORD, Front, INTERFACE_RECORD, Kind, NONE, REAR_RECORD, Record, Tracker};
+use super::{
+    END_RECORD, FLYER_FACE_RECORD, Front, INTERFACE_RECORD, Kind, NONE, REAR_RECORD, Record,
+    Tracker,
+};
 use crate::material::MieGruneisen;
 
 /// Two small fronts merge if together they are below this many quanta.
@@ -15,8 +18,14 @@ impl Tracker {
     pub(super) fn collision(&mut self, a: usize, b: usize) -> Result<(), ExactError> {
         let (ka, kb) = (self.fronts[a].kind, self.fronts[b].kind);
         if kb == Kind::End {
-            self.ended = Some(self.time);
-            return Ok(());
+            if self.reached_end.is_none() {
+                self.reached_end = Some((self.time, self.events));
+            }
+            if !self.setup.free_rear {
+                self.trail(a);
+                return Err(ExactError::RearNotFree);
+            }
+            return self.reflect_at_end(a, b);
         }
         if ka == Kind::Rear {
             return self.reflect_at_rear(a, b);
@@ -75,8 +84,12 @@ impl Tracker {
         let (fa, fb) = (self.fronts[a], self.fronts[b]);
         let a_is_edge = matches!(fa.kind, Kind::Edge(_));
         if fa.family == fb.family {
-            let lost = if a_is_edge { a } else { b };
-            self.trail(lost);
+            let (lost, other) = if a_is_edge { (a, b) } else { (b, a) };
+            let trail = self.trail(lost);
+            // no line goes on from here
+            if let (Some((path, _)), Kind::Weak) = (trail, self.fronts[other].kind) {
+                self.steepened.push(path);
+            }
             self.remove(lost);
             return;
         }
@@ -227,6 +240,36 @@ impl Tracker {
         Ok(())
     }
 
+    /// A right-going front reaches the target's free rear.
+    fn reflect_at_end(&mut self, a: usize, end: usize) -> Result<(), ExactError> {
+        let front = self.fronts[a];
+        let before = front.prev;
+        let behind = self.fronts[before].right;
+        let x = self.fronts[end].x;
+        let m = self.setup.target;
+        self.trail(a);
+        self.remove(a);
+        let place = self.eulerian(before, x);
+        let mut star = behind;
+        if let Kind::Edge(kind) = front.kind {
+            let path = Some(self.new_path(x, kind, place, false));
+            let edge = self.edge(front.kind, -1, x, &m, behind);
+            self.insert_after(before, Front { path, place, ..edge });
+        } else {
+            let split = front.kind == Kind::Strong;
+            let quantum = if split { self.quantum } else { f64::INFINITY };
+            let (strength, steps, free) = set_free(&m, &behind, -1.0, quantum, self.tolerance)
+                .ok_or_else(|| self.no_convergence(x))?;
+            star = free;
+            let wave = Leaving { strength, steps, star, trail: None, place };
+            self.send_left(before, &m, &behind, x, wave);
+        }
+        self.fronts[end].right = star;
+        self.record(END_RECORD, 2, front.kind, &star);
+        self.foresee_range(before, end);
+        Ok(())
+    }
+
     /// Fronts reach the interface from the flyer (`a`), from the target (`b`), or neither (the
     /// plates meet).
     pub(super) fn meet_at_interface(
@@ -287,16 +330,26 @@ impl Tracker {
                     (0.0, 0.0),
                     quantum,
                     self.tolerance,
-                )
-                .ok_or(failed.clone())?;
-                if out.right_star.p < -1e-6 * self.quantum * self.setup.wavelets as f64 {
-                    self.faces.open = true;
-                    parted = true;
-                    let t = self.parting_time(right.p, out.right_star.p);
-                    self.separation_time.get_or_insert(t);
-                } else {
-                    waves =
-                        Some((Some((out.left, out.left_star)), Some((out.right, out.right_star))));
+                );
+                let least = -1e-6 * self.quantum * self.setup.wavelets as f64;
+                match out {
+                    Some(out) if out.right_star.p >= least => {
+                        waves = Some((
+                            Some((out.left, out.left_star)),
+                            Some((out.right, out.right_star)),
+                        ));
+                    }
+                    // without a state between them, the plates part if their free faces do
+                    None if !self.free_faces_part(&left, &right, quantum) => return Err(failed),
+                    _ => {
+                        self.faces.open = true;
+                        parted = true;
+                        let t = match out {
+                            Some(out) => self.parting_time(right.p, out.right_star.p),
+                            None => self.time,
+                        };
+                        self.separation_time.get_or_insert(t);
+                    }
                 }
             }
             let (l, r) = match waves {
@@ -336,6 +389,14 @@ impl Tracker {
         self.foresee_closing();
         self.foresee_range(before, after);
         Ok(())
+    }
+
+    /// Whether the faces of the plates, each released to P = 0 from its state, move apart.
+    fn free_faces_part(&self, left: &State, right: &State, quantum: f64) -> bool {
+        let free = |m, state, side| set_free(m, state, side, quantum, self.tolerance);
+        let l = free(&self.setup.flyer, left, -1.0);
+        let r = free(&self.setup.target, right, 1.0);
+        l.zip(r).is_some_and(|(l, r)| l.2.u < r.2.u)
     }
 
     /// When the pressure on the interface reached 0, given that the front that comes now would

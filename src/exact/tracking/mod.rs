@@ -28,6 +28,10 @@ mod sending;
 /// Interactions after which tracking gives up.
 const MOST_EVENTS: usize = 20_000_000;
 
+/// Interactions that are followed after a front has reached the target's rear. Profiles are no
+/// longer scored then; the waves are only drawn.
+const MOST_EVENTS_FROM_REAR: usize = 500_000;
+
 /// What a front is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -45,7 +49,7 @@ pub(super) enum Kind {
     Rear,
     /// Where the plates touch.
     Interface,
-    /// The target's rear: what reaches it ends the solution.
+    /// The target's free rear.
     End,
 }
 
@@ -166,6 +170,8 @@ pub(super) struct Setup {
     pub target_thickness: f64,
     /// Fronts of a fan that falls from P2 to 0.
     pub wavelets: usize,
+    /// Whether the target's rear is a free surface.
+    pub free_rear: bool,
 }
 
 /// The row of fronts at one time.
@@ -193,10 +199,14 @@ pub(super) struct Tracker {
     pub records: Vec<Vec<Record>>,
     /// Paths: plate, kind, corners of time and Eulerian place.
     pub paths: Vec<(Plate, PathKind, Vec<[f64; 2]>)>,
+    /// Numbers of the paths that end within a smooth wave of their own family.
+    pub steepened: Vec<usize>,
     /// When the plates first parted, between the fronts that the fan is split into [s].
     pub separation_time: Option<f64>,
-    /// When a front reached the target's rear [s].
-    pub ended: Option<f64>,
+    /// When a front first reached the target's rear [s], and the interactions by then.
+    pub reached_end: Option<(f64, usize)>,
+    /// Why the waves are not followed beyond the time reached.
+    pub stopped: Option<ExactError>,
 }
 
 /// Numbers of the records that are always kept.
@@ -205,8 +215,10 @@ pub(super) const INTERFACE_RECORD: usize = 0;
 pub(super) const REAR_RECORD: usize = 1;
 /// See [`INTERFACE_RECORD`].
 pub(super) const FLYER_FACE_RECORD: usize = 2;
+/// Record of the target's rear.
+pub(super) const END_RECORD: usize = 3;
 /// Number of the first probe's record.
-pub(super) const FIRST_PROBE: usize = 3;
+pub(super) const FIRST_PROBE: usize = 4;
 
 impl Tracker {
     /// The moment of contact; `probes` are Lagrangian places in the plates.
@@ -237,8 +249,10 @@ impl Tracker {
             next_merge: 1000,
             records: vec![Vec::new(); FIRST_PROBE + probes.len()],
             paths: Vec::new(),
+            steepened: Vec::new(),
             separation_time: None,
-            ended: None,
+            reached_end: None,
+            stopped: None,
         };
         let (moving, still) = (at_rest(speed), at_rest(0.0));
         let mut fixed: Vec<Front> = vec![
@@ -275,10 +289,27 @@ impl Tracker {
         Ok(tracker)
     }
 
-    /// Moves on to the time `t`, or to where a front reaches the target's rear.
-    pub(super) fn advance(&mut self, t: f64) -> Result<(), ExactError> {
-        while self.ended.is_none() {
-            let Some(&meeting) = self.heap.peek() else { break };
+    /// Moves on to the time `t`, or to where the waves cannot be followed any further: see
+    /// [`Tracker::stopped`].
+    pub(super) fn advance(&mut self, t: f64) {
+        if self.stopped.is_some() {
+            return;
+        }
+        match self.follow(t) {
+            Ok(()) => self.time = t,
+            Err(reason) => self.stopped = Some(reason),
+        }
+    }
+
+    /// Greatest number of interactions by now.
+    fn most_events(&self) -> usize {
+        let from_rear = self.reached_end.map(|(_, before)| before + MOST_EVENTS_FROM_REAR);
+        from_rear.map_or(MOST_EVENTS, |most| most.min(MOST_EVENTS))
+    }
+
+    /// Follows all interactions up to the time `t`.
+    fn follow(&mut self, t: f64) -> Result<(), ExactError> {
+        while let Some(&meeting) = self.heap.peek() {
             if meeting.t > t {
                 break;
             }
@@ -299,17 +330,15 @@ impl Tracker {
             }
             self.time = meeting.t;
             self.events += 1;
-            if self.events > MOST_EVENTS {
-                return Err(ExactError::TooManyWaves { limit: MOST_EVENTS, time: self.time });
+            let limit = self.most_events();
+            if self.events > limit {
+                return Err(ExactError::TooManyWaves { limit, time: self.time });
             }
             self.collision(a, b)?;
             if self.events >= self.next_merge {
                 self.merge_small();
                 self.next_merge = self.events + 4 * self.fronts.len() + 1000;
             }
-        }
-        if self.ended.is_none() {
-            self.time = t;
         }
         Ok(())
     }

@@ -71,7 +71,14 @@ fn profile_shows_text_and_points_in_both_files() {
 fn figures_without_data_say_so() {
     let empty = [
         Hugoniot { title: "Nothing".into(), curves: vec![], states: vec![] }.figure(),
-        WaveDiagram { title: "Nothing".into(), rows: vec![], paths: vec![] }.figure(),
+        WaveDiagram {
+            title: "Nothing".into(),
+            rows: vec![],
+            paths: vec![],
+            end: None,
+            notes: vec![],
+        }
+        .figure(),
         Figure::new("Nothing", Axis::log("Cost", "s")).panel(
             Panel::new(Axis::log("Error", "")).series(Series::new(
                 "nought",
@@ -109,7 +116,10 @@ fn odd_data_are_drawn_as_far_as_they_go() {
         Row { time: 1e-6, x: vec![0.0, 0.0, f64::NAN], pressure: vec![f64::NAN, 2.0, 1.0] },
         Row { time: 1e-6, x: vec![], pressure: vec![] },
     ];
-    drawn(&WaveDiagram { title: "odd".into(), rows, paths: vec![] }.figure());
+    drawn(
+        &WaveDiagram { title: "odd".into(), rows, paths: vec![], end: None, notes: vec![] }
+            .figure(),
+    );
 }
 
 #[test]
@@ -177,8 +187,10 @@ fn colour_map_is_in_both_files() {
         stroke: Stroke::Solid,
     };
     let title = "Waves".into();
-    let (png, svg) =
-        drawn(&WaveDiagram { title, rows: rows.collect(), paths: vec![path] }.figure());
+    let (png, svg) = drawn(
+        &WaveDiagram { title, rows: rows.collect(), paths: vec![path], end: None, notes: vec![] }
+            .figure(),
+    );
     let yellow = |p: &[u8]| p[0] > 240 && p[1] > 220 && p[2] < 60;
     let purple = |p: &[u8]| p[0] < 80 && p[1] < 15 && p[2] > 70;
     assert!(count(&png, [100, 120, 900, 700], yellow) > 20_000);

@@ -13,6 +13,10 @@ pub struct WaveDiagram {
     pub rows: Vec<Row>,
     /// Wave paths; paths of one name share a colour and an entry in the legend.
     pub paths: Vec<WavePath>,
+    /// Upper end of the time axis \[s\]; none: the last of the data.
+    pub end: Option<f64>,
+    /// Lines of text in the picture.
+    pub notes: Vec<String>,
 }
 
 /// Pressure along x at one time.
@@ -44,7 +48,9 @@ impl WaveDiagram {
 
     /// The figure.
     pub fn figure(&self) -> Figure {
-        let mut panel = Panel::new(Axis::linear("Time", "s").tight());
+        let axis = Axis { range: self.end.map(|end| (0.0, end)), ..Axis::linear("Time", "s") };
+        let mut panel = Panel::new(axis.tight());
+        panel.notes = self.notes.clone();
         let mut names: Vec<&str> = Vec::new();
         for path in &self.paths {
             let known = names.iter().position(|name| *name == path.name);

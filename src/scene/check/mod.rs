@@ -8,6 +8,7 @@ mod courant;
 mod domain;
 mod effects;
 mod estimate;
+mod faces;
 mod frame;
 mod front;
 mod impact;

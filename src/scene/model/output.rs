@@ -118,7 +118,8 @@ pub struct Profiles {
     pub times: Vec<f64>,
 }
 
-/// Histories.
+/// Histories of faces, tracers, energies and momentum. The pressure of a face that is a free surface
+/// is that of the surface: 0, or the deviator's xx component where the material has strength.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Histories {
