@@ -375,6 +375,11 @@ where
         warnings.push(format!("no exact solution: {error}"));
         None
     });
+    if let Some(Reference::Impact(all)) = &reference
+        && let Some((time, why)) = &all.solution.stopped
+    {
+        warnings.push(format!("the exact solution ends at {time:.4e} s, before the run: {why}"));
+    }
     // the others wait for this rank at their end
     comm.heartbeat();
     let folder = OutputFolder::create(&options.output, options.keep)?;
