@@ -41,7 +41,7 @@ pub fn calibrate<C: Comm>(comm: &C, order: &Order) -> Outcome<()> {
     // rank 0 looks at everything that could fail before it sends the scene on
     let mine = mine.and_then(|bytes| {
         if comm.rank() == 0 {
-            scene::parse(&bytes, &name, sets).map_err(bad)?;
+            check_line(&scene::parse(&bytes, &name, sets).map_err(bad)?, "calibrate")?;
             if output.is_dir() {
                 return Err(bad(format!("{}: is a directory; allowed: a file", output.display())));
             }
@@ -93,9 +93,21 @@ pub fn calibrate<C: Comm>(comm: &C, order: &Order) -> Outcome<()> {
     Ok(())
 }
 
+/// Refuses a scene in a plane: the performance model counts cells and ghosts along one direction.
+fn check_line(scene: &CheckedScene, command: &str) -> Outcome<()> {
+    match scene.dimension {
+        1 => Ok(()),
+        d => Err(bad(format!(
+            "{}: {command}: domain.lower has {d} numbers; allowed: a scene on a line",
+            scene.file
+        ))),
+    }
+}
+
 /// Predicts a scene, or holds predictions against studies.
 pub fn predict(args: &PredictArgs) -> Outcome<String> {
     let (bytes, checked) = read_scene(&args.scene, false)?;
+    check_line(&checked, "predict")?;
     let machine = Machine::read(&args.machine).map_err(bad)?;
     machine.fits(&checked, &args.machine).map_err(bad)?;
     let network = Network::parse(&args.network, &machine.network).map_err(bad)?;
@@ -121,6 +133,7 @@ pub fn predict(args: &PredictArgs) -> Outcome<String> {
         sets.push("decomposition.skip_quiet=false".into());
         let file = args.scene.scene.display().to_string();
         let scene = scene::parse(&bytes, &file, &sets).map_err(bad)?;
+        check_line(&scene, "predict")?;
         machine.fits(&scene, &args.machine).map_err(bad)?;
         all.extend(study.compare(&machine, &network, &scene, path).map_err(bad)?);
     }

@@ -31,6 +31,9 @@ pub enum CalibrateError {
     /// No variant of the scene runs.
     #[error("{0}: no size of this scene runs a few steps; allowed: a scene that `flyer-mpm` runs")]
     NothingRuns(String),
+    /// The scene is in a plane.
+    #[error("{0}: in a plane; allowed: a scene on a line")]
+    Plane(String),
 }
 
 /// A sample of the fit, for a table.
@@ -57,6 +60,9 @@ pub fn calibrate<C: Comm>(
     scene: &CheckedScene,
     seconds: f64,
 ) -> Result<Option<(Machine, Vec<Residual>)>, CalibrateError> {
+    if scene.dimension != 1 {
+        return Err(CalibrateError::Plane(scene.file.clone()));
+    }
     // the others must not take the memory or the cores while rank 0 computes alone
     let mut told = Vec::new();
     if comm.rank() != 0 {

@@ -33,14 +33,18 @@ impl Terrain {
             .map(|checked| {
                 let lower = (checked.lower[0] - origin) / size;
                 let upper = (checked.upper[0] - origin) / size;
-                let particles_per_cell = checked.lattice[0] as f64 / (upper - lower);
+                let particles_per_cell = checked.particles as f64 / (upper - lower);
                 Span { lower, upper, particles_per_cell }
             })
             .collect();
+        let longest = scene.bodies.iter().zip(&spans).map(|(checked, span)| match &checked.tiles {
+            Some(tiles) => tiles.iter().map(|t| t.size[0] / size).fold(0.0, f64::max),
+            None => 1.0 / span.particles_per_cell,
+        });
         Terrain {
             cells: scene.cells[0],
             particles: scene.particles as f64,
-            longest: spans.iter().map(|s| 1.0 / s.particles_per_cell).fold(0.0, f64::max),
+            longest: longest.fold(0.0, f64::max),
             spans,
             sides: scene.sides::<1>()[0].clone().map(crate::simulation::decomp_side),
         }

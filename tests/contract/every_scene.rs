@@ -1,0 +1,99 @@
+//! Every command on every shipped scene: it does its work or is refused in one line.
+//!
+//! Commands that measure or time something take seconds, so that a few scenes stand for all;
+//! `EVERY_SCENE=all cargo test --release --test contract every_scene` takes all of them.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use crate::home::Home;
+
+/// All shipped scenes.
+fn scenes() -> Vec<PathBuf> {
+    let inputs = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs");
+    let folders = [inputs.clone(), inputs.join("hard")];
+    let entries = folders.iter().flat_map(|f| std::fs::read_dir(f).unwrap());
+    let mut all: Vec<PathBuf> = entries.map(|e| e.unwrap().path()).collect();
+    all.retain(|path| path.extension().is_some_and(|end| end == "json"));
+    all.sort();
+    assert!(all.len() > 35);
+    all
+}
+
+fn read(path: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+fn is_plane(scene: &Value) -> bool {
+    scene["domain"]["lower"].as_array().unwrap().len() > 1
+}
+
+/// The scenes that stand for all in what takes long: all in a plane, which are refused at once, and
+/// some on a line.
+fn some(on_a_line: &[&str]) -> Vec<PathBuf> {
+    let all = std::env::var("EVERY_SCENE").is_ok_and(|v| v == "all");
+    let name = |path: &PathBuf| path.file_name().unwrap().to_str().unwrap().to_string();
+    let taken = |p: &PathBuf| all || is_plane(&read(p)) || on_a_line.contains(&name(p).as_str());
+    scenes().into_iter().filter(taken).collect()
+}
+
+/// Runs a command; its exit code. Its work is done, or refused in one line.
+#[track_caller]
+fn call(home: &Home, args: &[&str]) -> i32 {
+    let end = home.call(args.iter().copied()).end();
+    let code = end.status.code();
+    assert!(!end.stderr.contains("panicked"), "{args:?}: {}", end.stderr);
+    let errors = end.stderr.lines().filter(|l| l.starts_with("error:")).count();
+    let told = if code == Some(0) { 0 } else { 1 };
+    assert_eq!(errors, told, "{args:?}: {code:?} {}", end.stderr);
+    assert!(matches!(code, Some(0 | 2 | 3)), "{args:?}: {code:?} {}", end.stderr);
+    code.unwrap()
+}
+
+#[test]
+fn check_hugoniot_and_material_of_every_scene() {
+    let home = Home::new();
+    let mut seen = BTreeSet::new();
+    for path in scenes() {
+        let (file, scene) = (path.to_str().unwrap(), read(&path));
+        assert_eq!(call(&home, &["check", file]), 0, "{file}");
+        let impact = scene.pointer("/reference/flyer_impact").is_some();
+        let code = call(&home, &["hugoniot", file]);
+        assert_eq!(code == 0, impact, "{file}: {code}");
+        for (name, material) in scene["materials"].as_object().unwrap() {
+            if seen.insert(material.to_string()) {
+                call(&home, &["material", file, name]);
+            }
+        }
+    }
+}
+
+#[test]
+fn calibrate_and_predict_of_every_scene() {
+    let home = Home::new();
+    for path in some(&["sod.json"]) {
+        let (file, plane) = (path.to_str().unwrap(), is_plane(&read(&path)));
+        let code = call(&home, &["calibrate", file, "--seconds", "0.01", "--output", "m.json"]);
+        assert_eq!(code == 2, plane, "{file}: calibrate {code}");
+        let code = call(&home, &["predict", file, "--machine", "m.json", "--ranks", "2"]);
+        assert_eq!(code == 2, plane, "{file}: predict {code}");
+    }
+}
+
+#[test]
+fn plan_of_every_scene() {
+    let home = Home::new();
+    for path in some(&["flyer_strength.json", "gap.json", "piston.json", "sod.json"]) {
+        let (file, scene) = (path.to_str().unwrap(), read(&path));
+        let end = scene["time"]["end"].as_f64().unwrap();
+        let end = format!("time.end={}", if is_plane(&scene) { end } else { 0.1 * end });
+        let sets = ["--set", &end, "--set", "output={}", "--set", "error_estimate=null"];
+        let plan = ["plan", file, "--quantity", "l1", "--error", "30%", "--output", "p.json"];
+        let args = [&plan[..], &sets].concat();
+        let code = call(&home, &args);
+        assert!(!is_plane(&scene) || code == 2, "{file}: {code}");
+        let _ = std::fs::remove_file(home.at("p.json"));
+    }
+}
