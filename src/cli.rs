@@ -14,8 +14,8 @@ use flyer_mpm::scene::PlannedQuantity;
 ///
 /// Results go to output/<name of the scene>/: summary.json (errors against the exact solution,
 /// energy, times), one CSV a profile time, histories.csv, results.hdf5 (ParaView opens it) and
-/// pictures. A rerun replaces them once it is complete; a run that fails leaves them as they
-/// were.
+/// pictures. A rerun of the same scene replaces them once it is complete; a run that fails leaves
+/// them as they were, and a run of another scene into the same folder is refused.
 ///
 /// Checkpoints go to output/<name of the scene>.checkpoints/ (output.checkpoint of the scene; every
 /// ten minutes unless said). SIGTERM, SIGINT, SIGUSR1 and time.wall_limit write one and end the run
@@ -168,7 +168,7 @@ pub struct PlanArgs {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = ranks)]
     pub ranks: usize,
 
-    /// File of the scene to run [default: output/plans/<name of the scene>.json].
+    /// File of the scene to run [default: output/plans/<name of the scene>.plan.json].
     #[arg(long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 }
@@ -182,7 +182,7 @@ pub enum Command {
         /// The scene.
         #[command(flatten)]
         scene: SceneArgs,
-        /// Folder of the pictures [default: output/<name of the scene>_hugoniot/].
+        /// Folder of the pictures [default: output/<name of the scene>.hugoniot/].
         #[arg(long, value_name = "DIR")]
         output: Option<PathBuf>,
     },
@@ -198,7 +198,8 @@ pub enum Command {
         /// Overrides a value of the scene; may be repeated.
         #[arg(long, value_name = "PATH=VALUE")]
         set: Vec<String>,
-        /// Folder of the pictures [default: output/<name of the scene>_<name>/].
+        /// Folder of the pictures [default: output/<name of the
+        /// scene>.material.<name>/].
         #[arg(long, value_name = "DIR")]
         output: Option<PathBuf>,
     },

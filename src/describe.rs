@@ -8,6 +8,8 @@ use flyer_mpm::effects::{ledger, ledger_lines, ledger_rest};
 use flyer_mpm::exact::{Accuracy, Chain, Impact, Plate, Release, Solution, WaveKind};
 use flyer_mpm::figures::{self, PressureRow, plate_name};
 use flyer_mpm::output::folder::OutputFolder;
+use flyer_mpm::output::lock::Lock;
+use flyer_mpm::output::origin::Maker;
 use flyer_mpm::output::summary::SUMMARY_FILE;
 use flyer_mpm::reference;
 use flyer_mpm::scene::{CheckedScene, Reference};
@@ -125,7 +127,9 @@ pub fn hugoniot(scene: &CheckedScene, output: &Path) -> Outcome<String> {
     let times: Vec<f64> = (0..=ROWS).map(|k| end * k as f64 / ROWS as f64).collect();
     let solution = impact.solve(&times, &[], Accuracy::default()).map_err(|e| failed(&e))?;
 
-    let folder = OutputFolder::create(output, false).map_err(bad)?;
+    let _lock = Lock::take(output).map_err(bad)?;
+    let maker = Maker::new("hugoniot", scene);
+    let folder = OutputFolder::create(output, false, &maker).map_err(bad)?;
     figures::draw_hugoniots(scene, bodies, &impact, &chain, folder.path())
         .map_err(|e| failed(&e))?;
     let reference = reference::Reference::Impact(Box::new(reference::ImpactReference {
@@ -142,6 +146,7 @@ pub fn hugoniot(scene: &CheckedScene, output: &Path) -> Outcome<String> {
     let summary = json!({
         "title": scene.scene.title,
         "version": env!("CARGO_PKG_VERSION"),
+        "origin": folder.origin(),
         "scene": scene.scene,
         "profiles": [],
         "chain": {

@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use decomp::{Comm, Serial};
 use flyer_mpm::calibrate;
 use flyer_mpm::model::{Against, Machine, Network, forecast, machine_table, ranks_to, table};
+use flyer_mpm::output::origin::check_target;
 use flyer_mpm::scene::{self, CellSize, CheckedScene};
 use flyer_mpm::simulation::Simulation;
+use serde_json::Value;
 
 use crate::cli::PredictArgs;
 use crate::{FAILED, Outcome, bad, read_scene, say};
@@ -45,6 +47,11 @@ pub fn calibrate<C: Comm>(comm: &C, order: &Order) -> Outcome<()> {
             if output.is_dir() {
                 return Err(bad(format!("{}: is a directory; allowed: a file", output.display())));
             }
+            check_target(output, "a machine file of `flyer-mpm calibrate`", |text| {
+                let there: Option<Value> = serde_json::from_str(text).ok();
+                there.is_some_and(|there| there.get("processor").is_some())
+            })
+            .map_err(bad)?;
         }
         Ok(bytes)
     });

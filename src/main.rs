@@ -25,6 +25,8 @@ use flyer_mpm::checkpoint::{Checkpoint, folder};
 use flyer_mpm::output::compare::compare;
 use flyer_mpm::output::folder::{check_writable, default_folder};
 use flyer_mpm::output::lock::Lock;
+use flyer_mpm::output::origin::{Maker, Origin, RUN, check_target};
+use flyer_mpm::output::trace::TRACE_START;
 use flyer_mpm::run::{Beginning, Failure, Options, run};
 use flyer_mpm::scene::{self, CheckedScene};
 use flyer_mpm::simulation::RunError;
@@ -135,7 +137,7 @@ fn input(args: &RunArgs) -> String {
 
 /// Looks at everything that a run could fail on, before the others are told.
 fn begin(args: &RunArgs) -> Outcome<Begun> {
-    let (bytes, checked, beginning, default) = match (&args.restart, &args.scene) {
+    let (bytes, checked, beginning, default, origin) = match (&args.restart, &args.scene) {
         (Some(path), _) => {
             let (mut checkpoint, file, notes) = folder::open(path).map_err(bad)?;
             notes.iter().for_each(|note| eprintln!("warning: {note}; taking the one before"));
@@ -146,13 +148,14 @@ fn begin(args: &RunArgs) -> Outcome<Begun> {
             checkpoint.fit(&checked, &file).map_err(bad)?;
             tell_restart(args, &checkpoint, &name);
             let output = folder::results_of(&file).unwrap_or_else(|| default_folder(&file));
+            let origin = checkpoint.run_origin();
             let beginning = Beginning::Checkpoint(Some(Box::new(checkpoint)));
-            (bytes, checked, beginning, output)
+            (bytes, checked, beginning, output, origin)
         }
         (None, Some(path)) => {
             let scene = SceneArgs { scene: path.clone(), set: args.set.clone() };
             let (bytes, checked) = read_scene(&scene, args.ignore_memory)?;
-            (bytes, checked, Beginning::Scene, default_folder(path))
+            (bytes, checked, Beginning::Scene, default_folder(path), Origin::new(RUN, path))
         }
         (None, None) => return Err((BAD_INPUT, "a scene is needed; see --help".into())),
     };
@@ -161,8 +164,11 @@ fn begin(args: &RunArgs) -> Outcome<Begun> {
     }
     let output = args.output.clone().unwrap_or(default);
     let lock = Lock::take(&output).map_err(bad)?;
-    check_writable(&output, args.keep).map_err(bad)?;
+    let maker = Maker::with(origin, &checked);
+    check_writable(&output, args.keep, &maker).map_err(bad)?;
+    folder::check_owner(&output, &maker).map_err(bad)?;
     if let Some(file) = &args.trace {
+        check_target(file, "a timeline", |text| text.starts_with(TRACE_START)).map_err(bad)?;
         check_file(file)?;
     }
     Ok(Begun { bytes, checked, beginning, output, lock })
@@ -303,15 +309,16 @@ fn side_command(command: Command) -> Outcome<()> {
             let (_, checked) = read_scene(&scene, false)?;
             let stem = scene.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             let output =
-                output.unwrap_or_else(|| Path::new("output").join(format!("{stem}_hugoniot")));
+                output.unwrap_or_else(|| Path::new("output").join(format!("{stem}.hugoniot")));
             say(&describe::hugoniot(&checked, &output)?);
             Ok(())
         }
         Command::Material { scene, name, set, output } => {
             let stem = scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             let (_, checked) = read_scene(&SceneArgs { scene, set }, false)?;
-            let output =
-                output.unwrap_or_else(|| Path::new("output").join(format!("{stem}_{name}")));
+            let plain = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' };
+            let folder = format!("{stem}.material.{}", name.chars().map(plain).collect::<String>());
+            let output = output.unwrap_or_else(|| Path::new("output").join(folder));
             say(&sheet::material(&checked, &name, &output)?);
             Ok(())
         }

@@ -2,7 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use flyer_mpm::output::origin::{absolute, check_target};
 use flyer_mpm::plan::{self, Data, PlanError, Wish};
+
+use serde_json::Value;
 
 use crate::cli::PlanArgs;
 use crate::{BAD_INPUT, FAILED, Outcome, bad, read_scene};
@@ -18,15 +21,23 @@ pub fn plan(args: &PlanArgs) -> Outcome<String> {
         ranks: args.ranks,
         place: args.at,
     };
-    let plan = plan::plan(&scene, &checked.file, &wish, &Data::shipped()).map_err(|error| {
-        let code = if matches!(error, PlanError::Impossible { .. }) { FAILED } else { BAD_INPUT };
-        (code, error.to_string())
-    })?;
     let stem = args.scene.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let file: PathBuf = args
         .output
         .clone()
-        .unwrap_or_else(|| Path::new("output/plans").join(format!("{stem}.json")));
+        .unwrap_or_else(|| Path::new("output/plans").join(format!("{stem}.plan.json")));
+    let of = absolute(&args.scene.scene);
+    check_target(&file, &format!("a plan of {}", checked.file), |text| {
+        let there: Option<Value> = serde_json::from_str(text).ok();
+        let there = there.and_then(|plan| plan.pointer("/output/plan/of").cloned());
+        there.is_some_and(|there| Some(there) == of.clone().map(Value::String))
+    })
+    .map_err(bad)?;
+    let mut plan = plan::plan(&scene, &checked.file, &wish, &Data::shipped()).map_err(|error| {
+        let code = if matches!(error, PlanError::Impossible { .. }) { FAILED } else { BAD_INPUT };
+        (code, error.to_string())
+    })?;
+    plan.scene["output"]["plan"]["of"] = serde_json::json!(of);
     let text = serde_json::to_string_pretty(&plan.scene).expect("a scene is plain data") + "\n";
     let written = file.parent().map_or(Ok(()), std::fs::create_dir_all);
     written

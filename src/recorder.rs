@@ -1,5 +1,7 @@
 //! What a run records on its way: histories, rows of the x-t diagram, profiles.
 
+use std::path::Path;
+
 use decomp::Comm;
 
 use crate::checkpoint::{Checkpoint, Contents, Due, Record, StateColumn};
@@ -7,6 +9,7 @@ use crate::estimate::Arrivals;
 use crate::figures::PressureRow;
 use crate::output::ParticleTable;
 use crate::output::histories::Histories;
+use crate::output::origin::{Origin, RUN};
 use crate::probes::Probes;
 use crate::reference::PlaneReference;
 use crate::scene::CheckedScene;
@@ -22,6 +25,8 @@ const WAVE_POINTS: u64 = 2000;
 /// What a run records; rank 0 has it all, the others know what is due.
 pub struct Recorder<'a> {
     scene: &'a CheckedScene,
+    /// The command and the file that the run began with, before any restart.
+    pub origin: Origin,
     probes: Option<Probes>,
     /// Profiles and the digests of their states.
     pub tables: Vec<(ParticleTable, String)>,
@@ -57,6 +62,7 @@ impl<'a> Recorder<'a> {
         let needs_start = PlaneReference::needs_start(scene);
         Recorder {
             scene,
+            origin: Origin::new(RUN, Path::new(&scene.file)),
             probes: Probes::new(scene),
             tables: Vec::new(),
             start: if needs_start { simulation.gather().map(|(table, _)| table) } else { None },
@@ -77,6 +83,9 @@ impl<'a> Recorder<'a> {
         self.due_wave = if due.end == end { due.wave } else { wave_after(time, end) };
         self.due_profile = self.scene.profile_times.iter().filter(|&&t| t <= time).count();
         self.arrivals.resume(due.arrivals);
+        if let Some(checkpoint) = &checkpoint {
+            self.origin = checkpoint.run_origin();
+        }
         let Record { tables, waves, histories } =
             checkpoint.map_or_else(Record::default, |c| c.record);
         (self.tables, self.waves) = (tables, waves);
@@ -167,6 +176,7 @@ impl<'a> Recorder<'a> {
             arrivals: self.arrivals.state(),
         };
         Contents {
+            origin: Some(&self.origin),
             scene,
             dimension: self.scene.dimension,
             saved,

@@ -25,6 +25,7 @@ use crate::output::ParticleTable;
 use crate::output::csv::{profile_names, write_profile};
 use crate::output::folder::{OutputFolder, checkpoint_folder};
 use crate::output::histories::HISTORIES_FILE;
+use crate::output::origin::Maker;
 use crate::output::pictures::PictureError;
 use crate::output::report::report;
 use crate::output::summary::{Energy, FailureSummary, Momentum, Outflow, ProfileSummary, Summary};
@@ -382,7 +383,8 @@ where
     }
     // the others wait for this rank at their end
     comm.heartbeat();
-    let folder = OutputFolder::create(&options.output, options.keep)?;
+    let maker = Maker::with(recorder.origin.clone(), scene);
+    let folder = OutputFolder::create(&options.output, options.keep, &maker)?;
     let profiles = write_profiles(comm, scene, reference.as_ref(), &recorder, &folder)?;
     let as_run = serde_json::to_value(&scene.scene).expect("a scene is plain data");
     if scene.scene.output.hdf5 {
@@ -425,6 +427,7 @@ where
     let summary = Summary {
         title: scene.scene.title.clone(),
         version: env!("CARGO_PKG_VERSION").into(),
+        origin: Some(folder.origin()),
         scene: as_run,
         ranks: comm.size(),
         threads: options.threads,

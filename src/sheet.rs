@@ -7,6 +7,8 @@ use flyer_mpm::constitutive::{equation, products};
 use flyer_mpm::exact::hugoniot::{MaterialState, ShockFront, isentrope, piston, shock_to};
 use flyer_mpm::material::{Detonation, HistoryEos};
 use flyer_mpm::output::folder::OutputFolder;
+use flyer_mpm::output::lock::Lock;
+use flyer_mpm::output::origin::Maker;
 use flyer_mpm::output::pictures::{
     self, Axis, Color, Figure, Panel, Points, Series, Stroke, Style,
 };
@@ -42,13 +44,16 @@ pub fn material(scene: &CheckedScene, name: &str, output: &Path) -> Outcome<Stri
     };
     let sheet = Sheet::new(&*eos, products(&burnt.eos, burnt.density).map(|p| p.detonation()));
     let text = sheet.text(name, material);
-    let folder = OutputFolder::create(output, false).map_err(bad)?;
+    let _lock = Lock::take(output).map_err(bad)?;
+    let maker = Maker::new(&format!("material {name}"), scene);
+    let folder = OutputFolder::create(output, false, &maker).map_err(bad)?;
     for (stem, figure) in sheet.figures(name) {
         pictures::draw(&figure, &folder.file(stem)).map_err(|e| (FAILED, e.to_string()))?;
     }
     let summary = json!({
         "title": format!("{}: {name}", scene.scene.title),
         "version": env!("CARGO_PKG_VERSION"),
+        "origin": folder.origin(),
         "scene": scene.scene,
         "profiles": [],
         "material": {"name": name, "hugoniot": sheet.hugoniot.iter().map(|front| json!({

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use flyer_mpm::output::lock::Lock;
+use flyer_mpm::output::origin::{Origin, claim};
 use flyer_mpm::study::{self, CHOICES_FILE, Runner, Study, StudyError, TABLE_FILE};
 
 use crate::{FAILED, Outcome, bad};
@@ -11,6 +13,8 @@ pub fn study(file: &Path, output: Option<&Path>, quiet: bool) -> Outcome<String>
     let study = Study::read(file).map_err(bad)?;
     let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let folder = output.map_or(Path::new("output/studies").join(name), Path::to_path_buf);
+    let _lock = Lock::take(&folder).map_err(bad)?;
+    claim(&folder, &Origin::new("study", file)).map_err(bad)?;
     let program = std::env::current_exe().map_err(|e| (FAILED, e.to_string()))?;
     let runner = Runner { program, folder, quiet };
     let rows = study::run(&study, &runner).map_err(|error| match error {

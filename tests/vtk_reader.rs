@@ -72,6 +72,7 @@ fn write_run(folder: &Path, tables: &[ParticleTable]) {
     let summary = Summary {
         title: "test".into(),
         version: String::new(),
+        origin: None,
         scene,
         ranks: 1,
         threads: 1,

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use flyer_mpm::output::folder::default_folder;
+use flyer_mpm::output::origin::{Origin, claim};
 use flyer_mpm::scene::{self, CellSize, CheckedScene};
 use serde::Serialize;
 
@@ -94,8 +95,8 @@ impl Plan {
 
     /// Runs all jobs in rounds.
     pub fn measure(&self) -> Result<Study, String> {
-        std::fs::create_dir_all(&self.output)
-            .map_err(|e| format!("{}: {e}", self.output.display()))?;
+        let origin = Origin::new(self.kind.name(), &self.scene);
+        claim(&self.output, &origin).map_err(|e| e.to_string())?;
         let scratch = tempfile::tempdir_in(&self.output).map_err(|e| e.to_string())?;
         let mut runs: Vec<Vec<RunSummary>> = vec![Vec::new(); self.jobs.len()];
         for round in 0..self.repeats {

@@ -16,6 +16,7 @@ use super::seal::{FORMAT, HEAD, hexadecimal, seal, verify};
 use super::{Checkpoint, CheckpointError, Contents, Due, Record, StateColumn};
 use crate::figures::PressureRow;
 use crate::output::histories::Histories;
+use crate::output::origin::Origin;
 use crate::output::{OutputError, ParticleTable, TableColumn};
 use crate::simulation::Saved;
 use crate::watch::Peaks;
@@ -24,6 +25,8 @@ use crate::watch::Peaks;
 #[derive(Serialize, Deserialize)]
 struct Books {
     version: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    origin: Option<Origin>,
     dimension: usize,
     time: f64,
     step: u64,
@@ -105,6 +108,7 @@ fn write_root(file: &Group, contents: &Contents, alive: &dyn Fn()) -> hdf5::Resu
     let Contents { saved, tables, .. } = contents;
     let books = Books {
         version: env!("CARGO_PKG_VERSION").into(),
+        origin: contents.origin.cloned(),
         dimension: contents.dimension,
         time: saved.time,
         step: saved.step,
@@ -233,6 +237,7 @@ fn read_root(file: &Group, length: u64) -> hdf5::Result<Checkpoint> {
     let scene = String::from_utf8(get.values(file, "scene")?).map_err(|e| e.to_string())?;
     Ok(Checkpoint {
         version: books.version,
+        origin: books.origin,
         scene,
         dimension: books.dimension,
         saved: Saved {

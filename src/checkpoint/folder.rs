@@ -10,7 +10,8 @@ use nix::sys::statvfs::statvfs;
 
 use super::{Checkpoint, CheckpointError, Contents, file};
 use crate::output::OutputError;
-use crate::output::folder::CHECKPOINTS;
+use crate::output::folder::{CHECKPOINTS, checkpoint_folder};
+use crate::output::origin::{Made, Maker};
 
 const BEFORE: &str = "checkpoint-";
 const AFTER: &str = ".hdf5";
@@ -109,7 +110,7 @@ pub fn open(path: &Path) -> Result<(Checkpoint, PathBuf, Vec<String>), Checkpoin
     if kind.as_ref().is_ok_and(|m| !m.is_dir()) {
         return Ok((file::read(path)?, path.into(), Vec::new()));
     }
-    let beside = crate::output::folder::checkpoint_folder(path)?;
+    let beside = checkpoint_folder(path)?;
     let found = [path.to_path_buf(), beside].map(|folder| list(&folder));
     let Some(found) = found.into_iter().find(|list| !list.is_empty()) else {
         return Err(none(match kind {
@@ -126,6 +127,24 @@ pub fn open(path: &Path) -> Result<(Checkpoint, PathBuf, Vec<String>), Checkpoin
         }
     }
     Err(none(format!("no checkpoint is whole: {}", notes.join("; "))))
+}
+
+/// Refuses a run whose checkpoints would take the place of those of another scene: those in the
+/// folder of `target`'s checkpoints. Damaged ones are nobody's.
+pub fn check_owner(target: &Path, maker: &Maker) -> Result<(), OutputError> {
+    let folder = checkpoint_folder(target)?;
+    if Made::read(&folder).is_some() {
+        let result = folder.clone();
+        return Err(OutputError::Inside { path: folder, result });
+    }
+    let newest = list(&folder).into_iter().find_map(|(_, path)| file::read(&path).ok());
+    let Some(checkpoint) = newest else { return Ok(()) };
+    let (theirs, scene) = (checkpoint.run_origin(), serde_json::from_str(&checkpoint.scene));
+    if maker.may_replace(&theirs, &scene.unwrap_or_default(), &folder) {
+        return Ok(());
+    }
+    let (theirs, ours) = (theirs.to_string(), maker.origin.to_string());
+    Err(OutputError::Foreign { path: folder, theirs, ours })
 }
 
 /// Where the results go of which `checkpoint` is one: what its folder stands beside; `None` where

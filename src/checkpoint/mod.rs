@@ -21,6 +21,7 @@ use crate::estimate::arrival::Passing;
 use crate::figures::PressureRow;
 use crate::output::ParticleTable;
 use crate::output::histories::Histories;
+use crate::output::origin::{Origin, RUN};
 use crate::simulation::Saved;
 
 /// A column of the state.
@@ -64,6 +65,8 @@ pub struct Record {
 pub struct Checkpoint {
     /// Version of the program that wrote it.
     pub version: String,
+    /// The command and the scene's file of the run; none where it does not say.
+    pub origin: Option<Origin>,
     /// The scene as run, JSON.
     pub scene: String,
     /// Dimension of the scene.
@@ -81,6 +84,8 @@ pub struct Checkpoint {
 /// A checkpoint that is written: what [`Checkpoint`] holds, not copied.
 #[derive(Clone, Debug)]
 pub struct Contents<'a> {
+    /// The command and the scene's file of the run.
+    pub origin: Option<&'a Origin>,
     /// The scene as run, JSON.
     pub scene: &'a str,
     /// Dimension of the scene.
@@ -97,6 +102,14 @@ pub struct Contents<'a> {
     pub waves: &'a [PressureRow],
     /// Histories.
     pub histories: Option<&'a Histories>,
+}
+
+impl Checkpoint {
+    /// The origin of the run; of one that is not recorded the command alone.
+    pub fn run_origin(&self) -> Origin {
+        let unknown = || Origin { command: RUN.into(), ..Origin::default() };
+        self.origin.clone().unwrap_or_else(unknown)
+    }
 }
 
 impl Contents<'_> {

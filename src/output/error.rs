@@ -36,6 +36,50 @@ pub enum OutputError {
         .0.display()
     )]
     NotOurs(PathBuf),
+    /// A result of another scene or command is there.
+    #[error(
+        "{}: holds the result of {theirs}, which is not replaced by {ours}; choose another \
+         --output DIR",
+        path.display()
+    )]
+    Foreign {
+        /// The folder.
+        path: PathBuf,
+        /// What made the result.
+        theirs: String,
+        /// What would replace it.
+        ours: String,
+    },
+    /// The place is inside of a result.
+    #[error(
+        "{}: is inside of the result {}, which a new run replaces as a whole; choose another --output",
+        path.display(), result.display()
+    )]
+    Inside {
+        /// The place.
+        path: PathBuf,
+        /// The result.
+        result: PathBuf,
+    },
+    /// Another result is inside of the folder.
+    #[error(
+        "{}: has another result inside, {}, so it is not replaced; choose another --output DIR",
+        path.display(), result.display()
+    )]
+    Around {
+        /// The folder.
+        path: PathBuf,
+        /// The result inside.
+        result: PathBuf,
+    },
+    /// A file that a command writes is there, and another command or the user made it.
+    #[error("{}: exists and is not {kind}; choose another file", path.display())]
+    OtherFile {
+        /// The file.
+        path: PathBuf,
+        /// What it would have to be.
+        kind: String,
+    },
     /// The folder cannot be renamed.
     #[error("{}: is {why}, which cannot be replaced; choose a folder inside it", path.display())]
     Fixed {

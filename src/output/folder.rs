@@ -11,7 +11,7 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::error::OutputError;
-use super::summary::SUMMARY_FILE;
+use super::origin::{Made, Maker, Origin, check_outside_results};
 
 /// The folder of a scene's results where `--output` says nothing: `output/<stem of the scene>`.
 pub fn default_folder(scene: &Path) -> PathBuf {
@@ -20,9 +20,10 @@ pub fn default_folder(scene: &Path) -> PathBuf {
 }
 
 /// Finds out, before the run, whether a result can be put at `target`; leaves nothing behind.
-/// With `keep` an earlier result is a fault; an empty folder never is.
-pub fn check_writable(target: &Path, keep: bool) -> Result<(), OutputError> {
-    OutputFolder::create(target, keep).map(drop)
+/// With `keep` an earlier result is a fault, and one that `maker` may not replace always is; an empty
+/// folder never is.
+pub fn check_writable(target: &Path, keep: bool, maker: &Maker) -> Result<(), OutputError> {
+    OutputFolder::create(target, keep, maker).map(drop)
 }
 
 /// A folder of results that is being written.
@@ -39,17 +40,20 @@ pub struct OutputFolder {
     /// Parents that were made for it, outermost first.
     made: Vec<PathBuf>,
     keep: bool,
+    maker: Maker,
     committed: bool,
 }
 
 impl OutputFolder {
-    /// Makes the temporary folder beside `target`, and the parents that it needs.
-    pub fn create(target: &Path, keep: bool) -> Result<OutputFolder, OutputError> {
+    /// Makes the temporary folder beside `target`, and the parents that it needs; an earlier result
+    /// there has to be one that `maker` may replace.
+    pub fn create(target: &Path, keep: bool, maker: &Maker) -> Result<OutputFolder, OutputError> {
         let absolute = resolve(target)?;
         if let Some(parent) = absolute.parent() {
             recover(parent, &absolute);
         }
-        check_replaceable(target, &absolute, keep)?;
+        check_outside_results(target)?;
+        check_replaceable(target, &absolute, keep, maker)?;
         let Some(parent) = absolute.parent() else {
             return Err(OutputError::Fixed { path: target.into(), why: "the root folder" });
         };
@@ -59,6 +63,7 @@ impl OutputFolder {
             place: absolute.clone(),
             made: Vec::new(),
             keep,
+            maker: maker.clone(),
             committed: false,
         };
         let what = ("write into the folder", parent);
@@ -81,10 +86,15 @@ impl OutputFolder {
         &self.target
     }
 
+    /// The origin of the result, to be recorded in it.
+    pub fn origin(&self) -> Origin {
+        self.maker.origin.seen_from(&self.place)
+    }
+
     /// Puts the result in place of an earlier one, as a whole; returns where it stands, as the
     /// user named it.
     pub fn commit(mut self) -> Result<PathBuf, OutputError> {
-        check_replaceable(&self.target, &self.place, self.keep)?;
+        check_replaceable(&self.target, &self.place, self.keep, &self.maker)?;
         let parent = self.place.parent().unwrap_or(Path::new("/"));
         let earlier = parent.join(aside_name(&self.place, "earlier"));
         let replaces = self.place.exists();
@@ -211,8 +221,14 @@ pub(super) fn check_folder(named: &Path, target: &Path) -> Result<(), OutputErro
     }
 }
 
-/// Refuses a target that is not a folder, that is not ours to delete, or that cannot be renamed.
-fn check_replaceable(named: &Path, target: &Path, keep: bool) -> Result<(), OutputError> {
+/// Refuses a target that is not a folder, that is not the maker's to delete, or that cannot be
+/// renamed.
+fn check_replaceable(
+    named: &Path,
+    target: &Path,
+    keep: bool,
+    maker: &Maker,
+) -> Result<(), OutputError> {
     check_folder(named, target)?;
     if !target.exists() {
         return Ok(());
@@ -230,14 +246,27 @@ fn check_replaceable(named: &Path, target: &Path, keep: bool) -> Result<(), Outp
     if keep {
         return Err(OutputError::Exists(named.into()));
     }
-    if is_result(target) { Ok(()) } else { Err(OutputError::NotOurs(named.into())) }
+    let Some(made) = Made::read(target) else { return Err(OutputError::NotOurs(named.into())) };
+    if !maker.may_replace(&made.origin, &made.scene, target) {
+        let (theirs, ours) = (made.origin.to_string(), maker.origin.to_string());
+        return Err(OutputError::Foreign { path: named.into(), theirs, ours });
+    }
+    match result_inside(target) {
+        Some(result) => Err(OutputError::Around { path: named.into(), result }),
+        None => Ok(()),
+    }
 }
 
-/// Whether a run of ours has written this folder.
-fn is_result(folder: &Path) -> bool {
-    let Ok(text) = fs::read_to_string(folder.join(SUMMARY_FILE)) else { return false };
-    serde_json::from_str::<serde_json::Value>(&text)
-        .is_ok_and(|v| ["version", "scene", "profiles"].iter().all(|key| v.get(key).is_some()))
+/// A result in a folder below this one.
+fn result_inside(folder: &Path) -> Option<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    // links are removed, not what they lead to
+    let folders = entries.filter(|e| e.file_type().is_ok_and(|kind| kind.is_dir()));
+    let mut paths = folders.map(|e| e.path());
+    paths.find_map(|path| match Made::read(&path) {
+        Some(_) => Some(path),
+        None => result_inside(&path),
+    })
 }
 
 /// Whether something is mounted on the folder; false where that cannot be told.
@@ -297,7 +326,16 @@ pub(super) fn is_dead(process: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::super::summary::SUMMARY_FILE;
     use super::*;
+
+    /// The maker of the results of [`write`].
+    fn maker() -> Maker {
+        Maker {
+            origin: Origin { command: "run".into(), ..Origin::default() },
+            scene: serde_json::json!({}),
+        }
+    }
 
     fn write(folder: &Path, mark: &str) {
         let text = format!(r#"{{"version": "{mark}", "scene": {{}}, "profiles": []}}"#);
@@ -316,14 +354,14 @@ mod tests {
         let home = tempfile::tempdir().unwrap();
         let target = home.path().join("a/b/run");
         for mark in ["1", "2"] {
-            let folder = OutputFolder::create(&target, false).unwrap();
+            let folder = OutputFolder::create(&target, false, &maker()).unwrap();
             write(folder.path(), mark);
             fs::write(folder.file(mark), "").unwrap();
             assert_eq!(folder.commit().unwrap(), target);
             assert_eq!(names(&target), [mark, SUMMARY_FILE]);
             assert_eq!(names(target.parent().unwrap()), ["run"]);
         }
-        let failed = OutputFolder::create(&target, false).unwrap();
+        let failed = OutputFolder::create(&target, false, &maker()).unwrap();
         write(failed.path(), "3");
         assert_eq!(names(&target), ["2", SUMMARY_FILE]);
         drop(failed);
@@ -334,7 +372,7 @@ mod tests {
     #[test]
     fn leaves_no_trace_of_parents_that_it_made() {
         let home = tempfile::tempdir().unwrap();
-        check_writable(&home.path().join("a/b/run"), false).unwrap();
+        check_writable(&home.path().join("a/b/run"), false, &maker()).unwrap();
         assert!(names(home.path()).is_empty());
     }
 
@@ -343,13 +381,13 @@ mod tests {
         let home = tempfile::tempdir().unwrap();
         let target = home.path().join("run");
         fs::create_dir(&target).unwrap();
-        OutputFolder::create(&target, true).unwrap().commit().unwrap();
+        OutputFolder::create(&target, true, &maker()).unwrap().commit().unwrap();
         write(&target, "1");
-        assert!(matches!(check_writable(&target, true), Err(OutputError::Exists(_))));
-        check_writable(&target, false).unwrap();
+        assert!(matches!(check_writable(&target, true, &maker()), Err(OutputError::Exists(_))));
+        check_writable(&target, false, &maker()).unwrap();
         // A result that came while this one ran is kept as well.
         fs::remove_file(target.join(SUMMARY_FILE)).unwrap();
-        let folder = OutputFolder::create(&target, true).unwrap();
+        let folder = OutputFolder::create(&target, true, &maker()).unwrap();
         write(&target, "2");
         assert!(matches!(folder.commit(), Err(OutputError::Exists(_))));
         assert_eq!(names(&target), [SUMMARY_FILE]);
@@ -361,19 +399,19 @@ mod tests {
         let folder = home.path().join("mine");
         fs::create_dir(&folder).unwrap();
         fs::write(folder.join("thesis.tex"), "").unwrap();
-        let error = check_writable(&folder, false).unwrap_err();
+        let error = check_writable(&folder, false, &maker()).unwrap_err();
         assert!(error.to_string().contains("mine: holds files but no summary.json"), "{error}");
         fs::write(folder.join(SUMMARY_FILE), "{}").unwrap();
-        assert!(matches!(check_writable(&folder, false), Err(OutputError::NotOurs(_))));
+        assert!(matches!(check_writable(&folder, false, &maker()), Err(OutputError::NotOurs(_))));
         let file = folder.join("thesis.tex");
         assert!(
-            matches!(check_writable(&file, false), Err(OutputError::NotAFolder(p)) if p == file)
+            matches!(check_writable(&file, false, &maker()), Err(OutputError::NotAFolder(p)) if p == file)
         );
         let below = file.join("run");
-        assert!(matches!(check_writable(&below, false), Err(OutputError::NotAFolder(_))));
+        assert!(matches!(check_writable(&below, false, &maker()), Err(OutputError::NotAFolder(_))));
         let here = std::env::current_dir().unwrap();
-        assert!(matches!(check_writable(&here, false), Err(OutputError::Fixed { .. })));
-        let error = check_writable(Path::new("/proc/run"), false).unwrap_err();
+        assert!(matches!(check_writable(&here, false, &maker()), Err(OutputError::Fixed { .. })));
+        let error = check_writable(Path::new("/proc/run"), false, &maker()).unwrap_err();
         assert!(error.to_string().starts_with("/proc: cannot write into the folder"), "{error}");
         assert_eq!(names(&folder), [SUMMARY_FILE, "thesis.tex"]);
     }
@@ -384,7 +422,7 @@ mod tests {
         let (real, link) = (home.path().join("real"), home.path().join("link"));
         fs::create_dir(&real).unwrap();
         std::os::unix::fs::symlink(&real, &link).unwrap();
-        let folder = OutputFolder::create(&link, false).unwrap();
+        let folder = OutputFolder::create(&link, false, &maker()).unwrap();
         write(folder.path(), "1");
         folder.commit().unwrap();
         assert!(link.is_symlink());
@@ -400,8 +438,8 @@ mod tests {
         fs::create_dir(&aside).unwrap();
         write(&aside, "1");
         fs::create_dir(home.path().join(format!(".run.flyer.partial-{dead}"))).unwrap();
-        check_writable(&target, false).unwrap();
+        check_writable(&target, false, &maker()).unwrap();
         assert_eq!(names(home.path()), ["run"]);
-        assert!(is_result(&target));
+        assert!(Made::read(&target).is_some());
     }
 }

@@ -8,6 +8,7 @@ pub mod error;
 pub mod folder;
 pub mod histories;
 pub mod lock;
+pub mod origin;
 pub mod pictures;
 pub mod report;
 pub mod summary;

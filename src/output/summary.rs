@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use super::decomposition::DecompositionSummary;
 use super::error::OutputError;
+use super::origin::Origin;
 use crate::effects::EffectUse;
 use crate::estimate::ErrorEstimate;
 use crate::plan::Verdict;
@@ -23,6 +24,9 @@ pub struct Summary {
     pub title: String,
     /// Version of the program.
     pub version: String,
+    /// The command and the scene's file that made the result.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub origin: Option<Origin>,
     /// The scene as run: after `--set`, defaults filled in.
     pub scene: Value,
     /// Ranks.
@@ -295,6 +299,7 @@ pub(super) mod tests {
         Summary {
             title: "flyer".into(),
             version: "0.1.0".into(),
+            origin: None,
             scene: json!({"domain": {"lower": [0.0]}}),
             ranks: 2,
             threads: 1,

@@ -10,6 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use super::error::OutputError;
 
+/// What the file of a timeline begins with.
+pub const TRACE_START: &str = r#"{"displayTimeUnit":"#;
+
 /// One stretch of one line of the timeline.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TraceEvent {

@@ -10,6 +10,7 @@ use flyer_mpm::checkpoint::{
 };
 use flyer_mpm::figures::PressureRow;
 use flyer_mpm::output::histories::Histories;
+use flyer_mpm::output::origin::{Origin, RUN};
 use flyer_mpm::output::{ParticleTable, TableColumn};
 use flyer_mpm::simulation::Saved;
 
@@ -35,6 +36,7 @@ fn example() -> Checkpoint {
     histories.push(&[1e-9, 1.0 / 3.0]);
     let mut checkpoint = Checkpoint {
         version: env!("CARGO_PKG_VERSION").into(),
+        origin: Some(Origin::new(RUN, Path::new("Cargo.toml"))),
         scene: r#"{"title": "x"}"#.into(),
         dimension: 2,
         saved: Saved {
@@ -74,6 +76,7 @@ fn example() -> Checkpoint {
 
 fn contents(c: &Checkpoint) -> Contents<'_> {
     Contents {
+        origin: c.origin.as_ref(),
         scene: &c.scene,
         dimension: c.dimension,
         saved: &c.saved,

@@ -58,7 +58,16 @@ fn a_study_runs_each_case_once_and_tells_of_those_that_fail() {
     );
     assert!(lines[1].starts_with("as it is,0.00002,done,1,1,2,"), "{}", lines[1]);
     assert!(lines[3].contains("refused: "), "{}", lines[3]);
-    let left = ["choices.md", "cost.png", "cost.svg", "map.png", "map.svg", "runs", "study.csv"];
+    let left = [
+        "choices.md",
+        "cost.png",
+        "cost.svg",
+        "map.png",
+        "map.svg",
+        "origin.json",
+        "runs",
+        "study.csv",
+    ];
     assert_eq!(names(&home.at("out")), left);
     // nothing is run twice; what is lost, alone, is run again
     let before = records(&home);

@@ -9,6 +9,7 @@ mod every_scene;
 mod forecasts;
 mod home;
 mod outputs;
+mod ownership;
 mod pictures;
 mod program;
 mod replacing;

@@ -27,9 +27,12 @@ pub struct Output {
 }
 
 /// What has been foretold of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Planned {
+    /// File of the scene that was planned; a plan of another scene does not replace this one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of: Option<String>,
     /// The quantity.
     pub quantity: PlannedQuantity,
     /// Its relative error that was wanted [-].
