@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use flyer_mpm::estimate::Basis;
 use flyer_mpm::output::origin::{absolute, check_target};
 use flyer_mpm::plan::{self, Data, PlanError, Wish};
 
@@ -44,9 +45,16 @@ pub fn plan(args: &PlanArgs) -> Outcome<String> {
         .and_then(|()| std::fs::write(&file, text))
         .map_err(|e| bad(format!("{}: cannot be written: {e}", file.display())))?;
     let percent = plan::choose::percent;
+    let guess = match plan.basis {
+        Basis::Calibrated => String::new(),
+        Basis::Guess => {
+            let outside = plan.outside.join("; ");
+            format!("guess      the schemes were not measured on such inputs: {outside}\n")
+        }
+    };
     Ok(format!(
         "scheme     {}\ncells      {:.4e} m, {} particles a cell, Courant number {}\nerror      \
-         {} to expect, {} at most in 19 of 20 runs; wanted {}\nseconds    {:.3} of CPU, {:.3} of \
+         {} to expect, {} at most in 19 of 20 runs; wanted {}\n{guess}seconds    {:.3} of CPU, {:.3} of \
          wall in the time loop on {} ranks (pilots took {:.2} s)\nscene      {}\n",
         plan.scheme,
         plan.cell_size,

@@ -90,6 +90,7 @@ fn main() {
             FITTED.join(", "),
             SEEDS[0]
         ),
+        fitted: random_impacts::range(),
         plateau_pressure: quantity(0),
         arrival_time: quantity(1),
         l1: quantity(2),

@@ -1,5 +1,6 @@
 //! Random plate impacts: materials of the library, speeds, thicknesses, schemes, cell sizes.
 
+use flyer_mpm::estimate::FittedRange;
 use flyer_mpm::exact::{Impact, ImpactBody};
 use flyer_mpm::material::MieGruneisen;
 use flyer_mpm::plan;
@@ -53,6 +54,37 @@ pub const HELD_OUT: [&str; 8] = [
     "steel_4340",
 ];
 
+/// Speeds of the impacts \[m/s\].
+const SPEED: [f64; 2] = [300.0, 3000.0];
+/// Cells in a flyer.
+const FLYER_CELLS: [f64; 2] = [25.0, 60.0];
+/// End of the run over the time at which the release from the flyer's rear reaches the interface.
+const DURATION: [f64; 2] = [0.6, 3.0];
+/// Place of the arrival over the way of the shock to the end.
+const PLACE: [f64; 2] = [0.3, 0.8];
+
+/// The range of the impacts of all these materials.
+#[allow(dead_code)] // each program takes its own
+pub fn range() -> FittedRange {
+    let all: Vec<MieGruneisen> =
+        FITTED.iter().chain(&HELD_OUT).map(|name| material(name)).collect();
+    let ends = |of: fn(&MieGruneisen) -> f64| {
+        let values = || all.iter().map(of);
+        [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
+    };
+    FittedRange {
+        density: ends(|m| m.rho0),
+        c0: ends(|m| m.c0),
+        s: ends(|m| m.s),
+        gamma0: ends(|m| m.gamma0),
+        speed: SPEED,
+        flyer_cells: FLYER_CELLS,
+        duration: DURATION,
+        place: PLACE,
+        schemes: plan::schemes().into_iter().map(|scheme| scheme.name).collect(),
+    }
+}
+
 /// A random impact.
 pub struct RandomImpact {
     /// What it is, in words.
@@ -85,12 +117,13 @@ pub fn impact(random: &mut Random, materials: &[&str]) -> RandomImpact {
 
 fn attempt(random: &mut Random, materials: &[&str]) -> Option<RandomImpact> {
     let (flyer, target) = (*random.one(materials), *random.one(materials));
-    let speed = random.log_between(300.0, 3000.0).round();
+    let speed = random.log_between(SPEED[0], SPEED[1]).round();
     let thickness = random.between(0.2e-3, 1e-3);
-    let cells = random.between(25.0, 60.0).round();
+    let cells = random.between(FLYER_CELLS[0], FLYER_CELLS[1]).round();
     let schemes = plan::schemes();
     let scheme = random.one(&schemes);
-    let (duration, place) = (random.between(0.6, 3.0), random.between(0.3, 0.8));
+    let duration = random.between(DURATION[0], DURATION[1]);
+    let place = random.between(PLACE[0], PLACE[1]);
     let (f, t) = (material(flyer), material(target));
     let flyer_body = ImpactBody { material: f, lower: -thickness, upper: 0.0, velocity: speed };
     let target_body = ImpactBody { material: t, lower: 0.0, upper: 1.0, velocity: 0.0 };

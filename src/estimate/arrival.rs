@@ -6,6 +6,7 @@
 use decomp::Comm;
 use serde::{Deserialize, Serialize};
 
+use crate::geometry::Tile;
 use crate::scene::CheckedScene;
 use crate::simulation::Simulation;
 
@@ -32,10 +33,13 @@ pub struct Between {
 }
 
 impl Between {
-    /// The particles about `at` \[m\] in a body that is a box filled evenly.
+    /// The particles about `at` \[m\] in a body on a line.
     pub fn new(scene: &CheckedScene, body: usize, at: f64) -> Between {
         let first: u64 = scene.bodies[..body].iter().map(|b| b.particles).sum();
         let own = &scene.bodies[body];
+        if let Some(tiles) = &own.tiles {
+            return Between::of_tiles(tiles, first, at);
+        }
         let length = (own.upper[0] - own.lower[0]) / own.particles as f64;
         // counted in particles from the centre of the first
         let along = (at - own.lower[0]) / length - 0.5;
@@ -47,22 +51,53 @@ impl Between {
             weights: [1.0 - share, share],
         }
     }
+
+    /// The same in a body with positions of its own: the nearest particles below and above `at`.
+    fn of_tiles(tiles: &[Tile], first: u64, at: f64) -> Between {
+        let place = |k: usize| tiles[k].centre[0];
+        let by_place = |a: &usize, b: &usize| place(*a).total_cmp(&place(*b));
+        let all = || 0..tiles.len();
+        let below = all().filter(|&k| place(k) <= at).max_by(by_place);
+        let above = all().filter(|&k| place(k) > at).min_by(by_place);
+        let [below, above] = [below.or(above), above.or(below)].map(Option::unwrap_or_default);
+        let share = match place(above) - place(below) {
+            apart if apart > 0.0 => (at - place(below)) / apart,
+            _ => 0.0,
+        };
+        Between { ids: [first + below as u64, first + above as u64], weights: [1.0 - share, share] }
+    }
+}
+
+/// Pressures that a wave passes as it arrives at a place \[Pa\].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Levels {
+    /// A tenth of the way from the pressure at the start to the greatest.
+    pub toe: f64,
+    /// Half of that way.
+    pub half: f64,
+}
+
+impl Levels {
+    /// The levels between the pressure at the start and the greatest \[Pa\].
+    pub fn new(start: f64, peak: f64) -> Levels {
+        let half = 0.5 * (start + peak);
+        Levels { toe: start + 0.2 * (half - start), half }
+    }
 }
 
 /// What is looked at, and what has come.
 #[derive(Clone, Debug, Default)]
 pub struct Arrivals {
     places: Vec<Between>,
-    /// Levels, half of the greatest pressure that a companion has felt there \[Pa\]; none: nothing
-    /// came there.
-    levels: Vec<Option<f64>>,
+    /// Levels by the finest companion; none: nothing came there.
+    levels: Vec<Option<Levels>>,
     wanted: Vec<u64>,
     passings: Vec<[Passing; 2]>,
 }
 
 impl Arrivals {
     /// Looks at places with these levels.
-    pub fn new(places: Vec<Between>, levels: Vec<Option<f64>>) -> Arrivals {
+    pub fn new(places: Vec<Between>, levels: Vec<Option<Levels>>) -> Arrivals {
         let mut wanted: Vec<u64> = places.iter().flat_map(|p| p.ids).collect();
         wanted.sort_unstable();
         wanted.dedup();
@@ -121,14 +156,14 @@ impl Arrivals {
 }
 
 impl Passing {
-    fn see(&mut self, time: f64, pressure: f64, level: f64) {
+    fn see(&mut self, time: f64, pressure: f64, levels: Levels) {
         let (t0, p0) = (self.last_time, self.last_pressure);
         let cross = |level: f64| {
             (p0 < level && pressure >= level)
                 .then(|| t0 + (time - t0) * (level - p0) / (pressure - p0))
         };
-        self.toe = self.toe.or(cross(0.2 * level));
-        self.half = self.half.or(cross(level));
+        self.toe = self.toe.or(cross(levels.toe));
+        self.half = self.half.or(cross(levels.half));
         (self.last_time, self.last_pressure) = (time, pressure);
     }
 }
@@ -141,7 +176,7 @@ mod tests {
     fn the_first_passing_counts() {
         let mut passing = Passing::default();
         for (t, p) in [(1.0, 0.0), (2.0, 4.0), (3.0, 8.0), (4.0, 0.0), (5.0, 9.0)] {
-            passing.see(t, p, 6.0);
+            passing.see(t, p, Levels { toe: 1.2, half: 6.0 });
         }
         assert_eq!((passing.toe, passing.half), (Some(1.3), Some(2.5)));
     }

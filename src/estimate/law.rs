@@ -8,6 +8,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::evidence::Evidence;
+use super::range::FittedRange;
 
 /// The shipped laws.
 pub const DATA: &str = include_str!("laws.json");
@@ -39,6 +40,8 @@ pub struct Quantity(pub Vec<Law>);
 pub struct Laws {
     /// How they were made.
     pub source: String,
+    /// The impacts that they were fitted on and compared with.
+    pub fitted: FittedRange,
     /// Of the plateau's pressure, relative.
     pub plateau_pressure: Quantity,
     /// Of arrivals, in times that sound takes through a cell.

@@ -7,14 +7,15 @@
 //! Told are the pressure of the first plateau ([`plateau`]), the times at which the wave arrives
 //! at places ([`arrival`]), and a bound of each profile's L1.
 //!
-//! On a line, for bodies filled by `particles_per_cell`. The law knows impacts of fluids between
-//! 300 m/s and 3 km/s, 25 to 60 cells a flyer: elsewhere it is a guess.
+//! On a line. The laws were fitted on impacts of fluids between 300 m/s and 3 km/s, 25 to 60 cells a
+//! flyer ([`range`]): elsewhere the estimate is marked as a guess.
 
 pub mod arrival;
 pub mod companion;
 pub mod evidence;
 pub mod law;
 pub mod plateau;
+pub mod range;
 
 use std::collections::BTreeMap;
 
@@ -23,6 +24,7 @@ use serde::{Deserialize, Serialize};
 pub use arrival::Arrivals;
 pub use companion::{Companion, Companions};
 pub use law::Laws;
+pub use range::{Basis, FittedRange, Outside};
 
 use crate::output::ParticleTable;
 use crate::reference::Reference;
@@ -51,6 +53,9 @@ pub struct Bounded {
 pub struct ProfileEstimate {
     /// Time \[s\].
     pub time: f64,
+    /// Whether the laws were fitted on such a profile.
+    #[serde(default)]
+    pub basis: Basis,
     /// Pressure of the plateau behind the shock \[Pa\]; none where there is none over 20 cells.
     pub plateau_pressure: Option<Bounded>,
     /// Relative L1 of the pressure: its value is 0, what no error would be, and its half-width the
@@ -63,6 +68,9 @@ pub struct ProfileEstimate {
 pub struct ArrivalEstimate {
     /// The place, at the start \[m\].
     pub at: f64,
+    /// Whether the laws were fitted on such an arrival.
+    #[serde(default)]
+    pub basis: Basis,
     /// When the pressure there first passes half of its greatest \[s\]; none: not within the run.
     pub time: Option<Bounded>,
 }
@@ -72,6 +80,12 @@ pub struct ArrivalEstimate {
 pub struct ErrorEstimate {
     /// The body that it is about.
     pub body: String,
+    /// Whether the laws were fitted on scenes like this one, at all of its profiles and places.
+    #[serde(default)]
+    pub basis: Basis,
+    /// Inputs outside of the range that the laws were fitted on, one line each.
+    #[serde(default)]
+    pub outside: Vec<String>,
     /// Cell sizes of the companions \[m\].
     pub companions: Vec<f64>,
     /// User CPU time of the companions, this rank's \[s\].
@@ -108,10 +122,46 @@ pub fn line(table: &ParticleTable, body: usize) -> Line {
     own.map(|r| (x[r], p[r])).collect()
 }
 
+/// A pressure of this share of rho c^2 is rounding and no wave \[-\].
+const ROUNDING: f64 = 1e-9;
+
+/// Pressures of `body` up to this one are rounding and no wave \[Pa\], where sound takes `cell_time`
+/// \[s\] through a cell.
+pub(crate) fn least_pressure(scene: &CheckedScene, body: usize, cell_time: f64) -> f64 {
+    ROUNDING * scene.material_of(body).density * (scene.cell_size[0] / cell_time).powi(2)
+}
+
+/// The difference from the companion's pressure beyond which a plateau is none: the companion has
+/// another wave there, or none \[-\].
+const OTHER_WAVE: f64 = 0.5;
+
+/// The plateau of a profile above the pressure `start` of the body at the start \[Pa\], with its
+/// evidence; none where the pressure has risen by no more than `least` \[Pa\] or the companions do
+/// not have it.
+fn find_plateau(
+    own: &Line,
+    others: &[(f64, &Line)],
+    h: f64,
+    [start, least]: [f64; 2],
+) -> Option<(plateau::Plateau, evidence::Evidence)> {
+    let above = |line: &Line| line.iter().map(|q| (q.0, q.1 - start)).collect::<Line>();
+    let found = plateau::find(&above(own), h).filter(|found| found.pressure > least)?;
+    let lines: Vec<(f64, Line)> = others.iter().map(|(f, line)| (*f, above(line))).collect();
+    let lines: Vec<(f64, &Line)> = lines.iter().map(|(f, line)| (*f, line)).collect();
+    let evidence = evidence::of_plateau(&found, &lines, h);
+    let nearest = lines.iter().map(|(factor, _)| *factor).reduce(f64::min);
+    let differs = nearest.and_then(|f| evidence.get(&format!("difference_{f}")).copied());
+    differs.is_none_or(|d| d < OTHER_WAVE).then_some((found, evidence))
+}
+
 /// States the errors of a finished run.
 pub fn estimate(answer: &Answer<'_>, companions: &Companions, laws: &Laws) -> ErrorEstimate {
     let scene = answer.scene;
     let h = scene.cell_size[0];
+    let cell_time = scene.scene.time.end / answer.steps.max(1) as f64 / scene.scene.time.courant;
+    let start = scene.scene.bodies[answer.body].pressure;
+    let least = least_pressure(scene, answer.body, cell_time);
+    let outside = laws.fitted.outside(scene, answer.body);
     let profiles = answer.tables.iter().enumerate().map(|(k, table)| {
         let own = line(table, answer.body);
         let others: Vec<(f64, &Line)> =
@@ -120,23 +170,24 @@ pub fn estimate(answer: &Answer<'_>, companions: &Companions, laws: &Laws) -> Er
             Some(Reference::Impact(all)) => all.solution.snapshots[k].landmarks.as_ref(),
             _ => None,
         };
-        let plateau = plateau::find(&own, h).map(|found| {
-            let evidence = evidence::of_plateau(&found, &others, h);
+        let plateau = find_plateau(&own, &others, h, [start, least]).map(|(found, evidence)| {
             let half_width = laws.plateau_pressure.half_width(&evidence);
             Bounded {
-                value: found.pressure,
+                value: start + found.pressure,
                 half_width: half_width.map(|w| w * found.pressure.abs()),
                 evidence,
                 exact: marks.map(|m| m.p2),
             }
         });
+        let is_silent = own.iter().all(|q| q.1.abs() <= least);
+        let others = if is_silent { Vec::new() } else { others };
         let evidence = evidence::of_profile(&own, &others);
         let half_width = laws.l1.half_width(&evidence);
         let l1 = Bounded { value: 0.0, half_width, evidence, exact: None };
-        ProfileEstimate { time: table.time, plateau_pressure: plateau, l1 }
+        let basis = outside.of_profile(k);
+        ProfileEstimate { time: table.time, basis, plateau_pressure: plateau, l1 }
     });
     let places = &scene.scene.error_estimate.as_ref().map_or(&[][..], |e| &e.arrivals);
-    let cell_time = scene.scene.time.end / answer.steps.max(1) as f64 / scene.scene.time.courant;
     let exact = answer.reference.map_or(Vec::new(), |r| r.arrivals(scene));
     let arrivals = places.iter().enumerate().map(|(k, &at)| {
         let time = answer.arrivals.time(k).map(|(time, rise)| {
@@ -150,11 +201,13 @@ pub fn estimate(answer: &Answer<'_>, companions: &Companions, laws: &Laws) -> Er
             let exact = exact.get(k).copied().flatten();
             Bounded { value: time, half_width, evidence, exact }
         });
-        ArrivalEstimate { at, time }
+        ArrivalEstimate { at, basis: outside.of_arrival(k), time }
     });
     ErrorEstimate {
         body: scene.scene.bodies[answer.body].name.clone(),
-        companions: companions.done.iter().map(|c| c.factor * h).collect(),
+        basis: outside.basis(),
+        outside: outside.lines(),
+        companions: companions.done.iter().map(|c| c.cell_size).collect(),
         cpu_seconds: companions.cpu_seconds,
         profiles: profiles.collect(),
         arrivals: arrivals.collect(),

@@ -63,7 +63,8 @@ pub fn find(line: &Line, h: f64) -> Option<Plateau> {
 pub fn find_over(line: &Line, h: f64, least: usize) -> Option<Plateau> {
     let ahead = from_ahead(cells(line, h));
     let peak = ahead.iter().map(|c| c.1).fold(0.0, f64::max);
-    let half = ahead.iter().position(|c| c.1 >= 0.5 * peak)?;
+    // without material ahead that it has not reached there is no shock to see
+    let half = ahead.iter().position(|c| c.1 >= 0.5 * peak).filter(|&half| half > 0)?;
     let first = half + BEHIND;
     let mean = |from: usize| -> Option<f64> {
         let window = ahead.get(from..from + WINDOW)?;
@@ -144,5 +145,11 @@ mod tests {
             (0..100).map(|k| (k as f64, (5.0 - (k as f64 - 50.0).abs()).max(0.0))).collect();
         assert_eq!(find(&line, 1.0), None);
         assert_eq!(find(&Line::new(), 1.0), None);
+    }
+
+    #[test]
+    fn a_level_body_without_a_shock_has_no_plateau() {
+        let level: Line = (0..100).map(|k| (k as f64, 1e5)).collect();
+        assert_eq!(find(&level, 1.0), None);
     }
 }

@@ -7,7 +7,7 @@ use super::decomposition::DecompositionSummary;
 use super::summary::{FailureSummary, Outflow, ProfileSummary, Summary};
 use crate::clock::Activity;
 use crate::effects::{ledger_lines, ledger_rest};
-use crate::estimate::{Bounded, ErrorEstimate};
+use crate::estimate::{Basis, Bounded, ErrorEstimate};
 use crate::plan::Verdict;
 
 /// Errors of a profile by name, with a heading and whether they are shown in per cent.
@@ -200,10 +200,11 @@ fn plan_fact(plan: &Verdict) -> String {
         (None, _) => "not known".into(),
     };
     format!(
-        "error wanted {}, foretold {}, actual {actual}; CPU seconds of the time loop foretold \
+        "error wanted {}, foretold {}{}, actual {actual}; CPU seconds of the time loop foretold \
          {:.3}, actual {:.3}; wall {:.3}, {:.3}",
         percent(plan.wanted),
         percent(plan.predicted),
+        if plan.guess { " (guess)" } else { "" },
         plan.predicted_cpu_seconds,
         plan.cpu_seconds,
         plan.predicted_wall_seconds,
@@ -223,8 +224,10 @@ fn estimate_facts(told: &ErrorEstimate) -> Vec<(&'static str, String)> {
         }
         None => format!("{} {unit}, too little evidence of its error", b.value * scale),
     };
+    let guess = |basis: Basis| if basis == Basis::Guess { " (guess)" } else { "" };
     let mut facts = Vec::new();
     for profile in &told.profiles {
+        let guess = guess(profile.basis);
         let plateau = match &profile.plateau_pressure {
             Some(bounded) => format!("plateau {}", within(bounded, 1e-9, "GPa")),
             None => "no plateau".into(),
@@ -236,14 +239,23 @@ fn estimate_facts(told: &ErrorEstimate) -> Vec<(&'static str, String)> {
         let exact = profile.l1.exact;
         let exact =
             exact.map_or(String::new(), |e| format!(", in truth {}", significant(100.0 * e)));
-        facts.push(("estimate", format!("{}: {plateau}; {l1}{exact}", seconds(profile.time))));
+        facts.push((
+            "estimate",
+            format!("{}: {plateau}; {l1}{exact}{guess}", seconds(profile.time)),
+        ));
     }
     for arrival in &told.arrivals {
         let time = match &arrival.time {
             Some(bounded) => format!("arrival {}", within(bounded, 1e9, "ns")),
             None => "nothing has arrived".into(),
         };
-        facts.push(("estimate", format!("at {} mm: {time}", significant(1e3 * arrival.at))));
+        let guess = guess(arrival.basis);
+        facts.push(("estimate", format!("at {} mm: {time}{guess}", significant(1e3 * arrival.at))));
+    }
+    if told.basis == Basis::Guess {
+        let outside = told.outside.join("; ");
+        let text = format!("guess: the laws of errors were not fitted on such inputs: {outside}");
+        facts.push(("estimate", text));
     }
     facts.extend(told.notes.iter().map(|note| ("estimate", note.clone())));
     facts

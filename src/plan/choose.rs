@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 use super::data::{Data, Measured, Size};
 use super::pilot::{self, Pilot};
 use super::schemes::{Scheme, schemes};
+use crate::estimate::{Basis, Laws};
 use crate::scene::{self, CheckedScene, PlannedQuantity};
 
 /// What is wanted.
@@ -44,6 +45,10 @@ pub struct Plan {
     pub wall_seconds: f64,
     /// What the pilots have taken \[s\].
     pub pilot_seconds: f64,
+    /// Whether the schemes' errors were measured on such scenes.
+    pub basis: Basis,
+    /// Inputs outside of the range that they were measured on, one line each.
+    pub outside: Vec<String>,
     /// The scene to run.
     pub scene: Value,
 }
@@ -193,6 +198,9 @@ pub fn plan(scene: &Value, file: &str, wish: &Wish, data: &Data) -> Result<Plan,
     if scene.get("error_estimate").is_none_or(Value::is_null) {
         scene["error_estimate"] = json!({});
     }
+    if scene.pointer("/domain/lower/1").is_some() {
+        return Err(fail(format!("{file}: plan: a scene in a plane; allowed: a scene on a line")));
+    }
     if let Some(at) = wish.place {
         scene["error_estimate"]["arrivals"] = json!([at]);
     }
@@ -293,6 +301,12 @@ pub fn plan(scene: &Value, file: &str, wish: &Wish, data: &Data) -> Result<Plan,
         ..*candidate
     };
     let error = candidate.error(wish.quantity, &scale, h).expect("it has been looked at");
+    // the plan chooses the cells by itself
+    let mut outside = Laws::shipped().fitted.outside_but_cells(&run, body);
+    match wish.quantity {
+        PlannedQuantity::ArrivalTime => outside.profiles.clear(),
+        _ => outside.arrivals.clear(),
+    }
     let mut plan = Plan {
         scheme: candidate.scheme.name.clone(),
         cell_size: h,
@@ -303,6 +317,8 @@ pub fn plan(scene: &Value, file: &str, wish: &Wish, data: &Data) -> Result<Plan,
         cpu_seconds: candidate.cost.at(h),
         wall_seconds: candidate.wall(h, wish.ranks, extra),
         pilot_seconds: start.elapsed().as_secs_f64(),
+        basis: outside.basis(),
+        outside: outside.lines(),
         scene: Value::Null,
     };
     chosen["output"]["plan"] = json!({
@@ -311,6 +327,7 @@ pub fn plan(scene: &Value, file: &str, wish: &Wish, data: &Data) -> Result<Plan,
         "error": plan.error,
         "cpu_seconds": plan.cpu_seconds,
         "wall_seconds": plan.wall_seconds,
+        "guess": plan.basis == Basis::Guess,
     });
     plan.scene = chosen;
     Ok(plan)

@@ -55,6 +55,8 @@ impl Scheme {
         scene["time"]["courant"] = json!(self.courant);
         for body in scene["bodies"].as_array_mut().into_iter().flatten() {
             body["particles_per_cell"] = json!([self.particles_per_cell]);
+            // positions of its own are those of other cells
+            body.as_object_mut().map(|body| body.remove("positions"));
         }
     }
 }

@@ -15,6 +15,9 @@ pub struct Verdict {
     pub wanted: f64,
     /// The error foretold \[-\].
     pub predicted: f64,
+    /// Whether that was a guess, for the schemes were not measured on such scenes.
+    #[serde(default)]
+    pub guess: bool,
     /// The error that came, the greatest of all profiles \[-\]; by the run's own bound where there
     /// is no exact solution; none where it is not known.
     pub actual: Option<f64>,
@@ -67,6 +70,7 @@ pub fn verdict(
         quantity: planned.quantity,
         wanted: planned.wanted,
         predicted: planned.error,
+        guess: planned.guess,
         actual: all.iter().map(|a| a.0).reduce(f64::max),
         is_true: all.iter().all(|a| a.1),
         predicted_cpu_seconds: planned.cpu_seconds,

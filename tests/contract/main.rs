@@ -5,6 +5,7 @@ mod accuracy;
 mod bad_input;
 mod command_line;
 mod commands;
+mod estimates;
 mod every_scene;
 mod forecasts;
 mod home;

@@ -7,6 +7,7 @@
 
 mod alarms;
 mod cases;
+mod estimates;
 mod found;
 #[path = "../common/random_scenes.rs"]
 mod random_scenes;

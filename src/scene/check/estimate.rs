@@ -1,23 +1,46 @@
-//! What a statement of errors needs: a line, a body filled evenly, places in it.
+//! The body and the places of `error_estimate`: on a line, with or without a reference.
 
 use super::super::errors::{Fault, suggest};
 use super::super::model::Reference;
 use super::CheckedScene;
 
 impl CheckedScene {
-    /// The body that `error_estimate` is about; none without that key.
+    /// The body of `error_estimate`, by number: the one that it names, or the default of
+    /// [`Self::default_estimated_body`]; none without the key.
     pub fn estimated_body(&self) -> Option<usize> {
         let asked = self.scene.error_estimate.as_ref()?;
-        let name = asked.body.as_deref().or(match self.scene.reference.as_ref()? {
-            Reference::FlyerImpact(named) => Some(named.target.as_str()),
-            Reference::WallImpact(named) => Some(named.body.as_str()),
+        match &asked.body {
+            Some(name) => self.body_named(name),
+            None => self.default_estimated_body(),
+        }
+    }
+
+    /// The body whose errors are estimated where `error_estimate.body` is absent: the one that the
+    /// reference scores, else the only body, else the only one at rest, which the others strike.
+    pub fn default_estimated_body(&self) -> Option<usize> {
+        let scored = match &self.scene.reference {
+            Some(Reference::FlyerImpact(named)) => Some(&named.target),
+            Some(Reference::WallImpact(named)) => Some(&named.body),
+            Some(Reference::SimpleWave(named)) => Some(&named.body),
+            Some(Reference::Noh(named)) => Some(&named.body),
             _ => None,
-        })?;
+        };
+        if let Some(name) = scored {
+            return self.body_named(name);
+        }
+        if self.bodies.len() == 1 {
+            return Some(0);
+        }
+        let mut at_rest = (0..self.bodies.len()).filter(|&b| self.bodies[b].top_speed == 0.0);
+        at_rest.next().filter(|_| at_rest.next().is_none())
+    }
+
+    fn body_named(&self, name: &str) -> Option<usize> {
         self.scene.bodies.iter().position(|b| b.name == name)
     }
 }
 
-/// Refuses a statement of errors that cannot be made.
+/// Refuses an estimate of a scene in a plane, of no body, and at places outside of its body.
 pub(super) fn check(checked: &CheckedScene) -> Result<(), Fault> {
     let Some(asked) = &checked.scene.error_estimate else { return Ok(()) };
     let names = || checked.scene.bodies.iter().map(|b| b.name.as_str());
@@ -33,17 +56,13 @@ pub(super) fn check(checked: &CheckedScene) -> Result<(), Fault> {
             None => Fault::missing(
                 "error_estimate.body",
                 format!(
-                    "missing key, for the reference scores no one body; allowed: {}",
+                    "missing key, for no reference scores one body and not just one is at rest; \
+                     allowed: {}",
                     names().collect::<Vec<_>>().join(", ")
                 ),
             ),
         });
     };
-    if let Some(own) = checked.scene.bodies.iter().find(|b| b.particles_per_cell.is_none()) {
-        let reason = "has positions of its own, which no larger cells go with; allowed: bodies \
-                      with particles_per_cell";
-        return Err(Fault::new("error_estimate", &own.name, reason));
-    }
     let bounds = &checked.bodies[body];
     for (k, &at) in asked.arrivals.iter().enumerate() {
         if !(bounds.lower[0]..=bounds.upper[0]).contains(&at) {

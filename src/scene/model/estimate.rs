@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ErrorEstimate {
-    /// The body that it is about; absent: the one that the reference scores.
+    /// The body that it is about; absent: the one that the reference scores, else the only body, else
+    /// the only one at rest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
     /// Places in the body, at the start, at which the time of the wave's arrival is told [m].

@@ -47,6 +47,9 @@ pub struct Planned {
     /// Its wall time [s].
     #[schemars(range(min = 0.0))]
     pub wall_seconds: f64,
+    /// Whether the error is a guess, for the schemes were not measured on such scenes.
+    #[serde(default)]
+    pub guess: bool,
 }
 
 /// What a plan is about.

@@ -1,0 +1,168 @@
+//! A run's estimate of its errors and a plan, without an exact solution.
+
+use serde_json::{Value, json};
+
+use crate::home::Home;
+use crate::scenes::whole;
+
+/// The small scene without its reference, with an estimate.
+fn scene(estimate: Value) -> Value {
+    let mut scene = whole();
+    scene.as_object_mut().unwrap().remove("reference");
+    scene["error_estimate"] = estimate;
+    scene["output"] = json!({"pictures": false, "hdf5": false});
+    scene["time"]["end"] = json!(1.5e-7);
+    scene
+}
+
+#[test]
+fn an_estimate_needs_no_reference_and_is_the_same_with_one() {
+    let asked = json!({"arrivals": [5e-4]});
+    let estimate =
+        |scene: &Value| Home::with(scene).run("run", &[]).summary["error_estimate"].clone();
+    let without = estimate(&scene(asked.clone()));
+    let mut with = scene(asked);
+    with["reference"] = whole()["reference"].clone();
+    let with = estimate(&with);
+    let quantities = ["/profiles/0/l1", "/profiles/0/plateau_pressure", "/arrivals/0/time"];
+    for path in quantities {
+        for key in ["value", "half_width", "evidence"] {
+            let path = format!("{path}/{key}");
+            assert!(without.pointer(&path).is_some_and(|v| !v.is_null()), "{path}: {without}");
+            assert_eq!(without.pointer(&path), with.pointer(&path), "{path}");
+        }
+    }
+    // an impact such as the laws were fitted on
+    assert_eq!((&without["body"], &without["basis"]), (&json!("target"), &json!("calibrated")));
+    assert_eq!(without["outside"], json!([]));
+}
+
+#[test]
+fn what_was_not_fitted_is_named_and_makes_a_guess() {
+    let mut plain = scene(json!({"arrivals": [5e-4], "body": "target"}));
+    let strength = json!({"type": "von_mises", "shear_modulus": 2.76e10, "yield_stress": 2.9e8});
+    let third = json!({"name": "third", "material": "copper", "particles_per_cell": [2],
+                       "box": {"lower": [1.5e-3], "upper": [1.7e-3]}});
+    let mut bodies = plain["bodies"].clone();
+    bodies.as_array_mut().unwrap().push(third);
+    plain["output"]["profiles"] = json!({"times": [1e-7, 1.5e-7]});
+    for (path, value, word) in [
+        ("/bodies", bodies, "bodies: 3"),
+        ("/bodies/0/velocity", json!([4000.0]), "bodies.flyer.velocity = 4000"),
+        ("/bodies/0/box/lower", json!([-2e-4]), "cells in body flyer = 20"),
+        ("/bodies/0/box", json!({"lower": [-6e-4], "upper": [-1e-4]}), "a gap"),
+        ("/materials/aluminium/strength", strength, "materials.aluminium.strength"),
+        ("/materials/aluminium/density", json!(900.0), "materials.aluminium.density = 900"),
+        ("/artificial_viscosity/linear", json!(0.07), "artificial_viscosity"),
+        ("/boundary", json!({"x_upper": "wall"}), "boundary.x_upper"),
+        ("/error_estimate/arrivals", json!([1e-6]), "error_estimate.arrivals[0]"),
+        // half of the time in which the release comes back to the interface
+        ("/title", json!("as it is"), "output.profiles.times[0] over 2.16"),
+    ] {
+        let mut scene = plain.clone();
+        let (parent, key) = path.rsplit_once('/').unwrap();
+        scene.pointer_mut(parent).unwrap()[key] = value;
+        let home = Home::with(&scene);
+        let text = home.call(["scene.json"]).end().succeeded();
+        let told = home.results("output/scene").summary["error_estimate"].clone();
+        assert_eq!(told["basis"], "guess", "{word}: {told}");
+        let outside = told["outside"].to_string();
+        assert!(outside.contains(word), "no {word} in {outside}");
+        assert!(text.contains("(guess)") && text.contains(word), "{text}");
+        // the later profile of the last case is one such as were fitted
+        let late = if path == "/title" { "calibrated" } else { "guess" };
+        let late = if path == "/error_estimate/arrivals" { "calibrated" } else { late };
+        assert_eq!(told["profiles"][1]["basis"], late, "{word}");
+    }
+}
+
+#[test]
+fn a_body_has_to_be_named_where_none_stands_out() {
+    let mut moving = scene(json!({}));
+    moving["bodies"][1]["velocity"] = json!([-100.0]);
+    let home = Home::with(&moving);
+    let words = ["error_estimate.body: missing key", "allowed: flyer, target"];
+    home.call(["scene.json"]).end().failed(&words);
+    let plan = ["plan", "scene.json", "--quantity", "l1", "--error", "20%"];
+    home.call(plan).end().failed(&words);
+    for body in ["flyer", "target"] {
+        let set = format!("error_estimate.body={body}");
+        let told = home.run("run", &["--set", &set]).summary["error_estimate"].clone();
+        assert_eq!(told["body"], body);
+        assert!(told["profiles"][0]["l1"]["half_width"].as_f64().unwrap() > 0.0, "{told}");
+    }
+}
+
+#[test]
+fn nothing_is_estimated_that_is_not_there() {
+    // gas at rest under pressure: no shock, no wave
+    let gas = json!({
+        "title": "gas at rest",
+        "domain": {"lower": [0.0], "upper": [1e-3], "cell_size": 1e-5},
+        "time": {"end": 2e-7},
+        "method": {"shape": "cpdi", "transfer": "flip"},
+        "materials": {"gas": {"density": 1.0, "eos": {"type": "ideal_gas", "gamma": 1.4}}},
+        "bodies": [{"name": "gas", "material": "gas", "pressure": 1e5, "particles_per_cell": [2],
+                    "box": {"lower": [0.0], "upper": [1e-3]}}],
+        "boundary": {"x_lower": "wall", "x_upper": "wall"},
+        "error_estimate": {"arrivals": [5e-4]},
+        "output": {"pictures": false, "hdf5": false},
+    });
+    let home = Home::with(&gas);
+    let text = home.call(["scene.json"]).end().succeeded();
+    assert!(text.contains("no plateau") && text.contains("nothing has arrived"), "{text}");
+    // a plate at rest has no pressure to be wrong about
+    let mut plate = scene(json!({"arrivals": [5e-4]}));
+    plate["bodies"][0]["velocity"] = json!([0.0]);
+    plate["error_estimate"]["body"] = json!("target");
+    let told = Home::with(&plate).run("run", &[]).summary["error_estimate"].clone();
+    assert_eq!(told["profiles"][0]["plateau_pressure"], Value::Null, "{told}");
+    assert_eq!(told["profiles"][0]["l1"]["half_width"], Value::Null, "{told}");
+    assert_eq!(told["arrivals"][0]["time"], Value::Null, "{told}");
+}
+
+#[test]
+fn a_pressure_at_the_start_is_no_arrival() {
+    // a tenth of it arrives on top
+    let mut scene = scene(json!({"arrivals": [3e-4], "body": "target"}));
+    scene["materials"]["gas"] =
+        json!({"density": 50.0, "eos": {"type": "ideal_gas", "gamma": 1.4}});
+    for (body, velocity) in [(0, 200.0), (1, 0.0)] {
+        scene["bodies"][body]["material"] = json!("gas");
+        scene["bodies"][body]["pressure"] = json!(1e8);
+        scene["bodies"][body]["velocity"] = json!([velocity]);
+    }
+    scene["time"]["end"] = json!(3.0e-7);
+    // walls hold the gas
+    scene["domain"]["lower"] = json!([-5e-4]);
+    scene["bodies"][1]["box"]["upper"] = json!([2e-3]);
+    scene["boundary"] = json!({"x_lower": "wall", "x_upper": "wall"});
+    let told = Home::with(&scene).run("run", &[]).summary["error_estimate"].clone();
+    let time = told["arrivals"][0]["time"]["value"].as_f64().unwrap();
+    // sound takes 0.18 us
+    assert!((1.4e-7..2e-7).contains(&time), "{told}");
+    let plateau = told["profiles"][0]["plateau_pressure"]["value"].as_f64().unwrap();
+    assert!((1.05e8..1.3e8).contains(&plateau), "{told}");
+}
+
+#[test]
+fn a_plan_needs_no_reference_and_marks_a_guess() {
+    let home = Home::with(&scene(json!({})));
+    let plan = |more: &[&str]| {
+        let all =
+            ["plan", "scene.json", "--quantity", "l1", "--error", "10%", "--output", "p.json"];
+        home.call(all.into_iter().chain(more.to_vec())).end().succeeded()
+    };
+    let planned = || -> Value {
+        let text = std::fs::read_to_string(home.at("p.json")).unwrap();
+        serde_json::from_str::<Value>(&text).unwrap()["output"]["plan"].clone()
+    };
+    assert!(!plan(&[]).contains("guess"));
+    assert_eq!(planned()["guess"], false);
+    let text = plan(&["--set", "boundary={\"x_upper\": \"wall\"}"]);
+    assert!(text.contains("guess ") && text.contains("boundary.x_upper"), "{text}");
+    assert_eq!(planned()["guess"], true);
+    let text = home.call(["p.json"]).end().succeeded();
+    let line = text.lines().find(|l| l.trim_start().starts_with("plan ")).unwrap();
+    assert!(line.contains("(guess)") && line.contains("by its own bound"), "{line}");
+}
