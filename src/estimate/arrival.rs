@@ -130,7 +130,8 @@ impl Arrivals {
     }
 
     /// When the wave has come to place `k`, and how long it took to rise from a fifth of the level
-    /// to it \[s\]; none where it has not risen for thrice that time since.
+    /// to it \[s\]; none where it has not risen for thrice that time since, or where the particles
+    /// about the place felt no wave that passes one after the other.
     pub fn time(&self, k: usize) -> Option<(f64, f64)> {
         let (place, passings) = (self.places.get(k)?, self.passings.get(k)?);
         let mean = |of: fn(&Passing) -> Option<f64>| {
@@ -139,7 +140,9 @@ impl Arrivals {
         };
         let (toe, half) = (mean(|p| p.toe)?, mean(|p| p.half)?);
         let rise = half - toe;
-        (passings[0].last_time >= half + 3.0 * rise).then_some((half, rise))
+        // beyond the last particle of a body the time is extrapolated
+        let is_passing = half >= 0.0 && rise > 0.0;
+        (is_passing && passings[0].last_time >= half + 3.0 * rise).then_some((half, rise))
     }
 
     /// What a checkpoint keeps.

@@ -166,3 +166,42 @@ fn a_plan_needs_no_reference_and_marks_a_guess() {
     let line = text.lines().find(|l| l.trim_start().starts_with("plan ")).unwrap();
     assert!(line.contains("(guess)") && line.contains("by its own bound"), "{line}");
 }
+
+/// Companions keep a wall where it is, at either end.
+#[test]
+fn a_mirrored_scene_has_the_mirrored_estimate() {
+    // cells that neither two nor four divide
+    let estimate = |upper: bool| {
+        let mut scene = scene(json!({"arrivals": [if upper { 7.3e-4 } else { 3e-4 }]}));
+        let aluminium = scene["materials"]["aluminium"].clone();
+        scene["materials"] = json!({"aluminium": aluminium});
+        scene["domain"] = json!({"lower": [0.0], "upper": [1.03e-3], "cell_size": 1e-5});
+        scene["time"]["end"] = json!(1e-7);
+        let [lower, velocity] = if upper { [2e-4, 500.0] } else { [0.0, -500.0] };
+        scene["bodies"] = json!([{
+            "name": "plate", "material": "aluminium", "particles_per_cell": [2],
+            "box": {"lower": [lower], "upper": [lower + 8.3e-4]}, "velocity": [velocity],
+        }]);
+        let side = if upper { "x_upper" } else { "x_lower" };
+        scene["boundary"] = json!({side: "wall"});
+        Home::with(&scene).run("run", &[]).summary["error_estimate"].clone()
+    };
+    let both = [estimate(false), estimate(true)];
+    for path in ["/arrivals/0/time", "/profiles/0/l1", "/profiles/0/plateau_pressure"] {
+        let [a, b] = both.each_ref().map(|told| told.pointer(path).unwrap()["half_width"].as_f64());
+        let (a, b) = (a.unwrap(), b.unwrap());
+        assert!((a / b - 1.0).abs() < 1e-3, "{path}: {a:e} {b:e}");
+    }
+}
+
+#[test]
+fn a_body_with_positions_of_its_own_has_companions() {
+    let mut scene = scene(json!({"arrivals": [5e-4], "body": "target"}));
+    let target = &mut scene["bodies"][1];
+    target.as_object_mut().unwrap().remove("particles_per_cell");
+    let at = |k: usize| 5e-6 * (k as f64 + 0.4 + 0.2 * (k % 2) as f64);
+    target["positions"] = json!((0..300).map(|k| [at(k)]).collect::<Vec<_>>());
+    let told = Home::with(&scene).run("run", &[]).summary["error_estimate"].clone();
+    assert_eq!(told["companions"].as_array().unwrap().len(), 2, "{told}");
+    assert!(told["arrivals"][0]["time"]["half_width"].as_f64().unwrap() < 5e-9, "{told}");
+}

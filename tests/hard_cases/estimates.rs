@@ -148,6 +148,7 @@ fn random_scenes_on_a_line_are_estimated_without_a_reference() {
     let home = tempfile::tempdir().expect("a folder");
     let (mut well, mut stopped, mut refused) = (0, 0, 0);
     let (mut plateaus, mut arrivals, mut companions) = (0, 0, 0);
+    let mut wrong = Vec::new();
     while well < cases() {
         let value = estimating().new_tree(&mut runner).expect("a scene").current();
         let folder = home.path().join(format!("{well}-{stopped}-{refused}"));
@@ -160,7 +161,7 @@ fn random_scenes_on_a_line_are_estimated_without_a_reference() {
                 plateaus += told.profiles.iter().filter(|p| p.plateau_pressure.is_some()).count();
                 arrivals += told.arrivals.iter().filter(|a| a.time.is_some()).count();
                 if let Some(fault) = fault(&summary) {
-                    panic!("{fault}\n{value}");
+                    wrong.push(format!("{fault}\n{value}"));
                 }
             }
             Some(Err(error)) => {
@@ -178,5 +179,6 @@ fn random_scenes_on_a_line_are_estimated_without_a_reference() {
         "{well} ended well ({companions} companions, {plateaus} plateaus, {arrivals} arrivals), \
          {stopped} were ended by the watch as without the estimate, {refused} refused"
     );
+    assert!(wrong.is_empty(), "{} of {well}: {}", wrong.len(), wrong[0]);
     assert!(companions > 0 && arrivals > 0);
 }

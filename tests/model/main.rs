@@ -1,3 +1,4 @@
 //! The performance model's counts against what real steps do.
 
 mod counts;
+mod positions;

@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
+use super::super::conform::join;
 use super::super::errors::Fault;
 use super::super::model::{
-    Contact, EnergyUpdate, LimitedTerms, Normals, Scene, ShapeKind, Stepping, StressUpdate,
-    Transfer,
+    Contact, EnergyUpdate, FrameKind, LimitedTerms, Method, Normals, Scene, ShapeKind, Stepping,
+    StressUpdate, Transfer,
 };
 use super::CheckedScene;
 
@@ -72,6 +73,48 @@ pub(super) fn check_bodies(checked: &CheckedScene) -> Result<(), Fault> {
         (_, Some(rate)) if !fluids => Err(Fault::new("method.volume_relaxation", rate, reason)),
         _ => Ok(()),
     }
+}
+
+/// Most nodes along one direction that a particle touches, on a line and in a plane: those that a
+/// step has room for.
+const MOST_NODES: [usize; 2] = [18, 10];
+
+/// How much longer a particle may become within a step.
+const STRETCH: f64 = 1.25;
+
+/// Length of the longest particle that a step has room for [cells]; none where the shape function
+/// does not grow with it.
+fn longest_particle(method: &Method, dimension: usize) -> Option<f64> {
+    let (nodes, deforms) = match method.shape {
+        ShapeKind::Gimp => (2, false),
+        ShapeKind::Cpdi => (2, true),
+        ShapeKind::CpdiBsplineQuadratic => (3, true),
+        ShapeKind::Linear | ShapeKind::BsplineQuadratic | ShapeKind::BsplineCubic => return None,
+    };
+    let deforms = deforms && method.frame == FrameKind::UpdatedLagrangian;
+    let room = (MOST_NODES[dimension - 1] - nodes) as f64;
+    Some(if deforms { room / STRETCH } else { room })
+}
+
+/// Particles at positions of their own may be longer than a step has room for; those of a lattice are
+/// not.
+pub(super) fn check_positions(checked: &CheckedScene) -> Result<(), Fault> {
+    let method = &checked.scene.method;
+    let Some(limit) = longest_particle(method, checked.dimension) else { return Ok(()) };
+    for (body, own) in checked.scene.bodies.iter().zip(&checked.bodies) {
+        let tiles = own.tiles.iter().flat_map(|tiles| tiles.iter());
+        let lengths = tiles.flat_map(|t| t.size.into_iter().zip(&checked.cell_size));
+        let longest = lengths.map(|(size, cell)| size / cell).fold(0.0, f64::max);
+        if longest > limit {
+            let reason = format!(
+                "too few: a particle is {longest:.1} cells long; allowed: up to {limit:.1} with \
+                 method.shape = {}",
+                serde_json::json!(method.shape)
+            );
+            return Err(Fault::missing(join(&join("bodies", &body.name), "positions"), reason));
+        }
+    }
+    Ok(())
 }
 
 /// What a scene's contact cannot do.

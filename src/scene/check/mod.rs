@@ -80,6 +80,7 @@ impl CheckedScene {
         };
         memory::check_counts(&checked)?;
         method::check_bodies(&checked)?;
+        method::check_positions(&checked)?;
         frame::check(&checked)?;
         boundary::check_transmitting(&mut checked)?;
         boundary::check_loads(&mut checked)?;
