@@ -96,7 +96,7 @@ fn write_run(folder: &Path, tables: &[ParticleTable]) {
         ),
         effects: Vec::new(),
         failure: None,
-        energy: Energy::new([0.0; 2], [0.0; 2], 0.0),
+        energy: Energy::new([0.0; 2], [0.0; 2], 0.0, 0.0),
         momentum: Momentum::new(&[0.0], &[0.0], &[0.0], 0.0),
         outflow: None,
         erosion: None,
