@@ -9,6 +9,8 @@
 
 mod bicubic;
 pub mod elastic;
+#[cfg(test)]
+mod forwarding;
 pub mod general;
 mod hencky;
 mod ideal_gas;

@@ -36,7 +36,25 @@ impl<E: EquationOfState> EquationOfState for Cutoff<E> {
 
     #[inline(always)]
     fn least_pressure(&self) -> f64 {
-        -self.tension
+        // both bounds hold; max() takes the other of a NaN, and neither is one
+        self.eos.least_pressure().max(-self.tension)
+    }
+
+    #[inline(always)]
+    fn borne(&self, pressure: f64) -> f64 {
+        let pressure = self.eos.borne(pressure);
+        // max() would pass over NaN
+        if pressure < -self.tension { -self.tension } else { pressure }
+    }
+
+    #[inline(always)]
+    fn pressure(&self, jacobian: f64, energy: f64) -> f64 {
+        self.borne(self.eos.pressure(jacobian, energy))
+    }
+
+    #[inline(always)]
+    fn energy_at(&self, jacobian: f64, pressure: f64) -> f64 {
+        EquationOfState::energy_at(&self.eos, jacobian, pressure)
     }
 
     #[inline(always)]
