@@ -10,6 +10,7 @@ use std::cell::RefCell;
 use serde_json::{Map, Value};
 
 use super::errors::{Fault, list, nearest, suggest};
+use super::schema::{GREATEST, LEAST};
 
 /// `key` as a path takes it: in double quotes where it could be misread.
 pub(super) fn quote(key: &str) -> String {
@@ -76,6 +77,23 @@ impl Conform<'_> {
 
     /// What is allowed instead of `value`.
     fn wrong(&self, schema: &Value, value: &Value) -> Fault {
+        if let Some(number) = value.as_f64().filter(|_| types(schema).contains(&"number")) {
+            let is = |key: &str, bound: f64| {
+                schema.get(key).and_then(Value::as_f64).is_some_and(|known| known == bound)
+            };
+            let beyond = (number > GREATEST && is("maximum", GREATEST))
+                || (number < -GREATEST && is("minimum", -GREATEST));
+            if beyond {
+                let reason = format!(
+                    "too great for a computation; allowed: a magnitude of at most {GREATEST:e}"
+                );
+                return Fault::new("", value, reason);
+            }
+            if number > 0.0 && number < LEAST && is("minimum", LEAST) {
+                let reason = format!("too small for a computation; allowed: at least {LEAST:e}");
+                return Fault::new("", value, reason);
+            }
+        }
         Fault::new("", value, format!("not allowed; allowed: {}", self.allowed(schema)))
     }
 
@@ -306,7 +324,11 @@ fn bounds(schema: &Value) -> String {
         ("exclusiveMaximum", "below"),
         ("maximum", "at most"),
     ] {
-        if let Some(bound) = schema.get(key).and_then(Value::as_f64) {
+        if let Some(bound) = schema.get(key).and_then(Value::as_f64)
+            // the bounds of every number go without saying, and so does one that another implies
+            && ![GREATEST, -GREATEST, LEAST].contains(&bound)
+            && !(key == "minimum" && schema.get("exclusiveMinimum").is_some())
+        {
             texts.push(format!("{words} {bound}"));
         }
     }

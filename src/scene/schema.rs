@@ -1,6 +1,41 @@
 //! The JSON schema of a scene, made from its structs.
 
-/// The JSON schema of a scene (draft 2020-12); units stand in the descriptions.
-pub fn schema() -> serde_json::Value {
-    schemars::schema_for!(super::Scene).to_value()
+use schemars::{Schema, generate::SchemaSettings, transform::RecursiveTransform};
+use serde_json::{Value, json};
+
+/// No number of a scene has a greater magnitude: products of four, such as an energy of a body,
+/// stay finite.
+pub(super) const GREATEST: f64 = 1e75;
+
+/// No number of a scene that has to be above 0 is smaller: quotients of four stay finite.
+pub(super) const LEAST: f64 = 1e-150;
+
+/// The JSON schema of a scene (draft 2020-12); units stand in the descriptions. A number that has
+/// no bounds of its own has those of every number.
+pub fn schema() -> Value {
+    let settings = SchemaSettings::draft2020_12().with_transform(RecursiveTransform(bound));
+    settings.into_generator().into_root_schema_for::<super::Scene>().to_value()
+}
+
+/// Adds the bounds of every number to those of one.
+fn bound(schema: &mut Schema) {
+    let of = |key: &str| schema.get(key).and_then(Value::as_f64);
+    let is_number = schema.get("type").is_some_and(|kind| match kind {
+        Value::Array(kinds) => kinds.iter().any(|kind| kind == "number"),
+        kind => kind == "number",
+    });
+    if !is_number {
+        return;
+    }
+    let upper = of("maximum").or(of("exclusiveMaximum")).is_none().then_some(GREATEST);
+    let lower = match (of("minimum"), of("exclusiveMinimum")) {
+        (None, None) => Some(-GREATEST),
+        (None, Some(0.0)) => Some(LEAST),
+        _ => None,
+    };
+    for (key, bound) in [("maximum", upper), ("minimum", lower)] {
+        if let Some(bound) = bound {
+            schema.insert(key.into(), json!(bound));
+        }
+    }
 }

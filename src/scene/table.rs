@@ -20,9 +20,15 @@ pub(super) fn read_hdf5(file: &Path) -> Result<Table, String> {
         let file = hdf5::File::open(file)?;
         let data = |name: &str| file.dataset(name);
         let line = |name: &str| data(name)?.read_1d::<f64>();
-        let nodes = data("pressure")?.size();
-        if nodes > MOST_NODES {
-            return Ok(Err(format!("pressure has {nodes} nodes; allowed: {MOST_NODES}")));
+        // what a data set claims to hold takes memory before a value is read
+        for name in ["density", "specific_internal_energy", "pressure"] {
+            let shape = data(name)?.shape();
+            let values = shape.iter().fold(1, |product: usize, &n| product.saturating_mul(n));
+            if values > MOST_NODES {
+                return Ok(Err(format!(
+                    "{name} has {values} values; allowed: at most {MOST_NODES}"
+                )));
+            }
         }
         let pressure = data("pressure")?.read_2d::<f64>()?;
         Ok(Ok(Table {

@@ -1,5 +1,6 @@
 //! Scenes: those shipped, overrides, and every bad one with its message.
 
+mod extremes;
 mod keys;
 mod random;
 mod refused;

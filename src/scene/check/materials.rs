@@ -5,6 +5,7 @@ use serde_json::json;
 use super::super::conform::join;
 use super::super::errors::Fault;
 use super::super::model::{Body, BurnFront, Eos, Material, Scene, Transfer};
+use super::super::schema::{GREATEST, LEAST};
 use super::{check_length, check_printable};
 use crate::constitutive::{equation, products};
 use crate::material::{HistoryEos, Lame};
@@ -36,6 +37,10 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Fau
             .map_err(|why| table_fault(&material.eos, &format!("{path}.eos"), &why))?;
         if let Some(eos) = made {
             check_stiffness(&*eos, material, &path)?;
+        }
+        if !(LEAST..=GREATEST).contains(&material.density) {
+            let reason = format!("out of range; allowed: {LEAST:e} to {GREATEST:e} kg/m3");
+            return Err(Fault::new(format!("{path}.density"), material.density, reason));
         }
         warn_of_front(material, &path, warnings);
         warn_of_filter(scene, material, &path, warnings);

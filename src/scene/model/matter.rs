@@ -10,8 +10,8 @@ use super::{Erosion, Failure, HeatSource, Strength, Thermal, VelocityField};
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
-    /// Density at rest [kg/m3].
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    /// Density at rest [kg/m3]; what else bounds it follows from the equation of state.
+    #[schemars(extend("exclusiveMinimum" = 0.0, "minimum" = 0.0, "maximum" = f64::MAX))]
     pub density: f64,
     /// Equation of state.
     pub eos: Eos,

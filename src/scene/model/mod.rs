@@ -191,10 +191,13 @@ pub enum FilterHalo {
 #[serde(untagged)]
 pub enum CellSize {
     /// The same in each direction.
-    Uniform(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
+    Uniform(#[schemars(extend("exclusiveMinimum" = 0.0, "minimum" = 0.0))] f64),
     /// One a direction.
     PerDirection(
-        #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0.0}))] Vec<f64>,
+        #[schemars(extend(
+            "items" = {"type": "number", "exclusiveMinimum": 0.0, "minimum": 0.0}
+        ))]
+        Vec<f64>,
     ),
 }
 
