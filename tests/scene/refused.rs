@@ -182,6 +182,8 @@ fn sides_that_cannot_face_each_other() {
     let piston = "{\"velocity\": 10.0}";
     told("periodic", "free", &["boundary.x_lower = \"periodic\"", "x_upper = \"free\"", "both"]);
     told("wall", "periodic", &["boundary.x_lower = \"wall\"", "x_upper = \"periodic\""]);
+    // the one that lacks its partner is named first
+    told("symmetry", "periodic", &["json: boundary.x_upper = \"periodic\": cannot stand opposite"]);
     told(piston, "wall", &["boundary.x_lower = {\"velocity\":10.0}", "x_upper = \"wall\""]);
     told("symmetry", piston, &["boundary.x_lower = \"symmetry\"", "the same velocity"]);
     for (lower, upper) in [

@@ -118,7 +118,9 @@ pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
     if on_axis && (boundary.x_lower == Side::Periodic || boundary.x_upper == Side::Periodic) {
         let reason = "joins radii, which domain.geometry = \"axisymmetric\" has along x; allowed: \
                       any other side";
-        return Err(Fault::new("boundary.x_lower", &boundary.x_lower, reason));
+        let lower = boundary.x_lower == Side::Periodic;
+        let (path, side) = if lower { x[0] } else { x[1] };
+        return Err(Fault::new(path, side, reason));
     }
     check_axis(["boundary.x_lower", "boundary.x_upper"], [&boundary.x_lower, &boundary.x_upper])?;
     check_axis(y.map(|(path, _)| path), y.map(|(_, side)| side.as_ref().unwrap_or(&Side::Free)))
@@ -127,12 +129,19 @@ pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
 /// The two sides along one direction.
 fn check_axis([path, other_path]: [&str; 2], [lower, upper]: [&Side; 2]) -> Result<(), Fault> {
     let other = serde_json::json!(upper);
-    if (*lower == Side::Periodic) != (*upper == Side::Periodic) {
+    let periodic = [lower, upper].map(|side| *side == Side::Periodic);
+    if periodic[0] != periodic[1] {
+        // the side that lacks its partner is the fault, whichever end it stands at
+        let (path, side, other_path, other) = match periodic[0] {
+            true => (path, lower, other_path, upper),
+            false => (other_path, upper, path, lower),
+        };
         let reason = format!(
-            "cannot stand opposite {other_path} = {other}; allowed: \"periodic\" on both sides or \
-             on neither"
+            "cannot stand opposite {other_path} = {}; allowed: \"periodic\" on both sides or on \
+             neither",
+            serde_json::json!(other)
         );
-        return Err(Fault::new(path, lower, reason));
+        return Err(Fault::new(path, side, reason));
     }
     match (lower.rigid_course(), upper.rigid_course()) {
         (Some(a), Some(b)) if a != b => {
