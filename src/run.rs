@@ -181,7 +181,11 @@ where
     loop {
         let time = simulation.time();
         let (start, waited) = (Instant::now(), comm.traffic().waited);
-        recorder.record(simulation, first);
+        // a checkpoint holds what was recorded at its own step
+        let resumed = fresh && simulation.steps() > 0;
+        if !resumed {
+            recorder.record(simulation, first);
+        }
         if simulation.held_at().1 == simulation.steps() {
             mark = recorder.mark();
         }

@@ -33,6 +33,8 @@ struct Books {
     /// None: no particle is left to bound it.
     stable: Option<f64>,
     longest: f64,
+    #[serde(default)]
+    redone_steps: u64,
     left: [u64; 2],
     /// Whole numbers of 128 bits, which JSON's readers seldom have.
     sums: Vec<String>,
@@ -114,6 +116,7 @@ fn write_root(file: &Group, contents: &Contents, alive: &dyn Fn()) -> hdf5::Resu
         step: saved.step,
         stable: saved.stable.is_finite().then_some(saved.stable),
         longest: saved.longest,
+        redone_steps: saved.redone_steps,
         left: [saved.left.rows, saved.left.marks],
         sums: saved.sums.iter().map(i128::to_string).collect(),
         peaks: saved.peaks,
@@ -245,6 +248,7 @@ fn read_root(file: &Group, length: u64) -> hdf5::Result<Checkpoint> {
             step: books.step,
             stable: books.stable.unwrap_or(f64::INFINITY),
             longest: books.longest,
+            redone_steps: books.redone_steps,
             left: Census { rows: books.left[0], marks: books.left[1] },
             sums: sums.collect::<Result<_, _>>()?,
             peaks: books.peaks,

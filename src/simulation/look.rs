@@ -390,6 +390,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             step: held.step,
             stable: held.stable,
             longest: held.longest,
+            redone_steps: self.tally.redone_steps,
             left,
             sums: sums.iter().map(ExactSum::total).collect(),
             peaks: self.peaks,

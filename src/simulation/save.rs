@@ -25,6 +25,8 @@ pub struct Saved {
     pub stable: f64,
     /// Greatest extent of a particle along a direction [cells].
     pub longest: f64,
+    /// Times that a step was redone half as long.
+    pub redone_steps: u64,
     /// Particles that have left: their number and marks.
     pub left: Census,
     /// Totals of the sums over what has left and what the sides have given.
@@ -58,6 +60,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             step: self.step,
             stable: self.stable,
             longest: self.longest,
+            redone_steps: self.tally.redone_steps,
             left,
             sums: sums.iter().map(ExactSum::total).collect(),
             peaks: self.peaks,
@@ -74,14 +77,18 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         let head = saved.map_or(Vec::new(), |s| {
             let floats = [s.time, s.stable, s.longest].map(f64::to_bits);
             let peaks = s.peaks.values().map(f64::to_bits);
-            [&floats[..], &[s.step], &peaks].concat().iter().flat_map(|w| w.to_le_bytes()).collect()
+            [&floats[..], &[s.step, s.redone_steps], &peaks]
+                .concat()
+                .iter()
+                .flat_map(|w| w.to_le_bytes())
+                .collect()
         });
         let head = self.comm.broadcast(head);
         let words = &words_of(&head)[1..];
         let float = |k: usize| f64::from_bits(words[k]);
         (self.time, self.stable, self.longest, self.step) =
             (float(0), float(1), float(2), words[3]);
-        self.peaks = Peaks::of(std::array::from_fn(|k| float(4 + k)));
+        self.peaks = Peaks::of(std::array::from_fn(|k| float(5 + k)));
         self.dt = self.scene.scene.time.courant * self.stable;
         self.first_step = self.step;
         let books = self.outflow.sums.iter_mut().chain(&mut self.side_books.sums);
@@ -102,7 +109,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         self.reach = None;
         self.follow_reach(self.longest);
         self.plan.rows.take_migrated();
-        self.tally = Tally::default();
+        self.tally = Tally { redone_steps: words[4], ..Tally::default() };
         self.clock = Clock::new();
         self.hold();
         match self.count() == self.census {

@@ -44,6 +44,7 @@ fn example() -> Checkpoint {
             step: 1 << 60,
             stable: f64::INFINITY,
             longest: 1.0 / 3.0,
+            redone_steps: 5,
             left: Census { rows: 3, marks: u64::MAX - 5 },
             sums: vec![i128::MIN, -1, 0, i128::MAX],
             rows: StoredRows {

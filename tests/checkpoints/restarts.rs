@@ -66,6 +66,55 @@ fn every_file_is_as_without_a_break() {
     assert_eq!(whole.summary["decomposition"]["first_step"], 0);
 }
 
+/// From the checkpoint of the very last step, and of steps at which something is recorded.
+#[test]
+fn steps_that_record_are_recorded_once() {
+    let mut line = recorded(1);
+    line["output"]["pictures"] = json!(true);
+    // 11 and 17 steps: a time over the interval of the histories rounds below a whole number
+    let plane = |end: f64, courant: f64, speed: f64| {
+        json!({
+            "title": "a pool",
+            "domain": {"lower": [-6e-4, -8e-4], "upper": [6e-4, 8e-4], "cell_size": 1e-4},
+            "boundary": {"x_lower": "periodic", "x_upper": "periodic", "y_lower": "symmetry"},
+            "materials": {"m": {"library": "water"}},
+            "bodies": [{
+                "name": "b",
+                "material": "m",
+                "box": {"lower": [-5e-4, -8e-4], "upper": [5e-4, 6e-4]},
+                "particles_per_cell": [2, 2],
+                "velocity": [speed, -60.0],
+            }],
+            "method": {"shape": "gimp", "transfer": {"xpic": 3}, "stepping": "midpoint"},
+            "artificial_viscosity": {"linear": 0.5, "quadratic": 0.0},
+            "time": {"end": end, "courant": courant},
+            "output": {
+                "pictures": false,
+                "profiles": {"times": [0.5 * end, end]},
+                "checkpoint": {"every_steps": 1, "keep": 99},
+                "histories": {},
+            },
+        })
+    };
+    let planes = [(1.2e-7, 0.3), (9e-8, 0.25), (1e-7, 0.4)].map(|(e, c)| plane(e, c, 300.0));
+    for (scene, all) in std::iter::once((&line, false)).chain(planes.iter().map(|p| (p, true))) {
+        let home = Home::with(scene);
+        let whole = home.run("whole", &[]);
+        let checkpoints = names(&home.at("whole.checkpoints"));
+        assert_eq!(checkpoints.len() as u64, whole.count("steps"));
+        let last = checkpoints.len() - 1;
+        for (k, name) in checkpoints.iter().enumerate() {
+            if !(all || k == last || k % 9 == 0) {
+                continue;
+            }
+            let file = format!("whole.checkpoints/{name}");
+            let args = ["--restart", &file, "--quiet", "--output", "again"];
+            assert_eq!(home.call(args).end().succeeded(), "");
+            same(&home.results("again"), &whole);
+        }
+    }
+}
+
 /// Broken after every few steps, each time another number of ranks.
 #[cfg(feature = "mpi")]
 #[test]
