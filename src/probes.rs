@@ -141,13 +141,10 @@ impl Probes {
         if followed.is_empty() && !self.wanted.is_empty() {
             return;
         }
-        let mut row = vec![
-            time,
-            simulation.time_step(),
-            totals.kinetic,
-            totals.internal,
-            totals.kinetic + totals.internal,
-        ];
+        // where nothing is left, no step is too long
+        let dt = Some(simulation.time_step()).filter(|dt| dt.is_finite()).unwrap_or(f64::NAN);
+        let mut row =
+            vec![time, dt, totals.kinetic, totals.internal, totals.kinetic + totals.internal];
         row.extend(totals.momentum);
         row.extend(&forces[..self.forces]);
         for probe in &self.probes {

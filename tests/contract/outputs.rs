@@ -264,3 +264,26 @@ fn hdf5_is_written() {
     assert!(bytes.starts_with(b"\x89HDF\r\n\x1a\n"));
     assert!(bytes.windows(6).any(|w| w == b"VTKHDF"));
 }
+
+/// No particle bounds the next step once all have left: its field is empty.
+#[test]
+fn a_run_that_all_have_left_has_no_time_step() {
+    let home = Home::with(&json!({
+        "title": "gone",
+        "domain": {"lower": [0.0], "upper": [1e-3], "cell_size": 5e-5},
+        "time": {"end": 2e-6},
+        "method": {"shape": "gimp", "transfer": "flip"},
+        "materials": {"gas": {"density": 1.0, "eos": {"type": "ideal_gas", "gamma": 1.4}}},
+        "bodies": [{
+            "name": "puff", "material": "gas", "box": {"lower": [6e-4], "upper": [8e-4]},
+            "velocity": [1000.0], "pressure": 1e3, "particles_per_cell": [2],
+        }],
+        "boundary": {"x_lower": "outflow", "x_upper": "outflow"},
+        "output": {"histories": {"interval": 1e-7}, "pictures": false, "hdf5": false},
+    }));
+    let run = home.run("run", &[]);
+    assert_eq!(run.summary["outflow"]["particles"], run.summary["particles"]);
+    let steps = run.history("dt");
+    assert!(steps[0] > 0.0 && steps.last().unwrap().is_nan(), "{steps:?}");
+    assert!(!run.text("histories.csv").contains("inf"));
+}
