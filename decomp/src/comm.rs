@@ -1,5 +1,7 @@
 //! Messages between ranks: the trait, the form for one rank, ranks as threads, and MPI.
 
+#[cfg(feature = "mpi")]
+mod life;
 pub mod local;
 #[cfg(feature = "mpi")]
 pub mod mpi;

@@ -11,11 +11,9 @@ use mpi::topology::{Communicator, SimpleCommunicator};
 use mpi::traits::{CommunicatorCollectives, Equivalence};
 use smallvec::SmallVec;
 
+use super::life::{Life, Place, STALLED};
 use super::watch::{Awaited, Control, Watch};
-use super::{Comm, Traffic};
-
-/// Exit code of a run that a rank has ended because another hangs.
-const STALLED: i32 = 7;
+use super::{Comm, STALL_TIMEOUT, Traffic};
 
 /// Messages that an exchange sends without asking for memory.
 const INLINE: usize = 16;
@@ -31,6 +29,8 @@ pub struct Mpi {
     integers: RefCell<Vec<i64>>,
     // finalizes MPI when dropped, after everything above
     _universe: Universe,
+    // dropped last: ranks may be stopped while MPI ends
+    life: Option<Life>,
 }
 
 impl Mpi {
@@ -47,6 +47,13 @@ impl Mpi {
     /// A panic on one rank must not leave the others waiting for ever, as MPI's own finalizing
     /// would: from here on it ends them all.
     pub fn start() -> Option<Self> {
+        Self::start_within(STALL_TIMEOUT)
+    }
+
+    /// The same; a rank of this machine that gives no sign of life for `timeout` while MPI starts
+    /// or ends is named, and the run ends. It is the timeout of [`Comm::set_stall_timeout`] too.
+    pub fn start_within(timeout: Duration) -> Option<Self> {
+        let life = place().and_then(|place| Life::start(place, timeout));
         let (mut universe, _) = mpi::initialize_with_threading(mpi::Threading::Funneled)?;
         let report = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |info| {
@@ -57,12 +64,17 @@ impl Mpi {
         // room for a question to every rank and an answer to each of theirs, many times over
         universe.set_buffer_size((64 + world.size() as usize) << 10);
         let watch = Watch::new(Channel(world.duplicate()));
+        watch.set_timeout(timeout);
+        if let Some(life) = &life {
+            life.runs();
+        }
         Some(Mpi {
             world,
             watch,
             floats: RefCell::default(),
             integers: RefCell::default(),
             _universe: universe,
+            life,
         })
     }
 
@@ -185,7 +197,25 @@ impl Drop for Mpi {
         for _ in 0..2 {
             self.wait_request(Awaited::All, self.world.immediate_barrier());
         }
+        if let Some(life) = &self.life {
+            life.ends();
+        }
     }
+}
+
+/// Where the ranks of this machine give signs of life: in the folder that the launcher makes for
+/// the run and takes away after it, or in the system's for temporary files. None where the launcher
+/// does not number the ranks of a machine.
+fn place() -> Option<Place> {
+    let text = |name: &str| std::env::var(name).ok();
+    let number = |name: &str| text(name)?.parse::<usize>().ok();
+    let local = [number("OMPI_COMM_WORLD_LOCAL_RANK")?, number("OMPI_COMM_WORLD_LOCAL_SIZE")?];
+    let rank = [number("OMPI_COMM_WORLD_RANK")?, number("OMPI_COMM_WORLD_SIZE")?];
+    let job = text("PMIX_NAMESPACE").or_else(|| text("OMPI_MCA_ess_base_jobid"))?;
+    // it becomes a part of a file's name
+    let job = job.chars().filter(char::is_ascii_alphanumeric).collect();
+    let folder = text("PMIX_SERVER_TMPDIR").map_or_else(std::env::temp_dir, Into::into);
+    (local[0] < local[1] && rank[0] < rank[1]).then_some(Place { folder, job, local, rank })
 }
 
 /// Questions and answers, on a communicator of their own.

@@ -23,7 +23,7 @@ const SPIN: u64 = 2000;
 const GLANCE: u64 = 8;
 
 /// Longest time between a question and the verdict.
-const GRACE: Duration = Duration::from_secs(10);
+pub(crate) const GRACE: Duration = Duration::from_secs(10);
 
 const ASK: u64 = 0;
 const ANSWER: u64 = 1;
@@ -335,7 +335,7 @@ fn list(ranks: &[usize]) -> String {
     ranks.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
 }
 
-fn hanging(ranks: &[usize], waited: Duration, waiter: usize) -> String {
+pub(crate) fn hanging(ranks: &[usize], waited: Duration, waiter: usize) -> String {
     let (ranks, seconds) = (list(ranks), waited.as_secs_f64());
     match ranks.contains(',') {
         false => format!(
