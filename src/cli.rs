@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 use flyer_mpm::scene::PlannedQuantity;
 
 /// Impact and shock waves by the material point method, held against exact solutions.
@@ -261,6 +261,17 @@ pub enum Command {
         #[arg(value_name = "RUN")]
         second: PathBuf,
     },
+}
+
+/// The command that `name`, which is none, was perhaps meant to be.
+pub fn meant(name: &str) -> Option<String> {
+    let commands = Cli::command();
+    let names = commands.get_subcommands().map(|command| command.get_name().to_string());
+    names
+        .map(|known| (strsim::damerau_levenshtein(&name.to_lowercase(), &known), known))
+        .filter(|(distance, known)| *distance <= (known.len().max(name.len()) / 3).max(1))
+        .min()
+        .map(|(_, known)| known)
 }
 
 /// Steps A to B, both included, as a range.

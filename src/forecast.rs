@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use decomp::{Comm, Serial};
 use flyer_mpm::calibrate;
+use flyer_mpm::input_file;
 use flyer_mpm::model::{Against, Machine, Network, forecast, machine_table, ranks_to, table};
 use flyer_mpm::output::origin::check_target;
 use flyer_mpm::scene::{self, CellSize, CheckedScene};
@@ -44,9 +45,8 @@ pub fn calibrate<C: Comm>(comm: &C, order: &Order) -> Outcome<()> {
     let mine = mine.and_then(|bytes| {
         if comm.rank() == 0 {
             check_line(&scene::parse(&bytes, &name, sets).map_err(bad)?, "calibrate")?;
-            if output.is_dir() {
-                return Err(bad(format!("{}: is a directory; allowed: a file", output.display())));
-            }
+            input_file::check_kind(output)
+                .map_err(|fault| bad(format!("{}: {fault}", output.display())))?;
             check_target(output, "a machine file of `flyer-mpm calibrate`", |text| {
                 let there: Option<Value> = serde_json::from_str(text).ok();
                 there.is_some_and(|there| there.get("processor").is_some())

@@ -14,6 +14,7 @@ pub mod figures;
 pub mod frame;
 pub mod geometry;
 pub mod grid;
+pub mod input_file;
 pub mod material;
 pub mod model;
 pub mod motion;

@@ -14,7 +14,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::Parser;
@@ -43,19 +43,33 @@ const STOPPED: u8 = 4;
 
 fn main() -> ExitCode {
     let started = Instant::now();
+    let cli = Cli::try_parse();
     #[cfg(feature = "mpi")]
     if decomp::comm::mpi::Mpi::is_launched()
-        && let Some(ranks) = decomp::comm::mpi::Mpi::start()
+        && let Some(ranks) = decomp::comm::mpi::Mpi::start_within(stall_timeout(&cli))
     {
-        return act(&ranks, started);
+        return act(&ranks, started, cli);
     }
-    act(&Serial, started)
+    act(&Serial, started, cli)
+}
+
+/// How long ranks wait for one that gives no sign of life.
+#[cfg(feature = "mpi")]
+fn stall_timeout(cli: &Result<Cli, clap::Error>) -> Duration {
+    let run = cli.as_ref().ok().and_then(|cli| cli.run.as_ref());
+    run.map_or(decomp::comm::STALL_TIMEOUT, |run| Duration::from_secs_f64(run.stall_timeout))
 }
 
 /// Does what the command line says. Collective.
-fn act<C: Comm>(comm: &C, started: Instant) -> ExitCode {
+fn act<C: Comm>(comm: &C, started: Instant, cli: Result<Cli, clap::Error>) -> ExitCode {
     let first = comm.rank() == 0;
-    let cli = match Cli::try_parse() {
+    if let Some(message) = mistyped() {
+        if first {
+            eprintln!("error: {message}");
+        }
+        return ExitCode::from(BAD_INPUT);
+    }
+    let cli = match cli {
         Ok(cli) => cli,
         Err(error) => {
             // help and version come here too
@@ -85,6 +99,16 @@ fn act<C: Comm>(comm: &C, started: Instant) -> ExitCode {
             ExitCode::from(code)
         }
     }
+}
+
+/// What is wrong with the first argument, if it is neither a file nor a command but near to one.
+fn mistyped() -> Option<String> {
+    let name = std::env::args_os().nth(1)?.into_string().ok()?;
+    let known = cli::meant(&name)?;
+    if name == known || Path::new(&name).exists() {
+        return None;
+    }
+    Some(format!("{name}: no such scene or command; did you mean {known}?"))
 }
 
 /// Prints to standard output; a reader that has gone, as `head` does, is no fault.
@@ -136,7 +160,7 @@ fn input(args: &RunArgs) -> String {
 }
 
 /// Looks at everything that a run could fail on, before the others are told.
-fn begin(args: &RunArgs) -> Outcome<Begun> {
+fn begin(args: &RunArgs, reading: &AtomicBool) -> Outcome<Begun> {
     let (bytes, checked, beginning, default, origin) = match (&args.restart, &args.scene) {
         (Some(path), _) => {
             let (mut checkpoint, file, notes) = folder::open(path).map_err(bad)?;
@@ -163,6 +187,7 @@ fn begin(args: &RunArgs) -> Outcome<Begun> {
         checked.check_memory(scene::available_memory()).map_err(bad)?;
     }
     let output = args.output.clone().unwrap_or(default);
+    reading.store(false, Ordering::Relaxed);
     let lock = Lock::take(&output).map_err(bad)?;
     let maker = Maker::with(origin, &checked);
     check_writable(&output, args.keep, &maker).map_err(bad)?;
@@ -187,8 +212,9 @@ fn tell_restart(args: &RunArgs, checkpoint: &Checkpoint, file: &str) {
     }
 }
 
-/// Takes note of the first signal that asks for an end; the second one ends the process at once.
-fn watch_signals() -> Arc<AtomicU8> {
+/// Takes note of the first signal that asks for an end; the second one ends the process at once, and
+/// so does the first while files are read.
+fn watch_signals(reading: Arc<AtomicBool>) -> Arc<AtomicU8> {
     /// A launcher and its batch system may send one signal each.
     const TOGETHER: Duration = Duration::from_millis(300);
     let came = Arc::new(AtomicU8::new(0));
@@ -198,7 +224,8 @@ fn watch_signals() -> Arc<AtomicU8> {
         std::thread::spawn(move || {
             let mut first: Option<Instant> = None;
             for signal in signals.forever() {
-                if first.get_or_insert_with(Instant::now).elapsed() > TOGETHER {
+                let again = first.get_or_insert_with(Instant::now).elapsed() > TOGETHER;
+                if again || reading.load(Ordering::Relaxed) {
                     let _ = emulate_default_handler(signal);
                 }
                 noted.store(signal as u8, Ordering::Relaxed);
@@ -210,13 +237,16 @@ fn watch_signals() -> Arc<AtomicU8> {
 
 fn run_scene<C: Comm>(comm: &C, args: &RunArgs, started: Instant) -> Outcome<()> {
     comm.set_stall_timeout(Duration::from_secs_f64(args.stall_timeout));
-    let signal = watch_signals();
+    // until its files have been read there is nothing that a signal could have saved
+    let reading = Arc::new(AtomicBool::new(true));
+    let signal = watch_signals(reading.clone());
     let mine = match comm.rank() {
-        0 => begin(args),
+        0 => begin(args, &reading),
         _ => Err((BAD_INPUT, String::new())),
     };
     let text = mine.as_ref().map_or(Vec::new(), |begun| begun.bytes.clone());
     let text = comm.broadcast(text);
+    reading.store(false, Ordering::Relaxed);
     let (checked, beginning, output, lock) = match mine {
         Ok(begun) => (begun.checked, begun.beginning, begun.output, Some(begun.lock)),
         Err(error) if text.is_empty() => return Err(error),

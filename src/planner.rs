@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use flyer_mpm::estimate::Basis;
+use flyer_mpm::input_file;
 use flyer_mpm::output::origin::{absolute, check_target};
 use flyer_mpm::plan::{self, Data, PlanError, Wish};
 
@@ -14,6 +15,13 @@ use crate::{BAD_INPUT, FAILED, Outcome, bad, read_scene};
 /// Plans a scene and writes the scene to run; returns the plan in words.
 pub fn plan(args: &PlanArgs) -> Outcome<String> {
     let (_, checked) = read_scene(&args.scene, true)?;
+    let stem = args.scene.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let file: PathBuf = args
+        .output
+        .clone()
+        .unwrap_or_else(|| Path::new("output/plans").join(format!("{stem}.plan.json")));
+    // pilots take their time: a place that cannot be written is refused before them
+    input_file::check_kind(&file).map_err(|fault| bad(format!("{}: {fault}", file.display())))?;
     let scene = serde_json::to_value(&checked.scene).expect("a scene is plain data");
     let wish = Wish {
         quantity: args.quantity,
@@ -22,11 +30,6 @@ pub fn plan(args: &PlanArgs) -> Outcome<String> {
         ranks: args.ranks,
         place: args.at,
     };
-    let stem = args.scene.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let file: PathBuf = args
-        .output
-        .clone()
-        .unwrap_or_else(|| Path::new("output/plans").join(format!("{stem}.plan.json")));
     let of = absolute(&args.scene.scene);
     check_target(&file, &format!("a plan of {}", checked.file), |text| {
         let there: Option<Value> = serde_json::from_str(text).ok();

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use nix::sys::statvfs::statvfs;
 
 use super::{Checkpoint, CheckpointError, Contents, file};
+use crate::input_file;
 use crate::output::OutputError;
 use crate::output::folder::{CHECKPOINTS, checkpoint_folder};
 use crate::output::origin::{Made, Maker};
@@ -108,7 +109,15 @@ pub fn open(path: &Path) -> Result<(Checkpoint, PathBuf, Vec<String>), Checkpoin
     let none = |why: String| CheckpointError::None { path: path.into(), why };
     let kind = fs::metadata(path);
     if kind.as_ref().is_ok_and(|m| !m.is_dir()) {
-        return Ok((file::read(path)?, path.into(), Vec::new()));
+        return match file::read(path) {
+            Ok(checkpoint) => Ok((checkpoint, path.into(), Vec::new())),
+            Err(CheckpointError::Damaged { .. }) if is_json(path) => Err(none(format!(
+                "is JSON text such as a scene, not a checkpoint; flyer-mpm {} without --restart \
+                 runs a scene",
+                path.display()
+            ))),
+            Err(error) => Err(error),
+        };
     }
     let beside = checkpoint_folder(path)?;
     let found = [path.to_path_buf(), beside].map(|folder| list(&folder));
@@ -145,6 +154,11 @@ pub fn check_owner(target: &Path, maker: &Maker) -> Result<(), OutputError> {
     }
     let (theirs, ours) = (theirs.to_string(), maker.origin.to_string());
     Err(OutputError::Foreign { path: folder, theirs, ours })
+}
+
+/// Whether a file is a JSON object, as far as its first character tells.
+fn is_json(path: &Path) -> bool {
+    ["{", " {", "\n{", "\r\n{", "\u{feff}{"].iter().any(|head| input_file::begins_with(path, head))
 }
 
 /// Where the results go of which `checkpoint` is one: what its folder stands beside; `None` where

@@ -10,6 +10,7 @@ use std::path::Path;
 use sha2::{Digest, Sha256};
 
 use super::CheckpointError;
+use crate::input_file::{self, InputFault};
 use crate::output::OutputError;
 
 /// Version of the form of a checkpoint.
@@ -19,7 +20,7 @@ pub const FORMAT: u32 = 1;
 pub const HEAD: u64 = 512;
 
 /// The head's first line.
-const NAME: &str = "flyer-mpm checkpoint";
+pub const NAME: &str = "flyer-mpm checkpoint";
 
 /// Hexadecimal digits of the digest, which a line break ends.
 const DIGITS: usize = 64;
@@ -72,7 +73,10 @@ pub fn verify(path: &Path) -> Result<(), CheckpointError> {
     let damaged = |why: String| CheckpointError::Damaged { path: path.into(), why };
     let fail =
         |e: io::Error| CheckpointError::from(OutputError::io("read the checkpoint", path)(e));
-    let mut file = File::open(path).map_err(fail)?;
+    let mut file = input_file::open(path).map_err(|fault| match fault {
+        InputFault::Io(e) => fail(e),
+        other => damaged(other.to_string()),
+    })?;
     let length = file.metadata().map_err(fail)?.len();
     let mut head = vec![0; HEAD as usize];
     if length < HEAD {

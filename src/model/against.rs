@@ -9,6 +9,7 @@ use super::machine::Machine;
 use super::network::Network;
 use super::share::Work;
 use super::table::{aligned, extrapolated, halo_name, number};
+use crate::input_file;
 use crate::scene::{CheckedScene, FilterHalo};
 
 /// A strong-scaling study's `scaling.json`, as far as it is needed.
@@ -75,9 +76,8 @@ impl Against {
     /// Reads a study.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
         let fail = |reason: String| StudyError { file: path.display().to_string(), reason };
-        let bytes = std::fs::read(path).map_err(|e| {
-            fail(format!("cannot be read: {e}; scripts/strong_scaling.sh writes scaling.json"))
-        })?;
+        let bytes = input_file::read(path, input_file::LARGEST_JSON)
+            .map_err(|e| fail(format!("{e}; scripts/strong_scaling.sh writes scaling.json")))?;
         let study: Against = serde_json::from_slice(&bytes).map_err(|e| {
             fail(format!("no scaling study: {e}; allowed: scaling.json of strong_scaling.sh"))
         })?;

@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use super::network::Network;
 use super::schedule::method_name;
+use crate::input_file;
 use crate::scene::CheckedScene;
 
 /// What computing is counted by, a step: own rows, those of them that do not stay in cache, ghost
@@ -164,9 +165,8 @@ impl Machine {
     pub fn read(path: &Path) -> Result<Self, MachineError> {
         let file = path.display().to_string();
         let fail = |reason: String| MachineError::File { file: file.clone(), reason };
-        let bytes = std::fs::read(path).map_err(|e| {
-            fail(format!("cannot be read: {e}; `flyer-mpm calibrate SCENE.json` makes it"))
-        })?;
+        let bytes = input_file::read(path, input_file::LARGEST_JSON)
+            .map_err(|e| fail(format!("{e}; `flyer-mpm calibrate SCENE.json` makes it")))?;
         let machine: Machine = serde_json::from_slice(&bytes)
             .map_err(|e| fail(format!("no machine file: {e}; `flyer-mpm calibrate` makes one")))?;
         match machine.fault() {

@@ -3,12 +3,13 @@
 //! A number is the shortest text that gives the double back, so that files can be compared to the
 //! bit; a missing one (NaN) is an empty field. Text is quoted only where RFC 4180 asks for it.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use super::ParticleTable;
-use super::error::OutputError;
+use super::error::{OutputError, read_text};
+use crate::input_file::LARGEST_RESULT;
 
 /// Names of the profile files, one a time \[s\], such as `profile_0.500us.csv`; no two are alike,
 /// and none depends on more than the times.
@@ -189,7 +190,7 @@ impl CsvTable {
 
 /// Reads a file as [`write_profile`] writes it.
 pub fn read_csv(path: &Path) -> Result<CsvTable, OutputError> {
-    let text = fs::read_to_string(path).map_err(OutputError::io("read the file", path))?;
+    let text = read_text(path, LARGEST_RESULT)?;
     let fault =
         |line: usize, message: String| OutputError::Csv { path: path.into(), line, message };
     let mut records = records(&text);
@@ -277,6 +278,8 @@ fn next_field(text: &str) -> Result<(String, &str), String> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::super::TableColumn;
     use super::*;
 

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use super::summary::SUMMARY_FILE;
+use crate::input_file::{self, InputFault};
 
 /// A fault in reading or writing results; each is one line that names the path.
 #[derive(Debug, Error)]
@@ -104,6 +105,14 @@ pub enum OutputError {
         /// The file that says so.
         lock: PathBuf,
     },
+    /// It is no file that can be read.
+    #[error("{}: {fault}", path.display())]
+    Input {
+        /// The file.
+        path: PathBuf,
+        /// What it is.
+        fault: InputFault,
+    },
     /// HDF5 refused.
     #[error("{}: cannot write HDF5: {message}", path.display())]
     Hdf5 {
@@ -138,4 +147,12 @@ impl OutputError {
         let path = path.to_path_buf();
         move |source| OutputError::Io { doing, path, source }
     }
+}
+
+/// The text of a file of at most `most` bytes that a run has left.
+pub(super) fn read_text(path: &Path, most: u64) -> Result<String, OutputError> {
+    input_file::read_text(path, most).map_err(|fault| match fault {
+        InputFault::Io(source) => OutputError::io("read the file", path)(source),
+        fault => OutputError::Input { path: path.into(), fault },
+    })
 }

@@ -15,6 +15,7 @@ use serde_json::Value;
 use super::error::OutputError;
 use super::folder::resolve;
 use super::summary::SUMMARY_FILE;
+use crate::input_file::{self, InputFault, LARGEST_JSON, LARGEST_NUMBERS, LARGEST_RESULT};
 use crate::scene::CheckedScene;
 
 /// Name of the file that records the origin of a folder without a summary.
@@ -111,7 +112,7 @@ pub struct Made {
 impl Made {
     /// The result in a folder; none where there is none.
     pub fn read(folder: &Path) -> Option<Made> {
-        let text = fs::read_to_string(folder.join(SUMMARY_FILE)).ok()?;
+        let text = input_file::read_text(&folder.join(SUMMARY_FILE), LARGEST_NUMBERS).ok()?;
         let mut summary: Value = serde_json::from_str(&text).ok()?;
         if !["version", "scene", "profiles"].iter().all(|key| summary.get(key).is_some()) {
             return None;
@@ -150,10 +151,10 @@ pub fn check_target(
     if !file.is_file() {
         return Ok(());
     }
-    let text = fs::read(file).map_err(OutputError::io("read the file", file))?;
-    match text.is_empty() || std::str::from_utf8(&text).is_ok_and(is_ours) {
-        true => Ok(()),
-        false => Err(OutputError::OtherFile { path: file.into(), kind: kind.into() }),
+    match input_file::read_text(file, LARGEST_RESULT) {
+        Ok(text) if text.is_empty() || is_ours(&text) => Ok(()),
+        Err(InputFault::Io(error)) => Err(OutputError::io("read the file", file)(error)),
+        _ => Err(OutputError::OtherFile { path: file.into(), kind: kind.into() }),
     }
 }
 
@@ -167,7 +168,7 @@ pub fn claim(folder: &Path, origin: &Origin) -> Result<(), OutputError> {
         theirs,
         ours: origin.to_string(),
     };
-    if let Ok(text) = fs::read_to_string(&file) {
+    if let Ok(text) = input_file::read_text(&file, LARGEST_JSON) {
         match serde_json::from_str::<Origin>(&text) {
             Ok(theirs) if origin.is(&theirs, &place) => {}
             Ok(theirs) => return Err(foreign(theirs.to_string())),

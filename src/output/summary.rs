@@ -8,10 +8,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::decomposition::DecompositionSummary;
-use super::error::OutputError;
+use super::error::{OutputError, read_text};
 use super::origin::Origin;
 use crate::effects::EffectUse;
 use crate::estimate::ErrorEstimate;
+use crate::input_file::LARGEST_NUMBERS;
 use crate::plan::Verdict;
 
 /// Name of the file in the folder of results.
@@ -214,9 +215,11 @@ pub struct ProfileSummary {
     pub file: String,
     /// SHA-256 over the whole state of the particles, in the order of their ids, in hexadecimal.
     pub state_sha256: String,
-    /// Errors of the raw profile, fractions; null without a reference.
+    /// Errors of the raw profile, fractions; absent without a reference.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub errors: Option<Value>,
-    /// Errors after averaging over cells, fractions; null without a reference.
+    /// Errors after averaging over cells, fractions; absent without a reference.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub errors_cell: Option<Value>,
 }
 
@@ -240,7 +243,8 @@ impl Summary {
     /// Reads `summary.json` of `folder`.
     pub fn read(folder: &Path) -> Result<Summary, OutputError> {
         let path = folder.join(SUMMARY_FILE);
-        let text = fs::read_to_string(&path).map_err(OutputError::io("read the file", &path))?;
+        // it holds the scene, with the positions and tables that were read for it
+        let text = read_text(&path, LARGEST_NUMBERS)?;
         serde_json::from_str(&text).map_err(|source| OutputError::Json { path, source })
     }
 }
@@ -369,7 +373,7 @@ pub(super) mod tests {
         assert_eq!(Summary::read(home.path()).unwrap(), summary);
         let text = fs::read_to_string(home.path().join(SUMMARY_FILE)).unwrap();
         let value: Value = serde_json::from_str(&text).unwrap();
-        assert!(value["profiles"][1]["errors"].is_null());
+        assert!(value["profiles"][1].get("errors").is_none());
         assert_eq!(summary.profiles[0].error("l1"), Some(0.0089));
         assert_eq!(summary.profiles[0].error("noise"), None);
         let missing = Summary::read(&home.path().join("none")).unwrap_err().to_string();

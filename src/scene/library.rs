@@ -14,6 +14,7 @@ use super::conform::join;
 use super::errors::{Fault, SceneError, one_line, suggest};
 use super::model::Course;
 use super::table::{is_hdf5, read_hdf5};
+use crate::input_file::{self, InputFault, LARGEST_JSON, LARGEST_NUMBERS};
 use crate::material::Table;
 
 /// The materials of the library; each file holds one as it stands in a scene.
@@ -118,7 +119,7 @@ pub(super) fn inline_files(scene: &mut Value, folder: &Path) -> Result<bool, Sce
         let Some(Value::String(name)) = object.get("file") else { continue };
         let file = folder.join(name);
         let fail = |reason: String| fault(&file, reason);
-        let text = read_text(&file)?;
+        let text = read_text(&file, LARGEST_JSON)?;
         let mut made: Value = serde_json::from_str(&text)
             .map_err(|error| fail(format!("is no JSON: {error}; allowed: one material")))?;
         if !made.is_object() {
@@ -144,9 +145,11 @@ fn inline_tables(material: &mut Value, folder: &Path) -> Result<bool, SceneError
         let file = folder.join(name);
         let table = match is_hdf5(&file) {
             // that it is a file at all is told in the same words
-            true => regular(&file)
+            true => input_file::check(&file, LARGEST_NUMBERS)
+                .map_err(|reason| cannot(&file, &reason))
                 .and_then(|()| read_hdf5(&file).map_err(|reason| fault(&file, reason))),
-            false => Table::read(&read_text(&file)?).map_err(|reason| fault(&file, reason)),
+            false => Table::read(&read_text(&file, LARGEST_NUMBERS)?)
+                .map_err(|reason| fault(&file, reason)),
         }?;
         *material.pointer_mut(place).expect("it is there") = serde_json::json!({
             "density": table.density,
@@ -167,7 +170,7 @@ pub(super) fn inline_courses(scene: &mut Value, folder: &Path) -> Result<bool, S
         for quantity in ["pressure", "velocity"] {
             let Some(Value::String(name)) = side.get(quantity) else { continue };
             let file = folder.join(name);
-            let points = Course::read(&read_text(&file)?, quantity);
+            let points = Course::read(&read_text(&file, LARGEST_NUMBERS)?, quantity);
             side[quantity] = serde_json::json!(points.map_err(|reason| fault(&file, reason))?);
             found = true;
         }
@@ -175,21 +178,12 @@ pub(super) fn inline_courses(scene: &mut Value, folder: &Path) -> Result<bool, S
     Ok(found)
 }
 
-fn cannot(file: &Path, error: &std::io::Error) -> SceneError {
-    fault(file, format!("cannot be read: {error}"))
+fn cannot(file: &Path, reason: &InputFault) -> SceneError {
+    fault(file, reason.to_string())
 }
 
-/// A pipe or a device may have no end.
-fn regular(file: &Path) -> Result<(), SceneError> {
-    match std::fs::metadata(file).map_err(|error| cannot(file, &error))?.is_file() {
-        true => Ok(()),
-        false => Err(fault(file, "is no regular file; allowed: a file".into())),
-    }
-}
-
-fn read_text(file: &Path) -> Result<String, SceneError> {
-    regular(file)?;
-    std::fs::read_to_string(file).map_err(|error| cannot(file, &error))
+fn read_text(file: &Path, most: u64) -> Result<String, SceneError> {
+    input_file::read_text(file, most).map_err(|reason| cannot(file, &reason))
 }
 
 fn fault(file: &Path, reason: String) -> SceneError {

@@ -4,8 +4,6 @@
 //! [`parse`] looks at nothing but its arguments, so that all reach the same verdict.
 
 use std::fmt;
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
@@ -17,9 +15,10 @@ use super::library::{inline_courses, inline_files, resolve};
 use super::overrides::{apply, check_allowed};
 use super::{BYTES_PER_PARTICLE, CheckedScene, Scene, conform::conform};
 use crate::geometry::read_points;
+use crate::input_file::{self, InputFault};
 
 /// A scene's file may be this long [bytes].
-pub const LARGEST_FILE: u64 = 16 << 20;
+pub const LARGEST_FILE: u64 = input_file::LARGEST_JSON;
 
 /// Reads the text of a scene, at most [`LARGEST_FILE`] bytes; it is not looked into.
 pub fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
@@ -27,22 +26,19 @@ pub fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
         file: one_line(&path.display().to_string()),
         reason: one_line(&reason),
     };
-    let cannot = |error: std::io::Error| fail(format!("cannot be read: {error}"));
-    let metadata = std::fs::metadata(path).map_err(cannot)?;
-    if !metadata.is_file() {
-        let kind = if metadata.is_dir() { "a directory" } else { "no regular file" };
-        return Err(fail(format!("is {kind}; allowed: a scene, one JSON file")));
+    if input_file::begins_with(path, crate::checkpoint::seal::NAME) {
+        return Err(fail(
+            "is a checkpoint; allowed: a scene, one JSON file, or --restart to go on \
+                         from a checkpoint"
+                .into(),
+        ));
     }
-    let mut bytes = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(LARGEST_FILE + 1).read_to_end(&mut bytes))
-        .map_err(cannot)?;
-    if bytes.len() as u64 > LARGEST_FILE {
-        let length = metadata.len();
-        return Err(fail(format!(
-            "is {length} bytes long; allowed: a scene of at most {LARGEST_FILE} bytes (16 MiB)"
-        )));
-    }
+    let bytes = input_file::read(path, LARGEST_FILE).map_err(|fault| {
+        fail(match fault {
+            InputFault::Kind(kind) => format!("is {kind}; allowed: a scene, one JSON file"),
+            other => other.to_string(),
+        })
+    })?;
     with_files(bytes, path)
 }
 
@@ -63,8 +59,8 @@ fn with_files(bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>, SceneError> {
             file: one_line(&file.display().to_string()),
             reason: one_line(&reason),
         };
-        let text = std::fs::read_to_string(&file)
-            .map_err(|error| fail(format!("cannot be read: {error}")))?;
+        let text = input_file::read_text(&file, input_file::LARGEST_NUMBERS)
+            .map_err(|fault| fail(fault.to_string()))?;
         let points = match plane {
             true => read_points::<2>(&text).map(|points| serde_json::json!(points)),
             false => read_points::<1>(&text).map(|points| serde_json::json!(points)),

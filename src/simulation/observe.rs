@@ -203,10 +203,10 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
             columns.push(named("stress_zz", "Pa", pick(&order, across)));
         }
         if let Some(strength) = c.strength {
-            columns.push(named("plastic_strain", "", taken(column(strength.plastic_strain))));
+            columns.push(named("plastic_strain", "-", taken(column(strength.plastic_strain))));
         }
         if let Some(failure) = c.failure {
-            columns.push(named("damage", "", taken(column(failure.damage))));
+            columns.push(named("damage", "-", taken(column(failure.damage))));
         }
         if let Some(thermal) = c.thermal {
             columns.push(named("temperature", "K", taken(column(thermal.temperature))));
@@ -214,7 +214,7 @@ impl<C: Comm, const D: usize> Simulation<'_, C, D> {
         let histories =
             [("distension", c.distension), ("burn_fraction", c.burn.map(|c| c.fraction))];
         for (name, k) in histories.into_iter().filter_map(|(name, k)| Some((name, k?))) {
-            columns.push(named(name, "", taken(column(k))));
+            columns.push(named(name, "-", taken(column(k))));
         }
         if D > 1 {
             columns.push(named("volume", "m3", pick(&order, |r| v0[r] * j[r])));

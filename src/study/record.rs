@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::StudyError;
+use crate::input_file;
 use crate::output::summary::Summary;
 
 /// Seconds of one run.
@@ -89,7 +90,10 @@ impl Record {
 
     /// The record of a key, if it is there and whole.
     pub fn read(folder: &Path, key: &str) -> Option<Record> {
-        serde_json::from_slice(&fs::read(path(folder, key)).ok()?).ok()
+        serde_json::from_slice(
+            &input_file::read(&path(folder, key), input_file::LARGEST_JSON).ok()?,
+        )
+        .ok()
     }
 
     /// Writes it.

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::StudyError;
+use crate::input_file;
 
 /// A study: what is run, how often, and what is drawn of it.
 #[derive(Clone, Debug, Deserialize)]
@@ -178,8 +179,8 @@ impl Study {
     /// Reads a study's file; paths in it become relative to here.
     pub fn read(path: &Path) -> Result<Study, StudyError> {
         let fail = |reason: String| StudyError::Study { file: path.display().to_string(), reason };
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| fail(format!("cannot be read: {error}")))?;
+        let text = input_file::read_text(path, input_file::LARGEST_JSON)
+            .map_err(|fault| fail(fault.to_string()))?;
         let mut reader = serde_json::Deserializer::from_str(&text);
         let mut study: Study = serde_path_to_error::deserialize(&mut reader)
             .map_err(|error| fail(format!("{}: {}", error.path(), error.inner())))?;

@@ -113,3 +113,52 @@ fn a_rank_that_is_stopped_at_the_end_is_named() {
         names(run, victim, &ranks, 2);
     }
 }
+
+/// The process of a rank, as soon as it is there.
+fn process_of(run: &mut Started, victim: usize) -> u32 {
+    let since = Instant::now();
+    let mark = format!("OMPI_COMM_WORLD_RANK={victim}");
+    let is_it = |process: &u32| {
+        let environment = fs::read(format!("/proc/{process}/environ")).unwrap_or_default();
+        environment.split(|&b| b == 0).any(|entry| entry == mark.as_bytes())
+    };
+    loop {
+        if let Some(found) = ranks_of(run.id()).into_iter().find(is_it) {
+            return found;
+        }
+        assert!(run.runs() && since.elapsed() < Duration::from_secs(20), "rank {victim}");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// While MPI starts and ends no message can be sent: the others know of a rank by its signs of life.
+/// FLYER_MPM_STOPS sets the number of moments, spread over the whole run.
+#[test]
+fn a_rank_that_is_stopped_at_any_moment_is_named() {
+    let moments = std::env::var("FLYER_MPM_STOPS").ok().and_then(|n| n.parse().ok()).unwrap_or(5);
+    let home = Home::with(&short());
+    let args = ["scene.json", "--quiet", "--stall-timeout", "2"];
+    let since = Instant::now();
+    home.call(args).ranks(3).end().succeeded();
+    let whole = since.elapsed();
+    let mut named = 0;
+    for k in 0..moments {
+        let victim = k % 3;
+        let mut run = home.call(args).ranks(3).start();
+        let process = process_of(&mut run, victim);
+        std::thread::sleep(whole.mul_f64(k as f64 / moments as f64));
+        signal("-STOP", process);
+        let stopped = Instant::now();
+        let out = run.end();
+        // it had ended before the signal came
+        if out.status.success() {
+            continue;
+        }
+        assert!(stopped.elapsed() < Duration::from_secs(12), "{:?}", stopped.elapsed());
+        out.failed(&[&format!("error: rank {victim} has made no progress for 2 s: it hangs")]);
+        assert_eq!(out.status.code(), Some(7), "{}", out.stderr);
+        assert!(!fs::exists(format!("/proc/{process}/exe")).unwrap_or(true), "it lives on");
+        named += 1;
+    }
+    assert!(2 * named >= moments, "{named} of {moments}");
+}
