@@ -61,28 +61,45 @@ pub fn logistic_regression<const D: usize>(
     }
     let weights = [1.0 / (points.len() - seconds) as f64, 1.0 / seconds as f64];
     let mut w = [0.0; 3];
-    for _ in 0..STEPS {
+    // the step that has led here, and the slope along it where it began
+    let mut last = ([0.0; 3], 0.0);
+    for k in 0..STEPS {
         let (mut slope, mut hessian) = ([RIDGE * w[0], RIDGE * w[1], 0.0], [[0.0; 3]; 3]);
         (hessian[0][0], hessian[1][1]) = (RIDGE, RIDGE);
         for (x, second) in points {
             let x = [x[0], x[D - 1], 1.0];
             let sign = if *second { 1.0 } else { -1.0 };
             let margin = sign * (w[0] * x[0] + w[1] * x[1] + w[2]);
+            if margin > CERTAIN {
+                continue;
+            }
             let miss = 1.0 / (1.0 + margin.exp());
-            let weight = weights[usize::from(*second)];
+            let weight = weights[usize::from(*second)] * miss;
             for i in 0..3 {
-                slope[i] -= weight * miss * sign * x[i];
-                for k in 0..3 {
-                    hessian[i][k] += weight * miss * (1.0 - miss) * x[i] * x[k];
+                slope[i] -= weight * sign * x[i];
+                for k in 0..=i {
+                    hessian[i][k] += weight * (1.0 - miss) * x[i] * x[k];
                 }
             }
         }
+        // the sum is convex: a slope that has turned and is no less steep is beyond the minimum
+        let along = |step: &[f64; 3]| (0..3).map(|i| slope[i] * step[i]).sum::<f64>();
+        if along(&last.0) < -last.1 {
+            last = (last.0.map(|s| 0.5 * s), 0.5 * last.1);
+            (0..3).for_each(|i| w[i] += last.0[i]);
+            continue;
+        }
         let step = solve(hessian, slope)?;
-        // far from the minimum the curvature may be next to none
-        let length = step.iter().fold(0.0f64, |l, s| l.max(s.abs()));
-        let scale = (FARTHEST / length).min(1.0);
-        (0..3).for_each(|i| w[i] -= scale * step[i]);
-        if length < CONVERGED * w.iter().fold(1.0f64, |l, w| l.max(w.abs())) {
+        last = (step, along(&step));
+        (0..3).for_each(|i| w[i] -= step[i]);
+        if k == 0
+            && let Some(start) = between(points, &w)
+        {
+            (w, last) = (start, ([0.0; 3], 0.0));
+            continue;
+        }
+        let length = |v: &[f64; 3]| v.iter().fold(0.0f64, |l, x| l.max(x.abs()));
+        if length(&step) < CONVERGED * length(&w).max(1.0) {
             break;
         }
     }
@@ -91,11 +108,34 @@ pub fn logistic_regression<const D: usize>(
     whole.then(|| unit(normal))
 }
 
-/// Longest step [1/cell], and the relative length of the last.
-const FARTHEST: f64 = 8.0;
+/// The line across `w` midway between the two bodies, steep enough to tell corners apart; none where
+/// they overlap along it. The minimum is the same from any start, and from here it takes a third of
+/// the steps.
+fn between<const D: usize>(points: &[Point<D>], w: &[f64; 3]) -> Option<[f64; 3]> {
+    let scale = STEEP / (w[0] * w[0] + w[1] * w[1]).sqrt();
+    let (mut first, mut second) = (f64::NEG_INFINITY, f64::INFINITY);
+    for (x, of_second) in points {
+        let along = scale * (w[0] * x[0] + w[1] * x[D - 1]);
+        if *of_second {
+            second = second.min(along);
+        } else {
+            first = first.max(along);
+        }
+    }
+    (first < second).then(|| [scale * w[0], scale * w[1], -0.5 * (first + second)])
+}
+
+/// Length of w at the start [1/cell]: a third of that between two squares of half a cell.
+const STEEP: f64 = 30.0;
+
+/// Relative length of the last step.
 const CONVERGED: f64 = 1e-12;
 
-/// The solution of three equations with a symmetric positive matrix, by Cholesky's factors.
+/// A point this far on its own side adds less than rounding.
+const CERTAIN: f64 = 40.0;
+
+/// The solution of three equations with a symmetric positive matrix, of which the lower half is
+/// given, by Cholesky's factors.
 fn solve(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> Option<[f64; 3]> {
     for i in 0..3 {
         for k in 0..=i {
