@@ -123,7 +123,7 @@ fn files_that_the_command_line_names() {
         let words = match name {
             "folder" => &["has no checkpoint"][..],
             "huge" => &["does not begin as a checkpoint"],
-            words => words,
+            _ => words,
         };
         refused(&home, &["--restart", name], words);
     }
