@@ -45,7 +45,7 @@ pub fn calibrate<C: Comm>(comm: &C, order: &Order) -> Outcome<()> {
     let mine = mine.and_then(|bytes| {
         if comm.rank() == 0 {
             check_line(&scene::parse(&bytes, &name, sets).map_err(bad)?, "calibrate")?;
-            input_file::check_kind(output)
+            input_file::check_place(output)
                 .map_err(|fault| bad(format!("{}: {fault}", output.display())))?;
             check_target(output, "a machine file of `flyer-mpm calibrate`", |text| {
                 let there: Option<Value> = serde_json::from_str(text).ok();

@@ -25,6 +25,9 @@ pub enum InputFault {
     /// The system refused.
     #[error("cannot be read: {0}")]
     Io(#[from] io::Error),
+    /// The system refuses to write there.
+    #[error("cannot be written: {0}")]
+    Write(io::Error),
     /// It is a folder, a FIFO or a device.
     #[error("is {0}; allowed: a regular file")]
     Kind(&'static str),
@@ -68,6 +71,25 @@ pub fn check_kind(path: &Path) -> Result<(), InputFault> {
     match std::fs::metadata(path).ok().and_then(|found| other_kind(&found)) {
         Some(kind) => Err(InputFault::Kind(kind)),
         None => Ok(()),
+    }
+}
+
+/// Refuses a place where no file can be written, so far as that can be told without writing one.
+///
+/// # Errors
+///
+/// As [`check_kind`], or what the system says of the file or of the folder that it would stand in.
+pub fn check_place(path: &Path) -> Result<(), InputFault> {
+    check_kind(path)?;
+    if path.exists() {
+        let file = OpenOptions::new().append(true).open(path);
+        return file.map(|_| ()).map_err(InputFault::Write);
+    }
+    let here = Path::new(".");
+    let folder = path.ancestors().skip(1).find(|p| p.exists()).unwrap_or(here);
+    match folder.is_dir() {
+        true => Ok(()),
+        false => Err(InputFault::Write(io::ErrorKind::NotADirectory.into())),
     }
 }
 
@@ -168,6 +190,10 @@ mod tests {
         }
         assert!(told(home.path()).contains("is a directory"));
         assert!(told(&home.path().join("none")).starts_with("cannot be read: No such file"));
+        std::fs::write(home.path().join("file"), "").unwrap();
+        let below = check_place(&home.path().join("file/x")).unwrap_err().to_string();
+        assert!(below.starts_with("cannot be written: not a directory"), "{below}");
+        assert!(check_place(&home.path().join("new/x")).is_ok());
         assert!(check_kind(&fifo).is_err() && check_kind(&home.path().join("none")).is_ok());
         std::os::unix::fs::symlink(&fifo, home.path().join("link")).unwrap();
         assert!(told(&home.path().join("link")).contains("FIFO"));

@@ -21,7 +21,7 @@ pub fn plan(args: &PlanArgs) -> Outcome<String> {
         .clone()
         .unwrap_or_else(|| Path::new("output/plans").join(format!("{stem}.plan.json")));
     // pilots take their time: a place that cannot be written is refused before them
-    input_file::check_kind(&file).map_err(|fault| bad(format!("{}: {fault}", file.display())))?;
+    input_file::check_place(&file).map_err(|fault| bad(format!("{}: {fault}", file.display())))?;
     let scene = serde_json::to_value(&checked.scene).expect("a scene is plain data");
     let wish = Wish {
         quantity: args.quantity,

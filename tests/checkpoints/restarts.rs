@@ -183,7 +183,9 @@ fn what_may_not_change_after_the_start_is_refused() {
         assert_eq!(home.contents(), before);
     }
     home.call(["--restart", "run.checkpoints", "scene.json"]).end().failed(&["cannot be used"]);
-    home.call(["--restart", "scene.json"]).end().failed(&["scene.json: is damaged"]);
+    home.call(["--restart", "scene.json"])
+        .end()
+        .failed(&["scene.json: is JSON text such as a scene"]);
     home.call(["--restart", "nowhere"]).end().failed(&["nowhere", "cannot be read"]);
     // what does make sense is taken
     let args = ["--restart", "run.checkpoints", "--quiet", "--output", "other"];

@@ -142,6 +142,8 @@ fn files_that_the_command_line_names() {
         refused(&home, &plan, &[name, "allowed: a regular file"]);
         refused(&home, &["calibrate", "--output", name], &[name, "allowed: a regular file"]);
     }
+    let below = ["calibrate", "--output", "scene.json/x"];
+    refused(&home, &below, &["scene.json/x: cannot be written", "not a directory"]);
 }
 
 /// A run whose summary or profile is none cannot be compared.

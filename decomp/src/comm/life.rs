@@ -127,7 +127,9 @@ fn period(timeout: Duration) -> Duration {
 
 /// Ends this process and tells why; nothing else of it may run, for it is held up.
 fn end(why: &str) -> ! {
-    eprintln!("error: {why}");
+    if !why.is_empty() {
+        eprintln!("error: {why}");
+    }
     // SAFETY: it ends the process without a return; no handler runs that could wait in turn.
     unsafe { libc::_exit(STALLED) }
 }
@@ -142,16 +144,20 @@ struct Look {
     seen: Instant,
     /// When each file was touched, and when that was seen, by the clock.
     touched: Vec<(Option<SystemTime>, Duration)>,
+    /// When another rank was left to tell that some are silent, by the clock.
+    left: Option<Duration>,
     phase: u8,
 }
 
 impl Look {
     fn new(place: Place, timeout: Duration) -> Self {
         let touched = vec![(None, Duration::ZERO); place.local[1]];
-        Look { place, timeout, clock: Duration::ZERO, seen: Instant::now(), touched, phase: STARTS }
+        let (clock, seen) = (Duration::ZERO, Instant::now());
+        Look { place, timeout, clock, seen, touched, left: None, phase: STARTS }
     }
 
-    /// Looks at all files; why the run has to end, if it has and this rank is the one to tell.
+    /// Looks at all files; why the run has to end, if it has and this rank is the one to tell. The
+    /// text is empty where another rank was left to tell it, and this one ends as well.
     fn at(&mut self, phase: u8, now: Instant) -> Option<String> {
         let grace = GRACE.min(self.timeout / 2);
         let elapsed = (now - self.seen).min(grace / 4);
@@ -160,6 +166,7 @@ impl Look {
             self.phase = phase;
             self.clock = Duration::ZERO;
             self.touched.fill((None, Duration::ZERO));
+            self.left = None;
             return None;
         }
         self.clock += elapsed;
@@ -172,6 +179,10 @@ impl Look {
         }
         if self.clock < self.timeout {
             return None;
+        }
+        // the one that was left to tell ends as it does, and is silent from then on
+        if let Some(left) = self.left {
+            return (self.clock >= left + grace).then(String::new);
         }
         let me = self.place.local[0];
         let lives = |local: usize| {
@@ -191,9 +202,9 @@ impl Look {
                 )
             });
         }
-        // one speaks for all; the others end if it does not
-        let speaker = (0..self.place.local[1]).find(|l| !silent.contains(l)) == Some(me);
-        if !speaker && self.clock < self.timeout + grace {
+        // one speaks for all
+        if (0..self.place.local[1]).find(|l| !silent.contains(l)) != Some(me) {
+            self.left = Some(self.clock);
             return None;
         }
         let named: Option<Vec<usize>> = silent.iter().map(|&l| self.place.name(l)).collect();
@@ -253,6 +264,15 @@ mod tests {
         let mut again = Look::new(one.place.clone(), one.timeout);
         let (_, why) = told(&mut again, STARTS, &[0, 2]).unwrap();
         assert!(why.starts_with("rank 1 has made no progress"), "{why}");
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn one_rank_speaks_for_all() {
+        let (mut one, folder) = look("speaker");
+        one.place.local = [1, 3];
+        let (at, why) = told(&mut one, STARTS, &[0, 1]).unwrap();
+        assert!(why.is_empty() && at > 5.0, "{at} {why}");
         fs::remove_dir_all(folder).unwrap();
     }
 
