@@ -13,6 +13,7 @@ use flyer_mpm::output::histories::Histories;
 use flyer_mpm::output::origin::{Origin, RUN};
 use flyer_mpm::output::{ParticleTable, TableColumn};
 use flyer_mpm::simulation::Saved;
+use flyer_mpm::watch::Peaks;
 
 /// A checkpoint of a few particles with all that one can hold.
 fn example() -> Checkpoint {
@@ -47,6 +48,7 @@ fn example() -> Checkpoint {
             redone_steps: 5,
             left: Census { rows: 3, marks: u64::MAX - 5 },
             sums: vec![i128::MIN, -1, 0, i128::MAX],
+            peaks: Peaks::of([1.5, 2e6, 0.1 + 0.2, 1.0 / 3.0, 0.0]),
             rows: StoredRows {
                 ids: vec![0, 3, u64::MAX],
                 cells: vec![0, 1, 2, 3, -4, i32::MAX],
