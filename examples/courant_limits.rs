@@ -77,7 +77,7 @@ fn is_stable(value: &Value) -> bool {
     let text = value.to_string();
     let scene =
         scene::parse(text.as_bytes(), "courant.json", &[]).unwrap_or_else(|e| panic!("{e}"));
-    let Ok(mut simulation) = Simulation::<_, 1>::new(&scene, &Serial, 1) else { return false };
+    let Ok(mut simulation) = Simulation::<1>::new(&scene, &Serial, 1) else { return false };
     let end = scene.scene.time.end;
     while simulation.time() < end {
         if simulation.advance(end).is_err() {

@@ -142,7 +142,7 @@ pub fn plateau() -> Result<Vec<Figure>, Box<dyn std::error::Error>> {
     let scene = scene::parse(SCENE.as_bytes(), "custom_material", &[])?;
     let models =
         |material: &str| (material == "metal").then(|| Outside::fluid(METAL).with_strength(STRONG));
-    let mut simulation = Simulation::<_, 1>::with_models(&scene, &Serial, 1, &models)?;
+    let mut simulation = Simulation::<1>::with_models(&scene, &Serial, 1, &models)?;
     let end = scene.scene.time.end;
     while simulation.time() < end {
         simulation.advance(end)?;

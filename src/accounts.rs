@@ -12,7 +12,7 @@ use crate::simulation::Simulation;
 use crate::step::{Stepper, Steps};
 
 /// Each rank's value at rank 0, by rank; nothing elsewhere. Collective.
-fn gather<C: Comm, T: Serialize + DeserializeOwned>(comm: &C, value: &T) -> Vec<T> {
+fn gather<T: Serialize + DeserializeOwned>(comm: &dyn Comm, value: &T) -> Vec<T> {
     let text = serde_json::to_vec(value).expect("accounts are plain data");
     let all = comm.gather(&words_of(&text));
     let read = |words: &Vec<u64>| serde_json::from_slice(&bytes_of(words));
@@ -21,9 +21,9 @@ fn gather<C: Comm, T: Serialize + DeserializeOwned>(comm: &C, value: &T) -> Vec<
 
 /// What the ranks did in a time loop of `wall` and `cpu` seconds on this rank, in which it sent
 /// what is between `before` and now; at rank 0. Collective.
-pub fn decomposition<C: Comm, const D: usize>(
-    comm: &C,
-    simulation: &mut Simulation<'_, C, D>,
+pub fn decomposition<const D: usize>(
+    comm: &dyn Comm,
+    simulation: &mut Simulation<'_, D>,
     options: &crate::scene::Decomposition,
     wall: f64,
     cpu: f64,
@@ -57,9 +57,9 @@ pub fn decomposition<C: Comm, const D: usize>(
 }
 
 /// The timelines of all ranks at rank 0; empty elsewhere. Collective.
-pub fn timeline<C: Comm, const D: usize>(
-    comm: &C,
-    simulation: &mut Simulation<'_, C, D>,
+pub fn timeline<const D: usize>(
+    comm: &dyn Comm,
+    simulation: &mut Simulation<'_, D>,
 ) -> Vec<TraceEvent> {
     let rank = comm.rank();
     let line = |tid: usize, event: Event| TraceEvent {
@@ -80,9 +80,9 @@ pub fn timeline<C: Comm, const D: usize>(
 
 /// Share of the ranks' computing that each effect takes, from samples; at rank 0, and none where
 /// nothing was sampled. Collective.
-pub fn effect_shares<C: Comm, const D: usize>(
-    comm: &C,
-    simulation: &Simulation<'_, C, D>,
+pub fn effect_shares<const D: usize>(
+    comm: &dyn Comm,
+    simulation: &Simulation<'_, D>,
 ) -> Option<[f64; Effect::COUNT]>
 where
     Stepper<D>: Steps<D>,

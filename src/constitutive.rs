@@ -15,7 +15,7 @@
 //! let models = |material: &str| {
 //!     (material == "metal").then(|| Outside::fluid(MY_EOS).with_strength(MY_STRENGTH))
 //! };
-//! let simulation = Simulation::<_, 1>::with_models(&scene, &Serial, 1, &models)?;
+//! let simulation = Simulation::<1>::with_models(&scene, &Serial, 1, &models)?;
 //! ```
 //!
 //! The scene goes on to say what a run has columns for, so a material with a strength from outside

@@ -31,7 +31,7 @@ fn check_in<const D: usize>(scene: &CheckedScene) -> Result<String, RunError>
 where
     Stepper<D>: Steps<D>,
 {
-    let simulation = Simulation::<_, D>::new(scene, &Serial, 1)?;
+    let simulation = Simulation::<D>::new(scene, &Serial, 1)?;
     let dt = simulation.time_step().min(scene.scene.time.end);
     let mut text = String::new();
     let mut line = |name: &str, value: String| {

@@ -32,7 +32,7 @@ pub struct Order {
 }
 
 /// Measures and writes the constants. Collective.
-pub fn calibrate<C: Comm>(comm: &C, order: &Order) -> Outcome<()> {
+pub fn calibrate(comm: &dyn Comm, order: &Order) -> Outcome<()> {
     let Order { scene: file, set: sets, output, seconds, samples } = order;
     let file = file.as_deref();
     let name = file.map_or("flyer.json".into(), |f| f.display().to_string());
@@ -156,7 +156,7 @@ fn first_time_step(scene: &CheckedScene) -> Outcome<f64> {
     let failed = |e: &dyn std::fmt::Display| (FAILED, e.to_string());
     let coarser = coarsened(scene);
     let (scene, factor) = coarser.as_ref().map_or((scene, 1.0), |(s, f)| (s, *f));
-    let simulation = Simulation::<_, 1>::new(scene, &Serial, 1).map_err(|e| failed(&e))?;
+    let simulation = Simulation::<1>::new(scene, &Serial, 1).map_err(|e| failed(&e))?;
     Ok((simulation.time_step() / factor).min(scene.scene.time.end))
 }
 

@@ -61,7 +61,7 @@ fn stall_timeout(cli: &Result<Cli, clap::Error>) -> Duration {
 }
 
 /// Does what the command line says. Collective.
-fn act<C: Comm>(comm: &C, started: Instant, cli: Result<Cli, clap::Error>) -> ExitCode {
+fn act(comm: &dyn Comm, started: Instant, cli: Result<Cli, clap::Error>) -> ExitCode {
     let first = comm.rank() == 0;
     if let Some(message) = mistyped() {
         if first {
@@ -235,7 +235,7 @@ fn watch_signals(reading: Arc<AtomicBool>) -> Arc<AtomicU8> {
     came
 }
 
-fn run_scene<C: Comm>(comm: &C, args: &RunArgs, started: Instant) -> Outcome<()> {
+fn run_scene(comm: &dyn Comm, args: &RunArgs, started: Instant) -> Outcome<()> {
     comm.set_stall_timeout(Duration::from_secs_f64(args.stall_timeout));
     // until its files have been read there is nothing that a signal could have saved
     let reading = Arc::new(AtomicBool::new(true));
@@ -307,7 +307,7 @@ fn run_scene<C: Comm>(comm: &C, args: &RunArgs, started: Instant) -> Outcome<()>
 }
 
 /// One line on what is about to run, and the warnings.
-fn announce<C: Comm>(comm: &C, scene: &CheckedScene, threads: usize) {
+fn announce(comm: &dyn Comm, scene: &CheckedScene, threads: usize) {
     for warning in &scene.warnings {
         eprintln!("warning: {warning}");
     }

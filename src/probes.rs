@@ -1,7 +1,5 @@
 //! What histories follow: the interface, free surfaces, tracers, energies.
 
-use decomp::Comm;
-
 use crate::output::histories::Histories;
 use crate::scene::{CheckedScene, Reference};
 use crate::simulation::{Followed, Simulation};
@@ -128,7 +126,7 @@ impl Probes {
     }
 
     /// Takes a row if one is due: at the first step's end past each interval. Collective.
-    pub fn sample<C: Comm, const D: usize>(&mut self, simulation: &Simulation<'_, C, D>) {
+    pub fn sample<const D: usize>(&mut self, simulation: &Simulation<'_, D>) {
         let time = simulation.time();
         if time < self.due as f64 * self.interval {
             return;

@@ -52,10 +52,7 @@ pub struct Mark {
 
 impl<'a> Recorder<'a> {
     /// The recorder of a run at its start. Collective.
-    pub fn new<C: Comm, const D: usize>(
-        scene: &'a CheckedScene,
-        simulation: &Simulation<'_, C, D>,
-    ) -> Self
+    pub fn new<const D: usize>(scene: &'a CheckedScene, simulation: &Simulation<'_, D>) -> Self
     where
         Stepper<D>: Steps<D>,
     {
@@ -74,7 +71,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Goes on from what a checkpoint of rank 0 holds, at `time` [s]. Collective.
-    pub fn resume<C: Comm>(&mut self, comm: &C, checkpoint: Option<Checkpoint>, time: f64) {
+    pub fn resume(&mut self, comm: &dyn Comm, checkpoint: Option<Checkpoint>, time: f64) {
         let told = checkpoint
             .as_ref()
             .map_or(Vec::new(), |c| serde_json::to_vec(&c.due).expect("what is due is plain data"));
@@ -96,11 +93,8 @@ impl<'a> Recorder<'a> {
     }
 
     /// Records what is due at this time. Collective.
-    pub fn record<C: Comm, const D: usize>(
-        &mut self,
-        simulation: &Simulation<'_, C, D>,
-        first: bool,
-    ) where
+    pub fn record<const D: usize>(&mut self, simulation: &Simulation<'_, D>, first: bool)
+    where
         Stepper<D>: Steps<D>,
     {
         let (time, end) = (simulation.time(), self.scene.scene.time.end);

@@ -161,10 +161,10 @@ impl Progress {
 }
 
 /// Steps to the end, recording and writing checkpoints on the way. Collective.
-fn step_to_end<C: Comm, const D: usize>(
-    simulation: &mut Simulation<'_, C, D>,
+fn step_to_end<const D: usize>(
+    simulation: &mut Simulation<'_, D>,
     scene: &CheckedScene,
-    comm: &C,
+    comm: &dyn Comm,
     options: &Options,
     recorder: &mut Recorder<'_>,
     schedule: &mut Schedule,
@@ -221,9 +221,9 @@ where
 }
 
 /// Writes the last state that the watch has passed; tells how to go on from it. Collective.
-fn save_last_good<C: Comm, const D: usize>(
-    simulation: &Simulation<'_, C, D>,
-    comm: &C,
+fn save_last_good<const D: usize>(
+    simulation: &Simulation<'_, D>,
+    comm: &dyn Comm,
     scene: &CheckedScene,
     options: &Options,
     (recorder, mark): (&Recorder<'_>, &Mark),
@@ -255,7 +255,7 @@ fn save_last_good<C: Comm, const D: usize>(
 }
 
 /// The columns of a checkpoint's rows.
-fn state_columns<C: Comm, const D: usize>(simulation: &Simulation<'_, C, D>) -> Vec<StateColumn> {
+fn state_columns<const D: usize>(simulation: &Simulation<'_, D>) -> Vec<StateColumn> {
     let all = simulation.columns();
     let of = |k: &usize| StateColumn {
         name: all.specs[*k].name.into(),
@@ -265,9 +265,9 @@ fn state_columns<C: Comm, const D: usize>(simulation: &Simulation<'_, C, D>) -> 
 }
 
 /// Writes a checkpoint. Collective.
-fn write_checkpoint<C: Comm, const D: usize>(
-    simulation: &Simulation<'_, C, D>,
-    comm: &C,
+fn write_checkpoint<const D: usize>(
+    simulation: &Simulation<'_, D>,
+    comm: &dyn Comm,
     scene: &CheckedScene,
     options: &Options,
     recorder: &Recorder<'_>,
@@ -300,21 +300,21 @@ fn stopped(stop: Stop, time: f64, step: u64, options: &Options, schedule: &Sched
 }
 
 /// Runs a scene and writes its results; returns the final table at rank 0. Collective.
-pub fn run<C: Comm>(
-    comm: &C,
+pub fn run(
+    comm: &dyn Comm,
     scene: &CheckedScene,
     options: &Options,
     beginning: Beginning,
 ) -> Result<Option<String>, Failure> {
     match scene.dimension {
-        1 => run_in::<C, 1>(comm, scene, options, beginning),
-        _ => run_in::<C, 2>(comm, scene, options, beginning),
+        1 => run_in::<1>(comm, scene, options, beginning),
+        _ => run_in::<2>(comm, scene, options, beginning),
     }
 }
 
 /// A run in `D` directions.
-fn run_in<C: Comm, const D: usize>(
-    comm: &C,
+fn run_in<const D: usize>(
+    comm: &dyn Comm,
     scene: &CheckedScene,
     options: &Options,
     beginning: Beginning,
@@ -328,7 +328,7 @@ where
         Some(body) => Some(companion::run(comm, scene, body, options.threads)?),
         None => None,
     };
-    let mut simulation = Simulation::<C, D>::new(scene, comm, options.threads)?;
+    let mut simulation = Simulation::<D>::new(scene, comm, options.threads)?;
     let start = simulation.totals();
     if let Some((_, steps)) = &options.trace {
         simulation.trace(steps.clone());
@@ -495,8 +495,8 @@ fn inaccurate(energy_change: f64, stretched: u64, redone: u64) -> Vec<String> {
 }
 
 /// Writes each profile and scores it.
-fn write_profiles<C: Comm>(
-    comm: &C,
+fn write_profiles(
+    comm: &dyn Comm,
     scene: &CheckedScene,
     reference: Option<&Reference>,
     recorded: &Recorder<'_>,
@@ -529,8 +529,8 @@ fn write_profiles<C: Comm>(
 }
 
 /// All pictures of a run.
-fn draw<C: Comm>(
-    comm: &C,
+fn draw(
+    comm: &dyn Comm,
     scene: &CheckedScene,
     reference: Option<&Reference>,
     recorded: &Recorder<'_>,

@@ -36,7 +36,7 @@ static ALLOCATOR: Counting = Counting;
 /// Memory asked for in each of some windows of `steps` steps of a scene, one after the other.
 fn asked(value: &Value, steps: usize, windows: usize) -> Vec<u64> {
     let checked = scene::parse(value.to_string().as_bytes(), "test.json", &[]).unwrap();
-    let mut simulation = Simulation::<_, 1>::new(&checked, &Serial, 1).unwrap();
+    let mut simulation = Simulation::<1>::new(&checked, &Serial, 1).unwrap();
     let end = checked.scene.time.end;
     let mut asked = Vec::with_capacity(windows);
     for _ in 0..windows {

@@ -270,9 +270,9 @@ impl<const D: usize> NodeExchange<D> {
     /// `meanwhile` is called once, with all patches, while messages are on their way: the halos
     /// of those that are [`inner`](Self::inner) are filled by then, and it may change them.
     /// Collective between neighbours.
-    pub fn refresh<C: Comm + ?Sized, P: AsMut<NodeArrays<D>>>(
+    pub fn refresh<P: AsMut<NodeArrays<D>>>(
         &mut self,
-        comm: &C,
+        comm: &dyn Comm,
         patches: &mut [P],
         fields: &[(usize, Parity)],
         meanwhile: &mut dyn FnMut(&mut [P]),

@@ -81,7 +81,7 @@ impl ExactSum {
     }
 
     /// Turns each of `sums` into that over all ranks. Collective.
-    pub fn over_ranks<C: Comm + ?Sized>(comm: &C, sums: &mut [ExactSum]) {
+    pub fn over_ranks(comm: &dyn Comm, sums: &mut [ExactSum]) {
         // limbs of 32 bits leave room for 2^31 ranks
         let mut limbs: smallvec::SmallVec<[i64; 64]> = sums
             .iter()
@@ -121,8 +121,8 @@ impl ExactSum {
 /// Sums of several quantities over the terms of all ranks, to the same bits for any way of
 /// dealing terms to ranks. `terms` calls its argument with a quantity's number and some of its terms;
 /// it is run twice. Collective.
-pub fn exact_sums<C: Comm + ?Sized, const N: usize>(
-    comm: &C,
+pub fn exact_sums<const N: usize>(
+    comm: &dyn Comm,
     terms: impl Fn(&mut dyn FnMut(usize, &[f64])),
 ) -> [f64; N] {
     let mut largest = [0.0f64; N];
@@ -156,7 +156,7 @@ mod tests {
     proptest! {
         #[test]
         fn order_does_not_matter(mut terms in prop::collection::vec(-1e20f64..1e20, 1..60)) {
-            let sum = |t: &[f64]| exact_sums::<_, 1>(&Serial, |add| add(0, t))[0];
+            let sum = |t: &[f64]| exact_sums::<1>(&Serial, |add| add(0, t))[0];
             let forward = sum(&terms);
             terms.reverse();
             prop_assert_eq!(forward.to_bits(), sum(&terms).to_bits());

@@ -17,8 +17,8 @@ pub struct Moved {
 /// order: a patch that stays is left as it is, one that arrives is made by `make` from its number
 /// and rows. Rows travel without ghosts and with the columns that are declared as state, the
 /// others arrive as zeros. Collective.
-pub fn relocate<const D: usize, C: Comm + ?Sized, P: AsMut<Block<D>>>(
-    comm: &C,
+pub fn relocate<const D: usize, P: AsMut<Block<D>>>(
+    comm: &dyn Comm,
     old: &Layout<D>,
     new: &Layout<D>,
     patches: Vec<P>,
@@ -132,7 +132,7 @@ impl Census {
     }
 
     /// What all ranks together have counted. Collective.
-    pub fn over_ranks<C: Comm + ?Sized>(self, comm: &C) -> Census {
+    pub fn over_ranks(self, comm: &dyn Comm) -> Census {
         // halves leave room for the sum over 2^31 ranks
         let halves = |w: u64| [i64::from(w as u32), (w >> 32) as i64];
         let ([a, b], [c, d]) = (halves(self.rows), halves(self.marks));

@@ -182,9 +182,9 @@ impl<const D: usize> RowExchange<D> {
     ///
     /// `meanwhile` is called once, with all patches, while messages are on their way: those that
     /// are [`inner`](Self::inner) are whole by then. Collective between neighbours.
-    pub fn run<C: Comm + ?Sized, P: AsMut<Block<D>>>(
+    pub fn run<P: AsMut<Block<D>>>(
         &mut self,
-        comm: &C,
+        comm: &dyn Comm,
         patches: &mut [P],
         meanwhile: &mut dyn FnMut(&mut [P]),
     ) -> Result<(), RowError> {

@@ -17,8 +17,8 @@ pub struct StoredRows {
 impl StoredRows {
     /// Gathers the rows of `blocks` at rank 0; without rows elsewhere. Column after column, so
     /// that no rank holds much more than the rows themselves. Collective.
-    pub fn gather<'a, const D: usize, C: Comm + ?Sized>(
-        comm: &C,
+    pub fn gather<'a, const D: usize>(
+        comm: &dyn Comm,
         specs: &[ColumnSpec],
         blocks: impl Iterator<Item = &'a Block<D>> + Clone,
     ) -> StoredRows {
@@ -56,8 +56,8 @@ impl StoredRows {
 
 /// The own rows of all ranks at rank 0, by id: the ids, and the columns in `which`; empty
 /// elsewhere. Collective.
-pub fn gather_rows<'a, const D: usize, C: Comm + ?Sized>(
-    comm: &C,
+pub fn gather_rows<'a, const D: usize>(
+    comm: &dyn Comm,
     blocks: impl Iterator<Item = &'a Block<D>> + Clone,
     which: &[usize],
 ) -> (Vec<u64>, Vec<Vec<f64>>) {
@@ -78,8 +78,8 @@ struct Gathered {
 
 impl Gathered {
     /// Finds the order of the rows. Collective.
-    fn ids<'a, const D: usize, C: Comm + ?Sized>(
-        comm: &C,
+    fn ids<'a, const D: usize>(
+        comm: &dyn Comm,
         blocks: impl Iterator<Item = &'a Block<D>>,
     ) -> Gathered {
         let ids = together(comm, blocks, |block, words| words.extend(&block.ids[..block.own()]));
@@ -88,9 +88,9 @@ impl Gathered {
     }
 
     /// Column number `c` by id; empty but at rank 0. Collective.
-    fn column<'a, const D: usize, C: Comm + ?Sized>(
+    fn column<'a, const D: usize>(
         &self,
-        comm: &C,
+        comm: &dyn Comm,
         blocks: impl Iterator<Item = &'a Block<D>>,
         c: usize,
     ) -> Vec<f64> {
@@ -102,8 +102,8 @@ impl Gathered {
 }
 
 /// What `of` adds for each block, of all ranks at rank 0; nothing elsewhere. Collective.
-fn together<'a, const D: usize, C: Comm + ?Sized>(
-    comm: &C,
+fn together<'a, const D: usize>(
+    comm: &dyn Comm,
     blocks: impl Iterator<Item = &'a Block<D>>,
     of: impl Fn(&Block<D>, &mut Vec<u64>),
 ) -> Vec<u64> {
@@ -135,8 +135,8 @@ fn by_id(ids: &[u64]) -> Vec<usize> {
 /// Deals the rows that rank 0 has, `None` elsewhere, to the patches of `layout`, and the patches to
 /// ranks along `order` by their numbers of rows: returns the layout with these ranks, and this
 /// rank's blocks. Cells must be within the domain. Collective.
-pub fn deal_rows<const D: usize, C: Comm + ?Sized>(
-    comm: &C,
+pub fn deal_rows<const D: usize>(
+    comm: &dyn Comm,
     layout: Layout<D>,
     order: &[usize],
     specs: &[ColumnSpec],

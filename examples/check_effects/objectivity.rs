@@ -62,7 +62,7 @@ fn block(material: &Value, method: &Value, courant: f64) -> Value {
 }
 
 /// Strains the block by `stretch`, and gives it the deviator `start`.
-fn strained(run: &Simulation<'_, Serial, 2>, stretch: f64, start: Option<Symmetric>) -> Saved {
+fn strained(run: &Simulation<'_, 2>, stretch: f64, start: Option<Symmetric>) -> Saved {
     let mut saved = run.save().expect("rank 0");
     let columns = run.columns();
     let state = columns.state();
@@ -98,7 +98,7 @@ fn turned(
 ) -> Result<(f64, [f64; 4]), String> {
     let text = block(material, method, courant).to_string();
     let scene = scene::parse(text.as_bytes(), "block", &[]).map_err(|e| e.to_string())?;
-    let mut run = Simulation::<_, 2>::new(&scene, &Serial, 1).map_err(|e| e.to_string())?;
+    let mut run = Simulation::<2>::new(&scene, &Serial, 1).map_err(|e| e.to_string())?;
     let saved = strained(&run, stretch, start);
     run.restore(Some(&saved)).map_err(|e| e.to_string())?;
     while run.time() < TIME {

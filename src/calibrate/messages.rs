@@ -19,7 +19,7 @@ const HIDING: f64 = 40e-6;
 
 /// Latency, time of a byte, overhead and the level of a reduction between ranks 0 and 1 and over
 /// all; at rank 0, `None` with a single rank. Collective.
-pub fn measure<C: Comm>(comm: &C) -> Option<Network> {
+pub fn measure(comm: &dyn Comm) -> Option<Network> {
     if comm.size() < 2 {
         return None;
     }
@@ -59,7 +59,7 @@ pub fn measure<C: Comm>(comm: &C) -> Option<Network> {
 
 /// Time of an exchange of messages of so many words between ranks 0 and 1 that compute for
 /// `meanwhile` seconds while it lasts \[s\]. Collective.
-fn exchange<C: Comm>(comm: &C, words: usize, meanwhile: f64) -> f64 {
+fn exchange(comm: &dyn Comm, words: usize, meanwhile: f64) -> f64 {
     let message = vec![1u64; words];
     let (other, mut received) = (1 - comm.rank().min(1), Vec::new());
     let takes_part = comm.rank() < 2;
@@ -80,7 +80,7 @@ fn spin(seconds: f64) {
 
 /// The time of one call in a fast batch, one of twenty \[s\]: other programs can only add to it.
 /// Collective.
-fn fast<C: Comm>(comm: &C, mut call: impl FnMut()) -> f64 {
+fn fast(comm: &dyn Comm, mut call: impl FnMut()) -> f64 {
     let mut times = Vec::with_capacity(BATCHES);
     for _ in 0..BATCHES {
         comm.min(&mut [0.0]);

@@ -55,8 +55,8 @@ pub struct Residual {
 
 /// Measures everything in about `seconds`; the constants and the fit's residuals at rank 0.
 /// Collective.
-pub fn calibrate<C: Comm>(
-    comm: &C,
+pub fn calibrate(
+    comm: &dyn Comm,
     scene: &CheckedScene,
     seconds: f64,
 ) -> Result<Option<(Machine, Vec<Residual>)>, CalibrateError> {

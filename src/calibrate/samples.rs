@@ -124,7 +124,7 @@ pub fn variants(scene: &CheckedScene, threads: usize) -> Vec<Variant> {
 
 /// Steps of a variant in batches, each with its seconds a step in all and in phases.
 struct Runner<'a> {
-    simulation: Simulation<'a, Serial, 1>,
+    simulation: Simulation<'a, 1>,
     end: f64,
     batch: u64,
 }
@@ -145,8 +145,7 @@ impl<'a> Runner<'a> {
 
     /// One batch; `None` at the end of the run or where it fails.
     fn batch(&mut self) -> Option<(f64, f64)> {
-        let computed =
-            |s: &mut Simulation<'_, Serial, 1>| s.clock().seconds[Activity::Compute as usize];
+        let computed = |s: &mut Simulation<'_, 1>| s.clock().seconds[Activity::Compute as usize];
         let before = computed(&mut self.simulation);
         let start = Instant::now();
         for _ in 0..self.batch {

@@ -3,7 +3,6 @@
 //! A place lies between two particles; what arrives at them is interpolated between their own
 //! places, so that runs on other cells tell of the same place.
 
-use decomp::Comm;
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::Tile;
@@ -106,7 +105,7 @@ impl Arrivals {
     }
 
     /// Looks at the particles. Collective.
-    pub fn look<C: Comm, const D: usize>(&mut self, simulation: &Simulation<'_, C, D>) {
+    pub fn look<const D: usize>(&mut self, simulation: &Simulation<'_, D>) {
         if self.places.is_empty() {
             return;
         }

@@ -91,7 +91,7 @@ struct Peaks {
 }
 
 impl Peaks {
-    fn look<C: Comm>(&mut self, simulation: &Simulation<'_, C, 1>) {
+    fn look(&mut self, simulation: &Simulation<'_, 1>) {
         for (place, series) in self.places.iter().zip(&mut self.series) {
             if let [Some(a), Some(b)] = simulation.follow(&place.ids)[..] {
                 series.push((simulation.time(), [a.pressure, b.pressure]));
@@ -122,8 +122,8 @@ impl Peaks {
 }
 
 /// Runs the companions of a scene on a line. Collective; the first rank has what they told.
-pub fn run<C: Comm>(
-    comm: &C,
+pub fn run(
+    comm: &dyn Comm,
     scene: &CheckedScene,
     body: usize,
     threads: usize,
@@ -176,14 +176,14 @@ pub fn run<C: Comm>(
 }
 
 /// One companion: the body's profiles.
-fn one<C: Comm>(
-    comm: &C,
+fn one(
+    comm: &dyn Comm,
     scene: &CheckedScene,
     body: usize,
     threads: usize,
     peaks: &mut Peaks,
 ) -> Result<Vec<Line>, RunError> {
-    let mut simulation = Simulation::<_, 1>::new(scene, comm, threads)?;
+    let mut simulation = Simulation::<1>::new(scene, comm, threads)?;
     let mut profiles = Vec::new();
     let cell_time = simulation.time_step() / scene.scene.time.courant;
     peaks.least = least_pressure(scene, body, cell_time);
@@ -204,8 +204,8 @@ fn one<C: Comm>(
 }
 
 /// What the run itself looks at, by the companions' levels, which all ranks need alike.
-pub fn arrivals<C: Comm>(
-    comm: &C,
+pub fn arrivals(
+    comm: &dyn Comm,
     scene: &CheckedScene,
     body: usize,
     companions: &Companions,

@@ -52,7 +52,7 @@ pub fn with_cells(
 /// Runs a scene without files; the message where it fails.
 pub fn run(scene: &CheckedScene, body: usize, place: Option<f64>) -> Result<Pilot, String> {
     let mut simulation =
-        Simulation::<_, 1>::new(scene, &Serial, 1).map_err(|error| error.to_string())?;
+        Simulation::<1>::new(scene, &Serial, 1).map_err(|error| error.to_string())?;
     let between = place.map(|at| Between::new(scene, body, at));
     let (mut profiles, mut felt) = (Vec::new(), Vec::new());
     let (cpu, start) = (user_cpu_seconds(), std::time::Instant::now());

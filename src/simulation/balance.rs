@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use decomp::{Comm, assign_patches, busiest_share, relocate};
+use decomp::{assign_patches, busiest_share, relocate};
 
 use super::Simulation;
 use crate::clock::Activity;
@@ -19,7 +19,7 @@ const MOVE_COST: u64 = 4;
 /// A gain smaller than this share of the busiest rank's load is noise.
 const WORTH: f64 = 0.03;
 
-impl<C: Comm, const D: usize> Simulation<'_, C, D> {
+impl<const D: usize> Simulation<'_, D> {
     /// Whether the cost of patches is measured in `step`.
     pub(super) fn samples(&self, step: u64) -> bool {
         let balance = self.scene.scene.decomposition.balance;

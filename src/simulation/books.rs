@@ -1,7 +1,7 @@
 //! What a run counts: work done and left out, particles moved and departed, and the census that
 //! shows that none is lost or doubled.
 
-use decomp::{Census, Comm, ExactSum};
+use decomp::{Census, ExactSum};
 
 use super::{RunError, Simulation};
 use crate::clock::Event;
@@ -166,7 +166,7 @@ impl<const D: usize> SideBooks<D> {
     }
 }
 
-impl<C: Comm, const D: usize> Simulation<'_, C, D> {
+impl<const D: usize> Simulation<'_, D> {
     /// What transmitting sides, pressures, friction on walls and the grid's own acceleration have
     /// given so far, as seen in the grid's frame. Collective.
     pub fn given(&self) -> Given<D> {
@@ -297,7 +297,7 @@ mod tests {
             },
         ];
         for fault in faults {
-            let mut simulation = Simulation::<_, 1>::new(&scene, &Serial, 1).unwrap();
+            let mut simulation = Simulation::<1>::new(&scene, &Serial, 1).unwrap();
             simulation.advance(scene.scene.time.end).unwrap();
             assert!(simulation.check_census().is_ok());
             fault(&mut simulation.patches[1]);

@@ -4,7 +4,7 @@
 //! them the state is copied, so that where a run goes wrong the last good one can be written. The
 //! verdicts are the same on all ranks, whatever the layout.
 
-use decomp::{Block, Census, Comm, ExactSum, StoredRows, exact_sums};
+use decomp::{Block, Census, ExactSum, StoredRows, exact_sums};
 
 use super::{Given, Left, RunError, Saved, Simulation, Totals};
 use crate::patch::Patch;
@@ -52,7 +52,7 @@ impl<const D: usize> Start<D> {
     };
 }
 
-impl<C: Comm, const D: usize> Simulation<'_, C, D> {
+impl<const D: usize> Simulation<'_, D> {
     /// Energies and momentum of all particles, and what forces and heat have given them but for
     /// the sides [J]. Collective.
     fn sums(&self) -> (Start<D>, f64, [f64; D]) {

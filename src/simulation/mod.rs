@@ -130,8 +130,8 @@ impl RunError {
 }
 
 /// A run in memory.
-pub struct Simulation<'a, C: Comm, const D: usize> {
-    comm: &'a C,
+pub struct Simulation<'a, const D: usize> {
+    comm: &'a dyn Comm,
     scene: &'a CheckedScene,
     stepper: Stepper<D>,
     layout: Layout<D>,
@@ -360,7 +360,7 @@ impl<const D: usize> Plan<D> {
     }
 }
 
-impl<'a, C: Comm, const D: usize> Simulation<'a, C, D>
+impl<'a, const D: usize> Simulation<'a, D>
 where
     Stepper<D>: Steps<D>,
 {
@@ -376,7 +376,11 @@ where
     }
 
     /// Makes the particles of `scene`, to be run by `threads` threads on each rank. Collective.
-    pub fn new(scene: &'a CheckedScene, comm: &'a C, threads: usize) -> Result<Self, RunError> {
+    pub fn new(
+        scene: &'a CheckedScene,
+        comm: &'a dyn Comm,
+        threads: usize,
+    ) -> Result<Self, RunError> {
         Self::with_models(scene, comm, threads, &|_| None)
     }
 
@@ -388,7 +392,7 @@ where
     /// As [`Simulation::new`], and where the scene has no place for them.
     pub fn with_models(
         scene: &'a CheckedScene,
-        comm: &'a C,
+        comm: &'a dyn Comm,
         threads: usize,
         outside: &dyn Fn(&str) -> Option<Outside>,
     ) -> Result<Self, RunError> {
@@ -546,7 +550,7 @@ where
     }
 }
 
-impl<C: Comm, const D: usize> Simulation<'_, C, D> {
+impl<const D: usize> Simulation<'_, D> {
     fn with_world<R>(&mut self, call: impl FnOnce(&Stepper<D>, &mut World<'_, D>) -> R) -> R {
         let mut world = World {
             comm: self.comm,

@@ -1,6 +1,6 @@
 //! What a run tells of its particles: sums, tables, what is followed.
 
-use decomp::{Comm, exact_sums, gather_rows};
+use decomp::{exact_sums, gather_rows};
 use sha2::{Digest, Sha256};
 
 use super::Simulation;
@@ -47,7 +47,7 @@ pub struct Followed<const D: usize> {
     pub half_length: f64,
 }
 
-impl<C: Comm, const D: usize> Simulation<'_, C, D> {
+impl<const D: usize> Simulation<'_, D> {
     /// Sums over all particles in the frame of the scene. Collective.
     pub fn totals(&self) -> Totals<D> {
         let c = &self.stepper.columns;

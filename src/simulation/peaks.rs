@@ -1,6 +1,6 @@
 //! Greatest values of a rank's particles against what the scene explains; see [`Peaks`].
 
-use decomp::{Block, Comm};
+use decomp::Block;
 
 use super::Simulation;
 use crate::constitutive;
@@ -96,7 +96,7 @@ fn front(scene: &CheckedScene, i: usize) -> Option<Front> {
     })
 }
 
-impl<C: Comm, const D: usize> Simulation<'_, C, D> {
+impl<const D: usize> Simulation<'_, D> {
     /// Takes note of the greatest values of all particles. Collective.
     pub(super) fn note_peaks(&mut self) {
         let mut peaks = Peaks::default();

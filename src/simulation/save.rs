@@ -5,7 +5,7 @@
 //! in each step, as it is for a patch that has moved to another rank. Sums over what has left and
 //! what sides have given are exact, so that one rank may go on with those of all.
 
-use decomp::{Census, Comm, ExactSum, StoredRows, deal_rows, words_of};
+use decomp::{Census, ExactSum, StoredRows, deal_rows, words_of};
 
 use super::books::left_sums;
 use super::{RunError, Simulation, Tally};
@@ -46,7 +46,7 @@ pub fn saved_sums(scene: &CheckedScene) -> usize {
     left_sums(dimension) + eroded + 1 + dimension
 }
 
-impl<C: Comm, const D: usize> Simulation<'_, C, D> {
+impl<const D: usize> Simulation<'_, D> {
     /// What the next step needs, at rank 0; nothing elsewhere. Collective.
     pub fn save(&self) -> Option<Saved> {
         let books = self.outflow.sums.iter().chain(&self.side_books.sums);

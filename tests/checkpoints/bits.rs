@@ -17,7 +17,7 @@ fn checked(scene: &Value) -> CheckedScene {
 }
 
 /// All that a run tells of its state.
-fn end_of<C: Comm, const D: usize>(run: &Simulation<'_, C, D>) -> String
+fn end_of<const D: usize>(run: &Simulation<'_, D>) -> String
 where
     Stepper<D>: Steps<D>,
 {
@@ -32,7 +32,7 @@ fn whole<const D: usize>(scene: &CheckedScene, cuts: &[u64]) -> (String, Vec<Sav
 where
     Stepper<D>: Steps<D>,
 {
-    let mut run = Simulation::<_, D>::new(scene, &Serial, 1).unwrap();
+    let mut run = Simulation::<D>::new(scene, &Serial, 1).unwrap();
     let mut saved = Vec::new();
     while run.steps() < STEPS {
         run.advance(scene.scene.time.end).unwrap();
@@ -54,7 +54,7 @@ where
     Stepper<D>: Steps<D>,
 {
     let ends = run_ranks(ranks, |comm| {
-        let mut run = Simulation::<_, D>::new(scene, comm, threads).unwrap();
+        let mut run = Simulation::<D>::new(scene, comm, threads).unwrap();
         run.restore((comm.rank() == 0).then_some(saved)).unwrap();
         assert_eq!((run.steps(), run.steps_made()), (saved.step, 0));
         while run.steps() < STEPS {
@@ -228,7 +228,7 @@ fn particles_of_another_scene() {
     let mut saved = whole::<1>(&scene, &[3]).1.remove(0);
     saved.rows.columns[0][5] *= 1.5;
     let errors = run_ranks(2, |comm| {
-        let mut run = Simulation::<_, 1>::new(&scene, comm, 1).unwrap();
+        let mut run = Simulation::<1>::new(&scene, comm, 1).unwrap();
         run.restore((comm.rank() == 0).then_some(&saved)).unwrap_err().to_string()
     });
     assert!(

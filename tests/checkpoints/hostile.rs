@@ -200,11 +200,11 @@ fn begun<const D: usize>(scene: &CheckedScene, ranks: usize) -> Result<(), Strin
 where
     Stepper<D>: Steps<D>,
 {
-    fn of_rank<C: Comm, const D: usize>(scene: &CheckedScene, comm: &C) -> Result<(), RunError>
+    fn of_rank<const D: usize>(scene: &CheckedScene, comm: &dyn Comm) -> Result<(), RunError>
     where
         Stepper<D>: Steps<D>,
     {
-        let mut simulation = Simulation::<C, D>::new(scene, comm, 1)?;
+        let mut simulation = Simulation::<D>::new(scene, comm, 1)?;
         for _ in 0..3 {
             if simulation.time() < scene.scene.time.end {
                 simulation.advance(scene.scene.time.end)?;
@@ -212,7 +212,7 @@ where
         }
         Ok(())
     }
-    let ends = run_ranks(ranks, |comm| match of_rank::<_, D>(scene, comm) {
+    let ends = run_ranks(ranks, |comm| match of_rank::<D>(scene, comm) {
         // one rank alone knows of it, and ends all in the program
         Err(RunError::Row(error)) => panic!("{LOST}{error}"),
         end => end,

@@ -32,7 +32,7 @@ pub fn end_of(scene: &Value, layout: &Layout) -> End {
 /// A rank's part; rank 0 tells of the end. Collective.
 fn run<C: decomp::Comm>(
     scene: &CheckedScene,
-    comm: &C,
+    comm: &dyn Comm,
     threads: usize,
 ) -> Result<String, RunError> {
     // a fault that one rank alone knows of ends all, as it ends the program
@@ -40,7 +40,7 @@ fn run<C: decomp::Comm>(
         RunError::Row(error) => panic!("{error}"),
         error => error,
     };
-    let mut simulation = Simulation::<_, 1>::new(scene, comm, threads).map_err(alone)?;
+    let mut simulation = Simulation::<1>::new(scene, comm, threads).map_err(alone)?;
     let end = scene.scene.time.end;
     while simulation.time() < end {
         simulation.advance(end).map_err(alone)?;

@@ -137,7 +137,7 @@ fn books_balance_where_the_grid_accelerates() {
     scene["boundary"]["x_lower"] = json!({"velocity": {"to": 400.0, "duration": 1e-7}});
     scene.as_object_mut().unwrap().remove("reference");
     let checked = checked(&scene);
-    let mut simulation = Simulation::<_, 1>::new(&checked, &decomp::Serial, 1).unwrap();
+    let mut simulation = Simulation::<1>::new(&checked, &decomp::Serial, 1).unwrap();
     let start = simulation.totals();
     while simulation.time() < checked.scene.time.end {
         simulation.advance(checked.scene.time.end).unwrap();
@@ -163,11 +163,11 @@ fn what_is_not_reached_costs_nothing_and_changes_no_bit() {
     assert_eq!(Columns::new(&checked(&scene)).specs.len(), columns);
 }
 
-fn end_of<C: Comm, const D: usize>(scene: &CheckedScene, comm: &C) -> Option<String>
+fn end_of<const D: usize>(scene: &CheckedScene, comm: &dyn Comm) -> Option<String>
 where
     Stepper<D>: Steps<D>,
 {
-    let mut simulation = Simulation::<C, D>::new(scene, comm, 1).unwrap();
+    let mut simulation = Simulation::<D>::new(scene, comm, 1).unwrap();
     while simulation.time() < scene.scene.time.end {
         simulation.advance(scene.scene.time.end).unwrap();
     }
@@ -182,7 +182,7 @@ where
     let mut scene = scene.clone();
     scene["domain"]["patches"] = patches.clone();
     let scene = checked(&scene);
-    let all = run_ranks(ranks, |comm| end_of::<_, D>(&scene, comm));
+    let all = run_ranks(ranks, |comm| end_of::<D>(&scene, comm));
     all.into_iter().flatten().next().expect("rank 0")
 }
 

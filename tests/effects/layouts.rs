@@ -10,11 +10,11 @@ use serde_json::{Value, json};
 use crate::metal::metal;
 use crate::tools::{checked, midpoint, shipped};
 
-fn digest<C: Comm, const D: usize>(scene: &CheckedScene, comm: &C) -> Option<String>
+fn digest<const D: usize>(scene: &CheckedScene, comm: &dyn Comm) -> Option<String>
 where
     Stepper<D>: Steps<D>,
 {
-    let mut simulation = Simulation::<C, D>::new(scene, comm, 1).unwrap();
+    let mut simulation = Simulation::<D>::new(scene, comm, 1).unwrap();
     while simulation.time() < scene.scene.time.end {
         simulation.advance(scene.scene.time.end).unwrap();
     }
@@ -28,7 +28,7 @@ where
     let mut scene = scene.clone();
     scene["domain"]["patches"] = patches;
     let scene = checked(&scene);
-    let all = run_ranks(ranks, |comm| digest::<_, D>(&scene, comm));
+    let all = run_ranks(ranks, |comm| digest::<D>(&scene, comm));
     all.into_iter().flatten().next().expect("rank 0")
 }
 

@@ -32,7 +32,7 @@ fn a_model_of_the_library_from_outside_changes_no_bit() {
     let scene = checked(&scene);
     let strength = VonMises { shear_modulus: 28.6e9, yield_stress: 0.26e9, hardening: 0.0 };
     let models = |_: &str| Some(Outside::strength(strength));
-    let mut simulation = Simulation::<_, 1>::with_models(&scene, &Serial, 1, &models).unwrap();
+    let mut simulation = Simulation::<1>::with_models(&scene, &Serial, 1, &models).unwrap();
     while simulation.time() < scene.scene.time.end {
         simulation.advance(scene.scene.time.end).unwrap();
     }
@@ -48,7 +48,7 @@ fn what_the_scene_has_no_place_for_is_refused() {
             material.insert(key.to_string(), value.clone());
         }
         let scene = checked(&scene);
-        let made = Simulation::<_, 1>::with_models(&scene, &Serial, 1, models);
+        let made = Simulation::<1>::with_models(&scene, &Serial, 1, models);
         made.err().expect("refused").to_string()
     };
     let none = ("strength", json!(null));

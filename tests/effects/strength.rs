@@ -75,7 +75,7 @@ fn shear_stiffness_shortens_the_step() {
                 .for_each(|m| drop(m.as_object_mut().unwrap().remove("strength")));
         }
         let scene = checked(&scene);
-        Simulation::<_, 1>::new(&scene, &Serial, 1).unwrap().time_step()
+        Simulation::<1>::new(&scene, &Serial, 1).unwrap().time_step()
     };
     let ratio = step(true) / step(false);
     let exact = 5330.0 / (5330.0f64.powi(2) + 4.0 / 3.0 * 28.6e9 / 2790.0).sqrt();

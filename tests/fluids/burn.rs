@@ -147,7 +147,7 @@ fn front_pressure(value: &Value, cells: f64) -> (f64, Vec<String>) {
     value["time"]["end"] = json!(end);
     value["output"] = json!({"profiles": {"times": [end]}});
     let scene = checked(&value);
-    let mut simulation = Simulation::<_, 1>::new(&scene, &Serial, 1).unwrap();
+    let mut simulation = Simulation::<1>::new(&scene, &Serial, 1).unwrap();
     while simulation.time() < end {
         simulation.advance(end).unwrap();
     }

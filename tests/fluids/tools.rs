@@ -73,7 +73,7 @@ impl Outcome {
 pub fn try_run(value: &Value) -> Result<Outcome, String> {
     let scene = checked(value);
     let mut simulation =
-        Simulation::<_, 1>::new(&scene, &Serial, 1).map_err(|error| error.to_string())?;
+        Simulation::<1>::new(&scene, &Serial, 1).map_err(|error| error.to_string())?;
     let first = simulation.totals();
     let end = scene.scene.time.end;
     while simulation.time() < end {

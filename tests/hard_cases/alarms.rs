@@ -15,7 +15,7 @@ use crate::scenes::with;
 fn error_on(value: &Value, ranks: usize) -> RunError {
     let scene = checked(value).unwrap_or_else(|e| panic!("{e}"));
     let ends = run_ranks(ranks, |comm| {
-        let mut simulation = Simulation::<_, 1>::new(&scene, comm, 1)?;
+        let mut simulation = Simulation::<1>::new(&scene, comm, 1)?;
         while simulation.time() < scene.scene.time.end {
             simulation.advance(scene.scene.time.end)?;
         }
@@ -150,7 +150,7 @@ fn energy_that_falls_below_none() {
     let value = scene_of(160, 2e-7, &metals(), &json!(bodies));
     let scene = checked(&value).unwrap();
     let models = |_: &str| Some(Outside::fluid(Endless));
-    let mut simulation = Simulation::<_, 1>::with_models(&scene, &Serial, 1, &models).unwrap();
+    let mut simulation = Simulation::<1>::with_models(&scene, &Serial, 1, &models).unwrap();
     let error = loop {
         assert!(simulation.time() < scene.scene.time.end, "it is to end");
         if let Err(error) = simulation.advance(scene.scene.time.end) {
@@ -169,7 +169,7 @@ fn a_step_is_redone() {
     let bound = json!({"courant": 0.402, "on_alarm": "redo"});
     let value = watched(bound);
     let scene = checked(&value).unwrap();
-    let mut simulation = Simulation::<_, 1>::new(&scene, &Serial, 1).unwrap();
+    let mut simulation = Simulation::<1>::new(&scene, &Serial, 1).unwrap();
     while simulation.time() < scene.scene.time.end {
         simulation.advance(scene.scene.time.end).unwrap();
     }
@@ -180,7 +180,7 @@ fn a_step_is_redone() {
     assert!(whole.digest != plain.digest && whole.steps > plain.steps);
     for ranks in 2..=4 {
         let value = with(&value, &json!({"domain": {"patches": [9]}}));
-        let ends = run_ranks(ranks, |comm| run_on::<_, 1>(&value, comm).unwrap().digest);
+        let ends = run_ranks(ranks, |comm| run_on::<1>(&value, comm).unwrap().digest);
         assert_eq!(ends[0], whole.digest, "{ranks} ranks");
     }
 }

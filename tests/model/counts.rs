@@ -34,7 +34,7 @@ fn parsed(text: &[u8], sets: &[&str], halo: FilterHalo, patches: usize) -> Check
 /// Runs a few steps on two ranks.
 fn seen(scene: &CheckedScene) -> Vec<Seen> {
     run_ranks(2, |rank| {
-        let mut simulation = Simulation::<_, 1>::new(scene, rank, 1).unwrap();
+        let mut simulation = Simulation::<1>::new(scene, rank, 1).unwrap();
         simulation.trace(1..STEPS + 1);
         let before = rank.traffic();
         for _ in 0..STEPS {

@@ -44,7 +44,7 @@ fn particles_too_long_for_a_step_are_refused() {
             });
             match scene::parse(scene.to_string().as_bytes(), "long.json", &[]) {
                 Ok(scene) => {
-                    Simulation::<_, 1>::new(&scene, &Serial, 1).expect("it starts");
+                    Simulation::<1>::new(&scene, &Serial, 1).expect("it starts");
                     run += 1;
                 }
                 Err(error) => {

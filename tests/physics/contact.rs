@@ -18,7 +18,7 @@ const P2: [f64; 2] = [19.42e9, 12.144294e9];
 /// Contact forces (time at the step's end, force) of a run, and its particles at the end.
 fn forces(value: &Value) -> (Vec<(f64, f64)>, ParticleTable) {
     let scene = checked(value);
-    let mut simulation = Simulation::<_, 1>::new(&scene, &Serial, 1).unwrap();
+    let mut simulation = Simulation::<1>::new(&scene, &Serial, 1).unwrap();
     let mut forces = Vec::new();
     while simulation.time() < scene.scene.time.end {
         simulation.advance(scene.scene.time.end).unwrap();
@@ -266,7 +266,7 @@ fn a_force_is_told_whole_when_patches_move() {
     value["decomposition"] = json!({"balance": {"every": 3, "cost": "particles"}});
     let scene = checked(&value);
     let ends = run_ranks(2, |rank| {
-        let mut simulation = Simulation::<_, 1>::new(&scene, rank, 1).unwrap();
+        let mut simulation = Simulation::<1>::new(&scene, rank, 1).unwrap();
         let mut forces = Vec::new();
         while simulation.time() < scene.scene.time.end {
             simulation.advance(scene.scene.time.end).unwrap();

@@ -153,7 +153,7 @@ fn each_side_changes_the_run() {
 fn what_is_not_named_has_no_column() {
     let columns = |name: &str, edit: Value| {
         let scene = checked(&with(&short(name, 1e-8), &edit));
-        let simulation = Simulation::<_, 1>::new(&scene, &Serial, 1).unwrap();
+        let simulation = Simulation::<1>::new(&scene, &Serial, 1).unwrap();
         simulation.columns().clone()
     };
     let all = columns("flyer.json", json!({}));

@@ -22,7 +22,7 @@ fn on_ranks(value: &Value, decomposition: &Value, ranks: usize) -> Vec<Seen> {
     let scene = checked(&with(value, &json!({"decomposition": decomposition})));
     run_ranks(ranks, |comm| {
         let threads = scene.scene.decomposition.threads;
-        let mut simulation = Simulation::<_, 1>::new(&scene, comm, threads).unwrap();
+        let mut simulation = Simulation::<1>::new(&scene, comm, threads).unwrap();
         simulation.trace(3..4);
         while simulation.time() < scene.scene.time.end {
             simulation.advance(scene.scene.time.end).unwrap();

@@ -10,7 +10,7 @@ use crate::tools::{apart, at_most, checked, column, ending, inputs, run, shipped
 fn the_step_after_a_shortened_one_is_whole() {
     for name in ["flyer.json", "flyer_uintah.json"] {
         let scene = checked(&short(name, 0.2e-6));
-        let mut run = Simulation::<_, 1>::new(&scene, &Serial, 1).unwrap();
+        let mut run = Simulation::<1>::new(&scene, &Serial, 1).unwrap();
         while run.time() < 1e-7 {
             run.advance(1e-7).unwrap();
         }

@@ -92,7 +92,7 @@ impl Outcome {
 /// Runs a checked scene to its end.
 pub fn run_scene(scene: &CheckedScene, threads: usize) -> Result<Outcome, String> {
     let mut simulation =
-        Simulation::<_, 1>::new(scene, &Serial, threads).map_err(|e| format!("at set-up: {e}"))?;
+        Simulation::<1>::new(scene, &Serial, threads).map_err(|e| format!("at set-up: {e}"))?;
     let start = simulation.totals();
     let mut tables = Vec::new();
     for &time in &scene.profile_times {

@@ -88,7 +88,7 @@ fn the_force_told_is_that_of_pressure_and_friction() {
         scene["boundary"]["x_lower"] = json!(sides);
         scene["boundary"]["x_upper"] = json!(sides);
         let scene = checked(&scene);
-        let mut simulation = Simulation::<_, 2>::new(&scene, &Serial, 1).unwrap();
+        let mut simulation = Simulation::<2>::new(&scene, &Serial, 1).unwrap();
         for _ in 0..5 {
             simulation.advance(scene.scene.time.end).unwrap();
         }

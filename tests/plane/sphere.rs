@@ -41,7 +41,7 @@ fn warnings(shape: &Value) -> Vec<String> {
         "artificial_viscosity": {"linear": 0.1, "quadratic": 1.25, "limiter": "christensen"},
     });
     let scene = checked(&value);
-    let mut simulation = Simulation::<_, 2>::new(&scene, &Serial, 1).unwrap();
+    let mut simulation = Simulation::<2>::new(&scene, &Serial, 1).unwrap();
     while simulation.time() < scene.scene.time.end {
         simulation.advance(scene.scene.time.end).unwrap();
     }

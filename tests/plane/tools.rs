@@ -62,15 +62,15 @@ impl<const D: usize> Outcome<D> {
     }
 }
 
-fn run_rank<C: Comm, const D: usize>(
+fn run_rank<const D: usize>(
     scene: &CheckedScene,
-    comm: &C,
+    comm: &dyn Comm,
     threads: usize,
 ) -> Option<Outcome<D>>
 where
     Stepper<D>: Steps<D>,
 {
-    let mut simulation = Simulation::<C, D>::new(scene, comm, threads).unwrap();
+    let mut simulation = Simulation::<D>::new(scene, comm, threads).unwrap();
     let start = simulation.totals();
     while simulation.time() < scene.scene.time.end {
         simulation.advance(scene.scene.time.end).unwrap();

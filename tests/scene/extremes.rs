@@ -73,7 +73,7 @@ where
         assert_eq!(text.lines().count(), 1, "{text}");
         text
     };
-    let mut run = Simulation::<_, D>::new(scene, &Serial, 1).map_err(one_line)?;
+    let mut run = Simulation::<D>::new(scene, &Serial, 1).map_err(one_line)?;
     for _ in 0..4 {
         if run.time() < scene.scene.time.end {
             run.advance(scene.scene.time.end).map_err(one_line)?;

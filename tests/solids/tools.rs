@@ -75,7 +75,7 @@ where
 {
     let scene = checked(value);
     assert_eq!(scene.dimension, D);
-    let mut simulation = Simulation::<_, D>::new(&scene, &Serial, 1).unwrap();
+    let mut simulation = Simulation::<D>::new(&scene, &Serial, 1).unwrap();
     let first = simulation.totals();
     let start = simulation.gather().map(|(table, _)| table);
     let end = scene.scene.time.end;

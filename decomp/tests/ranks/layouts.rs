@@ -192,7 +192,7 @@ proptest! {
         let sums = |comm: &dyn Comm| {
             let mine: Vec<f64> =
                 terms.iter().filter(|t| t.1 % comm.size() == comm.rank()).map(|t| t.0).collect();
-            exact_sums::<_, 2>(comm, |add| {
+            exact_sums::<2>(comm, |add| {
                 add(0, &mine);
                 mine.iter().for_each(|x| add(1, &[1e-30 * x * x]));
             })

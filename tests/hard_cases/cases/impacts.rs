@@ -141,7 +141,7 @@ pub fn separation() -> Vec<Figure> {
 
 fn forces(value: &Value) -> Result<Vec<(f64, f64)>, String> {
     let scene = checked(value)?;
-    let mut simulation = Simulation::<_, 1>::new(&scene, &Serial, 1).map_err(|e| e.to_string())?;
+    let mut simulation = Simulation::<1>::new(&scene, &Serial, 1).map_err(|e| e.to_string())?;
     let mut forces = Vec::new();
     while simulation.time() < scene.scene.time.end {
         simulation.advance(scene.scene.time.end).map_err(|e| e.to_string())?;

@@ -185,7 +185,7 @@ pub fn borders() -> Vec<Figure> {
     let mut figures = Vec::new();
     for (patches, ranks) in [(40, 1), (20, 2), (40, 3), (40, 4), (19, 4)] {
         let value = with_patches(patches);
-        let ends = run_ranks(ranks, |comm| run_on::<_, 1>(&value, comm).map(|e| e.digest));
+        let ends = run_ranks(ranks, |comm| run_on::<1>(&value, comm).map(|e| e.digest));
         let digest = ends.into_iter().next().expect("rank 0").unwrap_or_else(|e| e);
         let what = format!("{patches} patches on {ranks} ranks: other bits");
         figures.push(figure(what, f64::from(digest != whole), 0.0));
@@ -209,7 +209,7 @@ pub fn odd_times() -> Vec<Figure> {
         (Err(e), _) | (_, Err(e)) => (failed("odd times", e), f64::NAN),
     };
     // a run that ends where a step ends anyway
-    let step = run_on::<_, 1>(&short(1e-9), &Serial);
+    let step = run_on::<1>(&short(1e-9), &Serial);
     let nothing = step.map_or_else(|e| failed("no remainder", &e), |ended| ended.steps as f64);
     let shipped_times = shipped("flyer.json")["time"]["end"].as_f64().unwrap_or(0.0);
     vec![

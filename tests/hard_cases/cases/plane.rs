@@ -66,7 +66,7 @@ pub fn check() -> Vec<Figure> {
     let mut figures = vec![energy("a block on a plate", &struck())];
     let digest = |patches: [usize; 2], ranks: usize| {
         let value = with(&struck(), &json!({"domain": {"patches": patches}}));
-        let ends = run_ranks(ranks, |comm| run_on::<_, 2>(&value, comm).map(|e| e.digest));
+        let ends = run_ranks(ranks, |comm| run_on::<2>(&value, comm).map(|e| e.digest));
         ends.into_iter().next().expect("rank 0").unwrap_or_else(|e| e)
     };
     let whole = digest([1, 1], 1);

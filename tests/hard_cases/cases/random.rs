@@ -44,7 +44,7 @@ where
     Stepper<D>: Steps<D>,
 {
     let ends = run_ranks(ranks, |comm| {
-        let mut simulation = match Simulation::<_, D>::new(scene, comm, 1) {
+        let mut simulation = match Simulation::<D>::new(scene, comm, 1) {
             Ok(simulation) => simulation,
             Err(error) => return Verdict::Alarm(error.to_string()),
         };

@@ -47,13 +47,13 @@ pub fn checked(value: &Value) -> Result<CheckedScene, String> {
 }
 
 /// Runs a scene on this rank of `comm`. Collective.
-pub fn run_on<C: Comm, const D: usize>(value: &Value, comm: &C) -> Result<Ended<D>, String>
+pub fn run_on<const D: usize>(value: &Value, comm: &dyn Comm) -> Result<Ended<D>, String>
 where
     Stepper<D>: Steps<D>,
 {
     let scene = checked(value)?;
     let mut simulation =
-        Simulation::<_, D>::new(&scene, comm, 1).map_err(|e| format!("at set-up: {e}"))?;
+        Simulation::<D>::new(&scene, comm, 1).map_err(|e| format!("at set-up: {e}"))?;
     let start = simulation.totals();
     let mut tables = Vec::new();
     let mut digest = String::new();
