@@ -57,12 +57,16 @@ enum Which<'a> {
     Inner(&'a [bool], bool),
 }
 
+/// A phase on one patch. A call through a pointer, one a patch, so that the exchanges and the threads
+/// about it are compiled once and not for each phase.
+type Phase<'a, const D: usize> = &'a (dyn Fn(&mut Patch<D>) + Send + Sync);
+
 /// Runs a phase on every patch of `which` that is awake.
 fn for_each<const D: usize>(
     pool: Option<&rayon::ThreadPool>,
     patches: &mut [Patch<D>],
     which: Which<'_>,
-    phase: impl Fn(&mut Patch<D>) + Send + Sync,
+    phase: Phase<'_, D>,
 ) {
     let wanted = |k: usize, patch: &Patch<D>| {
         !patch.rest.asleep()
@@ -87,7 +91,7 @@ impl<const D: usize> World<'_, D> {
     pub fn each(&mut self, name: &'static str, phase: impl Fn(&mut Patch<D>) + Send + Sync) {
         let start = Instant::now();
         let watcher = self.clock.watcher();
-        for_each(self.pool, self.patches, Which::All, |p| watcher.time(name, p, &phase));
+        for_each(self.pool, self.patches, Which::All, &|p| watcher.time(name, p, &phase));
         self.clock.add_since(Activity::Compute, start, 0.0);
     }
 
@@ -98,6 +102,13 @@ impl<const D: usize> World<'_, D> {
     pub fn exchange_rows(
         &mut self,
         phases: impl Fn(&mut Nodal<'_, D>) + Send + Sync,
+    ) -> Result<(), RowError> {
+        self.run_phases(&phases)
+    }
+
+    fn run_phases(
+        &mut self,
+        phases: &(dyn Fn(&mut Nodal<'_, D>) + Send + Sync),
     ) -> Result<(), RowError> {
         let sleep = self.sleep.take();
         let settle = move |patch: &mut Patch<D>| {
@@ -158,7 +169,7 @@ impl Ranks<'_> {
         inner: &[bool],
         pool: Option<&rayon::ThreadPool>,
         settle: Settle<'_, D>,
-        phase: &(impl Fn(&mut Patch<D>) + Send + Sync),
+        phase: Phase<'_, D>,
     ) -> Result<(), RowError> {
         let mut result = Ok(());
         self.around(
@@ -185,7 +196,7 @@ impl Ranks<'_> {
         inner: &[bool],
         exchange: impl FnOnce(&dyn Comm, &mut [Patch<D>], &mut dyn FnMut(&mut [Patch<D>])),
         ready: &dyn Fn(&mut Patch<D>),
-        phase: &(impl Fn(&mut Patch<D>) + Send + Sync),
+        phase: Phase<'_, D>,
     ) {
         let mut computed = 0.0;
         let mut compute = |patches: &mut [Patch<D>], is: bool| {
@@ -246,8 +257,12 @@ enum Halo<'a, const D: usize> {
 impl<const D: usize> Nodal<'_, D> {
     /// Runs a phase on every patch that is awake, once the values it needs are there.
     pub fn each(&mut self, name: &'static str, phase: impl Fn(&mut Patch<D>) + Send + Sync) {
+        self.run(name, &phase);
+    }
+
+    fn run(&mut self, name: &'static str, phase: Phase<'_, D>) {
         let watcher = self.watcher;
-        let timed = |patch: &mut Patch<D>| watcher.time(name, patch, &phase);
+        let timed = |patch: &mut Patch<D>| watcher.time(name, patch, phase);
         let fields = self.pending.take();
         match &mut self.halo {
             Halo::Deep(layout) => {
@@ -277,7 +292,7 @@ impl<const D: usize> Nodal<'_, D> {
                     );
                 } else {
                     let start = Instant::now();
-                    for_each(self.pool, self.patches, Which::All, timed);
+                    for_each(self.pool, self.patches, Which::All, &timed);
                     ranks.clock.add_since(Activity::Compute, start, 0.0);
                 }
             }

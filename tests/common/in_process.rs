@@ -30,11 +30,7 @@ pub fn end_of(scene: &Value, layout: &Layout) -> End {
 }
 
 /// A rank's part; rank 0 tells of the end. Collective.
-fn run<C: decomp::Comm>(
-    scene: &CheckedScene,
-    comm: &dyn Comm,
-    threads: usize,
-) -> Result<String, RunError> {
+fn run(scene: &CheckedScene, comm: &dyn decomp::Comm, threads: usize) -> Result<String, RunError> {
     // a fault that one rank alone knows of ends all, as it ends the program
     let alone = |error| match error {
         RunError::Row(error) => panic!("{error}"),

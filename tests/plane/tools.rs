@@ -92,7 +92,7 @@ where
 /// The digest of the state that ranks and threads leave, and what the sides have booked.
 pub fn digest_on(scene: &Value, ranks: usize, threads: usize) -> String {
     let scene = checked(scene);
-    let outcomes = run_ranks(ranks, |comm| run_rank::<_, 2>(&scene, comm, threads));
+    let outcomes = run_ranks(ranks, |comm| run_rank::<2>(&scene, comm, threads));
     let outcome = outcomes.into_iter().flatten().next().expect("rank 0");
     format!("{} {:?} {:?}", outcome.digest, outcome.left, outcome.given)
 }
