@@ -8,8 +8,9 @@ const STEP: f64 = 0.01;
 /// Share of the way to zero pressure, by the stiffness at hand, that a step takes.
 const SHARE: f64 = 0.1;
 
-/// Pressure over that of the start at which the elastic energy is spent.
-const SPENT: f64 = 1e-3;
+/// Pressure over the stiffness rho c^2 at which the elastic energy is spent: what is left of it is
+/// half of the square of this, over c^2, which is rounding. In a gas the ratio stays at 1/gamma.
+const SPENT: f64 = 1e-6;
 
 /// Greatest |ln J| of the search: a gas has spent nearly all of its energy there.
 const RANGE: f64 = 9.0;
@@ -38,21 +39,22 @@ fn along_isentrope(model: &dyn Model, rho0: f64, start: f64) -> f64 {
     let Some([first, mut c]) = state(0.0, start) else { return start };
     let (mut log, mut e, mut p) = (0.0f64, start, first);
     // material in compression expands to zero pressure, material in tension contracts
-    while p / first > SPENT {
+    loop {
+        let strain = p * log.exp() / (rho0 * c * c);
+        // NaN, of no pressure without stiffness, ends it too
+        if !(strain.abs() > SPENT && (p > 0.0) == (first > 0.0)) {
+            break;
+        }
         if log.abs() >= RANGE {
             // a gas: it comes to zero pressure only as its energy comes to zero
             return start.min(0.0);
         }
-        let stiffness = rho0 / log.exp() * c * c;
-        let step = (SHARE * p / stiffness).clamp(-STEP, STEP);
+        let step = (SHARE * strain).clamp(-STEP, STEP);
         let Some([middle, _]) = state(log + 0.5 * step, e + 0.5 * step * slope(log, p)) else {
             break;
         };
         let next = e + step * slope(log + 0.5 * step, middle);
         let Some([pressure, speed]) = state(log + step, next) else { break };
-        if step == 0.0 || step.is_nan() {
-            break;
-        }
         (log, e, p, c) = (log + step, next, pressure, speed);
     }
     e.min(start)
