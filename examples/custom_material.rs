@@ -6,11 +6,11 @@
 //! ```
 
 use decomp::Serial;
-use flyer_mpm::constitutive::Outside;
+use flyer_mpm::material::constitutive::Outside;
+use flyer_mpm::material::strength::{Condition, Strength};
 use flyer_mpm::material::{EquationOfState, Linear};
 use flyer_mpm::scene;
 use flyer_mpm::simulation::Simulation;
-use flyer_mpm::strength::{Condition, Strength};
 
 /// Murnaghan's cold curve (1944) with Grueneisen's thermal pressure, Gamma rho constant:
 /// p = pc(J) + Gamma0 rho0 (e - ec(J)), pc = K/n (J^-n - 1), ec its work.

@@ -6,7 +6,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use flyer_mpm::output::csv::{CsvTable, read_csv};
+use flyer_mpm::driver::output::csv::{CsvTable, read_csv};
 
 /// Coefficients from the program's default down to none, on the document's straight line.
 const PATH: [(f64, f64); 5] = [(0.2, 2.0), (0.15, 1.5), (0.1, 1.0), (0.06, 0.6), (0.03, 0.3)];

@@ -4,11 +4,6 @@
 //! rank alone knows of ends all by MPI_Abort.
 
 mod cli;
-mod describe;
-mod forecast;
-mod planner;
-mod sheet;
-mod sweep;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -20,14 +15,14 @@ use std::time::{Duration, Instant};
 use clap::Parser;
 use cli::{Cli, Command, RunArgs, SceneArgs};
 use decomp::{Comm, Serial};
-use flyer_mpm::checkpoint::fit::CHANGEABLE;
-use flyer_mpm::checkpoint::{Checkpoint, folder};
-use flyer_mpm::output::compare::compare;
-use flyer_mpm::output::folder::{check_writable, default_folder};
-use flyer_mpm::output::lock::Lock;
-use flyer_mpm::output::origin::{Maker, Origin, RUN, check_target};
-use flyer_mpm::output::trace::TRACE_START;
-use flyer_mpm::run::{Beginning, Failure, Options, run};
+use flyer_mpm::driver::checkpoint::fit::CHANGEABLE;
+use flyer_mpm::driver::checkpoint::{Checkpoint, folder};
+use flyer_mpm::driver::output::compare::compare;
+use flyer_mpm::driver::output::folder::{check_writable, default_folder};
+use flyer_mpm::driver::output::lock::Lock;
+use flyer_mpm::driver::output::origin::{Maker, Origin, RUN, check_target};
+use flyer_mpm::driver::output::trace::TRACE_START;
+use flyer_mpm::driver::{Beginning, Failure, Options, run};
 use flyer_mpm::scene::{self, CheckedScene};
 use flyer_mpm::simulation::RunError;
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
@@ -82,8 +77,8 @@ fn act(comm: &dyn Comm, started: Instant, cli: Result<Cli, clap::Error>) -> Exit
     let outcome = match (cli.command, cli.run) {
         (None, Some(args)) => run_scene(comm, &args, started),
         (Some(Command::Calibrate { scene, set, output, seconds, samples }), _) => {
-            let order = forecast::Order { scene, set, output, seconds, samples };
-            forecast::calibrate(comm, &order)
+            let order = cli::predict::Order { scene, set, output, seconds, samples };
+            cli::predict::calibrate(comm, &order)
         }
         // the rest is done by one rank
         _ if !first => Ok(()),
@@ -332,7 +327,7 @@ fn side_command(command: Command) -> Outcome<()> {
         Command::Check { scene } => {
             let (_, checked) = read_scene(&scene, false)?;
             checked.check_memory(scene::available_memory()).map_err(bad)?;
-            say(&describe::check(&checked).map_err(|e| (FAILED, e.to_string()))?);
+            say(&cli::check::check(&checked).map_err(|e| (FAILED, e.to_string()))?);
             Ok(())
         }
         Command::Hugoniot { scene, output } => {
@@ -340,7 +335,7 @@ fn side_command(command: Command) -> Outcome<()> {
             let stem = scene.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             let output =
                 output.unwrap_or_else(|| Path::new("output").join(format!("{stem}.hugoniot")));
-            say(&describe::hugoniot(&checked, &output)?);
+            say(&cli::check::hugoniot(&checked, &output)?);
             Ok(())
         }
         Command::Material { scene, name, set, output } => {
@@ -349,17 +344,17 @@ fn side_command(command: Command) -> Outcome<()> {
             let plain = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' };
             let folder = format!("{stem}.material.{}", name.chars().map(plain).collect::<String>());
             let output = output.unwrap_or_else(|| Path::new("output").join(folder));
-            say(&sheet::material(&checked, &name, &output)?);
+            say(&cli::material::material(&checked, &name, &output)?);
             Ok(())
         }
         Command::Predict(args) => {
-            say(&forecast::predict(&args)?);
+            say(&cli::predict::predict(&args)?);
             Ok(())
         }
         Command::Study { study, output, quiet } => {
-            sweep::study(&study, output.as_deref(), quiet).map(|text| say(&text))
+            cli::study::study(&study, output.as_deref(), quiet).map(|text| say(&text))
         }
-        Command::Plan(args) => planner::plan(&args).map(|text| say(&text)),
+        Command::Plan(args) => cli::plan::plan(&args).map(|text| say(&text)),
         Command::Calibrate { .. } => unreachable!("all ranks calibrate"),
         Command::Compare { first, second } => {
             let comparison = compare(&first, &second).map_err(bad)?;

@@ -6,11 +6,12 @@ use std::path::Path;
 use std::process::Command;
 use std::sync::Mutex;
 
-use flyer_mpm::output::decomposition::DecompositionSummary;
-use flyer_mpm::output::summary::{Energy, Momentum, ProfileSummary, Summary};
-use flyer_mpm::output::vtkhdf::{RESULTS_FILE, RunInfo, write_vtkhdf};
-use flyer_mpm::output::{ParticleTable, TableColumn, csv};
+use flyer_mpm::driver::output::csv;
+use flyer_mpm::driver::output::decomposition::DecompositionSummary;
+use flyer_mpm::driver::output::summary::{Energy, Momentum, ProfileSummary, Summary};
+use flyer_mpm::driver::output::vtkhdf::{RESULTS_FILE, RunInfo, write_vtkhdf};
 use flyer_mpm::scene::{Decomposition, FilterHalo};
+use flyer_mpm::simulation::{ParticleTable, TableColumn};
 use serde_json::json;
 
 /// One test at a time: a process that is started while another thread writes HDF5 inherits that

@@ -10,7 +10,7 @@
 //! - [`NodeExchange`] gives each patch finished values of nodes that other patches own.
 //!
 //! Both let the caller compute while messages fly. [`assign_patches`] deals patches to ranks
-//! along a space-filling curve by their weights, and [`relocate`] moves whole patches.
+//! along a space-filling curve by their weights, and [`patch_migration`] moves whole patches.
 //! [`StoredRows`] holds the rows of all ranks, for a file, and [`deal_rows`] brings them back to any
 //! layout.
 //!
@@ -22,28 +22,28 @@
 //! It does not interpolate, integrate, write files, or choose when anything is exchanged.
 
 mod balance;
+mod bytes;
 pub mod comm;
-mod curve;
+mod gather_scatter;
+mod ghost_exchange;
+mod hilbert;
 mod index_box;
 mod layout;
 mod nodes;
+mod packing;
+mod particle_block;
+mod patch_migration;
 mod reduce;
-mod relocate;
-mod rows;
-mod store;
-mod stretch;
-mod table;
-mod words;
 
 pub use balance::{assign_patches, busiest_share, choose_cuts, even_cuts};
+pub use bytes::{bytes_of, words_of};
 pub use comm::{Comm, Serial, Traffic};
-pub use curve::curve_order;
+pub use gather_scatter::{StoredRows, deal_rows, gather_rows};
+pub use ghost_exchange::{RowError, RowExchange, RowReach};
+pub use hilbert::curve_order;
 pub use index_box::IndexBox;
 pub use layout::{Image, Layout, Side};
 pub use nodes::{NodeArrays, NodeExchange, Parity, fold_mirrors};
+pub use particle_block::{Block, ColumnSpec, Mirror};
+pub use patch_migration::{Census, Moved, relocate};
 pub use reduce::{ExactSum, exact_sums};
-pub use relocate::{Census, Moved, relocate};
-pub use rows::{RowError, RowExchange, RowReach};
-pub use store::{StoredRows, deal_rows, gather_rows};
-pub use table::{Block, ColumnSpec, Mirror};
-pub use words::{bytes_of, words_of};

@@ -1,6 +1,6 @@
 //! Nodal values, and finished values from the patch that owns a node.
 
-use crate::rows::with_sends;
+use crate::ghost_exchange::with_sends;
 use crate::{Comm, Image, IndexBox, Layout, Side};
 
 /// How a nodal field behaves in a mirror.

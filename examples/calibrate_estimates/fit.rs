@@ -1,6 +1,6 @@
 //! Fits a law by quantile regression of the logarithms (Koenker & Bassett 1978).
 
-use flyer_mpm::estimate::law::{LEAST, Law};
+use flyer_mpm::accuracy::estimate::error_model::{LEAST, Law};
 use nalgebra::{DMatrix, DVector};
 
 use crate::estimates::Told;

@@ -1,7 +1,7 @@
 //! Fits the laws by which runs tell their own errors, and holds them against other impacts.
 //!
 //! `scripts/calibrate_estimates.sh [CASES [THREADS]]`: runs random impacts of some materials, fits,
-//! writes `src/estimate/laws.json`, runs impacts of other materials, draws
+//! writes `src/accuracy/estimate/laws.json`, runs impacts of other materials, draws
 //! `docs/error_estimate.png` and prints how often the intervals held the truth.
 
 #[path = "../common/estimates.rs"]
@@ -14,10 +14,10 @@ mod random_impacts;
 use std::path::Path;
 
 use estimates::{QUANTITIES, Told, gather, judge};
-use flyer_mpm::estimate::Laws;
-use flyer_mpm::estimate::law::Quantity;
-use flyer_mpm::plan::data::{Measured, Size};
-use flyer_mpm::plan::{self, Data};
+use flyer_mpm::accuracy::estimate::Laws;
+use flyer_mpm::accuracy::estimate::error_model::Quantity;
+use flyer_mpm::accuracy::plan::data::{Measured, Size};
+use flyer_mpm::accuracy::plan::{self, Data};
 use random_impacts::{FITTED, HELD_OUT};
 
 /// Seeds of the impacts that laws are fitted on, and of those that they are held against.
@@ -66,7 +66,8 @@ fn write_data(told: &[Vec<Told>; 3], root: &Path) {
         }
     }
     let text = serde_json::to_string_pretty(&data).expect("data are plain") + "\n";
-    std::fs::write(root.join("src/plan/data.json"), text).expect("the data can be written");
+    std::fs::write(root.join("src/accuracy/plan/data.json"), text)
+        .expect("the data can be written");
 }
 
 fn main() {
@@ -97,7 +98,8 @@ fn main() {
     };
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let text = serde_json::to_string_pretty(&laws).expect("laws are plain data") + "\n";
-    std::fs::write(root.join("src/estimate/laws.json"), text).expect("the laws can be written");
+    std::fs::write(root.join("src/accuracy/estimate/laws.json"), text)
+        .expect("the laws can be written");
     write_data(&fitted, root);
     let held_out = gather(SEEDS[1], &HELD_OUT, count.min(280), threads);
     let by_law = |all: &[Told], quantity: &Quantity| -> Vec<Told> {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use flyer_mpm::output::pictures::{
+use flyer_mpm::plot::{
     Axis, Color, Figure, Panel, PictureError, Points, Series, Stroke, Style, draw as draw_figure,
 };
 

@@ -1,6 +1,6 @@
 //! One column of cells between planes of symmetry against the run on a line.
 
-use flyer_mpm::output::csv::CsvTable;
+use flyer_mpm::driver::output::csv::CsvTable;
 
 use crate::runs::Job;
 use crate::table::{Show, Table};

@@ -1,8 +1,8 @@
 //! Plates on a line that part, meet, and press on each other as one.
 
+use flyer_mpm::driver::output::csv::read_csv;
 use flyer_mpm::exact::{Accuracy, Impact, ImpactBody, Separation};
 use flyer_mpm::material::MieGruneisen;
-use flyer_mpm::output::csv::read_csv;
 
 use crate::runs::{Job, Outcome};
 use crate::table::{Show, Table};

@@ -1,6 +1,6 @@
 //! Two elastic disks that collide: what they keep, and how alike they fly apart.
 
-use flyer_mpm::output::csv::CsvTable;
+use flyer_mpm::driver::output::csv::CsvTable;
 
 use crate::runs::Job;
 use crate::table::{Show, Table};

@@ -1,6 +1,6 @@
 //! Shocks in gases: Noh's problem, and Sod's tube at an angle to the grid.
 
-use flyer_mpm::output::csv::CsvTable;
+use flyer_mpm::driver::output::csv::CsvTable;
 
 use crate::runs::{Job, Outcome};
 use crate::table::{Show, Table};

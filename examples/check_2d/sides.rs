@@ -1,6 +1,6 @@
 //! Sides that waves pass, and walls that rub.
 
-use flyer_mpm::output::csv::CsvTable;
+use flyer_mpm::driver::output::csv::CsvTable;
 
 use crate::runs::{Job, Outcome};
 use crate::table::{Show, Table};

@@ -1,7 +1,7 @@
 //! Plates of finite width, and waves at an angle to the grid.
 
-use flyer_mpm::output::csv::CsvTable;
-use flyer_mpm::output::summary::ProfileSummary;
+use flyer_mpm::driver::output::csv::CsvTable;
+use flyer_mpm::driver::output::summary::ProfileSummary;
 
 use crate::runs::{Job, Outcome};
 use crate::table::{Show, Table};

@@ -3,9 +3,9 @@
 use std::time::Instant;
 
 use decomp::Serial;
-use flyer_mpm::output::summary::Summary;
-use flyer_mpm::plan::{Data, PlanError, Verdict, Wish, plan};
-use flyer_mpm::run::{Beginning, Options, run};
+use flyer_mpm::accuracy::plan::{Data, PlanError, Verdict, Wish, plan};
+use flyer_mpm::driver::output::summary::Summary;
+use flyer_mpm::driver::{Beginning, Options, run};
 use flyer_mpm::scene::{self, PlannedQuantity};
 
 use crate::random_impacts::{HELD_OUT, Random, impact};
@@ -101,7 +101,7 @@ fn once(
 
 /// A wish that nothing meets is refused with the best that can be had.
 fn impossible(table: &mut Table, data: &Data) {
-    let scene = flyer_mpm::plan::standard();
+    let scene = flyer_mpm::accuracy::plan::standard();
     let (quantity, error) = (PlannedQuantity::L1, 1e-5);
     let wish = Wish { quantity, error, budget: 1.0, ranks: 1, place: None };
     let told = match plan(&scene, "flyer.json", &wish, data) {

@@ -1,7 +1,7 @@
 //! Patches move so that no rank waits for the busiest: a scene whose work is in one quarter of the
 //! domain, and passes on.
 
-use flyer_mpm::output::decomposition::DecompositionSummary;
+use flyer_mpm::driver::output::decomposition::DecompositionSummary;
 
 use crate::runs::Job;
 use crate::table::{Show, Table};

@@ -15,9 +15,9 @@
 
 use decomp::Serial;
 use flyer_mpm::material::Symmetric;
+use flyer_mpm::material::strength::{Rate, VonMises};
 use flyer_mpm::scene;
 use flyer_mpm::simulation::{Saved, Simulation};
-use flyer_mpm::strength::{Rate, VonMises};
 use serde_json::{Value, json};
 
 use crate::strength::by_rates;

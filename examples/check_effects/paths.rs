@@ -1,7 +1,7 @@
 //! Each equation of state driven at one point along a given path, against an integration of its
 //! own: the formulas are written again here, the energy goes by the Runge-Kutta rule.
 
-use flyer_mpm::constitutive::{Matter, VolumeChange, build};
+use flyer_mpm::material::constitutive::{Matter, VolumeChange, build};
 use flyer_mpm::scene::Material;
 
 use crate::table::{Show, Table};

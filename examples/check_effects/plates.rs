@@ -1,10 +1,10 @@
 //! Plates that meet one after the other, against impedance matching.
 
-use flyer_mpm::constitutive::equation;
+use flyer_mpm::driver::output::csv::{CsvTable, read_csv};
 use flyer_mpm::exact::ShockFront;
 use flyer_mpm::exact::hugoniot::{MaterialState, isentrope, shock};
 use flyer_mpm::material::HistoryEos;
-use flyer_mpm::output::csv::{CsvTable, read_csv};
+use flyer_mpm::material::constitutive::equation;
 use flyer_mpm::scene::Material;
 
 use crate::runs::{Job, Outcome};

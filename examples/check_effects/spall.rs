@@ -1,6 +1,6 @@
 //! Spall: pull-back of the free surface, where the plate parts, what energy it keeps.
 
-use flyer_mpm::output::csv::{CsvTable, read_csv};
+use flyer_mpm::driver::output::csv::{CsvTable, read_csv};
 
 use crate::runs::{Job, Outcome};
 use crate::table::{Show, Table};

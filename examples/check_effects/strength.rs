@@ -1,9 +1,9 @@
 //! Strength: an elastic-plastic piston, plates with an elastic precursor, Taylor's bar, turning.
 
+use flyer_mpm::driver::output::csv::CsvTable;
 use flyer_mpm::exact::{Behind, ElasticPlastic, Plastic};
+use flyer_mpm::material::strength::{Condition, Rate, VonMises, advance, equivalent};
 use flyer_mpm::material::{MieGruneisen, Symmetric};
-use flyer_mpm::output::csv::CsvTable;
-use flyer_mpm::strength::{Condition, Rate, VonMises, advance, equivalent};
 
 use crate::runs::Job;
 use crate::table::{Show, Table};

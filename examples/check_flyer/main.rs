@@ -14,7 +14,7 @@ mod table;
 
 use std::process::ExitCode;
 
-use flyer_mpm::output::csv::CsvTable;
+use flyer_mpm::driver::output::csv::CsvTable;
 
 use runs::Job;
 use table::{Show, Table};

@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use flyer_mpm::checkpoint::folder::list;
-use flyer_mpm::checkpoint::schedule::WALL_SECONDS;
+use flyer_mpm::driver::checkpoint::folder::list;
+use flyer_mpm::driver::checkpoint::schedule::WALL_SECONDS;
 use serde_json::Value;
 
 use crate::program::{folder, good, scene, with};

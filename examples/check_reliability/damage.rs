@@ -3,7 +3,7 @@
 use std::fs;
 use std::panic::catch_unwind;
 
-use flyer_mpm::checkpoint::{CheckpointError, file};
+use flyer_mpm::driver::checkpoint::{CheckpointError, file};
 
 use crate::program::{Random, end, folder, scene, with};
 use crate::table::Table;

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use flyer_mpm::checkpoint::folder::list;
+use flyer_mpm::driver::checkpoint::folder::list;
 
 use crate::program::{Random, command, folder, good, left, scene, steps, wait, with};
 use crate::table::{Show, Table};

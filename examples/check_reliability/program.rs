@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use flyer_mpm::output::vtkhdf::RESULTS_FILE;
+use flyer_mpm::driver::output::vtkhdf::RESULTS_FILE;
 use serde_json::Value;
 
 /// Longest that any run here takes; one that takes longer hangs.

@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use decomp::Serial;
-use flyer_mpm::estimate::evidence::Evidence;
-use flyer_mpm::output::summary::Summary;
-use flyer_mpm::run::{Beginning, Options, run};
+use flyer_mpm::accuracy::estimate::indicators::Evidence;
+use flyer_mpm::driver::output::summary::Summary;
+use flyer_mpm::driver::{Beginning, Options, run};
 
 use super::random_impacts::{Random, RandomImpact, impact};
 

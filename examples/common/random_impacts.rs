@@ -1,9 +1,9 @@
 //! Random plate impacts: materials of the library, speeds, thicknesses, schemes, cell sizes.
 
-use flyer_mpm::estimate::FittedRange;
+use flyer_mpm::accuracy::estimate::FittedRange;
+use flyer_mpm::accuracy::plan;
 use flyer_mpm::exact::{Impact, ImpactBody};
 use flyer_mpm::material::MieGruneisen;
-use flyer_mpm::plan;
 use flyer_mpm::scene::{self, CheckedScene, LIBRARY};
 use serde_json::{Value, json};
 

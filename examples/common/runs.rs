@@ -6,8 +6,8 @@ use std::io::{self, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use flyer_mpm::output::csv::{CsvTable, read_csv};
-use flyer_mpm::output::summary::Summary;
+use flyer_mpm::driver::output::csv::{CsvTable, read_csv};
+use flyer_mpm::driver::output::summary::Summary;
 use wait4::Wait4;
 
 use super::resident::Watcher;

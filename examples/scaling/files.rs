@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use flyer_mpm::output::pictures;
+use flyer_mpm::plot;
 
 use crate::arguments::Kind;
 use crate::picture;
@@ -34,7 +34,7 @@ pub fn write(study: &Study, folder: &Path) -> Result<(), String> {
     save(&format!("{}.csv", study.kind.name()), &table(study)?)?;
     let json = serde_json::to_string_pretty(study).map_err(|e| e.to_string())? + "\n";
     save("scaling.json", json.as_bytes())?;
-    pictures::draw(&picture::figure(study), &folder.join("scaling")).map_err(|e| e.to_string())?;
+    plot::draw(&picture::figure(study), &folder.join("scaling")).map_err(|e| e.to_string())?;
     Ok(())
 }
 

@@ -1,8 +1,6 @@
 //! The picture: speed-up against workers, and where the time went.
 
-use flyer_mpm::output::pictures::{
-    Axis, Bar, Bars, Color, Figure, Panel, Part, Points, Series, Stroke, Style,
-};
+use flyer_mpm::plot::{Axis, Bar, Bars, Color, Figure, Panel, Part, Points, Series, Stroke, Style};
 
 use crate::arguments::Kind;
 use crate::row::Row;

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use flyer_mpm::output::folder::default_folder;
-use flyer_mpm::output::origin::{Origin, claim};
+use flyer_mpm::driver::output::folder::default_folder;
+use flyer_mpm::driver::output::origin::{Origin, claim};
 use flyer_mpm::scene::{self, CellSize, CheckedScene};
 use serde::Serialize;
 

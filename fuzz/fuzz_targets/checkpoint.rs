@@ -1,7 +1,7 @@
 //! Whatever stands in a checkpoint's file, it is read or refused in one line.
 #![no_main]
 
-use flyer_mpm::checkpoint::file;
+use flyer_mpm::driver::checkpoint::file;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

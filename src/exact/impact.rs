@@ -1,17 +1,17 @@
 //! The impact of two plates in the coordinates of a scene: which body strikes which, where and
 //! when they touch, and the true solution at the times asked for.
 //!
-//! The frame of `super::tracking` and [`super::chain`] has the flyer on the left and the
+//! The frame of `super::tracking` and [`super::wave_interactions`] has the flyer on the left and the
 //! target at rest at x >= 0, contact at t = 0. Here the flyer may come from either side, both
 //! bodies may move, and there may be a gap. Profiles are scored while the target's shock has not
 //! reached its rear; the waves are followed beyond, off the free rear.
 
-use super::chain::{Chain, Plate};
 use super::profile::{History, HistoryPoint, Landmarks, Path, PathKind, Point, Profile};
 use super::release::Release;
 use super::tracking::{
     END_RECORD, FIRST_PROBE, FLYER_FACE_RECORD, INTERFACE_RECORD, REAR_RECORD, Setup, Tracker,
 };
+use super::wave_interactions::{Chain, Plate};
 use super::{ExactError, finite};
 use crate::material::MieGruneisen;
 

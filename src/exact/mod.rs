@@ -1,6 +1,6 @@
 //! Closed and near-exact solutions that runs are held against.
 //!
-//! - [`chain`]: the source document's chain of impedance matches, rarefactions taken as shocks;
+//! - [`wave_interactions`]: the source document's chain of impedance matches, rarefactions taken as shocks;
 //! - [`impact`]: the true solution of a plate impact, with rarefaction fans, in lab coordinates
 //!   (`tracking` stands behind it: front tracking in Lagrangian coordinates);
 //! - [`release`]: the closed-form states and times of that solution, by release isentropes;
@@ -15,10 +15,8 @@
 //! uniaxial strain; no strength (but for [`elastic_plastic`] and [`plane::vortex`]), no heat conduction. SI units;
 //! pressure is positive in compression.
 
-pub mod chain;
 #[cfg(test)]
 mod checks;
-mod collision;
 pub mod elastic_plastic;
 pub mod hugoniot;
 pub mod impact;
@@ -33,8 +31,9 @@ mod smoothing;
 mod tracking;
 pub mod wall;
 mod wave;
+mod wave_collision;
+pub mod wave_interactions;
 
-pub use chain::{Chain, ChainState, ChainWave, Plate, WaveKind};
 pub use elastic_plastic::{Behind, ElasticPlastic, Plastic};
 pub use hugoniot::{MaterialState, ShockFront};
 pub use impact::{Accuracy, Impact, ImpactBody, Snapshot, Solution, Tracer};
@@ -48,6 +47,7 @@ pub use riemann::{GasState, Riemann};
 pub use score::{Errors, Sample, WaveErrors, cell_average, interface_errors, score, score_density};
 pub use simple_wave::{Drive, SimpleWave};
 pub use wall::{WallImpact, WallMaterial};
+pub use wave_interactions::{Chain, ChainState, ChainWave, Plate, WaveKind};
 
 /// Why an exact solution could not be had.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

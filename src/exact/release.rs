@@ -1,14 +1,14 @@
 //! The true solution's states and times that need no wave tracking: release along isentropes.
 //!
-//! Frame as in [`super::chain`]. State 2 is the impedance match; in state 3 the flyer has been
+//! Frame as in [`super::wave_interactions`]. State 2 is the impedance match; in state 3 the flyer has been
 //! released to P = 0 along its isentrope through state 2; state 4 is where the target's release
 //! isentrope through state 2 meets the flyer's recompression from state 3 (along the same
 //! isentrope, that is, before it steepens into a shock); and so on. Unlike the chain's, these
 //! waves spread: a head and a tail run at the sound speeds on their two sides.
 
-use super::chain::{check, impedance_match};
 use super::isentrope::to_pressure;
 use super::wave::{State, density, shocked, sound_speed};
+use super::wave_interactions::{check, impedance_match};
 use super::{ExactError, Plate};
 use crate::material::MieGruneisen;
 

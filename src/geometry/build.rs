@@ -6,8 +6,8 @@ use serde_json::Value;
 
 use super::Point;
 use super::ellipse::Ellipse;
+use super::region::{Annulus, BoxShape, Disk, HalfPlane, Polygon, Region, Rotation};
 use super::solid::{Operation, Outline, Solid};
-use crate::scene::{Annulus, BoxShape, Disk, HalfPlane, Polygon, Region, Rotation};
 
 /// What is wrong with a region.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -130,7 +130,7 @@ fn build(region: &Region, parent: &str, motion: &Motion) -> Result<Solid, Region
             let radius = length(*radius, &format!("{path}.radius"))?;
             ellipse(centre, [radius, radius])
         }
-        Region::Ellipse(crate::scene::Ellipse { centre, radii }) => {
+        Region::Ellipse(super::region::Ellipse { centre, radii }) => {
             let centre = point(centre, &format!("{path}.centre"))?;
             let path = format!("{path}.radii");
             let [a, b] = point(radii, &path)?;

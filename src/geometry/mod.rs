@@ -6,7 +6,7 @@
 //! of them in closed form or by a Gauss rule that is exact to rounding; no border is replaced by
 //! chords. [`fill`] cuts a shape by a lattice, [`voronoi`] by the cells of given points.
 //!
-//! Knows no particles, no grid, no MPI; of the scene it knows the structs of a region alone.
+//! Knows no particles, no grid, no MPI.
 
 mod build;
 mod curve;
@@ -17,6 +17,7 @@ mod moments;
 mod piece;
 mod pieces;
 mod points;
+pub mod region;
 mod shape;
 mod solid;
 #[cfg(test)]

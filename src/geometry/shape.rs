@@ -5,7 +5,7 @@ use super::build::{self, RegionFault};
 use super::moments::Moments;
 use super::piece::{Piece, Trapezium};
 use super::pieces::{NoPieces, pieces};
-use crate::scene::Region;
+use super::region::Region;
 
 /// A region that is bounded and has an area.
 #[derive(Clone, Debug)]

@@ -8,6 +8,8 @@
 //! [`elastic`] solids bear shear.
 
 mod bicubic;
+pub mod constitutive;
+pub mod definition;
 pub mod elastic;
 #[cfg(test)]
 mod forwarding;
@@ -20,6 +22,7 @@ mod neo_hookean;
 mod porous;
 mod quadratic_mie_gruneisen;
 mod stiffened_gas;
+pub mod strength;
 mod tabular;
 mod tait;
 mod tension;

@@ -10,12 +10,12 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::conform::join;
 use super::errors::{Fault, SceneError, one_line, suggest};
 use super::model::Course;
 use super::table::{is_hdf5, read_hdf5};
-use crate::input_file::{self, InputFault, LARGEST_JSON, LARGEST_NUMBERS};
+use super::validate::join;
 use crate::material::Table;
+use crate::scene::input_file::{self, InputFault, LARGEST_JSON, LARGEST_NUMBERS};
 
 /// The materials of the library; each file holds one as it stands in a scene.
 pub const LIBRARY: [(&str, &str); 29] = [
@@ -193,10 +193,10 @@ fn fault(file: &Path, reason: String) -> SceneError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::constitutive::{equation, flow_of, products};
     use crate::exact::hugoniot::{MaterialState, piston};
+    use crate::material::constitutive::{equation, flow_of, products};
+    use crate::material::strength::Condition;
     use crate::scene::Material;
-    use crate::strength::Condition;
     use serde_json::json;
 
     fn resolved(material: Value) -> Result<Value, Fault> {

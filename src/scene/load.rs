@@ -13,9 +13,9 @@ use super::check::tiles;
 use super::errors::{Fault, LONGEST_VALUE, SceneError, one_line, shorten};
 use super::library::{inline_courses, inline_files, resolve};
 use super::overrides::{apply, check_allowed};
-use super::{BYTES_PER_PARTICLE, CheckedScene, Scene, conform::conform};
+use super::{BYTES_PER_PARTICLE, CheckedScene, Scene, validate::conform};
 use crate::geometry::read_points;
-use crate::input_file::{self, InputFault};
+use crate::scene::input_file::{self, InputFault};
 
 /// A scene's file may be this long [bytes].
 pub const LARGEST_FILE: u64 = input_file::LARGEST_JSON;
@@ -26,7 +26,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
         file: one_line(&path.display().to_string()),
         reason: one_line(&reason),
     };
-    if input_file::begins_with(path, crate::checkpoint::seal::NAME) {
+    if input_file::begins_with(path, input_file::CHECKPOINT_START) {
         return Err(fail(
             "is a checkpoint; allowed: a scene, one JSON file, or --restart to go on \
                          from a checkpoint"

@@ -5,14 +5,17 @@
 //! particles.
 
 mod check;
-mod conform;
 mod errors;
+pub mod input_file;
 mod library;
 mod load;
 mod model;
+pub mod motion;
+pub mod moving_frame;
 mod overrides;
 mod schema;
 mod table;
+mod validate;
 
 pub use check::{
     BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, CheckedBody, CheckedScene, Piston, Wall,

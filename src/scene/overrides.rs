@@ -25,7 +25,7 @@ pub(super) fn apply(scene: &mut Value, set: &str) -> Result<(), SceneError> {
     let mut walked = String::new();
     for key in &path {
         place = enter(place, &walked, key).map_err(fail)?;
-        walked = super::conform::join(&walked, key);
+        walked = super::validate::join(&walked, key);
     }
     *place = value;
     Ok(())

@@ -5,9 +5,9 @@ use std::time::Instant;
 use decomp::{assign_patches, busiest_share, relocate};
 
 use super::Simulation;
-use crate::clock::Activity;
-use crate::patch::Patch;
 use crate::scene::BalanceCost;
+use crate::solver::clock::Activity;
+use crate::solver::patch::Patch;
 
 /// Steps between two in which the patches' cost is measured: looking at the clock is not free.
 const SAMPLE_EVERY: u64 = 5;

@@ -7,10 +7,10 @@
 use decomp::{Block, Census, ExactSum, StoredRows, exact_sums};
 
 use super::{Given, Left, RunError, Saved, Simulation, Totals};
-use crate::patch::Patch;
 use crate::scene::OnAlarm;
-use crate::step::Stepper;
-use crate::watch::{Alarm, Energies, likely_cause};
+use crate::simulation::monitor::{Alarm, Energies, likely_cause};
+use crate::solver::Stepper;
+use crate::solver::patch::Patch;
 
 /// The state after a step that has passed, of this rank's rows: what is state of their columns.
 /// Its memory is kept from step to step.
@@ -177,7 +177,7 @@ impl<const D: usize> Simulation<'_, D> {
         (now, work)
     }
 
-    /// Work of the sides so far, less what has left [J]; see [`crate::run`]'s account of it.
+    /// Work of the sides so far, less what has left [J]; see [`crate::driver`]'s account of it.
     fn side_work(
         &self,
         now: &Start<D>,

@@ -4,16 +4,20 @@
 //! elsewhere from what it tells.
 
 mod balance;
-mod books;
+mod conservation;
+mod diagnostics;
 mod look;
-mod observe;
+pub mod monitor;
+mod particle_table;
 mod peaks;
-mod save;
+mod snapshot;
+pub mod threads;
 
-pub use crate::patch::Given;
-pub use books::{Left, Tally, Ways};
-pub use observe::{Followed, Totals};
-pub use save::{Saved, saved_sums};
+pub use crate::solver::patch::Given;
+pub use conservation::{Left, Tally, Ways};
+pub use diagnostics::{Followed, Totals};
+pub use particle_table::{ParticleTable, TableColumn};
+pub use snapshot::{Saved, saved_sums};
 
 use std::ops::Range;
 use std::time::Instant;
@@ -23,19 +27,19 @@ use decomp::{
     choose_cuts, curve_order, even_cuts,
 };
 
-use crate::clock::{Activity, Clock, Event};
-use crate::constitutive::Outside;
 use crate::effects::Effect;
-use crate::frame::Frame;
 use crate::geometry::Tile;
-use crate::particles::{self, Columns};
-use crate::patch::Patch;
+use crate::material::constitutive::Outside;
+use crate::scene::moving_frame::Frame;
 use crate::scene::{CheckedBody, CheckedScene, FilterHalo, Side};
-use crate::step::{Reach, Sleep, Stepper, Steps, World};
-use crate::threads::make_pool;
-use crate::watch::{Alarm, Limits, Peaks};
+use crate::simulation::monitor::{Alarm, Limits, Peaks};
+use crate::simulation::threads::make_pool;
+use crate::solver::clock::{Activity, Clock, Event};
+use crate::solver::particles::{self, Columns};
+use crate::solver::patch::Patch;
+use crate::solver::{Reach, Sleep, Stepper, Steps, World};
 
-use books::{CENSUS_EVERY, Outflow, SideBooks};
+use conservation::{CENSUS_EVERY, Outflow, SideBooks};
 use look::{Held, Start};
 use peaks::Expected;
 

@@ -3,10 +3,10 @@
 use decomp::Block;
 
 use super::Simulation;
-use crate::constitutive;
+use crate::material::constitutive;
 use crate::scene::{CheckedScene, Eos, Side};
-use crate::step::Stepper;
-use crate::watch::Peaks;
+use crate::simulation::monitor::Peaks;
+use crate::solver::Stepper;
 
 /// Times that a front takes to pass a place, after which a particle is no longer at the front.
 const FRONT_TIMES: f64 = 3.0;

@@ -4,7 +4,7 @@ use super::Row;
 use super::cases::fits;
 use super::front::front;
 use super::spec::{CurvesPicture, Study};
-use crate::output::pictures::{Axis, Color, Figure, Panel, Points, Series, Stroke, Style};
+use crate::plot::{Axis, Color, Figure, Panel, Points, Series, Stroke, Style};
 
 /// How a number is shown: name, unit, and what its SI value is multiplied by.
 pub fn quantity(name: &str) -> (String, &'static str, f64) {

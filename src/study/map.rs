@@ -4,7 +4,7 @@ use super::Row;
 use super::cases::fits;
 use super::curves::quantity;
 use super::spec::MapPicture;
-use crate::output::pictures::{Axis, Figure, TileMap};
+use crate::plot::{Axis, Figure, TileMap};
 
 /// The figure of this map. Cases that failed leave their place empty.
 pub fn figure(picture: &MapPicture, rows: &[Row]) -> Figure {

@@ -23,7 +23,7 @@ pub use row::Row;
 pub use runner::Runner;
 pub use spec::Study;
 
-use crate::output::pictures::{self, PictureError};
+use crate::plot::{self, PictureError};
 
 /// Why a study has no result; a case that fails is no such reason, but a row.
 #[derive(Debug, thiserror::Error)]
@@ -96,7 +96,7 @@ pub fn write(study: &Study, rows: &[Row], folder: &Path) -> Result<(), StudyErro
             spec::Picture::Curves(curves) => (&curves.name, curves::figure(study, curves, rows)),
             spec::Picture::Map(map) => (&map.name, map::figure(map, rows)),
         };
-        pictures::draw(&figure, &folder.join(name))?;
+        plot::draw(&figure, &folder.join(name))?;
     }
     Ok(())
 }

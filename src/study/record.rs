@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::StudyError;
-use crate::input_file;
-use crate::output::summary::Summary;
+use crate::driver::output::summary::Summary;
+use crate::scene::input_file;
 
 /// Seconds of one run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -73,7 +73,7 @@ impl Record {
             cpu: summary.cpu_seconds,
             wall: summary.wall_seconds,
         });
-        let profile = |p: &crate::output::summary::ProfileSummary| ProfileErrors {
+        let profile = |p: &crate::driver::output::summary::ProfileSummary| ProfileErrors {
             time: p.time,
             errors: p.errors.clone(),
         };

@@ -13,7 +13,7 @@ use super::cases::{Case, cases};
 use super::record::Record;
 use super::spec::Study;
 use super::{Row, StudyError};
-use crate::output::summary::Summary;
+use crate::driver::output::summary::Summary;
 use crate::scene;
 
 /// Starts the program and keeps its results.

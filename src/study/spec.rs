@@ -7,7 +7,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::StudyError;
-use crate::input_file;
+use crate::scene::input_file;
 
 /// A study: what is run, how often, and what is drawn of it.
 #[derive(Clone, Debug, Deserialize)]

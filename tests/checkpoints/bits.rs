@@ -4,7 +4,7 @@ use decomp::comm::local::run_ranks;
 use decomp::{Comm, Serial};
 use flyer_mpm::scene::{self, CheckedScene};
 use flyer_mpm::simulation::{Saved, Simulation};
-use flyer_mpm::step::{Stepper, Steps};
+use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
 use crate::scenes::{shipped, small, small_leapfrog, with};

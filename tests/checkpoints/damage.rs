@@ -4,16 +4,16 @@ use std::fs;
 use std::path::Path;
 
 use decomp::{Census, StoredRows};
-use flyer_mpm::checkpoint::seal::HEAD;
-use flyer_mpm::checkpoint::{
+use flyer_mpm::driver::checkpoint::seal::HEAD;
+use flyer_mpm::driver::checkpoint::{
     Checkpoint, CheckpointError, Contents, Due, StateColumn, file, folder,
 };
-use flyer_mpm::figures::PressureRow;
-use flyer_mpm::output::histories::Histories;
-use flyer_mpm::output::origin::{Origin, RUN};
-use flyer_mpm::output::{ParticleTable, TableColumn};
+use flyer_mpm::driver::figures::PressureRow;
+use flyer_mpm::driver::output::histories::Histories;
+use flyer_mpm::driver::output::origin::{Origin, RUN};
 use flyer_mpm::simulation::Saved;
-use flyer_mpm::watch::Peaks;
+use flyer_mpm::simulation::monitor::Peaks;
+use flyer_mpm::simulation::{ParticleTable, TableColumn};
 
 /// A checkpoint of a few particles with all that one can hold.
 fn example() -> Checkpoint {

@@ -7,10 +7,10 @@ use std::path::Path;
 
 use decomp::Comm;
 use decomp::comm::local::run_ranks;
-use flyer_mpm::checkpoint::file;
+use flyer_mpm::driver::checkpoint::file;
 use flyer_mpm::scene::{self, CheckedScene};
 use flyer_mpm::simulation::{RunError, Simulation};
-use flyer_mpm::step::{Stepper, Steps};
+use flyer_mpm::solver::{Stepper, Steps};
 
 use crate::damage::random;
 
@@ -135,7 +135,7 @@ fn changed_overrides() {
             String::from_utf8_lossy(&changed(sets[round % sets.len()], &mut seed)).into_owned();
         let told = || format!("--set {set}");
         judged(&told, || scene::parse(&text, "scene.json", std::slice::from_ref(&set)));
-        let allowed = flyer_mpm::checkpoint::fit::CHANGEABLE;
+        let allowed = flyer_mpm::driver::checkpoint::fit::CHANGEABLE;
         judged(&told, || scene::parse_changed(&text, "c", std::slice::from_ref(&set), &allowed));
     }
 }

@@ -2,6 +2,7 @@
 //! started in temporary folders, plain and by mpirun, each time under a limit.
 
 mod accuracy;
+mod architecture;
 mod bad_files;
 mod bad_input;
 mod command_line;

@@ -3,10 +3,10 @@
 
 use decomp::Comm;
 use decomp::comm::local::run_ranks;
-use flyer_mpm::particles::Columns;
 use flyer_mpm::scene::CheckedScene;
 use flyer_mpm::simulation::Simulation;
-use flyer_mpm::step::{Stepper, Steps};
+use flyer_mpm::solver::particles::Columns;
+use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
 use crate::tools::{Outcome, at_most, checked, midpoint, run, shipped};

@@ -4,7 +4,7 @@ use decomp::Comm;
 use decomp::comm::local::run_ranks;
 use flyer_mpm::scene::CheckedScene;
 use flyer_mpm::simulation::Simulation;
-use flyer_mpm::step::{Stepper, Steps};
+use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
 use crate::metal::metal;

@@ -1,10 +1,10 @@
 //! Models from outside of the library.
 
 use decomp::Serial;
-use flyer_mpm::constitutive::Outside;
 use flyer_mpm::material::IdealGas;
+use flyer_mpm::material::constitutive::Outside;
+use flyer_mpm::material::strength::VonMises;
 use flyer_mpm::simulation::Simulation;
-use flyer_mpm::strength::VonMises;
 use serde_json::json;
 
 use crate::tools::{at_most, checked, run, shipped};

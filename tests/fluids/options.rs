@@ -1,6 +1,6 @@
 //! Each key of an equation of state changes what is computed.
 
-use flyer_mpm::constitutive::equation;
+use flyer_mpm::material::constitutive::equation;
 use flyer_mpm::scene::Material;
 use serde_json::{Value, json};
 

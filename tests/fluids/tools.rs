@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use decomp::Serial;
+use flyer_mpm::accuracy::reference::Reference;
 use flyer_mpm::exact::Errors;
-use flyer_mpm::output::ParticleTable;
-use flyer_mpm::reference::Reference;
 use flyer_mpm::scene::{self, CheckedScene};
+use flyer_mpm::simulation::ParticleTable;
 use flyer_mpm::simulation::{Simulation, Totals};
 use serde_json::{Value, json};
 

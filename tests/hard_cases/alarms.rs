@@ -2,10 +2,10 @@
 
 use decomp::Serial;
 use decomp::comm::local::run_ranks;
-use flyer_mpm::constitutive::Outside;
+use flyer_mpm::material::constitutive::Outside;
 use flyer_mpm::material::{EquationOfState, Linear};
+use flyer_mpm::simulation::monitor::Alarm;
 use flyer_mpm::simulation::{RunError, Simulation};
-use flyer_mpm::watch::Alarm;
 use serde_json::{Value, json};
 
 use crate::cases::tools::{checked, lump, metals, run, run_on, scene_of, short};

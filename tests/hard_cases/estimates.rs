@@ -7,9 +7,9 @@ use std::path::Path;
 use std::time::Instant;
 
 use decomp::Serial;
-use flyer_mpm::estimate::Basis;
-use flyer_mpm::output::summary::Summary;
-use flyer_mpm::run::{Beginning, Options, run};
+use flyer_mpm::accuracy::estimate::Basis;
+use flyer_mpm::driver::output::summary::Summary;
+use flyer_mpm::driver::{Beginning, Options, run};
 use flyer_mpm::scene;
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -126,7 +126,7 @@ fn fault(summary: &Summary) -> Option<String> {
     let l1 = told.profiles.iter().map(|p| &p.l1);
     let plateaus = told.profiles.iter().filter_map(|p| p.plateau_pressure.as_ref());
     let times = told.arrivals.iter().filter_map(|a| a.time.as_ref());
-    let sound = |b: &flyer_mpm::estimate::Bounded| {
+    let sound = |b: &flyer_mpm::accuracy::estimate::Bounded| {
         let width = b.half_width.is_none_or(|w| w.is_finite() && w > 0.0);
         b.value.is_finite() && width && b.evidence.values().all(|v| v.is_finite())
     };

@@ -2,7 +2,7 @@
 
 use decomp::Comm;
 use decomp::comm::local::run_ranks;
-use flyer_mpm::model::{Schedule, Work};
+use flyer_mpm::perf_model::{Schedule, Work};
 use flyer_mpm::scene::{self, CheckedScene, FilterHalo};
 use flyer_mpm::simulation::Simulation;
 

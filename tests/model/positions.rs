@@ -1,7 +1,7 @@
 //! Bodies with positions of their own count with all their particles.
 
 use decomp::Serial;
-use flyer_mpm::model::Work;
+use flyer_mpm::perf_model::Work;
 use flyer_mpm::scene;
 use flyer_mpm::simulation::Simulation;
 use serde_json::{Value, json};

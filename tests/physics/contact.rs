@@ -3,7 +3,7 @@
 use decomp::Serial;
 use decomp::comm::local::run_ranks;
 use flyer_mpm::exact::{Accuracy, Impact, ImpactBody, Separation};
-use flyer_mpm::output::ParticleTable;
+use flyer_mpm::simulation::ParticleTable;
 use flyer_mpm::simulation::Simulation;
 use serde_json::{Value, json};
 

@@ -1,6 +1,6 @@
 //! Mirror image, shift by whole cells, Galilean shift.
 
-use flyer_mpm::output::ParticleTable;
+use flyer_mpm::simulation::ParticleTable;
 use serde_json::{Value, json};
 
 use crate::tools::{apart, at_most, column, greatest, run, scored, shipped, short, with};

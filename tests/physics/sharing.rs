@@ -2,8 +2,8 @@
 
 use decomp::Comm;
 use decomp::comm::local::run_ranks;
-use flyer_mpm::clock::Event;
 use flyer_mpm::simulation::{Simulation, Tally, patch_counts};
+use flyer_mpm::solver::clock::Event;
 use serde_json::{Value, json};
 
 use crate::tools::{checked, ending, shipped, with};

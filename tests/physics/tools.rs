@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use decomp::Serial;
+use flyer_mpm::accuracy::reference::Reference;
 use flyer_mpm::exact::Errors;
-use flyer_mpm::output::ParticleTable;
-use flyer_mpm::reference::Reference;
 use flyer_mpm::scene::{self, CheckedScene};
 use flyer_mpm::simulation::Left;
+use flyer_mpm::simulation::ParticleTable;
 use flyer_mpm::simulation::{Simulation, Totals};
 use serde_json::{Value, json};
 

@@ -1,7 +1,7 @@
 //! Sides that press on what touches them.
 
 use flyer_mpm::scene::{self, CheckedScene, Course, Side};
-use flyer_mpm::step::{Stepper, Steps};
+use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
 use crate::tools::{at_most, checked, default_method, metals, run, same_bits};

@@ -1,7 +1,7 @@
 //! Pistons whose velocity changes: the grid accelerates with them.
 
 use flyer_mpm::scene::{self, Course, Side};
-use flyer_mpm::step::{Stepper, Steps};
+use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
 use crate::tools::{Outcome, at_most, checked, default_method, metals, run, same_bits};
@@ -178,7 +178,7 @@ where
         scene["domain"]["cell_size"] = json!(cell);
         let scene = checked(&scene);
         let table = run::<D>(&serde_json::to_value(&scene.scene).unwrap()).table;
-        let reference = flyer_mpm::reference::Reference::new(&scene).unwrap().unwrap();
+        let reference = flyer_mpm::accuracy::reference::Reference::new(&scene).unwrap().unwrap();
         let (errors, _) = reference.score(&scene, 0, &table).unwrap();
         errors.l2.unwrap()
     };

@@ -1,7 +1,7 @@
 //! Sides that waves pass, and walls that hold what slides along them.
 
 use flyer_mpm::scene;
-use flyer_mpm::step::{Stepper, Steps};
+use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
 use crate::tools::{Outcome, at_most, default_method, metals, run};

@@ -2,10 +2,10 @@
 
 use decomp::comm::local::run_ranks;
 use decomp::{Comm, Serial};
-use flyer_mpm::output::ParticleTable;
 use flyer_mpm::scene::{self, CheckedScene};
+use flyer_mpm::simulation::ParticleTable;
 use flyer_mpm::simulation::{Given, Left, Simulation, Totals};
-use flyer_mpm::step::{Stepper, Steps};
+use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
 /// Makes a checked scene.

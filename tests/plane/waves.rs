@@ -1,6 +1,6 @@
 //! Plane waves at an angle to the grid, and edge releases.
 
-use flyer_mpm::reference::Reference;
+use flyer_mpm::accuracy::reference::Reference;
 use serde_json::{Value, json};
 
 use crate::tools::{checked, impact, run};

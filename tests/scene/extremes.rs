@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use decomp::Serial;
 use flyer_mpm::scene::{self, CheckedScene, parse};
 use flyer_mpm::simulation::Simulation;
-use flyer_mpm::step::{Stepper, Steps};
+use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
 use super::{inputs, refused};

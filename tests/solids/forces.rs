@@ -1,6 +1,6 @@
 //! Body forces, and what is booked of them.
 
-use flyer_mpm::step::{Stepper, Steps};
+use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
 use crate::tools::{at_most, midpoint, run, shipped};

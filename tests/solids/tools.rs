@@ -1,11 +1,11 @@
 //! Scenes to edit and runs to look at.
 
 use decomp::Serial;
-use flyer_mpm::output::ParticleTable;
-use flyer_mpm::reference::PlaneReference;
+use flyer_mpm::accuracy::reference::PlaneReference;
 use flyer_mpm::scene::{self, CheckedScene};
+use flyer_mpm::simulation::ParticleTable;
 use flyer_mpm::simulation::{Simulation, Totals, Ways};
-use flyer_mpm::step::{Stepper, Steps};
+use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
 /// A shipped scene, to be edited.

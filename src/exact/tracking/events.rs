@@ -1,9 +1,9 @@
 //! What happens where two fronts meet, and what the row of fronts becomes.
 
 use super::super::ExactError;
-use super::super::collision::{Outgoing, collide, set_free};
 use super::super::wave::{State, jump};
-use super::sending::{Leaving, Trail};
+use super::super::wave_collision::{Outgoing, collide, set_free};
+use super::wave_emission::{Leaving, Trail};
 use super::{
     END_RECORD, FLYER_FACE_RECORD, Front, INTERFACE_RECORD, Kind, NONE, REAR_RECORD, Record,
     Tracker,

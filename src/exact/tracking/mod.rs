@@ -15,15 +15,15 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::chain::{Plate, check, impedance_match};
 use super::profile::PathKind;
 use super::wave::{State, at_rest};
+use super::wave_interactions::{Plate, check, impedance_match};
 use super::{ExactError, positive};
 use crate::material::MieGruneisen;
 
 mod events;
 mod read;
-mod sending;
+mod wave_emission;
 
 /// Interactions after which tracking gives up.
 const MOST_EVENTS: usize = 20_000_000;

@@ -1,8 +1,8 @@
 //! What the row of fronts says: profiles, and histories of material points.
 
-use super::super::chain::Plate;
 use super::super::profile::{PathKind, Point};
 use super::super::smoothing::{Step, smooth};
+use super::super::wave_interactions::Plate;
 use super::{Front, Kind, Record, Tracker};
 
 /// The values of one zone that are read: pressure, velocity, compression, energy.

@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use serde_json::json;
 
-use crate::motion::Motion;
+use crate::scene::motion::Motion;
 
-use super::super::conform::join;
 use super::super::errors::{Fault, suggest};
 use super::super::model::{Body, BoxShape, Positions, Region, Scene};
+use super::super::validate::join;
 use super::domain::MOST;
 use super::{check_box, check_length, check_printable, materials, motion};
 use crate::geometry::{PointFault, Shape, Tile, fill, voronoi, voronoi_line};

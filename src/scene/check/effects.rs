@@ -1,8 +1,8 @@
 //! Strength, failure and temperature of the materials: what each needs of the others.
 
-use super::super::conform::join;
 use super::super::errors::Fault;
 use super::super::model::{Eos, Failure, HeatSource, Material, Scene, Strength};
+use super::super::validate::join;
 
 pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
     check_sides(scene)?;

@@ -6,9 +6,9 @@
 //! add up to the speed of impact. Initial pressures and reflected waves are left out of account;
 //! an ideal gas has no such limit, and a body that strikes one is not examined.
 
-use super::super::conform::join;
 use super::super::errors::Fault;
 use super::super::model::{Eos, Side};
+use super::super::validate::join;
 use super::CheckedScene;
 
 /// Compression that no impact may pass, alone and over s [-].

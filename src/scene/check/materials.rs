@@ -2,12 +2,12 @@
 
 use serde_json::json;
 
-use super::super::conform::join;
 use super::super::errors::Fault;
 use super::super::model::{Body, BurnFront, Eos, Material, Scene, Transfer};
 use super::super::schema::{GREATEST, LEAST};
+use super::super::validate::join;
 use super::{check_length, check_printable};
-use crate::constitutive::{equation, products};
+use crate::material::constitutive::{equation, products};
 use crate::material::{HistoryEos, Lame};
 
 /// Share by which a burning front may differ from the detonation that sustains itself before the

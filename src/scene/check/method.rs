@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use super::super::conform::join;
 use super::super::errors::Fault;
 use super::super::model::{
     Contact, EnergyUpdate, FrameKind, LimitedTerms, Method, Normals, Scene, ShapeKind, Stepping,
     StressUpdate, Transfer,
 };
+use super::super::validate::join;
 use super::CheckedScene;
 
 const MIDPOINT: &str = "method.stepping = \"midpoint\"";

@@ -24,7 +24,7 @@ use serde::Serialize;
 
 use super::errors::{Fault, one_line};
 use super::model::{Contact, Eos, Geometry, Material, Scene, Side};
-use crate::frame::Frame;
+use crate::scene::moving_frame::Frame;
 
 pub use bodies::CheckedBody;
 pub use boundary::{Piston, Wall};

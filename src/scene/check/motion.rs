@@ -1,10 +1,10 @@
 //! Velocities that differ from place to place, and body forces: whether a body can have them.
 
-use super::super::conform::join;
 use super::super::errors::Fault;
 use super::super::model::{Body, BodyForce, Geometry, Scene, VelocityField};
+use super::super::validate::join;
 use super::{CheckedScene, check_length};
-use crate::motion::{Motion, vortex_of};
+use crate::scene::motion::{Motion, vortex_of};
 
 /// The motion that a body names, if it does.
 pub(super) fn check_field(

@@ -2,9 +2,9 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::super::conform::join;
 use super::super::errors::{Fault, suggest};
 use super::super::model::Scene;
+use super::super::validate::join;
 use super::{CheckedScene, check_length};
 
 /// Rows of the histories where the scene says no interval.

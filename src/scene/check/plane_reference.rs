@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use super::super::conform::join;
 use super::super::errors::Fault;
 use super::super::model::{BodyForce, Eos, NamedBody, NamedNoh, NohSymmetry};
+use super::super::validate::join;
 use super::CheckedScene;
 use super::reference::find_body;
-use crate::motion::Motion;
+use crate::scene::motion::Motion;
 
 /// A fault of the reference of this name.
 fn fault(name: &str, value: impl Serialize, reason: String) -> Result<(), Fault> {

@@ -1,8 +1,8 @@
 //! Whether the exact solution that a scene names holds for its bodies.
 
-use super::super::conform::join;
 use super::super::errors::{Fault, suggest};
 use super::super::model::{Burn, Eos, FlyerImpact, Reference, Riemann, Side, WallImpact};
+use super::super::validate::join;
 use super::{CheckedScene, plane_reference};
 
 pub(super) fn check(checked: &mut CheckedScene) -> Result<(), Fault> {

@@ -3,15 +3,13 @@
 //! The bounds are attributes of the fields: the JSON schema shows them, and reading a scene
 //! checks them against that same schema. What two keys say of each other is not known here.
 
+mod body;
 mod contact;
-mod course;
-mod effects;
 mod estimate;
-mod matter;
 mod method;
 mod motion;
 mod output;
-mod region;
+mod time_function;
 mod watch;
 
 use std::collections::BTreeMap;
@@ -19,16 +17,17 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use body::*;
 pub use contact::*;
-pub use course::*;
-pub use effects::*;
 pub use estimate::*;
-pub use matter::*;
 pub use method::*;
 pub use motion::*;
 pub use output::*;
-pub use region::*;
+pub use time_function::*;
 pub use watch::*;
+
+pub use crate::geometry::region::*;
+pub use crate::material::definition::*;
 
 /// A scene: everything that a run is told.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]

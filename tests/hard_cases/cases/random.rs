@@ -3,8 +3,8 @@
 use decomp::comm::local::run_ranks;
 use flyer_mpm::scene::{self, CheckedScene, ShapeKind};
 use flyer_mpm::simulation::Simulation;
-use flyer_mpm::step::{Stepper, Steps};
-use flyer_mpm::watch::keeps_energy;
+use flyer_mpm::simulation::monitor::keeps_energy;
+use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::Value;
 
 /// Growth of energy that no run may end with [-]: of a scheme that keeps it, of one that does not,

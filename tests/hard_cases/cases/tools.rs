@@ -1,12 +1,12 @@
 //! Runs in memory and what is taken from them.
 
 use decomp::{Comm, Serial};
+use flyer_mpm::accuracy::reference::Reference;
 use flyer_mpm::exact::Errors;
-use flyer_mpm::output::ParticleTable;
-use flyer_mpm::reference::Reference;
 use flyer_mpm::scene::{self, CheckedScene};
+use flyer_mpm::simulation::ParticleTable;
 use flyer_mpm::simulation::{Simulation, Totals};
-use flyer_mpm::step::{Stepper, Steps};
+use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
 use super::scenes::{shipped, with};

@@ -1,0 +1,218 @@
+//! The same scene on larger cells, run before it.
+
+use decomp::Comm;
+
+use super::arrival::{Arrivals, Between, Levels};
+use super::{Line, least_pressure, line};
+use crate::scene::{self, CellSize, CheckedScene, Side};
+use crate::simulation::{RunError, Simulation};
+use crate::solver::clock::user_cpu_seconds;
+
+/// How much larger the companions' cells are.
+pub const FACTORS: [usize; 2] = [4, 2];
+
+/// What a companion has told.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Companion {
+    /// Its cells over the scene's, rounded to a whole number.
+    pub factor: f64,
+    /// Its cells \[m\].
+    pub cell_size: f64,
+    /// The body's pressures, a line a profile.
+    pub profiles: Vec<Line>,
+    /// When the wave came to the places \[s\].
+    pub arrivals: Vec<Option<f64>>,
+}
+
+/// All companions.
+#[derive(Clone, Debug, Default)]
+pub struct Companions {
+    /// Those that have reached the end; at the first rank.
+    pub done: Vec<Companion>,
+    /// Levels of the waves that the finest of them has felt at the places; none: no wave came.
+    pub levels: Vec<Option<Levels>>,
+    /// What they took of this process \[s\].
+    pub cpu_seconds: f64,
+    /// Why one has not reached its end.
+    pub notes: Vec<String>,
+}
+
+/// The scene on cells `factor` times as large, without what costs. The domain grows to a whole number
+/// of them at an end where nothing stands; between two sides that must stay where they are the cells
+/// are as large as fits, at most `factor` times. A body with positions of its own is filled with as
+/// many particles per cell as it has on average. The message where that is no scene.
+pub fn coarser(scene: &CheckedScene, factor: usize) -> Result<CheckedScene, String> {
+    let mut new = scene.scene.clone();
+    let cells = scene.cells[0].div_ceil(factor);
+    let size = scene.cell_size[0] * factor as f64;
+    let (lower, upper) = (new.domain.lower[0], new.domain.upper[0]);
+    // walls, pistons, joined and loaded sides act on the bodies from where they are
+    let [stays] =
+        scene.sides::<1>().map(|ends| ends.map(|s| !matches!(s, Side::Free | Side::Outflow)));
+    let size = match stays {
+        [_, false] => {
+            new.domain.upper[0] = lower + cells as f64 * size;
+            size
+        }
+        [false, true] => {
+            new.domain.lower[0] = upper - cells as f64 * size;
+            size
+        }
+        [true, true] => (upper - lower) / cells as f64,
+    };
+    new.domain.cell_size = CellSize::Uniform(size);
+    new.domain.patches = None;
+    for (body, own) in new.bodies.iter_mut().zip(&scene.bodies) {
+        if body.positions.take().is_some() {
+            let cells = (own.upper[0] - own.lower[0]) / scene.cell_size[0];
+            let mean = (own.particles as f64 / cells).round().max(1.0);
+            body.particles_per_cell = Some(vec![mean as usize]);
+        }
+    }
+    new.error_estimate = None;
+    new.reference = None;
+    new.time.wall_limit = None;
+    new.output = scene::Output {
+        profiles: new.output.profiles.clone(),
+        hdf5: false,
+        pictures: false,
+        ..scene::Output::default()
+    };
+    scene::check(new, &scene.file).map_err(|error| error.to_string())
+}
+
+/// Greatest pressures at places, looked at after every step.
+struct Peaks {
+    places: Vec<Between>,
+    /// Time and the two particles' pressures, a list a place, from the start on.
+    series: Vec<Vec<(f64, [f64; 2])>>,
+    /// A rise of the pressure by this is rounding and no wave \[Pa\].
+    least: f64,
+}
+
+impl Peaks {
+    fn look(&mut self, simulation: &Simulation<'_, 1>) {
+        for (place, series) in self.places.iter().zip(&mut self.series) {
+            if let [Some(a), Some(b)] = simulation.follow(&place.ids)[..] {
+                series.push((simulation.time(), [a.pressure, b.pressure]));
+            }
+        }
+    }
+
+    /// Levels of the wave at place `k`; none where the pressure rises by no more than `least`
+    /// \[Pa\].
+    fn levels(&self, k: usize, least: f64) -> Option<Levels> {
+        let series = &self.series[k];
+        let start = series.first().map_or(0.0, |s| s.1[0].max(s.1[1]));
+        let peak = series.iter().map(|s| s.1[0].min(s.1[1])).fold(start, f64::max);
+        (peak - start > least).then(|| Levels::new(start, peak))
+    }
+
+    /// When the pressure first passes `level` at place `k` \[s\].
+    fn passes(&self, k: usize, level: f64) -> Option<f64> {
+        let cross = |side: usize| {
+            self.series[k].windows(2).find_map(|w| {
+                let ((t0, p0), (t1, p1)) = ((w[0].0, w[0].1[side]), (w[1].0, w[1].1[side]));
+                (p0 < level && p1 >= level).then(|| t0 + (t1 - t0) * (level - p0) / (p1 - p0))
+            })
+        };
+        let weights = self.places[k].weights;
+        Some(weights[0] * cross(0)? + weights[1] * cross(1)?)
+    }
+}
+
+/// Runs the companions of a scene on a line. Collective; the first rank has what they told.
+pub fn run(
+    comm: &dyn Comm,
+    scene: &CheckedScene,
+    body: usize,
+    threads: usize,
+) -> Result<Companions, RunError> {
+    let start = user_cpu_seconds();
+    let places = scene.scene.error_estimate.as_ref().map_or(Vec::new(), |e| e.arrivals.clone());
+    let mut all = Companions::default();
+    let mut told: Vec<(f64, f64, Vec<Line>, Peaks)> = Vec::new();
+    let mut least = 0.0;
+    for factor in FACTORS {
+        let coarse = match coarser(scene, factor) {
+            Ok(coarse) => coarse,
+            Err(reason) => {
+                all.notes.push(format!("no companion on cells {factor} times as large: {reason}"));
+                continue;
+            }
+        };
+        let between = places.iter().map(|&at| Between::new(&coarse, body, at)).collect();
+        let mut peaks =
+            Peaks { places: between, series: vec![Vec::new(); places.len()], least: 0.0 };
+        match one(comm, &coarse, body, threads, &mut peaks) {
+            Ok(profiles) => {
+                least = peaks.least;
+                told.push((factor as f64, coarse.cell_size[0], profiles, peaks));
+            }
+            // all ranks know of these
+            Err(
+                error @ (RunError::Particle { .. }
+                | RunError::TimeStep { .. }
+                | RunError::TooLong { .. }
+                | RunError::Lost { .. }),
+            ) => all.notes.push(format!("companion on cells {factor} times as large: {error}")),
+            Err(error) => return Err(error),
+        }
+    }
+    let finest = told.last();
+    let levels = |k| finest.and_then(|(_, _, _, peaks)| peaks.levels(k, least));
+    all.levels = (0..places.len()).map(levels).collect();
+    all.done = told
+        .into_iter()
+        .map(|(factor, cell_size, profiles, peaks)| Companion {
+            factor,
+            cell_size,
+            profiles,
+            arrivals: (0..places.len()).map(|k| peaks.passes(k, all.levels[k]?.half)).collect(),
+        })
+        .collect();
+    all.cpu_seconds = user_cpu_seconds() - start;
+    Ok(all)
+}
+
+/// One companion: the body's profiles.
+fn one(
+    comm: &dyn Comm,
+    scene: &CheckedScene,
+    body: usize,
+    threads: usize,
+    peaks: &mut Peaks,
+) -> Result<Vec<Line>, RunError> {
+    let mut simulation = Simulation::<1>::new(scene, comm, threads)?;
+    let mut profiles = Vec::new();
+    let cell_time = simulation.time_step() / scene.scene.time.courant;
+    peaks.least = least_pressure(scene, body, cell_time);
+    peaks.look(&simulation);
+    for &time in &scene.profile_times {
+        while simulation.time() < time {
+            simulation.advance(time)?;
+            peaks.look(&simulation);
+        }
+        let table = simulation.gather();
+        profiles.push(table.map_or(Line::new(), |(table, _)| line(&table, body)));
+    }
+    while simulation.time() < scene.scene.time.end {
+        simulation.advance(scene.scene.time.end)?;
+        peaks.look(&simulation);
+    }
+    Ok(profiles)
+}
+
+/// What the run itself looks at, by the companions' levels, which all ranks need alike.
+pub fn arrivals(
+    comm: &dyn Comm,
+    scene: &CheckedScene,
+    body: usize,
+    companions: &Companions,
+) -> Arrivals {
+    let places = scene.scene.error_estimate.as_ref().map_or(&[][..], |e| &e.arrivals);
+    let between = places.iter().map(|&at| Between::new(scene, body, at)).collect();
+    let levels = serde_json::to_vec(&companions.levels).expect("levels are plain data");
+    let levels = serde_json::from_slice(&comm.broadcast(levels)).expect("rank 0 has told");
+    Arrivals::new(between, levels)
+}

@@ -1,0 +1,262 @@
+//! The impacts that the laws of errors were fitted on, and the inputs of a scene outside of them.
+//!
+//! A law fitted on random impacts is a guess elsewhere. The range is part of `laws.json`, written by
+//! the program that draws the impacts. Every input that the draw varies or holds fixed is looked at.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use crate::accuracy::plan::{Scheme, schemes};
+use crate::accuracy::reference::impact_of;
+use crate::scene::{CheckedScene, Contact, FlyerImpact, Side};
+
+/// What an estimate rests on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Basis {
+    /// The laws were fitted on such inputs.
+    Calibrated,
+    /// They were not.
+    #[default]
+    Guess,
+}
+
+/// The impacts that laws were fitted on and compared with: a flyer on a target at rest, both fluids
+/// on a straight Us-up line. Least and greatest values.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FittedRange {
+    /// Density of a material \[kg/m3\].
+    pub density: [f64; 2],
+    /// Bulk sound speed c0 \[m/s\].
+    pub c0: [f64; 2],
+    /// Slope s of the Us-up line \[-\].
+    pub s: [f64; 2],
+    /// Grueneisen coefficient \[-\].
+    pub gamma0: [f64; 2],
+    /// Speed of the impact \[m/s\].
+    pub speed: [f64; 2],
+    /// Thickness of the flyer \[cells\].
+    pub flyer_cells: [f64; 2],
+    /// Time of a profile over the time at which the release from the flyer's rear reaches the
+    /// interface \[-\].
+    pub duration: [f64; 2],
+    /// Place of an arrival over the way of the shock to the end of the run \[-\].
+    pub place: [f64; 2],
+    /// Names of the schemes.
+    pub schemes: Vec<String>,
+}
+
+/// Inputs of a scene outside of a range, one line each.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Outside {
+    /// Of the whole scene.
+    pub scene: Vec<String>,
+    /// Of each profile.
+    pub profiles: Vec<Option<String>>,
+    /// Of each place of an arrival.
+    pub arrivals: Vec<Option<String>>,
+}
+
+impl Outside {
+    /// The basis of the whole estimate.
+    pub fn basis(&self) -> Basis {
+        Basis::of(self.lines().is_empty())
+    }
+
+    /// The basis of profile number `k`.
+    pub fn of_profile(&self, k: usize) -> Basis {
+        Basis::of(self.scene.is_empty() && self.profiles.get(k).is_none_or(Option::is_none))
+    }
+
+    /// The basis of the arrival number `k`.
+    pub fn of_arrival(&self, k: usize) -> Basis {
+        Basis::of(self.scene.is_empty() && self.arrivals.get(k).is_none_or(Option::is_none))
+    }
+
+    /// All lines.
+    pub fn lines(&self) -> Vec<String> {
+        let each = self.profiles.iter().chain(&self.arrivals).flatten();
+        self.scene.iter().chain(each).cloned().collect()
+    }
+}
+
+impl Basis {
+    fn of(fitted: bool) -> Basis {
+        if fitted { Basis::Calibrated } else { Basis::Guess }
+    }
+}
+
+fn within(value: f64, [least, greatest]: [f64; 2]) -> bool {
+    // sizes in cells are quotients, off by rounding
+    (least * (1.0 - 1e-9)..=greatest * (1.0 + 1e-9)).contains(&value)
+}
+
+/// A line where `value` is outside of `range`.
+fn check(what: impl Into<String>, value: f64, range: [f64; 2]) -> Option<String> {
+    let [least, greatest] = range;
+    let shown = (value * 1e6).round() / 1e6;
+    let text = || format!("{} = {shown}: fitted from {least} to {greatest}", what.into());
+    (!within(value, range)).then(text)
+}
+
+impl FittedRange {
+    /// The inputs of a scene on a line outside of the range, for estimates of `body`.
+    pub fn outside(&self, scene: &CheckedScene, body: usize) -> Outside {
+        let mut found = self.outside_but_cells(scene, body);
+        if let [_, _] = scene.bodies[..] {
+            let flyer = &scene.bodies[1 - body];
+            let cells = (flyer.upper[0] - flyer.lower[0]) / scene.cell_size[0];
+            let what = format!("cells in body {}", scene.scene.bodies[1 - body].name);
+            found.scene.extend(check(what, cells, self.flyer_cells));
+        }
+        found
+    }
+
+    /// The same, the size of the cells left out.
+    pub fn outside_but_cells(&self, scene: &CheckedScene, body: usize) -> Outside {
+        let mut found = Outside { scene: self.scheme(scene), ..Outside::default() };
+        found.scene.extend(surroundings(scene));
+        for line in (0..scene.bodies.len()).flat_map(|b| self.material(scene, b)) {
+            // bodies of one material
+            if !found.scene.contains(&line) {
+                found.scene.push(line);
+            }
+        }
+        if scene.bodies.len() != 2 {
+            let count = scene.bodies.len();
+            found.scene.push(format!("bodies: {count}: fitted on a flyer and a target"));
+        } else if let Err(line) = self.impact(scene, body, &mut found) {
+            found.scene.push(line);
+        }
+        found
+    }
+
+    /// Method, viscosity, particles per cell and Courant number are those of one scheme.
+    fn scheme(&self, scene: &CheckedScene) -> Vec<String> {
+        let fitted = |s: &Scheme| self.schemes.contains(&s.name) && is_of(scene, s);
+        if schemes().iter().any(fitted) {
+            return Vec::new();
+        }
+        let line = "method, artificial_viscosity, time.courant and particles_per_cell: not those \
+                    of one scheme that was fitted";
+        vec![line.into()]
+    }
+
+    /// A body's material and its state at the start.
+    fn material(&self, scene: &CheckedScene, b: usize) -> Vec<String> {
+        let (body, material) = (&scene.scene.bodies[b], scene.material_of(b));
+        let name = &body.material;
+        let mut found = Vec::new();
+        let mut not = |is: bool, key: &str| {
+            if is {
+                found.push(format!("materials.{name}.{key}: not in the fit"));
+            }
+        };
+        not(material.strength.is_some(), "strength");
+        not(material.failure.is_some(), "failure");
+        not(material.erosion.is_some(), "erosion");
+        not(material.thermal.is_some(), "thermal");
+        match material.eos.straight(material.density) {
+            None => not(true, "eos"),
+            Some(m) => {
+                let all = [
+                    ("density", m.rho0, self.density),
+                    ("eos.c0", m.c0, self.c0),
+                    ("eos.s", m.s, self.s),
+                    ("eos.gamma0", m.gamma0, self.gamma0),
+                ];
+                let outside = all.iter().filter_map(|(key, v, range)| {
+                    check(format!("materials.{name}.{key}"), *v, *range)
+                });
+                found.extend(outside);
+            }
+        }
+        let own = [
+            ("pressure", body.pressure != 0.0),
+            ("temperature", body.temperature.is_some()),
+            ("velocity_field", body.velocity_field.is_some()),
+        ];
+        let outside = own.iter().filter(|(_, is)| *is);
+        found.extend(outside.map(|(key, _)| format!("bodies.{}.{key}: not in the fit", body.name)));
+        found
+    }
+
+    /// Speed, times and places of the impact of the other body on `body`; the line where there is
+    /// none.
+    fn impact(&self, scene: &CheckedScene, body: usize, found: &mut Outside) -> Result<(), String> {
+        let named = |b: usize| scene.scene.bodies[b].name.clone();
+        let (flyer, target) = (&scene.bodies[1 - body], &scene.bodies[body]);
+        if target.top_speed != 0.0 {
+            return Err(format!("bodies.{}.velocity: fitted on a target at rest", named(body)));
+        }
+        let apart = (target.lower[0] - flyer.upper[0]).max(flyer.lower[0] - target.upper[0]);
+        if apart > 1e-6 * scene.cell_size[0] {
+            return Err("bodies: a gap: fitted on plates that touch".into());
+        }
+        let speed = flyer.velocity[0] * (target.lower[0] - flyer.lower[0]).signum();
+        let velocity = format!("bodies.{}.velocity", named(1 - body));
+        if let Some(line) = check(&velocity, speed, self.speed) {
+            return Err(line);
+        }
+        // outside of such materials there is no exact release to measure times by
+        let both = [0, 1].map(|b| scene.material_of(b));
+        if both.iter().any(|m| m.eos.straight(m.density).is_none()) {
+            return Ok(());
+        }
+        let impact = FlyerImpact { flyer: named(1 - body), target: named(body), front: None };
+        let release = impact_of(scene, &impact).and_then(|(impact, _)| impact.release(4));
+        let release = release.map_err(|error| format!("bodies: no plain impact: {error}"))?;
+        let way = target.upper[0] - target.lower[0];
+        let profile = |(k, &t): (usize, &f64)| {
+            let what = format!("output.profiles.times[{k}] over {:.4e} s", release.head_time);
+            let late = || format!("output.profiles.times[{k}]: the shock has crossed the target");
+            let crossed = release.target_shock * t > way;
+            check(what, t / release.head_time, self.duration).or_else(|| crossed.then(late))
+        };
+        found.profiles = scene.profile_times.iter().enumerate().map(profile).collect();
+        let at_lower = flyer.lower[0] < target.lower[0];
+        let arrivals = scene.scene.error_estimate.iter().flat_map(|e| &e.arrivals);
+        let range = [self.place[0] * self.duration[0], self.place[1] * self.duration[1]];
+        let arrival = |(k, &at): (usize, &f64)| {
+            let depth = if at_lower { at - target.lower[0] } else { target.upper[0] - at };
+            let reach = release.target_shock * release.head_time;
+            check(format!("error_estimate.arrivals[{k}] over {reach:.4e} m"), depth / reach, range)
+        };
+        found.arrivals = arrivals.enumerate().map(arrival).collect();
+        Ok(())
+    }
+}
+
+/// Sides, forces and contact that the fit has not.
+fn surroundings(scene: &CheckedScene) -> Vec<String> {
+    let [[lower, upper]] = scene.sides::<1>();
+    let contact = !matches!(scene.scene.contact, None | Some(Contact::Frictionless { .. }));
+    let all = [
+        ("boundary.x_lower", lower != Side::Free),
+        ("boundary.x_upper", upper != Side::Free),
+        ("boundary.temperature", scene.holds_temperature()),
+        ("body_force", scene.scene.body_force.is_some()),
+        ("contact", contact),
+    ];
+    let outside = all.into_iter().filter(|(_, is)| *is);
+    outside.map(|(key, _)| format!("{key}: not in the fit")).collect()
+}
+
+/// Whether a scene has the method, viscosity, Courant number and particles per cell of a scheme.
+fn is_of(scene: &CheckedScene, scheme: &Scheme) -> bool {
+    let whole = &scene.scene;
+    let filled = whole
+        .bodies
+        .iter()
+        .all(|body| body.particles_per_cell.as_deref() == Some(&[scheme.particles_per_cell]));
+    // keys that are left out take the same values as those that are written
+    let mut same = whole.clone();
+    let read = |key: &str| scheme.set.get(key).cloned().unwrap_or(Value::Null);
+    let method = serde_json::from_value(read("method"));
+    let viscosity = serde_json::from_value(read("artificial_viscosity"));
+    let (Ok(method), Ok(viscosity)) = (method, viscosity) else { return false };
+    (same.method, same.artificial_viscosity) = (method, viscosity);
+    let keys = |of: &crate::scene::Scene| json!([of.method, of.artificial_viscosity]);
+    filled && whole.time.courant == scheme.courant && keys(&same) == keys(whole)
+}

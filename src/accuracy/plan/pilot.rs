@@ -1,0 +1,110 @@
+//! Pilots: a scene on few cells, timed and looked at.
+
+use decomp::Serial;
+use serde_json::{Value, json};
+
+use super::schemes::Scheme;
+use crate::accuracy::estimate::arrival::Between;
+use crate::accuracy::estimate::{Line, line, plateau};
+use crate::scene::{self, CheckedScene};
+use crate::simulation::Simulation;
+use crate::solver::clock::user_cpu_seconds;
+
+/// A pilot's plateau has at least so many cells.
+const LEAST: usize = 6;
+
+/// What a pilot has shown.
+#[derive(Clone, Debug)]
+pub struct Pilot {
+    /// Its cells \[m\].
+    pub cell_size: f64,
+    /// User CPU time of its steps \[s\].
+    pub cpu_seconds: f64,
+    /// Their wall time \[s\].
+    pub wall_seconds: f64,
+    /// Its steps.
+    pub steps: u64,
+    /// The body's pressures, a line a profile.
+    pub profiles: Vec<Line>,
+    /// When the pressure at the place asked for has passed half of its greatest \[s\].
+    pub arrival: Option<f64>,
+}
+
+/// The scene with a scheme on `cells` cells; the message where that is no scene.
+pub fn with_cells(
+    scene: &Value,
+    file: &str,
+    scheme: &Scheme,
+    cells: usize,
+) -> Result<(Value, CheckedScene), String> {
+    let mut new = scene.clone();
+    scheme.apply(&mut new);
+    let end = |key: &str| new["domain"][key][0].as_f64().ok_or("domain: allowed: a line");
+    let size = (end("upper")? - end("lower")?) / cells.max(1) as f64;
+    new["domain"]["cell_size"] = json!(size);
+    if let Some(domain) = new["domain"].as_object_mut() {
+        domain.remove("patches");
+    }
+    let checked = scene::parse(new.to_string().as_bytes(), file, &[]);
+    checked.map(|checked| (new, checked)).map_err(|error| error.to_string())
+}
+
+/// Runs a scene without files; the message where it fails.
+pub fn run(scene: &CheckedScene, body: usize, place: Option<f64>) -> Result<Pilot, String> {
+    let mut simulation =
+        Simulation::<1>::new(scene, &Serial, 1).map_err(|error| error.to_string())?;
+    let between = place.map(|at| Between::new(scene, body, at));
+    let (mut profiles, mut felt) = (Vec::new(), Vec::new());
+    let (cpu, start) = (user_cpu_seconds(), std::time::Instant::now());
+    let mut times = scene.profile_times.clone();
+    times.push(scene.scene.time.end);
+    for (k, &time) in times.iter().enumerate() {
+        while simulation.time() < time {
+            simulation.advance(time).map_err(|error| error.to_string())?;
+            if let Some(between) = &between
+                && let [Some(a), Some(b)] = simulation.follow(&between.ids)[..]
+            {
+                let p = between.weights[0] * a.pressure + between.weights[1] * b.pressure;
+                felt.push((simulation.time(), p));
+            }
+        }
+        if k < scene.profile_times.len() {
+            profiles.push(line(&simulation.gather().expect("one rank has all").0, body));
+        }
+    }
+    let cpu_seconds = user_cpu_seconds() - cpu;
+    let peak = felt.iter().map(|f| f.1).fold(0.0, f64::max);
+    let arrival = felt.iter().find(|f| peak > 0.0 && f.1 >= 0.5 * peak).map(|f| f.0);
+    Ok(Pilot {
+        cell_size: scene.cell_size[0],
+        cpu_seconds,
+        wall_seconds: start.elapsed().as_secs_f64(),
+        steps: simulation.steps(),
+        profiles,
+        arrival,
+    })
+}
+
+impl Pilot {
+    /// Length of the pulse of profile `k`: int |p| dx over the plateau's pressure, or where there
+    /// is no plateau over what the greatest tenth of the pressures passes \[m\].
+    pub fn pulse(&self, k: usize) -> Option<f64> {
+        let line = &self.profiles[k];
+        let area: f64 =
+            line.windows(2).map(|w| 0.5 * (w[0].1.abs() + w[1].1.abs()) * (w[1].0 - w[0].0)).sum();
+        let level =
+            plateau::find_over(line, self.cell_size, LEAST).map(|p| p.pressure).or_else(|| {
+                let mut all: Vec<f64> = line.iter().map(|q| q.1).collect();
+                all.sort_by(|a, b| b.total_cmp(a));
+                let strong = all.iter().filter(|p| **p > 0.1 * all[0]).count();
+                all.get(strong / 10).copied()
+            })?;
+        (level > 0.0 && area > 0.0).then_some(area / level)
+    }
+
+    /// Length of the plateau of profile `k` \[m\].
+    pub fn plateau(&self, k: usize) -> Option<f64> {
+        plateau::find_over(&self.profiles[k], self.cell_size, LEAST)
+            .map(|p| p.cells * self.cell_size)
+    }
+}

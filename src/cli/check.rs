@@ -1,0 +1,264 @@
+//! What a scene is, without a run: its size and effects, and the exact solution of its impact.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use decomp::Serial;
+use flyer_mpm::accuracy::reference;
+use flyer_mpm::driver::figures::{self, PressureRow, plate_name};
+use flyer_mpm::driver::output::folder::OutputFolder;
+use flyer_mpm::driver::output::lock::Lock;
+use flyer_mpm::driver::output::origin::Maker;
+use flyer_mpm::driver::output::summary::SUMMARY_FILE;
+use flyer_mpm::effects::{ledger, ledger_lines, ledger_rest};
+use flyer_mpm::exact::{Accuracy, Chain, Impact, Plate, Release, Solution, WaveKind};
+use flyer_mpm::scene::{CheckedScene, Reference};
+use flyer_mpm::simulation::{RunError, Simulation};
+use flyer_mpm::solver::{Stepper, Steps};
+use serde_json::json;
+
+use crate::{FAILED, Outcome, bad};
+
+/// Particles, cells, memory, first time step, steps and effects of a scene.
+pub fn check(scene: &CheckedScene) -> Result<String, RunError> {
+    match scene.dimension {
+        1 => check_in::<1>(scene),
+        _ => check_in::<2>(scene),
+    }
+}
+
+fn check_in<const D: usize>(scene: &CheckedScene) -> Result<String, RunError>
+where
+    Stepper<D>: Steps<D>,
+{
+    let simulation = Simulation::<D>::new(scene, &Serial, 1)?;
+    let dt = simulation.time_step().min(scene.scene.time.end);
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "{name:<20} {value}");
+    };
+    line("title", scene.scene.title.clone());
+    line("particles", scene.particles.to_string());
+    line("cells", scene.cell_count().to_string());
+    line("memory", format!("{:.1} MB", scene.memory() as f64 / 1e6));
+    line("first time step", format!("{dt:.4e} s"));
+    line("steps", format!("about {:.0}", (scene.scene.time.end / dt).ceil()));
+    let columns = simulation.columns();
+    let names: Vec<&str> = columns.specs.iter().map(|s| s.name).collect();
+    line("columns a particle", format!("{} ({})", names.len(), names.join(", ")));
+    line("held by the watch", format!("{} bytes a particle", columns.held_bytes(D)));
+    let limit = scene.courant_limit();
+    line("courant", format!("{}, this method's limit {limit}", scene.scene.time.courant));
+    for warning in &scene.warnings {
+        line("warning", warning.clone());
+    }
+    text += "effects\n";
+    for (name, state) in effects(scene) {
+        let _ = writeln!(text, "  {name:<22} {state}");
+    }
+    text += "what each takes\n";
+    let all = ledger(scene, columns, None);
+    for line in ledger_lines(&all) {
+        // without a run there are no shares
+        let [name, particle, ghost] = [0, 1, 2].map(|k| line[k].as_str());
+        let _ = writeln!(text, "  {name:<22} {particle:>16} {ghost:>13}");
+    }
+    let _ = writeln!(text, "  {}", ledger_rest(&all));
+    Ok(text)
+}
+
+/// Each effect, and how the scene has it.
+fn effects(scene: &CheckedScene) -> Vec<(&'static str, String)> {
+    let method = &scene.scene.method;
+    let off = || "off".to_string();
+    let plain = |v: &dyn erased::Json| v.text();
+    vec![
+        ("shape", plain(&method.shape)),
+        ("frame", plain(&method.frame)),
+        ("transfer", plain(&method.transfer)),
+        ("stepping", plain(&method.stepping)),
+        ("stress update", plain(&method.stress_update)),
+        ("energy", plain(&method.energy)),
+        ("filter heat", if method.filter_heat { "on".into() } else { off() }),
+        ("pressure relaxation", method.pressure_relaxation.as_ref().map_or_else(off, |r| plain(r))),
+        ("volume relaxation", method.volume_relaxation.map_or_else(off, |r| r.to_string())),
+        ("edge mask", method.edge_mask.map_or_else(off, |m| m.to_string())),
+        (
+            "artificial viscosity",
+            scene.scene.artificial_viscosity.as_ref().map_or_else(off, |v| plain(v)),
+        ),
+        ("boundary", scene.scene.boundary.as_ref().map_or_else(|| "free".into(), |b| plain(b))),
+        ("reference", scene.scene.reference.as_ref().map_or_else(|| "none".into(), |r| plain(r))),
+    ]
+}
+
+/// Options as their JSON text.
+mod erased {
+    pub trait Json {
+        fn text(&self) -> String;
+    }
+
+    impl<T: serde::Serialize> Json for T {
+        fn text(&self) -> String {
+            serde_json::to_string(self).unwrap_or_default().replace('"', "")
+        }
+    }
+}
+
+/// States of the chain that the table shows.
+const SHOWN_STATES: usize = 6;
+
+/// Rows of the x-t diagram.
+const ROWS: usize = 160;
+
+/// The chain of an impact as a table; its Hugoniots and x-t diagram go to `output`.
+pub fn hugoniot(scene: &CheckedScene, output: &Path) -> Outcome<String> {
+    let Some(Reference::FlyerImpact(named)) = &scene.scene.reference else {
+        return Err(bad(format!(
+            "{}: reference: `hugoniot` needs a scene with reference.flyer_impact",
+            scene.file
+        )));
+    };
+    let failed = |e: &dyn std::fmt::Display| (FAILED, e.to_string());
+    let (impact, bodies) = reference::impact_of(scene, named).map_err(|e| failed(&e))?;
+    let chain = impact.chain(SHOWN_STATES).map_err(|e| failed(&e))?;
+    let release = impact.release(SHOWN_STATES).map_err(|e| failed(&e))?;
+    let end = scene.scene.time.end;
+    let times: Vec<f64> = (0..=ROWS).map(|k| end * k as f64 / ROWS as f64).collect();
+    let solution = impact.solve(&times, &[], Accuracy::default()).map_err(|e| failed(&e))?;
+
+    let _lock = Lock::take(output).map_err(bad)?;
+    let maker = Maker::new("hugoniot", scene);
+    let folder = OutputFolder::create(output, false, &maker).map_err(bad)?;
+    figures::draw_hugoniots(scene, bodies, &impact, &chain, folder.path())
+        .map_err(|e| failed(&e))?;
+    let reference = reference::Reference::Impact(Box::new(reference::ImpactReference {
+        impact,
+        chain: chain.clone(),
+        solution: solution.clone(),
+        flyer: bodies[0],
+        target: bodies[1],
+    }));
+    let title = format!("{}: exact pressure and wave paths", scene.scene.title);
+    let stem = folder.file("x_t_diagram");
+    figures::draw_waves(&title, &rows(&solution), Some(end), Some(&reference), &stem)
+        .map_err(|e| failed(&e))?;
+    let summary = json!({
+        "title": scene.scene.title,
+        "version": env!("CARGO_PKG_VERSION"),
+        "origin": folder.origin(),
+        "scene": scene.scene,
+        "profiles": [],
+        "chain": {
+            "separates": chain.separates,
+            "states": chain.states.iter().map(|s| json!({"state": s.number, "velocity": s.u, "pressure": s.p})).collect::<Vec<_>>(),
+        },
+    });
+    let text = serde_json::to_string_pretty(&summary).map_err(bad)?;
+    std::fs::write(folder.file(SUMMARY_FILE), text).map_err(bad)?;
+    let place = folder.commit().map_err(bad)?;
+    let text = table(&impact, &chain, &release) + &limits(&impact, &solution, end);
+    Ok(text + &format!("pictures in {}\n", place.display()))
+}
+
+/// The exact pressure over both plates, row by row.
+fn rows(solution: &Solution) -> Vec<PressureRow> {
+    solution
+        .snapshots
+        .iter()
+        .filter_map(|s| {
+            let profile = s.whole.as_ref()?;
+            let (lower, upper) = profile.span()?;
+            let x = |k: usize| lower + (upper - lower) * (k as f64 + 0.5) / 1500.0;
+            let points = (0..1500).filter_map(|k| Some((x(k), profile.at(x(k))?.p)));
+            Some(PressureRow { time: s.time, points: points.collect() })
+        })
+        .collect()
+}
+
+/// When the shock reaches the target's rear, and how far the exact lines of the x-t diagram go.
+fn limits(impact: &Impact, solution: &Solution, end: f64) -> String {
+    let mut text = String::new();
+    if solution.valid_until < end {
+        let _ = writeln!(
+            text,
+            "the shock reaches the target's rear at {:.6} us{}",
+            solution.valid_until * 1e6,
+            if impact.free_rear { "; its release from there is drawn too" } else { "" },
+        );
+    }
+    if let Some((stopped, why)) = &solution.stopped {
+        let _ = writeln!(
+            text,
+            "exact lines end at {:.6} us, before the end at {:.6} us: {why}",
+            stopped * 1e6,
+            end * 1e6
+        );
+    }
+    text
+}
+
+fn table(impact: &Impact, chain: &Chain, release: &Release) -> String {
+    let mut text = String::new();
+    let mut line = |s: String| {
+        text += &s;
+        text.push('\n');
+    };
+    line(format!(
+        "impact at {:.3} m/s; velocities are relative to the target at rest",
+        impact.speed
+    ));
+    line(String::new());
+    line("state  rarefactions as shocks      true release isentropes".into());
+    line("       u [m/s]     p [GPa]         u [m/s]     p [GPa]".into());
+    for state in &chain.states {
+        let exact = match release.state(state.number) {
+            Some(s) => format!("{:>11.6} {:>11.6}", s.u, s.p * 1e-9),
+            None if state.number < 2 => format!("{:>11.6} {:>11.6}", state.u, state.p * 1e-9),
+            None => String::new(),
+        };
+        line(format!(
+            "{:>5}  {:>11.6} {:>11.6}     {exact}",
+            state.number,
+            state.u,
+            state.p * 1e-9
+        ));
+    }
+    line(String::new());
+    line("wave     kind         plate   Lagrangian [m/s]  from t [us]   x [mm]".into());
+    for wave in &chain.waves {
+        let kind = match wave.kind {
+            WaveKind::Shock => "shock",
+            WaveKind::Rarefaction => "rarefaction",
+        };
+        line(format!(
+            "{:>2} - {:<2}  {kind:<12} {:<7} {:>12.3}      {:>9.6}   {:>9.6}",
+            wave.from,
+            wave.to,
+            plate_name(wave.plate),
+            wave.lagrangian_speed,
+            wave.start[0] * 1e6,
+            wave.start[1] * 1e3,
+        ));
+    }
+    line(String::new());
+    if chain.separates {
+        line("the flyer is softer than the target: the plates separate".into());
+    }
+    line(format!(
+        "true fan: reaches the interface at {:.6} us; Lagrangian head and tail in the {} {:.3} and {:.3} m/s, in the {} {:.3} and {:.3} m/s",
+        release.head_time * 1e6,
+        plate_name(Plate::Flyer),
+        release.flyer_head,
+        release.flyer_tail,
+        plate_name(Plate::Target),
+        release.target_head,
+        release.target_tail,
+    ));
+    line(format!(
+        "its head catches the shock at {:.6} us, x = {:.6} mm",
+        release.catch_up_time * 1e6,
+        release.catch_up_place * 1e3
+    ));
+    text
+}

@@ -1,0 +1,176 @@
+//! The commands `calibrate` and `predict`.
+
+use std::path::PathBuf;
+
+use decomp::{Comm, Serial};
+use flyer_mpm::driver::output::origin::check_target;
+use flyer_mpm::perf_model::calibrate;
+use flyer_mpm::perf_model::{Against, Machine, Network, forecast, machine_table, ranks_to, table};
+use flyer_mpm::scene::input_file;
+use flyer_mpm::scene::{self, CellSize, CheckedScene};
+use flyer_mpm::simulation::Simulation;
+use serde_json::Value;
+
+use crate::cli::PredictArgs;
+use crate::{FAILED, Outcome, bad, read_scene, say};
+
+/// What is calibrated unless a scene is named.
+const FLYER: &str = include_str!("../../inputs/flyer.json");
+
+/// What `calibrate` is told.
+pub struct Order {
+    /// The scene's file, if one is named.
+    pub scene: Option<PathBuf>,
+    /// Overrides of the scene.
+    pub set: Vec<String>,
+    /// File of the constants.
+    pub output: PathBuf,
+    /// Time to take \[s\].
+    pub seconds: f64,
+    /// Whether samples are printed.
+    pub samples: bool,
+}
+
+/// Measures and writes the constants. Collective.
+pub fn calibrate(comm: &dyn Comm, order: &Order) -> Outcome<()> {
+    let Order { scene: file, set: sets, output, seconds, samples } = order;
+    let file = file.as_deref();
+    let name = file.map_or("flyer.json".into(), |f| f.display().to_string());
+    let mine = match (comm.rank(), file) {
+        (0, Some(file)) => scene::read(file).map_err(bad),
+        (0, None) => Ok(FLYER.as_bytes().to_vec()),
+        _ => Ok(Vec::new()),
+    };
+    // rank 0 looks at everything that could fail before it sends the scene on
+    let mine = mine.and_then(|bytes| {
+        if comm.rank() == 0 {
+            check_line(&scene::parse(&bytes, &name, sets).map_err(bad)?, "calibrate")?;
+            input_file::check_place(output)
+                .map_err(|fault| bad(format!("{}: {fault}", output.display())))?;
+            check_target(output, "a machine file of `flyer-mpm calibrate`", |text| {
+                let there: Option<Value> = serde_json::from_str(text).ok();
+                there.is_some_and(|there| there.get("processor").is_some())
+            })
+            .map_err(bad)?;
+        }
+        Ok(bytes)
+    });
+    let (bytes, verdict) = match mine {
+        Ok(bytes) => (bytes, Ok(())),
+        Err(error) => (Vec::new(), Err(error)),
+    };
+    let bytes = comm.broadcast(bytes);
+    verdict?;
+    if bytes.is_empty() {
+        return Err((crate::BAD_INPUT, String::new()));
+    }
+    let checked = scene::parse(&bytes, &name, sets).map_err(bad)?;
+    if comm.rank() == 0 {
+        eprintln!("calibrating about {seconds:.0} s: {}", checked.scene.title);
+        if comm.size() > 1 && calibrate::cores() == 1 {
+            eprintln!(
+                "warning: this rank has one core, so threads and a second busy core are not \
+                 measured; mpirun --bind-to none gives it all"
+            );
+        }
+    }
+    let found =
+        calibrate::calibrate(comm, &checked, *seconds).map_err(|e| (FAILED, e.to_string()))?;
+    let Some((machine, residuals)) = found else { return Ok(()) };
+    machine
+        .write(output)
+        .map_err(|e| (FAILED, format!("{}: cannot be written: {e}", output.display())))?;
+    if *samples {
+        say("particles patches threads halo measured_us fitted_us deviation_%\n");
+        for r in &residuals {
+            say(&format!(
+                "{:.0} {} {} {:?} {:.2} {:.2} {:+.1}\n",
+                r.particles,
+                r.patches,
+                r.threads,
+                r.halo,
+                r.measured * 1e6,
+                r.fitted * 1e6,
+                100.0 * (r.fitted / r.measured - 1.0)
+            ));
+        }
+    }
+    say(&machine_table(&machine));
+    say(&format!("constants in {}\n", output.display()));
+    Ok(())
+}
+
+/// Refuses a scene in a plane: the performance model counts cells and ghosts along one direction.
+fn check_line(scene: &CheckedScene, command: &str) -> Outcome<()> {
+    match scene.dimension {
+        1 => Ok(()),
+        d => Err(bad(format!(
+            "{}: {command}: domain.lower has {d} numbers; allowed: a scene on a line",
+            scene.file
+        ))),
+    }
+}
+
+/// Predicts a scene, or holds predictions against studies.
+pub fn predict(args: &PredictArgs) -> Outcome<String> {
+    let (bytes, checked) = read_scene(&args.scene, false)?;
+    check_line(&checked, "predict")?;
+    let machine = Machine::read(&args.machine).map_err(bad)?;
+    machine.fits(&checked, &args.machine).map_err(bad)?;
+    let network = Network::parse(&args.network, &machine.network).map_err(bad)?;
+    if args.against.is_empty() {
+        let threads = args.threads.unwrap_or(checked.scene.decomposition.threads);
+        let dt = first_time_step(&checked)?;
+        let steps = (checked.scene.time.end / dt).ceil();
+        let ranks = ranks_to(&args.ranks);
+        let forecast = forecast(&machine, &network, &checked, &ranks, threads);
+        let head = format!(
+            "{}: {} particles, {} cells, about {steps:.0} steps, every particle computed\n",
+            checked.scene.title,
+            checked.particles,
+            checked.cell_count()
+        );
+        return Ok(head + &table(&machine, &network, &forecast, steps));
+    }
+    let mut all = Vec::new();
+    for path in &args.against {
+        let study = Against::read(path).map_err(bad)?;
+        let mut sets = args.scene.set.clone();
+        sets.extend(study.sets.iter().cloned());
+        sets.push("decomposition.skip_quiet=false".into());
+        let file = args.scene.scene.display().to_string();
+        let scene = scene::parse(&bytes, &file, &sets).map_err(bad)?;
+        check_line(&scene, "predict")?;
+        machine.fits(&scene, &args.machine).map_err(bad)?;
+        all.extend(study.compare(&machine, &network, &scene, path).map_err(bad)?);
+    }
+    Ok(Against::table(&machine, &all))
+}
+
+/// Particles of a scene that are made to find the first time step.
+const MOST_PARTICLES: u64 = 200_000;
+
+/// The first Courant step \[s\]; of a large scene that of one with larger cells, for the step is
+/// as long as a wave takes through a share of a cell.
+fn first_time_step(scene: &CheckedScene) -> Outcome<f64> {
+    let failed = |e: &dyn std::fmt::Display| (FAILED, e.to_string());
+    let coarser = coarsened(scene);
+    let (scene, factor) = coarser.as_ref().map_or((scene, 1.0), |(s, f)| (s, *f));
+    let simulation = Simulation::<1>::new(scene, &Serial, 1).map_err(|e| failed(&e))?;
+    Ok((simulation.time_step() / factor).min(scene.scene.time.end))
+}
+
+/// The scene with as much larger cells as it needs to have few particles, and how much larger.
+fn coarsened(scene: &CheckedScene) -> Option<(CheckedScene, f64)> {
+    if scene.particles <= MOST_PARTICLES {
+        return None;
+    }
+    let least = scene.particles.div_ceil(MOST_PARTICLES) as usize;
+    let factors = (least..least * 16).filter(|k| scene.cells[0].is_multiple_of(*k));
+    factors.take(8).find_map(|k| {
+        let mut new = scene.scene.clone();
+        new.domain.cell_size = CellSize::Uniform(scene.cell_size[0] * k as f64);
+        new.domain.patches = None;
+        scene::check(new, &scene.file).ok().map(|checked| (checked, k as f64))
+    })
+}

@@ -1,0 +1,90 @@
+//! Whether a checkpoint and a scene, which may have been changed since, go together.
+
+use std::path::Path;
+
+use super::{Checkpoint, CheckpointError};
+use crate::driver::output::histories::Histories;
+use crate::driver::probes::Probes;
+use crate::scene::CheckedScene;
+use crate::simulation::saved_sums;
+use crate::solver::particles::Columns;
+
+/// Keys that may change after the start.
+pub const CHANGEABLE: [&str; 5] = ["time", "watch", "output", "domain.patches", "decomposition"];
+
+impl Checkpoint {
+    /// Refuses a scene that a run cannot go on with from here; what it has recorded and the scene
+    /// no longer asks for is left out.
+    pub fn fit(&mut self, scene: &CheckedScene, path: &Path) -> Result<(), CheckpointError> {
+        let why = self.check_rows(scene).or_else(|| self.check_record(scene));
+        why.map_or(Ok(()), |why| Err(CheckpointError::Unfit { path: path.into(), why }))
+    }
+
+    /// What is wrong with the rows.
+    fn check_rows(&self, scene: &CheckedScene) -> Option<String> {
+        let (columns, rows) = (Columns::new(scene), &self.saved.rows);
+        let state = columns.state();
+        let named = |k: &usize| columns.specs[*k].name;
+        if !self.columns.iter().map(|c| c.name.as_str()).eq(state.iter().map(named)) {
+            let theirs: Vec<&str> = self.columns.iter().map(|c| c.name.as_str()).collect();
+            return Some(format!(
+                "its particles have the columns {}, not those of the scene; go on with version {}, \
+                 which wrote it",
+                theirs.join(", "),
+                self.version
+            ));
+        }
+        let (count, dimension) = (rows.ids.len(), scene.dimension);
+        let counts = rows.ids.is_sorted_by(|a, b| a < b)
+            && rows.ids.last().is_none_or(|&id| id < scene.particles)
+            && self.saved.left.rows.checked_add(count as u64) == Some(scene.particles)
+            && rows.columns.iter().all(|c| c.len() == count);
+        let cells = rows.cells.len() == dimension * count
+            && rows.cells.chunks_exact(dimension).all(|cell| {
+                cell.iter().zip(&scene.cells).all(|(&c, &n)| c >= 0 && (c as usize) < n)
+            });
+        let body = state.iter().position(|&k| k == columns.body);
+        let bodies = body.is_some_and(|k| {
+            let known =
+                |b: &f64| *b >= 0.0 && b.fract() == 0.0 && (*b as usize) < scene.bodies.len();
+            rows.columns[k].iter().all(known)
+        });
+        let sums = self.saved.sums.len() == saved_sums(scene);
+        if !(counts && cells && bodies && sums && self.dimension == dimension) {
+            return Some("its particles are not those of its scene".into());
+        }
+        let saved = &self.saved;
+        let numbers =
+            saved.time >= 0.0 && saved.stable > 0.0 && (0.0..1e3).contains(&saved.longest);
+        (!numbers).then(|| "its time or its steps are none".into())
+    }
+
+    /// What is wrong with what was recorded; leaves out what is asked for no longer.
+    fn check_record(&mut self, scene: &CheckedScene) -> Option<String> {
+        let (time, end) = (self.saved.time, scene.scene.time.end);
+        if time > end {
+            return Some(format!("its time {time:e} s is beyond time.end = {end:e}"));
+        }
+        self.record.tables.retain(|(table, _)| scene.profile_times.contains(&table.time));
+        let past: Vec<f64> = scene.profile_times.iter().copied().filter(|&t| t <= time).collect();
+        let recorded = |t: &f64| self.record.tables.iter().any(|(table, _)| table.time == *t);
+        if let Some(missed) = past.iter().find(|t| !recorded(t)) {
+            return Some(format!(
+                "output.profiles.times: {missed:e} is before its time {time:e} s and was not \
+                 recorded; allowed: later times"
+            ));
+        }
+        let wanted = Probes::new(scene).map(Probes::into_histories);
+        let names = |h: &Histories| h.columns().iter().map(|c| c.name.clone()).collect::<Vec<_>>();
+        match (&wanted, &self.record.histories) {
+            (Some(wanted), Some(have)) if names(wanted) != names(have) => Some(
+                "output.histories: other columns than so far; allowed: the same tracers".into(),
+            ),
+            (None, _) => {
+                self.record.histories = None;
+                None
+            }
+            _ => None,
+        }
+    }
+}

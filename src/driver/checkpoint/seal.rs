@@ -1,0 +1,111 @@
+//! The seal of a checkpoint: a head of text before the HDF5 data (HDF5's user block, which its own
+//! tools skip) that says what the file is, and ends with the SHA-256 of all other bytes of the
+//! file. It is looked at before anything else is: a file that is short by a byte or has one bit
+//! changed is never read.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+
+use super::CheckpointError;
+use crate::driver::output::OutputError;
+use crate::scene::input_file::CHECKPOINT_START;
+use crate::scene::input_file::{self, InputFault};
+
+/// Version of the form of a checkpoint.
+pub const FORMAT: u32 = 1;
+
+/// Bytes of the head.
+pub const HEAD: u64 = 512;
+
+/// Hexadecimal digits of the digest, which a line break ends.
+const DIGITS: usize = 64;
+
+/// What the head covers by the digest: all but the digest itself.
+const TEXT: usize = HEAD as usize - DIGITS - 1;
+
+/// Bytes that are read at a time.
+const CHUNK: usize = 1 << 20;
+
+/// A digest in hexadecimal.
+pub fn hexadecimal(digest: Sha256) -> String {
+    digest.finalize().iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// Writes the head of a file that has room for it, and brings the file to the disk.
+pub fn seal(path: &Path, step: u64, time: f64, format: u32) -> Result<(), CheckpointError> {
+    let write = || -> io::Result<()> {
+        let mut file = OpenOptions::new().read(true).write(true).open(path)?;
+        let length = file.metadata()?.len();
+        let version = env!("CARGO_PKG_VERSION");
+        let mut head = format!(
+            "{CHECKPOINT_START}\nformat {format}\nversion {version}\nbytes {length}\nstep {step}\ntime {time:e} s\n"
+        );
+        head.extend(std::iter::repeat_n(' ', TEXT - head.len()));
+        let digest = digest_of(&mut file, head.as_bytes())?;
+        file.seek(SeekFrom::Start(0))?;
+        file.write_all(format!("{head}{digest}\n").as_bytes())?;
+        file.sync_all()
+    };
+    write().map_err(|e| OutputError::io("write the checkpoint", path)(e).into())
+}
+
+/// The digest of a head's text and of all that follows the head.
+fn digest_of(file: &mut File, head: &[u8]) -> io::Result<String> {
+    let mut digest = Sha256::new();
+    digest.update(head);
+    file.seek(SeekFrom::Start(HEAD))?;
+    let mut chunk = vec![0; CHUNK];
+    loop {
+        match file.read(&mut chunk)? {
+            0 => return Ok(hexadecimal(digest)),
+            n => digest.update(&chunk[..n]),
+        }
+    }
+}
+
+/// Refuses a file that is not as it was sealed, or of another format.
+pub fn verify(path: &Path) -> Result<(), CheckpointError> {
+    let damaged = |why: String| CheckpointError::Damaged { path: path.into(), why };
+    let fail =
+        |e: io::Error| CheckpointError::from(OutputError::io("read the checkpoint", path)(e));
+    let mut file = input_file::open(path).map_err(|fault| match fault {
+        InputFault::Io(e) => fail(e),
+        other => damaged(other.to_string()),
+    })?;
+    let length = file.metadata().map_err(fail)?.len();
+    let mut head = vec![0; HEAD as usize];
+    if length < HEAD {
+        return Err(damaged(format!("it has {length} bytes, less than its head")));
+    }
+    file.read_exact(&mut head).map_err(fail)?;
+    let (text, digest) = head.split_at(TEXT);
+    let said = String::from_utf8_lossy(text);
+    let word = |name: &str| {
+        said.lines()
+            .find_map(|l| l.strip_prefix(name)?.strip_prefix(' '))
+            .unwrap_or("?")
+            .to_string()
+    };
+    if !said.starts_with(CHECKPOINT_START) {
+        return Err(damaged("it does not begin as a checkpoint does".into()));
+    }
+    if word("bytes") != length.to_string() {
+        return Err(damaged(format!("it has {length} bytes of {}", word("bytes"))));
+    }
+    let found = digest_of(&mut file, text).map_err(fail)?;
+    if format!("{found}\n").as_bytes() != digest {
+        return Err(damaged("its bytes are not those that were written (SHA-256)".into()));
+    }
+    if word("format") != FORMAT.to_string() {
+        return Err(CheckpointError::Format {
+            path: path.into(),
+            found: word("format"),
+            known: FORMAT,
+            version: word("version"),
+        });
+    }
+    Ok(())
+}

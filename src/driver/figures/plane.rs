@@ -1,0 +1,207 @@
+//! Pictures of a run in a plane: fields of its particles, and pressure along its waves.
+
+use std::path::Path;
+
+use crate::accuracy::reference::Reference;
+use crate::plot::{
+    self, Direction, Field, FieldData, LineOut, LineOutCurve, Look, Mirror, PictureError, Points,
+    Quantity, Shading, Tile,
+};
+use crate::scene::{CheckedScene, Side};
+use crate::simulation::ParticleTable;
+
+/// A quantity of particles that is drawn, with what its pictures are named.
+struct Drawn {
+    stem: &'static str,
+    label: &'static str,
+    unit: &'static str,
+    shading: Shading,
+    values: Vec<f64>,
+}
+
+/// Pressure, density and speed over the plane; `name` is the profile's file without its ending.
+pub fn draw_fields(
+    scene: &CheckedScene,
+    table: &ParticleTable,
+    notes: &[String],
+    name: &str,
+    folder: &Path,
+) -> Result<(), PictureError> {
+    let column = |name| table.column(name).expect("the table has its own columns");
+    let [x, y] = ["x", "y"].map(column);
+    let [vx, vy] = ["velocity_x", "velocity_y"].map(column);
+    let speed = vx.iter().zip(vy).map(|(x, y)| x.hypot(*y)).collect();
+    let drawn = [
+        Drawn {
+            stem: "pressure",
+            label: "Pressure",
+            unit: "Pa",
+            shading: Shading::BySign,
+            values: column("pressure").to_vec(),
+        },
+        Drawn {
+            stem: "density",
+            label: "Density",
+            unit: "kg/m3",
+            shading: Shading::Sequential,
+            values: column("density").to_vec(),
+        },
+        Drawn {
+            stem: "speed",
+            label: "Speed",
+            unit: "m/s",
+            shading: Shading::Sequential,
+            values: speed,
+        },
+    ];
+    let domain = &scene.scene.domain;
+    let corner = |corner: &[f64]| [corner[0], corner[1]];
+    let axes = if scene.axisymmetric() { ["r", "z"] } else { ["x", "y"] };
+    let joined = joined_sides(scene);
+    for Drawn { stem, label, unit, shading, values } in drawn {
+        let tile = |(k, value): (usize, f64)| Tile {
+            centre: [x[k], y[k]],
+            half_edges: compact(table.half_edges[k], &scene.cell_size),
+            value,
+            body: table.body[k],
+        };
+        let tiles = values.into_iter().enumerate().map(tile);
+        let tiles = tiles.flat_map(|tile| in_domain(scene, joined, tile)).collect();
+        let quantity = Quantity::new(label, unit, shading);
+        let field = Field {
+            extent: Some([corner(&domain.lower), corner(&domain.upper)]),
+            axes: axes.map(String::from),
+            // what lies about an axis is shown whole
+            mirror: (scene.axisymmetric() && domain.lower[0] == 0.0).then_some(Mirror {
+                across: Direction::X,
+                at: 0.0,
+                changes_sign: false,
+            }),
+            outlines: scene.bodies.len() > 1,
+            notes: notes.to_vec(),
+            ..Field::new(
+                scene.scene.title.clone(),
+                table.time,
+                quantity,
+                FieldData::Particles(tiles),
+            )
+        };
+        let file = name.replace("profile", stem);
+        plot::draw(&field.figure(), &folder.join(file))?;
+    }
+    Ok(())
+}
+
+/// Longest half diagonal with which a parallelogram is drawn as it is [cells].
+const LONGEST_DRAWN: f64 = 2.0;
+
+/// The half edges of a parallelogram [m]; of one that has been sheared into a needle, which would
+/// hide others and leave gaps where it is, those of a square of its area.
+fn compact([a, b]: [[f64; 2]; 2], cell: &[f64]) -> [[f64; 2]; 2] {
+    let diagonal = |sign: f64| {
+        let along = |d: usize| (a[d] + sign * b[d]) / cell[d];
+        along(0).hypot(along(1))
+    };
+    if diagonal(1.0).max(diagonal(-1.0)) <= LONGEST_DRAWN {
+        return [a, b];
+    }
+    let half = (a[0] * b[1] - a[1] * b[0]).abs().sqrt();
+    [[half, 0.0], [0.0, half]]
+}
+
+/// Along which directions the domain is joined to itself.
+fn joined_sides(scene: &CheckedScene) -> [bool; 2] {
+    scene.sides::<2>().map(|ends| ends.contains(&Side::Periodic))
+}
+
+/// The tile where it lies in a domain that is joined to itself along some directions, and once more
+/// at the opposite side where it crosses one.
+fn in_domain(scene: &CheckedScene, joined: [bool; 2], tile: Tile) -> Vec<Tile> {
+    let domain = &scene.scene.domain;
+    let mut tiles = vec![tile];
+    for d in (0..2).filter(|&d| joined[d]) {
+        let (lower, upper) = (domain.lower[d], domain.upper[d]);
+        let length = upper - lower;
+        for k in 0..tiles.len() {
+            let tile = &mut tiles[k];
+            tile.centre[d] -= ((tile.centre[d] - lower) / length).floor() * length;
+            let (tile, reach) = (*tile, tile.half_edges.iter().map(|edge| edge[d].abs()).sum());
+            let at = tile.centre[d];
+            for (crosses, image) in
+                [(at - lower < reach, at + length), (upper - at < reach, at - length)]
+            {
+                if crosses {
+                    let mut centre = tile.centre;
+                    centre[d] = image;
+                    tiles.push(Tile { centre, ..tile });
+                }
+            }
+        }
+    }
+    tiles
+}
+
+/// Pressure along the line of the waves of profile time number `k`, against the exact one.
+pub fn draw_along(
+    scene: &CheckedScene,
+    reference: &Reference,
+    k: usize,
+    table: &ParticleTable,
+    notes: Vec<String>,
+    stem: &Path,
+) -> Result<(), PictureError> {
+    let Some(exact) = reference.profile(scene, k) else { return Ok(()) };
+    let samples = reference.samples_along(scene, table, 0.5);
+    let line = |name: &str, look, x: Vec<f64>, p: Vec<f64>| LineOutCurve {
+        name: name.into(),
+        look,
+        points: Points::new(x, p),
+    };
+    let (xs, ps) = samples.iter().map(|s| (s.x, s.p)).unzip();
+    let (ex, ep) = exact.points.iter().map(|p| (p.x, p.p)).unzip();
+    let figure = LineOut {
+        title: scene.scene.title.clone(),
+        time: table.time,
+        position: "Position along the waves".into(),
+        quantity: "Pressure".into(),
+        unit: "Pa".into(),
+        curves: vec![
+            line("exact", Look::Reference, ex, ep),
+            line("mean over half a cell", Look::Dots, xs, ps),
+        ],
+        notes,
+        close_up: None,
+    };
+    plot::draw(&figure.figure(), stem)?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_needle_is_drawn_as_a_square_of_its_area() {
+        let tile = [[0.3, 0.1], [-0.1, 0.3]];
+        assert_eq!(compact(tile, &[1.0, 1.0]), tile);
+        let needle = [[3.0, 0.5], [2.9, 0.5]];
+        let [[a, zero], [other, b]] = compact(needle, &[1.0, 1.0]);
+        assert!((a * b - 0.05f64).abs() < 1e-15 && a == b && zero == 0.0 && other == 0.0);
+        assert_eq!(compact(needle, &[4.0, 4.0]), needle, "cells are larger");
+    }
+
+    #[test]
+    fn what_has_left_a_joined_side_is_drawn_within() {
+        let scene = include_bytes!("../../../inputs/shear_layer.json");
+        let scene = crate::scene::parse(scene, "shear_layer.json", &[]).unwrap();
+        let half_edges = [[0.02, 0.0], [0.0, 0.01]];
+        let tile = |x, y| Tile { centre: [x, y], half_edges, value: 1.0, body: 0 };
+        let centres = |x, y| -> Vec<[f64; 2]> {
+            in_domain(&scene, joined_sides(&scene), tile(x, y)).iter().map(|t| t.centre).collect()
+        };
+        assert_eq!(centres(3.25, 0.5), [[0.25, 0.5]]);
+        assert_eq!(centres(-0.25, 0.5), [[0.75, 0.5]]);
+        assert_eq!(centres(0.5, 1.0), [[0.5, 0.0], [0.5, 1.0]]);
+        assert_eq!(centres(1.0, 1.0).len(), 4);
+    }
+}

@@ -1,0 +1,635 @@
+//! A run with its files: steps, checkpoints, profiles, histories, scores, pictures, summary.
+//!
+//! Every rank steps; rank 0 gathers, scores and writes.
+
+pub mod checkpoint;
+pub mod figures;
+pub mod output;
+pub mod probes;
+pub mod rank_statistics;
+pub mod recorder;
+
+use std::io::IsTerminal;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicU8;
+use std::time::{Duration, Instant};
+
+use decomp::Comm;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::accuracy::estimate::{self, Answer, Laws, coarse_runs};
+use crate::accuracy::plan;
+use crate::accuracy::reference::Reference;
+use crate::driver::checkpoint::schedule::Stop;
+use crate::driver::checkpoint::{Checkpoint, CheckpointError, Schedule, StateColumn, folder};
+use crate::driver::output::OutputError;
+use crate::driver::output::csv::{profile_names, write_profile};
+use crate::driver::output::folder::{OutputFolder, checkpoint_folder};
+use crate::driver::output::histories::HISTORIES_FILE;
+use crate::driver::output::origin::Maker;
+use crate::driver::output::report::report;
+use crate::driver::output::summary::{
+    Energy, FailureSummary, Momentum, Outflow, ProfileSummary, Summary,
+};
+use crate::driver::output::trace::write_trace;
+use crate::driver::output::vtkhdf::{RESULTS_FILE, RunInfo, write_vtkhdf};
+use crate::driver::recorder::{Mark, Recorder};
+use crate::effects::ledger;
+use crate::plot::PictureError;
+use crate::scene::{CheckedScene, Side};
+use crate::simulation::ParticleTable;
+use crate::simulation::{Given, Left, RunError, Simulation, Totals};
+use crate::solver::clock::{Activity, user_cpu_seconds};
+use crate::solver::{Stepper, Steps};
+
+/// Why a run has no result.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// The run itself.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// The run itself, of which the last good state was looked after. All ranks know.
+    #[error("{error}; {next}")]
+    Alarm {
+        /// What ended it.
+        error: Box<RunError>,
+        /// Where it can go on.
+        next: String,
+    },
+    /// Its files.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// Its pictures.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// Its checkpoints.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// It was asked to end, and can go on: no failure. All ranks know.
+    #[error("stopped at time {time:.6e} s, step {step}: {why}; {next}")]
+    Stopped {
+        /// What asked for it.
+        why: String,
+        /// Time [s].
+        time: f64,
+        /// Steps made.
+        step: u64,
+        /// How to go on.
+        next: String,
+    },
+}
+
+/// What a run begins with.
+pub enum Beginning {
+    /// The start of its scene.
+    Scene,
+    /// A checkpoint, which rank 0 has and which fits the scene.
+    Checkpoint(Option<Box<Checkpoint>>),
+}
+
+/// How to run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Folder of the results.
+    pub output: PathBuf,
+    /// Refuse to replace an earlier result.
+    pub keep: bool,
+    /// Say nothing but errors.
+    pub quiet: bool,
+    /// Threads a rank.
+    pub threads: usize,
+    /// Where to write a timeline, and of which steps.
+    pub trace: Option<(PathBuf, Range<u64>)>,
+    /// When the process started.
+    pub started: Instant,
+    /// Number of a signal that has asked for an end; 0: none.
+    pub signal: Arc<AtomicU8>,
+}
+
+/// Tells how far a run is: a bar on a terminal, else a line now and then.
+struct Progress {
+    bar: Option<ProgressBar>,
+    /// Times between which it goes [s].
+    span: [f64; 2],
+    told: Instant,
+    started: Instant,
+    speaks: bool,
+}
+
+impl Progress {
+    fn new(span: [f64; 2], speaks: bool) -> Self {
+        let bar = (speaks && std::io::stderr().is_terminal()).then(|| {
+            let bar = ProgressBar::new(1000);
+            let style = "{bar:40} {percent:>3} %  {msg}  left {eta}";
+            bar.set_style(ProgressStyle::with_template(style).expect("the template is sound"));
+            bar
+        });
+        Progress { bar, span, told: Instant::now(), started: Instant::now(), speaks }
+    }
+
+    fn tell(&mut self, time: f64, step: u64) {
+        let every = Duration::from_millis(if self.bar.is_some() { 100 } else { 10_000 });
+        if !self.speaks || self.told.elapsed() < every {
+            return;
+        }
+        self.told = Instant::now();
+        let share = (time - self.span[0]) / (self.span[1] - self.span[0]);
+        match &self.bar {
+            Some(bar) => {
+                bar.set_position((1000.0 * share) as u64);
+                bar.set_message(format!("{time:.4e} s, step {step}"));
+            }
+            None => {
+                let left = self.started.elapsed().as_secs_f64() * (1.0 / share.max(1e-9) - 1.0);
+                eprintln!(
+                    "{:5.1} %  time {time:.4e} s, step {step}, {left:.0} s left",
+                    100.0 * share
+                );
+            }
+        }
+    }
+
+    fn finish(self) {
+        if let Some(bar) = self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// Steps to the end, recording and writing checkpoints on the way. Collective.
+fn step_to_end<const D: usize>(
+    simulation: &mut Simulation<'_, D>,
+    scene: &CheckedScene,
+    comm: &dyn Comm,
+    options: &Options,
+    recorder: &mut Recorder<'_>,
+    schedule: &mut Schedule,
+) -> Result<(), Failure>
+where
+    Stepper<D>: Steps<D>,
+{
+    let end = scene.scene.time.end;
+    let first = comm.rank() == 0;
+    let mut progress = Progress::new([simulation.time(), end], first && !options.quiet);
+    // the start and what the run goes on from need no checkpoint
+    let mut fresh = true;
+    let mut mark = recorder.mark();
+    loop {
+        let time = simulation.time();
+        let (start, waited) = (Instant::now(), comm.traffic().waited);
+        // a checkpoint holds what was recorded at its own step
+        let resumed = fresh && simulation.steps() > 0;
+        if !resumed {
+            recorder.record(simulation, first);
+        }
+        if simulation.held_at().1 == simulation.steps() {
+            mark = recorder.mark();
+        }
+        let asked = simulation.asked();
+        if !fresh && schedule.is_due(time, simulation.steps(), asked) {
+            write_checkpoint(simulation, comm, scene, options, recorder, schedule)?;
+        }
+        fresh = false;
+        let waited = comm.traffic().waited - waited;
+        simulation.clock().add(Activity::Wait, waited);
+        simulation.clock().add_since(Activity::Output, start, waited);
+        if time >= end {
+            break;
+        }
+        if let Some(stop) = Schedule::stops(asked) {
+            progress.finish();
+            return Err(stopped(stop, time, simulation.steps(), options, schedule));
+        }
+        simulation.ask(schedule.asks(first));
+        if let Err(error) = simulation.advance(recorder.next_profile()) {
+            progress.finish();
+            if !error.is_known_to_all() {
+                return Err(error.into());
+            }
+            let next =
+                save_last_good(simulation, comm, scene, options, (recorder, &mark), schedule);
+            return Err(Failure::Alarm { error: Box::new(error), next });
+        }
+        progress.tell(simulation.time(), simulation.steps());
+    }
+    progress.finish();
+    Ok(())
+}
+
+/// Writes the last state that the watch has passed; tells how to go on from it. Collective.
+fn save_last_good<const D: usize>(
+    simulation: &Simulation<'_, D>,
+    comm: &dyn Comm,
+    scene: &CheckedScene,
+    options: &Options,
+    (recorder, mark): (&Recorder<'_>, &Mark),
+    schedule: &Schedule,
+) -> String {
+    let (time, step) = simulation.held_at();
+    if step == 0 {
+        return "no state but the start has passed the watch".into();
+    }
+    if schedule.keep == 0 {
+        return "no state was written, for output.checkpoint.keep is 0".into();
+    }
+    let Some(saved) = simulation.last_good() else { return String::new() };
+    let text = serde_json::to_string(&scene.scene).expect("a scene is plain data");
+    let columns = state_columns(simulation);
+    let histories = recorder.histories_at(mark);
+    let contents = recorder.contents_at(mark, histories.as_ref(), &text, &saved, &columns);
+    let written = checkpoint_folder(&options.output).map_err(CheckpointError::from);
+    let written = written
+        .and_then(|folder| folder::write(&folder, schedule.keep, &contents, &|| comm.heartbeat()));
+    match written {
+        Ok(path) => format!(
+            "the last good state, time {time:.6e} s, step {step}, is in {}: go on with --restart, \
+             and --set time or watch",
+            path.display()
+        ),
+        Err(error) => format!("the last good state could not be written: {error}"),
+    }
+}
+
+/// The columns of a checkpoint's rows.
+fn state_columns<const D: usize>(simulation: &Simulation<'_, D>) -> Vec<StateColumn> {
+    let all = simulation.columns();
+    let of = |k: &usize| StateColumn {
+        name: all.specs[*k].name.into(),
+        unit: all.specs[*k].unit.into(),
+    };
+    all.state().iter().map(of).collect()
+}
+
+/// Writes a checkpoint. Collective.
+fn write_checkpoint<const D: usize>(
+    simulation: &Simulation<'_, D>,
+    comm: &dyn Comm,
+    scene: &CheckedScene,
+    options: &Options,
+    recorder: &Recorder<'_>,
+    schedule: &mut Schedule,
+) -> Result<(), Failure> {
+    let start = Instant::now();
+    if let Some(saved) = simulation.save() {
+        let text = serde_json::to_string(&scene.scene).expect("a scene is plain data");
+        let columns = state_columns(simulation);
+        let contents = recorder.contents(&text, &saved, &columns);
+        let folder = checkpoint_folder(&options.output)?;
+        // the others wait for this rank
+        folder::write(&folder, schedule.keep, &contents, &|| comm.heartbeat())?;
+    }
+    schedule.written(start.elapsed());
+    Ok(())
+}
+
+/// The end of a run before its time, in words.
+fn stopped(stop: Stop, time: f64, step: u64, options: &Options, schedule: &Schedule) -> Failure {
+    let why = match stop {
+        Stop::WallLimit => "time.wall_limit is over".to_string(),
+        Stop::Signal(signal) => format!("signal {signal} came"),
+    };
+    let next = match checkpoint_folder(&options.output) {
+        Ok(folder) if schedule.keep > 0 => format!("go on with --restart {}", folder.display()),
+        _ => "no checkpoint was written, for output.checkpoint.keep is 0".to_string(),
+    };
+    Failure::Stopped { why, time, step, next }
+}
+
+/// Runs a scene and writes its results; returns the final table at rank 0. Collective.
+pub fn run(
+    comm: &dyn Comm,
+    scene: &CheckedScene,
+    options: &Options,
+    beginning: Beginning,
+) -> Result<Option<String>, Failure> {
+    match scene.dimension {
+        1 => run_in::<1>(comm, scene, options, beginning),
+        _ => run_in::<2>(comm, scene, options, beginning),
+    }
+}
+
+/// A run in `D` directions.
+fn run_in<const D: usize>(
+    comm: &dyn Comm,
+    scene: &CheckedScene,
+    options: &Options,
+    beginning: Beginning,
+) -> Result<Option<String>, Failure>
+where
+    Stepper<D>: Steps<D>,
+{
+    // what the run's errors are told from
+    let estimated = scene.estimated_body();
+    let companions = match estimated {
+        Some(body) => Some(coarse_runs::run(comm, scene, body, options.threads)?),
+        None => None,
+    };
+    let mut simulation = Simulation::<D>::new(scene, comm, options.threads)?;
+    let start = simulation.totals();
+    if let Some((_, steps)) = &options.trace {
+        simulation.trace(steps.clone());
+    }
+    let mut recorder = Recorder::new(scene, &simulation);
+    if let Some((body, companions)) = estimated.zip(companions.as_ref()) {
+        recorder.arrivals = coarse_runs::arrivals(comm, scene, body, companions);
+    }
+    if let Beginning::Checkpoint(checkpoint) = beginning {
+        simulation.restore(checkpoint.as_ref().map(|c| &c.saved))?;
+        recorder.resume(comm, checkpoint.map(|c| *c), simulation.time());
+    }
+    let (now, signal) = (simulation.time(), options.signal.clone());
+    let mut schedule = Schedule::new(scene, now, options.started, signal);
+    let before = comm.traffic();
+    let (loop_start, loop_cpu) = (Instant::now(), user_cpu_seconds());
+    step_to_end(&mut simulation, scene, comm, options, &mut recorder, &mut schedule)?;
+    let loop_wall_seconds = loop_start.elapsed().as_secs_f64();
+    let loop_cpu = user_cpu_seconds() - loop_cpu;
+    let (end, ways, given) = (simulation.totals(), simulation.ways(), simulation.given());
+    let sharing = &scene.scene.decomposition;
+    let decomposition = rank_statistics::decomposition(
+        comm,
+        &mut simulation,
+        sharing,
+        loop_wall_seconds,
+        loop_cpu,
+        before,
+    );
+    let shares = rank_statistics::effect_shares(comm, &simulation);
+    let (stretched, energy_change) = (simulation.stretched(), simulation.energy_change());
+    if let Some((path, _)) = &options.trace {
+        let events = rank_statistics::timeline(comm, &mut simulation);
+        if comm.rank() == 0 {
+            write_trace(path, &events)?;
+        }
+    }
+    let spent = comm.gather(&[loop_cpu.to_bits(), user_cpu_seconds().to_bits()]);
+    let Some(decomposition) = decomposition else { return Ok(None) };
+    let seconds = |rank: &[u64], k: usize| f64::from_bits(rank[k]);
+    let loop_cpu: f64 = spent.iter().map(|r| seconds(r, 0)).sum();
+    // a run shorter than the clock's tick has no CPU time
+    let loop_cpu = if loop_cpu > 0.0 { loop_cpu } else { loop_wall_seconds };
+    let others_cpu: f64 = spent.iter().skip(1).map(|r| seconds(r, 1)).sum();
+
+    // a run is worth its files even where no exact solution can be had
+    let mut warnings = scene.warnings.clone();
+    let reference = Reference::new(scene).unwrap_or_else(|error| {
+        warnings.push(format!("no exact solution: {error}"));
+        None
+    });
+    if let Some(Reference::Impact(all)) = &reference
+        && let Some((time, why)) = &all.solution.stopped
+    {
+        warnings.push(format!("the exact solution ends at {time:.4e} s, before the run: {why}"));
+    }
+    // the others wait for this rank at their end
+    comm.heartbeat();
+    let maker = Maker::with(recorder.origin.clone(), scene);
+    let folder = OutputFolder::create(&options.output, options.keep, &maker)?;
+    let profiles = write_profiles(comm, scene, reference.as_ref(), &recorder, &folder)?;
+    let as_run = serde_json::to_value(&scene.scene).expect("a scene is plain data");
+    if scene.scene.output.hdf5 {
+        let bodies: Vec<String> = scene.scene.bodies.iter().map(|b| b.name.clone()).collect();
+        let info = RunInfo { title: &scene.scene.title, scene: &as_run, bodies: &bodies };
+        let tables: Vec<ParticleTable> = recorder.tables.iter().map(|t| t.0.clone()).collect();
+        write_vtkhdf(&folder.file(RESULTS_FILE), &tables, &info)?;
+        comm.heartbeat();
+    }
+    if let Some(histories) = recorder.histories() {
+        histories.write(&folder.file(HISTORIES_FILE))?;
+    }
+    if scene.scene.output.pictures {
+        draw(comm, scene, reference.as_ref(), &recorder, &profiles, &folder)?;
+    }
+    let error_estimate = estimated.zip(companions.as_ref()).map(|(body, companions)| {
+        let tables = recorder.tables.iter().map(|t| &t.0).collect();
+        let (arrivals, steps) = (&recorder.arrivals, simulation.steps());
+        let reference = reference.as_ref();
+        let answer = Answer { scene, body, tables, arrivals, steps, reference };
+        let mut told = estimate::estimate(&answer, companions, &Laws::shipped());
+        for (told, profile) in told.profiles.iter_mut().zip(&profiles) {
+            told.l1.exact = profile.error("l1");
+        }
+        told
+    });
+    let plan = scene.scene.output.plan.as_ref().map(|planned| {
+        let seconds = [loop_cpu, loop_wall_seconds];
+        let exact_l1: Vec<f64> = profiles.iter().filter_map(|p| p.error("l1")).collect();
+        plan::verdict(planned, &exact_l1, error_estimate.as_ref(), seconds)
+    });
+    let times = [0.0, simulation.time()];
+    let left = ways.outflow.and(&ways.erosion);
+    let rounding = simulation.rounding_energy();
+    let (energy, momentum) = balance(scene, times, [&start, &end], &left, &given, rounding);
+    let lets_out = scene.sides::<D>().as_flattened().iter().any(|side| side.lets_out());
+    warnings.extend(inaccurate(energy_change, stretched, simulation.tally().redone_steps));
+    warnings.extend(simulation.peaks().warnings());
+    let particle_steps = scene.particles as f64 * simulation.steps_made() as f64;
+    let layout = simulation.layout();
+    let summary = Summary {
+        title: scene.scene.title.clone(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        origin: Some(folder.origin()),
+        scene: as_run,
+        ranks: comm.size(),
+        threads: options.threads,
+        patches: layout.parts().to_vec(),
+        particles: scene.particles,
+        cells: scene.cell_count(),
+        steps: simulation.steps(),
+        wall_seconds: options.started.elapsed().as_secs_f64(),
+        loop_wall_seconds,
+        loop_cpu_seconds: loop_cpu,
+        cpu_seconds: user_cpu_seconds() + others_cpu,
+        particle_steps_per_cpu_second: particle_steps / loop_cpu,
+        phase_seconds: decomposition.seconds(),
+        decomposition,
+        effects: ledger(scene, simulation.columns(), shares),
+        energy,
+        momentum,
+        outflow: lets_out.then(|| gone(&ways.outflow)),
+        erosion: scene.erodes().then(|| gone(&ways.erosion)),
+        failure: simulation
+            .columns()
+            .failure
+            .map(|_| FailureSummary { particles: end.failed, released_energy: end.released }),
+        profiles,
+        error_estimate,
+        plan,
+        warnings,
+    };
+    summary.write(folder.path())?;
+    let place = folder.commit()?;
+    if schedule.passing {
+        folder::clear(&checkpoint_folder(&options.output)?);
+    }
+    Ok(Some(report(&summary, &place)))
+}
+
+/// Drift of energy beyond which a run says that it is inaccurate [-].
+const DRIFT_TOLD: f64 = 0.01;
+
+/// What a run that has ended well says against its accuracy, one line each.
+fn inaccurate(energy_change: f64, stretched: u64, redone: u64) -> Vec<String> {
+    let drift = (energy_change.abs() > DRIFT_TOLD).then(|| {
+        format!(
+            "energy has drifted by {:+.2} % of what the bodies bring: the scheme does not keep it, and shocks are wrong \
+             with it; method.stepping \"midpoint\" with method.energy \"compatible\" and \
+             method.filter_heat keep it to rounding",
+            100.0 * energy_change
+        )
+    });
+    let stretched = (stretched > 0).then(|| {
+        format!(
+            "{stretched} particles fill more than a cell each, further than the shape function \
+             takes them to reach: gaps may have opened between them; more particles a cell, or \
+             method.shape \"cpdi_bspline_quadratic\""
+        )
+    });
+    let redone = (redone > 0).then(|| {
+        format!("{redone} times a step was redone half as long, as watch.on_alarm = \"redo\" asks")
+    });
+    drift.into_iter().chain(stretched).chain(redone).collect()
+}
+
+/// Writes each profile and scores it.
+fn write_profiles(
+    comm: &dyn Comm,
+    scene: &CheckedScene,
+    reference: Option<&Reference>,
+    recorded: &Recorder<'_>,
+    folder: &OutputFolder,
+) -> Result<Vec<ProfileSummary>, Failure> {
+    let names = profile_names(&scene.profile_times);
+    let mut profiles = Vec::new();
+    for (k, ((table, digest), file)) in recorded.tables.iter().zip(names).enumerate() {
+        write_profile(&folder.file(&file), table)?;
+        let as_json = |e| serde_json::to_value(e).expect("errors are plain data");
+        let (errors, errors_cell) = match reference {
+            Some(Reference::Plane(plane)) => {
+                (plane.score(scene, table, recorded.start.as_ref()), None)
+            }
+            _ => match reference.and_then(|r| r.score(scene, k, table)) {
+                Some((raw, cell)) => (Some(as_json(raw)), Some(as_json(cell))),
+                None => (None, None),
+            },
+        };
+        profiles.push(ProfileSummary {
+            time: table.time,
+            file,
+            state_sha256: digest.clone(),
+            errors,
+            errors_cell,
+        });
+        comm.heartbeat();
+    }
+    Ok(profiles)
+}
+
+/// All pictures of a run.
+fn draw(
+    comm: &dyn Comm,
+    scene: &CheckedScene,
+    reference: Option<&Reference>,
+    recorded: &Recorder<'_>,
+    profiles: &[ProfileSummary],
+    folder: &OutputFolder,
+) -> Result<(), PictureError> {
+    if let (1, Some(Reference::Impact(all))) = (scene.dimension, reference) {
+        let bodies = [all.flyer, all.target];
+        figures::draw_hugoniots(scene, bodies, &all.impact, &all.chain, folder.path())?;
+    }
+    for (k, ((table, _), profile)) in recorded.tables.iter().zip(profiles).enumerate() {
+        let mut notes = Vec::new();
+        if let Some(l1) = profile.error("l1") {
+            notes.push(format!("L1 {:.2} % of the true solution", 100.0 * l1));
+        }
+        if let Some(plateau) = profile.error("plateau") {
+            notes.push(format!("plateau {:+.3} %", 100.0 * plateau));
+        }
+        let stem = Path::new(&profile.file).with_extension("");
+        if scene.dimension > 1 {
+            let name = stem.to_string_lossy();
+            figures::draw_fields(scene, table, &notes, &name, folder.path())?;
+            if let Some(reference) = reference {
+                let along = folder.file(&name.replace("profile", "along"));
+                figures::draw_along(scene, reference, k, table, notes, &along)?;
+            }
+            comm.heartbeat();
+            continue;
+        }
+        let stem = stem.to_string_lossy().replace("profile", "figure_4");
+        figures::draw_profile(scene, reference, k, table, notes, &folder.file(&stem))?;
+        comm.heartbeat();
+    }
+    if scene.dimension > 1 {
+        return Ok(());
+    }
+    let title = format!("{}: pressure and wave paths", scene.scene.title);
+    let stem = folder.file("x_t_diagram");
+    figures::draw_waves(&title, &recorded.waves, None, reference, &stem)?;
+    comm.heartbeat();
+    if let Some(histories) = recorded.histories() {
+        figures::draw_histories(scene, histories, reference, &folder.file("histories"))?;
+    }
+    Ok(())
+}
+
+/// Energy and momentum at start and end, with what sides and outflows have given and taken.
+///
+/// A wall's impulse on the particles is what their momentum has changed by, for nothing else
+/// acts on them from outside; a piston's work is its velocity times its impulse, or where it
+/// changes its velocity what the frame of the grid gives and takes. What transmitting sides,
+/// pressures and friction on walls give is summed up as it is given.
+fn balance<const D: usize>(
+    scene: &CheckedScene,
+    times: [f64; 2],
+    [start, end]: [&Totals<D>; 2],
+    left: &Left<D>,
+    given: &Given<D>,
+    rounding: f64,
+) -> (Energy, Momentum) {
+    let sides = scene.sides::<D>();
+    let rigid = |a: usize| sides[a].iter().any(|s| s.rigid_velocity().is_some());
+    let holds = sides.as_flattened().contains(&Side::NoSlip);
+    // along a radius momentum is no sum that is kept
+    let booked = |a: usize| rigid(a) || holds || (a == 0 && scene.axisymmetric());
+    let walls: [f64; D] = std::array::from_fn(|a| match booked(a) {
+        true => {
+            let all = end.momentum[a] + left.momentum[a] - start.momentum[a];
+            all - end.body_force_impulse[a]
+        }
+        false => given.impulse[a],
+    });
+    let impulse: [f64; D] = std::array::from_fn(|a| walls[a] - left.momentum[a]);
+    let frame = scene.frame::<D>();
+    let pistons = if frame.accelerates() {
+        let ahead = |k: usize, t: &Totals<D>| frame.energy_ahead(times[k], t.mass, &t.momentum);
+        ahead(1, end) - ahead(0, start)
+    } else {
+        let velocity = frame.velocity(0.0);
+        (0..D).map(|a| velocity[a] * walls[a]).sum::<f64>()
+    };
+    let work = pistons + given.work + end.conducted - (left.kinetic + left.internal);
+    let energy =
+        Energy::new([start.kinetic, end.kinetic], [start.internal, end.internal], work, rounding);
+    let momentum = Momentum::new(&start.momentum, &end.momentum, &impulse, start.absolute_momentum);
+    match scene.scene.body_force {
+        None => (energy, momentum),
+        Some(_) => (
+            energy.with_body_force(end.body_force_work, rounding),
+            momentum.with_body_force(&end.body_force_impulse, start.absolute_momentum),
+        ),
+    }
+}
+
+/// What has left in one way, as the summary has it.
+fn gone<const D: usize>(left: &Left<D>) -> Outflow {
+    Outflow {
+        particles: left.count,
+        mass: left.mass,
+        momentum: left.momentum.to_vec(),
+        energy: left.kinetic + left.internal,
+    }
+}

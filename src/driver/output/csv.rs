@@ -1,0 +1,385 @@
+//! Profiles as CSV: a header, then one line a particle.
+//!
+//! A number is the shortest text that gives the double back, so that files can be compared to the
+//! bit; a missing one (NaN) is an empty field. Text is quoted only where RFC 4180 asks for it.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+use super::error::{OutputError, read_text};
+use crate::scene::input_file::LARGEST_RESULT;
+use crate::simulation::ParticleTable;
+
+/// Names of the profile files, one a time \[s\], such as `profile_0.500us.csv`; no two are alike,
+/// and none depends on more than the times.
+pub fn profile_names(times: &[f64]) -> Vec<String> {
+    let longest = times.iter().fold(0.0_f64, |a, t| a.max(t.abs()));
+    let (unit, scale) = match longest {
+        t if t >= 0.1 => ("s", 1.0),
+        t if t >= 1e-3 => ("ms", 1e3),
+        t if t >= 1e-8 => ("us", 1e6),
+        _ => ("ns", 1e9),
+    };
+    let texts = |decimals: usize| -> Vec<String> {
+        times.iter().map(|t| format!("{:.decimals$}", t * scale)).collect()
+    };
+    let told_apart = |texts: &[String]| {
+        let zeros = texts.iter().zip(times).any(|(s, t)| *t != 0.0 && s.parse() == Ok(0.0_f64));
+        !zeros && (1..texts.len()).all(|i| !texts[..i].contains(&texts[i]))
+    };
+    let decimals = (3..=24).find(|&d| told_apart(&texts(d))).unwrap_or(3);
+    let mut names: Vec<String> = Vec::with_capacity(times.len());
+    for text in texts(decimals) {
+        let mut name = format!("profile_{text}{unit}.csv");
+        let mut copy = 1;
+        while names.contains(&name) {
+            copy += 1;
+            name = format!("profile_{text}{unit}_{copy}.csv");
+        }
+        names.push(name);
+    }
+    names
+}
+
+/// Writes every particle of the table, in its order.
+///
+/// The columns are those of the table; `material`, by name, follows `artificial_viscosity`.
+pub fn write_profile(path: &Path, table: &ParticleTable) -> Result<(), OutputError> {
+    let split = table
+        .columns
+        .iter()
+        .position(|c| c.name == "artificial_viscosity")
+        .map_or(table.columns.len(), |i| i + 1);
+    let (before, after) = table.columns.split_at(split);
+    let materials: Vec<String> = table.materials.iter().map(|name| field(name)).collect();
+    let mut header: Vec<String> = before.iter().map(|c| field(&c.name)).collect();
+    header.push("material".to_owned());
+    header.extend(after.iter().map(|c| field(&c.name)));
+    write_rows(path, &header, table.len(), |text, row| {
+        for column in before {
+            push_number(text, column.values[row]);
+            text.push(b',');
+        }
+        text.extend_from_slice(materials[table.material[row] as usize].as_bytes());
+        for column in after {
+            text.push(b',');
+            push_number(text, column.values[row]);
+        }
+    })
+}
+
+/// Writes a header and `rows` lines; `fill` appends the fields of a line, commas between.
+pub(super) fn write_rows(
+    path: &Path,
+    header: &[String],
+    rows: usize,
+    fill: impl Fn(&mut Vec<u8>, usize),
+) -> Result<(), OutputError> {
+    let file = File::create(path).map_err(OutputError::io("create the file", path))?;
+    let mut out = BufWriter::with_capacity(1 << 16, file);
+    let mut write = || {
+        let mut line = header.join(",").into_bytes();
+        line.push(b'\n');
+        out.write_all(&line)?;
+        for row in 0..rows {
+            line.clear();
+            fill(&mut line, row);
+            line.push(b'\n');
+            out.write_all(&line)?;
+        }
+        out.flush()
+    };
+    write().map_err(OutputError::io("write the file", path))
+}
+
+/// Text as a field of a line: in quotes only where it must be.
+pub(super) fn field(text: &str) -> String {
+    let plain = !text.contains([',', '"', '\n', '\r']) && text.trim() == text && !text.is_empty();
+    if plain { text.to_owned() } else { format!("\"{}\"", text.replace('"', "\"\"")) }
+}
+
+/// Appends the shortest text that gives the double back; nothing for NaN.
+///
+/// Whole numbers keep their `.0`, lest a reader take them for integers and lose the sign of zero.
+pub fn push_number(text: &mut Vec<u8>, value: f64) {
+    if value.is_nan() {
+        return;
+    }
+    let mut buffer = ryu::Buffer::new();
+    let fixed = buffer.format(value);
+    let start = text.len();
+    if value != 0.0 && !fixed.contains(['e', 'i']) {
+        push_scientific(text, fixed);
+        if text.len() - start < fixed.strip_suffix(".0").unwrap_or(fixed).len() {
+            return;
+        }
+        text.truncate(start);
+    }
+    text.extend_from_slice(fixed.as_bytes());
+}
+
+/// Appends `fixed`, such as `0.00125`, as `1.25e-3`.
+fn push_scientific(text: &mut Vec<u8>, fixed: &str) {
+    let unsigned = fixed.trim_start_matches('-');
+    if unsigned.len() < fixed.len() {
+        text.push(b'-');
+    }
+    let (whole, fraction) = unsigned.split_once('.').unwrap_or((unsigned, ""));
+    let digits = || whole.bytes().chain(fraction.bytes());
+    let zeros = digits().take_while(|&d| d == b'0').count();
+    let exponent = whole.len() as i32 - 1 - zeros as i32;
+    let start = text.len();
+    text.extend(digits().skip(zeros));
+    while text.len() > start + 1 && text.last() == Some(&b'0') {
+        text.pop();
+    }
+    if text.len() > start + 1 {
+        text.insert(start + 1, b'.');
+    }
+    text.extend_from_slice(format!("e{exponent}").as_bytes());
+}
+
+/// A CSV file, read back.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CsvTable {
+    /// The columns in the order of the file.
+    pub columns: Vec<CsvColumn>,
+}
+
+/// One column of a [`CsvTable`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct CsvColumn {
+    /// Name in the header.
+    pub name: String,
+    /// One value a line.
+    pub values: CsvValues,
+}
+
+/// Values of a [`CsvColumn`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum CsvValues {
+    /// Every field is a number or empty (NaN).
+    Numbers(Vec<f64>),
+    /// Anything else.
+    Text(Vec<String>),
+}
+
+impl CsvTable {
+    /// Number of lines below the header.
+    pub fn len(&self) -> usize {
+        self.columns.first().map_or(0, |c| match &c.values {
+            CsvValues::Numbers(v) => v.len(),
+            CsvValues::Text(v) => v.len(),
+        })
+    }
+
+    /// Whether there is no line below the header.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The column `name`, if it is there and holds numbers.
+    pub fn numbers(&self, name: &str) -> Option<&[f64]> {
+        match &self.columns.iter().find(|c| c.name == name)?.values {
+            CsvValues::Numbers(values) => Some(values),
+            CsvValues::Text(_) => None,
+        }
+    }
+}
+
+/// Reads a file as [`write_profile`] writes it.
+pub fn read_csv(path: &Path) -> Result<CsvTable, OutputError> {
+    let text = read_text(path, LARGEST_RESULT)?;
+    let fault =
+        |line: usize, message: String| OutputError::Csv { path: path.into(), line, message };
+    let mut records = records(&text);
+    let Some((line, names)) = records.next() else { return Err(fault(1, "no header".into())) };
+    let names = names.map_err(|message| fault(line, message))?;
+    let mut columns: Vec<Vec<String>> = vec![Vec::new(); names.len()];
+    for (line, record) in records {
+        let record = record.map_err(|message| fault(line, message))?;
+        if record.len() != names.len() {
+            let message = format!("{} fields, the header has {}", record.len(), names.len());
+            return Err(fault(line, message));
+        }
+        for (column, value) in columns.iter_mut().zip(record) {
+            column.push(value);
+        }
+    }
+    let columns = names.into_iter().zip(columns).map(|(name, texts)| {
+        let number = |s: &String| if s.is_empty() { Some(f64::NAN) } else { s.parse().ok() };
+        let values = match texts.iter().map(number).collect() {
+            Some(numbers) => CsvValues::Numbers(numbers),
+            None => CsvValues::Text(texts),
+        };
+        CsvColumn { name, values }
+    });
+    Ok(CsvTable { columns: columns.collect() })
+}
+
+/// The records of the text, each with the number of its first line.
+fn records(text: &str) -> impl Iterator<Item = (usize, Result<Vec<String>, String>)> {
+    let (mut rest, mut line) = (text, 1);
+    std::iter::from_fn(move || {
+        if rest.is_empty() {
+            return None;
+        }
+        let first = line;
+        let mut fields = Vec::new();
+        loop {
+            let value;
+            (value, rest) = match next_field(rest) {
+                Ok(split) => split,
+                Err(message) => {
+                    rest = "";
+                    return Some((first, Err(message)));
+                }
+            };
+            line += value.matches('\n').count();
+            fields.push(value);
+            if let Some(next) = rest.strip_prefix(',') {
+                rest = next;
+                continue;
+            }
+            rest = rest.strip_prefix('\r').unwrap_or(rest);
+            rest = rest.strip_prefix('\n').unwrap_or(rest);
+            line += 1;
+            return Some((first, Ok(fields)));
+        }
+    })
+}
+
+/// Takes one field; what is left begins with a comma or an end of line, or is empty.
+fn next_field(text: &str) -> Result<(String, &str), String> {
+    if !text.starts_with('"') {
+        let end = text.find([',', '\n', '\r']).unwrap_or(text.len());
+        return Ok((text[..end].to_owned(), &text[end..]));
+    }
+    let mut value = String::new();
+    let mut rest = &text[1..];
+    loop {
+        let Some((part, after)) = rest.split_once('"') else {
+            return Err("a quote is not closed".into());
+        };
+        value.push_str(part);
+        match after.strip_prefix('"') {
+            Some(more) => {
+                value.push('"');
+                rest = more;
+            }
+            None if after.is_empty() || after.starts_with([',', '\n', '\r']) => {
+                return Ok((value, after));
+            }
+            None => return Err("text after a closing quote".into()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+    use crate::simulation::TableColumn;
+
+    fn number(value: f64) -> String {
+        let mut text = Vec::new();
+        push_number(&mut text, value);
+        String::from_utf8(text).unwrap()
+    }
+
+    #[test]
+    fn numbers_are_short_and_come_back_to_the_bit() {
+        for (value, text) in [
+            (0.0, "0.0"),
+            (-0.0, "-0.0"),
+            (1.0, "1.0"),
+            (20.0, "20.0"),
+            (-1000.0, "-1e3"),
+            (2785.0, "2785.0"),
+            (1e-5, "1e-5"),
+            (-2.5e-6, "-2.5e-6"),
+            (0.00125, "0.00125"),
+            (5.025e-4, "5.025e-4"),
+            (0.125, "0.125"),
+            (12144294123.5, "12144294123.5"),
+            (5e-324, "5e-324"),
+            (f64::INFINITY, "inf"),
+            (f64::NAN, ""),
+        ] {
+            assert_eq!(number(value), text);
+        }
+        // A walk over all magnitudes, by a fixed linear congruence.
+        let mut bits = 1_u64;
+        for _ in 0..100_000 {
+            bits = bits.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            let value = f64::from_bits(bits);
+            if value.is_nan() {
+                continue;
+            }
+            let scaled = value.rem_euclid(1.0) * 10_f64.powi((bits >> 8) as i32 % 12);
+            for value in [value, scaled] {
+                let text = number(value);
+                assert_eq!(text.parse::<f64>().unwrap().to_bits(), value.to_bits(), "{text}");
+                assert!(text.len() <= format!("{value:?}").len(), "{text} {value:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_profile_comes_back() {
+        let column = |name: &str, values: &[f64]| TableColumn {
+            name: name.into(),
+            unit: "m".into(),
+            values: values.into(),
+        };
+        let table = ParticleTable {
+            time: 1e-6,
+            dimension: 1,
+            ids: vec![4, 2],
+            material: vec![1, 0],
+            materials: vec!["copper".into(), "Al \"6061\", T6\nrolled".into()],
+            body: vec![0, 1],
+            columns: vec![
+                column("x", &[-2.5e-6, 0.1 + 0.2]),
+                column("artificial_viscosity", &[0.0, -0.0]),
+                column("temperature", &[f64::NAN, 293.15]),
+            ],
+            half_edges: Vec::new(),
+        };
+        let home = tempfile::tempdir().unwrap();
+        let path = home.path().join("p.csv");
+        write_profile(&path, &table).unwrap();
+        let text = fs::read_to_string(&path).unwrap();
+        let expected = "x,artificial_viscosity,material,temperature\n\
+            -2.5e-6,0.0,\"Al \"\"6061\"\", T6\nrolled\",\n\
+            0.30000000000000004,-0.0,copper,293.15\n";
+        assert_eq!(text, expected);
+        let back = read_csv(&path).unwrap();
+        assert_eq!(back.len(), 2);
+        assert_eq!(back.numbers("x"), table.column("x"));
+        assert!(back.numbers("temperature").unwrap()[0].is_nan());
+        let names = CsvValues::Text(vec![table.materials[1].clone(), table.materials[0].clone()]);
+        assert_eq!(back.columns[2].values, names);
+        fs::write(&path, "x,y\n1,2\n3\n").unwrap();
+        assert!(
+            read_csv(&path)
+                .unwrap_err()
+                .to_string()
+                .ends_with("p.csv: line 3: 1 fields, the header has 2")
+        );
+    }
+
+    #[test]
+    fn profiles_have_names_of_their_own() {
+        let names = |t: &[f64]| profile_names(t).join(" ");
+        assert_eq!(names(&[2e-7, 1e-6]), "profile_0.200us.csv profile_1.000us.csv");
+        assert_eq!(names(&[0.0, 0.2]), "profile_0.000s.csv profile_0.200s.csv");
+        assert_eq!(names(&[5e-7, 5.0001e-7]), "profile_0.50000us.csv profile_0.50001us.csv");
+        assert_eq!(names(&[1e-13, 1e-6]), "profile_0.0000001us.csv profile_1.0000000us.csv");
+        assert_eq!(names(&[1e-6, 1e-6]), "profile_1.000us.csv profile_1.000us_2.csv");
+        let twins = profile_names(&[1e-6, 1e-6_f64.next_up()]);
+        assert_ne!(twins[0], twins[1]);
+    }
+}

@@ -1,0 +1,370 @@
+//! The table that a run ends with.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::decomposition::DecompositionSummary;
+use super::summary::{FailureSummary, Outflow, ProfileSummary, Summary};
+use crate::accuracy::estimate::{Basis, Bounded, ErrorEstimate};
+use crate::accuracy::plan::Verdict;
+use crate::effects::{ledger_lines, ledger_rest};
+use crate::solver::clock::Activity;
+
+/// Errors of a profile by name, with a heading and whether they are shown in per cent.
+const ERRORS: [(&str, &str, bool); 22] = [
+    ("l1", "L1 %", true),
+    ("l2", "L2 %", true),
+    ("e1_cells", "E1 cells", false),
+    ("plateau", "plateau %", true),
+    ("noise", "noise %", true),
+    ("shock_position_cells", "shock cells", false),
+    ("rise_cells", "rise cells", false),
+    ("overshoot", "overshoot %", true),
+    ("plateau_4", "plateau 4 %", true),
+    ("density_plateau", "density %", true),
+    ("energy_plateau", "energy %", true),
+    ("density_interface", "interface density %", true),
+    ("energy_interface", "energy %", true),
+    ("displacement_l2", "displacement L2 %", true),
+    ("angular_momentum_loss", "angular momentum lost %", true),
+    ("energy_loss", "energy lost %", true),
+    ("kinetic_energy_loss", "kinetic energy lost %", true),
+    ("velocity_rms", "velocity rms %", true),
+    ("pressure_rms", "pressure rms %", true),
+    ("pressure_form_rms", "form rms %", true),
+    ("mean_density", "density", false),
+    ("mean_density_error", "density error %", true),
+];
+
+/// Each time's errors, energy, momentum, steps, seconds, and where the files are, as aligned text.
+pub fn report(summary: &Summary, folder: &Path) -> String {
+    let mut text = format!("{}\n", summary.title);
+    for warning in &summary.warnings {
+        text += &format!("warning: {warning}\n");
+    }
+    if summary.profiles.iter().any(|p| p.errors.is_some()) {
+        text += &table(&errors(&summary.profiles));
+    }
+    if summary.ranks > 1 {
+        text += &table(&ranks(&summary.decomposition));
+    }
+    text += &table(&ledger_lines(&summary.effects));
+    text += &format!("  {}\n", ledger_rest(&summary.effects));
+    text += &table(&facts(summary, folder));
+    text
+}
+
+/// Most ranks that are listed; `summary.json` has all.
+const LISTED: usize = 16;
+
+/// One line a rank: where its time went, and what it sent.
+fn ranks(sharing: &DecompositionSummary) -> Vec<Vec<String>> {
+    let activities = || Activity::ALL.iter().map(|a| a.name());
+    let mut heading: Vec<String> = vec!["ranks".into(), "patches".into(), "particles".into()];
+    heading.extend(activities().map(|name| format!("{name} s")));
+    heading.extend(["messages", "bytes", "migrated"].map(String::from));
+    let mut lines = vec![heading];
+    for rank in sharing.ranks.iter().take(LISTED) {
+        let seconds = |name| rank.seconds.get(name).copied().unwrap_or(0.0);
+        let mut line = vec![
+            format!("rank {}", rank.rank),
+            rank.patches.to_string(),
+            rank.particles.to_string(),
+        ];
+        line.extend(activities().map(|name| format!("{:.3}", seconds(name))));
+        line.extend([rank.messages, rank.bytes, rank.particles_migrated].map(|n| n.to_string()));
+        lines.push(line);
+    }
+    lines
+}
+
+/// One line a profile; errors that no profile has are left out.
+fn errors(profiles: &[ProfileSummary]) -> Vec<Vec<String>> {
+    let mut shown: Vec<(String, String, bool)> =
+        ERRORS.iter().map(|(key, head, p)| ((*key).into(), (*head).into(), *p)).collect();
+    // What another reference scores by.
+    for (key, _) in profiles.iter().filter_map(|p| p.errors.as_ref()?.as_object()).flatten() {
+        if !shown.iter().any(|(name, ..)| name == key) {
+            shown.push((key.clone(), key.replace('_', " "), false));
+        }
+    }
+    shown.retain(|(key, ..)| profiles.iter().any(|p| p.error(key).is_some()));
+    let heading = ["time".to_owned()].into_iter().chain(shown.iter().map(|(_, h, _)| h.clone()));
+    let mut lines = vec![heading.collect::<Vec<_>>()];
+    for profile in profiles {
+        let value = |key: &str, percent: bool| match profile.error(key) {
+            None => "-".to_owned(),
+            Some(value) => significant(value * if percent { 100.0 } else { 1.0 }),
+        };
+        let values = shown.iter().map(|(key, _, percent)| value(key, *percent));
+        lines.push([seconds(profile.time)].into_iter().chain(values).collect());
+    }
+    lines
+}
+
+fn facts(summary: &Summary, folder: &Path) -> Vec<Vec<String>> {
+    let Summary { energy, momentum, .. } = summary;
+    let dimension = momentum.start.len();
+    let per = ["/m2", "/m", ""][dimension.clamp(1, 3) - 1];
+    let drift = |d: Option<f64>| d.map_or("-".into(), |d| format!("{d:.1e}"));
+    let vector = |v: &[f64]| v.iter().map(|v| format!("{v:.6e}")).collect::<Vec<_>>().join(" ");
+    let joined = |n: &[usize]| n.iter().map(usize::to_string).collect::<Vec<_>>().join(" x ");
+    let mut facts = vec![
+        (
+            "energy",
+            format!(
+                "start {:.6e}  end {:.6e} J{per}  boundaries {:.2e}  drift {}",
+                energy.total_start,
+                energy.total_end,
+                energy.boundary_work,
+                drift(energy.drift)
+            ),
+        ),
+        (
+            "momentum",
+            format!(
+                "start {}  end {} kg m/s{per}  boundaries {}  drift {}",
+                vector(&momentum.start),
+                vector(&momentum.end),
+                vector(&momentum.boundary_impulse),
+                drift(momentum.drift)
+            ),
+        ),
+    ];
+    if let Some(out) = &summary.outflow {
+        facts.push(("outflow", format!("{} particles, {:.6e} kg{per}", out.particles, out.mass)));
+    }
+    if let Some(out) = &summary.erosion {
+        let Outflow { particles, mass, energy, .. } = out;
+        let what = format!("{particles} particles, {mass:.6e} kg{per}, {energy:.6e} J{per}");
+        facts.push(("erosion", format!("{what} taken out")));
+    }
+    if let Some(failure) = &summary.failure {
+        let FailureSummary { particles, released_energy } = failure;
+        let text = format!(
+            "{particles} particles have failed; their elastic energy, {released_energy:.6e} J{per}, is heat"
+        );
+        facts.push(("failure", text));
+    }
+    if let Some(told) = &summary.error_estimate {
+        facts.extend(estimate_facts(told));
+    }
+    facts.extend(summary.plan.iter().map(|plan| ("plan", plan_fact(plan))));
+    facts.push((
+        "run",
+        format!(
+            "{} particles, {} cells, {} steps, {} ranks x {} threads, {} patches",
+            summary.particles,
+            summary.cells,
+            summary.steps,
+            summary.ranks,
+            summary.threads,
+            joined(&summary.patches)
+        ),
+    ));
+    facts.push((
+        "seconds",
+        format!(
+            "{:.3} in all, {:.3} in the time loop, {:.3} of CPU, {:.2} M particle-steps per CPU second",
+            summary.wall_seconds,
+            summary.loop_wall_seconds,
+            summary.cpu_seconds,
+            summary.particle_steps_per_cpu_second * 1e-6
+        ),
+    ));
+    let sharing = &summary.decomposition;
+    let all = sharing.particle_steps_computed + sharing.particle_steps_skipped;
+    let left_out = 100.0 * sharing.particle_steps_skipped as f64 / all.max(1) as f64;
+    let mut shared = format!("{left_out:.1} % of particle-steps left out at rest");
+    if summary.ranks > 1 {
+        shared += &format!(
+            ", imbalance {:.3}, {} patches moved, {} particles migrated, {:.1} messages and {:.0} bytes a step",
+            sharing.imbalance,
+            sharing.patches_moved,
+            sharing.particles_migrated,
+            sharing.messages_per_step,
+            sharing.bytes_per_step
+        );
+    }
+    facts.push(("sharing", shared));
+    facts.push(("results", folder.display().to_string()));
+    facts.into_iter().map(|(name, text)| vec![name.to_owned(), text]).collect()
+}
+
+/// What a plan has foretold beside what came.
+fn plan_fact(plan: &Verdict) -> String {
+    let percent = |v: f64| format!("{} %", significant(100.0 * v));
+    let actual = match (plan.actual, plan.is_true) {
+        (Some(error), true) => percent(error),
+        (Some(bound), false) => format!("at most {} by its own bound", percent(bound)),
+        (None, _) => "not known".into(),
+    };
+    format!(
+        "error wanted {}, foretold {}{}, actual {actual}; CPU seconds of the time loop foretold \
+         {:.3}, actual {:.3}; wall {:.3}, {:.3}",
+        percent(plan.wanted),
+        percent(plan.predicted),
+        if plan.guess { " (guess)" } else { "" },
+        plan.predicted_cpu_seconds,
+        plan.cpu_seconds,
+        plan.predicted_wall_seconds,
+        plan.wall_seconds
+    )
+}
+
+/// What a run tells of its own errors, a line a profile and a place.
+fn estimate_facts(told: &ErrorEstimate) -> Vec<(&'static str, String)> {
+    let within = |b: &Bounded, scale: f64, unit: &str| match b.half_width {
+        Some(width) => {
+            let exact = b.exact.map_or(String::new(), |e| {
+                format!(", in truth {}", significant_to((e * scale, width * scale)))
+            });
+            let value = significant_to((b.value * scale, width * scale));
+            format!("{value} +- {} {unit}{exact}", significant(width * scale))
+        }
+        None => format!("{} {unit}, too little evidence of its error", b.value * scale),
+    };
+    let guess = |basis: Basis| if basis == Basis::Guess { " (guess)" } else { "" };
+    let mut facts = Vec::new();
+    for profile in &told.profiles {
+        let guess = guess(profile.basis);
+        let plateau = match &profile.plateau_pressure {
+            Some(bounded) => format!("plateau {}", within(bounded, 1e-9, "GPa")),
+            None => "no plateau".into(),
+        };
+        let l1 = match profile.l1.half_width {
+            Some(bound) => format!("L1 <= {} %", significant(100.0 * bound)),
+            None => "L1 not known".into(),
+        };
+        let exact = profile.l1.exact;
+        let exact =
+            exact.map_or(String::new(), |e| format!(", in truth {}", significant(100.0 * e)));
+        facts.push((
+            "estimate",
+            format!("{}: {plateau}; {l1}{exact}{guess}", seconds(profile.time)),
+        ));
+    }
+    for arrival in &told.arrivals {
+        let time = match &arrival.time {
+            Some(bounded) => format!("arrival {}", within(bounded, 1e9, "ns")),
+            None => "nothing has arrived".into(),
+        };
+        let guess = guess(arrival.basis);
+        facts.push(("estimate", format!("at {} mm: {time}{guess}", significant(1e3 * arrival.at))));
+    }
+    if told.basis == Basis::Guess {
+        let outside = told.outside.join("; ");
+        let text = format!("guess: the laws of errors were not fitted on such inputs: {outside}");
+        facts.push(("estimate", text));
+    }
+    facts.extend(told.notes.iter().map(|note| ("estimate", note.clone())));
+    facts
+}
+
+/// A value with as many digits as its width asks for.
+fn significant_to((value, width): (f64, f64)) -> String {
+    let digits = (1 - width.abs().max(1e-12).log10().floor() as i32).clamp(0, 12) as usize;
+    format!("{value:.digits$}")
+}
+
+/// Lines of cells as columns: the first to the left, the others to the right.
+fn table(lines: &[Vec<String>]) -> String {
+    let columns = lines.iter().map(Vec::len).max().unwrap_or(0);
+    let length = |s: &String| s.chars().count();
+    let width = |i: usize| lines.iter().filter_map(|l| l.get(i)).map(length).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut text = String::new();
+    for line in lines {
+        let mut row = String::new();
+        for (i, (cell, &width)) in line.iter().zip(&widths).enumerate() {
+            // Two columns are a list of names and sentences, more are numbers.
+            let _ = match i {
+                0 => write!(row, "  {cell:width$}"),
+                _ if columns == 2 => write!(row, "  {cell}"),
+                _ => write!(row, "  {cell:>width$}"),
+            };
+        }
+        text += row.trim_end();
+        text.push('\n');
+    }
+    text
+}
+
+/// A number with three digits that count.
+fn significant(value: f64) -> String {
+    let size = value.abs();
+    match size {
+        _ if value == 0.0 => "0".into(),
+        _ if !(1e-3..1e4).contains(&size) => format!("{value:.1e}"),
+        _ => format!("{value:.*}", (2 - size.log10().floor() as i32).max(0) as usize),
+    }
+}
+
+/// A time with its unit.
+fn seconds(time: f64) -> String {
+    let (unit, scale) = match time {
+        t if t >= 0.1 => ("s", 1.0),
+        t if t >= 1e-3 => ("ms", 1e3),
+        t if t >= 1e-8 => ("us", 1e6),
+        _ => ("ns", 1e9),
+    };
+    format!("{} {unit}", (time * scale * 1e6).round() / 1e6)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::summary::tests::example;
+    use super::*;
+
+    #[test]
+    fn tells_every_figure() {
+        let mut summary = example();
+        summary.profiles[1].errors = Some(serde_json::json!({"l1": 0.01, "density_l1": 0.5}));
+        let text = report(&summary, Path::new("output/flyer"));
+        let expected = "\
+flyer
+warning: linear shape functions ring across cells
+  time     L1 %  plateau %  density l1
+  0.5 us  0.890   -0.00100           -
+  1 us     1.00          -       0.500
+  ranks   patches  particles  compute s  exchange s  wait s  migrate s  balance s  output s  messages     bytes  migrated
+  rank 0        2        850      0.600       0.000   0.100      0.000      0.000     0.000      5224  26120000         7
+  rank 1        2        850      0.600       0.000   0.100      0.000      0.000     0.000      5224  26120000         7
+  effect    bytes a particle  bytes a ghost  share of step
+  strength                 8              0         12.5 %
+  off, 0 bytes and 0 % of the step: contact
+  energy    start 1.000000e1  end 1.100000e1 J/m2  boundaries 5.00e-1  drift 5.0e-2
+  momentum  start 8.000000e0  end 8.000000e0 kg m/s/m2  boundaries 0.000000e0  drift 0.0e0
+  run       1700 particles, 1000 cells, 2612 steps, 2 ranks x 1 threads, 4 patches
+  seconds   1.250 in all, 0.750 in the time loop, 2.000 of CPU, 5.90 M particle-steps per CPU second
+  sharing   25.0 % of particle-steps left out at rest, imbalance 1.200, 1 patches moved, 14 particles migrated, 4.0 messages and 20000 bytes a step
+  results   output/flyer
+";
+        assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn without_a_reference_there_are_no_errors() {
+        let mut summary = example();
+        summary.profiles[0].errors = None;
+        assert!(!report(&summary, Path::new("out")).contains("L1"));
+    }
+
+    #[test]
+    fn what_was_eroded_is_told() {
+        let mut summary = example();
+        let momentum = vec![0.25];
+        summary.erosion = Some(Outflow { particles: 7, mass: 0.5, momentum, energy: 2.0 });
+        let line = "  erosion   7 particles, 5.000000e-1 kg/m2, 2.000000e0 J/m2 taken out\n";
+        assert!(report(&summary, Path::new("out")).contains(line));
+    }
+
+    #[test]
+    fn numbers_and_times_are_short() {
+        assert_eq!(
+            ["123.456", "12345.6", "0.0456", "1e-9"].map(|s| significant(s.parse().unwrap())),
+            ["123", "1.2e4", "0.0456", "1.0e-9"]
+        );
+        assert_eq!([0.2, 0.05, 2e-7, 0.0].map(seconds), ["0.2 s", "50 ms", "0.2 us", "0 ns"]);
+    }
+}

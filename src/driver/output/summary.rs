@@ -1,0 +1,382 @@
+//! `summary.json`: what a run was, what it cost, what it kept and how far it is from exact.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::decomposition::DecompositionSummary;
+use super::error::{OutputError, read_text};
+use super::origin::Origin;
+use crate::accuracy::estimate::ErrorEstimate;
+use crate::accuracy::plan::Verdict;
+use crate::effects::EffectUse;
+use crate::scene::input_file::LARGEST_NUMBERS;
+
+/// Name of the file in the folder of results.
+pub const SUMMARY_FILE: &str = "summary.json";
+
+/// The whole of `summary.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Title of the scene.
+    pub title: String,
+    /// Version of the program.
+    pub version: String,
+    /// The command and the scene's file that made the result.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub origin: Option<Origin>,
+    /// The scene as run: after `--set`, defaults filled in.
+    pub scene: Value,
+    /// Ranks.
+    pub ranks: usize,
+    /// Threads of each rank.
+    pub threads: usize,
+    /// Patches in each direction.
+    pub patches: Vec<usize>,
+    /// Particles at the start.
+    pub particles: u64,
+    /// Cells of the domain.
+    pub cells: u64,
+    /// Steps of the time loop.
+    pub steps: u64,
+    /// Wall time of the whole process up to the writing of this file \[s\].
+    pub wall_seconds: f64,
+    /// Wall time of the time loop \[s\].
+    pub loop_wall_seconds: f64,
+    /// User CPU time of the time loop, all ranks \[s\].
+    #[serde(default)]
+    pub loop_cpu_seconds: f64,
+    /// User CPU time of all ranks \[s\].
+    pub cpu_seconds: f64,
+    /// Particles times steps, those left out at rest among them, over the CPU time of the time
+    /// loop, all ranks \[1/s\].
+    pub particle_steps_per_cpu_second: f64,
+    /// Wall time of the time loop by what the ranks did, summed over them \[s\].
+    pub phase_seconds: BTreeMap<String, f64>,
+    /// What sharing the work has cost.
+    pub decomposition: DecompositionSummary,
+    /// The ledger of effects: what the scene calls for, and what each takes.
+    pub effects: Vec<EffectUse>,
+    /// Energy.
+    pub energy: Energy,
+    /// Momentum.
+    pub momentum: Momentum,
+    /// What has left the domain; absent where nothing can.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outflow: Option<Outflow>,
+    /// What was eroded; absent where nothing can be.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub erosion: Option<Outflow>,
+    /// What has failed; absent where nothing can.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failure: Option<FailureSummary>,
+    /// One entry a profile, in the order of their times.
+    pub profiles: Vec<ProfileSummary>,
+    /// The run's own statement of its errors; absent unless the scene asks for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error_estimate: Option<ErrorEstimate>,
+    /// What a plan has foretold, and what came; absent without a plan.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plan: Option<Verdict>,
+    /// What the user should know, one line each.
+    pub warnings: Vec<String>,
+}
+
+/// Energy of all particles \[J\]; in one dimension \[J/m2\], in two \[J/m\].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Energy {
+    /// Kinetic energy at the start.
+    pub kinetic_start: f64,
+    /// Internal energy at the start.
+    pub internal_start: f64,
+    /// Sum of the two.
+    pub total_start: f64,
+    /// Kinetic energy at the end.
+    pub kinetic_end: f64,
+    /// Internal energy at the end.
+    pub internal_end: f64,
+    /// Sum of the two.
+    pub total_end: f64,
+    /// Work that the boundaries did on the particles, less what left with particles.
+    pub boundary_work: f64,
+    /// Work of a body force; absent without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body_force_work: Option<f64>,
+    /// (total_end - total_start - all work) / total_start \[-\]; where that is 0, over
+    /// total_end; null where both are.
+    pub drift: Option<f64>,
+}
+
+impl Energy {
+    /// Totals and drift from kinetic and internal energy at \[start, end\]; no drift where there
+    /// is no more energy than `rounding` may make.
+    pub fn new(kinetic: [f64; 2], internal: [f64; 2], boundary_work: f64, rounding: f64) -> Energy {
+        let [total_start, total_end] = [kinetic[0] + internal[0], kinetic[1] + internal[1]];
+        let scale = if total_start == 0.0 { total_end } else { total_start }.abs();
+        Energy {
+            kinetic_start: kinetic[0],
+            internal_start: internal[0],
+            total_start,
+            kinetic_end: kinetic[1],
+            internal_end: internal[1],
+            total_end,
+            boundary_work,
+            body_force_work: None,
+            drift: ratio(
+                total_end - total_start - boundary_work,
+                if scale > rounding { scale } else { 0.0 },
+            ),
+        }
+    }
+
+    /// The same with the work of a body force.
+    pub fn with_body_force(self, work: f64, rounding: f64) -> Energy {
+        let kinetic = [self.kinetic_start, self.kinetic_end];
+        let internal = [self.internal_start, self.internal_end];
+        let drift = Energy::new(kinetic, internal, self.boundary_work + work, rounding).drift;
+        Energy { body_force_work: Some(work), drift, ..self }
+    }
+}
+
+/// Momentum of all particles \[kg m/s\]; in one dimension \[kg/(m s)\], in two \[kg/s\].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Momentum {
+    /// At the start, D numbers.
+    pub start: Vec<f64>,
+    /// At the end, D numbers.
+    pub end: Vec<f64>,
+    /// Impulse of the boundaries on the particles, less what left with particles, D numbers.
+    pub boundary_impulse: Vec<f64>,
+    /// Impulse of a body force, D numbers; absent without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body_force_impulse: Option<Vec<f64>>,
+    /// |end - start - all impulses| over the sum of m|v| at the start \[-\]; with its sign in
+    /// one dimension; null where that sum is 0.
+    pub drift: Option<f64>,
+}
+
+impl Momentum {
+    /// Drift from momentum at start and end, the impulse of the boundaries and the sum of m|v| at
+    /// the start.
+    pub fn new(start: &[f64], end: &[f64], boundary_impulse: &[f64], scale: f64) -> Momentum {
+        let left = |i: usize| end[i] - start[i] - boundary_impulse[i];
+        let left = match start.len() {
+            1 => left(0),
+            d => (0..d).map(|i| left(i) * left(i)).sum::<f64>().sqrt(),
+        };
+        Momentum {
+            start: start.into(),
+            end: end.into(),
+            boundary_impulse: boundary_impulse.into(),
+            body_force_impulse: None,
+            drift: ratio(left, scale),
+        }
+    }
+
+    /// The same with the impulse of a body force; `scale` is the sum of m|v| at the start.
+    pub fn with_body_force(self, impulse: &[f64], scale: f64) -> Momentum {
+        let all: Vec<f64> = self.boundary_impulse.iter().zip(impulse).map(|(a, b)| a + b).collect();
+        let drift = Momentum::new(&self.start, &self.end, &all, scale).drift;
+        Momentum { body_force_impulse: Some(impulse.into()), drift, ..self }
+    }
+}
+
+/// What has left the domain through open sides, or was eroded.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outflow {
+    /// Number of particles.
+    pub particles: u64,
+    /// Their mass \[kg\]; in one dimension \[kg/m2\], in two \[kg/m\].
+    pub mass: f64,
+    /// Their momentum, D numbers, in the unit of [`Momentum`].
+    pub momentum: Vec<f64>,
+    /// Their kinetic and internal energy, in the unit of [`Energy`].
+    pub energy: f64,
+}
+
+/// What has failed by the end.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FailureSummary {
+    /// Number of particles that are there and bear neither tension nor shear any more.
+    pub particles: u64,
+    /// Elastic energy that they have kept as heat, in the unit of [`Energy`].
+    pub released_energy: f64,
+}
+
+/// One profile.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ProfileSummary {
+    /// Time \[s\].
+    pub time: f64,
+    /// File of the profile, relative to the folder of results.
+    pub file: String,
+    /// SHA-256 over the whole state of the particles, in the order of their ids, in hexadecimal.
+    pub state_sha256: String,
+    /// Errors of the raw profile, fractions; absent without a reference.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub errors: Option<Value>,
+    /// Errors after averaging over cells, fractions; absent without a reference.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub errors_cell: Option<Value>,
+}
+
+impl ProfileSummary {
+    /// The error `name` of the raw profile; none where it is undefined.
+    pub fn error(&self, name: &str) -> Option<f64> {
+        self.errors.as_ref()?.get(name)?.as_f64()
+    }
+}
+
+impl Summary {
+    /// Writes `summary.json` into `folder`.
+    pub fn write(&self, folder: &Path) -> Result<(), OutputError> {
+        let path = folder.join(SUMMARY_FILE);
+        let mut text = serde_json::to_string_pretty(self)
+            .map_err(|source| OutputError::Json { path: path.clone(), source })?;
+        text.push('\n');
+        fs::write(&path, text).map_err(OutputError::io("write the file", &path))
+    }
+
+    /// Reads `summary.json` of `folder`.
+    pub fn read(folder: &Path) -> Result<Summary, OutputError> {
+        let path = folder.join(SUMMARY_FILE);
+        // it holds the scene, with the positions and tables that were read for it
+        let text = read_text(&path, LARGEST_NUMBERS)?;
+        serde_json::from_str(&text).map_err(|source| OutputError::Json { path, source })
+    }
+}
+
+/// a/b, none where b is 0.
+fn ratio(a: f64, b: f64) -> Option<f64> {
+    (b != 0.0).then(|| a / b)
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::driver::output::decomposition::RankSummary;
+    use crate::scene::FilterHalo;
+
+    /// Two ranks.
+    fn decomposition() -> DecompositionSummary {
+        let rank = |rank, particle_steps| RankSummary {
+            rank,
+            patches: 2,
+            particles: 850,
+            particle_steps,
+            particle_steps_skipped: 500,
+            seconds: [("compute", 0.6), ("wait", 0.1)].map(|(n, s)| (n.to_owned(), s)).into(),
+            cpu_seconds: 0.7,
+            bytes: 26_120_000,
+            messages: 5224,
+            particles_migrated: 7,
+            patches_moved: rank as u64,
+        };
+        let options = crate::scene::Decomposition::default();
+        let ranks = vec![rank(0, 2000), rank(1, 1000)];
+        DecompositionSummary::new(FilterHalo::Deep, &options, 2612, 1800, 1, ranks)
+    }
+
+    #[test]
+    fn ranks_add_up() {
+        let all = decomposition();
+        assert_eq!((all.particle_steps_computed, all.particle_steps_skipped), (3000, 1000));
+        assert_eq!((all.imbalance, all.patches_moved, all.particles_migrated), (1.2, 1, 14));
+        assert_eq!((all.bytes_per_step, all.messages_per_step), (20_000.0, 4.0));
+        assert_eq!(all.seconds()["compute"], 1.2);
+    }
+
+    /// A summary with two profiles, the first of them scored.
+    pub(in super::super) fn example() -> Summary {
+        let profile = |time: f64, errors: Option<Value>| ProfileSummary {
+            time,
+            file: format!("profile_{:.3}us.csv", time * 1e6),
+            state_sha256: "00ff".into(),
+            errors: errors.clone(),
+            errors_cell: errors,
+        };
+        Summary {
+            title: "flyer".into(),
+            version: "0.1.0".into(),
+            origin: None,
+            scene: json!({"domain": {"lower": [0.0]}}),
+            ranks: 2,
+            threads: 1,
+            patches: vec![4],
+            particles: 1700,
+            cells: 1000,
+            steps: 2612,
+            wall_seconds: 1.25,
+            loop_wall_seconds: 0.75,
+            loop_cpu_seconds: 1.0,
+            cpu_seconds: 2.0,
+            particle_steps_per_cpu_second: 5.9e6,
+            phase_seconds: [("compute".to_owned(), 0.5)].into(),
+            decomposition: decomposition(),
+            effects: vec![
+                EffectUse {
+                    effect: "strength".into(),
+                    on: true,
+                    columns: vec!["plastic_strain".into()],
+                    bytes_per_particle: 8,
+                    bytes_per_ghost: 0,
+                    step_share: Some(0.125),
+                },
+                EffectUse {
+                    effect: "contact".into(),
+                    on: false,
+                    columns: Vec::new(),
+                    bytes_per_particle: 0,
+                    bytes_per_ghost: 0,
+                    step_share: Some(0.0),
+                },
+            ],
+            energy: Energy::new([10.0, 4.0], [0.0, 7.0], 0.5, 0.0),
+            momentum: Momentum::new(&[8.0], &[8.0], &[0.0], 8.0),
+            outflow: None,
+            erosion: None,
+            failure: None,
+            profiles: vec![
+                profile(5e-7, Some(json!({"l1": 0.0089, "plateau": -1e-5, "noise": null}))),
+                profile(1e-6, None),
+            ],
+            error_estimate: None,
+            plan: None,
+            warnings: vec!["linear shape functions ring across cells".into()],
+        }
+    }
+
+    #[test]
+    fn drifts_are_what_is_left_when_boundaries_are_booked() {
+        let summary = example();
+        assert_eq!(summary.energy.drift, Some(0.05));
+        let momentum = Momentum::new(&[1.0, 0.0], &[4.5, 4.0], &[0.5, 0.0], 10.0);
+        assert_eq!(momentum.drift, Some(0.5));
+        assert_eq!(Momentum::new(&[0.0], &[0.0], &[0.0], 0.0).drift, None);
+        assert_eq!(Energy::new([0.0, 3.0], [0.0, 1.0], 3.0, 0.0).drift, Some(0.25));
+        assert_eq!(Energy::new([0.0; 2], [0.0; 2], 0.0, 0.0).drift, None);
+        // a body colder than its reference has a negative energy
+        assert_eq!(Energy::new([1.0; 2], [-5.0, -4.0], 0.0, 0.0).drift, Some(0.25));
+        assert_eq!(Energy::new([0.0; 2], [0.0, 1e-11], 0.0, 1e-9).drift, None);
+    }
+
+    #[test]
+    fn comes_back_from_its_file() {
+        let home = tempfile::tempdir().unwrap();
+        let summary = example();
+        summary.write(home.path()).unwrap();
+        assert_eq!(Summary::read(home.path()).unwrap(), summary);
+        let text = fs::read_to_string(home.path().join(SUMMARY_FILE)).unwrap();
+        let value: Value = serde_json::from_str(&text).unwrap();
+        assert!(value["profiles"][1].get("errors").is_none());
+        assert_eq!(summary.profiles[0].error("l1"), Some(0.0089));
+        assert_eq!(summary.profiles[0].error("noise"), None);
+        let missing = Summary::read(&home.path().join("none")).unwrap_err().to_string();
+        assert!(missing.contains("none/summary.json: cannot read the file"), "{missing}");
+    }
+}

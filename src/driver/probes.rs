@@ -1,0 +1,210 @@
+//! What histories follow: the interface, free surfaces, tracers, energies.
+
+use crate::driver::output::histories::Histories;
+use crate::scene::{CheckedScene, Reference};
+use crate::simulation::{Followed, Simulation};
+
+/// The part of a particle that a probe sits on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Part {
+    Lower,
+    Centre,
+    Upper,
+    /// The lower face, a free surface.
+    FreeLower,
+    /// The upper face, a free surface.
+    FreeUpper,
+}
+
+/// A probe: the mean over some particles' parts.
+struct Probe {
+    name: String,
+    parts: Vec<(u64, Part)>,
+}
+
+/// The probes of a run and what they have told.
+pub struct Probes {
+    probes: Vec<Probe>,
+    wanted: Vec<u64>,
+    /// Columns of the force of contact.
+    forces: usize,
+    interval: f64,
+    due: u64,
+    histories: Histories,
+}
+
+impl Probes {
+    /// The probes that a scene asks for; `None` if it asks for no histories.
+    ///
+    /// An impact has `interface` (the mean of both faces), `free_surface` (the target's rear) and
+    /// `flyer_rear`; other scenes the two ends of each body. Tracers follow.
+    ///
+    /// Place and velocity [m/s] of a face are those of the outermost particle, moved to its edge.
+    /// On a free surface ([`CheckedScene::face_is_free`]) the traction is zero, so the pressure [Pa]
+    /// is 0, or the deviator's xx component where the material has strength; elsewhere it is the
+    /// particle's. The particle's own would not do on a free surface: its centre lies half a
+    /// particle inside, where a shock raises the pressure for as long as the computed front takes
+    /// to pass.
+    pub fn new(scene: &CheckedScene) -> Option<Self> {
+        let interval = scene.history_interval?;
+        let mut first = 0;
+        let ranges: Vec<(u64, u64)> = scene
+            .bodies
+            .iter()
+            .map(|b| {
+                let range = (first, first + b.particles - 1);
+                first += b.particles;
+                range
+            })
+            .collect();
+        let end = |body: usize, upper: bool| match (upper, scene.face_is_free(body, upper)) {
+            (true, false) => (ranges[body].1, Part::Upper),
+            (true, true) => (ranges[body].1, Part::FreeUpper),
+            (false, false) => (ranges[body].0, Part::Lower),
+            (false, true) => (ranges[body].0, Part::FreeLower),
+        };
+        let bodies = &scene.scene.bodies;
+        let mut probes = Vec::new();
+        let mut add = |name: &str, parts: Vec<(u64, Part)>| {
+            probes.push(Probe { name: name.to_string(), parts });
+        };
+        match &scene.scene.reference {
+            Some(Reference::FlyerImpact(named)) if scene.dimension == 1 => {
+                let number = |name: &str| bodies.iter().position(|b| b.name == name);
+                let (flyer, target) = (number(&named.flyer)?, number(&named.target)?);
+                let below = scene.bodies[flyer].lower[0] < scene.bodies[target].lower[0];
+                add("interface", vec![end(flyer, below), end(target, !below)]);
+                add("free_surface", vec![end(target, below)]);
+                add("flyer_rear", vec![end(flyer, !below)]);
+            }
+            _ if scene.dimension > 1 => {}
+            _ => {
+                for (number, body) in bodies.iter().enumerate() {
+                    add(&format!("{}_lower", body.name), vec![end(number, false)]);
+                    add(&format!("{}_upper", body.name), vec![end(number, true)]);
+                }
+            }
+        }
+        let histories = scene.scene.output.histories.as_ref()?;
+        for tracer in &histories.tracers {
+            let number = bodies.iter().position(|b| b.name == tracer.body)?;
+            let k = scene.bodies[number].nearest(&tracer.at);
+            add(&tracer.name, vec![(ranges[number].0 + k, Part::Centre)]);
+        }
+        let mut columns: Vec<(String, String)> = [
+            ("time", "s"),
+            ("dt", "s"),
+            ("kinetic_energy", "J"),
+            ("internal_energy", "J"),
+            ("total_energy", "J"),
+        ]
+        .map(|(name, unit)| (name.to_string(), unit.to_string()))
+        .into();
+        let (momenta, places, velocities): (&[&str], &[&str], &[&str]) = match scene.dimension {
+            1 => (&["momentum"], &["x"], &["velocity"]),
+            _ => (&["momentum_x", "momentum_y"], &["x", "y"], &["velocity_x", "velocity_y"]),
+        };
+        columns.extend(momenta.iter().map(|name| (name.to_string(), "kg m/s".to_string())));
+        let forces: &[&str] = match (scene.velocity_fields(), scene.dimension) {
+            (1, _) => &[],
+            (_, 1) => &["contact_force"],
+            _ => &["contact_force", "contact_friction"],
+        };
+        columns.extend(forces.iter().map(|name| (name.to_string(), "N".to_string())));
+        for probe in &probes {
+            let units = [(places, "m"), (velocities, "m/s"), (&["pressure"], "Pa")];
+            for (names, unit) in units {
+                let of_probe = |what| (format!("{}_{what}", probe.name), unit.to_string());
+                columns.extend(names.iter().map(of_probe));
+            }
+        }
+        let mut wanted: Vec<u64> = probes.iter().flat_map(|p| &p.parts).map(|p| p.0).collect();
+        wanted.sort_unstable();
+        wanted.dedup();
+        let (forces, histories) = (forces.len(), Histories::new(columns));
+        Some(Probes { probes, wanted, forces, interval, due: 0, histories })
+    }
+
+    /// Takes a row if one is due: at the first step's end past each interval. Collective.
+    pub fn sample<const D: usize>(&mut self, simulation: &Simulation<'_, D>) {
+        let time = simulation.time();
+        if time < self.due as f64 * self.interval {
+            return;
+        }
+        self.due = self.after(time);
+        let totals = simulation.totals();
+        let forces = if self.forces > 0 { simulation.contact_force() } else { [0.0; 2] };
+        let followed = simulation.follow(&self.wanted);
+        // another rank than the first has nobody to tell
+        if followed.is_empty() && !self.wanted.is_empty() {
+            return;
+        }
+        // where nothing is left, no step is too long
+        let dt = Some(simulation.time_step()).filter(|dt| dt.is_finite()).unwrap_or(f64::NAN);
+        let mut row =
+            vec![time, dt, totals.kinetic, totals.internal, totals.kinetic + totals.internal];
+        row.extend(totals.momentum);
+        row.extend(&forces[..self.forces]);
+        for probe in &self.probes {
+            let parts = probe.parts.iter().map(|&(id, part)| {
+                let at = self.wanted.binary_search(&id).expect("a probe's particle is wanted");
+                followed[at].map(|f| place(&f, part))
+            });
+            // a particle that has left makes the field empty
+            let parts: Option<Vec<Vec<f64>>> = parts.collect();
+            let mean = |k: usize| match &parts {
+                Some(parts) => parts.iter().map(|p| p[k]).sum::<f64>() / parts.len() as f64,
+                None => f64::NAN,
+            };
+            row.extend((0..2 * D + 1).map(mean));
+        }
+        self.histories.push(&row);
+    }
+
+    /// The number of the first interval that ends after `time`.
+    fn after(&self, time: f64) -> u64 {
+        ((time / self.interval).floor() as u64).saturating_add(1)
+    }
+
+    /// The number of the interval at whose end the next row is due.
+    pub fn due(&self) -> u64 {
+        self.due
+    }
+
+    /// Goes on at `time` [s], where the row `due` is the next, if that is known, after `histories`,
+    /// which have the columns of this.
+    pub fn resume(&mut self, time: f64, due: Option<u64>, histories: Option<Histories>) {
+        self.due = due.unwrap_or_else(|| self.after(time));
+        if let Some(histories) = histories {
+            self.histories = histories;
+        }
+    }
+
+    /// What has been told so far.
+    pub fn histories(&self) -> &Histories {
+        &self.histories
+    }
+
+    /// What has been told.
+    pub fn into_histories(self) -> Histories {
+        self.histories
+    }
+}
+
+/// Position, velocity and pressure of a part.
+fn place<const D: usize>(followed: &Followed<D>, part: Part) -> Vec<f64> {
+    let shift = match part {
+        Part::Lower | Part::FreeLower => -followed.half_length,
+        Part::Centre => 0.0,
+        Part::Upper | Part::FreeUpper => followed.half_length,
+    };
+    let pressure = match part {
+        Part::FreeLower | Part::FreeUpper => followed.free_pressure,
+        Part::Lower | Part::Centre | Part::Upper => followed.pressure,
+    };
+    let mut values = followed.position.to_vec();
+    values[0] += shift;
+    values.extend(followed.velocity);
+    values.push(pressure);
+    values
+}

@@ -1,0 +1,95 @@
+//! The ranks' accounts of a run, brought together at rank 0.
+
+use decomp::{Comm, Traffic, bytes_of, words_of};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::driver::output::decomposition::{DecompositionSummary, RankSummary};
+use crate::driver::output::trace::TraceEvent;
+use crate::effects::Effect;
+use crate::simulation::Simulation;
+use crate::solver::clock::{Activity, Event};
+use crate::solver::{Stepper, Steps};
+
+/// Each rank's value at rank 0, by rank; nothing elsewhere. Collective.
+fn gather<T: Serialize + DeserializeOwned>(comm: &dyn Comm, value: &T) -> Vec<T> {
+    let text = serde_json::to_vec(value).expect("accounts are plain data");
+    let all = comm.gather(&words_of(&text));
+    let read = |words: &Vec<u64>| serde_json::from_slice(&bytes_of(words));
+    all.iter().map(|w| read(w).expect("a rank sends what it serialized")).collect()
+}
+
+/// What the ranks did in a time loop of `wall` and `cpu` seconds on this rank, in which it sent
+/// what is between `before` and now; at rank 0. Collective.
+pub fn decomposition<const D: usize>(
+    comm: &dyn Comm,
+    simulation: &mut Simulation<'_, D>,
+    options: &crate::scene::Decomposition,
+    wall: f64,
+    cpu: f64,
+    before: Traffic,
+) -> Option<DecompositionSummary> {
+    let (traffic, tally) = (comm.traffic(), simulation.tally());
+    let spent = simulation.clock().seconds;
+    let named = Activity::ALL.iter().zip(spent).map(|(a, s)| (a.name().to_string(), s));
+    let rest = ("rest".to_string(), (wall - spent.iter().sum::<f64>()).max(0.0));
+    let mine = RankSummary {
+        rank: comm.rank(),
+        patches: simulation.layout().patches_of(comm.rank()).len(),
+        particles: simulation.particles(),
+        particle_steps: tally.particle_steps,
+        particle_steps_skipped: tally.skipped_particle_steps,
+        seconds: named.chain([rest]).collect(),
+        cpu_seconds: cpu,
+        bytes: traffic.bytes - before.bytes,
+        messages: traffic.messages - before.messages,
+        particles_migrated: tally.migrated,
+        patches_moved: tally.patches_moved,
+    };
+    let ranks = gather(comm, &mine);
+    (comm.rank() == 0).then(|| {
+        let (steps, halo) = (simulation.steps_made(), simulation.filter_halo());
+        let first_step = simulation.steps() - steps;
+        let (busiest, balances) = (tally.busiest_particle_steps, tally.balances);
+        let all = DecompositionSummary::new(halo, options, steps, busiest, balances, ranks);
+        DecompositionSummary { first_step, ..all }
+    })
+}
+
+/// The timelines of all ranks at rank 0; empty elsewhere. Collective.
+pub fn timeline<const D: usize>(
+    comm: &dyn Comm,
+    simulation: &mut Simulation<'_, D>,
+) -> Vec<TraceEvent> {
+    let rank = comm.rank();
+    let line = |tid: usize, event: Event| TraceEvent {
+        name: event.name.to_string(),
+        pid: rank,
+        tid,
+        step: event.step,
+        ts: event.start as f64 * 1e-3,
+        dur: event.length as f64 * 1e-3,
+    };
+    let mut mine: Vec<TraceEvent> =
+        simulation.clock().events.drain(..).map(|e| line(0, e)).collect();
+    for (patch, event) in simulation.take_patch_events() {
+        mine.push(line(patch + 1, event));
+    }
+    gather(comm, &mine).into_iter().flatten().collect()
+}
+
+/// Share of the ranks' computing that each effect takes, from samples; at rank 0, and none where
+/// nothing was sampled. Collective.
+pub fn effect_shares<const D: usize>(
+    comm: &dyn Comm,
+    simulation: &Simulation<'_, D>,
+) -> Option<[f64; Effect::COUNT]>
+where
+    Stepper<D>: Steps<D>,
+{
+    let (computed, effects) = simulation.effect_seconds();
+    let all: Vec<(f64, Vec<f64>)> = gather(comm, &(computed, effects.to_vec()));
+    let total: f64 = all.iter().map(|(computed, _)| computed).sum();
+    let share = |k: usize| all.iter().map(|(_, effects)| effects[k]).sum::<f64>() / total;
+    (total > 0.0).then(|| std::array::from_fn(share))
+}

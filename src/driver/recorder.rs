@@ -1,0 +1,189 @@
+//! What a run records on its way: histories, rows of the x-t diagram, profiles.
+
+use std::path::Path;
+
+use decomp::Comm;
+
+use crate::accuracy::estimate::Arrivals;
+use crate::accuracy::reference::PlaneReference;
+use crate::driver::checkpoint::{Checkpoint, Contents, Due, Record, StateColumn};
+use crate::driver::figures::PressureRow;
+use crate::driver::output::histories::Histories;
+use crate::driver::output::origin::{Origin, RUN};
+use crate::driver::probes::Probes;
+use crate::scene::CheckedScene;
+use crate::simulation::ParticleTable;
+use crate::simulation::{Saved, Simulation};
+use crate::solver::{Stepper, Steps};
+
+/// Rows of the x-t diagram.
+const WAVE_ROWS: u64 = 120;
+
+/// Particles in a row of the x-t diagram, at most.
+const WAVE_POINTS: u64 = 2000;
+
+/// What a run records; rank 0 has it all, the others know what is due.
+pub struct Recorder<'a> {
+    scene: &'a CheckedScene,
+    /// The command and the file that the run began with, before any restart.
+    pub origin: Origin,
+    probes: Option<Probes>,
+    /// Profiles and the digests of their states.
+    pub tables: Vec<(ParticleTable, String)>,
+    /// Particles at the start, where a score needs them.
+    pub start: Option<ParticleTable>,
+    /// Rows of the x-t diagram.
+    pub waves: Vec<PressureRow>,
+    /// What comes to places; nothing unless the scene asks for it.
+    pub arrivals: Arrivals,
+    due_wave: u64,
+    due_profile: usize,
+}
+
+/// How far what is recorded goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Mark {
+    tables: usize,
+    waves: usize,
+    histories: usize,
+    due_history: u64,
+    due_wave: u64,
+}
+
+impl<'a> Recorder<'a> {
+    /// The recorder of a run at its start. Collective.
+    pub fn new<const D: usize>(scene: &'a CheckedScene, simulation: &Simulation<'_, D>) -> Self
+    where
+        Stepper<D>: Steps<D>,
+    {
+        let needs_start = PlaneReference::needs_start(scene);
+        Recorder {
+            scene,
+            origin: Origin::new(RUN, Path::new(&scene.file)),
+            probes: Probes::new(scene),
+            tables: Vec::new(),
+            start: if needs_start { simulation.gather().map(|(table, _)| table) } else { None },
+            waves: Vec::new(),
+            arrivals: Arrivals::default(),
+            due_wave: 0,
+            due_profile: 0,
+        }
+    }
+
+    /// Goes on from what a checkpoint of rank 0 holds, at `time` [s]. Collective.
+    pub fn resume(&mut self, comm: &dyn Comm, checkpoint: Option<Checkpoint>, time: f64) {
+        let told = checkpoint
+            .as_ref()
+            .map_or(Vec::new(), |c| serde_json::to_vec(&c.due).expect("what is due is plain data"));
+        let due: Due = serde_json::from_slice(&comm.broadcast(told)).expect("rank 0 has told");
+        let end = self.scene.scene.time.end;
+        self.due_wave = if due.end == end { due.wave } else { wave_after(time, end) };
+        self.due_profile = self.scene.profile_times.iter().filter(|&&t| t <= time).count();
+        self.arrivals.resume(due.arrivals);
+        if let Some(checkpoint) = &checkpoint {
+            self.origin = checkpoint.run_origin();
+        }
+        let Record { tables, waves, histories } =
+            checkpoint.map_or_else(Record::default, |c| c.record);
+        (self.tables, self.waves) = (tables, waves);
+        if let Some(probes) = &mut self.probes {
+            let same = due.history_interval == self.scene.history_interval;
+            probes.resume(time, same.then_some(due.history), histories);
+        }
+    }
+
+    /// Records what is due at this time. Collective.
+    pub fn record<const D: usize>(&mut self, simulation: &Simulation<'_, D>, first: bool)
+    where
+        Stepper<D>: Steps<D>,
+    {
+        let (time, end) = (simulation.time(), self.scene.scene.time.end);
+        if let Some(probes) = &mut self.probes {
+            probes.sample(simulation);
+        }
+        self.arrivals.look(simulation);
+        let draws = self.scene.scene.output.pictures && D == 1;
+        if draws && time >= self.due_wave as f64 * end / WAVE_ROWS as f64 {
+            self.due_wave = wave_after(time, end);
+            let stride = self.scene.particles.div_ceil(WAVE_POINTS).max(1);
+            let points = simulation.sample_pressure(stride);
+            if first {
+                self.waves.push(PressureRow { time, points });
+            }
+        }
+        if self.scene.profile_times.get(self.due_profile) == Some(&time) {
+            self.due_profile += 1;
+            self.tables.extend(simulation.gather());
+        }
+    }
+
+    /// The time of the next profile, which a step has to meet [s].
+    pub fn next_profile(&self) -> f64 {
+        self.scene.profile_times.get(self.due_profile).copied().unwrap_or(self.scene.scene.time.end)
+    }
+
+    /// The histories so far, if there are any.
+    pub fn histories(&self) -> Option<&Histories> {
+        self.probes.as_ref().map(Probes::histories)
+    }
+
+    /// What a checkpoint holds.
+    pub fn contents<'b>(
+        &'b self,
+        scene: &'b str,
+        saved: &'b Saved,
+        columns: &'b [StateColumn],
+    ) -> Contents<'b> {
+        self.contents_at(&self.mark(), self.histories(), scene, saved, columns)
+    }
+
+    /// How far what is recorded goes now.
+    pub fn mark(&self) -> Mark {
+        Mark {
+            tables: self.tables.len(),
+            waves: self.waves.len(),
+            histories: self.histories().map_or(0, Histories::len),
+            due_history: self.probes.as_ref().map_or(0, Probes::due),
+            due_wave: self.due_wave,
+        }
+    }
+
+    /// The histories up to a mark, if there are any.
+    pub fn histories_at(&self, mark: &Mark) -> Option<Histories> {
+        self.histories().map(|all| all.first(mark.histories))
+    }
+
+    /// What a checkpoint of the state at a mark holds, with the histories up to there.
+    pub fn contents_at<'b>(
+        &'b self,
+        mark: &Mark,
+        histories: Option<&'b Histories>,
+        scene: &'b str,
+        saved: &'b Saved,
+        columns: &'b [StateColumn],
+    ) -> Contents<'b> {
+        let due = Due {
+            history: mark.due_history,
+            history_interval: self.scene.history_interval,
+            wave: mark.due_wave,
+            end: self.scene.scene.time.end,
+            arrivals: self.arrivals.state(),
+        };
+        Contents {
+            origin: Some(&self.origin),
+            scene,
+            dimension: self.scene.dimension,
+            saved,
+            columns,
+            due,
+            tables: &self.tables[..mark.tables],
+            waves: &self.waves[..mark.waves],
+            histories,
+        }
+    }
+}
+
+/// The number of the first row of the x-t diagram that is due after `time`.
+fn wave_after(time: f64, end: f64) -> u64 {
+    (time / end * WAVE_ROWS as f64) as u64 + 1
+}

@@ -1,0 +1,156 @@
+//! Putting waves into the row of fronts.
+
+use super::super::profile::PathKind;
+use super::super::wave::{State, jump, sound_speed};
+use super::super::wave_interactions::Plate;
+use super::{Front, Kind, NONE, Tracker};
+use crate::material::MieGruneisen;
+
+/// Fronts of compression above this many quanta are shocks.
+const SHOCK_QUANTA: f64 = 3.0;
+/// A path that goes on: its number and the Eulerian place where it is now [m].
+pub(super) type Trail = Option<(usize, f64)>;
+
+/// The wave to be put into the row.
+pub(super) struct Leaving {
+    pub strength: f64,
+    pub steps: usize,
+    pub star: State,
+    pub trail: Trail,
+    /// Eulerian place, for paths that start here [m].
+    pub place: f64,
+}
+
+impl Tracker {
+    pub(super) fn new_path(&mut self, x: f64, kind: PathKind, place: f64, flyer: bool) -> usize {
+        debug_assert!(x.is_finite());
+        let plate = if flyer { Plate::Flyer } else { Plate::Target };
+        self.paths.push((plate, kind, vec![[self.time, place]]));
+        self.paths.len() - 1
+    }
+
+    pub(super) fn edge(
+        &self,
+        kind: Kind,
+        family: i8,
+        x: f64,
+        m: &MieGruneisen,
+        right: State,
+    ) -> Front {
+        let speed = f64::from(family) * sound_speed(m, &right);
+        Front { family, t: self.time, speed, ..Front::fixed(kind, x, right) }
+    }
+
+    /// The kind of a single front, and its path: shocks start one.
+    pub(super) fn kind_and_path(
+        &mut self,
+        x: f64,
+        dp: f64,
+        wave: &Leaving,
+        last: usize,
+    ) -> (Kind, Option<usize>, f64) {
+        let strong = dp > SHOCK_QUANTA * self.quantum;
+        let kind = if strong { Kind::Strong } else { Kind::Weak };
+        match wave.trail {
+            Some((path, place)) => (kind, Some(path), place),
+            None if strong => {
+                let place = if wave.place.is_nan() { self.eulerian(last, x) } else { wave.place };
+                let flyer = self.fronts[last].flyer;
+                (kind, Some(self.new_path(x, PathKind::Shock, place, flyer)), place)
+            }
+            None => (kind, None, x),
+        }
+    }
+
+    /// Eulerian place of X = `x`, which lies in the state after front `last` [m].
+    pub(super) fn eulerian(&self, last: usize, x: f64) -> f64 {
+        let faces = self.faces();
+        let at = |k: usize| self.fronts[k].at(self.time);
+        if self.fronts[last].flyer {
+            let (mut place, mut k, mut from) = (faces[0], self.fronts[self.interface].prev, 0.0);
+            while k != last && k != NONE {
+                place -= (1.0 - self.fronts[k].right.chi) * (from - at(k));
+                (from, k) = (at(k), self.fronts[k].prev);
+            }
+            place - (1.0 - self.fronts[last].right.chi) * (from - x)
+        } else {
+            let (mut place, mut k) = (faces[1], self.interface);
+            while k != last {
+                let next = self.fronts[k].next;
+                place += (1.0 - self.fronts[k].right.chi) * (at(next) - at(k));
+                k = next;
+            }
+            place + (1.0 - self.fronts[last].right.chi) * (x - at(last))
+        }
+    }
+
+    /// Puts a left-going wave into the row after `last`; the last front put.
+    pub(super) fn send_left(
+        &mut self,
+        last: usize,
+        m: &MieGruneisen,
+        ahead: &State,
+        x: f64,
+        wave: Leaving,
+    ) -> usize {
+        let front = Front { family: -1, t: self.time, ..Front::fixed(Kind::Weak, x, wave.star) };
+        if wave.steps == 1 {
+            let (kind, path, place) = self.kind_and_path(x, wave.star.p - ahead.p, &wave, last);
+            let speed = -jump(m, ahead, wave.strength, -1.0).speed;
+            return self.insert_after(last, Front { kind, speed, path, place, ..front });
+        }
+        let flyer = self.fronts[last].flyer;
+        let place = if wave.place.is_nan() { self.eulerian(last, x) } else { wave.place };
+        let mut last = last;
+        let mut state = *ahead;
+        for end in [PathKind::FanHead, PathKind::FanTail] {
+            let path = Some(self.new_path(x, end, place, flyer));
+            let edge = self.edge(Kind::Edge(end), -1, x, m, state);
+            last = self.insert_after(last, Front { path, place, ..edge });
+            if end == PathKind::FanTail {
+                break;
+            }
+            for k in 1..=wave.steps {
+                let step = jump(m, &state, wave.strength / wave.steps as f64, -1.0);
+                state = if k == wave.steps { wave.star } else { step.behind };
+                last = self.insert_after(last, Front { speed: -step.speed, right: state, ..front });
+            }
+        }
+        last
+    }
+
+    /// Puts a right-going wave into the row after `last`, whose state becomes the wave's.
+    pub(super) fn send_right(
+        &mut self,
+        last: usize,
+        m: &MieGruneisen,
+        ahead: &State,
+        x: f64,
+        wave: Leaving,
+    ) {
+        let front = Front { family: 1, t: self.time, ..Front::fixed(Kind::Weak, x, *ahead) };
+        if wave.steps == 1 {
+            let (kind, path, place) = self.kind_and_path(x, wave.star.p - ahead.p, &wave, last);
+            let speed = jump(m, ahead, wave.strength, 1.0).speed;
+            self.insert_after(last, Front { kind, speed, path, place, ..front });
+            return;
+        }
+        let flyer = self.fronts[last].flyer;
+        let place = if wave.place.is_nan() { self.eulerian(last, x) } else { wave.place };
+        let mut state = *ahead;
+        // from the head back: each is put in directly after `last`
+        for end in [PathKind::FanHead, PathKind::FanTail] {
+            let path = Some(self.new_path(x, end, place, flyer));
+            let edge = self.edge(Kind::Edge(end), 1, x, m, state);
+            self.insert_after(last, Front { path, place, ..edge });
+            if end == PathKind::FanTail {
+                break;
+            }
+            for k in 1..=wave.steps {
+                let step = jump(m, &state, wave.strength / wave.steps as f64, 1.0);
+                self.insert_after(last, Front { speed: step.speed, right: state, ..front });
+                state = if k == wave.steps { wave.star } else { step.behind };
+            }
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! Regions of the plane that bodies fill: shapes, and what can be made of several.
+//!
+//! Points are arrays of two numbers. That they are two, and that a region has an area, is held
+//! by [`crate::geometry::Shape::new`], which can name the place of a fault inside of the region.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A region of the plane: an object of one key.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Region {
+    /// A box along the axes.
+    Box(BoxShape),
+    /// A disk.
+    Disk(Disk),
+    /// An ellipse with its axes along x and y; a rotation tilts it.
+    Ellipse(Ellipse),
+    /// A polygon.
+    Polygon(Polygon),
+    /// What lies between two circles about one centre.
+    Annulus(Annulus),
+    /// One side of a straight line; alone it has no end.
+    HalfPlane(HalfPlane),
+    /// What lies in any of the regions.
+    Union(#[schemars(length(min = 1))] Vec<Region>),
+    /// What lies in the first region and in none of the others.
+    Difference(#[schemars(length(min = 1))] Vec<Region>),
+    /// What lies in each of the regions.
+    Intersection(#[schemars(length(min = 1))] Vec<Region>),
+    /// A region turned about a point.
+    Rotation(Rotation),
+}
+
+/// A disk.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Disk {
+    /// Centre [m].
+    pub centre: Vec<f64>,
+    /// Radius [m].
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub radius: f64,
+}
+
+/// An ellipse with its axes along x and y.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ellipse {
+    /// Centre [m].
+    pub centre: Vec<f64>,
+    /// Half axes along x and y [m].
+    #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0.0}))]
+    pub radii: Vec<f64>,
+}
+
+/// A polygon whose edges do not meet but at its vertices.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Polygon {
+    /// Vertices [m] in order, either way round; the last is joined to the first.
+    #[schemars(length(min = 1))]
+    pub vertices: Vec<Vec<f64>>,
+}
+
+/// What lies between two circles about one centre.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Annulus {
+    /// Centre [m].
+    pub centre: Vec<f64>,
+    /// Radius of the inner circle [m].
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub inner: f64,
+    /// Radius of the outer circle [m].
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub outer: f64,
+}
+
+/// The side of a line that its normal points away from.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HalfPlane {
+    /// A point of the line [m].
+    pub point: Vec<f64>,
+    /// Normal out of the half-plane, of any length [-].
+    pub normal: Vec<f64>,
+}
+
+/// A region turned about a point.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rotation {
+    /// Angle, counter-clockwise [degrees].
+    pub angle: f64,
+    /// Point that stays where it is [m].
+    pub about: Vec<f64>,
+    /// The region that is turned.
+    pub of: Box<Region>,
+}
+
+/// A box.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoxShape {
+    /// Lower corner [m].
+    pub lower: Vec<f64>,
+    /// Upper corner [m].
+    pub upper: Vec<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    fn examples() -> Vec<Value> {
+        let disk = json!({"disk": {"centre": [0.0, 0.0], "radius": 1.0}});
+        vec![
+            json!({"box": {"lower": [0.0, 0.0], "upper": [1.0, 2.0]}}),
+            json!({"ellipse": {"centre": [0.0, 0.0], "radii": [1.0, 2.0]}}),
+            json!({"polygon": {"vertices": [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]}}),
+            json!({"annulus": {"centre": [0.0, 0.0], "inner": 1.0, "outer": 2.0}}),
+            json!({"half_plane": {"point": [0.0, 0.0], "normal": [1.0, 0.0]}}),
+            json!({"union": [disk, {"intersection": [disk, disk]}]}),
+            json!({"difference": [disk, disk, disk]}),
+            json!({"rotation": {"angle": 30.0, "about": [0.0, 0.0], "of": disk}}),
+            disk,
+        ]
+    }
+
+    #[test]
+    fn regions_are_read_and_written_as_they_stand() {
+        for json in examples() {
+            let region: Region = serde_json::from_value(json.clone()).unwrap();
+            assert_eq!(serde_json::to_value(&region).unwrap(), json);
+        }
+    }
+
+    #[test]
+    fn the_schema_allows_them_and_no_others() {
+        let schema = schemars::schema_for!(Region).to_value();
+        let validator = jsonschema::validator_for(&schema).unwrap();
+        for json in examples() {
+            assert!(validator.is_valid(&json), "{json}");
+        }
+        for json in [
+            json!({"sphere": {"centre": [0.0, 0.0], "radius": 1.0}}),
+            json!({"disk": {"centre": [0.0, 0.0], "radius": 0.0}}),
+            json!({"disk": {"centre": [0.0, 0.0], "radius": 1.0, "height": 1.0}}),
+            json!({"union": []}),
+            json!({"union": [{"difference": []}]}),
+            json!({"rotation": {"angle": 1.0, "about": [0.0, 0.0]}}),
+            json!({"disk": {"centre": [0.0, 0.0], "radius": 1.0}, "union": []}),
+        ] {
+            assert!(!validator.is_valid(&json), "{json}");
+            let read = serde_json::from_value::<Region>(json.clone());
+            let by_value = ["radius\":0.0", "[]"].iter().any(|v| json.to_string().contains(v));
+            assert!(by_value || read.is_err(), "{json}");
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! Times of steps: variants of a scene, run for a moment each.
+
+use std::sync::Barrier;
+use std::time::Instant;
+
+use decomp::Serial;
+
+use crate::perf_model::{Busy, RankWork, Share, Work};
+use crate::scene::{self, CellSize, CheckedScene, FilterHalo};
+use crate::simulation::{LEAST_CELLS, Simulation};
+use crate::solver::clock::Activity;
+
+/// Particles of the variants, about.
+const SIZES: [f64; 5] = [300.0, 1700.0, 7000.0, 28_000.0, 110_000.0];
+
+/// Patches of the variants.
+const PATCHES: [usize; 4] = [1, 4, 16, 61];
+
+/// Steps before the clock counts.
+const WARM_UP: u64 = 3;
+
+/// Steps of a batch take at least this long together \[s\], so that reading clocks is free.
+const BATCH: f64 = 0.5e-3;
+
+/// Batches of a variant at least, whatever time they take.
+const LEAST_BATCHES: usize = 4;
+
+/// A scene of some size on some patches, every particle computed.
+pub struct Variant {
+    scene: CheckedScene,
+    /// Its work.
+    pub work: Work,
+    patches: usize,
+    threads: usize,
+    halo: FilterHalo,
+}
+
+/// A variant, measured.
+#[derive(Clone)]
+pub struct Measured<'a> {
+    /// The variant.
+    pub variant: &'a Variant,
+    /// Its patches.
+    pub share: Share,
+    /// Time of a step \[s\].
+    pub total: f64,
+    /// In phases over patches \[s\].
+    pub compute: f64,
+}
+
+impl Measured<'_> {
+    /// What its one rank does.
+    pub fn work(&self, cache: [f64; 2]) -> RankWork {
+        self.variant.work.rank_works(&self.share, cache)[0]
+    }
+
+    /// The faster of two measurements of the same.
+    pub fn take_faster(&mut self, other: &Self) {
+        if other.total < self.total {
+            (self.total, self.compute) = (other.total, other.compute);
+        }
+    }
+}
+
+/// `scene` with cells of a `finer`th of the size, or for negative numbers as many times as large;
+/// `denser` times the particles in a cell; `None` if there is no such scene.
+fn sized(scene: &CheckedScene, finer: i64, denser: usize) -> Option<CheckedScene> {
+    let mut new = scene.scene.clone();
+    let size = match finer {
+        1.. => scene.cell_size[0] / finer as f64,
+        _ if scene.cells[0] as i64 % finer == 0 => scene.cell_size[0] * -finer as f64,
+        _ => return None,
+    };
+    new.domain.cell_size = CellSize::Uniform(size);
+    for body in &mut new.bodies {
+        body.particles_per_cell.iter_mut().flatten().for_each(|n| *n *= denser);
+    }
+    new.decomposition.skip_quiet = false;
+    scene::check(new, &scene.file).ok()
+}
+
+/// Variants of several sizes, patch counts and both ways of halos, for so many threads.
+pub fn variants(scene: &CheckedScene, threads: usize) -> Vec<Variant> {
+    let now = scene.particles.max(1) as f64;
+    let finer = |target: f64| match target / now {
+        more if more >= 1.0 => more.round() as i64,
+        less => {
+            let coarser = (1.0 / less).round() as i64;
+            let divides = |k: &i64| scene.cells[0] as i64 % k == 0;
+            -(coarser..4 * coarser).find(divides).unwrap_or(1)
+        }
+    };
+    let mut sizes: Vec<(i64, usize)> = SIZES.map(|target| (finer(target), 1)).to_vec();
+    sizes.iter_mut().filter(|s| s.0 == -1).for_each(|s| s.0 = 1);
+    // particles and nodes are told apart by another number of particles a cell
+    sizes.push((finer(3500.0).max(1), 2));
+    sizes.dedup();
+    let mut all = Vec::new();
+    for (finer, denser) in sizes {
+        let Some(sized) = sized(scene, finer, denser) else { continue };
+        let work = Work::new(&sized);
+        // another reach would be another method
+        if work.reach != Work::new(scene).reach {
+            continue;
+        }
+        let most = (sized.cells[0] / LEAST_CELLS).max(1);
+        let mut counts = PATCHES.map(|p| p.min(most)).to_vec();
+        counts.dedup();
+        for patches in counts.into_iter().filter(|&p| p >= threads) {
+            for halo in [FilterHalo::Exchange, FilterHalo::Deep] {
+                // one patch has nobody to exchange with
+                if patches == 1 && halo == FilterHalo::Deep {
+                    continue;
+                }
+                let mut own = sized.clone();
+                own.scene.domain.patches = Some(vec![patches]);
+                own.scene.decomposition.filter_halo = Some(halo);
+                all.push(Variant { scene: own, work: work.clone(), patches, threads, halo });
+            }
+        }
+    }
+    all
+}
+
+/// Steps of a variant in batches, each with its seconds a step in all and in phases.
+struct Runner<'a> {
+    simulation: Simulation<'a, 1>,
+    end: f64,
+    batch: u64,
+}
+
+impl<'a> Runner<'a> {
+    fn new(variant: &'a Variant) -> Option<Self> {
+        let mut simulation = Simulation::new(&variant.scene, &Serial, variant.threads).ok()?;
+        let end = variant.scene.scene.time.end;
+        let start = Instant::now();
+        for _ in 0..WARM_UP {
+            simulation.advance(end).ok()?;
+        }
+        let step = start.elapsed().as_secs_f64() / WARM_UP as f64;
+        let every = variant.scene.scene.method.pressure_relaxation.map_or(1, |r| r.interval.max(1));
+        let batch = ((BATCH / step).ceil() as u64).clamp(1, 1000).next_multiple_of(every.into());
+        Some(Runner { simulation, end, batch })
+    }
+
+    /// One batch; `None` at the end of the run or where it fails.
+    fn batch(&mut self) -> Option<(f64, f64)> {
+        let computed = |s: &mut Simulation<'_, 1>| s.clock().seconds[Activity::Compute as usize];
+        let before = computed(&mut self.simulation);
+        let start = Instant::now();
+        for _ in 0..self.batch {
+            if self.simulation.time() >= self.end {
+                return None;
+            }
+            self.simulation.advance(self.end).ok()?;
+        }
+        let total = start.elapsed().as_secs_f64();
+        let compute = computed(&mut self.simulation) - before;
+        let each = 1.0 / self.batch as f64;
+        Some((total * each, compute * each))
+    }
+}
+
+/// The fastest batch of a variant within about `seconds`; `None` if it does not run.
+pub fn measure(variant: &Variant, seconds: f64) -> Option<Measured<'_>> {
+    let start = Instant::now();
+    let mut runner = Runner::new(variant)?;
+    let mut best: Option<(f64, f64)> = None;
+    for count in 0.. {
+        if count >= LEAST_BATCHES && start.elapsed().as_secs_f64() >= seconds {
+            break;
+        }
+        let Some(new) = runner.batch() else { break };
+        best = Some(best.map_or(new, |old| if new.0 < old.0 { new } else { old }));
+    }
+    let (total, compute) = best?;
+    let Variant { work, patches, threads, halo, .. } = variant;
+    let share = work.share(*patches, 1, *threads, *halo);
+    Some(Measured { variant, share, total, compute })
+}
+
+/// How much slower a step is while `cores` cores compute than on one alone: once with rows that
+/// stay in a cache of `cache` bytes, once with rows that do not. `None` for one core.
+pub fn busy(variants: &[Variant], cores: usize, seconds: f64, cache: f64) -> Option<Busy> {
+    if cores < 2 {
+        return None;
+    }
+    let single = || variants.iter().filter(|v| v.patches == 1 && v.threads == 1);
+    let small = single().min_by_key(|v| (v.work.terrain.particles - 1700.0).abs() as u64)?;
+    let large = single().max_by_key(|v| v.work.terrain.particles as u64)?;
+    let each = seconds / 4.0;
+    let ratio = |variant: &Variant| Some(crowd(variant, cores, each)? / crowd(variant, 1, each)?);
+    let cold = |v: &Variant| {
+        crate::perf_model::cold_share(v.work.terrain.particles * v.work.row_bytes, cache)
+    };
+    let warm = ratio(small)?.max(1.0);
+    let mixed = ratio(large)?.max(1.0);
+    let cold = match cold(large) {
+        share if share > 0.1 => (warm + (mixed - warm) / share).max(1.0),
+        _ => mixed,
+    };
+    Some(Busy { cores, warm, cold })
+}
+
+/// The lower quartile of the time of a step while `count` threads run a variant each \[s\].
+fn crowd(variant: &Variant, count: usize, seconds: f64) -> Option<f64> {
+    let barrier = Barrier::new(count);
+    let run = || {
+        let runner = Runner::new(variant);
+        barrier.wait();
+        let (mut runner, start) = (runner?, Instant::now());
+        let mut times = Vec::new();
+        while times.len() < LEAST_BATCHES || start.elapsed().as_secs_f64() < seconds {
+            // all come to the end of the run at about the same time
+            let Some((total, _)) = runner.batch() else { break };
+            times.push(total);
+        }
+        times.sort_by(f64::total_cmp);
+        times.get(times.len() / 4).copied()
+    };
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..count).map(|_| scope.spawn(run)).collect();
+        let times: Vec<Option<f64>> =
+            threads.into_iter().map(|t| t.join().expect("a run does not panic")).collect();
+        let times: Option<Vec<f64>> = times.into_iter().collect();
+        times.map(|t| t.iter().sum::<f64>() / t.len() as f64)
+    })
+}

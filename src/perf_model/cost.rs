@@ -1,0 +1,238 @@
+//! Counts times constants: the time of a step.
+
+use super::fit::dot;
+use super::load::{RankWork, Share, Work};
+use super::machine::Machine;
+use super::network::Network;
+use crate::scene::FilterHalo;
+
+/// The time of a step on one way of sharing the work.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prediction {
+    /// Ranks.
+    pub ranks: usize,
+    /// Threads of each rank.
+    pub threads: usize,
+    /// Patches of all ranks.
+    pub patches: usize,
+    /// Ranks that have a patch.
+    pub working: usize,
+    /// How filters get what lies beyond a patch.
+    pub halo: FilterHalo,
+    /// Time of a step \[s\].
+    pub step: f64,
+    /// Share of the ranks' time in computing \[-\].
+    pub compute: f64,
+    /// In packing, copying, and in the overheads of messages \[-\].
+    pub exchange: f64,
+    /// In waiting: for messages, for the reduction, for the busiest rank \[-\].
+    pub wait: f64,
+    /// Messages of all ranks in a step.
+    pub messages: f64,
+    /// What they carry \[B\].
+    pub bytes: f64,
+    /// Work of the busiest rank over the mean of all \[-\].
+    pub imbalance: f64,
+}
+
+/// Predicts a step with `network` between ranks.
+pub fn predict_with(
+    machine: &Machine,
+    network: &Network,
+    work: &Work,
+    share: &Share,
+) -> Prediction {
+    let works = work.rank_works(share, machine.coefficients.cache);
+    let (ranks, working) = (share.ranks, works.len());
+    let node_workers = (working * share.threads.min(share.patches.len())).min(machine.cores);
+    let exchanges = [
+        work.schedule.row_exchanges,
+        if share.halo == FilterHalo::Exchange { work.schedule.node_exchanges } else { 0.0 },
+    ];
+    let forks = match share.threads {
+        1 => 0.0,
+        _ if share.patches.len() == 1 => 0.0,
+        _ => work.schedule.forks(share.halo),
+    };
+    let c = &machine.coefficients;
+    let mut total = Total::default();
+    for (k, rank) in works.iter().enumerate() {
+        let slowing = machine.slowing(node_workers, rank.cold);
+        let mine = (share.starts[k + 1] - share.starts[k]) as f64;
+        let compute = slowing * dot(&rank.compute, &c.compute)
+            + forks * (machine.fork_join + mine * machine.fork_patch);
+        let sent: f64 = (0..2).map(|x| exchanges[x] * rank.neighbours[x]).sum();
+        let calls: f64 = (0..2).filter(|&x| rank.neighbours[x] > 0.0).map(|x| exchanges[x]).sum();
+        let packing =
+            slowing * dot(&rank.serial, &c.serial) + sent * network.overhead + calls * network.call;
+        let inner = if work.overlap { slowing * dot(&rank.inner, &c.compute) } else { 0.0 };
+        let flight = flight(network, rank, exchanges, inner);
+        total.add(compute, packing, flight, sent, exchanges[0] * rank.bytes[0] + rank.bytes[1]);
+    }
+    let reduction = network.reduction(ranks);
+    let step = total.longest + reduction;
+    let all = step * ranks as f64;
+    Prediction {
+        ranks,
+        threads: share.threads,
+        patches: share.patches.len(),
+        working,
+        halo: share.halo,
+        step,
+        compute: total.compute / all,
+        exchange: total.packing / all,
+        wait: (1.0 - (total.compute + total.packing) / all).max(0.0),
+        messages: total.sent,
+        bytes: total.bytes,
+        imbalance: total.busiest * ranks as f64 / total.compute.max(f64::MIN_POSITIVE),
+    }
+}
+
+/// Sums and maxima over the ranks.
+#[derive(Default)]
+struct Total {
+    compute: f64,
+    packing: f64,
+    sent: f64,
+    bytes: f64,
+    busiest: f64,
+    longest: f64,
+}
+
+impl Total {
+    fn add(&mut self, compute: f64, packing: f64, flight: f64, sent: f64, bytes: f64) {
+        self.compute += compute;
+        self.packing += packing;
+        self.sent += sent;
+        self.bytes += bytes;
+        self.busiest = self.busiest.max(compute);
+        self.longest = self.longest.max(compute + packing + flight);
+    }
+}
+
+/// What a rank waits for messages on their way that its inner patches do not fill.
+fn flight(network: &Network, rank: &RankWork, exchanges: [f64; 2], inner: f64) -> f64 {
+    let count: f64 = exchanges.iter().sum();
+    let mut waits = 0.0;
+    for (x, &times) in exchanges.iter().enumerate() {
+        if rank.neighbours[x] > 0.0 && times > 0.0 {
+            let bytes = rank.bytes[x] / if x == 0 { 1.0 } else { times };
+            let alone = network.latency + bytes * network.seconds_per_byte;
+            waits += times * (alone - inner / count).max(0.0);
+        }
+    }
+    waits
+}
+
+/// Predicts a step on `ranks` of `threads`: within a node by the machine's own messages, beyond by
+/// those of `network`.
+pub fn predict(machine: &Machine, network: &Network, work: &Work, share: &Share) -> Prediction {
+    let within = share.ranks * share.threads <= machine.cores;
+    predict_with(machine, if within { &machine.network } else { network }, work, share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::perf_model::machine::tests::machine;
+    use crate::scene::{self, CheckedScene};
+
+    fn flyer(sets: &[&str]) -> CheckedScene {
+        let text = include_bytes!("../../inputs/flyer.json");
+        let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
+        scene::parse(text, "flyer.json", &sets).unwrap()
+    }
+
+    fn on(machine: &Machine, network: &Network, ranks: usize, halo: FilterHalo) -> Prediction {
+        let work = Work::new(&flyer(&["decomposition.skip_quiet=false"]));
+        let share = work.share(ranks.max(8), ranks, 1, halo);
+        predict_with(machine, network, &work, &share)
+    }
+
+    #[test]
+    fn more_latency_makes_more_time() {
+        let own = Network::assumed();
+        let mut before = 0.0;
+        for latency in [1e-6, 3e-6, 10e-6, 100e-6] {
+            let network = Network { latency, ..own.clone() };
+            let step = on(&machine(), &network, 8, FilterHalo::Exchange).step;
+            assert!(step > before, "{step} s with {latency} s");
+            before = step;
+        }
+        // one rank hears of nobody
+        let slow = Network { latency: 1.0, ..own.clone() };
+        let [slow, own] = [&slow, &own].map(|n| on(&machine(), n, 1, FilterHalo::Exchange).step);
+        assert_eq!(slow, own);
+    }
+
+    #[test]
+    fn every_constant_counts() {
+        let network = Network { overhead: 1e-6, call: 1e-6, ..Network::assumed() };
+        let step = on(&machine(), &network, 4, FilterHalo::Exchange).step;
+        for change in [
+            Network { overhead: 2e-6, ..network.clone() },
+            Network { call: 2e-6, ..network.clone() },
+            Network { seconds_per_byte: 1e-7, ..network.clone() },
+            Network { reduction_level: 1e-4, ..network.clone() },
+        ] {
+            assert!(on(&machine(), &change, 4, FilterHalo::Exchange).step > step, "{change:?}");
+        }
+        for k in 0..6 {
+            let mut slower = machine();
+            slower.coefficients.compute[k] += 1e-6;
+            // 1700 rows stay in cache
+            let same = k == 1 || k == 5;
+            let now = on(&slower, &network, 4, FilterHalo::Exchange).step;
+            assert_eq!(now > step, !same, "compute {k}");
+        }
+        for k in 0..6 {
+            let mut slower = machine();
+            slower.coefficients.serial[k] += 1e-6;
+            assert!(on(&slower, &network, 4, FilterHalo::Exchange).step > step, "serial {k}");
+        }
+    }
+
+    #[test]
+    fn deep_ghosts_send_fewer_messages_and_compute_more() {
+        let network = Network::assumed();
+        for ranks in [2, 4, 8] {
+            let [exchange, deep] = [FilterHalo::Exchange, FilterHalo::Deep]
+                .map(|halo| on(&machine(), &network, ranks, halo));
+            assert!(deep.messages < exchange.messages / 8.0, "{} ranks", ranks);
+            assert!(deep.compute * deep.step > exchange.compute * exchange.step);
+        }
+        // so they win where messages are slow
+        let slow = Network { latency: 1e-3, ..network };
+        let [exchange, deep] =
+            [FilterHalo::Exchange, FilterHalo::Deep].map(|halo| on(&machine(), &slow, 8, halo));
+        assert!(deep.step < exchange.step);
+    }
+
+    #[test]
+    fn shares_make_a_whole_and_ranks_without_patches_wait() {
+        for ranks in [1, 3, 8, 50] {
+            let p = on(&machine(), &Network::assumed(), ranks, FilterHalo::Exchange);
+            assert!((p.compute + p.exchange + p.wait - 1.0).abs() < 1e-9, "{p:?}");
+            assert!(p.imbalance >= 1.0 && p.working <= ranks);
+        }
+        let work = Work::new(&flyer(&[]));
+        let share = work.share(4, 100, 1, FilterHalo::Exchange);
+        let p = predict_with(&machine(), &Network::assumed(), &work, &share);
+        assert_eq!(p.working, 4);
+        assert!(p.wait > 0.9, "{p:?}");
+    }
+
+    #[test]
+    fn two_threads_share_patches_but_not_one() {
+        let work = Work::new(&flyer(&["decomposition.skip_quiet=false"]));
+        let mut quick = machine();
+        quick.fork_join = 0.0;
+        let step = |patches, threads| {
+            let share = work.share(patches, 1, threads, FilterHalo::Exchange);
+            predict_with(&quick, &Network::assumed(), &work, &share).step
+        };
+        assert_eq!(step(1, 2), step(1, 1));
+        let gain = step(20, 1) / step(20, 2);
+        assert!((1.5..2.0).contains(&gain), "{gain}");
+    }
+}

@@ -1,0 +1,167 @@
+//! Predictions held against what `scripts/strong_scaling.sh` has measured.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use super::cost::predict;
+use super::load::Work;
+use super::machine::Machine;
+use super::network::Network;
+use super::table::{aligned, extrapolated, halo_name, number};
+use crate::scene::input_file;
+use crate::scene::{CheckedScene, FilterHalo};
+
+/// A strong-scaling study's `scaling.json`, as far as it is needed.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Against {
+    /// What the study held fixed.
+    kind: String,
+    /// The scene's file.
+    pub scene: PathBuf,
+    /// The study's overrides of it.
+    pub sets: Vec<String>,
+    rows: Vec<Row>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+struct Row {
+    ranks: usize,
+    threads: usize,
+    skip_quiet: bool,
+    oversubscribed: bool,
+    patches: usize,
+    particles: u64,
+    steps: u64,
+    wall_seconds: f64,
+}
+
+/// A study that cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[error("{file}: {reason}")]
+pub struct StudyError {
+    file: String,
+    reason: String,
+}
+
+/// One configuration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compared {
+    /// Ranks.
+    pub ranks: usize,
+    /// Threads of each rank.
+    pub threads: usize,
+    /// Patches.
+    pub patches: usize,
+    /// Particles.
+    pub particles: u64,
+    /// How filters got what lies beyond a patch.
+    pub halo: FilterHalo,
+    /// Time of a step, predicted \[s\].
+    pub predicted: f64,
+    /// The same, measured: wall time of the loop over its steps \[s\].
+    pub measured: f64,
+    /// Whether there were more workers than cores: the model knows nothing of that.
+    pub oversubscribed: bool,
+}
+
+impl Compared {
+    /// Predicted over measured, less one \[-\].
+    pub fn deviation(&self) -> f64 {
+        self.predicted / self.measured - 1.0
+    }
+}
+
+impl Against {
+    /// Reads a study.
+    pub fn read(path: &Path) -> Result<Self, StudyError> {
+        let fail = |reason: String| StudyError { file: path.display().to_string(), reason };
+        let bytes = input_file::read(path, input_file::LARGEST_JSON)
+            .map_err(|e| fail(format!("{e}; scripts/strong_scaling.sh writes scaling.json")))?;
+        let study: Against = serde_json::from_slice(&bytes).map_err(|e| {
+            fail(format!("no scaling study: {e}; allowed: scaling.json of strong_scaling.sh"))
+        })?;
+        if study.kind != "strong" {
+            let kind = &study.kind;
+            return Err(fail(format!("kind = {kind:?}; allowed: a study of strong scaling")));
+        }
+        let sound = |r: &Row| {
+            r.ranks > 0 && r.threads > 0 && r.patches > 0 && r.steps > 0 && r.wall_seconds > 0.0
+        };
+        match study.rows.iter().position(|r| !sound(r)) {
+            Some(k) => Err(fail(format!("row {k} has a count or time of 0; allowed: above 0"))),
+            None => Ok(study),
+        }
+    }
+
+    /// Every configuration of which nothing was skipped; `scene` is the study's, its overrides put
+    /// in.
+    pub fn compare(
+        &self,
+        machine: &Machine,
+        network: &Network,
+        scene: &CheckedScene,
+        path: &Path,
+    ) -> Result<Vec<Compared>, StudyError> {
+        let work = Work::new(scene);
+        let mut found = Vec::new();
+        for row in self.rows.iter().filter(|r| !r.skip_quiet) {
+            let &Row { ranks, threads, patches, particles, oversubscribed, .. } = row;
+            if particles != scene.particles {
+                return Err(StudyError {
+                    file: path.display().to_string(),
+                    reason: format!(
+                        "is of {particles} particles, but the scene has {}; allowed: a study of \
+                         this scene",
+                        scene.particles
+                    ),
+                });
+            }
+            let halo = work.chosen_halo(scene, patches, ranks, threads);
+            let share = work.share(patches, ranks, threads, halo);
+            found.push(Compared {
+                ranks,
+                threads,
+                patches,
+                particles,
+                halo,
+                predicted: predict(machine, network, &work, &share).step,
+                measured: row.wall_seconds / row.steps as f64,
+                oversubscribed,
+            });
+        }
+        Ok(found)
+    }
+
+    /// Comparisons as aligned text, and the largest deviation where workers had cores of their own.
+    pub fn table(machine: &Machine, all: &[Compared]) -> String {
+        let head = [
+            "particles",
+            "ranks",
+            "threads",
+            "patches",
+            "halo",
+            "predicted us",
+            "measured us",
+            "deviation %",
+        ];
+        let mut lines = vec![head.map(String::from).to_vec()];
+        for c in all {
+            let mark = if extrapolated(machine, c.ranks, c.threads) { "*" } else { "" };
+            let note = if c.oversubscribed { " oversubscribed" } else { "" };
+            lines.push(vec![
+                c.particles.to_string(),
+                format!("{mark}{}", c.ranks),
+                c.threads.to_string(),
+                c.patches.to_string(),
+                halo_name(c.halo).into(),
+                number(c.predicted * 1e6),
+                number(c.measured * 1e6),
+                format!("{:+.1}{note}", 100.0 * c.deviation()),
+            ]);
+        }
+        let own = all.iter().filter(|c| !c.oversubscribed);
+        let largest = own.map(|c| c.deviation().abs()).fold(0.0, f64::max);
+        format!("{}largest deviation: {:.1} %\n", aligned(&lines), 100.0 * largest)
+    }
+}

@@ -1,0 +1,103 @@
+//! Friction along the plane of contact: Coulomb's law, its force, and its heat.
+
+use decomp::Parity;
+
+use crate::effects::contact::{ContactNodes, Member};
+use crate::solver::patch::Patch;
+use crate::solver::{MOST_NODES, Nodal, Stepper, norm, with_width};
+
+impl<const D: usize> Stepper<D> {
+    /// Whether two bodies stick in a step of `dt`, and if not the force with which the second rubs
+    /// the first [N].
+    ///
+    /// With the velocities that they would have apart at the end of the step, N is the impulse that
+    /// makes one of their normal parts, T that which makes one of the others. Coulomb's law: they
+    /// stick if T <= coefficient N, else an impulse of coefficient N opposes the slip (Bardenhagen,
+    /// Brackbill & Sulsky 2000).
+    pub(super) fn friction(
+        &self,
+        [a, b]: [&Member<D>; 2],
+        normal: &[f64; D],
+        coefficient: f64,
+        dt: f64,
+    ) -> (bool, [f64; D]) {
+        let moved = self.moved();
+        let mass = a.mass * b.mass / (a.mass + b.mass);
+        let apart: [f64; D] = std::array::from_fn(|k| a.velocity[k] - b.velocity[k]);
+        let pushed: [f64; D] =
+            std::array::from_fn(|k| dt * (a.acceleration[k] - b.acceleration[k]));
+        let along = |v: &[f64; D]| (0..D).map(|k| v[k] * normal[k]).sum::<f64>();
+        let most = coefficient * mass * (moved * along(&apart) + along(&pushed)).max(0.0);
+        let slip: [f64; D] = std::array::from_fn(|k| {
+            let across = |v: &[f64; D]| v[k] - along(v) * normal[k];
+            across(&apart) + across(&pushed)
+        });
+        let speed = norm(&slip);
+        let sticks = mass * speed <= most;
+        if sticks && moved == 1.0 {
+            return (true, [0.0; D]);
+        }
+        // a blend keeps particles' velocities: what holds them must be a force
+        let impulse = if sticks { mass * speed } else { most };
+        let scale = if speed > 0.0 { -impulse / (dt * speed) } else { 0.0 };
+        (false, slip.map(|s| scale * s))
+    }
+
+    /// Adds friction to the nodal force.
+    pub(super) fn rub(&self, patch: &mut Patch<D>, nodes: &ContactNodes<D>) {
+        for (joint, a) in nodes.joints.iter().flat_map(|j| (0..D).map(move |a| (j, a))) {
+            let force = &mut patch.nodes.fields[self.fields.acceleration + a];
+            force[joint.at[0]] += joint.friction[a];
+            force[joint.at[1]] -= joint.friction[a];
+        }
+    }
+
+    /// The work that friction has taken from the motion in a step of `dt`, as heat of the two
+    /// bodies, half each [J/kg]: -f.(w_a - w_b) dt, with the velocity whose gradient does the work.
+    /// A wall takes none: what rubs on it has all of -f.w dt.
+    fn find_friction_heat(&self, patch: &mut Patch<D>, dt: f64) {
+        let f = &self.fields;
+        let Some(field) = f.heat else { return };
+        let mut heat = std::mem::take(&mut patch.nodes.fields[field]);
+        heat.fill(0.0);
+        let fields = &patch.nodes.fields;
+        let velocity = |a: usize, at: usize| match self.compatible {
+            true => fields[f.work + a][at],
+            false => 0.5 * (fields[f.velocity + a][at] + fields[f.velocity_star + a][at]),
+        };
+        for joint in &patch.contact.joints {
+            let [i, j] = joint.at;
+            let slip = |a: usize| velocity(a, i) - velocity(a, j);
+            let power: f64 = (0..D).map(|a| -joint.friction[a] * slip(a)).sum();
+            heat[i] += 0.5 * dt * power / joint.mass[0];
+            heat[j] += 0.5 * dt * power / joint.mass[1];
+        }
+        for pushed in patch.side_forces.iter().filter(|p| p.rubs) {
+            let power: f64 = (0..D).map(|a| -pushed.force[a] * velocity(a, pushed.at)).sum();
+            heat[pushed.at] += dt * power / fields[f.mass][pushed.at];
+        }
+        patch.nodes.fields[field] = heat;
+    }
+
+    /// Brings the heat of friction to all who see its nodes. Collective between neighbours.
+    pub(in crate::solver) fn solve_friction_heat(&self, nodal: &mut Nodal<'_, D>, dt: f64) {
+        if let Some(heat) = self.fields.heat {
+            nodal.each("friction heat", |patch| self.find_friction_heat(patch, dt));
+            nodal.refresh(&[(heat, Parity::Even)]);
+        }
+    }
+
+    /// Gives the own rows the heat of friction.
+    pub(super) fn gather_friction_heat(&self, patch: &mut Patch<D>) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
+            let Some(field) = s.fields.heat else { return };
+            let n = patch.block.own();
+            let energy = &mut patch.block.columns[s.columns.energy][..n];
+            for (r, e) in energy.iter_mut().enumerate() {
+                let row = patch.stencils.row::<K, D>(r);
+                *e += row.dot(row.values, &patch.nodes.fields[field]);
+            }
+        }
+        with_width!(patch.stencils.width, go(patch, self));
+    }
+}

@@ -1,0 +1,526 @@
+//! Nodal fields of one patch and the mass matrix on them.
+//!
+//! Knows no materials and no messages.
+
+use std::ops::Range;
+
+use crate::solver::transfer::{NARROW, Row, add_product, lines};
+
+/// Where each nodal field stands in a patch's arrays. A vector takes D fields that follow each
+/// other; its number is that of the first.
+///
+/// Fields that a scheme has no use for have no array: their number is past the end.
+#[derive(Clone, Debug)]
+pub struct Fields {
+    /// Lumped mass m_i [kg].
+    pub mass: usize,
+    /// 1/m_i, 0 where there is no mass [1/kg].
+    pub inverse: usize,
+    /// Lumped velocity vL [m/s], a vector; momentum while it is being summed.
+    pub lumped: usize,
+    /// Velocity at the start of the step, v [m/s], a vector: without a filter the lumped one
+    /// itself.
+    pub velocity: usize,
+    /// Velocity at the end of the step, v' [m/s], a vector.
+    pub velocity_star: usize,
+    /// Acceleration b [m/s2], a vector; internal force while it is being summed.
+    pub acceleration: usize,
+    /// Velocity whose gradient does the work, w [m/s], a vector.
+    pub work: usize,
+    /// K^(k-1) vL, the last term of the filter's series [m/s], a vector; with a filter.
+    pub remainder: Option<usize>,
+    /// Scratch for products: as many fields that follow each other as vectors are multiplied at a
+    /// time.
+    pub scratch: usize,
+    /// Their number.
+    pub scratches: usize,
+    /// First terms of the series of force and work, a vector.
+    pub first: usize,
+    /// Fraction of the node's volume that holds material [-], with an edge mask.
+    pub volume: usize,
+    /// Relaxation: summed compliance and its inverse, the projected pressure, and its first term,
+    /// in the end its last.
+    pub relaxation: [usize; 4],
+    /// Heat of friction [J/kg], with contact or a wall that has friction.
+    pub heat: Option<usize>,
+    /// What heat conduction takes, with it.
+    pub conduction: Option<ConductionFields>,
+    /// Scratch for the sums of a side.
+    pub side: usize,
+    /// Number of fields.
+    pub count: usize,
+}
+
+/// Where the fields of heat conduction stand.
+#[derive(Clone, Copy, Debug)]
+pub struct ConductionFields {
+    /// 1/C_i of the heat capacity, 0 where there is none [K/J].
+    pub inverse: usize,
+    /// Temperature T_i [K].
+    pub temperature: usize,
+    /// Temperature projected through the full matrix of capacities [K].
+    pub projected: usize,
+    /// Its rate [K/s].
+    pub rate: usize,
+}
+
+/// What of the fields a scheme and its effects ask for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Wanted {
+    /// Series of vectors that a filter sums up together, 0 without one.
+    pub series: usize,
+    /// An edge mask.
+    pub masked: bool,
+    /// Pressure relaxation.
+    pub relaxed: bool,
+    /// Friction.
+    pub rubs: bool,
+    /// Heat conduction.
+    pub conducts: bool,
+    /// Sums of a side.
+    pub sides: usize,
+}
+
+impl Fields {
+    /// The fields in `dimension` directions.
+    pub fn new(dimension: usize, wanted: Wanted) -> Self {
+        let Wanted { series, masked, relaxed, rubs, conducts, sides } = wanted;
+        let filtered = series > 0;
+        let mut count = 0;
+        let mut add = |n: usize, wanted: bool| {
+            let at = if wanted { count } else { usize::MAX / 2 };
+            count += if wanted { n } else { 0 };
+            at
+        };
+        let [mass, inverse] = [1; 2].map(|n| add(n, true));
+        let scratches = (series * dimension).max(1);
+        let scratch = add(scratches, true);
+        let [lumped, velocity_star, acceleration, work, first] =
+            [dimension; 5].map(|n| add(n, true));
+        let velocity = if filtered { add(dimension, true) } else { lumped };
+        let remainder = filtered.then(|| add(dimension, true));
+        let volume = add(1, masked);
+        let r = add(4, relaxed);
+        let heat = rubs.then(|| add(1, true));
+        let conduction = conducts.then(|| ConductionFields {
+            inverse: add(1, true),
+            temperature: add(1, true),
+            projected: add(1, true),
+            rate: add(1, true),
+        });
+        let side = add(sides, true);
+        Fields {
+            mass,
+            inverse,
+            lumped,
+            velocity,
+            velocity_star,
+            acceleration,
+            work,
+            remainder,
+            scratch,
+            scratches,
+            first,
+            volume,
+            relaxation: [r, r + 1, r + 2, r + 3],
+            heat,
+            conduction,
+            side,
+            count,
+        }
+    }
+}
+
+/// Nodes whose sums are made at a time: what they take of a matrix stays in the nearest cache.
+const BLOCK: usize = 64;
+
+/// Numbers of a page of memory: those as far apart share a place in the nearest cache, ...
+const PAGE: usize = 512;
+
+/// ... so those of a node on all diagonals are this much further apart.
+const APART: usize = 24;
+
+/// A symmetric matrix M_ij = sum_p m_p N_ip N_jp over the nodes of a patch, one diagonal after
+/// the other: a diagonal holds M_(i,i+offset) at i, for the offsets to nodes that come later.
+#[derive(Clone, Debug, Default)]
+pub struct Band {
+    /// The same, a node after the other, while particles are added; else zeros.
+    rows: Vec<f64>,
+    /// What has been added to in each block of nodes.
+    touched: Vec<Touched>,
+    /// One after the other, `stride` apart.
+    diagonals: Vec<f64>,
+    stride: usize,
+    /// For each block of nodes, the diagonals that are not zero throughout.
+    filled: Vec<bool>,
+    /// From a node to the other of each diagonal, in the patch's arrays.
+    offsets: Vec<usize>,
+    /// Whether narrow particles add to each diagonal.
+    near: Vec<bool>,
+}
+
+/// What particles have added to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+enum Touched {
+    /// Nothing.
+    #[default]
+    No,
+    /// The diagonals of narrow ones.
+    Near,
+    /// All diagonals.
+    All,
+}
+
+/// Diagonals for windows of `width` nodes along each of `dimension` directions.
+const fn diagonals(width: usize, dimension: usize) -> usize {
+    (lines(2 * width - 1, dimension) * (2 * width - 1)).div_ceil(2)
+}
+
+impl Band {
+    /// Makes ready for a sum over `nodes` nodes of particles that touch `width` nodes along each of
+    /// `dimension` directions, in arrays whose lines are `stride` long.
+    pub fn clear(&mut self, nodes: usize, width: usize, dimension: usize, stride: usize) {
+        let count = diagonals(width, dimension);
+        let across = if dimension == 1 { 1 } else { width };
+        let place = |line: usize, k: usize| match line {
+            0 => k,
+            _ => line * stride + k + 1 - width,
+        };
+        let lengths = (0..across).map(|line| (line, if line == 0 { width } else { 2 * width - 1 }));
+        let places = lengths.flat_map(|(line, length)| (0..length).map(move |k| (line, k)));
+        let offsets = places.clone().map(|(line, k)| place(line, k));
+        if self.rows.len() == nodes * count && offsets.clone().eq(self.offsets.iter().copied()) {
+            // what was added before has left zeros behind
+            return;
+        }
+        self.offsets.clear();
+        self.offsets.extend(offsets);
+        debug_assert_eq!(self.offsets.len(), count);
+        let is_near = |(line, k): (usize, usize)| match line {
+            0 => k < NARROW,
+            _ => line < NARROW && (k + 1).abs_diff(width) < NARROW,
+        };
+        self.near.clear();
+        self.near.extend(places.map(is_near));
+        let blocks = nodes.div_ceil(BLOCK);
+        self.touched.clear();
+        self.touched.resize(blocks, Touched::No);
+        self.filled.clear();
+        self.filled.resize(blocks * count, false);
+        self.rows.clear();
+        self.rows.resize(nodes * count, 0.0);
+        self.stride = nodes.next_multiple_of(PAGE) + APART;
+        self.diagonals.clear();
+        self.diagonals.resize(self.stride * count, 0.0);
+    }
+
+    /// Some nodes of a diagonal.
+    #[inline(always)]
+    fn diagonal(&self, d: usize, nodes: Range<usize>) -> &[f64] {
+        &self.diagonals[d * self.stride + nodes.start..d * self.stride + nodes.end]
+    }
+
+    /// Adds one particle of mass `mass`.
+    #[inline(always)]
+    pub fn add<const K: usize, const D: usize>(&mut self, row: &Row<'_, K, D>, mass: f64) {
+        if row.is_narrow() {
+            self.add_part::<K, D, NARROW>(row, mass);
+        } else {
+            self.add_part::<K, D, K>(row, mass);
+        }
+    }
+
+    /// Adds the products of the first `M` nodes along each direction.
+    #[inline(always)]
+    fn add_part<const K: usize, const D: usize, const M: usize>(
+        &mut self,
+        row: &Row<'_, K, D>,
+        mass: f64,
+    ) {
+        let count = const { diagonals(K, D) };
+        let first_nodes =
+            |values: &[f64; K]| -> [f64; M] { *values.first_chunk().expect("as many nodes") };
+        for line in 0..const { lines(M, D) } {
+            let from = row.first + line * row.stride;
+            for node in [from, from + M - 1] {
+                let touched = &mut self.touched[node / BLOCK];
+                *touched = (*touched).max(if M < K { Touched::Near } else { Touched::All });
+            }
+            // of a length known at compile time, so that no place in it is checked
+            let rows = &mut self.rows[from * count..][..const { K * diagonals(K, D) }];
+            let (here, later) = row.values[..const { lines(M, D) }][line..]
+                .split_first()
+                .expect("the lines from this one on");
+            for i in 0..M {
+                let term = mass * here[i];
+                for k in i..M {
+                    rows[i * count + k - i] += term * here[k];
+                }
+                let across = rows[i * count + K..(i + 1) * count].chunks_exact_mut(2 * K - 1);
+                for (sums, values) in across.zip(later) {
+                    add_product(sums, K - 1 - i, term, &first_nodes(values));
+                }
+            }
+        }
+    }
+
+    /// Must be called once all particles are in.
+    pub fn finish(&mut self) {
+        let count = self.offsets.len();
+        let nodes = self.rows.len() / count;
+        let blocks = self.touched.iter_mut().zip(self.filled.chunks_exact_mut(count));
+        for (block, (touched, filled)) in blocks.enumerate() {
+            let from = block * BLOCK;
+            let to = nodes.min(from + BLOCK);
+            let touched = std::mem::take(touched);
+            // a block at a time, so that its rows are fetched once
+            let rows = &mut self.rows[from * count..to * count];
+            let diagonals = self.diagonals.chunks_exact_mut(self.stride);
+            for (d, (diagonal, filled)) in diagonals.zip(filled).enumerate() {
+                if touched == Touched::No || (touched == Touched::Near && !self.near[d]) {
+                    if std::mem::take(filled) {
+                        diagonal[from..to].fill(0.0);
+                    }
+                    continue;
+                }
+                let mut bits = 0;
+                for (value, row) in diagonal[from..to].iter_mut().zip(rows.chunks_exact(count)) {
+                    *value = row[d];
+                    bits |= value.to_bits();
+                }
+                *filled = bits != 0;
+            }
+            if touched != Touched::No {
+                rows.fill(0.0);
+            }
+        }
+    }
+
+    /// y = M x on the nodes `range`, which must lie at least the band's width from the ends.
+    pub fn product(&self, x: &[f64], range: Range<usize>, y: &mut [f64]) {
+        self.each_product([x], range, [y], |product, _, _| product);
+    }
+
+    /// y = t + x - d M x on the nodes `range` for several vectors at a time, d a diagonal matrix: a
+    /// sum of a series and its next by Horner's rule.
+    pub fn next_sums<'a, const V: usize>(
+        &self,
+        x: [&'a [f64]; V],
+        d: &[f64],
+        t: [&'a [f64]; V],
+        range: Range<usize>,
+        y: [&mut [f64]; V],
+    ) {
+        let cut = |fields: [&'a [f64]; V]| fields.map(|field| &field[range.clone()]);
+        let (x_here, d, t) = (cut(x), &d[range.clone()], cut(t));
+        self.each_product(x, range, y, |product, v, i| t[v][i] + (x_here[v][i] - d[i] * product));
+    }
+
+    /// y = f((M x)_i, v, i) on the nodes of `range` for each vector v, i counted from its start.
+    #[inline(always)]
+    fn each_product<const V: usize>(
+        &self,
+        x: [&[f64]; V],
+        range: Range<usize>,
+        y: [&mut [f64]; V],
+        f: impl Fn(f64, usize, usize) -> f64,
+    ) {
+        match self.offsets.len() {
+            3 => self.products_of::<3, V>(x, range, y, f),
+            4 => self.products_of::<4, V>(x, range, y, f),
+            _ => self.products_by_diagonals(x, range, y, f),
+        }
+    }
+
+    /// The same sums in the same order, a diagonal after the other: for many of them. Blocks without
+    /// anything on a diagonal are passed over, which changes no bit: sums start from +0.
+    #[inline(always)]
+    fn products_by_diagonals<const V: usize>(
+        &self,
+        x: [&[f64]; V],
+        range: Range<usize>,
+        y: [&mut [f64]; V],
+        f: impl Fn(f64, usize, usize) -> f64,
+    ) {
+        let count = self.offsets.len();
+        let mut from = range.start;
+        while from < range.end {
+            let to = range.end.min((from / BLOCK + 1) * BLOCK);
+            let n = to - from;
+            let mut sums = [[0.0; BLOCK]; V];
+            let main = self.diagonal(0, from..to);
+            for (sums, x) in sums.iter_mut().zip(x) {
+                for ((sum, m), x) in sums.iter_mut().zip(main).zip(&x[from..to]) {
+                    *sum += m * x;
+                }
+            }
+            for (d, &o) in self.offsets.iter().enumerate().skip(1) {
+                let is_filled = |node: usize| self.filled[node / BLOCK * count + d];
+                if !(is_filled(from) || is_filled(from - o) || is_filled(to - 1 - o)) {
+                    continue;
+                }
+                let (above, below) =
+                    (self.diagonal(d, from..to), self.diagonal(d, from - o..to - o));
+                for (sums, x) in sums.iter_mut().zip(x) {
+                    let (x_above, x_below) = (&x[from + o..to + o], &x[from - o..to - o]);
+                    let sums = &mut sums[..n];
+                    for i in 0..n {
+                        sums[i] += above[i] * x_above[i];
+                        sums[i] += below[i] * x_below[i];
+                    }
+                }
+            }
+            for v in 0..V {
+                let y = &mut y[v][from..to];
+                for i in 0..n {
+                    y[i] = f(sums[v][i], v, from - range.start + i);
+                }
+            }
+            from = to;
+        }
+    }
+
+    /// The same sums in the same order, with few diagonals known so that they run in vectors.
+    #[inline(always)]
+    fn products_of<const W: usize, const V: usize>(
+        &self,
+        x: [&[f64]; V],
+        range: Range<usize>,
+        y: [&mut [f64]; V],
+        f: impl Fn(f64, usize, usize) -> f64,
+    ) {
+        let (from, to) = (range.start, range.end);
+        if from >= to {
+            return;
+        }
+        let n = to - from;
+        let main = self.diagonal(0, from..to);
+        let above: [&[f64]; W] = std::array::from_fn(|d| self.diagonal(d, from..to));
+        let below: [&[f64]; W] = std::array::from_fn(|d| self.diagonal(d, from - d..to - d));
+        for (v, y) in y.into_iter().enumerate() {
+            let y = &mut y[from..to];
+            let x_above: [&[f64]; W] = std::array::from_fn(|d| &x[v][from + d..to + d]);
+            let x_below: [&[f64]; W] = std::array::from_fn(|d| &x[v][from - d..to - d]);
+            for i in 0..n {
+                let mut sum = main[i] * x_above[0][i];
+                for d in 1..W {
+                    sum += above[d][i] * x_above[d][i];
+                    sum += below[d][i] * x_below[d][i];
+                }
+                y[i] = f(sum, v, i);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A particle: its first node, mass and values.
+    type Particle<const K: usize> = (usize, f64, Vec<[f64; K]>);
+
+    /// Adds particles to `band` and holds its products with several vectors at a time against those
+    /// of a full matrix.
+    fn check_with<const K: usize, const D: usize>(
+        band: &mut Band,
+        extent: [usize; 2],
+        particles: &[Particle<K>],
+        inner: Range<usize>,
+    ) {
+        let nodes = extent[0] * extent[1];
+        band.clear(nodes, K, D, extent[0]);
+        let mut full = vec![vec![0.0; nodes]; nodes];
+        for (first, mass, values) in particles {
+            let beyond = |l: usize, k: usize| l >= NARROW || k >= NARROW;
+            let mut places = (0..values.len()).flat_map(|l| (0..K).map(move |k| (l, k)));
+            let narrow = K > NARROW && places.all(|(l, k)| !beyond(l, k) || values[l][k] == 0.0);
+            let row: Row<'_, K, D> =
+                Row { first: *first, stride: extent[0], narrow, values, gradients: &[] };
+            band.add(&row, *mass);
+            let place = |l: usize, k: usize| first + l * extent[0] + k;
+            for (l, k) in (0..values.len()).flat_map(|l| (0..K).map(move |k| (l, k))) {
+                for (m, j) in (0..values.len()).flat_map(|m| (0..K).map(move |j| (m, j))) {
+                    full[place(l, k)][place(m, j)] += mass * values[l][k] * values[m][j];
+                }
+            }
+        }
+        band.finish();
+        let vector = |v: usize| (0..nodes).map(|i| (i * i % (17 + v)) as f64).collect::<Vec<_>>();
+        let (x, t) = ([vector(0), vector(1)], [vector(2), vector(3)]);
+        let of = |i: usize, x: &[f64]| (0..nodes).map(|j| full[i][j] * x[j]).sum::<f64>();
+        let is_close = |y: f64, exact: f64| (y - exact).abs() < 1e-12 * exact.abs().max(1.0);
+        let mut y = vec![0.0; nodes];
+        band.product(&x[0], inner.clone(), &mut y);
+        assert!(particles.is_empty() || inner.clone().any(|i| y[i] != 0.0));
+        for i in inner.clone() {
+            assert!(is_close(y[i], of(i, &x[0])), "node {i}: {} {}", y[i], of(i, &x[0]));
+        }
+        let (d, mut next) = (vector(4), [vec![0.0; nodes], vec![0.0; nodes]]);
+        let into = next.each_mut().map(|y| &mut y[..]);
+        band.next_sums(
+            x.each_ref().map(|x| &x[..]),
+            &d,
+            t.each_ref().map(|t| &t[..]),
+            inner.clone(),
+            into,
+        );
+        for (v, i) in (0..2).flat_map(|v| inner.clone().map(move |i| (v, i))) {
+            let exact = t[v][i] + (x[v][i] - d[i] * of(i, &x[v]));
+            assert!(is_close(next[v][i], exact), "vector {v}, node {i}: {} {exact}", next[v][i]);
+        }
+    }
+
+    fn check<const K: usize, const D: usize>(
+        extent: [usize; 2],
+        particles: &[Particle<K>],
+        inner: Range<usize>,
+    ) {
+        check_with::<K, D>(&mut Band::default(), extent, particles, inner);
+    }
+
+    #[test]
+    fn the_band_is_the_matrix_of_products() {
+        let particles = [
+            (3, 2.0, vec![[0.2, 0.5, 0.3]]),
+            (4, 1.5, vec![[0.1, 0.6, 0.3]]),
+            (3, 0.7, vec![[0.0, 0.4, 0.6]]),
+        ];
+        check::<3, 1>([12, 1], &particles, 3..9);
+    }
+
+    #[test]
+    fn in_a_plane_too() {
+        let lines = |a: f64| vec![[0.1, 0.2, 0.05], [a, 0.25, 0.1], [0.0, 0.07, 0.3 - a]];
+        let particles = [(40, 2.0, lines(0.1)), (41, 1.5, lines(0.2)), (52, 0.7, lines(0.05))];
+        check::<3, 2>([12, 9], &particles, 36..80);
+    }
+
+    /// One matrix for one sum after the other: what is left of the last is in none, where particles
+    /// are narrow, where they are wide, and where there are none.
+    #[test]
+    fn a_matrix_holds_its_last_sum_alone() {
+        const K: usize = 6;
+        let extent = [40, 23];
+        let values = |nodes: usize, seed: usize| -> Vec<[f64; K]> {
+            let value = |l: usize, k: usize| {
+                if l.max(k) < nodes { ((l * 7 + k * 5 + seed) % 11) as f64 / 40.0 } else { 0.0 }
+            };
+            (0..K).map(|l| std::array::from_fn(|k| value(l, k))).collect()
+        };
+        let inner = 6 * extent[0]..16 * extent[0];
+        let at = |x: usize, y: usize| y * extent[0] + x;
+        let narrow = |x, y| (at(x, y), 1.5, values(NARROW, x));
+        let wide = |x, y| (at(x, y), 0.8, values(K, y));
+        let mut band = Band::default();
+        for particles in [
+            vec![narrow(4, 7), narrow(5, 7), wide(20, 8), wide(7, 9)],
+            vec![narrow(4, 7), narrow(21, 8), narrow(30, 10)],
+            vec![wide(11, 10)],
+            vec![],
+            vec![narrow(30, 12)],
+        ] {
+            check_with::<K, 2>(&mut band, extent, &particles, inner.clone());
+        }
+    }
+}

@@ -1,0 +1,457 @@
+//! The rows' domains: what the shape functions see of a particle's extent, and how far it reaches.
+//!
+//! Parallelograms are computed for some rows at a time, every operation for all of them before the
+//! next: compilers take one lane of a register for each row then.
+
+use std::ops::Range;
+
+use super::Stepper;
+use crate::solver::patch::{Patch, Phase};
+use crate::solver::shape::{Domain, Extent};
+
+/// Rows that are computed together.
+const LANES: usize = 4;
+
+/// Rows whose parallelograms are kept at a time where only their extents are wanted.
+const BLOCK: usize = 128;
+
+/// `L` rows of a column from `first` on.
+#[inline(always)]
+fn lanes<const L: usize>(column: &[f64], first: usize) -> [f64; L] {
+    column[first..first + L].try_into().expect("a slice of that length")
+}
+
+/// One operation for `L` rows.
+#[inline(always)]
+fn each<const L: usize>(of: impl Fn(usize) -> f64) -> [f64; L] {
+    std::array::from_fn(of)
+}
+
+/// (1 + l) F, with the components of a tensor by rows.
+#[inline(always)]
+fn moved_by<const L: usize>(l: &[[f64; L]; 4], f: &[[f64; L]; 4]) -> [[f64; L]; 4] {
+    let ([lxx, lxy, lyx, lyy], [xx, xy, yx, yy]) = (l, f);
+    [
+        each(|r| xx[r] + (lxx[r] * xx[r] + lxy[r] * yx[r])),
+        each(|r| xy[r] + (lxx[r] * xy[r] + lxy[r] * yy[r])),
+        each(|r| yx[r] + (lyx[r] * xx[r] + lyy[r] * yx[r])),
+        each(|r| yy[r] + (lyx[r] * xy[r] + lyy[r] * yy[r])),
+    ]
+}
+
+/// Raises each of `most` to the value beside it; what is not a number counts as nothing.
+#[inline(always)]
+fn raise<const L: usize>(most: &mut [f64; L], values: &[f64; L]) {
+    for (most, x) in most.iter_mut().zip(values) {
+        *most = if *x > *most { *x } else { *most };
+    }
+}
+
+/// The greatest value, at least 0; what is not a number counts as nothing.
+pub(super) fn greatest(values: &[f64]) -> f64 {
+    let mut most = [0.0; LANES];
+    let (chunks, rest) = values.as_chunks::<LANES>();
+    chunks.iter().for_each(|chunk| raise(&mut most, chunk));
+    rest.iter().chain(&most).copied().fold(0.0, f64::max)
+}
+
+/// Columns that rows' parallelograms come from.
+struct Strained<'a> {
+    /// F.
+    deformation: [&'a [f64]; 4],
+    /// Gradient of the velocity [1/s] and the time [s] that the domain is ahead of F by it.
+    ahead: Option<([&'a [f64]; 4], f64)>,
+    /// Half lengths at the start [m].
+    half: [&'a [f64]; 2],
+    /// Volume at the start [m3] and its ratio.
+    volume: [&'a [f64]; 2],
+    /// Place [m] and velocity [m/s] across the axis, where there is one.
+    radius: Option<[&'a [f64]; 2]>,
+}
+
+/// Columns that the extents of rows' domains come from.
+enum Outlines<'a> {
+    /// Lengths: the volume at the start and its ratio.
+    Length([&'a [f64]; 2]),
+    /// Lengths that stay: the volume at the start.
+    FirstLength(&'a [f64]),
+    /// Half lengths of boxes that stay [m].
+    Boxes([&'a [f64]; 2]),
+    /// What deforms in a plane.
+    Parallelograms(Strained<'a>),
+    /// No extent.
+    Points,
+}
+
+impl<const D: usize> Stepper<D> {
+    /// The own rows' domains [cells] at volume ratio `jacobian` (a column), and the volume that
+    /// they fill where an edge mask asks for it.
+    pub(super) fn find_domains(&self, patch: &mut Patch<D>, ahead: f64, jacobian: usize) {
+        let c = &self.columns;
+        let n = patch.block.own();
+        let scale: f64 = self.inverse_cell.iter().product();
+        let filled = c.filled.filter(|&k| k != c.domain);
+        for k in filled.into_iter().chain((D == 1).then_some(c.domain)) {
+            let [volume0, j, out] = patch
+                .block
+                .columns
+                .get_disjoint_mut([c.volume0, jacobian, k])
+                .expect("columns differ");
+            out.resize(n, 0.0);
+            match self.extent() {
+                Extent::Undeformed if k == c.domain => {
+                    (0..n).for_each(|r| out[r] = volume0[r] * scale);
+                }
+                Extent::Point if k == c.domain => {}
+                Extent::Current if D == 1 => {
+                    (0..n).for_each(|r| out[r] = self.domain_length(volume0[r] * j[r] * scale));
+                }
+                _ => (0..n).for_each(|r| out[r] = volume0[r] * j[r] * scale),
+            }
+        }
+        if let (true, Some(filled)) = (D > 1 && self.axisymmetric, filled) {
+            let [x, v, out] = patch
+                .block
+                .columns
+                .get_disjoint_mut([c.position, c.velocity, filled])
+                .expect("columns differ");
+            (0..n).for_each(|r| out[r] /= x[r] + ahead * v[r]);
+        }
+        if let (Some(half_edges), Some(_)) = (c.half_edges, c.deformation) {
+            self.find_parallelograms(patch, half_edges, ahead, jacobian);
+        }
+        if let (Some(half_lengths), Extent::Undeformed) = (c.half_lengths, self.extent()) {
+            for a in 0..D {
+                let [half, out] = patch
+                    .block
+                    .columns
+                    .get_disjoint_mut([half_lengths + a, c.domain + a])
+                    .expect("differ");
+                out.clear();
+                out.extend(half.iter().map(|h| 2.0 * h * self.inverse_cell[a]));
+            }
+        }
+    }
+
+    /// Length of a particle's domain on a line that fills `length` [cells]: at most twice the
+    /// greatest half diagonal that the scene allows. What is not a number stays so.
+    #[inline(always)]
+    pub(super) fn domain_length(&self, length: f64) -> f64 {
+        let most = self.domain_limit.map_or(f64::INFINITY, |limit| 2.0 * limit);
+        if length > most { most } else { length }
+    }
+
+    /// The own rows' parallelograms [cells] `ahead` of their state in time, with the area of
+    /// their volume, and as long as the scene lets them be.
+    fn find_parallelograms(
+        &self,
+        patch: &mut Patch<D>,
+        half_edges: usize,
+        ahead: f64,
+        jacobian: usize,
+    ) {
+        let n = patch.block.own();
+        let mut columns: [Vec<f64>; 4] = std::array::from_fn(|k| {
+            let mut column = std::mem::take(&mut patch.block.columns[half_edges + k]);
+            column.resize(n, 0.0);
+            column
+        });
+        let from = self.strained(&patch.block, ahead, jacobian).expect("domains have half lengths");
+        self.parallelograms(&from, 0..n, columns.each_mut().map(|column| &mut column[..]));
+        let [ax, ay, bx, by] = columns.each_ref().map(|column| &column[..n]);
+        let limit = if self.domains_deform() { patch.reach_length } else { f64::INFINITY };
+        let torn = |r: usize| extent([ax[r], ay[r]], [bx[r], by[r]]) > limit;
+        // without a way out of the loop, which would keep it from taking rows together
+        let row = match (0..n).fold(false, |any, r| any | torn(r)) {
+            true => (0..n).find(|&r| torn(r)),
+            false => None,
+        };
+        for (k, column) in columns.into_iter().enumerate() {
+            patch.block.columns[half_edges + k] = column;
+        }
+        if let Some(row) = row {
+            self.fault(patch, Phase::Start, row, "it is torn apart within one step".into());
+        }
+    }
+
+    /// What parallelograms come from, `ahead` of the rows' state in time at volume ratio `jacobian`
+    /// (a column); `None` where domains do not deform.
+    fn strained<'a>(
+        &self,
+        block: &'a decomp::Block<D>,
+        ahead: f64,
+        jacobian: usize,
+    ) -> Option<Strained<'a>> {
+        let c = &self.columns;
+        let column = |k: usize| &block.columns[k][..block.own()];
+        let tensor = |first: usize| std::array::from_fn(|k| column(first + k));
+        let (deformation, half) = (c.deformation?, c.half_lengths?);
+        let gradient = || tensor(c.velocity_gradient.expect("what deforms has the column"));
+        Some(Strained {
+            deformation: tensor(deformation),
+            ahead: (ahead != 0.0).then(|| (gradient(), ahead)),
+            half: [column(half), column(half + 1)],
+            volume: [column(c.volume0), column(jacobian)],
+            radius: self.axisymmetric.then(|| [column(c.position), column(c.velocity)]),
+        })
+    }
+
+    /// Half edges of `rows` [cells], in the order of their columns, as long as the scene lets them be.
+    fn parallelograms(&self, from: &Strained<'_>, rows: Range<usize>, mut out: [&mut [f64]; 4]) {
+        match (from.ahead.is_some(), from.radius.is_some()) {
+            (false, false) => self.whole_parallelograms::<false, false>(from, rows, &mut out),
+            (true, false) => self.whole_parallelograms::<true, false>(from, rows, &mut out),
+            (false, true) => self.whole_parallelograms::<false, true>(from, rows, &mut out),
+            (true, true) => self.whole_parallelograms::<true, true>(from, rows, &mut out),
+        }
+        if let Some(most) = self.domain_limit {
+            limit(out, most);
+        }
+    }
+
+    fn whole_parallelograms<const AHEAD: bool, const AXIS: bool>(
+        &self,
+        from: &Strained<'_>,
+        rows: Range<usize>,
+        out: &mut [&mut [f64]; 4],
+    ) {
+        let whole = rows.len() - rows.len() % LANES;
+        for at in (0..whole).step_by(LANES) {
+            self.some_parallelograms::<LANES, AHEAD, AXIS>(from, rows.start + at, out, at);
+        }
+        for at in whole..rows.len() {
+            self.some_parallelograms::<1, AHEAD, AXIS>(from, rows.start + at, out, at);
+        }
+    }
+
+    /// The parallelograms of `L` rows from `first` on, however long they are, to place `at` of `out`.
+    ///
+    /// What F and J differ by, the relaxation's share of the volume and rounding of the time
+    /// step, goes to the directions that have been strained, with the squares of their strains:
+    /// what is compressed along one direction alone keeps its width, as on a line.
+    // inlined it is unrolled to no gain
+    #[inline(never)]
+    fn some_parallelograms<const L: usize, const AHEAD: bool, const AXIS: bool>(
+        &self,
+        from: &Strained<'_>,
+        first: usize,
+        out: &mut [&mut [f64]; 4],
+        at: usize,
+    ) {
+        let mut f: [[f64; L]; 4] = from.deformation.map(|column| lanes(column, first));
+        let mut ahead = 0.0;
+        if let (true, Some((gradient, time))) = (AHEAD, from.ahead) {
+            let l = gradient.map(|column| lanes::<L>(column, first));
+            f = moved_by(&l.map(|l| l.map(|l| time * l)), &f);
+            ahead = time;
+        }
+        let [volume0, jacobian] = from.volume.map(|column| lanes::<L>(column, first));
+        let mut area: [f64; L] = each(|r| volume0[r] * jacobian[r]);
+        if let (true, Some(radius)) = (AXIS, from.radius) {
+            let [x, v] = radius.map(|column| lanes::<L>(column, first));
+            area = each(|r| area[r] / (x[r] + ahead * v[r]));
+        }
+        let half = from.half.map(|column| lanes::<L>(column, first));
+        let [xx, xy, yx, yy] = f;
+        let q: [f64; L] = each(|r| {
+            let determinant = xx[r] * yy[r] - xy[r] * yx[r];
+            area[r] / (4.0 * half[0][r] * half[1][r] * determinant)
+        });
+        // E = (F F^T - 1)/2 and its square
+        let ex: [f64; L] = each(|r| 0.5 * (xx[r] * xx[r] + xy[r] * xy[r] - 1.0));
+        let ey: [f64; L] = each(|r| 0.5 * (yx[r] * yx[r] + yy[r] * yy[r] - 1.0));
+        let es: [f64; L] = each(|r| 0.5 * (xx[r] * yx[r] + xy[r] * yy[r]));
+        let sx: [f64; L] = each(|r| ex[r] * ex[r] + es[r] * es[r]);
+        let sy: [f64; L] = each(|r| ey[r] * ey[r] + es[r] * es[r]);
+        let ss: [f64; L] = each(|r| es[r] * (ex[r] + ey[r]));
+        let share: [f64; L] = each(|r| {
+            let trace = sx[r] + sy[r];
+            // found either way, then chosen
+            let share = (q[r] - 1.0) / trace;
+            if trace > 0.0 { share } else { 0.0 }
+        });
+        let ax: [f64; L] = each(|r| 1.0 + share[r] * sx[r]);
+        let ay: [f64; L] = each(|r| 1.0 + share[r] * sy[r]);
+        let axy: [f64; L] = each(|r| share[r] * ss[r]);
+        let rest: [f64; L] = each(|r| (q[r] / (ax[r] * ay[r] - axy[r] * axy[r])).sqrt());
+        for (k, (x, y)) in [(xx, yx), (xy, yy)].into_iter().enumerate() {
+            let scale: [f64; L] = each(|r| rest[r] * half[k][r]);
+            let [dx, dy] = [self.inverse_cell[0], self.inverse_cell[D - 1]];
+            let along: [f64; L] = each(|r| scale[r] * (ax[r] * x[r] + axy[r] * y[r]) * dx);
+            let across: [f64; L] = each(|r| scale[r] * (axy[r] * x[r] + ay[r] * y[r]) * dy);
+            out[2 * k][at..at + L].copy_from_slice(&along);
+            out[2 * k + 1][at..at + L].copy_from_slice(&across);
+        }
+    }
+
+    /// The deformation of the own rows after a leapfrog step, (1 + dt L) F: what the places within
+    /// a particle move by as it does, at the velocity of the step's end about its start.
+    pub(super) fn deform_forward(&self, patch: &mut Patch<D>, dt: f64) {
+        #[inline(never)]
+        fn go<const L: usize>(f: &mut [&mut [f64]; 4], l: [&[f64]; 4], dt: f64, first: usize) {
+            let l = l.map(|column| lanes::<L>(column, first).map(|l| dt * l));
+            let start: [[f64; L]; 4] = f.each_ref().map(|column| lanes(column, first));
+            for (column, moved) in f.iter_mut().zip(moved_by(&l, &start)) {
+                column[first..first + L].copy_from_slice(&moved);
+            }
+        }
+        let (Some(f), Some(l)) = (self.columns.deformation, self.columns.velocity_gradient) else {
+            return;
+        };
+        let n = patch.block.columns[f].len();
+        let at = [f, f + 1, f + 2, f + 3, l, l + 1, l + 2, l + 3];
+        let columns = patch.block.columns.get_disjoint_mut(at).expect("columns differ");
+        let [xx, xy, yx, yy, lxx, lxy, lyx, lyy] = columns;
+        let mut f = [xx, xy, yx, yy].map(|column| &mut column[..]);
+        let l = [lxx, lxy, lyx, lyy].map(|column| &column[..n]);
+        let whole = n - n % LANES;
+        for first in (0..whole).step_by(LANES) {
+            go::<LANES>(&mut f, l, dt, first);
+        }
+        for first in whole..n {
+            go::<1>(&mut f, l, dt, first);
+        }
+    }
+
+    /// What the extents of the own rows come from.
+    fn outlines<'a>(&self, block: &'a decomp::Block<D>) -> Outlines<'a> {
+        let c = &self.columns;
+        let column = |k: usize| &block.columns[k][..block.own()];
+        let deforms = self.extent() == Extent::Current && !self.total;
+        match c.half_lengths {
+            None if self.extent() == Extent::Current && !self.total => {
+                Outlines::Length([column(c.volume0), column(c.jacobian)])
+            }
+            None if D == 1 => Outlines::FirstLength(column(c.volume0)),
+            None => Outlines::Points,
+            Some(_) if deforms => self
+                .strained(block, 0.0, c.jacobian)
+                .map_or(Outlines::Points, Outlines::Parallelograms),
+            Some(_) if self.extent() == Extent::Point => Outlines::Points,
+            Some(half) => Outlines::Boxes([column(half), column(half + 1)]),
+        }
+    }
+
+    /// The greater extent along a direction of `rows`, at most a block of them [cells].
+    fn lengths(&self, from: &Outlines<'_>, rows: Range<usize>) -> [f64; BLOCK] {
+        let mut lengths = [0.0; BLOCK];
+        let out = &mut lengths[..rows.len()];
+        let inverse = [self.inverse_cell[0], self.inverse_cell[D - 1]];
+        match from {
+            Outlines::Length(volume) => {
+                let [volume0, jacobian] = volume.map(|column| &column[rows.clone()]);
+                for ((length, v), j) in out.iter_mut().zip(volume0).zip(jacobian) {
+                    *length = self.domain_length(v * j * inverse[0]);
+                }
+            }
+            Outlines::FirstLength(volume0) => {
+                for (length, v) in out.iter_mut().zip(&volume0[rows]) {
+                    *length = v * inverse[0];
+                }
+            }
+            Outlines::Boxes(half) => {
+                let [x, y] = half.map(|column| &column[rows.clone()]);
+                for ((length, x), y) in out.iter_mut().zip(x).zip(y) {
+                    *length = (2.0 * x * inverse[0]).max(2.0 * y * inverse[1]);
+                }
+            }
+            Outlines::Parallelograms(from) => {
+                let mut edges = [[0.0; BLOCK]; 4];
+                let n = rows.len();
+                self.parallelograms(from, rows, edges.each_mut().map(|edges| &mut edges[..n]));
+                let [ax, ay, bx, by] = edges.each_ref().map(|edges| &edges[..n]);
+                for r in 0..n {
+                    out[r] = extent([ax[r], ay[r]], [bx[r], by[r]]);
+                }
+            }
+            Outlines::Points => {}
+        }
+        lengths
+    }
+
+    /// The greatest extent along a direction of the own rows [cells].
+    #[inline(never)]
+    pub(super) fn longest_own(&self, block: &decomp::Block<D>) -> f64 {
+        let (from, n) = (self.outlines(block), block.own());
+        if matches!(from, Outlines::Points) {
+            return 0.0;
+        }
+        let blocks = (0..n).step_by(BLOCK).map(|first| first..n.min(first + BLOCK));
+        blocks.fold(0.0, |most, rows| greatest(&self.lengths(&from, rows)).max(most))
+    }
+
+    /// The first own row of more than `limit` [cells] along a direction, and its extent.
+    pub(super) fn first_longer(
+        &self,
+        block: &decomp::Block<D>,
+        limit: f64,
+    ) -> Option<(usize, f64)> {
+        let from = self.outlines(block);
+        let mut lengths = (0..block.own()).map(|row| (row, self.lengths(&from, row..row + 1)[0]));
+        lengths.find(|(_, length)| *length > limit)
+    }
+}
+
+/// The greater extent along a direction of a parallelogram by its half edges.
+#[inline(always)]
+fn extent(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let [x, y] = Domain { half_edges: [a, b] }.extent();
+    x.max(y)
+}
+
+/// Shortens parallelograms to `most`: see [`Domain::limited`].
+fn limit(edges: [&mut [f64]; 4], most: f64) {
+    let [ax, ay, bx, by] = edges;
+    let n = ax.len();
+    let (ay, bx, by) = (&mut ay[..n], &mut bx[..n], &mut by[..n]);
+    let square = |x: f64, y: f64| x * x + y * y;
+    let within = |square: f64| square <= most * most;
+    let long = |long: bool, r: usize| {
+        let plus = square(ax[r] + bx[r], ay[r] + by[r]);
+        let minus = square(ax[r] - bx[r], ay[r] - by[r]);
+        long | !within(plus) | !within(minus)
+    };
+    // mostly none is
+    if (0..n).fold(false, long) {
+        for r in 0..n {
+            let domain = Domain { half_edges: [[ax[r], ay[r]], [bx[r], by[r]]] };
+            [[ax[r], ay[r]], [bx[r], by[r]]] = domain.limited(most).half_edges;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_greatest_is_found_in_any_place_beside_what_is_no_number() {
+        assert_eq!(greatest(&[]), 0.0);
+        for n in 1..=9 {
+            for place in 0..n {
+                let mut values = vec![f64::NAN; n];
+                values[place] = 2.0;
+                values[(place + 5) % n] = if n > 1 && (place + 5) % n != place { 1.0 } else { 2.0 };
+                assert_eq!(greatest(&values), 2.0, "{values:?}");
+            }
+        }
+    }
+
+    /// What only some of a patch's rows need may not change the others.
+    #[test]
+    fn long_parallelograms_are_shortened_alone() {
+        let short = [0.25, 0.0, 0.0, 0.25];
+        let long = [3.0, 0.5, -0.1, 0.25];
+        let mut rows: Vec<[f64; 4]> = vec![short; 7];
+        rows[3] = long;
+        let mut columns: [Vec<f64>; 4] =
+            std::array::from_fn(|k| rows.iter().map(|r| r[k]).collect());
+        limit(columns.each_mut().map(|column| &mut column[..]), 1.0);
+        let alone = Domain { half_edges: [[3.0, 0.5], [-0.1, 0.25]] }.limited(1.0).half_edges;
+        for (r, row) in rows.iter().enumerate() {
+            let found: [f64; 4] = std::array::from_fn(|k| columns[k][r]);
+            let expected = if r == 3 { alone.as_flattened() } else { &row[..] };
+            assert_eq!(found, expected, "{r}");
+        }
+    }
+}
