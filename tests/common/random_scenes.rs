@@ -65,7 +65,7 @@ fn transfer() -> impl Strategy<Value = Value> {
 }
 
 /// A scheme with what its transfer and stepping allow of the options asked for.
-fn method() -> impl Strategy<Value = Value> {
+pub fn method() -> impl Strategy<Value = Value> {
     let update = select(&["last", "first", "modified_last"][..]);
     let relaxation = select(&[0u32, 1, 3][..]);
     let options = (any::<bool>(), any::<bool>(), any::<bool>(), relaxation);
@@ -91,7 +91,8 @@ fn method() -> impl Strategy<Value = Value> {
     })
 }
 
-fn viscosity() -> impl Strategy<Value = Value> {
+/// Artificial viscosity with and without a limiter, or none.
+pub fn viscosity() -> impl Strategy<Value = Value> {
     let limiter = select(vec![json!(null), json!("christensen"), json!("nodal")]);
     let some = limiter.prop_map(|limiter| {
         let mut viscosity = json!({"linear": 0.1, "quadratic": 1.0});

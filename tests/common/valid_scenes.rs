@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use serde_json::{Map, Value, json};
 
-use super::scenes::SHAPES;
+use crate::random_scenes;
 
 /// Size of a cell [m].
 const CELL: f64 = 1e-4;
@@ -184,47 +184,15 @@ fn bodies(
     (json!(bodies), Value::Object(used))
 }
 
-fn transfer() -> impl Strategy<Value = Value> {
-    prop_oneof![
-        Just(json!("flip")),
-        Just(json!("pic")),
-        Just(json!("apic")),
-        (0.0..=1.0).prop_map(|a| json!({"flip_pic": a})),
-        (1u32..=6).prop_map(|m| json!({"xpic": m})),
-        (1u32..=8).prop_map(|m| json!({"fmpm": m})),
-    ]
-}
-
-/// A scheme with the options that its transfer and stepping allow.
+/// A scheme, in either frame, with and without a limit on domains.
 fn method() -> impl Strategy<Value = Value> {
-    let update = select(&["last", "first", "modified_last"][..]);
-    let options = (any::<bool>(), any::<bool>(), any::<bool>(), select(&[0u32, 1, 3][..]));
-    let frame = prop::bool::weighted(0.2);
-    let limit = prop::bool::weighted(0.3);
-    let scheme = (select(&SHAPES[..]), transfer(), any::<bool>(), update, options, frame, limit);
-    scheme.prop_map(|(shape, transfer, midpoint, update, options, total, limit)| {
-        let (exact, heat, mask, interval) = options;
-        let mut method = json!({"shape": shape, "transfer": transfer});
-        let deforms = shape.starts_with("cpdi");
+    let options = (prop::bool::weighted(0.2), prop::bool::weighted(0.3));
+    (random_scenes::method(), options).prop_map(|(mut method, (total, limit))| {
+        let deforms = method["shape"].as_str().is_some_and(|shape| shape.starts_with("cpdi"));
         if total {
             method["frame"] = json!("total_lagrangian");
         } else if limit && deforms {
             method["domain_limit"] = json!(1.0);
-        }
-        if !midpoint {
-            method["stress_update"] = json!(update);
-            return method;
-        }
-        method["stepping"] = json!("midpoint");
-        if exact && transfer != "apic" {
-            method["energy"] = json!("compatible");
-        }
-        method["filter_heat"] = json!(heat && transfer != "flip" && transfer != "apic");
-        if mask && transfer.get("fmpm").is_some() {
-            method["edge_mask"] = json!(0.3);
-        }
-        if interval > 0 {
-            method["pressure_relaxation"] = json!({"rate": 0.2, "interval": interval});
         }
         method
     })
@@ -295,18 +263,6 @@ fn boundary(place: Place, touch: bool) -> BoxedStrategy<Value> {
         .boxed()
 }
 
-fn viscosity() -> impl Strategy<Value = Value> {
-    let limiter = select(vec![json!(null), json!("christensen"), json!("nodal")]);
-    let some = limiter.prop_map(|limiter| {
-        let mut viscosity = json!({"linear": 0.1, "quadratic": 1.25});
-        if !limiter.is_null() {
-            viscosity["limiter"] = limiter;
-        }
-        viscosity
-    });
-    prop_oneof![1 => Just(json!(null)), 6 => some]
-}
-
 fn contact(place: Place) -> BoxedStrategy<Value> {
     let mut all = vec![json!(null), json!(null), json!({"type": "frictionless"})];
     all.push(json!({"type": "stick"}));
@@ -342,7 +298,7 @@ fn scene_at(place: Place, calm: bool, touch: bool) -> BoxedStrategy<Value> {
     let method = if calm { Just(stable_method()).boxed() } else { method().boxed() };
     let viscosity = match calm {
         true => Just(json!({"linear": 0.1, "quadratic": 1.25, "limiter": "christensen"})).boxed(),
-        false => viscosity().boxed(),
+        false => random_scenes::viscosity().boxed(),
     };
     let open = |keys: &[&str]| {
         let all: Map<_, _> = keys.iter().map(|key| (key.to_string(), json!("outflow"))).collect();
