@@ -323,7 +323,12 @@ impl<const D: usize> Stepper<D> {
                 mask: Mask::No,
             });
         }
-        let others = [(f.inverse, Parity::Even)];
+        let mut others: SmallVec<[(usize, Parity); 2]> = SmallVec::new();
+        others.push((f.inverse, Parity::Even));
+        // particles compare their volumes with the space at all of their nodes
+        if self.volume_relaxation.is_some() {
+            others.push((f.volume, Parity::Even));
+        }
         // pressure may have more terms than velocity
         self.sum_series(nodal, "series", &others, &all, |patch| {
             let still = self.still_speed;

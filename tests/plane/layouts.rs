@@ -42,6 +42,17 @@ fn the_default_scheme() {
     same(plates(), "default");
 }
 
+/// Particles compare their volumes with the space at nodes that other patches own.
+#[test]
+fn volumes_relaxed_to_the_space_that_there_is() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/inputs/gresho.json");
+    let mut scene: Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
+    scene.as_object_mut().unwrap().remove("reference");
+    scene["time"]["end"] = json!(0.01);
+    scene["output"] = json!({});
+    same(scene, "volume relaxation");
+}
+
 #[test]
 fn the_total_lagrangian_frame() {
     for (shape, transfer) in
