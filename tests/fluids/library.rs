@@ -75,7 +75,7 @@ fn files_stand_beside_the_scene() {
     refused("b.json", "[1]", &["b.json", "one JSON object"]);
     refused("c.json", "{\"file\": \"a.json\"}", &["c.json", "names a file"]);
     value["materials"]["aluminium"] = json!({"file": "metals"});
-    assert!(read(&value).unwrap_err().contains("metals: is no regular file"));
+    assert!(read(&value).unwrap_err().contains("metals: is a directory"));
     value["materials"]["aluminium"] = json!({"file": "none.json"});
     assert!(read(&value).unwrap_err().contains("none.json: cannot be read"));
 }
