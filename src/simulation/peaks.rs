@@ -73,9 +73,10 @@ fn shock_heat<const D: usize>(scene: &CheckedScene, stepper: &Stepper<D>, i: usi
         apart(velocity(i), velocity(k)) * other / (own + other)
     });
     let sides = scene.sides::<D>();
-    let rigid = sides.as_flattened().iter().any(|s| s.rigid_velocity().is_some());
-    let walls = rigid.then(|| scene.frame::<D>().extremes()).into_iter().flatten();
-    let walls = walls.map(|wall| apart(velocity(i), wall));
+    let extremes = scene.frame::<D>().extremes();
+    // a wall stops what moves across it alone
+    let rigid = (0..D).filter(|&a| sides[a].iter().any(|s| s.rigid_velocity().is_some()));
+    let walls = rigid.flat_map(|a| extremes.map(|wall| (velocity(i)[a] - wall[a]).abs()));
     let loads = sides.as_flattened().iter().filter_map(|side| match side {
         Side::Pressure(load) => Some(load.range()[1].max(0.0) / stepper.impedance(i)),
         _ => None,

@@ -26,7 +26,8 @@ fn domains_that_do_not_fit() {
         &["bodies.flyer.box.lower = [-0.0005]", "domain.lower has 2", "allowed: 2 numbers"],
     );
     edit("boundary={\"y_upper\": \"wall\"}", &["boundary.y_upper = \"wall\"", "a side along y"]);
-    edit("method.domain_limit=1", &["method.domain_limit = 1", "two dimensions"]);
+    let stiff = ["method.shape=\"bspline_quadratic\"", "method.domain_limit=1"];
+    refused("flyer.json", &stiff, &["method.domain_limit = 1", "no particle's domain deforms"]);
     let space = ["domain.lower=[0, 0, 0]", "domain.upper=[1, 1, 1]"];
     refused("flyer.json", &space, &["domain.lower", "allowed: one number or two"]);
 }
