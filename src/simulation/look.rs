@@ -82,16 +82,14 @@ impl<const D: usize> Simulation<'_, D> {
                     let (m, e) = (block.columns[c.mass][r], block.columns[c.energy][r]);
                     let body = block.columns[c.body][r] as usize;
                     let above = e - self.least_energies[body];
-                    add(0, &[m * above.max(e).max(0.0)]);
-                    // heat that a conductor holds makes up for no lack elsewhere
-                    add(
-                        1,
-                        &[m * if self.stepper.conducts_heat(body) {
-                            above.min(0.0)
-                        } else {
-                            above
-                        }],
-                    );
+                    // of a conductor that is all of its heat, which drives no motion and makes up
+                    // for no lack elsewhere
+                    let [free, above] = match self.stepper.conducts_heat(body) {
+                        true => [e, above.min(0.0)],
+                        false => [above.max(e), above],
+                    };
+                    add(0, &[m * free.max(0.0)]);
+                    add(1, &[m * above]);
                     if let Some(lack) = self.stepper.heat_below_zero_kelvin(block, r) {
                         add(2, &[m * lack]);
                     }
