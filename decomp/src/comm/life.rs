@@ -238,9 +238,9 @@ mod tests {
         (Look::new(place, Duration::from_secs(4)), folder)
     }
 
-    /// Looks once a quarter of a second, by a clock of its own; the ranks in `alive` touch their
-    /// files. What is told within eight seconds, and when.
-    fn told(look: &mut Look, phase: u8, alive: &[usize]) -> Option<(f64, String)> {
+    /// The first verdict within eight simulated seconds and its time [s], with one look each quarter
+    /// of a second; the ranks in `alive` touch their files before each look.
+    fn first_verdict(look: &mut Look, phase: u8, alive: &[usize]) -> Option<(f64, String)> {
         let start = look.seen;
         (1..=32).find_map(|k| {
             for &local in alive {
@@ -256,13 +256,13 @@ mod tests {
     #[test]
     fn a_rank_without_a_sign_of_life_is_named() {
         let (mut one, folder) = look("missing");
-        let (at, why) = told(&mut one, STARTS, &[0, 1]).unwrap();
+        let (at, why) = first_verdict(&mut one, STARTS, &[0, 1]).unwrap();
         assert!(why.starts_with("rank 2 has made no progress for 4 s: it hangs"), "{why}");
         assert!((4.0..5.0).contains(&at), "{at}");
         // one that has started and was stopped, by what its file says
         fs::write(one.place.file(1), "1 ").unwrap();
         let mut again = Look::new(one.place.clone(), one.timeout);
-        let (_, why) = told(&mut again, STARTS, &[0, 2]).unwrap();
+        let (_, why) = first_verdict(&mut again, STARTS, &[0, 2]).unwrap();
         assert!(why.starts_with("rank 1 has made no progress"), "{why}");
         fs::remove_dir_all(folder).unwrap();
     }
@@ -271,7 +271,7 @@ mod tests {
     fn one_rank_speaks_for_all() {
         let (mut one, folder) = look("speaker");
         one.place.local = [1, 3];
-        let (at, why) = told(&mut one, STARTS, &[0, 1]).unwrap();
+        let (at, why) = first_verdict(&mut one, STARTS, &[0, 1]).unwrap();
         assert!(why.is_empty() && at > 5.0, "{at} {why}");
         fs::remove_dir_all(folder).unwrap();
     }
@@ -279,15 +279,15 @@ mod tests {
     #[test]
     fn ranks_that_live_are_waited_for() {
         let (mut one, folder) = look("alive");
-        assert_eq!(told(&mut one, STARTS, &[0, 1, 2]), None);
+        assert_eq!(first_verdict(&mut one, STARTS, &[0, 1, 2]), None);
         // in the time loop nobody looks
-        assert_eq!(told(&mut one, RUNS, &[0]), None);
+        assert_eq!(first_verdict(&mut one, RUNS, &[0]), None);
         // who has ended is not waited for
         fs::write(one.place.file(1), "1 ended").unwrap();
-        assert_eq!(told(&mut one, ENDS, &[0, 2]), None);
+        assert_eq!(first_verdict(&mut one, ENDS, &[0, 2]), None);
         let mut again = Look::new(one.place.clone(), one.timeout);
         again.phase = ENDS;
-        let (_, why) = told(&mut again, ENDS, &[0]).unwrap();
+        let (_, why) = first_verdict(&mut again, ENDS, &[0]).unwrap();
         assert!(why.starts_with("rank 2 has made no progress"), "{why}");
         fs::remove_dir_all(folder).unwrap();
     }
@@ -296,11 +296,11 @@ mod tests {
     fn where_ranks_of_other_machines_are_missing_none_is_named() {
         let (mut one, folder) = look("elsewhere");
         one.place.rank = [4, 9];
-        let (_, why) = told(&mut one, STARTS, &[0, 1, 2]).unwrap();
+        let (_, why) = first_verdict(&mut one, STARTS, &[0, 1, 2]).unwrap();
         assert!(why.contains("a rank on another machine hangs"), "{why}");
         fs::remove_file(one.place.file(2)).unwrap();
         let mut again = Look::new(one.place.clone(), one.timeout);
-        let (_, why) = told(&mut again, STARTS, &[0, 1]).unwrap();
+        let (_, why) = first_verdict(&mut again, STARTS, &[0, 1]).unwrap();
         assert!(why.starts_with("1 ranks of this machine have not started"), "{why}");
         fs::remove_dir_all(folder).unwrap();
     }
