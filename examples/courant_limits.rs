@@ -50,7 +50,7 @@ fn short(name: &str) -> Value {
     value["bodies"][1]["box"]["upper"] = json!([0.0026]);
     value["time"]["end"] = json!(0.3e-6);
     value["output"] = json!({});
-    value["watch"] = json!({"above_limit": "allow"});
+    value["monitor"] = json!({"on_courant_exceeded": "allow"});
     value
 }
 

@@ -6,9 +6,9 @@
 //! ```
 
 use decomp::Serial;
-use flyer_mpm::material::constitutive::Outside;
-use flyer_mpm::material::strength::{Condition, Strength};
-use flyer_mpm::material::{EquationOfState, Linear};
+use flyer_mpm::material::constitutive::CustomModel;
+use flyer_mpm::material::strength::{MaterialState, StrengthLaw};
+use flyer_mpm::material::{EquationOfState, LinearPressure};
 use flyer_mpm::scene;
 use flyer_mpm::simulation::Simulation;
 
@@ -37,11 +37,14 @@ impl EquationOfState for Murnaghan {
         self.rho0
     }
 
-    fn linear(&self, j: f64) -> Linear {
+    fn linear(&self, j: f64) -> LinearPressure {
         let n = self.slope;
         // rho0 ec
         let work = self.modulus / n * ((j.powf(1.0 - n) - 1.0) / (n - 1.0) + j - 1.0);
-        Linear { cold: self.cold(j) - self.gamma0 * work, energy_factor: self.gamma0 * self.rho0 }
+        LinearPressure {
+            reference_pressure: self.cold(j) - self.gamma0 * work,
+            gruneisen_rho: self.gamma0 * self.rho0,
+        }
     }
 
     fn sound_speed_squared(&self, j: f64, pressure: f64) -> f64 {
@@ -49,7 +52,7 @@ impl EquationOfState for Murnaghan {
         j * j / self.rho0 * (stiffness + self.gamma0 * (pressure - self.cold(j)))
     }
 
-    fn fault(&self, j: f64, _pressure: f64) -> Option<&'static str> {
+    fn check_validity(&self, j: f64, _pressure: f64) -> Option<&'static str> {
         (j > 1.2).then_some("beyond the tension that Murnaghan's curve is meant for")
     }
 }
@@ -63,12 +66,12 @@ struct Pressed {
     most: f64,
 }
 
-impl Strength for Pressed {
-    fn shear_modulus(&self, _at: &Condition) -> f64 {
+impl StrengthLaw for Pressed {
+    fn shear_modulus(&self, _at: &MaterialState) -> f64 {
         self.shear_modulus
     }
 
-    fn yield_stress(&self, _strain: f64, _rate: f64, at: &Condition) -> f64 {
+    fn yield_stress(&self, _strain: f64, _rate: f64, at: &MaterialState) -> f64 {
         (self.yield_stress + self.slope * at.pressure.max(0.0)).min(self.most)
     }
 }
@@ -120,7 +123,7 @@ fn jump() -> (f64, f64, f64) {
     let energy = 0.5 * SPEED * SPEED;
     let state = |j: f64| {
         let pressure = METAL.pressure(j, energy);
-        let at = Condition { compression: 1.0 / j, pressure, temperature: f64::NAN };
+        let at = MaterialState { compression: 1.0 / j, pressure, temperature: f64::NAN };
         (pressure + 2.0 / 3.0 * STRONG.yield_stress(0.0, 0.0, &at), pressure)
     };
     let (mut low, mut high) = (0.5, 1.0);
@@ -140,8 +143,9 @@ fn jump() -> (f64, f64, f64) {
 /// What is wrong with the scene or its run.
 pub fn plateau() -> Result<Vec<Figure>, Box<dyn std::error::Error>> {
     let scene = scene::parse(SCENE.as_bytes(), "custom_material", &[])?;
-    let models =
-        |material: &str| (material == "metal").then(|| Outside::fluid(METAL).with_strength(STRONG));
+    let models = |material: &str| {
+        (material == "metal").then(|| CustomModel::fluid(METAL).with_strength(STRONG))
+    };
     let mut simulation = Simulation::<1>::with_models(&scene, &Serial, 1, &models)?;
     let end = scene.scene.time.end;
     while simulation.time() < end {

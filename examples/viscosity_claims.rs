@@ -56,8 +56,8 @@ fn claims(sweep: &Sweep) -> Vec<Claim> {
     let falling = |v: &[f64]| v.windows(2).all(|w| w[1] < w[0]);
     let (noise, rise) = (sweep.path("noise"), sweep.path("rise_cells"));
     let plateau: Vec<f64> = sweep.path("plateau").iter().map(|p| p.abs()).collect();
-    let second = sweep.path("plateau_4");
-    let [smooth, steps] = [sweep.at(default, "noise"), sweep.at(default, "plateau_4")];
+    let second = sweep.path("second_plateau");
+    let [smooth, steps] = [sweep.at(default, "noise"), sweep.at(default, "second_plateau")];
     let chaos = [sweep.at(none, "noise"), sweep.at(none, "overshoot")];
     vec![
         (
@@ -112,7 +112,7 @@ fn claims(sweep: &Sweep) -> Vec<Claim> {
             format!(
                 "L1 {}, of which the second plateau {}",
                 percent(&[sweep.at(document, "l1")]),
-                percent(&[sweep.at(document, "waves.plateau_4")])
+                percent(&[sweep.at(document, "waves.second_plateau")])
             ),
             judged(sweep.at(document, "l1") < 0.05),
         ),

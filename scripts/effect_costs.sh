@@ -17,17 +17,17 @@ count() {
     local scene=$1 end=$2 sets=()
     shift 2
     for set in "time.end=$end" 'output={"profiles":{"times":['"$end"']},"hdf5":false,"pictures":false}' \
-        'output.checkpoint.keep=0' decomposition.skip_quiet=false 'domain.patches=null' "$@"; do
+        'output.checkpoint.keep=0' decomposition.skip_quiescent=false 'domain.patches=null' "$@"; do
         sets+=(--set "$set")
     done
     valgrind --tool=callgrind --callgrind-out-file=/dev/null "$program" "inputs/$scene.json" \
-        --quiet --output "$work/run" "${sets[@]}" 2>"$work/told" >/dev/null ||
+        --quiet --output "$work/$scene" "${sets[@]}" 2>"$work/told" >/dev/null ||
         { cat "$work/told" >&2; exit 1; }
     local instructions
     instructions=$(sed -n 's/.*Collected : \([0-9]*\).*/\1/p' "$work/told")
     jq -r --arg i "$instructions" \
         '[$i, .steps, .particles, ([.effects[].bytes_per_particle] | add)] | @tsv' \
-        "$work/run/summary.json"
+        "$work/$scene/summary.json"
 }
 
 # instructions of a particle and step, and bytes of a particle
@@ -46,8 +46,11 @@ row() {
     local effect=$1 scene=$2 end=$3 without with
     IFS='|' read -r -a without <<<"$4"
     IFS='|' read -r -a with <<<"$5"
-    read -r off off_bytes <<<"$(cost "$scene" "$end" "${without[@]}")"
-    read -r on on_bytes <<<"$(cost "$scene" "$end" "${with[@]}")"
+    # assigned first, so that a failed run ends the script
+    off_cost=$(cost "$scene" "$end" "${without[@]}")
+    on_cost=$(cost "$scene" "$end" "${with[@]}")
+    read -r off off_bytes <<<"$off_cost"
+    read -r on on_bytes <<<"$on_cost"
     printf '| %s | `%s.json` | %d | %d | %+d | %+d |\n' \
         "$effect" "$scene" "$off" "$on" "$((on - off))" "$((on_bytes - off_bytes))"
 }

@@ -1,21 +1,26 @@
 //! flyer-mpm: impact and shock waves by the material point method.
 //!
-//! The rooms of the library, from the top down; each uses those below it:
+//! The modules of the library, from the top down; each uses those below it:
 //!
-//! - [`study`]: many runs in processes of their own, error against time;
+//! - [`study`]: parameter studies, each run in its own process; error against time;
 //! - [`driver`]: a run with its files;
 //! - [`accuracy`]: comparison with exact solutions, error estimates, plans;
 //! - [`perf_model`]: prediction of run time and scaling;
-//! - [`simulation`]: a run in memory, where physics and messages meet;
+//! - [`simulation`]: a run in memory, which joins physics and messages;
 //! - [`solver`]: particles, nodal fields and the time step;
-//! - [`effects`]: effects that a scene may ask for;
-//! - [`scene`]: the input and its check;
-//! - [`geometry`]: bodies and how they are filled;
-//! - [`exact`]: closed solutions; knows materials alone;
+//! - [`effects`]: optional effects of a scene;
+//! - [`scene`]: the input and its validation;
+//! - [`geometry`]: bodies and how they are filled with particles;
+//! - [`side`]: kinds of side of the domain;
+//! - [`contact`]: contact laws between bodies;
+//! - [`exact`]: closed solutions; depends on materials only;
 //! - [`material`]: equations of state, strength and failure;
-//! - [`plot`]: pictures; knows none of the others.
+//! - [`shape`]: shape functions: weights of particles on nodes;
+//! - [`transfer`]: transfers of velocity from nodes to particles;
+//! - [`plot`]: pictures; independent of the other modules.
 
 pub mod accuracy;
+pub mod contact;
 pub mod driver;
 pub mod effects;
 pub mod exact;
@@ -24,6 +29,9 @@ pub mod material;
 pub mod perf_model;
 pub mod plot;
 pub mod scene;
+pub mod shape;
+pub mod side;
 pub mod simulation;
 pub mod solver;
 pub mod study;
+pub mod transfer;

@@ -1,7 +1,7 @@
 //! The program: arguments, scene, run, report.
 //!
-//! Rank 0 reads, checks and speaks; all ranks leave with the same verdict. A failure that one
-//! rank alone knows of ends all by MPI_Abort.
+//! Rank 0 reads and checks the input and prints messages; all ranks end with the same verdict. A
+//! failure that only one rank knows ends all ranks by MPI_Abort.
 
 mod cli;
 
@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::Parser;
-use cli::{Cli, Command, RunArgs, SceneArgs};
+use cli::{Cli, Command, PerfCommand, RunArgs, SceneArgs};
 use decomp::{Comm, Serial};
 use flyer_mpm::driver::checkpoint::fit::CHANGEABLE;
 use flyer_mpm::driver::checkpoint::{Checkpoint, folder};
@@ -22,8 +22,8 @@ use flyer_mpm::driver::output::folder::{check_writable, default_folder};
 use flyer_mpm::driver::output::lock::Lock;
 use flyer_mpm::driver::output::origin::{Maker, Origin, RUN, check_target};
 use flyer_mpm::driver::output::trace::TRACE_START;
-use flyer_mpm::driver::{Beginning, Failure, Options, run};
-use flyer_mpm::scene::{self, CheckedScene};
+use flyer_mpm::driver::{Beginning, Options, RunFailure, run};
+use flyer_mpm::scene::{self, CheckedScene, input_file};
 use flyer_mpm::simulation::RunError;
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
 use signal_hook::iterator::Signals;
@@ -33,7 +33,7 @@ use signal_hook::low_level::emulate_default_handler;
 const BAD_INPUT: u8 = 2;
 /// The run failed.
 const FAILED: u8 = 3;
-/// The run was asked to end, and can go on.
+/// The run was stopped on request and can be restarted.
 const STOPPED: u8 = 4;
 
 fn main() -> ExitCode {
@@ -48,14 +48,19 @@ fn main() -> ExitCode {
     act(&Serial, started, cli)
 }
 
-/// How long ranks wait for one that gives no sign of life.
+/// Time for which ranks wait for a rank that gives no sign of life.
 #[cfg(feature = "mpi")]
 fn stall_timeout(cli: &Result<Cli, clap::Error>) -> Duration {
-    let run = cli.as_ref().ok().and_then(|cli| cli.run.as_ref());
-    run.map_or(decomp::comm::STALL_TIMEOUT, |run| Duration::from_secs_f64(run.stall_timeout))
+    let seconds = cli.as_ref().ok().and_then(|cli| match (&cli.command, &cli.run) {
+        (Some(Command::Perf(PerfCommand::Calibrate { stall_timeout, .. })), _) => {
+            Some(*stall_timeout)
+        }
+        (_, run) => run.as_ref().map(|run| run.stall_timeout),
+    });
+    seconds.map_or(decomp::comm::STALL_TIMEOUT, Duration::from_secs_f64)
 }
 
-/// Does what the command line says. Collective.
+/// Executes the command line. Collective.
 fn act(comm: &dyn Comm, started: Instant, cli: Result<Cli, clap::Error>) -> ExitCode {
     let first = comm.rank() == 0;
     if let Some(message) = mistyped() {
@@ -67,7 +72,7 @@ fn act(comm: &dyn Comm, started: Instant, cli: Result<Cli, clap::Error>) -> Exit
     let cli = match cli {
         Ok(cli) => cli,
         Err(error) => {
-            // help and version come here too
+            // clap reports help and version as errors too
             if first {
                 let _ = error.print();
             }
@@ -76,11 +81,22 @@ fn act(comm: &dyn Comm, started: Instant, cli: Result<Cli, clap::Error>) -> Exit
     };
     let outcome = match (cli.command, cli.run) {
         (None, Some(args)) => run_scene(comm, &args, started),
-        (Some(Command::Calibrate { scene, set, output, seconds, samples }), _) => {
+        (
+            Some(Command::Perf(PerfCommand::Calibrate {
+                scene,
+                set,
+                output,
+                seconds,
+                samples,
+                stall_timeout,
+            })),
+            _,
+        ) => {
+            comm.set_stall_timeout(Duration::from_secs_f64(stall_timeout));
             let order = cli::predict::Order { scene, set, output, seconds, samples };
             cli::predict::calibrate(comm, &order)
         }
-        // the rest is done by one rank
+        // rank 0 alone executes the other commands
         _ if !first => Ok(()),
         (Some(command), _) => side_command(command),
         (None, None) => Err((BAD_INPUT, "a scene is needed; see --help".into())),
@@ -96,7 +112,7 @@ fn act(comm: &dyn Comm, started: Instant, cli: Result<Cli, clap::Error>) -> Exit
     }
 }
 
-/// What is wrong with the first argument, if it is neither a file nor a command but near to one.
+/// Message for a first argument that is neither a file nor a command but resembles a command.
 fn mistyped() -> Option<String> {
     let name = std::env::args_os().nth(1)?.into_string().ok()?;
     let known = cli::meant(&name)?;
@@ -106,20 +122,20 @@ fn mistyped() -> Option<String> {
     Some(format!("{name}: no such scene or command; did you mean {known}?"))
 }
 
-/// Prints to standard output; a reader that has gone, as `head` does, is no fault.
+/// Prints to standard output; ignores a reader that has closed it, as `head` does.
 fn say(text: &str) {
     let _ = std::io::stdout().write_all(text.as_bytes());
 }
 
-/// An exit code and one line; an empty line where another rank speaks.
+/// Result, or an exit code and one line of text; the line is empty if another rank prints it.
 type Outcome<T> = Result<T, (u8, String)>;
 
 fn bad(error: impl ToString) -> (u8, String) {
     (BAD_INPUT, error.to_string())
 }
 
-/// Reads and checks a scene on this rank; one that is too large is refused before its particles are
-/// made, unless memory is not looked at.
+/// Reads and checks a scene on this rank. A scene that is too large is refused before its particles
+/// are made, unless `ignore_memory` is set.
 fn read_scene(args: &SceneArgs, ignore_memory: bool) -> Outcome<(Vec<u8>, CheckedScene)> {
     let bytes = scene::read(&args.scene).map_err(bad)?;
     let name = args.scene.display().to_string();
@@ -129,17 +145,19 @@ fn read_scene(args: &SceneArgs, ignore_memory: bool) -> Outcome<(Vec<u8>, Checke
     Ok((bytes, checked))
 }
 
-/// Whether a file can be written, found out before a run that would end with it.
+/// Checks, before a run that ends with writing it, that a regular file can be written.
 fn check_file(path: &Path) -> Outcome<()> {
+    // opening a FIFO would wait for its reader
+    input_file::check_kind(path).map_err(|fault| bad(format!("{}: {fault}", path.display())))?;
     let opened = std::fs::OpenOptions::new().create(true).append(true).open(path);
     opened
         .map(|_| ())
         .map_err(|e| (BAD_INPUT, format!("{}: cannot write the file: {e}", path.display())))
 }
 
-/// What a run begins with, found and judged by rank 0.
+/// Start of a run, found and checked by rank 0.
 struct Begun {
-    /// The scene's text, for the other ranks.
+    /// Text of the scene, for the other ranks.
     bytes: Vec<u8>,
     checked: CheckedScene,
     beginning: Beginning,
@@ -154,7 +172,8 @@ fn input(args: &RunArgs) -> String {
     path.map_or(String::new(), |path| path.display().to_string())
 }
 
-/// Looks at everything that a run could fail on, before the others are told.
+/// Checks all inputs and targets that could make a run fail, before the scene is sent to the other
+/// ranks.
 fn begin(args: &RunArgs, reading: &AtomicBool) -> Outcome<Begun> {
     let (bytes, checked, beginning, default, origin) = match (&args.restart, &args.scene) {
         (Some(path), _) => {
@@ -194,7 +213,7 @@ fn begin(args: &RunArgs, reading: &AtomicBool) -> Outcome<Begun> {
     Ok(Begun { bytes, checked, beginning, output, lock })
 }
 
-/// What a run goes on from.
+/// Prints the checkpoint from which a run restarts.
 fn tell_restart(args: &RunArgs, checkpoint: &Checkpoint, file: &str) {
     let ours = env!("CARGO_PKG_VERSION");
     if checkpoint.version != ours {
@@ -207,14 +226,14 @@ fn tell_restart(args: &RunArgs, checkpoint: &Checkpoint, file: &str) {
     }
 }
 
-/// Takes note of the first signal that asks for an end; the second one ends the process at once, and
+/// Records the first signal that requests an end. The second signal ends the process at once, and
 /// so does the first while files are read.
 fn watch_signals(reading: Arc<AtomicBool>) -> Arc<AtomicU8> {
-    /// A launcher and its batch system may send one signal each.
+    /// A launcher and its batch system may send one signal each within this time.
     const TOGETHER: Duration = Duration::from_millis(300);
     let came = Arc::new(AtomicU8::new(0));
     let noted = came.clone();
-    // without a handler a signal ends the process as it would have
+    // without a handler, a signal ends the process as usual
     if let Ok(mut signals) = Signals::new([SIGTERM, SIGINT, SIGUSR1]) {
         std::thread::spawn(move || {
             let mut first: Option<Instant> = None;
@@ -232,7 +251,7 @@ fn watch_signals(reading: Arc<AtomicBool>) -> Arc<AtomicU8> {
 
 fn run_scene(comm: &dyn Comm, args: &RunArgs, started: Instant) -> Outcome<()> {
     comm.set_stall_timeout(Duration::from_secs_f64(args.stall_timeout));
-    // until its files have been read there is nothing that a signal could have saved
+    // until its files have been read, a run has no state that is worth saving
     let reading = Arc::new(AtomicBool::new(true));
     let signal = watch_signals(reading.clone());
     let mine = match comm.rank() {
@@ -251,7 +270,7 @@ fn run_scene(comm: &dyn Comm, args: &RunArgs, started: Instant) -> Outcome<()> {
                 Some(_) => Beginning::Checkpoint(None),
                 None => Beginning::Scene,
             };
-            // the first rank alone writes
+            // only rank 0 writes
             (checked, beginning, PathBuf::new(), None)
         }
     };
@@ -268,7 +287,7 @@ fn run_scene(comm: &dyn Comm, args: &RunArgs, started: Instant) -> Outcome<()> {
         started,
         signal,
     };
-    // all ranks know of it, and rank 0 tells it
+    // all ranks know the error, and rank 0 prints it
     let by_first = |text: String| if comm.rank() == 0 { text } else { String::new() };
     match run(comm, &checked, &options, beginning) {
         Ok(Some(report)) if !args.quiet => {
@@ -276,16 +295,16 @@ fn run_scene(comm: &dyn Comm, args: &RunArgs, started: Instant) -> Outcome<()> {
             Ok(())
         }
         Ok(_) => Ok(()),
-        Err(Failure::Run(RunError::Elsewhere)) => Err((FAILED, String::new())),
-        Err(stopped @ Failure::Stopped { .. }) => {
+        Err(RunFailure::Run(RunError::Elsewhere)) => Err((FAILED, String::new())),
+        Err(stopped @ RunFailure::Stopped { .. }) => {
             if comm.rank() == 0 {
                 eprintln!("{stopped}");
             }
             Err((STOPPED, String::new()))
         }
-        Err(error @ Failure::Alarm { .. }) => Err((FAILED, by_first(error.to_string()))),
+        Err(error @ RunFailure::Alarm { .. }) => Err((FAILED, by_first(error.to_string()))),
         Err(
-            error @ Failure::Run(
+            error @ RunFailure::Run(
                 RunError::Particle { .. }
                 | RunError::TimeStep { .. }
                 | RunError::TooLong { .. }
@@ -301,7 +320,7 @@ fn run_scene(comm: &dyn Comm, args: &RunArgs, started: Instant) -> Outcome<()> {
     }
 }
 
-/// One line on what is about to run, and the warnings.
+/// Prints one line about the run, and the warnings.
 fn announce(comm: &dyn Comm, scene: &CheckedScene, threads: usize) {
     for warning in &scene.warnings {
         eprintln!("warning: {warning}");
@@ -347,15 +366,18 @@ fn side_command(command: Command) -> Outcome<()> {
             say(&cli::material::material(&checked, &name, &output)?);
             Ok(())
         }
-        Command::Predict(args) => {
+        Command::Perf(PerfCommand::Predict(args)) => {
             say(&cli::predict::predict(&args)?);
             Ok(())
         }
         Command::Study { study, output, quiet } => {
             cli::study::study(&study, output.as_deref(), quiet).map(|text| say(&text))
         }
+        Command::Migrate { scene, output } => {
+            cli::migrate::migrate(&scene, output.as_deref()).map(|text| say(&text))
+        }
         Command::Plan(args) => cli::plan::plan(&args).map(|text| say(&text)),
-        Command::Calibrate { .. } => unreachable!("all ranks calibrate"),
+        Command::Perf(PerfCommand::Calibrate { .. }) => unreachable!("all ranks calibrate"),
         Command::Compare { first, second } => {
             let comparison = compare(&first, &second).map_err(bad)?;
             say(&format!("{comparison}\n"));

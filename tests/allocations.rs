@@ -53,8 +53,8 @@ fn steps_ask_for_no_memory() {
         let path = format!("{}/inputs/{name}", env!("CARGO_MANIFEST_DIR"));
         let mut value: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
         value["domain"]["patches"] = json!([7]);
-        // steps alone: what the watch looks at now and then are sums over all ranks
-        value["watch"] = json!({"interval": 1_000_000});
+        // steps alone: what the monitor looks at now and then are sums over all ranks
+        value["monitor"] = json!({"interval": 1_000_000});
         // as particles crowd into a patch or first pass into another, its buffers grow, once
         let asked = asked(&value, 200, 6);
         assert!(asked[1..].contains(&0), "{name}: {asked:?}");

@@ -65,12 +65,13 @@ fn write_run(folder: &Path, tables: &[ParticleTable]) {
             file,
             state_sha256: String::new(),
             errors: None,
-            errors_cell: None,
+            errors_cell_averaged: None,
         });
     }
     let info = RunInfo { title: "test", scene: &scene, bodies: &["plate".into()] };
     write_vtkhdf(&folder.join(RESULTS_FILE), tables, &info).unwrap();
     let summary = Summary {
+        format: flyer_mpm::driver::output::summary::SUMMARY_FORMAT,
         title: "test".into(),
         version: String::new(),
         origin: None,
@@ -88,7 +89,7 @@ fn write_run(folder: &Path, tables: &[ParticleTable]) {
         particle_steps_per_cpu_second: 0.0,
         phase_seconds: [].into(),
         decomposition: DecompositionSummary::new(
-            FilterHalo::Deep,
+            FilterHalo::Redundant,
             &Decomposition::default(),
             1,
             0,

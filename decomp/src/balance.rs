@@ -1,15 +1,15 @@
-//! Which rank has which patch, and how many patches to cut.
+//! Assignment of patches to ranks, and the choice of cuts.
 
-/// Deals patches to ranks in stretches of `order` (patches along a curve), so that the busiest
-/// rank's sum of `weights` is as small as whole patches in that order allow. A rank may get
-/// none. Returns the rank of each patch.
+/// Assigns patches to ranks in sections of `order` (patches along a curve). The largest sum of
+/// `weights` per rank is as small as possible for whole patches in this order. A rank may get none.
+/// Returns the rank of each patch.
 ///
-/// The least bottleneck is found by bisection (chains on chains: Pinar & Aykanat 2004). Within
-/// it, stretches end as near as they can to even shares, so that weights that change a little
-/// move few patches.
+/// The smallest bottleneck is found by bisection (chains on chains: Pinar & Aykanat 2004). Within
+/// it, sections end as near to equal shares as possible, so that small changes of the weights move
+/// few patches.
 pub fn assign_patches(weights: &[u64], order: &[usize], ranks: usize) -> Vec<usize> {
     debug_assert_eq!(weights.len(), order.len(), "one place a patch");
-    // patches without any weight are spread as if all had the same
+    // if all weights are zero, patches count equally
     let even = weights.iter().all(|&w| w == 0);
     let weights: Vec<u128> =
         order.iter().map(|&p| if even { 1 } else { u128::from(weights[p]) }).collect();
@@ -25,7 +25,7 @@ pub fn assign_patches(weights: &[u64], order: &[usize], ranks: usize) -> Vec<usi
     let (mut rank, mut load, mut before) = (0, 0, 0);
     for (k, &p) in order.iter().enumerate() {
         let w = weights[k];
-        // even shares, by the middle of the patch's stretch of the whole
+        // the rank by equal shares, from the middle of the patch's part of the total
         let wanted = ((2 * before + w) * ranks as u128 / (2 * total)) as usize;
         let later_ranks_suffice = needed[k] < ranks - rank;
         if load + w > low || (wanted > rank && later_ranks_suffice) {
@@ -38,7 +38,7 @@ pub fn assign_patches(weights: &[u64], order: &[usize], ranks: usize) -> Vec<usi
     of
 }
 
-/// For each place the number of ranks that the weights from there on fill up to `limit`.
+/// For each position, the number of ranks that the weights from there on need under `limit`.
 fn ranks_from(weights: &[u128], limit: u128) -> Vec<usize> {
     let mut needed = vec![0; weights.len() + 1];
     let (mut end, mut load) = (weights.len(), 0);
@@ -62,8 +62,8 @@ pub fn busiest_share(weights: &[u64], ranks_of: &[usize], ranks: usize) -> u64 {
     loads.into_iter().max().unwrap_or(0)
 }
 
-/// A number of patches in each direction with at least one for each of `workers`, none narrower
-/// than `least` cells if that can be; the longest direction is cut first.
+/// Number of patches per direction, with at least one patch per worker and, if possible, no patch
+/// narrower than `least` cells. The longest direction is cut first.
 pub fn choose_cuts<const D: usize>(cells: [usize; D], workers: usize, least: usize) -> [usize; D] {
     let mut cuts = [1; D];
     while cuts.iter().product::<usize>() < workers {
@@ -76,9 +76,9 @@ pub fn choose_cuts<const D: usize>(cells: [usize; D], workers: usize, least: usi
     cuts
 }
 
-/// Where to cut a line of cells into `parts` stretches of about equal weight, none narrower than
-/// `least` cells if that can be: the first cell of each stretch, and one past the last cell.
-/// `weights` are those of the cells.
+/// Cuts a line of cells into `parts` sections of about equal weight, if possible none narrower than
+/// `least` cells. Returns the first cell of each section and one past the last cell. `weights`
+/// holds the weight of each cell.
 pub fn even_cuts(weights: &[u64], parts: usize, least: usize) -> Vec<i64> {
     let cells = weights.len();
     let least = least.min(cells / parts);
@@ -89,7 +89,7 @@ pub fn even_cuts(weights: &[u64], parts: usize, least: usize) -> Vec<i64> {
         let last = cells - (parts - k) * least;
         while cell < last
             && (cell < first
-                // the cell that holds the cut goes to the side that has less of it
+                // the cell that contains the cut goes to the side that holds less of it
                 || (2 * before + u128::from(weights[cell])) * parts as u128 <= 2 * wanted)
         {
             before += u128::from(weights[cell]);
@@ -117,12 +117,12 @@ mod tests {
         assert_eq!(line(&[0, 0, 9, 9, 0], 2), [0, 0, 0, 1, 1]);
         assert_eq!(line(&[0, 0], 2), [0, 1]);
         assert_eq!(line(&[5], 3).len(), 1);
-        // the middle of the heavy patch lies before the middle of the whole
+        // the middle of the heavy patch lies before the middle of the total
         assert_eq!(line(&[5, 3, 3, 3], 2), [0, 0, 1, 1]);
         assert_eq!(assign_patches(&[1, 5, 1, 5], &[0, 2, 1, 3], 3), [0, 1, 0, 2]);
     }
 
-    /// The least bottleneck by trying every way to cut.
+    /// The smallest bottleneck, by trying all cuts.
     fn best(weights: &[u64], ranks: usize) -> u64 {
         if ranks == 1 {
             return weights.iter().sum();

@@ -1,6 +1,6 @@
-//! Bytes in messages of words.
+//! Conversion between bytes and the 64-bit words of a message.
 
-/// `bytes` as words, the number of bytes first.
+/// Packs `bytes` into words, preceded by the number of bytes.
 pub fn words_of(bytes: &[u8]) -> Vec<u64> {
     let mut words = vec![bytes.len() as u64];
     words.extend(bytes.chunks(8).map(|c| {
@@ -11,7 +11,7 @@ pub fn words_of(bytes: &[u8]) -> Vec<u64> {
     words
 }
 
-/// The bytes that [`words_of`] has made `words` of.
+/// Recovers the bytes from `words` that [`words_of`] has packed.
 pub fn bytes_of(words: &[u64]) -> Vec<u8> {
     let Some((&length, words)) = words.split_first() else { return Vec::new() };
     let mut bytes: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();

@@ -1,4 +1,4 @@
-//! Messages between ranks: the trait, the form for one rank, ranks as threads, and MPI.
+//! Messages between ranks: the trait and its implementations for one rank, threads and MPI.
 
 #[cfg(feature = "mpi")]
 mod life;
@@ -11,36 +11,36 @@ use std::time::Duration;
 
 use crate::{bytes_of, words_of};
 
-/// How long a rank waits for others that give no sign of life, unless it is told otherwise.
+/// Default time for which a rank waits for others that give no sign of life.
 pub const STALL_TIMEOUT: Duration = Duration::from_secs(300);
 
-/// What a rank has sent and how long it has waited, since it was started.
+/// Messages sent and time waited by one rank since its start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Traffic {
     /// Messages sent to single ranks.
     pub messages: u64,
-    /// What they carried [bytes].
+    /// Size of these messages [bytes].
     pub bytes: u64,
     /// Reductions over all ranks: `min` and `sum`.
     pub reductions: u64,
-    /// Time spent waiting for others, receiving included [s].
+    /// Time spent waiting for other ranks, receiving included [s].
     pub waited: f64,
 }
 
-/// What the ranks of a run say to each other. Calls marked "collective" must be made by all
-/// ranks in the same order. A rank that waits in vain ends the run with a message that names the
-/// rank that hangs: there is nothing that its caller could do.
+/// Communication between the ranks of a run. All ranks must make the calls marked "collective", in
+/// the same order. If a wait times out, the rank ends the run with a message that names the hanging
+/// rank, because the caller could not recover.
 pub trait Comm {
-    /// This rank, from 0.
+    /// Number of this rank, from 0.
     fn rank(&self) -> usize;
 
     /// Number of ranks.
     fn size(&self) -> usize;
 
-    /// Sends each `(rank, words)`, calls `meanwhile` once, and then receives one message from
-    /// each rank of `from` (in that order) into `received`. Messages travel while `meanwhile`
-    /// computes. Every send must be met by a receive on the other side; messages from one rank to
-    /// another arrive in the order in which they were sent.
+    /// Sends each `(rank, words)`, calls `meanwhile` once, and then receives one message from each
+    /// rank of `from` (in that order) into `received`. Messages travel while `meanwhile` computes.
+    /// Every send must have a matching receive on the other rank; messages from one rank to another
+    /// arrive in the order in which they were sent.
     fn exchange(
         &self,
         sends: &[(usize, &[u64])],
@@ -49,25 +49,26 @@ pub trait Comm {
         meanwhile: &mut dyn FnMut(),
     );
 
-    /// Least of each value over the ranks. Collective.
+    /// Minimum of each value over the ranks. Collective.
     fn min(&self, values: &mut [f64]);
 
-    /// Sum of each value over the ranks, exact. Collective.
+    /// Exact sum of each value over the ranks. Collective.
     fn sum(&self, values: &mut [i64]);
 
-    /// What this rank has sent and waited for so far.
+    /// Messages sent and time waited by this rank so far.
     fn traffic(&self) -> Traffic;
 
-    /// Shows the others that this rank makes progress: to be called now and then by a rank that
-    /// computes or writes files for long while others may wait for it. Costs a glance at the
-    /// clock, or at most a look for a message.
+    /// Shows other ranks that this rank makes progress. A rank calls it regularly while it computes
+    /// or writes files for a long time and others may wait for it. It costs a read of the clock and
+    /// at most a check for a message.
     fn heartbeat(&self) {}
 
-    /// How long ranks wait for one that gives no sign of life: the time between two exchanges,
-    /// reductions or heartbeats of any rank must stay well below. Alike on all ranks.
+    /// Sets the time for which ranks wait for a rank that gives no sign of life. The time between
+    /// two exchanges, reductions or heartbeats of any rank must stay well below it. Must be the
+    /// same on all ranks.
     fn set_stall_timeout(&self, _timeout: Duration) {}
 
-    /// Every rank's words at rank 0, by rank; nothing elsewhere. Collective.
+    /// Gathers every rank's words at rank 0, ordered by rank; empty on other ranks. Collective.
     fn gather(&self, words: &[u64]) -> Vec<Vec<u64>> {
         let mut all = Vec::new();
         if self.rank() == 0 {
@@ -80,7 +81,7 @@ pub trait Comm {
         all
     }
 
-    /// Rank 0's bytes on every rank. Collective.
+    /// Sends the bytes of rank 0 to every rank. Collective.
     fn broadcast(&self, bytes: Vec<u8>) -> Vec<u8> {
         let mut received = Vec::new();
         if self.rank() == 0 {
@@ -93,11 +94,11 @@ pub trait Comm {
         bytes_of(&received[0])
     }
 
-    /// Ends all ranks with `code`, from this one alone.
+    /// Ends all ranks with `code`; called by one rank alone.
     fn abort(&self, code: i32) -> !;
 }
 
-/// One rank, no messages.
+/// A run with one rank and no messages.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Serial;
 

@@ -1,27 +1,28 @@
-//! All rows in one place, for a file, and back from there to the patches of any layout.
+//! Gathers all particles at rank 0, for a file, and distributes them to the patches of any layout.
 
 use crate::patch_migration::{pack, unpack};
 use crate::{Block, ColumnSpec, Comm, Layout, assign_patches};
 
-/// The own rows of all ranks, by id: what must be kept of them from one step to the next.
+/// The own particles of all ranks, by id, with the data that one step leaves to the next.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct StoredRows {
-    /// Id of each row, ascending.
+pub struct StoredParticles {
+    /// Id of each particle, ascending.
     pub ids: Vec<u64>,
-    /// Cell of each row, one number a direction, row after row.
+    /// Cell of each particle, one number per direction, particle after particle.
     pub cells: Vec<i32>,
-    /// The columns that are declared as state, in their order.
+    /// The columns declared as state, in order of declaration.
     pub columns: Vec<Vec<f64>>,
 }
 
-impl StoredRows {
-    /// Gathers the rows of `blocks` at rank 0; without rows elsewhere. Column after column, so
-    /// that no rank holds much more than the rows themselves. Collective.
+impl StoredParticles {
+    /// Gathers the particles of `blocks` at rank 0; the result is empty on other ranks. Columns are
+    /// gathered one by one, to limit the memory of each rank to little more than the particles.
+    /// Collective.
     pub fn gather<'a, const D: usize>(
         comm: &dyn Comm,
         specs: &[ColumnSpec],
         blocks: impl Iterator<Item = &'a Block<D>> + Clone,
-    ) -> StoredRows {
+    ) -> StoredParticles {
         let gathered = Gathered::ids(comm, blocks.clone());
         let mut cells = Vec::with_capacity(D * gathered.order.len());
         let found = together(comm, blocks.clone(), |block, words| {
@@ -31,32 +32,32 @@ impl StoredRows {
         cells.extend(gathered.order.iter().flat_map(of).map(|&c| c as i32));
         let state = (0..specs.len()).filter(|&c| specs[c].state);
         let columns = state.map(|c| gathered.column(comm, blocks.clone(), c)).collect();
-        StoredRows { columns, ids: gathered.ids, cells }
+        StoredParticles { columns, ids: gathered.ids, cells }
     }
 
-    /// The cell of row `r`.
+    /// The cell of particle `r`.
     fn cell<const D: usize>(&self, r: usize) -> [i64; D] {
         std::array::from_fn(|a| i64::from(self.cells[D * r + a]))
     }
 
-    /// The block of the rows at `which`; columns that are no state are zeros.
+    /// A block of the particles with indices `which`; columns that are not state are zero.
     fn block<const D: usize>(&self, specs: &[ColumnSpec], which: &[usize]) -> Block<D> {
         let mut block = Block::new(specs);
-        let mut row = vec![0.0; specs.len()];
+        let mut particle = vec![0.0; specs.len()];
         for &r in which {
-            let state = specs.iter().zip(&mut row).filter(|(s, _)| s.state);
+            let state = specs.iter().zip(&mut particle).filter(|(s, _)| s.state);
             for ((_, value), column) in state.zip(&self.columns) {
                 *value = column[r];
             }
-            block.push(self.ids[r], self.cell::<D>(r).map(|c| c as i32), &row);
+            block.push(self.ids[r], self.cell::<D>(r).map(|c| c as i32), &particle);
         }
         block
     }
 }
 
-/// The own rows of all ranks at rank 0, by id: the ids, and the columns in `which`; empty
-/// elsewhere. Collective.
-pub fn gather_rows<'a, const D: usize>(
+/// Ids and the columns `which` of the own particles of all ranks, by id, at rank 0; empty on other
+/// ranks. Collective.
+pub fn gather_particles<'a, const D: usize>(
     comm: &dyn Comm,
     blocks: impl Iterator<Item = &'a Block<D>> + Clone,
     which: &[usize],
@@ -66,18 +67,18 @@ pub fn gather_rows<'a, const D: usize>(
     (gathered.ids, columns)
 }
 
-/// Rows of all ranks on their way to rank 0: by rank, patch and row, until they are put in order.
-/// Column after column, so that no rank holds much more than the rows themselves, and what was
-/// asked of the system for one serves the next.
+/// Order of the particles of all ranks at rank 0. They arrive by rank, patch and particle, and are
+/// then ordered by id. Columns are gathered one by one, which limits the memory of each rank and
+/// lets columns reuse the same allocation.
 struct Gathered {
-    /// Ids, ascending; none but at rank 0.
+    /// Ids, ascending; empty except at rank 0.
     ids: Vec<u64>,
-    /// Where the row of each id stands among those gathered.
+    /// Position of the particle of each id among the gathered particles.
     order: Vec<usize>,
 }
 
 impl Gathered {
-    /// Finds the order of the rows. Collective.
+    /// Determines the order of the particles. Collective.
     fn ids<'a, const D: usize>(
         comm: &dyn Comm,
         blocks: impl Iterator<Item = &'a Block<D>>,
@@ -87,7 +88,7 @@ impl Gathered {
         Gathered { ids: order.iter().map(|&r| ids[r]).collect(), order }
     }
 
-    /// Column number `c` by id; empty but at rank 0. Collective.
+    /// Column number `c`, by id; empty except at rank 0. Collective.
     fn column<'a, const D: usize>(
         &self,
         comm: &dyn Comm,
@@ -101,7 +102,7 @@ impl Gathered {
     }
 }
 
-/// What `of` adds for each block, of all ranks at rank 0; nothing elsewhere. Collective.
+/// Words that `of` adds for the blocks of all ranks, at rank 0; empty on other ranks. Collective.
 fn together<'a, const D: usize>(
     comm: &dyn Comm,
     blocks: impl Iterator<Item = &'a Block<D>>,
@@ -115,11 +116,10 @@ fn together<'a, const D: usize>(
     comm.gather(&words).concat()
 }
 
-/// Where the row of each id stands, in order of id; no id comes twice.
+/// Positions of the particles in order of id; ids are unique.
 fn by_id(ids: &[u64]) -> Vec<usize> {
     const NONE: usize = usize::MAX;
-    // ids count from none, and few are missing: putting each at its number's place takes a tenth
-    // of the time of a sort
+    // ids count from 0 and few are missing: direct placement takes a tenth of the time of a sort
     let most = ids.iter().copied().max().unwrap_or(0);
     if most / 2 > ids.len() as u64 {
         let mut order: Vec<usize> = (0..ids.len()).collect();
@@ -132,30 +132,30 @@ fn by_id(ids: &[u64]) -> Vec<usize> {
     order
 }
 
-/// Deals the rows that rank 0 has, `None` elsewhere, to the patches of `layout`, and the patches to
-/// ranks along `order` by their numbers of rows: returns the layout with these ranks, and this
-/// rank's blocks. Cells must be within the domain. Collective.
-pub fn deal_rows<const D: usize>(
+/// Distributes the particles of rank 0 (`None` on other ranks) to the patches of `layout`. The
+/// patches are assigned to ranks along `order` by their numbers of particles. Returns the layout
+/// with these ranks, and the blocks of this rank. Cells must be within the domain. Collective.
+pub fn deal_particles<const D: usize>(
     comm: &dyn Comm,
     layout: Layout<D>,
     order: &[usize],
     specs: &[ColumnSpec],
-    rows: Option<&StoredRows>,
+    particles: Option<&StoredParticles>,
 ) -> (Layout<D>, Vec<Block<D>>) {
     let mut of_patch: Vec<Vec<usize>> = vec![Vec::new(); layout.patches().len()];
-    if let Some(rows) = rows {
-        for r in 0..rows.ids.len() {
-            of_patch[layout.patch_of(rows.cell(r))].push(r);
+    if let Some(particles) = particles {
+        for r in 0..particles.ids.len() {
+            of_patch[layout.patch_of(particles.cell(r))].push(r);
         }
     }
-    let mut counts: Vec<i64> = of_patch.iter().map(|rows| rows.len() as i64).collect();
+    let mut counts: Vec<i64> = of_patch.iter().map(|particles| particles.len() as i64).collect();
     comm.sum(&mut counts);
     let weights: Vec<u64> = counts.iter().map(|&n| n as u64).collect();
     let ranks = assign_patches(&weights, order, comm.size());
     let layout = layout.with_ranks(ranks);
     let mine = layout.patches_of(comm.rank());
     let mut received = Vec::new();
-    let Some(rows) = rows else {
+    let Some(particles) = particles else {
         comm.exchange(&[], &[0], &mut received, &mut || {});
         let mut words = &received[0][..];
         let mut blocks = Vec::new();
@@ -167,16 +167,16 @@ pub fn deal_rows<const D: usize>(
         blocks.iter_mut().for_each(Block::sort_own);
         return (layout, blocks);
     };
-    // rank after rank, so that one message at a time is held
+    // one rank after the other, to hold only one message at a time
     for rank in 1..comm.size() {
         let mut words = Vec::new();
         for patch in layout.patches_of(rank) {
-            pack(&mut words, patch, &rows.block::<D>(specs, &of_patch[patch]));
+            pack(&mut words, patch, &particles.block::<D>(specs, &of_patch[patch]));
         }
         comm.exchange(&[(rank, &words)], &[], &mut received, &mut || {});
     }
     let mut blocks: Vec<Block<D>> =
-        mine.into_iter().map(|patch| rows.block(specs, &of_patch[patch])).collect();
+        mine.into_iter().map(|patch| particles.block(specs, &of_patch[patch])).collect();
     blocks.iter_mut().for_each(Block::sort_own);
     (layout, blocks)
 }
@@ -185,7 +185,7 @@ pub fn deal_rows<const D: usize>(
 mod tests {
     use super::*;
     use crate::comm::local::run_ranks;
-    use crate::{IndexBox, Mirror, Side, curve_order};
+    use crate::{IndexBox, Mirror, SideKind, curve_order};
 
     const SPECS: [ColumnSpec; 3] = [
         ColumnSpec { name: "a", unit: "m", ghost: true, state: true, mirror: Mirror::Same },
@@ -193,9 +193,9 @@ mod tests {
         ColumnSpec { name: "c", unit: "m", ghost: false, state: true, mirror: Mirror::Same },
     ];
 
-    fn rows(count: u64) -> StoredRows {
-        StoredRows {
-            // some ids have left
+    fn particles(count: u64) -> StoredParticles {
+        StoredParticles {
+            // some particles have been removed
             ids: (0..count).map(|i| 3 * i + 1).collect(),
             cells: (0..count as i32).flat_map(|i| [(7 * i) % 12, (5 * i) % 9]).collect(),
             columns: vec![
@@ -206,8 +206,8 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_put_in_order_of_id() {
-        // ids that count from none, some missing, and ids far apart
+    fn particles_are_put_in_order_of_id() {
+        // ids that count from 0 with some missing, and ids far apart
         for ids in [&[4u64, 0, 2, 5, 1][..], &[7, 1 << 60, 0, 12], &[3], &[]] {
             let order = by_id(ids);
             let sorted: Vec<u64> = order.iter().map(|&r| ids[r]).collect();
@@ -217,16 +217,17 @@ mod tests {
     }
 
     #[test]
-    fn rows_come_back_from_any_layout() {
+    fn particles_come_back_from_any_layout() {
         for (ranks, parts) in [(1, [1, 1]), (1, [3, 2]), (3, [4, 3]), (4, [1, 2])] {
             for count in [0, 1, 40] {
-                let all = rows(count);
+                let all = particles(count);
                 let layout =
-                    Layout::new(IndexBox::new([0, 0], [12, 9]), [[Side::Open; 2]; 2], parts);
+                    Layout::new(IndexBox::new([0, 0], [12, 9]), [[SideKind::Open; 2]; 2], parts);
                 let order = curve_order(layout.parts());
                 let ends = run_ranks(ranks, |comm| {
                     let given = (comm.rank() == 0).then_some(&all);
-                    let (dealt, blocks) = deal_rows(comm, layout.clone(), &order, &SPECS, given);
+                    let (dealt, blocks) =
+                        deal_particles(comm, layout.clone(), &order, &SPECS, given);
                     let mine = dealt.patches_of(comm.rank());
                     assert_eq!(blocks.len(), mine.len());
                     for (block, patch) in blocks.iter().zip(mine) {
@@ -234,14 +235,14 @@ mod tests {
                         assert!(block.cells.iter().all(|c| home.contains(c.map(i64::from))));
                         assert!(block.columns[1].iter().all(|&v| v == 0.0));
                     }
-                    StoredRows::gather(comm, &SPECS, blocks.iter())
+                    StoredParticles::gather(comm, &SPECS, blocks.iter())
                 });
-                let bits = |rows: &StoredRows| -> Vec<u64> {
-                    rows.columns.iter().flatten().map(|v| v.to_bits()).collect()
+                let bits = |particles: &StoredParticles| -> Vec<u64> {
+                    particles.columns.iter().flatten().map(|v| v.to_bits()).collect()
                 };
                 assert_eq!((&ends[0].ids, &ends[0].cells), (&all.ids, &all.cells));
                 assert_eq!(bits(&ends[0]), bits(&all));
-                assert!(ends[1..].iter().all(|rows| rows.ids.is_empty()));
+                assert!(ends[1..].iter().all(|particles| particles.ids.is_empty()));
             }
         }
     }

@@ -1,76 +1,76 @@
-//! Ghost rows and migration, in one message a neighbouring rank.
+//! Ghost particles and migration, in one message per neighbouring rank.
 
-use crate::packing::{put_rows, put_stir, take};
+use crate::packing::{put_particles, put_stir, take};
 use crate::{Block, Comm, Image, IndexBox, Layout};
 
-/// A row that cannot be handed on.
+/// Error of the migration of a particle.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum RowError {
-    /// It has moved further in one step than its patch's neighbours.
+pub enum ParticleError {
+    /// The particle has moved past the neighbours of its patch in one step.
     #[error(
         "particle {id} moved from patch {patch} to cell {cell:?} in one step, past its neighbours"
     )]
     MovedTooFar {
-        /// Its id.
+        /// Id of the particle.
         id: u64,
-        /// The patch it was in.
+        /// Patch that held the particle.
         patch: usize,
-        /// The cell it is in now.
+        /// New cell of the particle.
         cell: Vec<i64>,
     },
 }
 
-/// How far rows are seen and move, in cells.
+/// Distances of ghosts and of motion [cells].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RowReach {
-    /// Ghosts come from this far about a patch, see [`Layout::halo`].
+pub struct GhostReach {
+    /// Width of the ghost region around a patch, see [`Layout::halo`].
     pub depth: i64,
-    /// Most that a row moves between two exchanges.
+    /// Largest distance that a particle moves between two exchanges.
     pub travel: i64,
-    /// A patch is stirred by active cells this far about it; `None`: always.
+    /// Active cells within this distance make a patch stirred; `None`: patches always are.
     pub notice: Option<i64>,
 }
 
-/// A way in which rows of one patch appear at another.
+/// All ways in which particles of one patch appear at another patch.
 #[derive(Clone, Debug)]
 struct Route<const D: usize> {
     to: usize,
     taker: Taker,
-    /// The taker's cells, those with ghosts about them, and those whose activity stirs it.
+    /// Cells of the target patch, those whose particles it sees, and those that make it stirred.
     home: IndexBox<D>,
     halo: IndexBox<D>,
     near: IndexBox<D>,
-    /// Each with the rows to give as ghosts and those to hand over.
+    /// Each image with the particles to copy as ghosts and the particles to hand over.
     images: Vec<(Image<D>, [Vec<u32>; 2])>,
 }
 
-/// Where a route's words go.
+/// Destination of the words of a route.
 #[derive(Clone, Copy, Debug)]
 enum Taker {
-    /// To a message, by its place in the list of messages.
+    /// A message, by its index in the list of messages.
     Message(usize),
-    /// To a patch of this rank that hears of no other rank.
+    /// A patch of this rank that receives nothing from other ranks.
     Inner,
-    /// To a patch of this rank that does.
+    /// A patch of this rank that receives from other ranks.
     Border,
 }
 
-/// Who gives rows to whom, for ghosts up to a given number of cells away.
+/// Exchange of ghosts and migrating particles between patches.
 ///
-/// One exchange does three things: it hands over own rows whose cell now belongs to another
-/// patch, copies rows to every patch within reach of them, and tells patches near active cells
-/// that they are stirred. Copies beyond a mirror or a joined side are images: their cell is the
-/// image's, their columns change as declared.
+/// One exchange does three things: it hands over own particles whose cell now belongs to another
+/// patch, copies particles to every patch within their reach, and tells patches near active cells
+/// that they are stirred. Copies beyond a mirror or a joined side are images: they carry the cell
+/// of the image, and their columns change as declared.
 #[derive(Clone, Debug)]
-pub struct RowExchange<const D: usize> {
-    reach: RowReach,
+pub struct GhostExchange<const D: usize> {
+    reach: GhostReach,
     patches: Vec<usize>,
     homes: Vec<IndexBox<D>>,
-    /// For each patch of this rank, who may need its rows.
+    /// For each patch of this rank, the routes to patches that may need its particles.
     routes: Vec<Vec<Route<D>>>,
-    /// For each patch of this rank, whether it hears of no other rank.
+    /// For each patch of this rank, whether it receives nothing from other ranks.
     inner: Vec<bool>,
-    /// Place of each patch in this rank's list.
+    /// Index of each patch in this rank's list.
     place: Vec<usize>,
     send_ranks: Vec<usize>,
     receive_ranks: Vec<usize>,
@@ -82,10 +82,10 @@ pub struct RowExchange<const D: usize> {
     migrated: u64,
 }
 
-impl<const D: usize> RowExchange<D> {
-    /// The exchange on `rank`.
-    pub fn new(layout: &Layout<D>, rank: usize, reach: RowReach) -> Self {
-        let RowReach { depth, travel, notice } = reach;
+impl<const D: usize> GhostExchange<D> {
+    /// Plans the exchange on `rank`.
+    pub fn new(layout: &Layout<D>, rank: usize, reach: GhostReach) -> Self {
+        let GhostReach { depth, travel, notice } = reach;
         let seen = depth.max(notice.unwrap_or(0));
         let images = layout.images(seen + travel);
         let patches = layout.patches_of(rank);
@@ -93,7 +93,7 @@ impl<const D: usize> RowExchange<D> {
         patches.iter().enumerate().for_each(|(k, &p)| place[p] = k);
         let boxes = layout.patches();
 
-        // a patch is inner if no patch of another rank has a way to it
+        // a patch is inner if no patch of another rank has a route to it
         let mut receive_ranks = Vec::new();
         let mut inner = vec![true; patches.len()];
         for (k, &to) in patches.iter().enumerate() {
@@ -127,7 +127,7 @@ impl<const D: usize> RowExchange<D> {
                     k if inner[k] => Taker::Inner,
                     _ => Taker::Border,
                 };
-                // a row that has crossed a joined side carries a cell at the other end already
+                // a particle that has crossed a joined side already carries a cell at the other end
                 let meets = |t: &&Image<D>| !t.cells(layout.domain()).intersect(&sees).is_empty();
                 let images = images.iter().filter(meets).map(|&t| (t, Default::default()));
                 Route { to, taker, home: boxes[to], halo, near, images: images.collect() }
@@ -148,7 +148,7 @@ impl<const D: usize> RowExchange<D> {
                 *rank = send_ranks.binary_search(rank).expect("a rank with a route");
             }
         }
-        RowExchange {
+        GhostExchange {
             reach,
             homes: patches.iter().map(|&p| boxes[p]).collect(),
             patches,
@@ -166,28 +166,28 @@ impl<const D: usize> RowExchange<D> {
         }
     }
 
-    /// Rows that this rank's patches have handed over since the last call.
+    /// Number of particles that this rank's patches have handed over since the last call.
     pub fn take_migrated(&mut self) -> u64 {
         std::mem::take(&mut self.migrated)
     }
 
-    /// For each patch of this rank, whether it hears of no other rank.
+    /// For each patch of this rank, whether it receives nothing from other ranks.
     pub fn inner(&self) -> &[bool] {
         &self.inner
     }
 
-    /// Hands over the rows that have moved and renews all ghosts. `patches` are this rank's, in
-    /// order; their rows carry their new cells, within the domain. Afterwards each block is in
-    /// canonical order.
+    /// Hands over the particles that have moved and renews all ghosts. `patches` are the patches of
+    /// this rank, in order; their particles carry their new cells, within the domain. Afterwards
+    /// each block is in canonical order.
     ///
-    /// `meanwhile` is called once, with all patches, while messages are on their way: those that
-    /// are [`inner`](Self::inner) are whole by then. Collective between neighbours.
+    /// `meanwhile` is called once, with all patches, while messages are on their way;
+    /// [`inner`](Self::inner) patches are complete by then. Collective between neighbours.
     pub fn run<P: AsMut<Block<D>>>(
         &mut self,
         comm: &dyn Comm,
         patches: &mut [P],
         meanwhile: &mut dyn FnMut(&mut [P]),
-    ) -> Result<(), RowError> {
+    ) -> Result<(), ParticleError> {
         self.messages.iter_mut().for_each(Vec::clear);
         self.to_inner.clear();
         self.to_border.clear();
@@ -197,7 +197,7 @@ impl<const D: usize> RowExchange<D> {
             block.stirred = self.reach.notice.is_none() || !block.active.is_empty();
             self.give(k, block)?;
         }
-        let RowExchange { place, inner, received, .. } = self;
+        let GhostExchange { place, inner, received, .. } = self;
         let mut on_this_rank = || {
             let words = std::slice::from_ref(&self.to_inner);
             settle(place, words, patches, inner, true);
@@ -210,23 +210,23 @@ impl<const D: usize> RowExchange<D> {
                 comm.exchange(sends, &self.receive_ranks, received, &mut on_this_rank)
             });
         }
-        // this rank's own words stand with those of the others
+        // this rank's own words are processed together with the messages of other ranks
         received.push(std::mem::take(&mut self.to_border));
         settle(place, received, patches, inner, false);
         self.to_border = received.pop().expect("it was pushed");
         Ok(())
     }
 
-    /// Packs what others need of `block` and takes out what is no longer its own.
-    fn give(&mut self, k: usize, block: &mut Block<D>) -> Result<(), RowError> {
+    /// Packs the particles of `block` that other patches need and removes those that left it.
+    fn give(&mut self, k: usize, block: &mut Block<D>) -> Result<(), ParticleError> {
         let home = self.homes[k];
-        // cells that nobody else can see
+        // cells that no other patch sees
         let inner = home.grow(-self.reach.depth);
         self.gone.clear();
-        let RowExchange { routes, messages, to_inner, to_border, .. } = self;
+        let GhostExchange { routes, messages, to_inner, to_border, .. } = self;
         let (routes, patch) = (&mut routes[k], self.patches[k]);
-        for row in 0..block.own() {
-            let cell = block.cells[row].map(i64::from);
+        for particle in 0..block.own() {
+            let cell = block.cells[particle].map(i64::from);
             if inner.contains(cell) {
                 continue;
             }
@@ -238,22 +238,22 @@ impl<const D: usize> RowExchange<D> {
                     if !route.halo.contains(at) {
                         continue;
                     }
-                    // a row that stays needs no word; one that leaves may come back as a ghost
+                    // a staying particle is not sent to its patch; a leaver may return as a ghost
                     let original = *image == Image::IDENTITY;
                     if stays && original && route.to == patch {
                         continue;
                     }
                     let own = original && route.home.contains(at);
                     owned |= own;
-                    if own { movers.push(row as u32) } else { ghosts.push(row as u32) }
+                    if own { movers.push(particle as u32) } else { ghosts.push(particle as u32) }
                 }
             }
             if !owned {
-                let id = block.ids[row];
-                return Err(RowError::MovedTooFar { id, patch, cell: cell.to_vec() });
+                let id = block.ids[particle];
+                return Err(ParticleError::MovedTooFar { id, patch, cell: cell.to_vec() });
             }
             if !stays {
-                self.gone.push(row);
+                self.gone.push(particle);
             }
         }
         let stirs = self.reach.notice.is_some() && !block.active.is_empty();
@@ -268,8 +268,8 @@ impl<const D: usize> RowExchange<D> {
                 put_stir(out, route.to);
             }
             for (image, [ghosts, movers]) in &mut route.images {
-                put_rows(out, block, movers, route.to, true, image);
-                put_rows(out, block, ghosts, route.to, false, image);
+                put_particles(out, block, movers, route.to, true, image);
+                put_particles(out, block, ghosts, route.to, false, image);
                 movers.clear();
                 ghosts.clear();
             }
@@ -282,7 +282,7 @@ impl<const D: usize> RowExchange<D> {
     }
 }
 
-/// Most neighbouring ranks whose list of messages is made without allocating.
+/// Number of neighbouring ranks whose list of messages needs no heap allocation.
 const NEIGHBOURS: usize = 16;
 
 /// Calls `exchange` with each rank and its message.
@@ -296,8 +296,8 @@ pub(crate) fn with_sends(
     exchange(&sends);
 }
 
-/// Adds the rows of messages to their blocks and brings the blocks that are (or are not) inner
-/// into canonical order: own rows first, then ghosts, for a block keeps them apart.
+/// Adds the particles of the messages to their blocks and sorts the blocks whose `inner` equals
+/// `which`: first own particles, then ghosts, because a block keeps them apart.
 fn settle<const D: usize>(
     place: &[usize],
     messages: &[Vec<u64>],
@@ -319,7 +319,7 @@ fn settle<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{ColumnSpec, IndexBox, Mirror, Serial, Side};
+    use crate::{ColumnSpec, IndexBox, Mirror, Serial, SideKind};
     use proptest::prelude::*;
 
     const SPECS: [ColumnSpec; 2] = [
@@ -327,32 +327,33 @@ mod tests {
         ColumnSpec { name: "e", unit: "J/kg", ghost: false, state: true, mirror: Mirror::Same },
     ];
 
-    /// A row's cell, id and `v`, as a patch sees it.
+    /// Cell, id and `v` of a particle, as seen by a patch.
     type Seen<const D: usize> = ([i64; D], u64, f64);
 
-    /// Rows at cells, moved by moves and exchanged; then each patch's rows in canonical order.
+    /// Moves and exchanges (cell, move) particles; returns those of each patch in canonical order.
     fn seen<const D: usize>(
         layout: &Layout<D>,
-        rows: &[([i64; D], [i64; D])],
+        particles: &[([i64; D], [i64; D])],
         depth: i64,
     ) -> Vec<Vec<Seen<D>>> {
         let count = layout.patches().len();
         let mut blocks: Vec<Block<D>> = (0..count).map(|_| Block::new(&SPECS)).collect();
-        for (id, (cell, _)) in rows.iter().enumerate() {
+        for (id, (cell, _)) in particles.iter().enumerate() {
             let p = layout.patch_of(*cell);
             blocks[p].push(id as u64, cell.map(|c| c as i32), &[id as f64 + 1.0, 0.5]);
         }
-        let reach = RowReach { depth, travel: 1, notice: None };
-        let mut exchange = RowExchange::new(layout, 0, reach);
+        let reach = GhostReach { depth, travel: 1, notice: None };
+        let mut exchange = GhostExchange::new(layout, 0, reach);
         for round in 0..2 {
             for block in &mut blocks {
                 block.drop_ghosts();
-                for row in 0..block.own() {
-                    let by =
-                        rows[block.ids[row] as usize].1.map(|m| if round == 0 { 0 } else { m });
-                    let from = block.cells[row].map(i64::from);
+                for particle in 0..block.own() {
+                    let by = particles[block.ids[particle] as usize]
+                        .1
+                        .map(|m| if round == 0 { 0 } else { m });
+                    let from = block.cells[particle].map(i64::from);
                     let to = layout.wrap_cell(std::array::from_fn(|a| from[a] + by[a])).unwrap();
-                    block.cells[row] = to.map(|c| c as i32);
+                    block.cells[particle] = to.map(|c| c as i32);
                 }
             }
             exchange.run(&Serial, &mut blocks, &mut |_| {}).unwrap();
@@ -362,30 +363,30 @@ mod tests {
             .map(|b| {
                 let mut runs = Vec::new();
                 b.runs(&mut runs);
-                let row = |r: usize| (b.cells[r].map(i64::from), b.ids[r], b.columns[0][r]);
-                runs.into_iter().flatten().map(row).collect()
+                let particle = |r: usize| (b.cells[r].map(i64::from), b.ids[r], b.columns[0][r]);
+                runs.into_iter().flatten().map(particle).collect()
             })
             .collect()
     }
 
-    const KINDS: [[Side; 2]; 4] = [
-        [Side::Open, Side::Open],
-        [Side::Mirror, Side::Open],
-        [Side::Wrap, Side::Wrap],
-        [Side::Mirror, Side::Mirror],
+    const KINDS: [[SideKind; 2]; 4] = [
+        [SideKind::Open, SideKind::Open],
+        [SideKind::Mirror, SideKind::Open],
+        [SideKind::Wrap, SideKind::Wrap],
+        [SideKind::Mirror, SideKind::Mirror],
     ];
 
-    /// A patch of a cut domain sees the rows that the whole domain sees there, in order.
+    /// Checks that a patch of a cut domain sees the same particles as the uncut domain, in order.
     fn check<const D: usize>(
         domain: IndexBox<D>,
-        sides: [[Side; 2]; D],
+        sides: [[SideKind; 2]; D],
         parts: [usize; D],
-        rows: &[([i64; D], [i64; D])],
+        particles: &[([i64; D], [i64; D])],
         depth: i64,
     ) {
         let cut = Layout::new(domain, sides, parts);
-        let all = &seen(&Layout::new(domain, sides, [1; D]), rows, depth)[0];
-        for (patch, got) in seen(&cut, rows, depth).into_iter().enumerate() {
+        let all = &seen(&Layout::new(domain, sides, [1; D]), particles, depth)[0];
+        for (patch, got) in seen(&cut, particles, depth).into_iter().enumerate() {
             let halo = cut.halo(patch, depth);
             let expected: Vec<_> = all.iter().filter(|r| halo.contains(r.0)).copied().collect();
             assert_eq!(got, expected, "patch {patch}");
@@ -395,36 +396,36 @@ mod tests {
     proptest! {
         #[test]
         fn a_cut_line_sees_what_the_whole_sees(
-            rows in prop::collection::vec((1i64..23, -1i64..=1), 1..30),
+            particles in prop::collection::vec((1i64..23, -1i64..=1), 1..30),
             parts in 1usize..13,
             depth in 1i64..5,
             kind in 0usize..4,
         ) {
-            let rows: Vec<_> = rows.iter().map(|r| ([r.0], [r.1])).collect();
-            check(IndexBox::new([0], [24]), [KINDS[kind]], [parts], &rows, depth);
+            let particles: Vec<_> = particles.iter().map(|r| ([r.0], [r.1])).collect();
+            check(IndexBox::new([0], [24]), [KINDS[kind]], [parts], &particles, depth);
         }
 
         #[test]
         fn a_cut_plane_sees_what_the_whole_sees(
-            rows in prop::collection::vec(((1i64..11, 1i64..8), (-1i64..=1, -1i64..=1)), 1..30),
+            particles in prop::collection::vec(((1i64..11, 1i64..8), (-1i64..=1, -1i64..=1)), 1..30),
             parts in (1usize..6, 1usize..5),
             depth in 1i64..4,
             kinds in (0usize..4, 0usize..4),
         ) {
-            let rows: Vec<_> =
-                rows.iter().map(|r| ([r.0.0, r.0.1], [r.1.0, r.1.1])).collect();
+            let particles: Vec<_> =
+                particles.iter().map(|r| ([r.0.0, r.0.1], [r.1.0, r.1.1])).collect();
             let sides = [KINDS[kinds.0], KINDS[kinds.1]];
-            check(IndexBox::new([0, 0], [12, 9]), sides, [parts.0, parts.1], &rows, depth);
+            check(IndexBox::new([0, 0], [12, 9]), sides, [parts.0, parts.1], &particles, depth);
         }
     }
 
     #[test]
-    fn a_row_that_jumps_over_its_neighbours_is_named() {
-        let layout = Layout::new(IndexBox::new([0], [40]), [[Side::Open; 2]], [10]);
+    fn a_particle_that_jumps_over_its_neighbours_is_named() {
+        let layout = Layout::new(IndexBox::new([0], [40]), [[SideKind::Open; 2]], [10]);
         let mut blocks: Vec<Block<1>> = (0..10).map(|_| Block::new(&SPECS)).collect();
         blocks[0].push(5, [30], &[0.0, 0.0]);
-        let reach = RowReach { depth: 2, travel: 1, notice: None };
-        let mut exchange = RowExchange::new(&layout, 0, reach);
+        let reach = GhostReach { depth: 2, travel: 1, notice: None };
+        let mut exchange = GhostExchange::new(&layout, 0, reach);
         let error = exchange.run(&Serial, &mut blocks, &mut |_| {}).unwrap_err();
         assert!(error.to_string().contains("particle 5"), "{error}");
     }

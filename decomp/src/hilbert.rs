@@ -1,11 +1,11 @@
-//! Hilbert's curve over a box of patches: neighbours on the curve are neighbours in space, so
-//! stretches of it make compact shares.
+//! Hilbert curve over a box of patches. Neighbours on the curve are neighbours in space, so
+//! sections of the curve are compact groups of patches.
 
-/// The places of a box of `parts` in each direction (the first runs fastest) in the order in
-/// which Hilbert's curve passes them. In one direction that is their own order.
+/// Flat indices of a box with `parts` entries per direction (first direction fastest), in the order
+/// of the Hilbert curve. In one dimension the order is unchanged.
 ///
-/// The curve's index comes from the transposed form of J. Skilling (2004), "Programming the
-/// Hilbert curve", on the smallest cube of a power of two that holds the box.
+/// The curve index uses the transposed form of J. Skilling (2004), "Programming the Hilbert curve",
+/// on the smallest cube with a power-of-two edge that contains the box.
 pub fn curve_order<const D: usize>(parts: [usize; D]) -> Vec<usize> {
     let count: usize = parts.iter().product();
     let mut order: Vec<usize> = (0..count).collect();
@@ -26,7 +26,7 @@ pub fn curve_order<const D: usize>(parts: [usize; D]) -> Vec<usize> {
     order
 }
 
-/// Place on the curve through a cube of 2^`bits` in each direction.
+/// Position on the curve through a cube of 2^`bits` in each direction.
 fn hilbert_index<const D: usize>(mut x: [u64; D], bits: u32) -> u128 {
     // undo the excess work of the inverse transform (Skilling's AxestoTranspose)
     let mut q = 1u64 << bits.saturating_sub(1);
@@ -56,7 +56,7 @@ fn hilbert_index<const D: usize>(mut x: [u64; D], bits: u32) -> u128 {
         q >>= 1;
     }
     x.iter_mut().for_each(|x| *x ^= t);
-    // bits of all directions in turn, the highest first
+    // interleave the bits of all directions, the highest first
     (0..bits).rev().flat_map(|b| x.map(|x| x >> b & 1)).fold(0, |h, bit| h << 1 | u128::from(bit))
 }
 

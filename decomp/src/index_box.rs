@@ -1,4 +1,4 @@
-//! An n-dimensional range of indices, the one place with index arithmetic.
+//! An n-dimensional range of indices. All index arithmetic is here.
 
 /// The indices `lower <= i < upper` in each of `D` directions; the first direction runs fastest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -15,12 +15,12 @@ impl<const D: usize> IndexBox<D> {
         IndexBox { lower, upper }
     }
 
-    /// Number of indices along `axis`; 0 if there is none.
+    /// Number of indices along `axis`; 0 if the box is empty there.
     pub fn extent(&self, axis: usize) -> usize {
         (self.upper[axis] - self.lower[axis]).max(0) as usize
     }
 
-    /// Number of indices in all.
+    /// Total number of indices.
     pub fn count(&self) -> usize {
         (0..D).map(|a| self.extent(a)).product()
     }
@@ -35,7 +35,7 @@ impl<const D: usize> IndexBox<D> {
         (0..D).all(|a| self.lower[a] <= index[a] && index[a] < self.upper[a])
     }
 
-    /// The indices that both boxes hold; possibly empty.
+    /// The indices that lie in both boxes; possibly empty.
     pub fn intersect(&self, other: &Self) -> Self {
         IndexBox {
             lower: std::array::from_fn(|a| self.lower[a].max(other.lower[a])),
@@ -43,12 +43,12 @@ impl<const D: usize> IndexBox<D> {
         }
     }
 
-    /// Grown by `depth` at every side.
+    /// The box grown by `depth` at every side.
     pub fn grow(&self, depth: i64) -> Self {
         IndexBox { lower: self.lower.map(|l| l - depth), upper: self.upper.map(|u| u + depth) }
     }
 
-    /// Cut into `parts` boxes along each direction, as even as whole indices allow; the first
+    /// Cuts the box into `parts` boxes per direction, as equal as whole indices allow. The first
     /// direction runs fastest in the list.
     pub fn tile(&self, parts: [usize; D]) -> Vec<Self> {
         let all = IndexBox::new([0; D], parts.map(|p| p as i64));
@@ -63,7 +63,7 @@ impl<const D: usize> IndexBox<D> {
             .collect()
     }
 
-    /// Place of `index` in an array over this box. `index` must be inside.
+    /// Flat index of `index` in an array over this box. `index` must be inside.
     pub fn flat(&self, index: [i64; D]) -> usize {
         debug_assert!(self.contains(index), "{index:?} is not in {self:?}");
         let mut at = 0;
@@ -73,7 +73,7 @@ impl<const D: usize> IndexBox<D> {
         at
     }
 
-    /// The places of this box in an array over `whole`, which must hold it: a range for each line
+    /// Flat indices of this box in an array over `whole`, which must contain it: one range per line
     /// along the first direction.
     pub fn lines_in(&self, whole: &Self) -> impl Iterator<Item = std::ops::Range<usize>> + use<D> {
         let (this, whole) = (*self, *whole);
@@ -90,7 +90,7 @@ impl<const D: usize> IndexBox<D> {
         })
     }
 
-    /// All indices in the order of an array over this box.
+    /// All indices, in the order of an array over this box.
     pub fn iter(&self) -> impl Iterator<Item = [i64; D]> + use<D> {
         let b = *self;
         (0..b.count()).map(move |mut k| {

@@ -1,24 +1,24 @@
-//! The domain cut into patches, what stands at its sides, and which rank has which patch.
+//! The domain cut into patches, its sides, and the assignment of patches to ranks.
 
 use crate::IndexBox;
 
-/// What stands at a side of the domain, as far as copies go.
+/// Kind of a side of the domain, as far as it concerns copies of particles and nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// Nothing: nodes beyond it belong to the patch at the side.
+pub enum SideKind {
+    /// Open: nodes beyond it belong to the patch at the side.
     Open,
-    /// A mirror: what lies beyond is the image of what lies before.
+    /// A mirror: everything beyond it is an image of the inside.
     Mirror,
     /// Joined to the opposite side.
     Wrap,
 }
 
-/// How a patch's indices appear elsewhere: shifted around, or mirrored at a side.
+/// Transformation of a patch's indices: a shift, or a reflection at a side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Image<const D: usize> {
     /// Whether the direction is mirrored.
     pub flip: [bool; D],
-    /// Node i appears at i + shift, or at shift - i where mirrored.
+    /// Node i maps to i + shift, or to shift - i in a mirrored direction.
     pub shift: [i64; D],
 }
 
@@ -26,21 +26,21 @@ impl<const D: usize> Image<D> {
     /// The patch itself.
     pub const IDENTITY: Self = Image { flip: [false; D], shift: [0; D] };
 
-    /// Where node `i` appears.
+    /// Image of node `i`.
     pub fn node(&self, i: [i64; D]) -> [i64; D] {
         std::array::from_fn(
             |a| if self.flip[a] { self.shift[a] - i[a] } else { i[a] + self.shift[a] },
         )
     }
 
-    /// Where cell `c` (between nodes c and c + 1) appears.
+    /// Image of cell `c` (between nodes c and c + 1).
     pub fn cell(&self, c: [i64; D]) -> [i64; D] {
         std::array::from_fn(|a| {
             if self.flip[a] { self.shift[a] - 1 - c[a] } else { c[a] + self.shift[a] }
         })
     }
 
-    /// The cells that appear in `b`.
+    /// The cells whose images lie in `b`.
     pub fn source_cells(&self, b: &IndexBox<D>) -> IndexBox<D> {
         IndexBox {
             lower: std::array::from_fn(|a| match self.flip[a] {
@@ -54,19 +54,19 @@ impl<const D: usize> Image<D> {
         }
     }
 
-    /// The node that appears at `i`.
+    /// The node whose image is `i`.
     pub fn source_node(&self, i: [i64; D]) -> [i64; D] {
         std::array::from_fn(
             |a| if self.flip[a] { self.shift[a] - i[a] } else { i[a] - self.shift[a] },
         )
     }
 
-    /// Where the cells of `b` appear.
+    /// Images of the cells of `b`.
     pub fn cells(&self, b: &IndexBox<D>) -> IndexBox<D> {
         self.boxed(b, 0)
     }
 
-    /// Where the nodes of `b` appear.
+    /// Images of the nodes of `b`.
     pub fn nodes(&self, b: &IndexBox<D>) -> IndexBox<D> {
         self.boxed(b, 1)
     }
@@ -91,20 +91,20 @@ impl<const D: usize> Image<D> {
     }
 }
 
-/// The domain cut into patches, dealt to ranks. Every rank holds the whole of it.
+/// The domain cut into patches, with the rank of each patch. Every rank holds the whole layout.
 #[derive(Clone, Debug)]
 pub struct Layout<const D: usize> {
     domain: IndexBox<D>,
-    sides: [[Side; 2]; D],
+    sides: [[SideKind; 2]; D],
     patches: Vec<IndexBox<D>>,
     ranks: Vec<usize>,
     cuts: [Vec<i64>; D],
 }
 
 impl<const D: usize> Layout<D> {
-    /// Cuts `domain` (a box of cells) into `parts` patches in each direction, all on rank 0.
-    /// `sides[axis]` are the lower and the upper side.
-    pub fn new(domain: IndexBox<D>, sides: [[Side; 2]; D], parts: [usize; D]) -> Self {
+    /// Cuts `domain` (a box of cells) into `parts` patches per direction, all on rank 0.
+    /// `sides[axis]` holds the lower and the upper side.
+    pub fn new(domain: IndexBox<D>, sides: [[SideKind; 2]; D], parts: [usize; D]) -> Self {
         let cuts = std::array::from_fn(|a| {
             (0..=parts[a] as i64)
                 .map(|k| domain.lower[a] + k * domain.extent(a) as i64 / parts[a] as i64)
@@ -113,8 +113,9 @@ impl<const D: usize> Layout<D> {
         Layout::with_cuts(domain, sides, cuts)
     }
 
-    /// Cuts `domain` at the cells `cuts` in each direction, its ends among them, all on rank 0.
-    pub fn with_cuts(domain: IndexBox<D>, sides: [[Side; 2]; D], cuts: [Vec<i64>; D]) -> Self {
+    /// Cuts `domain` at the cells `cuts` in each direction, which include both ends; all patches
+    /// are on rank 0.
+    pub fn with_cuts(domain: IndexBox<D>, sides: [[SideKind; 2]; D], cuts: [Vec<i64>; D]) -> Self {
         let parts = IndexBox::new([0; D], std::array::from_fn(|a| cuts[a].len() as i64 - 1));
         let corner =
             |k: [i64; D], more: i64| std::array::from_fn(|a| cuts[a][(k[a] + more) as usize]);
@@ -141,7 +142,7 @@ impl<const D: usize> Layout<D> {
         &self.patches
     }
 
-    /// The rank that has `patch`.
+    /// The rank of `patch`.
     pub fn rank_of(&self, patch: usize) -> usize {
         self.ranks[patch]
     }
@@ -151,15 +152,15 @@ impl<const D: usize> Layout<D> {
         (0..self.patches.len()).filter(|&p| self.ranks[p] == rank).collect()
     }
 
-    /// The sides of the domain.
-    pub fn sides(&self) -> &[[Side; 2]; D] {
+    /// The lower and the upper side of the domain, per direction.
+    pub fn sides(&self) -> &[[SideKind; 2]; D] {
         &self.sides
     }
 
-    /// The cell `c` brought into the domain across joined sides, or `None` if it lies outside.
+    /// The cell `c`, moved into the domain across joined sides; `None` if it lies outside.
     pub fn wrap_cell(&self, mut c: [i64; D]) -> Option<[i64; D]> {
         for (a, c) in c.iter_mut().enumerate() {
-            if self.sides[a][0] == Side::Wrap {
+            if self.sides[a][0] == SideKind::Wrap {
                 let lower = self.domain.lower[a];
                 *c = (*c - lower).rem_euclid(self.domain.extent(a) as i64) + lower;
             }
@@ -167,7 +168,7 @@ impl<const D: usize> Layout<D> {
         self.domain.contains(c).then_some(c)
     }
 
-    /// The patch that holds the cell `c`, which lies in the domain.
+    /// The patch that contains the cell `c`, which must lie in the domain.
     pub fn patch_of(&self, c: [i64; D]) -> usize {
         let mut at = 0;
         for a in (0..D).rev() {
@@ -177,23 +178,23 @@ impl<const D: usize> Layout<D> {
         at
     }
 
-    /// The cells whose rows a patch needs to sum up the nodes that it owns, where rows reach as
-    /// far as `depth` cells: nodes stand at lower corners of cells, so that above the patch one
-    /// cell less is needed than below it, unless the side of the domain is there, whose nodes it
-    /// owns too.
+    /// The cells whose particles a patch needs to sum up the nodes that it owns, if a particle
+    /// reaches nodes up to `depth` cells away. Nodes lie at the lower corners of cells, so the halo
+    /// is one cell thinner above the patch than below it. At an upper side of the domain it is not,
+    /// because the patch also owns the nodes of that side.
     pub fn halo(&self, patch: usize, depth: i64) -> IndexBox<D> {
         let home = &self.patches[patch];
         let mut halo = home.grow(depth);
         for a in 0..D {
             let at_side = home.upper[a] == self.domain.upper[a];
-            if depth > 0 && (!at_side || self.sides[a][1] == Side::Wrap) {
+            if depth > 0 && (!at_side || self.sides[a][1] == SideKind::Wrap) {
                 halo.upper[a] -= 1;
             }
         }
         halo
     }
 
-    /// The patches that hold a cell of `b`, in order.
+    /// The patches that contain a cell of `b`, in order.
     pub fn patches_in(&self, b: &IndexBox<D>) -> impl Iterator<Item = usize> + use<D> {
         let b = b.intersect(&self.domain);
         let parts: [usize; D] = std::array::from_fn(|a| self.cuts[a].len() - 1);
@@ -218,26 +219,26 @@ impl<const D: usize> Layout<D> {
         &self.ranks
     }
 
-    /// The nodes that `patch` owns: those at its cells' lower corners, at an upper side the last
-    /// ones too, and at an open side `depth` more beyond it.
+    /// The nodes that `patch` owns: those at the lower corners of its cells, the last nodes at an
+    /// upper side, and `depth` nodes more beyond an open side.
     pub fn owned_nodes(&self, patch: usize, depth: i64) -> IndexBox<D> {
         let mut nodes = self.patches[patch];
         for a in 0..D {
-            if nodes.lower[a] == self.domain.lower[a] && self.sides[a][0] == Side::Open {
+            if nodes.lower[a] == self.domain.lower[a] && self.sides[a][0] == SideKind::Open {
                 nodes.lower[a] -= depth;
             }
             if nodes.upper[a] == self.domain.upper[a] {
                 nodes.upper[a] += match self.sides[a][1] {
-                    Side::Open => depth + 1,
-                    Side::Mirror => 1,
-                    Side::Wrap => 0,
+                    SideKind::Open => depth + 1,
+                    SideKind::Mirror => 1,
+                    SideKind::Wrap => 0,
                 };
             }
         }
         nodes
     }
 
-    /// All ways in which patches appear within `depth` cells about the domain.
+    /// All images of patches that appear within `depth` cells around the domain.
     pub fn images(&self, depth: i64) -> Vec<Image<D>> {
         let mut all = vec![Image::IDENTITY];
         for a in 0..D {
@@ -262,13 +263,15 @@ impl<const D: usize> Layout<D> {
         let n = upper - lower;
         let turns = depth / n + 1;
         match self.sides[a] {
-            [Side::Wrap, _] | [_, Side::Wrap] => (-turns..=turns).map(|k| (false, k * n)).collect(),
-            [Side::Mirror, Side::Mirror] => (-turns..=turns)
+            [SideKind::Wrap, _] | [_, SideKind::Wrap] => {
+                (-turns..=turns).map(|k| (false, k * n)).collect()
+            }
+            [SideKind::Mirror, SideKind::Mirror] => (-turns..=turns)
                 .flat_map(|k| [(false, 2 * n * k), (true, 2 * lower + 2 * n * k)])
                 .collect(),
-            [Side::Mirror, Side::Open] => vec![(false, 0), (true, 2 * lower)],
-            [Side::Open, Side::Mirror] => vec![(false, 0), (true, 2 * upper)],
-            [Side::Open, Side::Open] => vec![(false, 0)],
+            [SideKind::Mirror, SideKind::Open] => vec![(false, 0), (true, 2 * lower)],
+            [SideKind::Open, SideKind::Mirror] => vec![(false, 0), (true, 2 * upper)],
+            [SideKind::Open, SideKind::Open] => vec![(false, 0)],
         }
     }
 }
@@ -277,18 +280,18 @@ impl<const D: usize> Layout<D> {
 mod tests {
     use super::*;
 
-    fn line(sides: [Side; 2], parts: usize) -> Layout<1> {
+    fn line(sides: [SideKind; 2], parts: usize) -> Layout<1> {
         Layout::new(IndexBox::new([0], [10]), [sides], [parts])
     }
 
     #[test]
     fn every_node_about_the_domain_has_one_owner_under_images() {
         for sides in [
-            [Side::Open, Side::Open],
-            [Side::Mirror, Side::Open],
-            [Side::Open, Side::Mirror],
-            [Side::Mirror, Side::Mirror],
-            [Side::Wrap, Side::Wrap],
+            [SideKind::Open, SideKind::Open],
+            [SideKind::Mirror, SideKind::Open],
+            [SideKind::Open, SideKind::Mirror],
+            [SideKind::Mirror, SideKind::Mirror],
+            [SideKind::Wrap, SideKind::Wrap],
         ] {
             for parts in [1, 3, 10] {
                 let layout = line(sides, parts);
@@ -309,7 +312,7 @@ mod tests {
 
     #[test]
     fn patch_of_agrees_with_the_boxes() {
-        let layout = Layout::new(IndexBox::new([-3, 2], [8, 9]), [[Side::Open; 2]; 2], [3, 2]);
+        let layout = Layout::new(IndexBox::new([-3, 2], [8, 9]), [[SideKind::Open; 2]; 2], [3, 2]);
         for cell in layout.domain().iter() {
             assert!(layout.patches()[layout.patch_of(cell)].contains(cell));
         }
@@ -317,7 +320,7 @@ mod tests {
 
     #[test]
     fn patches_in_a_box_are_those_that_meet_it() {
-        let layout = Layout::new(IndexBox::new([-3, 2], [8, 9]), [[Side::Open; 2]; 2], [3, 2]);
+        let layout = Layout::new(IndexBox::new([-3, 2], [8, 9]), [[SideKind::Open; 2]; 2], [3, 2]);
         for (lower, upper) in
             [([-9, -9], [20, 20]), ([0, 3], [5, 4]), ([4, 4], [4, 9]), ([-3, 8], [8, 9])]
         {

@@ -1,25 +1,26 @@
-//! Patches and messages for particle-grid methods.
+//! Domain decomposition for particle-grid methods: patches, ghost particles and messages.
 //!
-//! The domain is a box of cells, cut into patches; patches are dealt to ranks. A patch owns the
-//! particles in its cells and the nodes at their lower corners. What it needs beyond those comes
-//! in two ways, both the same between two patches of one rank and between ranks:
+//! The domain is a box of cells, cut into patches; each patch is assigned to a rank. A patch owns
+//! the particles in its cells and the nodes at the lower corners of its cells. Two exchanges
+//! provide other data; they work in the same way within a rank and between ranks:
 //!
-//! - [`RowExchange`] gives each patch copies ("ghosts") of the particle rows that reach its
-//!   nodes, and hands over ("migrates") rows that have moved into another patch, in one message
-//!   a neighbouring rank.
+//! - [`GhostExchange`] gives each patch copies ("ghosts") of the particles that reach its nodes. It
+//!   also hands over ("migrates") particles that have moved into another patch. Each neighbouring
+//!   rank gets one message.
 //! - [`NodeExchange`] gives each patch finished values of nodes that other patches own.
 //!
-//! Both let the caller compute while messages fly. [`assign_patches`] deals patches to ranks
-//! along a space-filling curve by their weights, and [`patch_migration`] moves whole patches.
-//! [`StoredRows`] holds the rows of all ranks, for a file, and [`deal_rows`] brings them back to any
-//! layout.
+//! Both let the caller compute while messages are on their way. [`assign_patches`] assigns patches
+//! to ranks along a space-filling curve, by weight, and [`patch_migration`] moves whole patches.
+//! [`StoredParticles`] holds the particles of all ranks for a file, and [`deal_particles`]
+//! distributes them to the patches of any layout.
 //!
-//! Rows stand in canonical order, by global cell and then by id, so every patch that sums
-//! particle terms into a node adds the same terms in the same order: any layout and any number of
-//! ranks or threads gives the same bits.
+//! Particles are kept in canonical order, by global cell and then by id. Every patch that sums
+//! particle terms into a node thus adds the same terms in the same order: the result is bitwise the
+//! same for any layout and any number of ranks or threads.
 //!
-//! This crate knows no physics: a row is an id, a cell and some declared columns of `f64`.
-//! It does not interpolate, integrate, write files, or choose when anything is exchanged.
+//! This crate contains no physics: a particle is an id, a cell and a set of declared columns of
+//! `f64`. It does not interpolate, integrate or write files, and the caller decides when to
+//! exchange data.
 
 mod balance;
 mod bytes;
@@ -38,11 +39,11 @@ mod reduce;
 pub use balance::{assign_patches, busiest_share, choose_cuts, even_cuts};
 pub use bytes::{bytes_of, words_of};
 pub use comm::{Comm, Serial, Traffic};
-pub use gather_scatter::{StoredRows, deal_rows, gather_rows};
-pub use ghost_exchange::{RowError, RowExchange, RowReach};
+pub use gather_scatter::{StoredParticles, deal_particles, gather_particles};
+pub use ghost_exchange::{GhostExchange, GhostReach, ParticleError};
 pub use hilbert::curve_order;
 pub use index_box::IndexBox;
-pub use layout::{Image, Layout, Side};
+pub use layout::{Image, Layout, SideKind};
 pub use nodes::{NodeArrays, NodeExchange, Parity, fold_mirrors};
 pub use particle_block::{Block, ColumnSpec, Mirror};
 pub use patch_migration::{Census, Moved, relocate};

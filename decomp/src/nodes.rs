@@ -1,40 +1,40 @@
-//! Nodal values, and finished values from the patch that owns a node.
+//! Nodal arrays, and the exchange of finished values from the patch that owns a node.
 
 use crate::ghost_exchange::with_sends;
-use crate::{Comm, Image, IndexBox, Layout, Side};
+use crate::{Comm, Image, IndexBox, Layout, SideKind};
 
-/// How a nodal field behaves in a mirror.
+/// Symmetry of a nodal field at a mirror.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parity {
-    /// The same on both sides.
+    /// Equal on both sides.
     Even,
-    /// The opposite beyond a mirror across this axis, and zero on it: a component of a vector.
+    /// Opposite sign beyond a mirror normal to this axis and zero on it: a vector component.
     Odd(usize),
 }
 
-/// Arrays over the nodes of one patch: those it owns and a halo about them.
+/// Arrays over the nodes of one patch: its own nodes and a halo around them.
 ///
-/// A node may hold several values of each field, one a layer: an array has its layers one after
-/// the other, each of them over all nodes.
+/// A node may hold several values of each field, one per layer. The layers of an array follow one
+/// another; each covers all nodes.
 #[derive(Clone, Debug)]
 pub struct NodeArrays<const D: usize> {
-    /// All nodes that are held.
+    /// All nodes of the arrays.
     pub nodes: IndexBox<D>,
     /// The nodes that the patch owns.
     pub owned: IndexBox<D>,
-    /// Values of a field at a node.
+    /// Number of values of a field per node.
     pub layers: usize,
-    /// One array a field, over `nodes`, a layer after the other.
+    /// One array per field, over `nodes`, layer after layer.
     pub fields: Vec<Vec<f64>>,
 }
 
 impl<const D: usize> NodeArrays<D> {
-    /// `fields` arrays of zeros for `patch`, with a halo of `depth` nodes about its cells.
+    /// Creates `fields` arrays of zeros for `patch`, with a halo of `depth` nodes around its cells.
     pub fn new(layout: &Layout<D>, patch: usize, depth: i64, fields: usize) -> Self {
         NodeArrays::layered(layout, patch, depth, fields, 1)
     }
 
-    /// The same with `layers` values of each field at a node.
+    /// As `new`, with `layers` values of each field per node.
     pub fn layered(
         layout: &Layout<D>,
         patch: usize,
@@ -49,7 +49,7 @@ impl<const D: usize> NodeArrays<D> {
         NodeArrays { nodes, owned, layers, fields }
     }
 
-    /// The arrays at `which`, all at once. They must differ.
+    /// Mutable access to several arrays at once; the indices `which` must differ.
     pub fn fields_mut<const N: usize>(&mut self, which: [usize; N]) -> [&mut [f64]; N] {
         self.fields
             .get_disjoint_mut(which)
@@ -58,7 +58,7 @@ impl<const D: usize> NodeArrays<D> {
     }
 }
 
-/// Takes the nodes of a mirror out of `owned`: they are their own image.
+/// Removes nodes on a mirror from `owned`, because each of them is its own image.
 pub(crate) fn leave_out_mirror<const D: usize>(
     layout: &Layout<D>,
     image: &Image<D>,
@@ -66,7 +66,7 @@ pub(crate) fn leave_out_mirror<const D: usize>(
 ) {
     for a in 0..D {
         if image.flip[a] {
-            // the node that this mirroring leaves in place, if any
+            // the node that this reflection maps to itself, if any
             let fixed = image.shift[a];
             let (lower, upper) = (layout.domain().lower[a], layout.domain().upper[a]);
             if fixed == 2 * lower {
@@ -74,12 +74,12 @@ pub(crate) fn leave_out_mirror<const D: usize>(
             } else if fixed == 2 * upper {
                 owned.upper[a] = owned.upper[a].min(upper);
             } else if fixed < 2 * lower {
-                // an image of an image: the node it shares with that one has been given already
+                // an image of an image: the node it shares with that image has already been given
                 owned.lower[a] = owned.lower[a].max(lower + 1);
             } else {
                 owned.upper[a] = owned.upper[a].min(upper);
             }
-        } else if image.shift[a] != 0 && layout.sides()[a] == [Side::Mirror; 2] {
+        } else if image.shift[a] != 0 && layout.sides()[a] == [SideKind::Mirror; 2] {
             if image.shift[a] > 0 {
                 owned.lower[a] = owned.lower[a].max(layout.domain().lower[a] + 1);
             } else {
@@ -89,49 +89,49 @@ pub(crate) fn leave_out_mirror<const D: usize>(
     }
 }
 
-/// Nodes that one patch takes from another (or from itself, across a side).
+/// Nodes that one patch copies from another (or from itself, across a side).
 #[derive(Clone, Debug)]
 struct Copy<const D: usize> {
-    /// Places of the patches in their ranks' lists; of another rank's patch none.
+    /// Indices of the patches in their ranks' lists; not set for a patch of another rank.
     from: usize,
     to: usize,
     flip: [bool; D],
     runs: Vec<Run>,
 }
 
-/// Nodes that follow each other in the giver's and the taker's arrays.
+/// Nodes that are contiguous in the source array and in the target array.
 #[derive(Clone, Copy, Debug)]
 struct Run {
     from: u32,
     to: u32,
     length: u32,
-    /// Whether the giver's are taken backwards, from the last (at `from`) on.
+    /// Whether the source is read backwards, starting with its last node (at `from`).
     reversed: bool,
 }
 
 impl Run {
-    /// Places in the giver's array, in the order in which they are taken.
+    /// Indices in the source array, in reading order.
     fn sources(self) -> impl Iterator<Item = usize> {
         let place = move |k: u32| if self.reversed { self.from - k } else { self.from + k };
         (0..self.length).map(move |k| place(k) as usize)
     }
 
-    /// Places in the taker's array.
+    /// Indices in the target array.
     fn targets(self) -> std::ops::Range<usize> {
         self.to as usize..(self.to + self.length) as usize
     }
 }
 
-/// A run between two patches of a rank that leaves values as they are.
+/// A run between two patches of this rank, copied without change of sign.
 #[derive(Clone, Copy, Debug)]
 struct PlainRun {
-    /// Places of the patches in the rank's list.
+    /// Indices of the patches in the rank's list.
     from: u32,
     to: u32,
     run: Run,
 }
 
-/// Pairs of places as runs.
+/// Merges pairs of indices into runs.
 fn runs(pairs: impl Iterator<Item = (u32, u32)>, reversed: bool) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for (from, to) in pairs {
@@ -151,34 +151,34 @@ fn runs(pairs: impl Iterator<Item = (u32, u32)>, reversed: bool) -> Vec<Run> {
     runs
 }
 
-/// Who takes which nodes from whom.
+/// Plan of the exchange of nodal values: which patch copies which nodes from which patch.
 #[derive(Clone, Debug)]
 pub struct NodeExchange<const D: usize> {
     layout: Layout<D>,
-    /// Between patches of this rank, those that leave values as they are.
+    /// Copies between patches of this rank without change of sign.
     plain: Vec<PlainRun>,
-    /// Between patches of this rank, or within one, all others.
+    /// All other copies between patches of this rank, or within one.
     local: Vec<Copy<D>>,
-    /// To each rank, by rank.
+    /// Copies sent to each rank of `send_ranks`.
     sends: Vec<Vec<Copy<D>>>,
     send_ranks: Vec<usize>,
-    /// From each rank, by rank.
+    /// Copies received from each rank of `receive_ranks`.
     receives: Vec<Vec<Copy<D>>>,
     receive_ranks: Vec<usize>,
-    /// For each patch of this rank, whether it takes nothing from other ranks.
+    /// For each patch of this rank, whether it receives nothing from other ranks.
     inner: Vec<bool>,
     messages: Vec<Vec<u64>>,
     received: Vec<Vec<u64>>,
 }
 
 impl<const D: usize> NodeExchange<D> {
-    /// The exchange on `rank` for halos of `halo` nodes, in arrays with `depth` nodes about each
-    /// patch's cells.
+    /// Plans the exchange on `rank` for halos of `halo` nodes, in arrays with `depth` nodes around
+    /// each patch's cells.
     pub fn new(layout: &Layout<D>, rank: usize, halo: i64, depth: i64) -> Self {
         NodeExchange::layered(layout, rank, halo, depth, 1)
     }
 
-    /// The same for arrays with `layers` values of each field at a node.
+    /// As `new`, for arrays with `layers` values of each field per node.
     pub fn layered(layout: &Layout<D>, rank: usize, halo: i64, depth: i64, layers: usize) -> Self {
         let patches = layout.patches_of(rank);
         let mut place = vec![usize::MAX; layout.patches().len()];
@@ -198,7 +198,7 @@ impl<const D: usize> NodeExchange<D> {
         let images = layout.images(halo);
         let halo_of = |patch: usize| with_corners(layout.patches()[patch].grow(halo));
         let arrays_of = |patch: usize| with_corners(layout.patches()[patch].grow(depth));
-        // patches that own a node of the halo have a cell within one more
+        // a patch that owns a node of the halo has a cell within `halo` + 1 cells
         let mut pairs: Vec<(usize, usize)> = Vec::new();
         for &mine in &patches {
             let near = layout.patches()[mine].grow(halo + 1);
@@ -209,7 +209,7 @@ impl<const D: usize> NodeExchange<D> {
                 pairs.extend(takers.map(|taker| (taker, mine)));
             }
         }
-        // in the same order on both sides
+        // the same order on both ranks
         pairs.sort_unstable();
         pairs.dedup();
         for (to, from) in pairs {
@@ -252,24 +252,24 @@ impl<const D: usize> NodeExchange<D> {
                 }
             }
         }
-        // any order will do within a rank; alike ones in a row are cheaper than by turns
+        // any order is valid within a rank; equal lengths in a row are faster
         plan.plain.sort_by_key(|p| p.run.length);
         plan.messages = vec![Vec::new(); plan.sends.len()];
         plan.received = vec![Vec::new(); plan.receives.len()];
         plan
     }
 
-    /// For each patch of this rank, whether it takes nothing from other ranks.
+    /// For each patch of this rank, whether it receives nothing from other ranks.
     pub fn inner(&self) -> &[bool] {
         &self.inner
     }
 
-    /// Fills the halos of `fields` with the owners' values, and sets fields that are odd in a
-    /// mirror to zero on it. `patches` are this rank's, in order.
+    /// Fills the halos of `fields` with the owners' values, and sets odd fields to zero on their
+    /// mirrors. `patches` are the patches of this rank, in order.
     ///
-    /// `meanwhile` is called once, with all patches, while messages are on their way: the halos
-    /// of those that are [`inner`](Self::inner) are filled by then, and it may change them.
-    /// Collective between neighbours.
+    /// `meanwhile` is called once, with all patches, while messages are on their way. By then the
+    /// halos of [`inner`](Self::inner) patches are filled, and `meanwhile` may change these
+    /// patches. Collective between neighbours.
     pub fn refresh<P: AsMut<NodeArrays<D>>>(
         &mut self,
         comm: &dyn Comm,
@@ -279,7 +279,7 @@ impl<const D: usize> NodeExchange<D> {
     ) {
         for &(field, parity) in fields {
             if let Parity::Odd(axis) = parity
-                && self.layout.sides()[axis].contains(&Side::Mirror)
+                && self.layout.sides()[axis].contains(&SideKind::Mirror)
             {
                 for arrays in patches.iter_mut() {
                     zero_on_mirrors(&self.layout, arrays.as_mut(), field, axis);
@@ -329,8 +329,8 @@ impl<const D: usize> NodeExchange<D> {
     }
 }
 
-/// Copies runs that are sorted by length. In one dimension they are a few nodes, which a call of
-/// memcpy each would cost more than.
+/// Copies runs that are sorted by length. In one dimension a run is a few nodes, and a call of
+/// memcpy per run would cost more than the copy.
 fn copy_plain<const D: usize>(
     patches: &mut [impl AsMut<NodeArrays<D>>],
     runs: &[PlainRun],
@@ -349,7 +349,7 @@ fn copy_plain<const D: usize>(
     }
 }
 
-/// Copies runs of `N` nodes, or of any length for 0.
+/// Copies runs of `N` nodes, or of any length if `N` is 0.
 fn copy_alike<const D: usize, const N: usize>(
     patches: &mut [impl AsMut<NodeArrays<D>>],
     runs: &[PlainRun],
@@ -416,8 +416,8 @@ fn add<const D: usize>(
     lists[at].push(copy);
 }
 
-/// What a field of this parity is multiplied by in an image: exact, and -0 for 0 in a mirror as
-/// negation gives it.
+/// Factor of a field with this parity in an image. The product is exact; like a negation, it turns
+/// 0 into -0 in a mirror.
 fn sign<const D: usize>(parity: Parity, flip: &[bool; D]) -> f64 {
     match parity {
         Parity::Odd(axis) if flip[axis] => -1.0,
@@ -425,8 +425,8 @@ fn sign<const D: usize>(parity: Parity, flip: &[bool; D]) -> f64 {
     }
 }
 
-/// Fills the nodes of one patch beyond the mirrors of the domain from its own nodes before them:
-/// what [`NodeExchange::refresh`] does there, for a patch that holds all it needs.
+/// Fills the nodes of one patch beyond the mirrors of the domain from its own nodes inside: the
+/// part of [`NodeExchange::refresh`] for a patch that holds all nodes it needs.
 pub fn fold_mirrors<const D: usize>(
     layout: &Layout<D>,
     arrays: &mut NodeArrays<D>,
@@ -434,11 +434,11 @@ pub fn fold_mirrors<const D: usize>(
 ) {
     for axis in 0..D {
         let domain = layout.domain();
-        // between two mirrors an image may need another image first
+        // between two mirrors, an image may need another image first
         let turns = arrays.nodes.extent(axis) / domain.extent(axis).max(1) + 1;
         let sides = (0..turns).flat_map(|_| layout.sides()[axis].iter().enumerate());
         for (end, side) in sides {
-            if *side != Side::Mirror {
+            if *side != SideKind::Mirror {
                 continue;
             }
             let mut beyond = arrays.nodes;
@@ -479,7 +479,7 @@ pub fn fold_mirrors<const D: usize>(
     }
 }
 
-/// Sets a field that is odd across `axis` to zero on the mirrors of that axis.
+/// Sets a field that is odd in `axis` to zero on the mirrors of that axis.
 fn zero_on_mirrors<const D: usize>(
     layout: &Layout<D>,
     arrays: &mut NodeArrays<D>,
@@ -487,7 +487,7 @@ fn zero_on_mirrors<const D: usize>(
     axis: usize,
 ) {
     for (end, side) in layout.sides()[axis].iter().enumerate() {
-        if *side != Side::Mirror {
+        if *side != SideKind::Mirror {
             continue;
         }
         let at = if end == 0 { layout.domain().lower[axis] } else { layout.domain().upper[axis] };
@@ -516,7 +516,7 @@ mod tests {
     use super::*;
     use crate::Serial;
 
-    fn check(sides: [Side; 2], parts: usize, exact: impl Fn(i64) -> f64, parity: Parity) {
+    fn check(sides: [SideKind; 2], parts: usize, exact: impl Fn(i64) -> f64, parity: Parity) {
         let layout = Layout::new(IndexBox::new([0], [10]), [sides], [parts]);
         let mut exchange = NodeExchange::new(&layout, 0, 4, 4);
         let mut patches: Vec<_> = (0..parts).map(|p| NodeArrays::new(&layout, p, 4, 1)).collect();
@@ -537,7 +537,8 @@ mod tests {
 
     #[test]
     fn each_layer_has_its_own_values() {
-        let layout = Layout::new(IndexBox::new([0], [10]), [[Side::Mirror, Side::Open]], [3]);
+        let layout =
+            Layout::new(IndexBox::new([0], [10]), [[SideKind::Mirror, SideKind::Open]], [3]);
         let mut exchange = NodeExchange::layered(&layout, 0, 4, 4, 2);
         let mut patches: Vec<_> =
             (0..3).map(|p| NodeArrays::layered(&layout, p, 4, 1, 2)).collect();
@@ -564,13 +565,18 @@ mod tests {
     #[test]
     fn halos_hold_the_owners_values() {
         for parts in [1, 2, 3, 7, 10] {
-            check([Side::Open; 2], parts, |i| 1.0 + i as f64, Parity::Even);
-            check([Side::Wrap; 2], parts, |i| i.rem_euclid(10) as f64, Parity::Even);
-            check([Side::Mirror, Side::Open], parts, |i| i as f64, Parity::Odd(0));
-            check([Side::Open, Side::Mirror], parts, |i| (i - 10).abs() as f64, Parity::Even);
+            check([SideKind::Open; 2], parts, |i| 1.0 + i as f64, Parity::Even);
+            check([SideKind::Wrap; 2], parts, |i| i.rem_euclid(10) as f64, Parity::Even);
+            check([SideKind::Mirror, SideKind::Open], parts, |i| i as f64, Parity::Odd(0));
+            check(
+                [SideKind::Open, SideKind::Mirror],
+                parts,
+                |i| (i - 10).abs() as f64,
+                Parity::Even,
+            );
             let both =
                 |i: i64| (std::f64::consts::PI * i as f64 / 10.0).cos().mul_add(1e3, 0.0).round();
-            check([Side::Mirror; 2], parts, both, Parity::Even);
+            check([SideKind::Mirror; 2], parts, both, Parity::Even);
         }
     }
 }

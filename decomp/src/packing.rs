@@ -1,43 +1,44 @@
-//! Stretches of rows in messages, column after column: made and read at the price of copying.
+//! Groups of particles in messages, column after column: packed and read at the cost of a copy.
 
 use crate::{Block, Image};
 
-/// What a stretch is: ghosts, rows that change their patch, or word that a patch is stirred.
+/// Kind of a group: ghosts, migrating particles, or notice that a patch is stirred.
 const GHOST: u64 = 0;
 const OWN: u64 = 1;
 const STIR: u64 = 2;
 
-/// Tells patch `to` that it is stirred.
+/// Adds the notice to patch `to` that it is stirred.
 pub(crate) fn put_stir(out: &mut Vec<u64>, to: usize) {
     out.push((to as u64) << 2 | STIR);
 }
 
-/// Puts the rows of `block` at `rows`, as they appear in `image`, for patch `to`: as its own with
-/// all columns, or as ghosts. Patch and kind, number of rows, ids, cells, columns.
-pub(crate) fn put_rows<const D: usize>(
+/// Packs the particles with indices `particles` of `block`, as they appear in `image`, for patch
+/// `to`: as own particles with all columns, or as ghosts. Layout: patch and kind, number of
+/// particles, ids, cells, columns.
+pub(crate) fn put_particles<const D: usize>(
     out: &mut Vec<u64>,
     block: &Block<D>,
-    rows: &[u32],
+    particles: &[u32],
     to: usize,
     own: bool,
     image: &Image<D>,
 ) {
-    if rows.is_empty() {
+    if particles.is_empty() {
         return;
     }
-    out.extend([(to as u64) << 2 | if own { OWN } else { GHOST }, rows.len() as u64]);
-    out.extend(rows.iter().map(|&r| block.ids[r as usize]));
-    for &row in rows {
-        out.extend(image.cell(block.cells[row as usize].map(i64::from)).map(|c| c as u64));
+    out.extend([(to as u64) << 2 | if own { OWN } else { GHOST }, particles.len() as u64]);
+    out.extend(particles.iter().map(|&r| block.ids[r as usize]));
+    for &particle in particles {
+        out.extend(image.cell(block.cells[particle as usize].map(i64::from)).map(|c| c as u64));
     }
     let mirrored = image.flip.contains(&true);
     let mut put = |c: usize| {
         let (spec, column) = (&block.specs()[c], &block.columns[c][..]);
         if mirrored {
             let value = |r: u32| spec.image(column[r as usize], &image.flip);
-            out.extend(rows.iter().map(|&r| value(r).to_bits()));
+            out.extend(particles.iter().map(|&r| value(r).to_bits()));
         } else {
-            out.extend(rows.iter().map(|&r| column[r as usize].to_bits()));
+            out.extend(particles.iter().map(|&r| column[r as usize].to_bits()));
         }
     };
     if own {
@@ -47,8 +48,8 @@ pub(crate) fn put_rows<const D: usize>(
     }
 }
 
-/// Adds the rows of a message to their blocks: ghosts, or those that are their own now. `place`
-/// tells where each patch of this rank stands in `patches`.
+/// Adds the particles of a message to their blocks, either ghosts or own particles. `place` gives
+/// the index of each patch of this rank in `patches`.
 pub(crate) fn take<const D: usize>(
     place: &[usize],
     mut words: &[u64],
@@ -64,13 +65,13 @@ pub(crate) fn take<const D: usize>(
             continue;
         }
         let own = kind == OWN;
-        let rows = words[0] as usize;
+        let particles = words[0] as usize;
         let columns = if own { block.columns.len() } else { block.ghost_columns().len() };
-        let (stretch, rest) = words[1..].split_at(rows * (1 + D + columns));
+        let (stretch, rest) = words[1..].split_at(particles * (1 + D + columns));
         words = rest;
         if own != ghosts {
-            let (ids, stretch) = stretch.split_at(rows);
-            let (cells, columns) = stretch.split_at(rows * D);
+            let (ids, stretch) = stretch.split_at(particles);
+            let (cells, columns) = stretch.split_at(particles * D);
             let cells = cells
                 .chunks_exact(D)
                 .map(|c| std::array::from_fn::<i32, D, _>(|a| c[a] as i64 as i32));

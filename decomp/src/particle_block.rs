@@ -1,37 +1,37 @@
-//! Rows of particles: ids, cells, and declared columns of `f64`.
+//! Particles of a patch: ids, cells, and declared columns of `f64`.
 
 use crate::IndexBox;
 
-/// What becomes of a column's value in a mirror.
+/// Transformation of a column's value in a mirror.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mirror {
-    /// It stays.
+    /// Unchanged.
     Same,
-    /// It changes sign in a mirror across this axis: a component of a vector.
+    /// Changes sign in a mirror normal to this axis: a vector component.
     Negate(usize),
-    /// It changes sign in a mirror across the one axis or the other, and twice in both: a shear.
+    /// Changes sign in a mirror normal to either axis, and twice in both: a shear component.
     NegatePair(usize, usize),
-    /// v becomes 1 - v in a mirror across this axis: a place within a cell, in cells.
+    /// v becomes 1 - v in a mirror normal to this axis: a position within a cell, in cells.
     Complement(usize),
 }
 
-/// A column, declared once; migration, ghosts, sorting and output walk the list of these.
+/// Declaration of a column; migration, ghosts, sorting and output use the list of these.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ColumnSpec {
-    /// Name, in files too.
+    /// Name, also used in files.
     pub name: &'static str,
     /// SI unit.
     pub unit: &'static str,
-    /// Whether ghosts need it.
+    /// Whether ghosts carry it.
     pub ghost: bool,
-    /// Whether it must be kept from one step to the next: it migrates and is part of the state.
+    /// Whether it is part of the state: kept from one step to the next, and migrated.
     pub state: bool,
-    /// What a mirror does to it.
+    /// Transformation in a mirror.
     pub mirror: Mirror,
 }
 
 impl ColumnSpec {
-    /// The value in an image that is mirrored across the axes of `flip`.
+    /// The value in an image that is mirrored in the directions of `flip`.
     pub fn image(&self, value: f64, flip: &[bool]) -> f64 {
         match self.mirror {
             Mirror::Negate(a) if flip[a] => -value,
@@ -42,31 +42,31 @@ impl ColumnSpec {
     }
 }
 
-/// The rows of one patch: its own, then copies of others' ("ghosts").
+/// The particles of one patch: its own particles, followed by copies of others ("ghosts").
 ///
-/// Own rows stand in canonical order, by cell (last direction slowest) and then by id; so do the
-/// ghosts behind them. A column without ghosts is as long as the own rows.
+/// Own particles are in canonical order, by cell (last direction slowest) and then by id; so are
+/// the ghosts after them. A column without ghosts is as long as the number of own particles.
 #[derive(Clone, Debug)]
 pub struct Block<const D: usize> {
-    /// Id of each row, the same for the whole run.
+    /// Id of each particle, the same for the whole run.
     pub ids: Vec<u64>,
-    /// Cell of each row; beyond the domain for images.
+    /// Cell of each particle; outside the domain for images.
     pub cells: Vec<[i32; D]>,
-    /// The columns, as declared.
+    /// Values of each declared column.
     pub columns: Vec<Vec<f64>>,
-    /// The cells whose rows may change in this step; the exchange of rows tells the patches
-    /// nearby.
+    /// The cells whose particles may change in this step; the particle exchange notifies the
+    /// patches nearby.
     pub active: IndexBox<D>,
-    /// Whether active cells, its own or others', are near enough to change a row of this block.
+    /// Whether active cells of any patch are near enough to change a particle of this block.
     pub stirred: bool,
     specs: Vec<ColumnSpec>,
-    /// Columns that ghosts have.
+    /// Indices of the columns that ghosts carry.
     ghost_columns: Vec<usize>,
     own: usize,
 }
 
 impl<const D: usize> Block<D> {
-    /// A block without rows.
+    /// Creates a block without particles.
     pub fn new(specs: &[ColumnSpec]) -> Self {
         Block {
             ids: Vec::new(),
@@ -85,22 +85,22 @@ impl<const D: usize> Block<D> {
         &self.specs
     }
 
-    /// The columns that ghosts have.
+    /// Indices of the columns that ghosts carry.
     pub(crate) fn ghost_columns(&self) -> &[usize] {
         &self.ghost_columns
     }
 
-    /// Number of own rows.
+    /// Number of own particles.
     pub fn own(&self) -> usize {
         self.own
     }
 
-    /// Number of rows, ghosts included.
-    pub fn rows(&self) -> usize {
+    /// Number of particles, ghosts included.
+    pub fn particles(&self) -> usize {
         self.ids.len()
     }
 
-    /// The columns at `which`, all at once. They must differ.
+    /// Mutable access to several columns at once; the indices `which` must differ.
     pub fn columns_mut<const N: usize>(&mut self, which: [usize; N]) -> [&mut [f64]; N] {
         self.columns
             .get_disjoint_mut(which)
@@ -108,9 +108,9 @@ impl<const D: usize> Block<D> {
             .map(|c| c.as_mut_slice())
     }
 
-    /// Adds an own row; `values` gives its columns in order. Order is restored by `sort`.
+    /// Adds an own particle; `values` holds its columns in order. Sort afterwards.
     pub fn push(&mut self, id: u64, cell: [i32; D], values: &[f64]) {
-        debug_assert_eq!(self.rows(), self.own, "own rows go before ghosts");
+        debug_assert_eq!(self.particles(), self.own, "own particles go before ghosts");
         self.ids.push(id);
         self.cells.push(cell);
         for (column, value) in self.columns.iter_mut().zip(values) {
@@ -119,7 +119,7 @@ impl<const D: usize> Block<D> {
         self.own += 1;
     }
 
-    /// Leaves the ghosts out.
+    /// Removes the ghosts.
     pub fn drop_ghosts(&mut self) {
         let own = self.own;
         self.ids.truncate(own);
@@ -129,14 +129,14 @@ impl<const D: usize> Block<D> {
         }
     }
 
-    /// Adds own rows; `columns` holds one stretch of words a column. Order is restored by `sort`.
+    /// Adds own particles; `columns` holds one section of words per column. Sort afterwards.
     pub(crate) fn extend_own(
         &mut self,
         ids: &[u64],
         cells: impl Iterator<Item = [i32; D]>,
         columns: &[u64],
     ) {
-        debug_assert_eq!(self.rows(), self.own, "own rows go before ghosts");
+        debug_assert_eq!(self.particles(), self.own, "own particles go before ghosts");
         self.ids.extend_from_slice(ids);
         self.cells.extend(cells);
         for (column, words) in self.columns.iter_mut().zip(columns.chunks_exact(ids.len())) {
@@ -145,7 +145,7 @@ impl<const D: usize> Block<D> {
         self.own += ids.len();
     }
 
-    /// Adds ghosts; `columns` holds one stretch of words a ghost column.
+    /// Adds ghosts; `columns` holds one section of words per ghost column.
     pub(crate) fn extend_ghosts(
         &mut self,
         ids: &[u64],
@@ -159,9 +159,9 @@ impl<const D: usize> Block<D> {
         }
     }
 
-    /// Takes out the own rows of `gone`, which ascend. There must be no ghosts.
+    /// Removes the own particles with the ascending indices `gone`. There must be no ghosts.
     pub fn remove(&mut self, gone: &[usize]) {
-        debug_assert_eq!(self.rows(), self.own);
+        debug_assert_eq!(self.particles(), self.own);
         take_out(&mut self.ids, gone);
         take_out(&mut self.cells, gone);
         for column in &mut self.columns {
@@ -170,30 +170,30 @@ impl<const D: usize> Block<D> {
         self.own = self.ids.len();
     }
 
-    /// Restores the canonical order of the own rows.
+    /// Restores the canonical order of the own particles.
     pub fn sort_own(&mut self) {
         self.sort(0, self.own);
     }
 
     /// Restores the canonical order of the ghosts.
     pub(crate) fn sort_ghosts(&mut self) {
-        self.sort(self.own, self.rows());
+        self.sort(self.own, self.particles());
     }
 
-    /// What the canonical order goes by: cell, the last direction first, then id; one number, for
-    /// those compare without a branch.
-    fn key(&self, row: usize) -> u128 {
+    /// Key of the canonical order: cell, the last direction first, then id. It is one number, so
+    /// that comparisons need no branch.
+    fn key(&self, particle: usize) -> u128 {
         const { assert!(D <= 2, "two cell numbers and an id fill the key") }
-        // as numbers without sign in the same order
-        let cell = self.cells[row]
+        // as unsigned numbers in the same order
+        let cell = self.cells[particle]
             .iter()
             .rev()
             .fold(0, |high, &c| (high << 32) | u128::from(c as u32 ^ (1 << 31)));
-        (cell << 64) | u128::from(self.ids[row])
+        (cell << 64) | u128::from(self.ids[particle])
     }
 
     fn sort(&mut self, from: usize, to: usize) {
-        // most steps leave the order as it was, or move few rows
+        // most steps keep the order or move few particles
         let mut misplaced = 0;
         let mut before = 0;
         for r in from..to {
@@ -205,21 +205,21 @@ impl<const D: usize> Block<D> {
             return;
         }
         if misplaced <= FEW {
-            for row in from + 1..to {
-                if self.key(row - 1) > self.key(row) {
-                    let key = self.key(row);
-                    let place = from + partition_point(from, row, |r| self.key(r) < key);
-                    self.rotate(place, row, to);
+            for particle in from + 1..to {
+                if self.key(particle - 1) > self.key(particle) {
+                    let key = self.key(particle);
+                    let place = from + partition_point(from, particle, |r| self.key(r) < key);
+                    self.rotate(place, particle, to);
                 }
             }
             return;
         }
-        // most rows still are in order among themselves: the others are sorted and merged in
+        // most particles are still in order among themselves: the others are sorted and merged in
         let mut order: Vec<_> = (from..to).map(|r| (self.key(r), r)).collect();
         dmsort::sort_by(&mut order, |a, b| a.0.cmp(&b.0));
-        // where a row goes, and which; those that stay are not touched
-        let order = order.into_iter().map(|(_, row)| row);
-        let moved = (from..to).zip(order).filter(|(to, row)| to != row);
+        // target and source of each particle that moves; the others are not touched
+        let order = order.into_iter().map(|(_, particle)| particle);
+        let moved = (from..to).zip(order).filter(|(to, particle)| to != particle);
         let moved: Vec<(usize, usize)> = moved.collect();
         permute(&mut self.ids, &moved, &mut Vec::new());
         permute(&mut self.cells, &moved, &mut Vec::new());
@@ -231,29 +231,29 @@ impl<const D: usize> Block<D> {
         }
     }
 
-    /// Brings `row` to `place` before it; columns shorter than `all` have no such rows.
-    fn rotate(&mut self, place: usize, row: usize, all: usize) {
-        self.ids[place..=row].rotate_right(1);
-        self.cells[place..=row].rotate_right(1);
+    /// Moves `particle` forward to `place`; columns shorter than `all` do not contain it.
+    fn rotate(&mut self, place: usize, particle: usize, all: usize) {
+        self.ids[place..=particle].rotate_right(1);
+        self.cells[place..=particle].rotate_right(1);
         for column in &mut self.columns {
             if column.len() >= all {
-                column[place..=row].rotate_right(1);
+                column[place..=particle].rotate_right(1);
             }
         }
     }
 
-    /// Ranges of rows in canonical order, own and ghosts together: a cell is wholly the one or
-    /// the other, so they follow each other in runs. `runs` is cleared first.
+    /// Ranges of particles in canonical order, own particles and ghosts together. A cell contains
+    /// either own particles or ghosts, so they follow each other in runs. `runs` is cleared first.
     pub fn runs(&self, runs: &mut Vec<std::ops::Range<usize>>) {
         runs.clear();
         let (mut own, mut ghost) = (0, self.own);
-        while own < self.own || ghost < self.rows() {
+        while own < self.own || ghost < self.particles() {
             let take_own =
-                ghost == self.rows() || (own < self.own && self.key(own) < self.key(ghost));
+                ghost == self.particles() || (own < self.own && self.key(own) < self.key(ghost));
             let (start, end, other, other_end) = if take_own {
-                (own, self.own, ghost, self.rows())
+                (own, self.own, ghost, self.particles())
             } else {
-                (ghost, self.rows(), own, self.own)
+                (ghost, self.particles(), own, self.own)
             };
             let stop = if other == other_end {
                 end
@@ -286,10 +286,10 @@ fn partition_point(from: usize, to: usize, below: impl Fn(usize) -> bool) -> usi
     lo - from
 }
 
-/// Rows out of place that are cheaper brought back one by one than sorted with all others.
+/// Number of misplaced particles up to which moving them one by one is cheaper than a sort.
 const FEW: usize = 8;
 
-/// Takes the elements at `gone`, which ascend, out of `values`; shorter lists have none there.
+/// Removes the elements at the ascending indices `gone`, except for indices past the end.
 fn take_out<T: Copy>(values: &mut Vec<T>, gone: &[usize]) {
     let Some(&first) = gone.first().filter(|&&g| g < values.len()) else { return };
     let mut to = first;
@@ -301,7 +301,7 @@ fn take_out<T: Copy>(values: &mut Vec<T>, gone: &[usize]) {
     values.truncate(to);
 }
 
-/// Puts at each first place of `moved` what is at the second; `sorted` is a buffer.
+/// Moves values: each entry of `moved` is (target, source); `sorted` is a buffer.
 fn permute<T: Copy>(values: &mut [T], moved: &[(usize, usize)], sorted: &mut Vec<T>) {
     sorted.clear();
     sorted.extend(moved.iter().map(|&(_, from)| values[from]));
@@ -326,7 +326,7 @@ mod tests {
         for (mirror, wanted) in [
             (Mirror::Same, [0.25, 0.25, 0.25, 0.25]),
             (Mirror::Negate(0), [0.25, -0.25, 0.25, -0.25]),
-            // in a corner it is turned back
+            // two reflections in a corner restore the sign
             (Mirror::NegatePair(0, 1), [0.25, -0.25, -0.25, 0.25]),
             (Mirror::Complement(1), [0.25, 0.25, 0.75, 0.75]),
         ] {
@@ -335,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn sorting_moves_whole_rows() {
+    fn sorting_moves_whole_particles() {
         let mut block = Block::<2>::new(&SPECS);
         block.push(7, [1, 0], &[7.0, 70.0]);
         block.push(3, [1, 0], &[3.0, 30.0]);
@@ -350,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_out_of_place_come_back_few_or_many() {
+    fn particles_out_of_place_come_back_few_or_many() {
         for moved in [1, 3, 40] {
             let mut block = Block::<1>::new(&SPECS);
             for id in 0..100 {
@@ -371,7 +371,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_taken_out() {
+    fn particles_are_taken_out() {
         for gone in [&[][..], &[0], &[4], &[0, 1, 4], &[1, 2, 3], &[0, 1, 2, 3, 4]] {
             let mut block = Block::<1>::new(&SPECS);
             (0..5).for_each(|id| block.push(id, [id as i32], &[id as f64, 0.5]));
@@ -383,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_interleave_own_rows_and_ghosts_by_cell() {
+    fn runs_interleave_own_particles_and_ghosts_by_cell() {
         let mut block = Block::<2>::new(&SPECS);
         for (id, x, y) in [(1, 2, 0), (2, 3, 0), (3, 2, 1), (4, 3, 1)] {
             block.push(id, [x, y], &[0.0, 0.0]);

@@ -1,22 +1,22 @@
-//! Whole patches from rank to rank.
+//! Moves whole patches from rank to rank.
 
 use crate::ghost_exchange::with_sends;
 use crate::{Block, Comm, Layout};
 
-/// What a relocation moved, as seen by one rank.
+/// Amount of data that one rank gave away in a relocation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Moved {
-    /// Patches that this rank gave away.
+    /// Number of patches.
     pub patches: u64,
-    /// Rows in them.
-    pub rows: u64,
+    /// Number of particles in these patches.
+    pub particles: u64,
 }
 
-/// Brings the patches of a rank from the assignment of `old` to that of `new`, which cut the
-/// domain alike. `patches` are this rank's by `old`, in order; returned are those by `new`, in
-/// order: a patch that stays is left as it is, one that arrives is made by `make` from its number
-/// and rows. Rows travel without ghosts and with the columns that are declared as state, the
-/// others arrive as zeros. Collective.
+/// Moves the patches of this rank from the assignment `old` to the assignment `new`; both layouts
+/// cut the domain alike. `patches` are this rank's patches by `old`, in order; the result holds its
+/// patches by `new`, in order. A patch that stays is unchanged; for a patch that arrives, `make`
+/// builds it from its number and particles. Particles travel without ghosts and with their state
+/// columns only; other columns arrive as zeros. Collective.
 pub fn relocate<const D: usize, P: AsMut<Block<D>>>(
     comm: &dyn Comm,
     old: &Layout<D>,
@@ -44,7 +44,7 @@ pub fn relocate<const D: usize, P: AsMut<Block<D>>>(
         let block = content.as_mut();
         block.drop_ghosts();
         moved.patches += 1;
-        moved.rows += block.own() as u64;
+        moved.particles += block.own() as u64;
         pack(&mut messages[at], patch, block);
     }
     let arriving = new.patches_of(rank).into_iter().map(|p| old.rank_of(p)).filter(|&r| r != rank);
@@ -69,16 +69,16 @@ pub fn relocate<const D: usize, P: AsMut<Block<D>>>(
     (here.into_iter().map(|(_, content)| content).collect(), moved)
 }
 
-/// Number of the patch, number of rows, ids, cells, then each state column.
+/// Packs a patch: number of the patch, number of particles, ids, cells, then each state column.
 pub(crate) fn pack<const D: usize>(out: &mut Vec<u64>, patch: usize, block: &Block<D>) {
-    let rows = block.own();
-    out.extend([patch as u64, rows as u64]);
-    out.extend(&block.ids[..rows]);
-    for cell in &block.cells[..rows] {
+    let particles = block.own();
+    out.extend([patch as u64, particles as u64]);
+    out.extend(&block.ids[..particles]);
+    for cell in &block.cells[..particles] {
         out.extend(cell.map(|c| i64::from(c) as u64));
     }
     for (_, column) in block.specs().iter().zip(&block.columns).filter(|(s, _)| s.state) {
-        out.extend(column[..rows].iter().map(|v| v.to_bits()));
+        out.extend(column[..particles].iter().map(|v| v.to_bits()));
     }
 }
 
@@ -86,60 +86,60 @@ pub(crate) fn unpack<'a, const D: usize>(
     specs: &[crate::ColumnSpec],
     words: &'a [u64],
 ) -> (Block<D>, &'a [u64]) {
-    let rows = words[0] as usize;
-    let (ids, words) = words[1..].split_at(rows);
-    let (cells, mut words) = words.split_at(rows * D);
+    let particles = words[0] as usize;
+    let (ids, words) = words[1..].split_at(particles);
+    let (cells, mut words) = words.split_at(particles * D);
     let mut columns: Vec<&[u64]> = Vec::new();
     for _ in specs.iter().filter(|s| s.state) {
-        let (column, rest) = words.split_at(rows);
+        let (column, rest) = words.split_at(particles);
         columns.push(column);
         words = rest;
     }
     let mut block = Block::new(specs);
-    let mut row = vec![0.0; specs.len()];
-    for r in 0..rows {
-        let state = specs.iter().zip(&mut row).filter(|(s, _)| s.state);
+    let mut particle = vec![0.0; specs.len()];
+    for r in 0..particles {
+        let state = specs.iter().zip(&mut particle).filter(|(s, _)| s.state);
         for ((_, value), column) in state.zip(&columns) {
             *value = f64::from_bits(column[r]);
         }
         let cell = std::array::from_fn(|a| cells[r * D + a] as i64 as i32);
-        block.push(ids[r], cell, &row);
+        block.push(ids[r], cell, &particle);
     }
     (block, words)
 }
 
-/// Marks of rows that show whether any was lost, doubled or changed where it must not: the
-/// number of rows, and a sum over rows of a hash of id and of some values that never change.
+/// Checksum of particles that reveals lost, duplicated or wrongly changed particles: the number of
+/// particles, and the sum over particles of a hash of the id and of a value that never changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Census {
-    /// Number of rows.
-    pub rows: u64,
-    /// Sum of the marks, modulo 2^64.
+    /// Number of particles.
+    pub particles: u64,
+    /// Sum of the hashes, modulo 2^64.
     pub marks: u64,
 }
 
 impl Census {
-    /// Counts a row.
+    /// Adds one particle.
     pub fn add(&mut self, id: u64, value: f64) {
-        self.rows += 1;
+        self.particles += 1;
         self.marks = self.marks.wrapping_add(mix(mix(id) ^ value.to_bits()));
     }
 
-    /// Takes in what another has counted.
+    /// Adds the counts of `other`.
     pub fn join(&mut self, other: Census) {
-        self.rows += other.rows;
+        self.particles += other.particles;
         self.marks = self.marks.wrapping_add(other.marks);
     }
 
-    /// What all ranks together have counted. Collective.
+    /// The census over all ranks. Collective.
     pub fn over_ranks(self, comm: &dyn Comm) -> Census {
-        // halves leave room for the sum over 2^31 ranks
+        // halves of 32 bits leave room for the sum over 2^31 ranks
         let halves = |w: u64| [i64::from(w as u32), (w >> 32) as i64];
-        let ([a, b], [c, d]) = (halves(self.rows), halves(self.marks));
+        let ([a, b], [c, d]) = (halves(self.particles), halves(self.marks));
         let mut sums = [a, b, c, d];
         comm.sum(&mut sums);
         let whole = |low: i64, high: i64| (low as u64).wrapping_add((high as u64) << 32);
-        Census { rows: whole(sums[0], sums[1]), marks: whole(sums[2], sums[3]) }
+        Census { particles: whole(sums[0], sums[1]), marks: whole(sums[2], sums[3]) }
     }
 }
 
@@ -179,10 +179,10 @@ mod tests {
     }
 
     #[test]
-    fn a_census_sees_rows_lost_doubled_and_changed() {
-        let count = |rows: &[(u64, f64)]| {
+    fn a_census_sees_particles_lost_doubled_and_changed() {
+        let count = |particles: &[(u64, f64)]| {
             let mut census = Census::default();
-            rows.iter().for_each(|r| census.add(r.0, r.1));
+            particles.iter().for_each(|r| census.add(r.0, r.1));
             census
         };
         let whole = count(&[(1, 0.5), (2, 0.5), (3, 0.25)]);

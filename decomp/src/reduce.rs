@@ -1,24 +1,20 @@
-//! Sums that come out the same in any order.
+//! Sums that do not depend on the order of their terms.
 
 use crate::Comm;
 
-/// Bits below the largest term that a sum keeps: with 2^40 terms it stays within an `i128`.
+/// Bits below the largest term that a sum keeps: 2^40 terms still fit into an `i128`.
 const KEPT: i32 = 80;
 
-/// Bits of a term's lower half, and its unit's value.
+/// Bits of the lower half of a term, and the value of one unit of its upper half.
 const HALF_BITS: i32 = KEPT / 2;
 const HALF: f64 = (1u64 << HALF_BITS) as f64;
 
-/// Terms whose halves a double sums up without an error, and how many such sums run side by side.
+/// Number of terms whose halves a double sums without error, and number of sums that run side by
+/// side.
 const MOST_TERMS: usize = 1 << (f64::MANTISSA_DIGITS as i32 - HALF_BITS - 1);
 const LANES: usize = 8;
 
-/// A set of sums over all ranks that do not depend on the order of their terms.
-///
-/// Each term is rounded to a whole multiple of 2^-80 of the largest, and the multiples are added
-/// as integers, which is exact (pre-rounding to a common quantum: Demmel & Nguyen 2013, "Fast
-/// reproducible floating-point summation"; integers instead of bins). The error is at most
-/// 2^-81 of the largest term for each term.
+/// Sum over all ranks that does not depend on the order of its terms.
 #[derive(Clone, Debug)]
 pub struct ExactSum {
     quantum: f64,
@@ -27,12 +23,12 @@ pub struct ExactSum {
 }
 
 impl ExactSum {
-    /// A sum whose terms are no larger than `largest` in magnitude. All parts of one sum must be
-    /// given the same `largest`.
+    /// Creates an empty sum of terms that are at most `largest` in magnitude. All parts of one sum
+    /// must use the same `largest`.
     pub fn new(largest: f64) -> Self {
         let bits = largest.log2().ceil() as i32;
         let exponent = if largest > 0.0 { bits.saturating_add(1) } else { 0 };
-        // a quantum too small for a double loses nothing that a double could show
+        // a quantum that is too small for a double affects no result that a double can represent
         let scale = (exponent - KEPT).max(-1000);
         ExactSum { quantum: 2f64.powi(scale), inverse: 2f64.powi(-scale), total: 0 }
     }
@@ -44,7 +40,7 @@ impl ExactSum {
         self.add_halves(high, low);
     }
 
-    /// Adds terms.
+    /// Adds several terms.
     pub fn add_all(&mut self, terms: &[f64]) {
         for terms in terms.chunks(MOST_TERMS) {
             let (mut highs, mut lows) = ([0.0; LANES], [0.0; LANES]);
@@ -59,15 +55,15 @@ impl ExactSum {
             let (high, low) = (highs.iter().sum::<f64>(), lows.iter().sum::<f64>());
             match high.is_nan() {
                 false => self.add_halves(high, low),
-                // what is not a number counts as none, and leaves the others alone
+                // a NaN counts as zero and does not affect the other terms
                 true => several.as_flattened().iter().for_each(|&term| self.add(term)),
             }
             rest.iter().for_each(|&term| self.add(term));
         }
     }
 
-    /// A term's multiple of the quantum in two halves, whole numbers of which the upper counts
-    /// 2^40, without an error.
+    /// Splits a term's multiple of the quantum into two whole numbers, without error. One unit of
+    /// the upper number is 2^40.
     #[inline(always)]
     fn halves(&self, term: f64) -> [f64; 2] {
         let multiple = (term * self.inverse).round_ties_even();
@@ -80,7 +76,7 @@ impl ExactSum {
         self.total += (i128::from(high as i64) << HALF_BITS) + i128::from(low as i64);
     }
 
-    /// Turns each of `sums` into that over all ranks. Collective.
+    /// Replaces each of `sums` by its sum over all ranks. Collective.
     pub fn over_ranks(comm: &dyn Comm, sums: &mut [ExactSum]) {
         // limbs of 32 bits leave room for 2^31 ranks
         let mut limbs: smallvec::SmallVec<[i64; 64]> = sums
@@ -101,13 +97,13 @@ impl ExactSum {
         }
     }
 
-    /// The sum so far in whole multiples of its quantum: with [`ExactSum::carry_on`] another sum
-    /// that was given the same `largest` goes on from there.
+    /// The sum so far, in whole multiples of its quantum. Another sum with the same `largest` can
+    /// continue from it with [`ExactSum::carry_on`].
     pub fn total(&self) -> i128 {
         self.total
     }
 
-    /// Goes on from the total of an earlier sum.
+    /// Continues from the total of an earlier sum.
     pub fn carry_on(&mut self, total: i128) {
         self.total = total;
     }
@@ -118,9 +114,9 @@ impl ExactSum {
     }
 }
 
-/// Sums of several quantities over the terms of all ranks, to the same bits for any way of
-/// dealing terms to ranks. `terms` calls its argument with a quantity's number and some of its terms;
-/// it is run twice. Collective.
+/// Sums of `N` quantities over the terms of all ranks, bitwise the same for any distribution of
+/// terms to ranks. `terms` is called twice; it calls its argument with the number of a quantity and
+/// some terms of it. Collective.
 pub fn exact_sums<const N: usize>(
     comm: &dyn Comm,
     terms: impl Fn(&mut dyn FnMut(usize, &[f64])),
@@ -135,7 +131,7 @@ pub fn exact_sums<const N: usize>(
     sums.map(|s| s.value())
 }
 
-/// The greatest magnitude of some terms; what is not a number has none.
+/// The largest magnitude of the terms; NaN is ignored.
 fn greatest(terms: &[f64]) -> f64 {
     let mut lanes = [0.0f64; LANES];
     let (several, rest) = terms.as_chunks::<LANES>();
@@ -182,7 +178,7 @@ mod tests {
             repeated in 1..400usize,
             broken in 0..90usize,
         ) {
-            // what is not a number counts as none
+            // a NaN counts as zero
             if let Some(term) = terms.get_mut(broken) {
                 *term = f64::NAN;
             }

@@ -15,8 +15,8 @@ use std::path::Path;
 
 use estimates::{QUANTITIES, Told, gather, judge};
 use flyer_mpm::accuracy::estimate::Laws;
-use flyer_mpm::accuracy::estimate::error_model::Quantity;
-use flyer_mpm::accuracy::plan::data::{Measured, Size};
+use flyer_mpm::accuracy::estimate::error_model::QuantityLaws;
+use flyer_mpm::accuracy::plan::data::{SchemeAccuracy, Size};
 use flyer_mpm::accuracy::plan::{self, Data};
 use random_impacts::{FITTED, HELD_OUT};
 
@@ -61,7 +61,8 @@ fn write_data(told: &[Vec<Told>; 3], root: &Path) {
         if let (Some((plateau, _)), Some((arrival_cells, _)), Some((e1_cells, runs))) =
             (plateau, arrival, e1)
         {
-            let measured = Measured { e1_cells, plateau, plateau_order: 1.0, arrival_cells, runs };
+            let measured =
+                SchemeAccuracy { e1_cells, plateau, plateau_order: 1.0, arrival_cells, runs };
             data.schemes.insert(scheme.name, measured);
         }
     }
@@ -77,7 +78,7 @@ fn main() {
     let (count, threads) = (number(1, 1250), number(2, 2));
     let fitted = gather(SEEDS[0], &FITTED, count, threads);
     let quantity = |k: usize| {
-        Quantity(
+        QuantityLaws(
             EVIDENCE[k]
                 .iter()
                 .filter_map(|e| fit::law(&fitted[k], e, SHARES[k], MARGINS[k]))
@@ -102,7 +103,7 @@ fn main() {
         .expect("the laws can be written");
     write_data(&fitted, root);
     let held_out = gather(SEEDS[1], &HELD_OUT, count.min(280), threads);
-    let by_law = |all: &[Told], quantity: &Quantity| -> Vec<Told> {
+    let by_law = |all: &[Told], quantity: &QuantityLaws| -> Vec<Told> {
         let told = all.iter().cloned();
         told.map(|t| Told { half_width: quantity.half_width(&t.evidence).map(|w| w * t.unit), ..t })
             .collect()

@@ -22,7 +22,7 @@ fn job() -> Job {
         // hat functions at points tear the flyer's rear apart at 1.9e-8 s
         .set("time.end=1.5e-8")
         .set("output.profiles.times=[1.5e-8]")
-        .set("decomposition.skip_quiet=false")
+        .set("decomposition.skip_quiescent=false")
 }
 
 /// The schemes of the table, each with four particles a cell.

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use decomp::Serial;
-use flyer_mpm::accuracy::plan::{Data, PlanError, Verdict, Wish, plan};
+use flyer_mpm::accuracy::plan::{Data, ErrorTarget, PlanError, Verdict, plan};
 use flyer_mpm::driver::output::summary::Summary;
 use flyer_mpm::driver::{Beginning, Options, run};
 use flyer_mpm::scene::{self, PlannedQuantity};
@@ -41,8 +41,8 @@ pub fn check(table: &mut Table) {
         let quantity = *random.one(&quantities);
         let [low, high] = range(quantity);
         let error = random.between(low.ln(), high.ln()).exp();
-        let wish = Wish { quantity, error, budget: BUDGET, ranks: 1, place: None };
-        match once(&impact.scene, &impact.name, &wish, &data) {
+        let target = ErrorTarget { quantity, error, budget: BUDGET, ranks: 1, place: None };
+        match once(&impact.scene, &impact.name, &target, &data) {
             Ok(verdict) => {
                 println!(
                     "  {}, {quantity:?} {:.3} %: actual {:.3} %, CPU {:.3} s foretold {:.3} s",
@@ -78,10 +78,10 @@ pub fn check(table: &mut Table) {
 fn once(
     scene: &serde_json::Value,
     name: &str,
-    wish: &Wish,
+    target: &ErrorTarget,
     data: &Data,
 ) -> Result<Verdict, String> {
-    let plan = plan(scene, name, wish, data).map_err(|e| e.to_string())?;
+    let plan = plan(scene, name, target, data).map_err(|e| e.to_string())?;
     let checked =
         scene::parse(plan.scene.to_string().as_bytes(), name, &[]).map_err(|e| e.to_string())?;
     let home = tempfile::tempdir().map_err(|e| e.to_string())?;
@@ -96,19 +96,19 @@ fn once(
     };
     run(&Serial, &checked, &options, Beginning::Scene).map_err(|e| e.to_string())?;
     let summary = Summary::read(&options.output).map_err(|e| e.to_string())?;
-    summary.plan.ok_or_else(|| "no verdict".into())
+    summary.plan.ok_or_else(|| "the summary has no plan".into())
 }
 
-/// A wish that nothing meets is refused with the best that can be had.
+/// A target that no scheme reaches is refused; the error names the smallest that can be reached.
 fn impossible(table: &mut Table, data: &Data) {
     let scene = flyer_mpm::accuracy::plan::standard();
     let (quantity, error) = (PlannedQuantity::L1, 1e-5);
-    let wish = Wish { quantity, error, budget: 1.0, ranks: 1, place: None };
-    let told = match plan(&scene, "flyer.json", &wish, data) {
+    let target = ErrorTarget { quantity, error, budget: 1.0, ranks: 1, place: None };
+    let best = match plan(&scene, "flyer.json", &target, data) {
         Err(PlanError::Impossible { best, seconds, .. }) => Some((best, seconds)),
         _ => None,
     };
-    let sound = told.is_some_and(|(best, seconds)| best > error && seconds <= 1.01);
-    let best = told.map_or("no".into(), |(best, _)| format!("{:.2} %", 100.0 * best));
+    let sound = best.is_some_and(|(best, seconds)| best > error && seconds <= 1.01);
+    let best = best.map_or("no".into(), |(best, _)| format!("{:.2} %", 100.0 * best));
     table.holds("L1 of 0.001 % in 1 s is refused; best", &best, "refused", sound);
 }

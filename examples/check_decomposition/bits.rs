@@ -38,7 +38,7 @@ pub fn check(table: &mut Table, full: bool) {
 /// `job` on a layout.
 pub fn on(job: &Job, layout: &Layout) -> Job {
     let keys = layout.keys();
-    let sets = ["decomposition.balance", "decomposition.skip_quiet", "decomposition.overlap"];
+    let sets = ["decomposition.balance", "decomposition.skip_quiescent", "decomposition.overlap"];
     let mut job = job.clone().ranks(layout.ranks).threads(layout.threads);
     for path in sets.iter().chain(&["decomposition.filter_halo", "domain.patches"]) {
         let value = path.split('.').fold(&keys, |value, key| &value[key]);

@@ -16,7 +16,7 @@ fn block(cells: usize, particles: usize, a_cell: usize, end: f64) -> Job {
     // tiled without a remainder
     let target = length(particles / a_cell);
     let sets = [
-        "decomposition.skip_quiet=false".into(),
+        "decomposition.skip_quiescent=false".into(),
         "output.histories=null".into(),
         "reference=null".into(),
         format!("domain.cell_size={CELL:e}"),

@@ -30,7 +30,7 @@ pub fn check(table: &mut Table) {
         for patches in [1, 16, 61] {
             let job = job.clone().set(format!("domain.patches=[{patches}]"));
             let [with, without] = [true, false]
-                .map(|skip| job.clone().set(format!("decomposition.skip_quiet={skip}")).run());
+                .map(|skip| job.clone().set(format!("decomposition.skip_quiescent={skip}")).run());
             let name = format!("{name}, {patches} patches: particle-steps left out");
             let (Some(with), Some(without)) = (table.take(&name, with), table.take(&name, without))
             else {

@@ -23,7 +23,7 @@ pub fn check(table: &mut Table) {
     for (what, job, bound) in
         [("106 000 particles", large(), 1.8), ("1700 particles", small(), 1.3)]
     {
-        let job = job.set("decomposition.skip_quiet=false").set("output.histories=null");
+        let job = job.set("decomposition.skip_quiescent=false").set("output.histories=null");
         let ranks = |n| job.clone().ranks(n).on_own_cores();
         let threads = |n| job.clone().threads(n);
         let patches = |n: usize| threads(1).set(format!("domain.patches=[{n}]"));

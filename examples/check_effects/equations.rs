@@ -7,7 +7,7 @@ use crate::table::{Show, Table};
 const BOUND: f64 = 3e-3;
 
 /// Name, material and speed of the slab [m/s].
-const SLABS: [(&str, &str, f64); 9] = [
+const SLABS: [(&str, &str, f64); 12] = [
     (
         "mie_gruneisen",
         r#"{"density": 2785.0, "eos": {"type": "mie_gruneisen", "c0": 5386.0, "s": 1.339, "gamma0": 2.1}}"#,
@@ -25,7 +25,7 @@ const SLABS: [(&str, &str, f64); 9] = [
     ),
     (
         "stiffened_gas",
-        r#"{"density": 1000.0, "eos": {"type": "stiffened_gas", "gamma": 4.4, "stiffness": 6e8}}"#,
+        r#"{"density": 1000.0, "eos": {"type": "stiffened_gas", "gamma": 4.4, "p_inf": 6e8}}"#,
         500.0,
     ),
     ("tait", r#"{"library": "water"}"#, 500.0),
@@ -33,6 +33,21 @@ const SLABS: [(&str, &str, f64); 9] = [
     ("tillotson, iron", r#"{"library": "iron_tillotson"}"#, 3000.0),
     ("jwl, burnt", r#"{"library": "tnt", "eos": {"burn": "complete"}}"#, 500.0),
     ("tantalum", r#"{"library": "tantalum"}"#, 1000.0),
+    (
+        "noble_abel_stiffened_gas",
+        r#"{"density": 1057.0, "eos": {"type": "noble_abel_stiffened_gas", "gamma": 1.19, "p_inf": 7028e5, "covolume": 6.61e-4}}"#,
+        200.0,
+    ),
+    (
+        "vinet",
+        r#"{"density": 8930.0, "eos": {"type": "vinet", "bulk_modulus": 138.6e9, "bulk_modulus_derivative": 4.96, "gamma0": 1.96}}"#,
+        800.0,
+    ),
+    (
+        "davis_reactants",
+        r#"{"density": 1895.0, "eos": {"type": "davis_reactants", "a": 1800.0, "b": 4.6, "c": 0.34, "gamma0": 0.56, "z": 0.3}}"#,
+        500.0,
+    ),
 ];
 
 /// Plateaus of the last profile, and the energy of the whole.

@@ -1,6 +1,6 @@
 //! Products that expand along their isentrope, and fronts that arrive in time.
 
-use flyer_mpm::exact::hugoniot::{MaterialState, isentrope};
+use flyer_mpm::exact::hugoniot::{HugoniotState, isentrope};
 use flyer_mpm::material::Jwl;
 
 use crate::runs::Job;
@@ -20,7 +20,7 @@ pub fn products(table: &mut Table) {
     let Some(run) = table.take("jwl_expansion.json", Job::new("jwl_expansion").run()) else {
         return;
     };
-    let start = MaterialState::at_rest(&TNT, 0.0, 0.0).p;
+    let start = HugoniotState::at_rest(&TNT, 0.0, 0.0).p;
     let Some(profiles) = table.take("profiles", run.tables()) else { return };
     for (profile, summary) in profiles.iter().zip(&run.summary.profiles) {
         let at = format!("products at {:.0} us", summary.time * 1e6);
@@ -63,7 +63,7 @@ pub fn burn(table: &mut Table) {
     }
     // from Chapman and Jouguet's state along its isentrope until the products rest
     let cj = TNT.detonation();
-    let state = |u: f64| MaterialState {
+    let state = |u: f64| HugoniotState {
         jacobian: cj.jacobian,
         p: cj.pressure,
         e: cj.energy,

@@ -57,7 +57,7 @@ fn block(material: &Value, method: &Value, courant: f64) -> Value {
             "box": {"lower": [-half, -half], "upper": [half, half]},
             "velocity_field": {"rotation": {"about": [0.0, 0.0], "rate": TURN}}
         }],
-        "watch": {"energy_growth": 1e3}
+        "monitor": {"energy_growth": 1e3}
     })
 }
 
@@ -68,7 +68,7 @@ fn strained(run: &Simulation<'_, 2>, stretch: f64, start: Option<Symmetric>) -> 
     let state = columns.state();
     let mut set = |column: usize, value: &dyn Fn(f64) -> f64| {
         let place = state.iter().position(|&k| k == column).expect("it is state");
-        saved.rows.columns[place].iter_mut().for_each(|v| *v = value(*v));
+        saved.particles.columns[place].iter_mut().for_each(|v| *v = value(*v));
     };
     let f = [stretch, 1.0 / stretch];
     for a in 0..2 {
@@ -82,9 +82,9 @@ fn strained(run: &Simulation<'_, 2>, stretch: f64, start: Option<Symmetric>) -> 
     if let Some(first) = columns.velocity_gradient {
         (0..4).for_each(|k| set(first + k, &|_| [0.0, -TURN, TURN, 0.0][k]));
     }
-    if let (Some(strength), Some(s)) = (columns.strength, start) {
+    if let (Some(deviator), Some(s)) = (columns.deviator, start) {
         let of = [s.xx, s.yy, s.xy];
-        (0..3).for_each(|k| set(strength.deviator + k, &|_| of[k]));
+        (0..3).for_each(|k| set(deviator + k, &|_| of[k]));
     }
     saved
 }

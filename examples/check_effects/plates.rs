@@ -2,7 +2,7 @@
 
 use flyer_mpm::driver::output::csv::{CsvTable, read_csv};
 use flyer_mpm::exact::ShockFront;
-use flyer_mpm::exact::hugoniot::{MaterialState, isentrope, shock};
+use flyer_mpm::exact::hugoniot::{HugoniotState, isentrope, shock};
 use flyer_mpm::material::HistoryEos;
 use flyer_mpm::material::constitutive::equation;
 use flyer_mpm::scene::Material;
@@ -13,7 +13,7 @@ use crate::table::{Show, Table};
 /// A material at rest or in motion.
 struct Plate {
     eos: Box<dyn HistoryEos>,
-    state: MaterialState,
+    state: HugoniotState,
 }
 
 impl Plate {
@@ -22,7 +22,7 @@ impl Plate {
         let material = run.summary.scene.get("materials")?.get(material)?;
         let material: Material = serde_json::from_value(material.clone()).ok()?;
         let eos = equation(&material).ok()??;
-        let state = MaterialState::at_rest(&*eos, 0.0, u);
+        let state = HugoniotState::at_rest(&*eos, 0.0, u);
         Some(Plate { eos, state })
     }
 
@@ -33,19 +33,19 @@ impl Plate {
 
     /// Its state at `u` behind that shock.
     fn shocked(self, u: f64) -> Option<Plate> {
-        let state = MaterialState { u, ..self.shock(u)?.behind };
+        let state = HugoniotState { u, ..self.shock(u)?.behind };
         Some(Plate { state, ..self })
     }
 
     /// Its state where the shock, towards +x, has been released to the volume ratio `jacobian` by a
     /// wave towards -x.
-    fn released(&self, jacobian: f64) -> MaterialState {
+    fn released(&self, jacobian: f64) -> HugoniotState {
         let state = isentrope(&*self.eos, self.state, jacobian, 400);
-        MaterialState { u: 2.0 * self.state.u - state.u, ..state }
+        HugoniotState { u: 2.0 * self.state.u - state.u, ..state }
     }
 
     /// The release at which `excess`, positive in the shock, comes to zero.
-    fn released_until(&self, excess: impl Fn(&MaterialState) -> f64) -> MaterialState {
+    fn released_until(&self, excess: impl Fn(&HugoniotState) -> f64) -> HugoniotState {
         let (mut low, mut high) = (self.state.jacobian, 1.2);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
@@ -126,7 +126,7 @@ fn seen(run: &Outcome) -> Option<(f64, f64)> {
     let u = meet(&flyer, &sample)?;
     let shocked = sample.shocked(u)?;
     // the window is the softer
-    let against = |s: &MaterialState| window.shock(s.u).map_or(0.0, |front| front.behind.p);
+    let against = |s: &HugoniotState| window.shock(s.u).map_or(0.0, |front| front.behind.p);
     let exact = shocked.released_until(|s| s.p - against(s)).u;
     let histories = histories(run)?;
     let rows = histories.numbers("time")?.iter().zip(histories.numbers("interface_velocity")?);

@@ -2,7 +2,7 @@
 
 use flyer_mpm::driver::output::csv::CsvTable;
 use flyer_mpm::exact::{Behind, ElasticPlastic, Plastic};
-use flyer_mpm::material::strength::{Condition, Rate, VonMises, advance, equivalent};
+use flyer_mpm::material::strength::{MaterialState, Rate, VonMises, advance, equivalent};
 use flyer_mpm::material::{MieGruneisen, Symmetric};
 
 use crate::runs::Job;
@@ -134,7 +134,7 @@ type Path = fn(f64) -> Rate;
 /// One point along a given path: shear that turns, against its own equation in tiny steps.
 pub fn paths(table: &mut Table) {
     let model = VonMises { shear_modulus: 28e9, yield_stress: 0.3e9, hardening: 1e9 };
-    let rest = Condition { compression: 1.0, pressure: 0.0, temperature: f64::NAN };
+    let rest = MaterialState { compression: 1.0, pressure: 0.0, temperature: f64::NAN };
     let kinds: [(&str, Path); 4] = [
         ("uniaxial strain", |_| Rate { plane: [-1e5, 0.0, 0.0, 0.0], across: 0.0 }),
         ("simple shear", |_| Rate { plane: [0.0, 3e5, 0.0, 0.0], across: 0.0 }),
@@ -197,7 +197,7 @@ pub fn by_rates(
         let d = Symmetric { xx: xx - mean, yy: yy - mean, xy: 0.5 * (xy + yx), zz: across - mean };
         let size = equivalent(&s);
         let limit = model.yield_stress + model.hardening * strain;
-        let pushing = s.along(&d);
+        let pushing = s.double_dot(&d);
         // on the surface plastic flow takes what would leave it: 3 G (s:d)/|s| = (3 G + H) dep
         let flow = if size >= limit && pushing > 0.0 {
             3.0 * model.shear_modulus * pushing

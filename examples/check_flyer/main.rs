@@ -68,7 +68,7 @@ fn flyer(table: &mut Table) {
             ("l1", "L1", 0.01, Show::Percent),
             ("plateau", "plateau", 5e-4, Show::Percent),
             ("noise", "noise", 1e-3, Show::Percent),
-            ("plateau_4", "second plateau", 2e-3, Show::Percent),
+            ("second_plateau", "second plateau", 2e-3, Show::Percent),
             ("shock_position_cells", "shock position, cells", 0.2, Show::Number),
             ("rise_cells", "rise, cells", 2.5, Show::Number),
             ("overshoot", "overshoot", 0.02, Show::Percent),

@@ -1,5 +1,5 @@
 //! Every shape function with every transfer in hard cases: stable and its error, ended by the
-//! watch, or refused; written to `docs/hard_cases.md`.
+//! monitor, or refused; written to `docs/hard_cases.md`.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -15,8 +15,8 @@ const HEAD: &str = "# Schemes in hard cases
 Written by `scripts/check_hard_cases.sh schemes`; every shape function with every transfer. Mid-point
 steps with all of the options of `inputs/flyer.json` that the transfer allows, its viscosity, a Courant
 number of 0.4 unless a column says another. A number is the error: L1 of the pressure in per cent of
-the exact profile's, at 0.2 us, in `e` columns the drift of energy in per cent. **watch** and a word
-is how the watch ended the run before its answer was wrong, **refused** what the scene's check says;
+the exact profile's, at 0.2 us, in `e` columns the drift of energy in per cent. **monitor** and a word
+is how the monitor ended the run before its answer was wrong, **refused** what the scene's check says;
 both leave with a code that is not 0. A transfer in italics has energy that is not exact.
 
 - state: a particle's state is outside of its model, mostly tension that grows; courant: a step turned
@@ -24,7 +24,7 @@ both leave with a code that is not 0. A transfer in italics has energy that is n
   below none; crowd: particles clumped; step: the stable time step collapsed.
 - The Courant numbers up to which schemes are stable are in `src/scene/check/courant.rs`, measured by
   `cargo run --release --example courant_limits`; above them a scene is refused unless
-  `watch.above_limit` says otherwise.
+  `monitor.on_courant_exceeded` says otherwise.
 
 ";
 
@@ -101,7 +101,7 @@ fn scheme(base: &Value, shape: &str, transfer: &Value) -> Value {
     value
 }
 
-/// How a message of the watch is told in a word.
+/// How a message of the monitor is told in a word.
 fn word(message: &str) -> &'static str {
     let words = [
         ("Courant number", "courant"),
@@ -123,7 +123,7 @@ fn cell(name: &str, value: &Value) -> String {
     }
     let error = |message: String| match message.contains("at set-up") {
         true => "**refused**".to_string(),
-        false => format!("**watch**, {}", word(&message)),
+        false => format!("**monitor**, {}", word(&message)),
     };
     if name.ends_with(" e") {
         return run(value)
@@ -151,7 +151,7 @@ pub fn check(table: &mut Table) {
             let _ = writeln!(text, "| {shape}, {name} | {} |", row.join(" | "));
             let default = shipped("flyer.json")["method"].clone();
             if default["shape"] == shape && default["transfer"] == transfer {
-                let ok = row.iter().all(|cell| !cell.contains("watch"));
+                let ok = row.iter().all(|cell| !cell.contains("monitor"));
                 table.holds("the default scheme in all cases", "", "stable or refused", ok);
             }
         }

@@ -12,13 +12,13 @@ use crate::study::Study;
 /// What the columns of the CSV mean.
 const COLUMNS: &str = "\
 # One row a configuration: medians over the repeats, which were run in turn.
-# ranks, threads, workers = ranks * threads; skip_quiet: what is quiet was skipped.
+# ranks, threads, workers = ranks * threads; skip_quiescent: what is quiet was skipped.
 # oversubscribed: more workers than cores; binding: core, none, oversubscribed.
 # patches, particles, steps of the run.
 # wall_seconds, _min, _max: wall time of the time loop [s]; cpu_seconds: user CPU time of all
 #   ranks, set-up and files included [s].
 # worker_seconds_per_particle_step = wall_seconds * workers / (particles * steps) [s].
-# efficiency: that number of 1 x 1, with the same skip_quiet, over the row's; speed_up: efficiency
+# efficiency: that number of 1 x 1, with the same skip_quiescent, over the row's; speed_up: efficiency
 #   times workers.
 # compute, exchange, migrate, balance, wait, output, rest: shares of the wall time of all ranks.
 # bytes_per_step, messages_per_step: sent by all ranks; imbalance: work of the busiest rank over

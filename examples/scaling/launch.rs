@@ -14,7 +14,7 @@ pub struct Job {
     /// How its ranks are placed.
     pub binding: Binding,
     /// Whether what is quiet is skipped.
-    pub skip_quiet: bool,
+    pub skip_quiescent: bool,
     /// The scene's file.
     pub scene: PathBuf,
     /// Overrides of the scene.

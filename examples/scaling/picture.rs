@@ -1,6 +1,8 @@
 //! The picture: speed-up against workers, and where the time went.
 
-use flyer_mpm::plot::{Axis, Bar, Bars, Color, Figure, Panel, Part, Points, Series, Stroke, Style};
+use flyer_mpm::plot::{
+    Axis, Bar, BarPart, Bars, Color, Figure, Panel, Points, Series, Stroke, Style,
+};
 
 use crate::arguments::Kind;
 use crate::row::Row;
@@ -9,7 +11,7 @@ use crate::study::Study;
 
 /// The figure of the rows that skip nothing.
 pub fn figure(study: &Study) -> Figure {
-    let rows: Vec<&Row> = study.rows.iter().filter(|row| !row.skip_quiet).collect();
+    let rows: Vec<&Row> = study.rows.iter().filter(|row| !row.skip_quiescent).collect();
     let (title, upright) = match study.kind {
         Kind::Strong => ("Strong scaling", "Speed-up"),
         Kind::Weak => ("Weak scaling", "Scaled speed-up"),
@@ -52,7 +54,7 @@ fn bars(rows: &[&Row]) -> Bars {
         _ => Color::palette(index),
     };
     let parts = PARTS.iter().enumerate();
-    let parts = parts.map(|(index, &name)| Part { name: name.into(), color: color(index) });
+    let parts = parts.map(|(index, &name)| BarPart { name: name.into(), color: color(index) });
     let bar = |row: &&Row| Bar {
         label: format!(
             "{} × {}{}",

@@ -17,7 +17,7 @@ pub struct Row {
     /// Ranks times threads.
     pub workers: usize,
     /// Whether what is quiet was skipped.
-    pub skip_quiet: bool,
+    pub skip_quiescent: bool,
     /// Whether there are more workers than cores.
     pub oversubscribed: bool,
     /// How the ranks were placed: core, none, oversubscribed.
@@ -85,7 +85,7 @@ impl Row {
             ranks: job.configuration.ranks,
             threads: job.configuration.threads,
             workers,
-            skip_quiet: job.skip_quiet,
+            skip_quiescent: job.skip_quiescent,
             oversubscribed: job.binding == Binding::Oversubscribed,
             binding: job.binding.name(),
             patches: first.patches.iter().product(),
@@ -138,7 +138,7 @@ pub mod tests {
         let job = Job {
             configuration: Configuration { ranks, threads: 1 },
             binding: Binding::Core,
-            skip_quiet: false,
+            skip_quiescent: false,
             scene: PathBuf::new(),
             sets: Vec::new(),
         };
@@ -149,7 +149,7 @@ pub mod tests {
             });
             if sections {
                 run["decomposition"] = json!({
-                    "filter_halo": "deep", "particle_steps_computed": 3e6,
+                    "filter_halo": "redundant", "particle_steps_computed": 3e6,
                     "particle_steps_skipped": 1e6, "imbalance": 1.07, "bytes_per_step": 512.0,
                     "messages_per_step": 4.0,
                     "ranks": [{"rank": 0, "seconds": {"compute": 0.75, "wait": 0.25}}],

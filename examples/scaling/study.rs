@@ -63,18 +63,18 @@ impl Plan {
         let mut jobs = Vec::new();
         for configuration in configurations(&options.ranks, &options.threads) {
             let binding = possible_binding(configuration, cores)?;
-            for &skip_quiet in skipping() {
+            for &skip_quiescent in skipping() {
                 let mut sets = options.set.clone();
                 sets.extend(WITHOUT.map(String::from));
                 if skipping().len() > 1 {
-                    sets.push(format!("decomposition.skip_quiet={skip_quiet}"));
+                    sets.push(format!("decomposition.skip_quiescent={skip_quiescent}"));
                 }
                 if kind == Kind::Weak {
                     sets.extend(grown(&unchanged, configuration.workers())?);
                 }
                 parse(&sets)?;
                 let scene = options.scene.clone();
-                jobs.push(Job { configuration, binding, skip_quiet, scene, sets });
+                jobs.push(Job { configuration, binding, skip_quiescent, scene, sets });
             }
         }
         let output = options.output.clone().unwrap_or_else(|| {
@@ -122,7 +122,7 @@ impl Plan {
 fn rows(jobs: &[Job], runs: &[Vec<RunSummary>]) -> Vec<Row> {
     let mut rows: Vec<Row> = Vec::new();
     for (job, runs) in jobs.iter().zip(runs) {
-        let base = |row: &&Row| row.workers == 1 && row.skip_quiet == job.skip_quiet;
+        let base = |row: &&Row| row.workers == 1 && row.skip_quiescent == job.skip_quiescent;
         let row = Row::new(job, runs, rows.iter().find(base));
         rows.push(row);
     }
@@ -132,7 +132,7 @@ fn rows(jobs: &[Job], runs: &[Vec<RunSummary>]) -> Vec<Row> {
 /// Each configuration runs without and with skipping, where scenes know of it.
 fn skipping() -> &'static [bool] {
     let schema = scene::schema();
-    match schema.pointer("/$defs/Decomposition/properties/skip_quiet") {
+    match schema.pointer("/$defs/Decomposition/properties/skip_quiescent") {
         Some(_) => &[false, true],
         None => &[false],
     }
@@ -175,11 +175,11 @@ mod tests {
     #[test]
     fn rows_are_held_against_the_base_of_the_same_skipping() {
         let (mut jobs, mut runs) = (Vec::new(), Vec::new());
-        for (ranks, skip_quiet, wall) in
+        for (ranks, skip_quiescent, wall) in
             [(1, false, 4.0), (1, true, 2.0), (2, false, 2.0), (2, true, 1.25)]
         {
             let (job, run) = measured(ranks, &[wall], false);
-            jobs.push(Job { skip_quiet, ..job });
+            jobs.push(Job { skip_quiescent, ..job });
             runs.push(run);
         }
         let speed_ups: Vec<f64> = rows(&jobs, &runs).iter().map(|row| row.speed_up).collect();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use flyer_mpm::driver::output::summary::SUMMARY_FILE;
+use flyer_mpm::driver::output::SUMMARY_FILE;
 use serde::Deserialize;
 
 /// One run.

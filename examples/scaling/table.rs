@@ -32,7 +32,7 @@ fn cells(row: &Row) -> Vec<String> {
     let percent = |value: Option<f64>| value.map_or("-".into(), |v| format!("{:.1} %", 100.0 * v));
     let mut cells = vec![
         format!("{} x {}", row.ranks, row.threads),
-        if row.skip_quiet { "skipped" } else { "computed" }.into(),
+        if row.skip_quiescent { "skipped" } else { "computed" }.into(),
         format!("{:.4}", row.wall_seconds),
         percent(Some(row.spread())),
         format!("{:.3}", row.cpu_seconds),

@@ -1,5 +1,5 @@
-//! How accurate a run is: comparison with exact solutions, estimates of a run's own error, the
-//! cheapest run for a target error.
+//! Accuracy of a run: comparison with exact solutions, estimates of the error of a run, and plans
+//! of the cheapest run for a target error.
 
 pub mod estimate;
 pub mod plan;

@@ -1,4 +1,4 @@
-//! What a scene is, without a run: its size and effects, and the exact solution of its impact.
+//! Description of a scene without a run: size, effects, and exact solution of its impact.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -6,10 +6,10 @@ use std::path::Path;
 use decomp::Serial;
 use flyer_mpm::accuracy::reference;
 use flyer_mpm::driver::figures::{self, PressureRow, plate_name};
+use flyer_mpm::driver::output::SUMMARY_FILE;
 use flyer_mpm::driver::output::folder::OutputFolder;
 use flyer_mpm::driver::output::lock::Lock;
 use flyer_mpm::driver::output::origin::Maker;
-use flyer_mpm::driver::output::summary::SUMMARY_FILE;
 use flyer_mpm::effects::{ledger, ledger_lines, ledger_rest};
 use flyer_mpm::exact::{Accuracy, Chain, Impact, Plate, Release, Solution, WaveKind};
 use flyer_mpm::scene::{CheckedScene, Reference};
@@ -46,7 +46,7 @@ where
     let columns = simulation.columns();
     let names: Vec<&str> = columns.specs.iter().map(|s| s.name).collect();
     line("columns a particle", format!("{} ({})", names.len(), names.join(", ")));
-    line("held by the watch", format!("{} bytes a particle", columns.held_bytes(D)));
+    line("held by the monitor", format!("{} bytes a particle", columns.state_bytes(D)));
     let limit = scene.courant_limit();
     line("courant", format!("{}, this method's limit {limit}", scene.scene.time.courant));
     for warning in &scene.warnings {
@@ -59,7 +59,7 @@ where
     text += "what each takes\n";
     let all = ledger(scene, columns, None);
     for line in ledger_lines(&all) {
-        // without a run there are no shares
+        // without a run, the shares are unknown
         let [name, particle, ghost] = [0, 1, 2].map(|k| line[k].as_str());
         let _ = writeln!(text, "  {name:<22} {particle:>16} {ghost:>13}");
     }
@@ -67,7 +67,7 @@ where
     Ok(text)
 }
 
-/// Each effect, and how the scene has it.
+/// Each effect, with its setting in the scene.
 fn effects(scene: &CheckedScene) -> Vec<(&'static str, String)> {
     let method = &scene.scene.method;
     let off = || "off".to_string();
@@ -92,7 +92,7 @@ fn effects(scene: &CheckedScene) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Options as their JSON text.
+/// Options as JSON text.
 mod erased {
     pub trait Json {
         fn text(&self) -> String;
@@ -105,13 +105,13 @@ mod erased {
     }
 }
 
-/// States of the chain that the table shows.
+/// Number of states of the chain in the table.
 const SHOWN_STATES: usize = 6;
 
-/// Rows of the x-t diagram.
+/// Number of rows of the x-t diagram.
 const ROWS: usize = 160;
 
-/// The chain of an impact as a table; its Hugoniots and x-t diagram go to `output`.
+/// The chain of an impact as a table; draws its Hugoniots and x-t diagram into `output`.
 pub fn hugoniot(scene: &CheckedScene, output: &Path) -> Outcome<String> {
     let Some(Reference::FlyerImpact(named)) = &scene.scene.reference else {
         return Err(bad(format!(
@@ -132,7 +132,7 @@ pub fn hugoniot(scene: &CheckedScene, output: &Path) -> Outcome<String> {
     let folder = OutputFolder::create(output, false, &maker).map_err(bad)?;
     figures::draw_hugoniots(scene, bodies, &impact, &chain, folder.path())
         .map_err(|e| failed(&e))?;
-    let reference = reference::Reference::Impact(Box::new(reference::ImpactReference {
+    let reference = reference::ReferenceSolution::Impact(Box::new(reference::ImpactReference {
         impact,
         chain: chain.clone(),
         solution: solution.clone(),
@@ -161,7 +161,7 @@ pub fn hugoniot(scene: &CheckedScene, output: &Path) -> Outcome<String> {
     Ok(text + &format!("pictures in {}\n", place.display()))
 }
 
-/// The exact pressure over both plates, row by row.
+/// The exact pressure over both plates, per row of the x-t diagram.
 fn rows(solution: &Solution) -> Vec<PressureRow> {
     solution
         .snapshots
@@ -176,7 +176,7 @@ fn rows(solution: &Solution) -> Vec<PressureRow> {
         .collect()
 }
 
-/// When the shock reaches the target's rear, and how far the exact lines of the x-t diagram go.
+/// Times at which the shock reaches the target's rear and the exact lines of the diagram end.
 fn limits(impact: &Impact, solution: &Solution, end: f64) -> String {
     let mut text = String::new();
     if solution.valid_until < end {

@@ -1,14 +1,14 @@
-//! What a material's equation of state does, without a run: its Hugoniot, isentropes, sound speed,
-//! and where it ceases to hold.
+//! Description of a material's equation of state, without a run: its Hugoniot, isentropes, sound
+//! speed and limits of validity.
 
 use std::path::Path;
 
+use flyer_mpm::driver::output::SUMMARY_FILE;
 use flyer_mpm::driver::output::folder::OutputFolder;
 use flyer_mpm::driver::output::lock::Lock;
 use flyer_mpm::driver::output::origin::Maker;
-use flyer_mpm::driver::output::summary::SUMMARY_FILE;
-use flyer_mpm::exact::hugoniot::{MaterialState, ShockFront, isentrope, piston, shock_to};
-use flyer_mpm::material::constitutive::{equation, products};
+use flyer_mpm::exact::hugoniot::{HugoniotState, ShockFront, isentrope, piston, shock_to};
+use flyer_mpm::material::constitutive::equation;
 use flyer_mpm::material::{Detonation, HistoryEos};
 use flyer_mpm::plot::{self, Axis, Color, Figure, Panel, Points, Series, Stroke, Style};
 use flyer_mpm::scene::{Burn, BurnWhole, CheckedScene, Eos, Material};
@@ -20,13 +20,13 @@ use crate::{FAILED, Outcome, bad};
 const VELOCITIES: [f64; 12] =
     [10.0, 50.0, 100.0, 200.0, 500.0, 1e3, 1.5e3, 2e3, 3e3, 4e3, 6e3, 8e3];
 
-/// Points of a curve.
+/// Number of points of a curve.
 const POINTS: usize = 160;
 
-/// Volume up to which isentropes are followed, of that at their start [-].
+/// Volume up to which isentropes are followed, over the volume at their start [-].
 const EXPANSION: f64 = 10.0;
 
-/// The sheet of the material `name` of a scene; pictures go to `output`.
+/// Describes the material `name` of a scene; draws pictures into `output`.
 pub fn material(scene: &CheckedScene, name: &str, output: &Path) -> Outcome<String> {
     let Some(material) = scene.scene.materials.get(name) else {
         let known: Vec<_> = scene.scene.materials.keys().map(String::as_str).collect();
@@ -40,7 +40,7 @@ pub fn material(scene: &CheckedScene, name: &str, output: &Path) -> Outcome<Stri
             scene.file
         )));
     };
-    let sheet = Sheet::new(&*eos, products(&burnt.eos, burnt.density).map(|p| p.detonation()));
+    let sheet = Sheet::new(&*eos, burnt.eos.products(burnt.density).map(|p| p.detonation()));
     let text = sheet.text(name, material);
     let _lock = Lock::take(output).map_err(bad)?;
     let maker = Maker::new(&format!("material {name}"), scene);
@@ -69,39 +69,39 @@ pub fn material(scene: &CheckedScene, name: &str, output: &Path) -> Outcome<Stri
     Ok(text + &format!("pictures in {}\n", place.display()))
 }
 
-/// An explosive as its products, other materials as they are.
+/// The material with an explosive replaced by its products.
 fn burnt(material: &Material) -> Material {
     let mut material = material.clone();
-    if let Eos::Jwl { burn, .. } = &mut material.eos {
-        *burn = Burn::Whole(BurnWhole::Complete);
+    if let Eos::Jwl(explosive) = &mut material.eos {
+        explosive.burn = Burn::Whole(BurnWhole::Complete);
     }
     material
 }
 
 struct Sheet<'a> {
     eos: &'a dyn HistoryEos,
-    rest: MaterialState,
-    /// The last front of each particle velocity of the table.
+    rest: HugoniotState,
+    /// The last shock front for each particle velocity of the table.
     hugoniot: Vec<ShockFront>,
-    /// The same of many, for pictures.
+    /// The last shock front for many particle velocities, for pictures.
     curve: Vec<ShockFront>,
-    /// Names and states of isentropes.
-    isentropes: Vec<(String, Vec<MaterialState>)>,
+    /// Name and states of each isentrope.
+    isentropes: Vec<(String, Vec<HugoniotState>)>,
     detonation: Option<Detonation>,
 }
 
 impl<'a> Sheet<'a> {
     fn new(eos: &'a dyn HistoryEos, detonation: Option<Detonation>) -> Self {
-        let rest = MaterialState::at_rest(eos, 0.0, 0.0);
+        let rest = HugoniotState::at_rest(eos, 0.0, 0.0);
         let last = |up: f64| piston(eos, &rest, up).ok()?.last().copied();
         let hugoniot: Vec<ShockFront> = VELOCITIES.iter().map_while(|&up| last(up)).collect();
         let range = (VELOCITIES[VELOCITIES.len() - 1] / VELOCITIES[0]).ln();
         let velocities =
             (0..=POINTS).map(|k| VELOCITIES[0] * (range * k as f64 / POINTS as f64).exp());
         let curve: Vec<ShockFront> = velocities.map_while(last).collect();
-        // the principal isentrope is followed into compression too
+        // the principal isentrope is also followed into compression
         let densest = curve.last().map_or(rest.jacobian, |front| front.behind.jacobian);
-        let mut principal: Vec<MaterialState> = (0..POINTS)
+        let mut principal: Vec<HugoniotState> = (0..POINTS)
             .map(|k| densest + (rest.jacobian - densest) * k as f64 / POINTS as f64)
             .map(|j| isentrope(eos, rest, j, 200))
             .filter(|s| s.p.is_finite() && s.sound_speed > 0.0)
@@ -168,7 +168,7 @@ impl<'a> Sheet<'a> {
         text
     }
 
-    /// Where the Hugoniot ends.
+    /// The limit of the Hugoniot.
     fn limit_of_shocks(&self) -> String {
         let rho0 = self.eos.reference_density();
         let mut last = None;
@@ -177,10 +177,10 @@ impl<'a> Sheet<'a> {
             match shock_to(self.eos, &self.rest, j) {
                 Some(front) => last = Some(front),
                 None if last.is_some() => {
-                    // why: at the energy of the last state
+                    // find the reason at the energy of the last state
                     let e = last.map_or(0.0, |f: ShockFront| f.behind.e);
                     let (point, history) = self.eos.at(j, e, self.rest.history);
-                    let why = self.eos.fault(j, e, history, point.pressure);
+                    let why = self.eos.check_validity(j, e, history, point.pressure);
                     let why = why.unwrap_or("no denser state has the energy of a shock");
                     return format!("shocks hold up to a density of {:.1} kg/m3: {why}", rho0 / j);
                 }
@@ -190,7 +190,7 @@ impl<'a> Sheet<'a> {
         "shocks have no limit".into()
     }
 
-    /// Where the isentrope from rest ends.
+    /// The limit of the isentrope from rest.
     fn limit_of_expansion(&self) -> String {
         let (_, states) = &self.isentropes[0];
         let last = states.last().unwrap_or(&self.rest);
@@ -200,7 +200,7 @@ impl<'a> Sheet<'a> {
         }
         let j = last.jacobian * 1.02;
         let next = isentrope(self.eos, *last, j, 8);
-        let why = self.eos.fault(j, next.e, next.history, next.p);
+        let why = self.eos.check_validity(j, next.e, next.history, next.p);
         let why = why.unwrap_or("the sound speed becomes imaginary");
         format!("expansion from rest holds to {rho:.2} kg/m3, {:.4} GPa: {why}", last.p * 1e-9)
     }
@@ -224,7 +224,7 @@ impl<'a> Sheet<'a> {
                     Axis::linear("Sound speed", "m/s"),
                     points(&up, &|f| f.behind.sound_speed),
                 ));
-        // gases expand over decades; what bears tension has to be drawn evenly
+        // gases expand over decades; a material under tension needs a linear scale
         let states = || self.isentropes.iter().flat_map(|(_, states)| states);
         let gas = states().all(|s| s.p > 0.0);
         let axis = |label: &str, unit: &str| match gas {
@@ -250,14 +250,15 @@ impl<'a> Sheet<'a> {
     }
 }
 
-/// The isentrope from a state, until it has expanded far or the model ceases to hold.
-fn follow(eos: &dyn HistoryEos, start: MaterialState) -> Vec<MaterialState> {
+/// The isentrope from a state, until it has expanded by `EXPANSION` or the model ceases to be
+/// valid.
+fn follow(eos: &dyn HistoryEos, start: HugoniotState) -> Vec<HugoniotState> {
     let mut states = vec![start];
     let factor = EXPANSION.powf(1.0 / POINTS as f64);
     let mut state = start;
     for k in 1..=POINTS {
         let next = isentrope(eos, state, start.jacobian * factor.powi(k as i32), 8);
-        let holds = eos.fault(next.jacobian, next.e, next.history, next.p).is_none();
+        let holds = eos.check_validity(next.jacobian, next.e, next.history, next.p).is_none();
         if !(holds && next.p.is_finite() && next.sound_speed > 0.0) {
             break;
         }

@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod material;
+pub mod migrate;
 pub mod plan;
 pub mod predict;
 pub mod study;
@@ -11,7 +12,7 @@ use std::path::PathBuf;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use flyer_mpm::scene::PlannedQuantity;
 
-/// Impact and shock waves by the material point method, held against exact solutions.
+/// Impact and shock waves by the material point method, compared with exact solutions.
 ///
 /// Runs a scene on all ranks that it is started with:
 ///
@@ -19,16 +20,17 @@ use flyer_mpm::scene::PlannedQuantity;
 ///   flyer-mpm inputs/flyer.json --set domain.cell_size=5e-6 --output output/fine
 ///
 /// Results go to output/<name of the scene>/: summary.json (errors against the exact solution,
-/// energy, times), one CSV a profile time, histories.csv, results.hdf5 (ParaView opens it) and
-/// pictures. A rerun of the same scene replaces them once it is complete; a run that fails leaves
-/// them as they were, and a run of another scene into the same folder is refused.
+/// energy, times), one CSV per profile time, histories.csv, results.hdf5 (for ParaView) and
+/// pictures. A new run of the same scene replaces them when it is complete; a run that fails leaves
+/// them unchanged, and a run of another scene into the same folder is refused.
 ///
-/// Checkpoints go to output/<name of the scene>.checkpoints/ (output.checkpoint of the scene; every
-/// ten minutes unless said). SIGTERM, SIGINT, SIGUSR1 and time.wall_limit write one and end the run
-/// with code 4; flyer-mpm --restart output/<name of the scene>.checkpoints goes on to the same bits.
+/// Checkpoints go to output/<name of the scene>.checkpoints/ (output.checkpoint of the scene;
+/// default: every ten minutes). SIGTERM, SIGINT, SIGUSR1 and time.wall_limit write one and end the
+/// run with code 4; flyer-mpm --restart output/<name of the scene>.checkpoints continues with the
+/// same bits.
 ///
-/// Exit codes: 0 done; 1 `compare` found a difference; 2 the command line, scene or folder is wrong;
-/// 3 the run failed; 4 it was stopped and can go on; 7 a rank hangs.
+/// Exit codes: 0 done; 1 `compare` found a difference; 2 error in the command line, scene or
+/// folder; 3 the run failed; 4 the run was stopped and can be restarted; 7 a rank hangs.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -39,11 +41,11 @@ use flyer_mpm::scene::PlannedQuantity;
     max_term_width = 100
 )]
 pub struct Cli {
-    /// What else than a run.
+    /// The subcommand.
     #[command(subcommand)]
     pub command: Option<Command>,
 
-    /// The run.
+    /// The arguments of a run without subcommand.
     #[command(flatten)]
     pub run: Option<RunArgs>,
 }
@@ -55,26 +57,26 @@ pub struct SceneArgs {
     #[arg(value_name = "SCENE.json")]
     pub scene: PathBuf,
 
-    /// Overrides a value of the scene, such as domain.patches=[8], bodies.flyer.velocity=[500] (by
-    /// name or index) or method.shape=cpdi; may be repeated. What is not JSON is a string.
+    /// Override a value of the scene, such as domain.patches=[8], bodies.flyer.velocity=[500] (by
+    /// name or index) or method.shape=cpdi; may be repeated. A value that is not JSON is a string.
     #[arg(long, value_name = "PATH=VALUE")]
     pub set: Vec<String>,
 }
 
-/// A run.
+/// Arguments of a run.
 #[derive(Clone, Debug, Args)]
 pub struct RunArgs {
     /// The scene: a JSON file (`flyer-mpm schema` describes it).
     #[arg(value_name = "SCENE.json", required_unless_present = "restart")]
     pub scene: Option<PathBuf>,
 
-    /// Goes on from a checkpoint, or from the newest one of a folder that is whole, in place of a
-    /// scene. --set may change time, output, domain.patches and decomposition.
+    /// Restart from a checkpoint, or from the newest undamaged one of a folder, instead of a scene.
+    /// --set may change time, output, domain.patches and decomposition.
     #[arg(long, value_name = "FILE|DIR", conflicts_with = "scene")]
     pub restart: Option<PathBuf>,
 
-    /// Overrides a value of the scene, such as domain.patches=[8], bodies.flyer.velocity=[500] (by
-    /// name or index) or method.shape=cpdi; may be repeated. What is not JSON is a string.
+    /// Override a value of the scene, such as domain.patches=[8], bodies.flyer.velocity=[500] (by
+    /// name or index) or method.shape=cpdi; may be repeated. A value that is not JSON is a string.
     #[arg(long, value_name = "PATH=VALUE")]
     pub set: Vec<String>,
 
@@ -82,20 +84,19 @@ pub struct RunArgs {
     #[arg(long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// Threads a rank [default: decomposition.threads of the scene, else 1].
+    /// Threads per rank [default: decomposition.threads of the scene, else 1].
     #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<usize>,
 
-    /// Write a timeline of phases, ranks and patches in Chrome's trace format (Perfetto opens
-    /// it).
+    /// Write a timeline of phases, ranks and patches in Chrome's trace format (for Perfetto).
     #[arg(long, value_name = "FILE")]
     pub trace: Option<PathBuf>,
 
-    /// Steps of the timeline, first and last; each takes some kilobytes a patch.
+    /// Steps of the timeline, first and last; each takes some kilobytes per patch.
     #[arg(long, value_name = "A..B", default_value = "1..200", value_parser = steps, requires = "trace")]
     pub trace_steps: std::ops::Range<u64>,
 
-    /// Ends the run, and names the rank, when a rank gives no sign of life for so long while others
+    /// End the run and name the rank, if a rank gives no sign of life for this time while others
     /// wait for it.
     #[arg(long, value_name = "SECONDS", default_value_t = 300.0, value_parser = seconds)]
     pub stall_timeout: f64,
@@ -108,30 +109,30 @@ pub struct RunArgs {
     #[arg(long)]
     pub keep: bool,
 
-    /// Say nothing but errors.
+    /// Print errors only.
     #[arg(long)]
     pub quiet: bool,
 }
 
-/// Where `calibrate` writes and `predict` reads.
+/// Default file that `perf calibrate` writes and `perf predict` reads.
 const MACHINE_FILE: &str = "output/machine.json";
 
-/// A prediction.
+/// Arguments of `perf predict`.
 #[derive(Clone, Debug, Args)]
 pub struct PredictArgs {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArgs,
 
-    /// Constants that `flyer-mpm calibrate` has measured with this scene's method.
+    /// Constants that `flyer-mpm perf calibrate` has measured with the method of this scene.
     #[arg(long, value_name = "FILE", default_value = MACHINE_FILE)]
     pub machine: PathBuf,
 
-    /// Numbers of ranks; the table goes on to 100 000.
+    /// Numbers of ranks; the table continues to 100 000.
     #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = ranks)]
     pub ranks: Vec<usize>,
 
-    /// Threads a rank [default: decomposition.threads of the scene, else 1].
+    /// Threads per rank [default: decomposition.threads of the scene, else 1].
     #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<usize>,
 
@@ -140,37 +141,37 @@ pub struct PredictArgs {
     #[arg(long, value_name = "NAME|LATENCY,BANDWIDTH", default_value = "hdr")]
     pub network: String,
 
-    /// Hold predictions against this scaling.json of scripts/strong_scaling.sh instead, with the
+    /// Compare predictions with this scaling.json of scripts/strong_scaling.sh instead, with the
     /// study's overrides of the scene; may be repeated.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["ranks", "threads"])]
     pub against: Vec<PathBuf>,
 }
 
-/// A plan.
+/// Arguments of `plan`.
 #[derive(Clone, Debug, Args)]
 pub struct PlanArgs {
-    /// The scene; its method, viscosity, cell size, particles and Courant number are chosen anew.
+    /// The scene; the plan replaces its method, viscosity, cell size, particles and Courant number.
     #[command(flatten)]
     pub scene: SceneArgs,
 
-    /// What is wanted: plateau_pressure, l1 (of each profile) or arrival_time.
+    /// Target quantity: plateau_pressure, l1 (of each profile) or arrival_time.
     #[arg(long, value_name = "NAME", value_parser = quantity)]
     pub quantity: PlannedQuantity,
 
-    /// Its relative error, at most: 0.5% or 0.005.
+    /// Largest relative error of the quantity: 0.5% or 0.005.
     #[arg(long, value_name = "ERROR", value_parser = fraction)]
     pub error: f64,
 
-    /// The place whose arrival is asked for, in the struck body at the start, in metres [default:
-    /// the first of error_estimate.arrivals].
+    /// The position of arrival_time, in the struck body at the start, in metres [default: the first
+    /// of error_estimate.arrivals].
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub at: Option<f64>,
 
-    /// Wall time of the time loop, at most.
+    /// Largest wall time of the time loop.
     #[arg(long, value_name = "SECONDS", default_value_t = 86400.0, value_parser = seconds)]
     pub budget: f64,
 
-    /// Ranks that the run will have.
+    /// Number of ranks of the run.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = ranks)]
     pub ranks: usize,
 
@@ -179,7 +180,7 @@ pub struct PlanArgs {
     pub output: Option<PathBuf>,
 }
 
-/// What else the program does.
+/// Subcommands of the program.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Print the exact chain of wave interactions of an impact and draw its Hugoniots and x-t
@@ -192,8 +193,8 @@ pub enum Command {
         #[arg(long, value_name = "DIR")]
         output: Option<PathBuf>,
     },
-    /// Print and draw what a material's equation of state does: Hugoniot, isentropes, sound speed,
-    /// and where it ceases to hold.
+    /// Print and draw the equation of state of a material: Hugoniot, isentropes, sound speed and
+    /// limits of validity.
     Material {
         /// The scene: a JSON file.
         #[arg(value_name = "SCENE.json")]
@@ -201,45 +202,33 @@ pub enum Command {
         /// Name of the material in the scene.
         #[arg(value_name = "NAME")]
         name: String,
-        /// Overrides a value of the scene; may be repeated.
+        /// Override a value of the scene; may be repeated.
         #[arg(long, value_name = "PATH=VALUE")]
         set: Vec<String>,
-        /// Folder of the pictures [default: output/<name of the
-        /// scene>.material.<name>/].
+        /// Folder of the pictures [default: output/<name of the scene>.material.<name>/].
         #[arg(long, value_name = "DIR")]
         output: Option<PathBuf>,
     },
-    /// Check a scene and tell what a run would take: particles, cells, memory, steps, effects.
+    /// Check a scene and print the costs of a run: particles, cells, memory, steps, effects.
     Check {
         /// The scene.
         #[command(flatten)]
         scene: SceneArgs,
     },
-    /// Measure what predictions need of this machine and a scene's method: seconds of a particle,
-    /// a ghost, a node and a patch, of threads that part and join, of a second busy core, and with
-    /// `mpirun -n 2 --bind-to none` of messages and reductions. Nothing else should run meanwhile.
-    Calibrate {
-        /// The scene: a JSON file whose method is measured [default: the flyer plate].
+    /// Measure this machine and predict how a run scales to more ranks.
+    #[command(subcommand)]
+    Perf(PerfCommand),
+    /// Rewrite a scene of a former format with the present names, in place.
+    Migrate {
+        /// The scene: a JSON file.
         #[arg(value_name = "SCENE.json")]
-        scene: Option<PathBuf>,
-        /// Overrides a value of the scene; may be repeated.
-        #[arg(long, value_name = "PATH=VALUE")]
-        set: Vec<String>,
-        /// File of the constants.
-        #[arg(long, value_name = "FILE", default_value = MACHINE_FILE)]
-        output: PathBuf,
-        /// Time to take; less is less exact.
-        #[arg(long, value_name = "SECONDS", default_value_t = 16.0, value_parser = seconds)]
-        seconds: f64,
-        /// Print every sample of the fit.
-        #[arg(long)]
-        samples: bool,
+        scene: PathBuf,
+        /// File to write instead.
+        #[arg(long, value_name = "FILE")]
+        output: Option<PathBuf>,
     },
-    /// Predict the time of a step and of the whole run on more ranks, and where that stops being
-    /// worth it, by the constants of `flyer-mpm calibrate`; no run.
-    Predict(PredictArgs),
-    /// Sweep a scene over any of its keys, and show what accuracy costs: one table and pictures.
-    /// What an earlier call has run is not run again.
+    /// Vary keys of a scene and show the cost of accuracy: one table and pictures. Runs of an
+    /// earlier call are reused.
     Study {
         /// The study: a JSON file such as those in inputs/studies/.
         #[arg(value_name = "STUDY.json")]
@@ -247,18 +236,19 @@ pub enum Command {
         /// Folder of the results [default: output/studies/<name of the study>/].
         #[arg(long, value_name = "DIR")]
         output: Option<PathBuf>,
-        /// Say nothing but errors.
+        /// Print errors only.
         #[arg(long)]
         quiet: bool,
     },
-    /// Choose scheme, cell size, particles per cell and Courant number that reach an error for the
-    /// least time, foretell both, and write the scene to run, which at its end tells foretold
-    /// against actual. Times pilots of the scene: nothing else should run meanwhile.
+    /// Choose scheme, cell size, particles per cell and Courant number that reach an error in the
+    /// least time, predict both, and write the scene to run. That run compares predicted and actual
+    /// values at its end. The plan times pilot runs of the scene: nothing else should run
+    /// meanwhile.
     Plan(PlanArgs),
     /// Print the JSON schema of a scene.
     Schema,
-    /// Compare the results of two runs: norms, and the first particle and column that differ.
-    /// Exit code 1 if they differ.
+    /// Compare the results of two runs: norms, and the first particle and column that differ. The
+    /// exit code is 1 if they differ.
     Compare {
         /// Folder of the first results.
         #[arg(value_name = "RUN")]
@@ -269,15 +259,57 @@ pub enum Command {
     },
 }
 
-/// The command that `name`, which is none, was perhaps meant to be.
+/// Performance of this machine, and predictions for others.
+#[derive(Debug, Subcommand)]
+pub enum PerfCommand {
+    /// Measure the constants of this machine and a scene's method: the time per particle, ghost,
+    /// node and patch, of starting and joining threads, of a second busy core, and with `mpirun -n
+    /// 2 --bind-to none` of messages and reductions. Nothing else should run meanwhile.
+    Calibrate {
+        /// The scene: a JSON file whose method is measured [default: the flyer plate].
+        #[arg(value_name = "SCENE.json")]
+        scene: Option<PathBuf>,
+        /// Override a value of the scene; may be repeated.
+        #[arg(long, value_name = "PATH=VALUE")]
+        set: Vec<String>,
+        /// File of the constants.
+        #[arg(long, value_name = "FILE", default_value = MACHINE_FILE)]
+        output: PathBuf,
+        /// Measuring time; less time is less exact.
+        #[arg(long, value_name = "SECONDS", default_value_t = 16.0, value_parser = seconds)]
+        seconds: f64,
+        /// Print every sample of the fit.
+        #[arg(long)]
+        samples: bool,
+        /// End the measurement and name the rank, if a rank gives no sign of life for this time
+        /// while others wait for it.
+        #[arg(long, value_name = "SECONDS", default_value_t = 300.0, value_parser = seconds)]
+        stall_timeout: f64,
+    },
+    /// Predict, without a run, the time of a step and of the whole run on more ranks, and the
+    /// limits of strong scaling. Uses the constants of `flyer-mpm perf calibrate`.
+    Predict(PredictArgs),
+}
+
+/// The command that the unknown name `name` resembles, if any.
 pub fn meant(name: &str) -> Option<String> {
     let commands = Cli::command();
-    let names = commands.get_subcommands().map(|command| command.get_name().to_string());
+    let mut names = Vec::new();
+    for command in commands.get_subcommands() {
+        names.push((command.get_name().to_string(), command.get_name().to_string()));
+        for below in command.get_subcommands() {
+            let whole = format!("{} {}", command.get_name(), below.get_name());
+            names.push((below.get_name().to_string(), whole));
+        }
+    }
     names
-        .map(|known| (strsim::damerau_levenshtein(&name.to_lowercase(), &known), known))
-        .filter(|(distance, known)| *distance <= (known.len().max(name.len()) / 3).max(1))
+        .into_iter()
+        .map(|(known, whole)| {
+            (strsim::damerau_levenshtein(&name.to_lowercase(), &known), known, whole)
+        })
+        .filter(|(distance, known, _)| *distance <= (known.len().max(name.len()) / 3).max(1))
         .min()
-        .map(|(_, known)| known)
+        .map(|(_, _, whole)| whole)
 }
 
 /// Steps A to B, both included, as a range.
@@ -294,7 +326,7 @@ fn quantity(text: &str) -> Result<PlannedQuantity, String> {
         .map_err(|_| "plateau_pressure, l1 or arrival_time is allowed".into())
 }
 
-/// A fraction, or per cent.
+/// A fraction, also given in per cent.
 fn fraction(text: &str) -> Result<f64, String> {
     let (number, scale) = match text.strip_suffix('%') {
         Some(number) => (number, 0.01),

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use flyer_mpm::accuracy::estimate::Basis;
-use flyer_mpm::accuracy::plan::{self, Data, PlanError, Wish};
+use flyer_mpm::accuracy::plan::{self, Data, ErrorTarget, PlanError};
 use flyer_mpm::driver::output::origin::{absolute, check_target};
 use flyer_mpm::scene::input_file;
 
@@ -12,7 +12,7 @@ use serde_json::Value;
 use crate::cli::PlanArgs;
 use crate::{BAD_INPUT, FAILED, Outcome, bad, read_scene};
 
-/// Plans a scene and writes the scene to run; returns the plan in words.
+/// Plans a scene and writes the scene to run; returns a text about the plan.
 pub fn plan(args: &PlanArgs) -> Outcome<String> {
     let (_, checked) = read_scene(&args.scene, true)?;
     let stem = args.scene.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -20,10 +20,10 @@ pub fn plan(args: &PlanArgs) -> Outcome<String> {
         .output
         .clone()
         .unwrap_or_else(|| Path::new("output/plans").join(format!("{stem}.plan.json")));
-    // pilots take their time: a place that cannot be written is refused before them
+    // check the output path first, because pilot runs take time
     input_file::check_place(&file).map_err(|fault| bad(format!("{}: {fault}", file.display())))?;
     let scene = serde_json::to_value(&checked.scene).expect("a scene is plain data");
-    let wish = Wish {
+    let target = ErrorTarget {
         quantity: args.quantity,
         error: args.error,
         budget: args.budget,
@@ -37,10 +37,12 @@ pub fn plan(args: &PlanArgs) -> Outcome<String> {
         there.is_some_and(|there| Some(there) == of.clone().map(Value::String))
     })
     .map_err(bad)?;
-    let mut plan = plan::plan(&scene, &checked.file, &wish, &Data::shipped()).map_err(|error| {
-        let code = if matches!(error, PlanError::Impossible { .. }) { FAILED } else { BAD_INPUT };
-        (code, error.to_string())
-    })?;
+    let mut plan =
+        plan::plan(&scene, &checked.file, &target, &Data::shipped()).map_err(|error| {
+            let code =
+                if matches!(error, PlanError::Impossible { .. }) { FAILED } else { BAD_INPUT };
+            (code, error.to_string())
+        })?;
     plan.scene["output"]["plan"]["of"] = serde_json::json!(of);
     let text = serde_json::to_string_pretty(&plan.scene).expect("a scene is plain data") + "\n";
     let written = file.parent().map_or(Ok(()), std::fs::create_dir_all);

@@ -14,24 +14,24 @@ use serde_json::Value;
 use crate::cli::PredictArgs;
 use crate::{FAILED, Outcome, bad, read_scene, say};
 
-/// What is calibrated unless a scene is named.
+/// Default scene for `calibrate`.
 const FLYER: &str = include_str!("../../inputs/flyer.json");
 
-/// What `calibrate` is told.
+/// Arguments of `calibrate`.
 pub struct Order {
-    /// The scene's file, if one is named.
+    /// The scene file, if given.
     pub scene: Option<PathBuf>,
     /// Overrides of the scene.
     pub set: Vec<String>,
     /// File of the constants.
     pub output: PathBuf,
-    /// Time to take \[s\].
+    /// Measuring time \[s\].
     pub seconds: f64,
     /// Whether samples are printed.
     pub samples: bool,
 }
 
-/// Measures and writes the constants. Collective.
+/// Measures the constants and writes them. Collective.
 pub fn calibrate(comm: &dyn Comm, order: &Order) -> Outcome<()> {
     let Order { scene: file, set: sets, output, seconds, samples } = order;
     let file = file.as_deref();
@@ -41,13 +41,13 @@ pub fn calibrate(comm: &dyn Comm, order: &Order) -> Outcome<()> {
         (0, None) => Ok(FLYER.as_bytes().to_vec()),
         _ => Ok(Vec::new()),
     };
-    // rank 0 looks at everything that could fail before it sends the scene on
+    // rank 0 checks everything that could fail before it sends the scene to the other ranks
     let mine = mine.and_then(|bytes| {
         if comm.rank() == 0 {
             check_line(&scene::parse(&bytes, &name, sets).map_err(bad)?, "calibrate")?;
             input_file::check_place(output)
                 .map_err(|fault| bad(format!("{}: {fault}", output.display())))?;
-            check_target(output, "a machine file of `flyer-mpm calibrate`", |text| {
+            check_target(output, "a machine file of `flyer-mpm perf calibrate`", |text| {
                 let there: Option<Value> = serde_json::from_str(text).ok();
                 there.is_some_and(|there| there.get("processor").is_some())
             })
@@ -100,7 +100,8 @@ pub fn calibrate(comm: &dyn Comm, order: &Order) -> Outcome<()> {
     Ok(())
 }
 
-/// Refuses a scene in a plane: the performance model counts cells and ghosts along one direction.
+/// Refuses a scene in two dimensions: the performance model counts cells and ghosts along one
+/// direction.
 fn check_line(scene: &CheckedScene, command: &str) -> Outcome<()> {
     match scene.dimension {
         1 => Ok(()),
@@ -111,7 +112,7 @@ fn check_line(scene: &CheckedScene, command: &str) -> Outcome<()> {
     }
 }
 
-/// Predicts a scene, or holds predictions against studies.
+/// Predicts the performance of a scene, or compares predictions with studies.
 pub fn predict(args: &PredictArgs) -> Outcome<String> {
     let (bytes, checked) = read_scene(&args.scene, false)?;
     check_line(&checked, "predict")?;
@@ -137,7 +138,7 @@ pub fn predict(args: &PredictArgs) -> Outcome<String> {
         let study = Against::read(path).map_err(bad)?;
         let mut sets = args.scene.set.clone();
         sets.extend(study.sets.iter().cloned());
-        sets.push("decomposition.skip_quiet=false".into());
+        sets.push("decomposition.skip_quiescent=false".into());
         let file = args.scene.scene.display().to_string();
         let scene = scene::parse(&bytes, &file, &sets).map_err(bad)?;
         check_line(&scene, "predict")?;
@@ -147,11 +148,11 @@ pub fn predict(args: &PredictArgs) -> Outcome<String> {
     Ok(Against::table(&machine, &all))
 }
 
-/// Particles of a scene that are made to find the first time step.
+/// Largest number of particles created to find the first time step.
 const MOST_PARTICLES: u64 = 200_000;
 
-/// The first Courant step \[s\]; of a large scene that of one with larger cells, for the step is
-/// as long as a wave takes through a share of a cell.
+/// The first Courant time step \[s\]. For a large scene it is scaled from larger cells, because the
+/// time step is proportional to the cell size.
 fn first_time_step(scene: &CheckedScene) -> Outcome<f64> {
     let failed = |e: &dyn std::fmt::Display| (FAILED, e.to_string());
     let coarser = coarsened(scene);
@@ -160,7 +161,7 @@ fn first_time_step(scene: &CheckedScene) -> Outcome<f64> {
     Ok((simulation.time_step() / factor).min(scene.scene.time.end))
 }
 
-/// The scene with as much larger cells as it needs to have few particles, and how much larger.
+/// The scene with cells so much larger that it has few particles, and the ratio of cell sizes.
 fn coarsened(scene: &CheckedScene) -> Option<(CheckedScene, f64)> {
     if scene.particles <= MOST_PARTICLES {
         return None;

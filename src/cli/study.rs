@@ -4,11 +4,11 @@ use std::path::Path;
 
 use flyer_mpm::driver::output::lock::Lock;
 use flyer_mpm::driver::output::origin::{Origin, claim};
-use flyer_mpm::study::{self, CHOICES_FILE, Runner, Study, StudyError, TABLE_FILE};
+use flyer_mpm::study::{self, CHOICES_FILE, Study, StudyError, StudyRunner, TABLE_FILE};
 
 use crate::{FAILED, Outcome, bad};
 
-/// Runs a study; returns what it has found, in words.
+/// Runs a study; returns a text about its results.
 pub fn study(file: &Path, output: Option<&Path>, quiet: bool) -> Outcome<String> {
     let study = Study::read(file).map_err(bad)?;
     let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -16,7 +16,7 @@ pub fn study(file: &Path, output: Option<&Path>, quiet: bool) -> Outcome<String>
     let _lock = Lock::take(&folder).map_err(bad)?;
     claim(&folder, &Origin::new("study", file)).map_err(bad)?;
     let program = std::env::current_exe().map_err(|e| (FAILED, e.to_string()))?;
-    let runner = Runner { program, folder, quiet };
+    let runner = StudyRunner { program, folder, quiet };
     let rows = study::run(&study, &runner).map_err(|error| match error {
         StudyError::Study { .. } => bad(error),
         error => (FAILED, error.to_string()),

@@ -1,6 +1,6 @@
-//! A run with its files: steps, checkpoints, profiles, histories, scores, pictures, summary.
+//! A run with its files: steps, checkpoints, profiles, histories, errors, pictures, summary.
 //!
-//! Every rank steps; rank 0 gathers, scores and writes.
+//! All ranks compute; rank 0 gathers, evaluates errors and writes.
 
 pub mod checkpoint;
 pub mod figures;
@@ -21,9 +21,11 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::accuracy::estimate::{self, Answer, Laws, coarse_runs};
 use crate::accuracy::plan;
-use crate::accuracy::reference::Reference;
+use crate::accuracy::reference::ReferenceSolution;
 use crate::driver::checkpoint::schedule::Stop;
-use crate::driver::checkpoint::{Checkpoint, CheckpointError, Schedule, StateColumn, folder};
+use crate::driver::checkpoint::{
+    Checkpoint, CheckpointError, CheckpointSchedule, StateColumn, folder,
+};
 use crate::driver::output::OutputError;
 use crate::driver::output::csv::{profile_names, write_profile};
 use crate::driver::output::folder::{OutputFolder, checkpoint_folder};
@@ -31,87 +33,88 @@ use crate::driver::output::histories::HISTORIES_FILE;
 use crate::driver::output::origin::Maker;
 use crate::driver::output::report::report;
 use crate::driver::output::summary::{
-    Energy, FailureSummary, Momentum, Outflow, ProfileSummary, Summary,
+    Energy, FailureSummary, Momentum, OutflowSummary, ProfileSummary, SUMMARY_FORMAT, Summary,
 };
 use crate::driver::output::trace::write_trace;
 use crate::driver::output::vtkhdf::{RESULTS_FILE, RunInfo, write_vtkhdf};
 use crate::driver::recorder::{Mark, Recorder};
 use crate::effects::ledger;
 use crate::plot::PictureError;
-use crate::scene::{CheckedScene, Side};
+use crate::scene::{CheckedScene, SideProperties};
 use crate::simulation::ParticleTable;
-use crate::simulation::{Given, Left, RunError, Simulation, Totals};
+use crate::simulation::{BoundaryWork, Removed, RunError, Simulation, Totals};
 use crate::solver::clock::{Activity, user_cpu_seconds};
 use crate::solver::{Stepper, Steps};
 
-/// Why a run has no result.
+/// Reason why a run has no result.
 #[derive(Debug, thiserror::Error)]
-pub enum Failure {
-    /// The run itself.
+pub enum RunFailure {
+    /// Failure of the simulation.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// The run itself, of which the last good state was looked after. All ranks know.
+    /// Failure of the simulation after which the last good state was written, if possible. All
+    /// ranks know it.
     #[error("{error}; {next}")]
     Alarm {
-        /// What ended it.
+        /// Reason for the end.
         error: Box<RunError>,
-        /// Where it can go on.
+        /// Where to restart from.
         next: String,
     },
-    /// Its files.
+    /// Failure to write results.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// Its pictures.
+    /// Failure to write pictures.
     #[error(transparent)]
     Picture(#[from] PictureError),
-    /// Its checkpoints.
+    /// Failure to read or write checkpoints.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
-    /// It was asked to end, and can go on: no failure. All ranks know.
+    /// The run was stopped on request and can be restarted; this is no failure. All ranks know it.
     #[error("stopped at time {time:.6e} s, step {step}: {why}; {next}")]
     Stopped {
-        /// What asked for it.
+        /// Source of the request.
         why: String,
         /// Time [s].
         time: f64,
-        /// Steps made.
+        /// Number of steps.
         step: u64,
-        /// How to go on.
+        /// How to restart.
         next: String,
     },
 }
 
-/// What a run begins with.
+/// Start of a run.
 pub enum Beginning {
-    /// The start of its scene.
+    /// The initial state of its scene.
     Scene,
-    /// A checkpoint, which rank 0 has and which fits the scene.
+    /// A checkpoint that fits the scene; `Some` on rank 0 only.
     Checkpoint(Option<Box<Checkpoint>>),
 }
 
-/// How to run.
+/// Options of a run.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Folder of the results.
     pub output: PathBuf,
-    /// Refuse to replace an earlier result.
+    /// Whether an earlier result must not be replaced.
     pub keep: bool,
-    /// Say nothing but errors.
+    /// Whether only errors are printed.
     pub quiet: bool,
-    /// Threads a rank.
+    /// Threads per rank.
     pub threads: usize,
-    /// Where to write a timeline, and of which steps.
+    /// File of the timeline, and the range of its steps.
     pub trace: Option<(PathBuf, Range<u64>)>,
-    /// When the process started.
+    /// Start time of the process.
     pub started: Instant,
-    /// Number of a signal that has asked for an end; 0: none.
+    /// Number of a signal that requests an end; 0: none.
     pub signal: Arc<AtomicU8>,
 }
 
-/// Tells how far a run is: a bar on a terminal, else a line now and then.
+/// Progress of a run: a bar on a terminal, otherwise a line at intervals.
 struct Progress {
     bar: Option<ProgressBar>,
-    /// Times between which it goes [s].
+    /// Start and end time [s].
     span: [f64; 2],
     told: Instant,
     started: Instant,
@@ -158,28 +161,28 @@ impl Progress {
     }
 }
 
-/// Steps to the end, recording and writing checkpoints on the way. Collective.
+/// Steps to the end time, recording and writing checkpoints. Collective.
 fn step_to_end<const D: usize>(
     simulation: &mut Simulation<'_, D>,
     scene: &CheckedScene,
     comm: &dyn Comm,
     options: &Options,
     recorder: &mut Recorder<'_>,
-    schedule: &mut Schedule,
-) -> Result<(), Failure>
+    schedule: &mut CheckpointSchedule,
+) -> Result<(), RunFailure>
 where
     Stepper<D>: Steps<D>,
 {
     let end = scene.scene.time.end;
     let first = comm.rank() == 0;
     let mut progress = Progress::new([simulation.time(), end], first && !options.quiet);
-    // the start and what the run goes on from need no checkpoint
+    // the start and the restart state need no checkpoint
     let mut fresh = true;
     let mut mark = recorder.mark();
     loop {
         let time = simulation.time();
         let (start, waited) = (Instant::now(), comm.traffic().waited);
-        // a checkpoint holds what was recorded at its own step
+        // a checkpoint already contains the records of its own step
         let resumed = fresh && simulation.steps() > 0;
         if !resumed {
             recorder.record(simulation, first);
@@ -198,7 +201,7 @@ where
         if time >= end {
             break;
         }
-        if let Some(stop) = Schedule::stops(asked) {
+        if let Some(stop) = CheckpointSchedule::stops(asked) {
             progress.finish();
             return Err(stopped(stop, time, simulation.steps(), options, schedule));
         }
@@ -210,7 +213,7 @@ where
             }
             let next =
                 save_last_good(simulation, comm, scene, options, (recorder, &mark), schedule);
-            return Err(Failure::Alarm { error: Box::new(error), next });
+            return Err(RunFailure::Alarm { error: Box::new(error), next });
         }
         progress.tell(simulation.time(), simulation.steps());
     }
@@ -218,18 +221,18 @@ where
     Ok(())
 }
 
-/// Writes the last state that the watch has passed; tells how to go on from it. Collective.
+/// Writes the last state that has passed the monitor; returns how to restart from it. Collective.
 fn save_last_good<const D: usize>(
     simulation: &Simulation<'_, D>,
     comm: &dyn Comm,
     scene: &CheckedScene,
     options: &Options,
     (recorder, mark): (&Recorder<'_>, &Mark),
-    schedule: &Schedule,
+    schedule: &CheckpointSchedule,
 ) -> String {
     let (time, step) = simulation.held_at();
     if step == 0 {
-        return "no state but the start has passed the watch".into();
+        return "no state but the start has passed the monitor".into();
     }
     if schedule.keep == 0 {
         return "no state was written, for output.checkpoint.keep is 0".into();
@@ -245,14 +248,14 @@ fn save_last_good<const D: usize>(
     match written {
         Ok(path) => format!(
             "the last good state, time {time:.6e} s, step {step}, is in {}: go on with --restart, \
-             and --set time or watch",
+             and --set time or monitor",
             path.display()
         ),
         Err(error) => format!("the last good state could not be written: {error}"),
     }
 }
 
-/// The columns of a checkpoint's rows.
+/// The columns of the particles in a checkpoint.
 fn state_columns<const D: usize>(simulation: &Simulation<'_, D>) -> Vec<StateColumn> {
     let all = simulation.columns();
     let of = |k: &usize| StateColumn {
@@ -269,23 +272,29 @@ fn write_checkpoint<const D: usize>(
     scene: &CheckedScene,
     options: &Options,
     recorder: &Recorder<'_>,
-    schedule: &mut Schedule,
-) -> Result<(), Failure> {
+    schedule: &mut CheckpointSchedule,
+) -> Result<(), RunFailure> {
     let start = Instant::now();
     if let Some(saved) = simulation.save() {
         let text = serde_json::to_string(&scene.scene).expect("a scene is plain data");
         let columns = state_columns(simulation);
         let contents = recorder.contents(&text, &saved, &columns);
         let folder = checkpoint_folder(&options.output)?;
-        // the others wait for this rank
+        // the other ranks wait for this rank
         folder::write(&folder, schedule.keep, &contents, &|| comm.heartbeat())?;
     }
     schedule.written(start.elapsed());
     Ok(())
 }
 
-/// The end of a run before its time, in words.
-fn stopped(stop: Stop, time: f64, step: u64, options: &Options, schedule: &Schedule) -> Failure {
+/// The failure that describes an early end.
+fn stopped(
+    stop: Stop,
+    time: f64,
+    step: u64,
+    options: &Options,
+    schedule: &CheckpointSchedule,
+) -> RunFailure {
     let why = match stop {
         Stop::WallLimit => "time.wall_limit is over".to_string(),
         Stop::Signal(signal) => format!("signal {signal} came"),
@@ -294,7 +303,7 @@ fn stopped(stop: Stop, time: f64, step: u64, options: &Options, schedule: &Sched
         Ok(folder) if schedule.keep > 0 => format!("go on with --restart {}", folder.display()),
         _ => "no checkpoint was written, for output.checkpoint.keep is 0".to_string(),
     };
-    Failure::Stopped { why, time, step, next }
+    RunFailure::Stopped { why, time, step, next }
 }
 
 /// Runs a scene and writes its results; returns the final table at rank 0. Collective.
@@ -303,24 +312,24 @@ pub fn run(
     scene: &CheckedScene,
     options: &Options,
     beginning: Beginning,
-) -> Result<Option<String>, Failure> {
+) -> Result<Option<String>, RunFailure> {
     match scene.dimension {
         1 => run_in::<1>(comm, scene, options, beginning),
         _ => run_in::<2>(comm, scene, options, beginning),
     }
 }
 
-/// A run in `D` directions.
+/// Runs a scene in `D` dimensions.
 fn run_in<const D: usize>(
     comm: &dyn Comm,
     scene: &CheckedScene,
     options: &Options,
     beginning: Beginning,
-) -> Result<Option<String>, Failure>
+) -> Result<Option<String>, RunFailure>
 where
     Stepper<D>: Steps<D>,
 {
-    // what the run's errors are told from
+    // coarse runs, from which the errors of this run are estimated
     let estimated = scene.estimated_body();
     let companions = match estimated {
         Some(body) => Some(coarse_runs::run(comm, scene, body, options.threads)?),
@@ -340,7 +349,7 @@ where
         recorder.resume(comm, checkpoint.map(|c| *c), simulation.time());
     }
     let (now, signal) = (simulation.time(), options.signal.clone());
-    let mut schedule = Schedule::new(scene, now, options.started, signal);
+    let mut schedule = CheckpointSchedule::new(scene, now, options.started, signal);
     let before = comm.traffic();
     let (loop_start, loop_cpu) = (Instant::now(), user_cpu_seconds());
     step_to_end(&mut simulation, scene, comm, options, &mut recorder, &mut schedule)?;
@@ -356,7 +365,7 @@ where
         loop_cpu,
         before,
     );
-    let shares = rank_statistics::effect_shares(comm, &simulation);
+    let shares = rank_statistics::step_shares(comm, &simulation);
     let (stretched, energy_change) = (simulation.stretched(), simulation.energy_change());
     if let Some((path, _)) = &options.trace {
         let events = rank_statistics::timeline(comm, &mut simulation);
@@ -372,18 +381,18 @@ where
     let loop_cpu = if loop_cpu > 0.0 { loop_cpu } else { loop_wall_seconds };
     let others_cpu: f64 = spent.iter().skip(1).map(|r| seconds(r, 1)).sum();
 
-    // a run is worth its files even where no exact solution can be had
+    // a run without an exact solution still writes its files
     let mut warnings = scene.warnings.clone();
-    let reference = Reference::new(scene).unwrap_or_else(|error| {
+    let reference = ReferenceSolution::new(scene).unwrap_or_else(|error| {
         warnings.push(format!("no exact solution: {error}"));
         None
     });
-    if let Some(Reference::Impact(all)) = &reference
+    if let Some(ReferenceSolution::Impact(all)) = &reference
         && let Some((time, why)) = &all.solution.stopped
     {
         warnings.push(format!("the exact solution ends at {time:.4e} s, before the run: {why}"));
     }
-    // the others wait for this rank at their end
+    // the other ranks wait for this rank at the end
     comm.heartbeat();
     let maker = Maker::with(recorder.origin.clone(), scene);
     let folder = OutputFolder::create(&options.output, options.keep, &maker)?;
@@ -422,12 +431,13 @@ where
     let left = ways.outflow.and(&ways.erosion);
     let rounding = simulation.rounding_energy();
     let (energy, momentum) = balance(scene, times, [&start, &end], &left, &given, rounding);
-    let lets_out = scene.sides::<D>().as_flattened().iter().any(|side| side.lets_out());
+    let lets_out = scene.has_side(|side| side.lets_out);
     warnings.extend(inaccurate(energy_change, stretched, simulation.tally().redone_steps));
     warnings.extend(simulation.peaks().warnings());
     let particle_steps = scene.particles as f64 * simulation.steps_made() as f64;
     let layout = simulation.layout();
     let summary = Summary {
+        format: SUMMARY_FORMAT,
         title: scene.scene.title.clone(),
         version: env!("CARGO_PKG_VERSION").into(),
         origin: Some(folder.origin()),
@@ -445,14 +455,14 @@ where
         particle_steps_per_cpu_second: particle_steps / loop_cpu,
         phase_seconds: decomposition.seconds(),
         decomposition,
-        effects: ledger(scene, simulation.columns(), shares),
+        effects: ledger(scene, simulation.columns(), shares.as_deref()),
         energy,
         momentum,
         outflow: lets_out.then(|| gone(&ways.outflow)),
         erosion: scene.erodes().then(|| gone(&ways.erosion)),
         failure: simulation
             .columns()
-            .failure
+            .find("damage")
             .map(|_| FailureSummary { particles: end.failed, released_energy: end.released }),
         profiles,
         error_estimate,
@@ -467,10 +477,10 @@ where
     Ok(Some(report(&summary, &place)))
 }
 
-/// Drift of energy beyond which a run says that it is inaccurate [-].
+/// Drift of energy above which a run reports that it is inaccurate [-].
 const DRIFT_TOLD: f64 = 0.01;
 
-/// What a run that has ended well says against its accuracy, one line each.
+/// Warnings about the accuracy of a run that has ended normally, one line each.
 fn inaccurate(energy_change: f64, stretched: u64, redone: u64) -> Vec<String> {
     let drift = (energy_change.abs() > DRIFT_TOLD).then(|| {
         format!(
@@ -488,26 +498,28 @@ fn inaccurate(energy_change: f64, stretched: u64, redone: u64) -> Vec<String> {
         )
     });
     let redone = (redone > 0).then(|| {
-        format!("{redone} times a step was redone half as long, as watch.on_alarm = \"redo\" asks")
+        format!(
+            "{redone} times a step was redone half as long, as monitor.on_alarm = \"redo\" asks"
+        )
     });
     drift.into_iter().chain(stretched).chain(redone).collect()
 }
 
-/// Writes each profile and scores it.
+/// Writes each profile and evaluates its errors.
 fn write_profiles(
     comm: &dyn Comm,
     scene: &CheckedScene,
-    reference: Option<&Reference>,
+    reference: Option<&ReferenceSolution>,
     recorded: &Recorder<'_>,
     folder: &OutputFolder,
-) -> Result<Vec<ProfileSummary>, Failure> {
+) -> Result<Vec<ProfileSummary>, RunFailure> {
     let names = profile_names(&scene.profile_times);
     let mut profiles = Vec::new();
     for (k, ((table, digest), file)) in recorded.tables.iter().zip(names).enumerate() {
         write_profile(&folder.file(&file), table)?;
         let as_json = |e| serde_json::to_value(e).expect("errors are plain data");
-        let (errors, errors_cell) = match reference {
-            Some(Reference::Plane(plane)) => {
+        let (errors, errors_cell_averaged) = match reference {
+            Some(ReferenceSolution::Plane(plane)) => {
                 (plane.score(scene, table, recorded.start.as_ref()), None)
             }
             _ => match reference.and_then(|r| r.score(scene, k, table)) {
@@ -520,23 +532,23 @@ fn write_profiles(
             file,
             state_sha256: digest.clone(),
             errors,
-            errors_cell,
+            errors_cell_averaged,
         });
         comm.heartbeat();
     }
     Ok(profiles)
 }
 
-/// All pictures of a run.
+/// Draws all pictures of a run.
 fn draw(
     comm: &dyn Comm,
     scene: &CheckedScene,
-    reference: Option<&Reference>,
+    reference: Option<&ReferenceSolution>,
     recorded: &Recorder<'_>,
     profiles: &[ProfileSummary],
     folder: &OutputFolder,
 ) -> Result<(), PictureError> {
-    if let (1, Some(Reference::Impact(all))) = (scene.dimension, reference) {
+    if let (1, Some(ReferenceSolution::Impact(all))) = (scene.dimension, reference) {
         let bodies = [all.flyer, all.target];
         figures::draw_hugoniots(scene, bodies, &all.impact, &all.chain, folder.path())?;
     }
@@ -576,24 +588,24 @@ fn draw(
     Ok(())
 }
 
-/// Energy and momentum at start and end, with what sides and outflows have given and taken.
+/// Energy and momentum at start and end, with the contributions of sides and outflows.
 ///
-/// A wall's impulse on the particles is what their momentum has changed by, for nothing else
-/// acts on them from outside; a piston's work is its velocity times its impulse, or where it
-/// changes its velocity what the frame of the grid gives and takes. What transmitting sides,
-/// pressures and friction on walls give is summed up as it is given.
+/// The impulse of a wall is the change of the particles' momentum, because no other external force
+/// acts on them. The work of a piston is its velocity times its impulse; if the piston changes its
+/// velocity, the work follows from the frame of the grid. Contributions of transmitting sides,
+/// pressures and wall friction are summed during the run.
 fn balance<const D: usize>(
     scene: &CheckedScene,
     times: [f64; 2],
     [start, end]: [&Totals<D>; 2],
-    left: &Left<D>,
-    given: &Given<D>,
+    left: &Removed<D>,
+    given: &BoundaryWork<D>,
     rounding: f64,
 ) -> (Energy, Momentum) {
-    let sides = scene.sides::<D>();
-    let rigid = |a: usize| sides[a].iter().any(|s| s.rigid_velocity().is_some());
-    let holds = sides.as_flattened().contains(&Side::NoSlip);
-    // along a radius momentum is no sum that is kept
+    let sides = scene.side_properties::<D>();
+    let rigid = |a: usize| sides[a].iter().any(SideProperties::is_rigid);
+    let holds = scene.has_side(|side| side.no_slip);
+    // along a radius, momentum is not a conserved sum
     let booked = |a: usize| rigid(a) || holds || (a == 0 && scene.axisymmetric());
     let walls: [f64; D] = std::array::from_fn(|a| match booked(a) {
         true => {
@@ -624,9 +636,9 @@ fn balance<const D: usize>(
     }
 }
 
-/// What has left in one way, as the summary has it.
-fn gone<const D: usize>(left: &Left<D>) -> Outflow {
-    Outflow {
+/// Summary of the particles removed in one way.
+fn gone<const D: usize>(left: &Removed<D>) -> OutflowSummary {
+    OutflowSummary {
         particles: left.count,
         mass: left.mass,
         momentum: left.momentum.to_vec(),

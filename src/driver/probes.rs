@@ -1,50 +1,50 @@
-//! What histories follow: the interface, free surfaces, tracers, energies.
+//! Probes for histories: interface, free surfaces, tracers, energies.
 
-use crate::driver::output::histories::Histories;
+use crate::driver::output::histories::HistoryTable;
 use crate::scene::{CheckedScene, Reference};
 use crate::simulation::{Followed, Simulation};
 
-/// The part of a particle that a probe sits on.
+/// The part of a particle at which a probe is placed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Part {
+enum ProbePart {
     Lower,
     Centre,
     Upper,
-    /// The lower face, a free surface.
+    /// The lower face, at a free surface.
     FreeLower,
-    /// The upper face, a free surface.
+    /// The upper face, at a free surface.
     FreeUpper,
 }
 
-/// A probe: the mean over some particles' parts.
+/// A probe: the mean over the parts of some particles.
 struct Probe {
     name: String,
-    parts: Vec<(u64, Part)>,
+    parts: Vec<(u64, ProbePart)>,
 }
 
-/// The probes of a run and what they have told.
+/// The probes of a run and their recorded values.
 pub struct Probes {
     probes: Vec<Probe>,
     wanted: Vec<u64>,
-    /// Columns of the force of contact.
+    /// Number of columns for the contact force.
     forces: usize,
     interval: f64,
     due: u64,
-    histories: Histories,
+    histories: HistoryTable,
 }
 
 impl Probes {
-    /// The probes that a scene asks for; `None` if it asks for no histories.
+    /// The probes of a scene; `None` if the scene asks for no histories.
     ///
     /// An impact has `interface` (the mean of both faces), `free_surface` (the target's rear) and
-    /// `flyer_rear`; other scenes the two ends of each body. Tracers follow.
+    /// `flyer_rear`; other scenes have the two ends of each body. Tracers follow.
     ///
-    /// Place and velocity [m/s] of a face are those of the outermost particle, moved to its edge.
-    /// On a free surface ([`CheckedScene::face_is_free`]) the traction is zero, so the pressure [Pa]
-    /// is 0, or the deviator's xx component where the material has strength; elsewhere it is the
-    /// particle's. The particle's own would not do on a free surface: its centre lies half a
-    /// particle inside, where a shock raises the pressure for as long as the computed front takes
-    /// to pass.
+    /// Position and velocity [m/s] of a face are those of the outermost particle, with the position
+    /// moved to the particle's edge. On a free surface ([`CheckedScene::face_is_free`]) the
+    /// traction is zero, so the pressure [Pa] is 0, or the deviator's xx component if the material
+    /// has strength. On other faces it is the pressure of the particle. The particle's pressure
+    /// would be wrong on a free surface: its centre lies half a particle inside, where a shock
+    /// raises the pressure for as long as the computed front takes to pass.
     pub fn new(scene: &CheckedScene) -> Option<Self> {
         let interval = scene.history_interval?;
         let mut first = 0;
@@ -58,14 +58,14 @@ impl Probes {
             })
             .collect();
         let end = |body: usize, upper: bool| match (upper, scene.face_is_free(body, upper)) {
-            (true, false) => (ranges[body].1, Part::Upper),
-            (true, true) => (ranges[body].1, Part::FreeUpper),
-            (false, false) => (ranges[body].0, Part::Lower),
-            (false, true) => (ranges[body].0, Part::FreeLower),
+            (true, false) => (ranges[body].1, ProbePart::Upper),
+            (true, true) => (ranges[body].1, ProbePart::FreeUpper),
+            (false, false) => (ranges[body].0, ProbePart::Lower),
+            (false, true) => (ranges[body].0, ProbePart::FreeLower),
         };
         let bodies = &scene.scene.bodies;
         let mut probes = Vec::new();
-        let mut add = |name: &str, parts: Vec<(u64, Part)>| {
+        let mut add = |name: &str, parts: Vec<(u64, ProbePart)>| {
             probes.push(Probe { name: name.to_string(), parts });
         };
         match &scene.scene.reference {
@@ -89,7 +89,7 @@ impl Probes {
         for tracer in &histories.tracers {
             let number = bodies.iter().position(|b| b.name == tracer.body)?;
             let k = scene.bodies[number].nearest(&tracer.at);
-            add(&tracer.name, vec![(ranges[number].0 + k, Part::Centre)]);
+            add(&tracer.name, vec![(ranges[number].0 + k, ProbePart::Centre)]);
         }
         let mut columns: Vec<(String, String)> = [
             ("time", "s"),
@@ -121,11 +121,11 @@ impl Probes {
         let mut wanted: Vec<u64> = probes.iter().flat_map(|p| &p.parts).map(|p| p.0).collect();
         wanted.sort_unstable();
         wanted.dedup();
-        let (forces, histories) = (forces.len(), Histories::new(columns));
+        let (forces, histories) = (forces.len(), HistoryTable::new(columns));
         Some(Probes { probes, wanted, forces, interval, due: 0, histories })
     }
 
-    /// Takes a row if one is due: at the first step's end past each interval. Collective.
+    /// Records a row if one is due, at the end of the first step after each interval. Collective.
     pub fn sample<const D: usize>(&mut self, simulation: &Simulation<'_, D>) {
         let time = simulation.time();
         if time < self.due as f64 * self.interval {
@@ -135,11 +135,11 @@ impl Probes {
         let totals = simulation.totals();
         let forces = if self.forces > 0 { simulation.contact_force() } else { [0.0; 2] };
         let followed = simulation.follow(&self.wanted);
-        // another rank than the first has nobody to tell
+        // only rank 0 has the values
         if followed.is_empty() && !self.wanted.is_empty() {
             return;
         }
-        // where nothing is left, no step is too long
+        // without particles the time step is unbounded
         let dt = Some(simulation.time_step()).filter(|dt| dt.is_finite()).unwrap_or(f64::NAN);
         let mut row =
             vec![time, dt, totals.kinetic, totals.internal, totals.kinetic + totals.internal];
@@ -150,7 +150,7 @@ impl Probes {
                 let at = self.wanted.binary_search(&id).expect("a probe's particle is wanted");
                 followed[at].map(|f| place(&f, part))
             });
-            // a particle that has left makes the field empty
+            // a particle that has been removed leaves an empty field
             let parts: Option<Vec<Vec<f64>>> = parts.collect();
             let mean = |k: usize| match &parts {
                 Some(parts) => parts.iter().map(|p| p[k]).sum::<f64>() / parts.len() as f64,
@@ -171,36 +171,36 @@ impl Probes {
         self.due
     }
 
-    /// Goes on at `time` [s], where the row `due` is the next, if that is known, after `histories`,
-    /// which have the columns of this.
-    pub fn resume(&mut self, time: f64, due: Option<u64>, histories: Option<Histories>) {
+    /// Continues at `time` [s] after `histories`, which must have the same columns. `due` is the
+    /// number of the next row, if known.
+    pub fn resume(&mut self, time: f64, due: Option<u64>, histories: Option<HistoryTable>) {
         self.due = due.unwrap_or_else(|| self.after(time));
         if let Some(histories) = histories {
             self.histories = histories;
         }
     }
 
-    /// What has been told so far.
-    pub fn histories(&self) -> &Histories {
+    /// The rows recorded so far.
+    pub fn histories(&self) -> &HistoryTable {
         &self.histories
     }
 
-    /// What has been told.
-    pub fn into_histories(self) -> Histories {
+    /// The recorded rows.
+    pub fn into_histories(self) -> HistoryTable {
         self.histories
     }
 }
 
 /// Position, velocity and pressure of a part.
-fn place<const D: usize>(followed: &Followed<D>, part: Part) -> Vec<f64> {
+fn place<const D: usize>(followed: &Followed<D>, part: ProbePart) -> Vec<f64> {
     let shift = match part {
-        Part::Lower | Part::FreeLower => -followed.half_length,
-        Part::Centre => 0.0,
-        Part::Upper | Part::FreeUpper => followed.half_length,
+        ProbePart::Lower | ProbePart::FreeLower => -followed.half_length,
+        ProbePart::Centre => 0.0,
+        ProbePart::Upper | ProbePart::FreeUpper => followed.half_length,
     };
     let pressure = match part {
-        Part::FreeLower | Part::FreeUpper => followed.free_pressure,
-        Part::Lower | Part::Centre | Part::Upper => followed.pressure,
+        ProbePart::FreeLower | ProbePart::FreeUpper => followed.free_pressure,
+        ProbePart::Lower | ProbePart::Centre | ProbePart::Upper => followed.pressure,
     };
     let mut values = followed.position.to_vec();
     values[0] += shift;

@@ -1,4 +1,4 @@
-//! The ranks' accounts of a run, brought together at rank 0.
+//! Statistics of all ranks of a run, gathered at rank 0.
 
 use decomp::{Comm, Traffic, bytes_of, words_of};
 use serde::Serialize;
@@ -6,12 +6,10 @@ use serde::de::DeserializeOwned;
 
 use crate::driver::output::decomposition::{DecompositionSummary, RankSummary};
 use crate::driver::output::trace::TraceEvent;
-use crate::effects::Effect;
 use crate::simulation::Simulation;
 use crate::solver::clock::{Activity, Event};
-use crate::solver::{Stepper, Steps};
 
-/// Each rank's value at rank 0, by rank; nothing elsewhere. Collective.
+/// Each rank's value at rank 0, by rank; empty on other ranks. Collective.
 fn gather<T: Serialize + DeserializeOwned>(comm: &dyn Comm, value: &T) -> Vec<T> {
     let text = serde_json::to_vec(value).expect("accounts are plain data");
     let all = comm.gather(&words_of(&text));
@@ -19,8 +17,8 @@ fn gather<T: Serialize + DeserializeOwned>(comm: &dyn Comm, value: &T) -> Vec<T>
     all.iter().map(|w| read(w).expect("a rank sends what it serialized")).collect()
 }
 
-/// What the ranks did in a time loop of `wall` and `cpu` seconds on this rank, in which it sent
-/// what is between `before` and now; at rank 0. Collective.
+/// Work and messages of all ranks, at rank 0. On this rank the time loop took `wall` and `cpu`
+/// seconds, and its traffic was `before` at the start of the loop. Collective.
 pub fn decomposition<const D: usize>(
     comm: &dyn Comm,
     simulation: &mut Simulation<'_, D>,
@@ -56,7 +54,7 @@ pub fn decomposition<const D: usize>(
     })
 }
 
-/// The timelines of all ranks at rank 0; empty elsewhere. Collective.
+/// The timelines of all ranks, at rank 0; empty on other ranks. Collective.
 pub fn timeline<const D: usize>(
     comm: &dyn Comm,
     simulation: &mut Simulation<'_, D>,
@@ -78,18 +76,15 @@ pub fn timeline<const D: usize>(
     gather(comm, &mine).into_iter().flatten().collect()
 }
 
-/// Share of the ranks' computing that each effect takes, from samples; at rank 0, and none where
-/// nothing was sampled. Collective.
-pub fn effect_shares<const D: usize>(
+/// Share of each [part](crate::solver::parts) of a step in the ranks' computing time, from samples;
+/// at rank 0, and `None` without samples. Collective.
+pub fn step_shares<const D: usize>(
     comm: &dyn Comm,
     simulation: &Simulation<'_, D>,
-) -> Option<[f64; Effect::COUNT]>
-where
-    Stepper<D>: Steps<D>,
-{
-    let (computed, effects) = simulation.effect_seconds();
-    let all: Vec<(f64, Vec<f64>)> = gather(comm, &(computed, effects.to_vec()));
+) -> Option<Vec<f64>> {
+    let all: Vec<(f64, Vec<f64>)> = gather(comm, &simulation.part_seconds());
     let total: f64 = all.iter().map(|(computed, _)| computed).sum();
-    let share = |k: usize| all.iter().map(|(_, effects)| effects[k]).sum::<f64>() / total;
-    (total > 0.0).then(|| std::array::from_fn(share))
+    let count = all.iter().map(|(_, parts)| parts.len()).max().unwrap_or(0);
+    let share = |k: usize| all.iter().filter_map(|(_, parts)| parts.get(k)).sum::<f64>() / total;
+    (total > 0.0).then(|| (0..count).map(share).collect())
 }

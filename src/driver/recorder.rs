@@ -1,4 +1,4 @@
-//! What a run records on its way: histories, rows of the x-t diagram, profiles.
+//! Records of a run: histories, rows of the x-t diagram, profiles.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use crate::accuracy::estimate::Arrivals;
 use crate::accuracy::reference::PlaneReference;
 use crate::driver::checkpoint::{Checkpoint, Contents, Due, Record, StateColumn};
 use crate::driver::figures::PressureRow;
-use crate::driver::output::histories::Histories;
+use crate::driver::output::histories::HistoryTable;
 use crate::driver::output::origin::{Origin, RUN};
 use crate::driver::probes::Probes;
 use crate::scene::CheckedScene;
@@ -16,31 +16,31 @@ use crate::simulation::ParticleTable;
 use crate::simulation::{Saved, Simulation};
 use crate::solver::{Stepper, Steps};
 
-/// Rows of the x-t diagram.
+/// Number of rows of the x-t diagram.
 const WAVE_ROWS: u64 = 120;
 
-/// Particles in a row of the x-t diagram, at most.
+/// Largest number of particles in a row of the x-t diagram.
 const WAVE_POINTS: u64 = 2000;
 
-/// What a run records; rank 0 has it all, the others know what is due.
+/// Records of a run. Rank 0 holds all of them; the other ranks know what is due.
 pub struct Recorder<'a> {
     scene: &'a CheckedScene,
-    /// The command and the file that the run began with, before any restart.
+    /// The command and the file of the original run, before any restart.
     pub origin: Origin,
     probes: Option<Probes>,
     /// Profiles and the digests of their states.
     pub tables: Vec<(ParticleTable, String)>,
-    /// Particles at the start, where a score needs them.
+    /// Particles at the start, if the error evaluation needs them.
     pub start: Option<ParticleTable>,
     /// Rows of the x-t diagram.
     pub waves: Vec<PressureRow>,
-    /// What comes to places; nothing unless the scene asks for it.
+    /// Wave arrivals; empty unless the scene asks for them.
     pub arrivals: Arrivals,
     due_wave: u64,
     due_profile: usize,
 }
 
-/// How far what is recorded goes.
+/// Numbers of records at some time.
 #[derive(Clone, Copy, Debug)]
 pub struct Mark {
     tables: usize,
@@ -51,7 +51,7 @@ pub struct Mark {
 }
 
 impl<'a> Recorder<'a> {
-    /// The recorder of a run at its start. Collective.
+    /// Creates the recorder of a run at its start. Collective.
     pub fn new<const D: usize>(scene: &'a CheckedScene, simulation: &Simulation<'_, D>) -> Self
     where
         Stepper<D>: Steps<D>,
@@ -70,7 +70,7 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Goes on from what a checkpoint of rank 0 holds, at `time` [s]. Collective.
+    /// Continues at `time` [s] from the checkpoint that rank 0 holds. Collective.
     pub fn resume(&mut self, comm: &dyn Comm, checkpoint: Option<Checkpoint>, time: f64) {
         let told = checkpoint
             .as_ref()
@@ -92,7 +92,7 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Records what is due at this time. Collective.
+    /// Records everything that is due at this time. Collective.
     pub fn record<const D: usize>(&mut self, simulation: &Simulation<'_, D>, first: bool)
     where
         Stepper<D>: Steps<D>,
@@ -117,17 +117,17 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// The time of the next profile, which a step has to meet [s].
+    /// Time of the next profile [s]; a step must end at it.
     pub fn next_profile(&self) -> f64 {
         self.scene.profile_times.get(self.due_profile).copied().unwrap_or(self.scene.scene.time.end)
     }
 
-    /// The histories so far, if there are any.
-    pub fn histories(&self) -> Option<&Histories> {
+    /// The histories so far, if the scene asks for them.
+    pub fn histories(&self) -> Option<&HistoryTable> {
         self.probes.as_ref().map(Probes::histories)
     }
 
-    /// What a checkpoint holds.
+    /// The contents of a checkpoint of the present state.
     pub fn contents<'b>(
         &'b self,
         scene: &'b str,
@@ -137,27 +137,27 @@ impl<'a> Recorder<'a> {
         self.contents_at(&self.mark(), self.histories(), scene, saved, columns)
     }
 
-    /// How far what is recorded goes now.
+    /// The present numbers of records.
     pub fn mark(&self) -> Mark {
         Mark {
             tables: self.tables.len(),
             waves: self.waves.len(),
-            histories: self.histories().map_or(0, Histories::len),
+            histories: self.histories().map_or(0, HistoryTable::len),
             due_history: self.probes.as_ref().map_or(0, Probes::due),
             due_wave: self.due_wave,
         }
     }
 
-    /// The histories up to a mark, if there are any.
-    pub fn histories_at(&self, mark: &Mark) -> Option<Histories> {
+    /// The histories up to a mark, if the scene asks for them.
+    pub fn histories_at(&self, mark: &Mark) -> Option<HistoryTable> {
         self.histories().map(|all| all.first(mark.histories))
     }
 
-    /// What a checkpoint of the state at a mark holds, with the histories up to there.
+    /// The contents of a checkpoint of the state at a mark, with the `histories` up to it.
     pub fn contents_at<'b>(
         &'b self,
         mark: &Mark,
-        histories: Option<&'b Histories>,
+        histories: Option<&'b HistoryTable>,
         scene: &'b str,
         saved: &'b Saved,
         columns: &'b [StateColumn],

@@ -1,9 +1,9 @@
-//! An elastic-perfectly plastic body that runs into a rigid wall: an elastic precursor at the
-//! Hugoniot elastic limit, and a plastic shock behind it.
+//! An elastic-perfectly plastic body that strikes a rigid wall: an elastic precursor at the
+//! Hugoniot elastic limit, followed by a plastic shock.
 //!
 //! In uniaxial strain a hypoelastic material has the deviator s = 4/3 G ln J until |s| = 2/3 Y, at
-//! J = exp(-Y/2G), and keeps it beyond. Both fronts keep the jump conditions with the axial stress
-//! sigma = p(J, e) + |s|, positive in compression:
+//! J = exp(-Y/2G); beyond that the deviator is constant. Both fronts satisfy the jump conditions
+//! with the axial stress sigma = p(J, e) + |s|, positive in compression:
 //!
 //! ```text
 //! e' - e = (sigma + sigma')/2 (v - v'),  (u' - u)^2 = (sigma' - sigma)(v - v')
@@ -11,13 +11,13 @@
 //! ```
 //!
 //! Source: Wood (1952), On longitudinal plane waves of elastic-plastic strain in solids; all of the
-//! energy goes to the equation of state (Wilkins 1964). Where the plastic shock is the faster there
-//! is no precursor.
+//! energy goes to the equation of state (Wilkins 1964). If the plastic shock is faster than the
+//! elastic front, there is no precursor.
 
 use super::{ExactError, positive};
 use crate::material::EquationOfState;
 
-/// A material of perfect plasticity.
+/// An elastic-perfectly plastic material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plastic<E> {
     /// Equation of state.
@@ -28,12 +28,12 @@ pub struct Plastic<E> {
     pub yield_stress: f64,
 }
 
-/// The state behind a front, and how fast that runs.
+/// State behind a front, and the speed of the front.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Behind {
-    /// Speed of the front relative to the material at rest far ahead of all [m/s].
+    /// Speed of the front relative to the undisturbed material ahead of all fronts [m/s].
     pub speed: f64,
-    /// Velocity relative to that material [m/s].
+    /// Velocity relative to the undisturbed material [m/s].
     pub u: f64,
     /// Axial stress, positive in compression [Pa].
     pub stress: f64,
@@ -45,16 +45,16 @@ pub struct Behind {
     pub e: f64,
 }
 
-/// The fronts that run from a wall.
+/// The fronts that run from the wall into the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ElasticPlastic {
-    /// The elastic precursor, if the plastic shock does not outrun it.
+    /// Elastic precursor; `None` if the plastic shock outruns it.
     pub precursor: Option<Behind>,
-    /// The plastic shock, or below the elastic limit the elastic front.
+    /// Plastic shock; below the elastic limit, the elastic front.
     pub last: Behind,
 }
 
-/// A state on the way.
+/// A state between the fronts.
 #[derive(Clone, Copy)]
 struct At {
     jacobian: f64,
@@ -70,12 +70,12 @@ impl<E: EquationOfState> Plastic<E> {
         elastic.min(2.0 / 3.0 * self.yield_stress)
     }
 
-    /// The state at J behind one front that runs into `ahead`.
+    /// The state at J behind a single front that runs into `ahead`.
     fn jump(&self, ahead: &At, jacobian: f64) -> Option<At> {
         let dv = (ahead.jacobian - jacobian) / self.eos.reference_density();
         let shear = self.deviator(jacobian);
         let mut e = ahead.e;
-        // the pressure is linear in the energy or close to it: a few rounds are to rounding
+        // the pressure is linear in the energy or nearly so: a few rounds converge to rounding
         for _ in 0..200 {
             let stress = self.eos.pressure(jacobian, e) + shear;
             let next = ahead.e + 0.5 * (ahead.stress + stress) * dv;
@@ -94,7 +94,7 @@ impl<E: EquationOfState> Plastic<E> {
         })
     }
 
-    /// The state at the velocity `u` behind one front that runs into `ahead`.
+    /// The state at the velocity `u` [m/s] behind a single front that runs into `ahead`.
     fn reach(&self, ahead: &At, u: f64) -> Option<At> {
         let (mut low, mut high) = (0.05 * ahead.jacobian, ahead.jacobian);
         for _ in 0..200 {
@@ -110,7 +110,7 @@ impl<E: EquationOfState> Plastic<E> {
 }
 
 impl ElasticPlastic {
-    /// A body of `material` at rest that meets a wall at `speed` [m/s].
+    /// The fronts in a body of `material` at rest that meets a wall at `speed` [m/s].
     pub fn new<E: EquationOfState>(
         material: &Plastic<E>,
         speed: f64,
@@ -124,7 +124,7 @@ impl ElasticPlastic {
             chi: 1.0 - jacobian,
         };
         let rest = At { jacobian: 1.0, u: 0.0, stress: 0.0, e: 0.0 };
-        // mass a front runs through over rho0: its speed relative to the material at rest
+        // mass flux through the front over rho0: its speed in the undisturbed material
         let lagrangian = |from: &At, to: &At| {
             ((to.stress - from.stress) * rho0 / (from.jacobian - to.jacobian)).sqrt() / rho0
         };
@@ -189,7 +189,7 @@ mod tests {
         let strong = ElasticPlastic::new(&ALUMINIUM, 3000.0).unwrap();
         assert_eq!(strong.precursor, None);
         assert!(strong.last.speed > 9300.0);
-        // without strength to speak of it is the Hugoniot
+        // with negligible strength the front is on the Hugoniot
         let soft = Plastic { yield_stress: 1.0, ..ALUMINIUM };
         let fluid = ElasticPlastic::new(&soft, 3000.0).unwrap().last;
         assert!((fluid.speed / (5330.0 + 1.34 * 3000.0) - 1.0).abs() < 1e-7);

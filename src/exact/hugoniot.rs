@@ -7,16 +7,16 @@
 //! (u - u1)^2 = (p - p1)(v1 - v),  Us = v1 (u - u1)/(v1 - v)
 //! ```
 //!
-//! Source: Meyers (1994), Dynamic Behavior of Materials, section 4.2. A material with a history,
-//! such as pores, is taken to it in one jump from the history ahead; where an elastic precursor
-//! outruns the shock ([`piston`]), there are two.
+//! Source: Meyers (1994), Dynamic Behavior of Materials, section 4.2. In a material with a history,
+//! such as a porous one, a single jump leads from the history ahead to the history behind; if an
+//! elastic precursor outruns the shock ([`piston`]), there are two jumps.
 
 use super::ExactError;
 use crate::material::{EosPoint, HistoryEos, energy_of_work};
 
-/// A state of a material.
+/// Thermodynamic state and velocity of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MaterialState {
+pub struct HugoniotState {
     /// Volume ratio J [-].
     pub jacobian: f64,
     /// Pressure [Pa].
@@ -25,32 +25,32 @@ pub struct MaterialState {
     pub e: f64,
     /// Velocity [m/s].
     pub u: f64,
-    /// Its history.
+    /// History variable of the material.
     pub history: f64,
     /// Sound speed [m/s].
     pub sound_speed: f64,
 }
 
-/// A jump into a state.
+/// A shock and the state behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShockFront {
-    /// The state behind it.
-    pub behind: MaterialState,
-    /// Its speed relative to the material ahead [m/s].
+    /// State behind the shock.
+    pub behind: HugoniotState,
+    /// Speed relative to the material ahead [m/s].
     pub speed: f64,
 }
 
-impl MaterialState {
-    /// The state at rest density and `pressure` [Pa], at velocity `u` [m/s].
-    pub fn at_rest(eos: &dyn HistoryEos, pressure: f64, u: f64) -> MaterialState {
+impl HugoniotState {
+    /// The state at the reference density, with `pressure` [Pa] and velocity `u` [m/s].
+    pub fn at_rest(eos: &dyn HistoryEos, pressure: f64, u: f64) -> HugoniotState {
         let history = eos.first_history().unwrap_or(0.0);
         Self::of(eos, 1.0, eos.energy_at(pressure), u, history)
     }
 
-    fn of(eos: &dyn HistoryEos, jacobian: f64, e: f64, u: f64, before: f64) -> MaterialState {
+    fn of(eos: &dyn HistoryEos, jacobian: f64, e: f64, u: f64, before: f64) -> HugoniotState {
         let (point, history) = eos.at(jacobian, e, before);
         let sound_speed = point.sound_speed_squared.sqrt();
-        MaterialState { jacobian, p: point.pressure, e, u, history, sound_speed }
+        HugoniotState { jacobian, p: point.pressure, e, u, history, sound_speed }
     }
 
     /// Density [kg/m3].
@@ -59,34 +59,35 @@ impl MaterialState {
     }
 }
 
-/// The jump from `ahead` to the volume ratio `jacobian`, towards +x: `None` where there is none.
-pub fn shock_to(eos: &dyn HistoryEos, ahead: &MaterialState, jacobian: f64) -> Option<ShockFront> {
+/// The shock towards +x from `ahead` to the volume ratio `jacobian`; `None` if there is no such
+/// shock.
+pub fn shock_to(eos: &dyn HistoryEos, ahead: &HugoniotState, jacobian: f64) -> Option<ShockFront> {
     let rho0 = eos.reference_density();
     let dv = (ahead.jacobian - jacobian) / rho0;
     let at = |e: f64| eos.at(jacobian, e, ahead.history);
     let known = ahead.e + 0.5 * ahead.p * dv;
     let (e, point, history): (f64, EosPoint, f64) = energy_of_work(at, known, -0.5 * dv, ahead.e);
     let p = point.pressure;
-    // past the greatest compression the energy would have to fall
+    // beyond the greatest compression the energy would have to decrease
     let holds = 1.0 - 0.5 * dv * point.energy_slope > 0.0;
-    let valid = holds && eos.fault(jacobian, e, history, p).is_none();
+    let valid = holds && eos.check_validity(jacobian, e, history, p).is_none();
     let jump = ((p - ahead.p) * dv).sqrt();
     if !(valid && p > ahead.p && jump.is_finite()) {
         return None;
     }
     let sound_speed = point.sound_speed_squared.sqrt();
-    let behind = MaterialState { jacobian, p, e, u: ahead.u + jump, history, sound_speed };
+    let behind = HugoniotState { jacobian, p, e, u: ahead.u + jump, history, sound_speed };
     Some(ShockFront { behind, speed: ahead.jacobian / rho0 * jump / dv })
 }
 
-/// The jump from `ahead` that gives the particle velocity `up` more [m/s], towards +x.
+/// The shock towards +x that raises the particle velocity of `ahead` by `up` [m/s].
 ///
 /// # Errors
 ///
-/// An `up` that is not positive, or that the material reaches by no shock.
+/// If `up` is not positive, or if no shock in the material reaches it.
 pub fn shock(
     eos: &dyn HistoryEos,
-    ahead: &MaterialState,
+    ahead: &HugoniotState,
     up: f64,
 ) -> Result<ShockFront, ExactError> {
     super::positive("the jump of velocity", up)?;
@@ -96,7 +97,7 @@ pub fn shock(
     };
     let (mut low, mut high) = (0.0, f64::NAN);
     let mut chi = 1e-4;
-    // from weak shocks on to one that is too strong
+    // scan from weak shocks to the first that is too strong
     while chi < 1.0 {
         match jump(chi) {
             Some((u, _)) if u < up => low = chi,
@@ -104,7 +105,7 @@ pub fn shock(
                 high = chi;
                 break;
             }
-            // nothing is there: too strong, if there were weaker ones
+            // no shock to this compression: too strong, if weaker ones exist
             None if low > 0.0 => {
                 high = chi;
                 break;
@@ -134,22 +135,22 @@ pub fn shock(
     }
 }
 
-/// The fronts that a piston of velocity `up` [m/s] sends into material at rest, the foremost first:
-/// one, or in a material that crushes an elastic precursor before the shock.
+/// The fronts that a piston of velocity `up` [m/s] sends into material at rest, foremost first: one
+/// shock, or, in a material that crushes, an elastic precursor followed by a shock.
 ///
 /// # Errors
 ///
 /// As for [`shock`].
 pub fn piston(
     eos: &dyn HistoryEos,
-    ahead: &MaterialState,
+    ahead: &HugoniotState,
     up: f64,
 ) -> Result<Vec<ShockFront>, ExactError> {
     let whole = shock(eos, ahead, up)?;
     if whole.behind.history == ahead.history {
         return Ok(vec![whole]);
     }
-    // the strongest jump that leaves the history as it is
+    // the strongest jump that does not change the history
     let keeps = |chi: f64| {
         let front = shock_to(eos, ahead, ahead.jacobian * (1.0 - chi))?;
         (front.behind.history == ahead.history).then_some(front)
@@ -167,7 +168,7 @@ pub fn piston(
         }
     }
     match precursor {
-        // one front that is faster than it overtakes it
+        // a single front that is faster would overtake the precursor
         Some(front) if low > 1e-12 && whole.speed < front.speed => {
             let rest = shock(eos, &front.behind, up - (front.behind.u - ahead.u))?;
             Ok(vec![front, rest])
@@ -176,15 +177,15 @@ pub fn piston(
     }
 }
 
-/// Follows the isentrope from `state` to the volume ratio `jacobian` by the classical Runge-Kutta
-/// rule in `steps` steps; the velocity changes as in a simple wave towards +x, du = -C dJ with
-/// C = c/J.
+/// The end of the isentrope from `state` to the volume ratio `jacobian`, integrated by the
+/// classical Runge-Kutta rule in `steps` steps. The velocity changes as in a simple wave towards
+/// +x: du = -C dJ with C = c/J.
 pub fn isentrope(
     eos: &dyn HistoryEos,
-    state: MaterialState,
+    state: HugoniotState,
     jacobian: f64,
     steps: usize,
-) -> MaterialState {
+) -> HugoniotState {
     let rho0 = eos.reference_density();
     let h = (jacobian - state.jacobian) / steps as f64;
     let (mut e, mut u, mut history) = (state.e, state.u, state.history);
@@ -202,7 +203,7 @@ pub fn isentrope(
         (e, u) = (e + sum(0), u + sum(1));
         (_, history) = eos.at(j + h, e, history);
     }
-    MaterialState::of(eos, jacobian, e, u, history)
+    HugoniotState::of(eos, jacobian, e, u, history)
 }
 
 #[cfg(test)]
@@ -213,7 +214,7 @@ mod tests {
 
     #[test]
     fn copper_is_on_its_us_up_line() {
-        let rest = MaterialState::at_rest(&COPPER, 0.0, 3.0);
+        let rest = HugoniotState::at_rest(&COPPER, 0.0, 3.0);
         for up in [1.0, 300.0, 2000.0] {
             let front = shock(&COPPER, &rest, up).unwrap();
             assert!((front.speed / (3940.0 + 1.489 * up) - 1.0).abs() < 1e-7, "{front:?}");
@@ -226,7 +227,7 @@ mod tests {
     #[test]
     fn a_gas_with_pressure_has_its_closed_shock() {
         let gas = IdealGas { rho0: 1.2, gamma: 1.4 };
-        let rest = MaterialState::at_rest(&gas, 1e5, 0.0);
+        let rest = HugoniotState::at_rest(&gas, 1e5, 0.0);
         let front = shock(&gas, &rest, 290.0).unwrap();
         let k = 0.25 * 2.4 * 290.0;
         let us = k + (k * k + 1.4 * 1e5 / 1.2f64).sqrt();
@@ -236,7 +237,7 @@ mod tests {
     #[test]
     fn the_jump_conditions_hold_for_each_equation() {
         let check = |eos: &dyn HistoryEos, up: f64| {
-            let rest = MaterialState::at_rest(eos, 0.0, 0.0);
+            let rest = HugoniotState::at_rest(eos, 0.0, 0.0);
             let mut ahead = rest;
             for front in piston(eos, &rest, up).unwrap() {
                 let rho1 = ahead.density(eos);
@@ -276,17 +277,17 @@ mod tests {
         solid: COPPER,
         distension: 1.25,
         elastic_pressure: 0.1e9,
-        compaction_pressure: 1.6e9,
+        full_compaction_pressure: 1.6e9,
     };
 
     #[test]
     fn a_slow_crush_has_a_precursor() {
-        let rest = MaterialState::at_rest(&POROUS, 0.0, 0.0);
+        let rest = HugoniotState::at_rest(&POROUS, 0.0, 0.0);
         let fronts = piston(&POROUS, &rest, 300.0).unwrap();
         assert_eq!(fronts.len(), 2);
         assert!((fronts[0].behind.p / 0.1e9 - 1.0).abs() < 1e-6, "{fronts:?}");
         assert!(fronts[0].speed > 3900.0 && fronts[1].speed < 3900.0);
-        // crushed whole: the solid's own Hugoniot, as if from the porous volume
+        // fully crushed: the Hugoniot of the solid, as if from the porous volume
         let end = fronts[1].behind;
         assert!(end.history == 1.0 && end.p > 1.6e9);
         assert_eq!(end.p, EquationOfState::pressure(&COPPER, end.jacobian * 1.25, end.e));
@@ -304,7 +305,7 @@ mod tests {
             omega: 0.30,
             energy: 7.0e9,
         };
-        let start = MaterialState::at_rest(&tnt, 0.0, 0.0);
+        let start = HugoniotState::at_rest(&tnt, 0.0, 0.0);
         let form = |c: f64, v: f64| {
             tnt.a * (-4.15 * v).exp() + tnt.b * (-0.95 * v).exp() + c * v.powf(-1.3)
         };

@@ -1,24 +1,26 @@
-//! The impact of two plates in the coordinates of a scene: which body strikes which, where and
-//! when they touch, and the true solution at the times asked for.
+//! The impact of two plates in the coordinates of a scene: which body strikes which, the position
+//! and time of contact, and the true solution at the requested times.
 //!
-//! The frame of `super::tracking` and [`super::wave_interactions`] has the flyer on the left and the
-//! target at rest at x >= 0, contact at t = 0. Here the flyer may come from either side, both
-//! bodies may move, and there may be a gap. Profiles are scored while the target's shock has not
-//! reached its rear; the waves are followed beyond, off the free rear.
+//! In the frame of `super::tracking` and [`super::wave_interactions`] the flyer is on the left, the
+//! target is at rest at x >= 0, and contact is at t = 0. Here the flyer may come from either side,
+//! both bodies may move, and there may be a gap. Profiles are scored until the target's shock
+//! reaches its rear; the waves are also followed after their reflection from the free rear.
 
-use super::profile::{History, HistoryPoint, Landmarks, Path, PathKind, Point, Profile};
+use super::profile::Plate;
+use super::profile::{History, HistoryPoint, Landmarks, Path, PathKind, Profile, ProfilePoint};
 use super::release::Release;
 use super::tracking::{
-    END_RECORD, FIRST_PROBE, FLYER_FACE_RECORD, INTERFACE_RECORD, REAR_RECORD, Setup, Tracker,
+    END_RECORD, FIRST_PROBE, FLYER_FACE_RECORD, INTERFACE_RECORD, REAR_RECORD, Tracker,
+    TrackingSetup,
 };
-use super::wave_interactions::{Chain, Plate};
+use super::wave_interactions::Chain;
 use super::{ExactError, finite};
 use crate::material::MieGruneisen;
 
-/// A plate as it stands at time 0.
+/// A plate at time 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImpactBody {
-    /// What it is made of.
+    /// Material of the plate.
     pub material: MieGruneisen,
     /// Lower face [m].
     pub lower: f64,
@@ -28,11 +30,11 @@ pub struct ImpactBody {
     pub velocity: f64,
 }
 
-/// How finely the waves are followed.
+/// Resolution of the waves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Accuracy {
-    /// Fronts of a fan that falls from P2 to 0; the error falls as its square, the cost rises
-    /// as its square.
+    /// Number of fronts of a fan that falls from P2 to 0. The error is proportional to its inverse
+    /// square, the cost to its square.
     pub wavelets: usize,
 }
 
@@ -42,12 +44,12 @@ impl Default for Accuracy {
     }
 }
 
-/// A material point whose history is asked for.
+/// A material point whose history is requested.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tracer {
-    /// The plate that it is in.
+pub struct TracedPoint {
+    /// Plate that contains the point.
     pub plate: Plate,
-    /// Its place at time 0 [m].
+    /// Position at time 0 [m].
     pub x: f64,
 }
 
@@ -56,70 +58,71 @@ pub struct Tracer {
 pub struct Snapshot {
     /// Time [s].
     pub time: f64,
-    /// Both plates by x; `None` once the shock has reached the target's rear.
+    /// Both plates, sorted by x; `None` once the shock has reached the target's rear.
     pub profile: Option<Profile>,
-    /// Both plates by x, also after the shock has reached the target's rear; `None` once the waves
-    /// are not followed any further ([`Solution::stopped`]).
+    /// Both plates, sorted by x, also after the shock has reached the target's rear; `None` once
+    /// the waves are no longer followed ([`Solution::stopped`]).
     pub whole: Option<Profile>,
     /// The target alone.
     pub target: Option<Profile>,
-    /// What stands out in the target; `None` before contact and with the profile.
+    /// Features of the target's profile; `None` before contact, and where the profile is `None`.
     pub landmarks: Option<Landmarks>,
 }
 
 /// The true solution of an impact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
-    /// One for each time asked for, in the order asked.
+    /// One snapshot per requested time, in the order of the request.
     pub snapshots: Vec<Snapshot>,
-    /// The target's struck face.
+    /// The target's impact face.
     pub interface: History,
-    /// The flyer's face on the target: apart from it once the plates have parted.
+    /// The flyer's impact face; it leaves the target's once the plates separate.
     pub flyer_face: History,
     /// The flyer's free rear.
     pub flyer_rear: History,
     /// The target's free rear.
     pub target_rear: History,
-    /// One for each tracer, in the order asked.
+    /// One history per tracer, in the order of the request.
     pub tracers: Vec<History>,
-    /// The lines of the x-t diagram.
+    /// Paths in the x-t diagram.
     pub paths: Vec<Path>,
-    /// States and times that need no tracking (times from contact, velocities relative to the
-    /// target).
+    /// States and times that need no tracking; times count from contact, velocities are relative to
+    /// the target.
     pub release: Release,
-    /// When the plates first part [s].
+    /// Time at which the plates first separate [s].
     pub separation_time: Option<f64>,
-    /// When the shock reaches the target's rear: infinite if that is after the last time asked.
+    /// Time at which the shock reaches the target's rear [s]; infinite if that is after the last
+    /// requested time.
     pub valid_until: f64,
-    /// Time from which the waves are not followed any further [s], and the reason; `None` if they
-    /// are followed to the last time asked. Histories and paths end there.
+    /// Time from which the waves are no longer followed [s], and the reason; `None` if they are
+    /// followed to the last requested time. Histories and paths end there.
     pub stopped: Option<(f64, ExactError)>,
-    /// Wave interactions followed.
+    /// Number of wave interactions followed.
     pub interactions: usize,
 }
 
 /// The impact of a flyer on a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
-    /// The body that strikes.
+    /// The striking body.
     pub flyer: ImpactBody,
-    /// The body that is struck, and scored.
+    /// The struck body, which is scored.
     pub target: ImpactBody,
     /// Whether the flyer comes from the side of +x.
     pub mirrored: bool,
     /// Closing speed [m/s].
     pub speed: f64,
-    /// When they touch [s].
+    /// Time of contact [s].
     pub contact_time: f64,
-    /// No shock is at the target's rear before this; see [`Solution::valid_until`] [s].
+    /// Time before which no shock is at the target's rear [s]; see [`Solution::valid_until`].
     pub valid_until: f64,
-    /// Whether the target's rear is a free surface; otherwise waves are followed only until one
-    /// reaches it.
+    /// Whether the target's rear is a free surface; otherwise the waves are followed only until one
+    /// of them reaches it.
     pub free_rear: bool,
 }
 
 impl Impact {
-    /// Two bodies that approach each other, or touch and approach.
+    /// The impact of two bodies that approach each other, with or without a gap.
     pub fn new(flyer: ImpactBody, target: ImpactBody) -> Result<Impact, ExactError> {
         for body in [&flyer, &target] {
             finite("a body's lower face", body.lower)?;
@@ -142,7 +145,7 @@ impl Impact {
         if speed <= 0.0 {
             return Err(ExactError::NoImpact("the bodies do not approach each other"));
         }
-        // a gap within rounding of the faces' coordinates is none
+        // a gap within rounding of the faces' coordinates counts as contact
         let gap = if gap < 1e-9 * size { 0.0 } else { gap };
         let mut impact = Impact {
             flyer,
@@ -163,13 +166,13 @@ impl Impact {
         self.flyer.upper - self.flyer.lower
     }
 
-    /// The document's chain, in its own frame: see [`Impact::to_lab_x`].
+    /// The chain of Burghardt (2010) in its own frame; see [`Impact::to_lab_x`].
     pub fn chain(&self, last_state: usize) -> Result<Chain, ExactError> {
         let (f, t) = (self.flyer.material, self.target.material);
         Chain::new(f, t, self.speed, self.thickness(), last_state)
     }
 
-    /// The true solution's states and times, in the frame of the target at rest.
+    /// States and times of the true solution, in the frame of the target at rest.
     pub fn release(&self, last_state: usize) -> Result<Release, ExactError> {
         let (f, t) = (self.flyer.material, self.target.material);
         Release::new(f, t, self.speed, self.thickness(), last_state)
@@ -179,28 +182,29 @@ impl Impact {
         if self.mirrored { -1.0 } else { 1.0 }
     }
 
-    /// The target's struck face at time 0 [m].
+    /// The target's impact face at time 0 [m].
     fn face(&self) -> f64 {
         if self.mirrored { self.target.upper } else { self.target.lower }
     }
 
-    /// Place in the scene at the scene's time `t` of what is at `x` in the frame of the target
-    /// at rest [m].
+    /// Position in the scene [m] at the scene's time `t` [s] of a point at `x` in the frame of the
+    /// target at rest.
     pub fn to_lab_x(&self, t: f64, x: f64) -> f64 {
         self.face() + self.target.velocity * t + self.sign() * x
     }
 
-    /// Velocity in the scene of what has `u` in the frame of the target at rest [m/s].
+    /// Velocity in the scene [m/s] of a point that has the velocity `u` in the frame of the target
+    /// at rest.
     pub fn to_lab_u(&self, u: f64) -> f64 {
         self.target.velocity + self.sign() * u
     }
 
-    /// The point in the scene at the scene's time `t`.
-    fn lab_point(&self, t: f64, q: &Point) -> Point {
-        Point { x: self.to_lab_x(t, q.x), u: self.to_lab_u(q.u), ..*q }
+    /// The profile point in the coordinates of the scene, at the scene's time `t`.
+    fn lab_point(&self, t: f64, q: &ProfilePoint) -> ProfilePoint {
+        ProfilePoint { x: self.to_lab_x(t, q.x), u: self.to_lab_u(q.u), ..*q }
     }
 
-    fn profile_to_lab(&self, t: f64, points: &[Point]) -> Profile {
+    fn profile_to_lab(&self, t: f64, points: &[ProfilePoint]) -> Profile {
         let mut points: Vec<_> = points.iter().map(|q| self.lab_point(t, q)).collect();
         if self.mirrored {
             points.reverse();
@@ -208,8 +212,8 @@ impl Impact {
         Profile { points }
     }
 
-    /// The chain's profile over the whole target at the scene's time `t`: the black line of
-    /// figure 4. `None` before contact and when it has ceased to hold.
+    /// The chain's profile over the whole target at the scene's time `t`: the black line of figure
+    /// 4 of Burghardt (2010). `None` before contact, and when the chain no longer holds.
     pub fn chain_profile(&self, chain: &Chain, t: f64) -> Option<Profile> {
         let since = t - self.contact_time;
         if t > self.valid_until {
@@ -223,12 +227,12 @@ impl Impact {
         Some(self.profile_to_lab(t, &profile.points))
     }
 
-    /// The true solution at `times` (in any order) and at the `tracers`; histories and paths
-    /// reach to the last of the times, or to [`Solution::stopped`].
+    /// The true solution at `times` (in any order) and for the `tracers`. Histories and paths
+    /// extend to the last of the times, or to [`Solution::stopped`].
     pub fn solve(
         &self,
         times: &[f64],
-        tracers: &[Tracer],
+        tracers: &[TracedPoint],
         accuracy: Accuracy,
     ) -> Result<Solution, ExactError> {
         for &t in times {
@@ -236,12 +240,12 @@ impl Impact {
         }
         let release = self.release(6)?;
         let flyer_face = if self.mirrored { self.flyer.lower } else { self.flyer.upper };
-        let probe = |tracer: &Tracer| match tracer.plate {
+        let probe = |tracer: &TracedPoint| match tracer.plate {
             Plate::Flyer => self.sign() * (tracer.x - flyer_face),
             Plate::Target => self.sign() * (tracer.x - self.face()),
         };
         let probes: Vec<(Plate, f64)> = tracers.iter().map(|t| (t.plate, probe(t))).collect();
-        let setup = Setup {
+        let setup = TrackingSetup {
             flyer: self.flyer.material,
             target: self.target.material,
             speed: self.speed,
@@ -312,8 +316,8 @@ impl Impact {
         }
     }
 
-    /// The ends of a plate that nothing has touched, `since` contact.
-    fn untouched(&self, plate: Plate, since: f64) -> Vec<Point> {
+    /// End points of the undisturbed plate, at the time `since` after contact.
+    fn untouched(&self, plate: Plate, since: f64) -> Vec<ProfilePoint> {
         let (ends, u, rho) = match plate {
             Plate::Flyer => {
                 let face = self.speed * since;
@@ -323,11 +327,11 @@ impl Impact {
                 ([0.0, self.target.upper - self.target.lower], 0.0, self.target.material.rho0)
             }
         };
-        ends.map(|x| Point { x, u, rho, ..Point::default() }).to_vec()
+        ends.map(|x| ProfilePoint { x, u, rho, ..ProfilePoint::default() }).to_vec()
     }
 
-    /// What stands out in the target's profile `points` (frame of the target at rest).
-    fn landmarks(&self, time: f64, points: &[Point], release: &Release) -> Landmarks {
+    /// Features of the target's profile `points` (frame of the target at rest).
+    fn landmarks(&self, time: f64, points: &[ProfilePoint], release: &Release) -> Landmarks {
         let since = time - self.contact_time;
         let (rho2, e2) = release.plateau(Plate::Target);
         let (rho2_flyer, e2_flyer) = release.plateau(Plate::Flyer);
@@ -347,17 +351,17 @@ impl Impact {
                 if since <= release.head_time { interface } else { front.x - behind * compressed };
             lab_range(from, front.x)
         });
-        // a second plateau: where the pressure stays at state 4's, behind the fan
+        // the second plateau: the pressure stays at that of state 4, behind the fan
         let p4 = release.state(4).map(|s| s.p);
-        let plateau_4 = p4.and_then(|p4| {
-            let near = |q: &Point| (q.p - p4).abs() < 3e-3 * p2;
+        let second_plateau = p4.and_then(|p4| {
+            let near = |q: &ProfilePoint| (q.p - p4).abs() < 3e-3 * p2;
             let until_front = points.iter().take_while(|q| front.is_some_and(|f| q.x < f.x));
-            let points: Vec<&Point> = until_front.collect();
+            let points: Vec<&ProfilePoint> = until_front.collect();
             let last = points.iter().rposition(|q| near(q))?;
             let first = points[..last].iter().rposition(|q| !near(q)).map_or(0, |k| k + 1);
             (first < last).then(|| {
-                // the ends lie on the lines to the next points out
-                let cross = |inside: &Point, outside: &Point| {
+                // interpolate each end between the last point inside and the next one outside
+                let cross = |inside: &ProfilePoint, outside: &ProfilePoint| {
                     let level = p4 + (3e-3 * p2).copysign(outside.p - p4);
                     let w = (level - inside.p) / (outside.p - inside.p);
                     inside.x + w.clamp(0.0, 1.0) * (outside.x - inside.x)
@@ -384,13 +388,13 @@ impl Impact {
             e2,
             rho2_flyer,
             e2_flyer,
-            plateau_4,
-            p4: p4.filter(|_| plateau_4.is_some()),
+            second_plateau,
+            p4: p4.filter(|_| second_plateau.is_some()),
             behind_shock: front.map_or(0.0, |q| q.p),
         }
     }
 
-    /// History of a recorded point that was at `x` (frame of the target at rest) at contact.
+    /// History of a recorded point that is at `x` (frame of the target at rest) at contact.
     fn history(&self, tracker: &Tracker, number: usize, plate: Plate, x: f64) -> History {
         let u0 = match plate {
             Plate::Flyer => self.speed,
@@ -416,7 +420,7 @@ impl Impact {
         History { points }
     }
 
-    /// The lines of the x-t diagram until the tracker's time.
+    /// Paths of the x-t diagram up to the tracker's time.
     fn paths(&self, tracker: &Tracker, histories: [(&History, Plate, PathKind); 3]) -> Vec<Path> {
         let lab = |&[since, x]: &[f64; 2]| {
             let t = since + self.contact_time;

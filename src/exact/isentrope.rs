@@ -1,35 +1,35 @@
-//! Isentropes of a Mie-Grueneisen material, to rounding.
+//! Isentropes of a Mie-Grueneisen material, accurate to rounding.
 //!
 //! ```text
 //! de/dchi = (f(chi) + gamma0 rho0 e)/rho0      (de = -p dv)
 //! du/dchi = +- C,  C = sqrt((f' + gamma0 p)/rho0)   the Lagrangian sound speed, rho c/rho0
 //! ```
 //!
-//! Integrated by the classical Runge-Kutta rule with steps of at most 1/256 in chi that end at
-//! chi = 0, where f'' jumps.
+//! The classical Runge-Kutta rule integrates them with steps of at most 1/256 in chi. A step ends
+//! at chi = 0, where f'' jumps.
 
 use super::ExactError;
-use super::wave::{State, sound_speed};
+use super::wave::{WaveState, sound_speed};
 use crate::material::{EquationOfState, MieGruneisen};
 
-/// Greatest step in compression.
+/// Greatest step in compression chi [-].
 const STEP: f64 = 1.0 / 256.0;
 
-/// Follows the isentrope through `state` to the compression `chi`; `side` is +1 for a wave that
-/// runs to the right (du = C dchi), -1 to the left.
+/// Follows the isentrope through `state` to the compression `chi`. `side` is +1 for a wave that
+/// runs to the right (du = C dchi), -1 for one that runs to the left.
 pub(super) fn to_compression(
     m: &MieGruneisen,
-    state: State,
+    state: WaveState,
     side: f64,
     chi: f64,
-) -> Result<State, ExactError> {
+) -> Result<WaveState, ExactError> {
     if state.chi * chi < 0.0 {
         let middle = to_compression(m, state, side, 0.0)?;
         return to_compression(m, middle, side, chi);
     }
     let steps = ((chi - state.chi).abs() / STEP).ceil().max(1.0);
     let h = (chi - state.chi) / steps;
-    // a compression of -0 would be on the side of tension: both sides agree at 0
+    // chi = -0 would select the tension branch; both branches agree at 0
     let slope = |chi: f64, e: f64| {
         let p = m.pressure(1.0 - chi, e);
         (p / m.rho0, ((m.cold_slope(chi) + m.gamma0 * p) / m.rho0).sqrt())
@@ -44,7 +44,7 @@ pub(super) fn to_compression(
         e += h / 6.0 * (a + 2.0 * (b + c) + d);
         u += side * h / 6.0 * (ua + 2.0 * (ub + uc) + ud);
     }
-    let end = State { chi, p: m.pressure(1.0 - chi, e), u, e };
+    let end = WaveState { chi, p: m.pressure(1.0 - chi, e), u, e };
     if end.p.is_finite() && u.is_finite() {
         Ok(end)
     } else {
@@ -69,23 +69,23 @@ pub(super) fn least_pressure(m: &MieGruneisen) -> f64 {
 /// becomes imaginary on the way.
 pub(super) fn to_pressure(
     m: &MieGruneisen,
-    state: State,
+    state: WaveState,
     side: f64,
     p: f64,
-) -> Result<State, ExactError> {
+) -> Result<WaveState, ExactError> {
     if p <= least_pressure(m) {
         return Err(ExactError::State {
             what: "no isentrope reaches a tension of rho0 c0^2/gamma0 or more",
             chi: state.chi,
         });
     }
-    let remaining = |state: &State| {
+    let remaining = |state: &WaveState| {
         let c = sound_speed(m, state);
-        // a change that rounding in chi would swallow
+        // tolerance: a change of chi that is lost in rounding
         ((p - state.p) / (m.rho0 * c * c), 2e-16)
     };
     let end = search(m, state, side, "an isentrope does not reach its pressure", remaining)?;
-    Ok(State { p, ..end })
+    Ok(WaveState { p, ..end })
 }
 
 /// Follows the isentrope through `state` to the velocity `u` [m/s].
@@ -96,31 +96,31 @@ pub(super) fn to_pressure(
 /// becomes imaginary on the way.
 pub(super) fn to_velocity(
     m: &MieGruneisen,
-    state: State,
+    state: WaveState,
     side: f64,
     u: f64,
-) -> Result<State, ExactError> {
-    let remaining = |state: &State| {
+) -> Result<WaveState, ExactError> {
+    let remaining = |state: &WaveState| {
         let c = sound_speed(m, state);
-        // a change that rounding in chi or in the velocity would swallow
+        // tolerance: a change that is lost in the rounding of chi or of the velocity
         (side * (u - state.u) / c, 1e-15 * (1.0 + u.abs() / c))
     };
     let end = search(m, state, side, "an isentrope does not reach its velocity", remaining)?;
-    Ok(State { u, ..end })
+    Ok(WaveState { u, ..end })
 }
 
-/// Changes of compression tried before a search ends.
+/// Greatest number of Newton steps in one search.
 const ROUNDS: usize = 200;
 
-/// Newton's rule along the isentrope through `state`, kept within a bracket. `remaining` gives
-/// Newton's change of compression from a state, and the change below which the state is accepted.
+/// Newton's method along the isentrope through `state`, kept within a bracket. `remaining` returns
+/// Newton's change of compression at a state, and the change below which the state is accepted.
 fn search(
     m: &MieGruneisen,
-    mut state: State,
+    mut state: WaveState,
     side: f64,
     what: &'static str,
-    remaining: impl Fn(&State) -> (f64, f64),
-) -> Result<State, ExactError> {
+    remaining: impl Fn(&WaveState) -> (f64, f64),
+) -> Result<WaveState, ExactError> {
     // pressure and velocity rise with chi wherever the sound speed is real
     let (mut low, mut high) = (f64::NEG_INFINITY, m.limiting_compression());
     let mut nearest = (f64::INFINITY, state);
@@ -145,14 +145,14 @@ fn search(
         }
         let d = d.clamp(-0.2, 0.2 * (1.0 - m.s * state.chi).min(1.0));
         let mut chi = state.chi + d;
-        // rounding may put the root beside a bracket that has closed on it
+        // rounding may put the root just outside of a bracket that has closed on it
         let slack = 1e-12 * (1.0 + chi.abs());
         if chi < low - slack || chi > high + slack {
             chi = 0.5 * (low + high);
         }
         state = to_compression(m, state, side, chi)?;
     }
-    // far from rest, rounding in the pressure is more than that in chi
+    // far from rest, the rounding error of the pressure exceeds that of chi
     let (d, state) = nearest;
     if d <= 1e-13 * (1.0 + state.chi.abs()) {
         return Ok(state);
@@ -178,7 +178,7 @@ mod tests {
 
     #[test]
     fn a_velocity_is_reached_from_both_sides() {
-        let rest = State { u: 7.0, ..State::default() };
+        let rest = WaveState { u: 7.0, ..WaveState::default() };
         for (side, u) in [(1.0, 300.0), (-1.0, 300.0), (1.0, -100.0)] {
             let there = to_velocity(&COPPER, rest, side, u).unwrap();
             assert!((there.p > 0.0) == (side * u > 0.0), "{there:?}");

@@ -1,19 +1,20 @@
-//! Closed and near-exact solutions that runs are held against.
+//! Closed and near-exact solutions, the references for computed results.
 //!
-//! - [`wave_interactions`]: the source document's chain of impedance matches, rarefactions taken as shocks;
-//! - [`impact`]: the true solution of a plate impact, with rarefaction fans, in lab coordinates
-//!   (`tracking` stands behind it: front tracking in Lagrangian coordinates);
-//! - [`release`]: the closed-form states and times of that solution, by release isentropes;
+//! - [`wave_interactions`]: the chain of impedance matches of Burghardt (2010), which treats
+//!   rarefactions as shocks;
+//! - [`impact`]: the true solution of a plate impact, with rarefaction fans, in laboratory
+//!   coordinates (computed in `tracking`: front tracking in Lagrangian coordinates);
+//! - [`release`]: states and times of that solution in closed form, by release isentropes;
 //! - [`hugoniot`]: shocks and isentropes of any equation of state;
 //! - [`simple_wave`]: a smooth wave that a piston sends into material at rest;
-//! - [`riemann`]: two ideal gases at a diaphragm; [`wall`]: one body run into a wall, and
-//!   [`elastic_plastic`]: one that has strength;
-//! - [`plane`]: references in two dimensions, and what a plate impact is there;
-//! - [`mod@score`]: how a computed profile is held against one of these.
+//! - [`riemann`]: two ideal gases separated by a diaphragm;
+//! - [`wall`]: one body that strikes a wall, and [`elastic_plastic`]: one with strength;
+//! - [`plane`]: references in two dimensions, and the plate impact in two dimensions;
+//! - [`mod@score`]: the errors of a computed profile against one of these solutions.
 //!
-//! Knows materials, but no particles, grid, scene or files. But for [`plane`], one dimension,
-//! uniaxial strain; no strength (but for [`elastic_plastic`] and [`plane::vortex`]), no heat conduction. SI units;
-//! pressure is positive in compression.
+//! These modules know materials, but no particles, grid, scene or files. All except [`plane`] are
+//! one-dimensional, in uniaxial strain. Only [`elastic_plastic`] and [`plane::vortex`] include
+//! strength; none includes heat conduction. SI units; pressure is positive in compression.
 
 #[cfg(test)]
 mod checks;
@@ -35,45 +36,47 @@ mod wave_collision;
 pub mod wave_interactions;
 
 pub use elastic_plastic::{Behind, ElasticPlastic, Plastic};
-pub use hugoniot::{MaterialState, ShockFront};
-pub use impact::{Accuracy, Impact, ImpactBody, Snapshot, Solution, Tracer};
+pub use hugoniot::{HugoniotState, ShockFront};
+pub use impact::{Accuracy, Impact, ImpactBody, Snapshot, Solution, TracedPoint};
 pub use plane::{
     Displaced, EdgeRelease, Gap, Gresho, MassPoint, Noh, PlanePoint, PlaneWave, Separation,
     ShearLayer, ShearProfile, Symmetry, Turned, Vortex,
 };
-pub use profile::{History, HistoryPoint, Landmarks, Path, PathKind, Point, Profile};
+pub use profile::{History, HistoryPoint, Landmarks, Path, PathKind, Plate, Profile, ProfilePoint};
 pub use release::Release;
-pub use riemann::{GasState, Riemann};
-pub use score::{Errors, Sample, WaveErrors, cell_average, interface_errors, score, score_density};
-pub use simple_wave::{Drive, SimpleWave};
-pub use wall::{WallImpact, WallMaterial};
-pub use wave_interactions::{Chain, ChainState, ChainWave, Plate, WaveKind};
+pub use riemann::{GasState, RiemannSolution};
+pub use score::{
+    Errors, ScoreSample, WaveErrors, cell_average, interface_errors, score, score_density,
+};
+pub use simple_wave::{Drive, SimpleWaveSolution};
+pub use wall::{WallImpactSolution, WallMaterial};
+pub use wave_interactions::{Chain, ChainState, ChainWave, WaveKind};
 
-/// Why an exact solution could not be had.
+/// Reasons why an exact solution cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ExactError {
     /// A number that is not positive and finite, or out of range.
     #[error("{name} is {value}, but must be {allowed}")]
     Number {
-        /// What the number is.
+        /// Name of the number.
         name: &'static str,
         /// Its value.
         value: f64,
-        /// What is allowed.
+        /// Allowed values.
         allowed: &'static str,
     },
     /// The bodies do not approach each other, or overlap.
     #[error("no impact: {0}")]
     NoImpact(&'static str),
-    /// A state that the material cannot bear.
+    /// A state that the material cannot reach.
     #[error("{what}, at compression chi = {chi}")]
     State {
-        /// What is wrong with it.
+        /// Description of the fault.
         what: &'static str,
         /// Compression 1 - rho0/rho [-].
         chi: f64,
     },
-    /// Two gases parting so fast that a vacuum opens.
+    /// Two gases that separate so fast that a vacuum opens.
     #[error(
         "the gases part at {difference} m/s and leave a vacuum; less than {limit} m/s is needed"
     )]
@@ -83,7 +86,7 @@ pub enum ExactError {
         /// The speed at which a vacuum opens [m/s].
         limit: f64,
     },
-    /// The search for a state between two waves did not end.
+    /// The search for a state between two waves did not converge.
     #[error(
         "no state found between two waves meeting at t = {time} s, X = {place} m: the equation of \
          state does not stretch so far"
@@ -91,21 +94,22 @@ pub enum ExactError {
     NoConvergence {
         /// Time [s].
         time: f64,
-        /// Lagrangian place [m].
+        /// Lagrangian position [m].
         place: f64,
     },
-    /// What the waves meet at the target's rear is not known.
+    /// The target's rear may not be a free surface, so the reflection of the waves there is not
+    /// known.
     #[error(
         "the target's rear is not a free surface throughout: a body or a side of the domain lies \
          beyond it, or its material can fail"
     )]
     RearNotFree,
-    /// More waves than can be followed.
+    /// The solution has more waves than can be followed.
     #[error("more than {limit} wave interactions before t = {time} s")]
     TooManyWaves {
         /// Greatest number of interactions.
         limit: usize,
-        /// The time reached [s].
+        /// Time reached [s].
         time: f64,
     },
 }

@@ -1,11 +1,11 @@
-//! Piecewise-linear profiles in space and histories in time, and what stands out in them.
+//! Piecewise-linear profiles in space and histories in time, and the features of profiles.
 //!
-//! Knows no materials.
+//! This module knows no materials.
 
-/// The state at one place.
+/// State at one position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Point {
-    /// Place, Eulerian [m].
+pub struct ProfilePoint {
+    /// Eulerian position [m].
     pub x: f64,
     /// Pressure [Pa].
     pub p: f64,
@@ -17,13 +17,13 @@ pub struct Point {
     pub e: f64,
 }
 
-impl Point {
-    /// The state at `x` on the straight line from `self` to `other`.
-    fn towards(&self, other: &Point, x: f64) -> Point {
+impl ProfilePoint {
+    /// The state at `x`, interpolated linearly between `self` and `other`.
+    fn towards(&self, other: &ProfilePoint, x: f64) -> ProfilePoint {
         let width = other.x - self.x;
         let w = if width > 0.0 { ((x - self.x) / width).clamp(0.0, 1.0) } else { 0.5 };
         let mix = |a: f64, b: f64| a + w * (b - a);
-        Point {
+        ProfilePoint {
             x,
             p: mix(self.p, other.p),
             u: mix(self.u, other.u),
@@ -33,17 +33,17 @@ impl Point {
     }
 }
 
-/// States along x joined by straight lines; x does not decrease, and is doubled where the
-/// solution jumps.
+/// Piecewise-linear states along x. x does not decrease; where the solution jumps, two points have
+/// the same x.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Profile {
-    /// The corners, by x.
-    pub points: Vec<Point>,
+    /// Corner points, sorted by x.
+    pub points: Vec<ProfilePoint>,
 }
 
 impl Profile {
-    /// The state at `x`, the mean of both sides where it jumps; `None` outside.
-    pub fn at(&self, x: f64) -> Option<Point> {
+    /// The state at `x`; at a jump the mean of both sides; `None` outside of the profile.
+    pub fn at(&self, x: f64) -> Option<ProfilePoint> {
         let (first, last) = self.span()?;
         if !(first..=last).contains(&x) {
             return None;
@@ -51,10 +51,10 @@ impl Profile {
         let after = self.points.partition_point(|q| q.x <= x);
         let from = self.points.partition_point(|q| q.x < x);
         if after > from {
-            // x stands on corners: the mean of the first and the last of them
+            // x coincides with corners: the mean of the first and the last of them
             let (a, b) = (self.points[from], self.points[after - 1]);
-            let mean = |f: fn(&Point) -> f64| 0.5 * (f(&a) + f(&b));
-            return Some(Point {
+            let mean = |f: fn(&ProfilePoint) -> f64| 0.5 * (f(&a) + f(&b));
+            return Some(ProfilePoint {
                 x,
                 p: mean(|q| q.p),
                 u: mean(|q| q.u),
@@ -65,7 +65,7 @@ impl Profile {
         Some(self.points[after - 1].towards(&self.points[after], x))
     }
 
-    /// The part between `lower` and `upper`; its ends are cut on the straight lines.
+    /// The part between `lower` and `upper`; its end points are interpolated linearly.
     pub fn between(&self, lower: f64, upper: f64) -> Profile {
         let mut points = Vec::new();
         for pair in self.points.windows(2) {
@@ -92,20 +92,20 @@ impl Profile {
     }
 }
 
-/// What stands out in an exact profile: the zones and levels that scoring looks at. All x are
-/// in the coordinates of the profile.
+/// Features of an exact profile: the zones and levels that the scoring uses. All x are in the
+/// coordinates of the profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Landmarks {
-    /// +1 where the shock runs towards +x, -1 where it runs towards -x.
+    /// +1 if the shock runs towards +x, -1 if it runs towards -x.
     pub direction: f64,
-    /// The struck face of the scored body [m].
+    /// Impact face of the scored body [m].
     pub interface: f64,
-    /// The scored body's other end [m].
+    /// Opposite end of the scored body [m].
     pub far_end: f64,
-    /// The shock [m].
+    /// Position of the shock [m].
     pub shock: Option<f64>,
-    /// Lower and upper x of the first plateau: from the head of the fan (from the interface,
-    /// while there is no fan in the body) to the shock [m].
+    /// Lower and upper x of the first plateau [m]: from the head of the fan (from the interface,
+    /// while the body has no fan) to the shock.
     pub plateau: Option<[f64; 2]>,
     /// Pressure of the first plateau [Pa].
     pub p2: f64,
@@ -113,24 +113,25 @@ pub struct Landmarks {
     pub rho2: f64,
     /// Specific internal energy of the first plateau in the scored body [J/kg].
     pub e2: f64,
-    /// Density behind the shock in the striking body [kg/m3]; NaN if there is none.
+    /// Density behind the shock in the flyer [kg/m3]; NaN if there is none.
     pub rho2_flyer: f64,
-    /// Specific internal energy behind the shock in the striking body [J/kg]; NaN if none.
+    /// Specific internal energy behind the shock in the flyer [J/kg]; NaN if there is none.
     pub e2_flyer: f64,
-    /// Lower and upper x where the pressure is within 0.3 % of P2 of the second plateau's [m].
-    pub plateau_4: Option<[f64; 2]>,
+    /// Lower and upper x of the range where the pressure differs from `p4` by at most 0.3 % of `p2`
+    /// [m].
+    pub second_plateau: Option<[f64; 2]>,
     /// Pressure of the second plateau [Pa].
     pub p4: Option<f64>,
     /// Pressure directly behind the shock [Pa].
     pub behind_shock: f64,
 }
 
-/// The state of one place at one time.
+/// State of one material point at one time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HistoryPoint {
     /// Time [s].
     pub t: f64,
-    /// Place [m].
+    /// Position [m].
     pub x: f64,
     /// Velocity [m/s].
     pub u: f64,
@@ -138,17 +139,18 @@ pub struct HistoryPoint {
     pub p: f64,
 }
 
-/// States of one material point joined by straight lines in time; t is doubled at jumps.
+/// History of one material point, piecewise linear in time; at a jump, two points have the same t.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct History {
-    /// The corners, by t.
+    /// Corner points, sorted by t.
     pub points: Vec<HistoryPoint>,
 }
 
 impl History {
-    /// The state at `t`, the mean of both sides where it jumps; `None` outside.
+    /// The state at `t`; at a jump the mean of both sides; `None` outside of the history.
     pub fn at(&self, t: f64) -> Option<HistoryPoint> {
-        let as_profile = |h: &HistoryPoint| Point { x: h.t, p: h.p, u: h.u, rho: h.x, e: 0.0 };
+        let as_profile =
+            |h: &HistoryPoint| ProfilePoint { x: h.t, p: h.p, u: h.u, rho: h.x, e: 0.0 };
         let from = self.points.partition_point(|h| h.t < t).saturating_sub(1);
         let after = (self.points.partition_point(|h| h.t <= t) + 1).min(self.points.len());
         let near = Profile { points: self.points[from..after].iter().map(as_profile).collect() };
@@ -157,31 +159,41 @@ impl History {
     }
 }
 
-/// What a path in the x-t diagram is.
+/// One of the two plates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plate {
+    /// The striking body.
+    Flyer,
+    /// The struck body, which is scored.
+    Target,
+}
+
+/// Kind of a path in the x-t diagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathKind {
     /// A shock.
     Shock,
-    /// The head of a rarefaction fan, or of the wave that it was turned into.
+    /// The head of a rarefaction fan, or of the wave into which the fan was transformed.
     FanHead,
-    /// The tail of a rarefaction fan, or of the wave that it was turned into.
+    /// The tail of a rarefaction fan, or of the wave into which the fan was transformed.
     FanTail,
-    /// The face of a plate on the other plate.
+    /// The contact face between the two plates.
     Interface,
     /// A free surface.
     FreeSurface,
 }
 
-/// A line in the x-t diagram.
+/// A path in the x-t diagram.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path {
-    /// Whose plate it runs in.
-    pub plate: super::Plate,
-    /// What it is.
+    /// Plate in which the path runs.
+    pub plate: Plate,
+    /// Kind of the path.
     pub kind: PathKind,
-    /// The corners: time [s], place [m].
+    /// Corner points: time [s], position [m].
     pub points: Vec<[f64; 2]>,
-    /// Whether it ends, as the edge of a fan, within its own wave, which has steepened.
+    /// Whether the path is an edge of a fan that ends inside its own wave, because the wave has
+    /// steepened.
     pub steepened: bool,
 }
 
@@ -189,8 +201,8 @@ pub struct Path {
 mod tests {
     use super::*;
 
-    fn point(x: f64, p: f64) -> Point {
-        Point { x, p, ..Point::default() }
+    fn point(x: f64, p: f64) -> ProfilePoint {
+        ProfilePoint { x, p, ..ProfilePoint::default() }
     }
 
     fn step() -> Profile {

@@ -1,13 +1,14 @@
-//! The true solution's states and times that need no wave tracking: release along isentropes.
+//! States and times of the true solution that need no wave tracking: release along isentropes.
 //!
-//! Frame as in [`super::wave_interactions`]. State 2 is the impedance match; in state 3 the flyer has been
-//! released to P = 0 along its isentrope through state 2; state 4 is where the target's release
-//! isentrope through state 2 meets the flyer's recompression from state 3 (along the same
-//! isentrope, that is, before it steepens into a shock); and so on. Unlike the chain's, these
-//! waves spread: a head and a tail run at the sound speeds on their two sides.
+//! The frame is that of [`super::wave_interactions`]. State 2 is the impedance match. In state 3
+//! the flyer is released to P = 0 along its isentrope through state 2. In state 4 the target's
+//! release isentrope through state 2 meets the flyer's recompression from state 3, which follows
+//! the same isentrope as long as it has not steepened into a shock. Later states follow in the same
+//! way. Unlike the waves of the chain, these waves spread: head and tail run at the sound speeds on
+//! their two sides.
 
 use super::isentrope::to_pressure;
-use super::wave::{State, density, shocked, sound_speed};
+use super::wave::{WaveState, density, shocked, sound_speed};
 use super::wave_interactions::{check, impedance_match};
 use super::{ExactError, Plate};
 use crate::material::MieGruneisen;
@@ -15,7 +16,7 @@ use crate::material::MieGruneisen;
 /// A state of the true solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReleaseState {
-    /// The document's number.
+    /// Number of the state in Burghardt (2010).
     pub number: usize,
     /// Velocity (in the frame of the target at rest) [m/s].
     pub u: f64,
@@ -31,13 +32,14 @@ pub struct ReleaseState {
     pub e_target: Option<f64>,
 }
 
-/// States, speeds and times of the true solution. Speeds are Lagrangian (relative to the
-/// undeformed material); times count from contact.
+/// States, speeds and times of the true solution. Speeds are Lagrangian (relative to the undeformed
+/// material); times count from contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Release {
-    /// States 2, 3, 4 and on, as many as were asked for; fewer if the plates part or rest.
+    /// States 2, 3, 4 and so on, up to the requested number; fewer if the plates separate or come
+    /// to rest.
     pub states: Vec<ReleaseState>,
-    /// Whether the plates part within the states asked for (softer flyer: at state 4).
+    /// Whether the plates separate within the requested states (softer flyer: at state 4).
     pub separates: bool,
     /// Shock speed in the flyer [m/s].
     pub flyer_shock: f64,
@@ -51,18 +53,18 @@ pub struct Release {
     pub target_head: f64,
     /// Speed of the fan's tail in the target [m/s].
     pub target_tail: f64,
-    /// The shock reaches the flyer's rear [s].
+    /// Time at which the shock reaches the flyer's rear [s].
     pub rear_time: f64,
-    /// The fan's head comes back to the interface [s].
+    /// Time at which the head of the fan returns to the interface [s].
     pub head_time: f64,
-    /// The fan's head catches the target's shock [s]; infinite if it never does.
+    /// Time at which the head of the fan catches the target's shock [s]; infinite if it never does.
     pub catch_up_time: f64,
-    /// Where it does, from the place of contact [m].
+    /// Distance of the catch-up from the contact position [m].
     pub catch_up_place: f64,
 }
 
 impl Release {
-    /// The states up to the one numbered `last_state`, and the times.
+    /// The times, and the states up to the number `last_state`.
     pub fn new(
         flyer: MieGruneisen,
         target: MieGruneisen,
@@ -72,9 +74,9 @@ impl Release {
     ) -> Result<Release, ExactError> {
         check(&flyer, &target, speed, thickness)?;
         let u2 = impedance_match(&flyer, &target, speed);
-        let flyer_2 = State { u: u2, ..shocked(&flyer, speed - u2) };
+        let flyer_2 = WaveState { u: u2, ..shocked(&flyer, speed - u2) };
         let target_2 = shocked(&target, u2);
-        let named = |number, flyer_state: Option<&State>, target_state: Option<&State>| {
+        let named = |number, flyer_state: Option<&WaveState>, target_state: Option<&WaveState>| {
             let any = flyer_state.or(target_state).copied().unwrap_or_default();
             ReleaseState {
                 number,
@@ -94,7 +96,7 @@ impl Release {
             let free = to_pressure(&flyer, in_flyer, 1.0, 0.0)?;
             states.push(named(number, Some(&free), None));
             let unloaded = to_pressure(&target, in_target, 1.0, 0.0)?;
-            // both curves are steep at P = 0: where they cross below it, the plates part, however
+            // both curves are steep at P = 0: if they cross below it, the plates separate, however
             // deep in tension the crossing lies
             let zf = flyer.rho0 * sound_speed(&flyer, &free);
             let zt = target.rho0 * sound_speed(&target, &unloaded);
@@ -141,7 +143,7 @@ impl Release {
         })
     }
 
-    /// The state with the document's `number`.
+    /// The state with the `number` of Burghardt (2010).
     pub fn state(&self, number: usize) -> Option<&ReleaseState> {
         self.states.iter().find(|s| s.number == number)
     }
@@ -157,17 +159,17 @@ impl Release {
     }
 }
 
-/// Where the flyer's left-going isentrope through `free` meets the target's right-going one
-/// through `behind`: the flyer's state and the target's. The pressure lies between 0 and that of
-/// `behind`.
+/// The intersection of the flyer's left-going isentrope through `free` with the target's
+/// right-going isentrope through `behind`: the states of flyer and target. Its pressure lies
+/// between 0 and that of `behind`.
 fn meet(
     flyer: &MieGruneisen,
     target: &MieGruneisen,
-    mut free: State,
-    mut behind: State,
-) -> Result<(State, State), ExactError> {
+    mut free: WaveState,
+    mut behind: WaveState,
+) -> Result<(WaveState, WaveState), ExactError> {
     let scale = behind.p;
-    // rounding may put the meeting of equal plates a little below 0
+    // for equal plates rounding may put the intersection slightly below 0
     let slack = 1e-8 * scale;
     let (mut low, mut high) = (0.0, scale);
     for _ in 0..100 {
@@ -178,13 +180,13 @@ fn meet(
         if done || !p.is_finite() {
             break;
         }
-        // Newton's rule, kept within its bracket: a strong release curves far beyond P = 0
+        // Newton's method within a bracket: a strong release has a large curvature far below P = 0
         if p < low - slack || p > high + slack {
             p = 0.5 * (low + high);
         }
         free = to_pressure(flyer, free, -1.0, p)?;
         behind = to_pressure(target, behind, 1.0, p)?;
-        // the flyer's velocity falls with the pressure, the target's rises
+        // the flyer's velocity decreases with the pressure, the target's increases
         if free.u > behind.u { low = p } else { high = p }
     }
     if (free.u - behind.u).abs() > 1e-8 * behind.u.abs().max(free.u.abs()).max(1.0) {

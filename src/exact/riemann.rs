@@ -1,13 +1,13 @@
-//! Exact Riemann solution for two ideal gases, their gammas free to differ.
+//! Exact Riemann solution for two ideal gases, whose gammas may differ.
 //!
-//! Source: Toro (2009), Riemann Solvers and Numerical Methods for Fluid Dynamics, ch. 4: the
-//! pressure between the waves is the root of f_L(p) + f_R(p) + u_R - u_L = 0 (eq. 4.5), with f
-//! of a shock eq. 4.6 and of a fan eq. 4.7; sampling as in its section 4.5. Each gas keeps its
-//! own gamma through its own wave. Refused where a vacuum opens (eq. 4.40).
+//! Source: Toro (2009), Riemann Solvers and Numerical Methods for Fluid Dynamics, ch. 4. The
+//! pressure between the waves is the root of f_L(p) + f_R(p) + u_R - u_L = 0 (eq. 4.5), with f from
+//! eq. 4.6 for a shock and from eq. 4.7 for a fan; sampling follows its section 4.5. Each gas keeps
+//! its own gamma through its own wave. Gases that would leave a vacuum (eq. 4.40) are refused.
 
-use super::{ExactError, Point, Profile, finite, positive};
+use super::{ExactError, Profile, ProfilePoint, finite, positive};
 
-/// A gas on one side of the diaphragm.
+/// State of the gas on one side of the diaphragm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GasState {
     /// Density [kg/m3].
@@ -37,7 +37,8 @@ impl GasState {
         }
     }
 
-    /// Velocity change through the wave that brings this gas to the pressure `p`, and its slope.
+    /// Velocity change through the wave that brings this gas to the pressure `p` [m/s], and its
+    /// derivative by p.
     fn change(&self, p: f64) -> (f64, f64) {
         let (g, c) = (self.gamma, self.sound_speed());
         if p > self.p {
@@ -63,18 +64,18 @@ impl GasState {
         }
     }
 
-    fn point(&self, x: f64) -> Point {
+    fn point(&self, x: f64) -> ProfilePoint {
         let e = self.p / ((self.gamma - 1.0) * self.rho);
-        Point { x, p: self.p, u: self.u, rho: self.rho, e }
+        ProfilePoint { x, p: self.p, u: self.u, rho: self.rho, e }
     }
 }
 
-/// One of the two outer waves; speeds in space, signed [m/s].
+/// One of the two outer waves; speeds are signed and relative to fixed space [m/s].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GasWave {
     /// A shock.
     Shock {
-        /// Its speed [m/s].
+        /// Speed of the shock [m/s].
         speed: f64,
     },
     /// A rarefaction fan.
@@ -86,16 +87,16 @@ pub enum GasWave {
     },
 }
 
-/// The solution of a Riemann problem: two outer waves about a contact.
+/// Solution of a Riemann problem: two outer waves and a contact between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Riemann {
+pub struct RiemannSolution {
     /// The gas left of the diaphragm.
     pub left_state: GasState,
     /// The gas right of the diaphragm.
     pub right_state: GasState,
     /// Pressure between the outer waves [Pa].
     pub p_star: f64,
-    /// Velocity between the outer waves, that of the contact [m/s].
+    /// Velocity between the outer waves, which is the velocity of the contact [m/s].
     pub u_star: f64,
     /// Density left of the contact [kg/m3].
     pub rho_star_left: f64,
@@ -107,12 +108,12 @@ pub struct Riemann {
     pub right: GasWave,
 }
 
-/// Straight pieces in which a fan is given.
+/// Number of straight pieces that represent a fan.
 const FAN_PIECES: usize = 256;
 
-impl Riemann {
-    /// Solves for `left` and `right` of a diaphragm that bursts.
-    pub fn solve(left: GasState, right: GasState) -> Result<Riemann, ExactError> {
+impl RiemannSolution {
+    /// Solves the Riemann problem of the gases `left` and `right` of a diaphragm that bursts.
+    pub fn solve(left: GasState, right: GasState) -> Result<RiemannSolution, ExactError> {
         left.check()?;
         right.check()?;
         let limit = 2.0 * left.sound_speed() / (left.gamma - 1.0)
@@ -121,8 +122,8 @@ impl Riemann {
         if difference >= limit {
             return Err(ExactError::Vacuum { difference, limit });
         }
-        // the sum rises with p and is concave: Newton's rule from below its root never
-        // overshoots; a root between is found by halving wherever a step leaves the bracket
+        // the sum rises with p and is concave, so Newton's method from below the root never
+        // overshoots; the bracket is halved wherever a step would leave it
         let sum = |p: f64| {
             let ((fl, dl), (fr, dr)) = (left.change(p), right.change(p));
             (fl + fr + difference, dl + dr)
@@ -161,7 +162,7 @@ impl Riemann {
                 GasWave::Fan { head: gas.u + side * c, tail: u + side * c_star }
             }
         };
-        Ok(Riemann {
+        Ok(RiemannSolution {
             left_state: left,
             right_state: right,
             p_star: p,
@@ -173,7 +174,7 @@ impl Riemann {
         })
     }
 
-    /// The gas at x/t = `xi`, x counted from the diaphragm.
+    /// The gas at x/t = `xi` [m/s], with x measured from the diaphragm.
     pub fn sample(&self, xi: f64) -> GasState {
         let (gas, wave, rho_star, side) = if xi < self.u_star {
             (self.left_state, self.left, self.rho_star_left, -1.0)
@@ -189,8 +190,8 @@ impl Riemann {
         }
     }
 
-    /// The profile from `lower` to `upper` at `t` > 0 after the burst of a diaphragm at
-    /// `diaphragm`; fans in many straight pieces.
+    /// The profile from `lower` to `upper` [m] at the time `t` > 0 [s] after a diaphragm at
+    /// `diaphragm` [m] bursts; each fan is represented by many straight pieces.
     pub fn profile(&self, diaphragm: f64, t: f64, lower: f64, upper: f64) -> Profile {
         let mut points = Vec::new();
         let mut push = |gas: GasState, speed: f64| points.push(gas.point(diaphragm + speed * t));
@@ -199,7 +200,7 @@ impl Riemann {
         let star_r = GasState { rho: self.rho_star_right, u: self.u_star, p: self.p_star, ..r };
         let piece =
             |from: f64, to: f64, k: usize| from + (to - from) * k as f64 / FAN_PIECES as f64;
-        // far enough to be cut at the ends
+        // far enough away that the ends are cut off below
         let far = 2.0 * (upper - lower + (diaphragm - lower).abs() + (upper - diaphragm).abs()) / t;
         push(l, -far);
         match self.left {
@@ -233,7 +234,7 @@ impl Riemann {
     }
 }
 
-/// The gas inside of its own fan at x/t = `xi` (Toro, eqs. 4.56 and 4.63).
+/// The gas inside its own fan at x/t = `xi` [m/s] (Toro, eqs. 4.56 and 4.63).
 fn within_fan(gas: &GasState, xi: f64, side: f64) -> GasState {
     let (g, c) = (gas.gamma, gas.sound_speed());
     let ratio = 2.0 / (g + 1.0) + side * (g - 1.0) / ((g + 1.0) * c) * (xi - gas.u);
@@ -259,7 +260,7 @@ mod tests {
 
     #[test]
     fn sod() {
-        let sod = Riemann::solve(gas(1.0, 0.0, 1.0), gas(0.125, 0.0, 0.1)).unwrap();
+        let sod = RiemannSolution::solve(gas(1.0, 0.0, 1.0), gas(0.125, 0.0, 0.1)).unwrap();
         close(sod.p_star, 0.303130, 6e-7);
         close(sod.u_star, 0.927453, 6e-7);
         close(sod.rho_star_left, 0.426319, 6e-7);
@@ -271,13 +272,13 @@ mod tests {
     #[test]
     fn toros_other_tests() {
         // Toro, table 4.2: two fans, strong shocks
-        let two_fans = Riemann::solve(gas(1.0, -2.0, 0.4), gas(1.0, 2.0, 0.4)).unwrap();
+        let two_fans = RiemannSolution::solve(gas(1.0, -2.0, 0.4), gas(1.0, 2.0, 0.4)).unwrap();
         close(two_fans.p_star, 0.00189, 6e-6);
-        let blast = Riemann::solve(gas(1.0, 0.0, 1000.0), gas(1.0, 0.0, 0.01)).unwrap();
+        let blast = RiemannSolution::solve(gas(1.0, 0.0, 1000.0), gas(1.0, 0.0, 0.01)).unwrap();
         close(blast.p_star, 460.894, 6e-4);
         close(blast.u_star, 19.5975, 6e-5);
         let collision =
-            Riemann::solve(gas(5.99924, 19.5975, 460.894), gas(5.99242, -6.19633, 46.0950))
+            RiemannSolution::solve(gas(5.99924, 19.5975, 460.894), gas(5.99242, -6.19633, 46.0950))
                 .unwrap();
         close(collision.p_star, 1691.64, 8e-3);
     }
@@ -287,8 +288,8 @@ mod tests {
         let left = GasState { rho: 1.0, u: 0.1, p: 1.0, gamma: 1.4 };
         let right = GasState { rho: 0.4, u: -0.3, p: 0.1, gamma: 5.0 / 3.0 };
         let t = 0.15;
-        let profile = Riemann::solve(left, right).unwrap().profile(0.5, t, 0.0, 1.0);
-        let integral = |f: &dyn Fn(&Point) -> f64| -> f64 {
+        let profile = RiemannSolution::solve(left, right).unwrap().profile(0.5, t, 0.0, 1.0);
+        let integral = |f: &dyn Fn(&ProfilePoint) -> f64| -> f64 {
             let w = profile.points.windows(2);
             w.map(|w| 0.5 * (f(&w[0]) + f(&w[1])) * (w[1].x - w[0].x)).sum()
         };
@@ -306,7 +307,7 @@ mod tests {
 
     #[test]
     fn samples_agree_with_the_profile() {
-        let sod = Riemann::solve(gas(1.0, 0.0, 1.0), gas(0.125, 0.0, 0.1)).unwrap();
+        let sod = RiemannSolution::solve(gas(1.0, 0.0, 1.0), gas(0.125, 0.0, 0.1)).unwrap();
         let profile = sod.profile(0.5, 0.2, 0.0, 1.0);
         assert_eq!(profile.span(), Some((0.0, 1.0)));
         for k in 0..100 {
@@ -319,12 +320,15 @@ mod tests {
 
     #[test]
     fn refuses_a_vacuum_and_bad_gases() {
-        let err = Riemann::solve(gas(1.0, -10.0, 0.4), gas(1.0, 10.0, 0.4));
+        let err = RiemannSolution::solve(gas(1.0, -10.0, 0.4), gas(1.0, 10.0, 0.4));
         assert!(matches!(err, Err(ExactError::Vacuum { .. })));
-        assert!(Riemann::solve(gas(-1.0, 0.0, 0.4), gas(1.0, 0.0, 0.4)).is_err());
+        assert!(RiemannSolution::solve(gas(-1.0, 0.0, 0.4), gas(1.0, 0.0, 0.4)).is_err());
         assert!(
-            Riemann::solve(gas(1.0, 0.0, 0.4), GasState { gamma: 1.0, ..gas(1.0, 0.0, 1.0) })
-                .is_err()
+            RiemannSolution::solve(
+                gas(1.0, 0.0, 0.4),
+                GasState { gamma: 1.0, ..gas(1.0, 0.0, 1.0) }
+            )
+            .is_err()
         );
     }
 }

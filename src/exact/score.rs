@@ -1,20 +1,20 @@
-//! How a computed profile is held against an exact one: PROBLEM.md, section 3.
+//! Errors of a computed profile against an exact one: PROBLEM.md, section 3.
 //!
-//! Particles, sorted by x, are joined by straight lines ("raw"); after [`cell_average`] the same
-//! is done with the means of the cells. Beyond the first and the last of them their value is
-//! held. Everything is seen with the shock running to the right: a mirrored impact is turned
-//! round first. An error that has no meaning is `None`.
+//! Particles, sorted by x, are joined by straight lines ("raw"); after [`cell_average`] the same is
+//! done with the cell means. Beyond the first and the last point their values are held constant.
+//! All errors are computed with the shock running to the right; a mirrored impact is reflected
+//! first. An error that is not defined is `None`.
 
 use serde::Serialize;
 
-use super::{Landmarks, Point, Profile};
+use super::{Landmarks, Profile, ProfilePoint};
 
-/// A particle, or the mean of a cell.
+/// A particle, or the mean of the particles in a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sample {
-    /// Place [m].
+pub struct ScoreSample {
+    /// Position [m].
     pub x: f64,
-    /// Current volume, in one dimension a length [m]; only ratios matter.
+    /// Current volume; in one dimension a length [m]. Only ratios matter.
     pub volume: f64,
     /// Pressure [Pa].
     pub p: f64,
@@ -24,60 +24,61 @@ pub struct Sample {
     pub e: f64,
 }
 
-/// Errors of a profile, all fractions unless said otherwise.
+/// Errors of a profile; all are fractions unless stated otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Errors {
     /// int |p - p_exact| dx / int |p_exact| dx.
     pub l1: Option<f64>,
-    /// The root of int (p - p_exact)^2 dx / int p_exact^2 dx.
+    /// Square root of int (p - p_exact)^2 dx / int p_exact^2 dx.
     pub l2: Option<f64>,
     /// int |p - p_exact| dx / P2, in cells.
     pub e1_cells: Option<f64>,
-    /// Mean over the middle 40 % of the first plateau against P2, signed.
+    /// Mean over the middle 40 % of the first plateau, relative to P2, signed.
     pub plateau: Option<f64>,
-    /// Rms about a straight line there, of P2.
+    /// Rms deviation from a straight line over the same range, as a fraction of P2.
     pub noise: Option<f64>,
-    /// Where the pressure first reaches half of what is behind the exact shock, seen from ahead:
-    /// computed minus exact, along the shock's way, in cells.
+    /// Position of the shock: the first point, coming from ahead, where the pressure reaches half
+    /// of the exact pressure behind the shock. Computed minus exact, positive in the direction of
+    /// the shock, in cells.
     pub shock_position_cells: Option<f64>,
     /// Distance between 10 % and 90 % of that pressure, in cells.
     pub rise_cells: Option<f64>,
-    /// Greatest pressure minus the exact profile's greatest, of P2, signed.
+    /// Greatest computed pressure minus the greatest exact pressure, as a fraction of P2, signed.
     pub overshoot: Option<f64>,
-    /// Mean over the middle 60 % of the second plateau against the exact mean there, signed.
-    pub plateau_4: Option<f64>,
-    /// Mean density over the middle 40 % of the first plateau, signed.
+    /// Mean over the middle 60 % of the second plateau, relative to the exact mean, signed.
+    pub second_plateau: Option<f64>,
+    /// Mean density over the middle 40 % of the first plateau, relative to rho2, signed.
     pub density_plateau: Option<f64>,
-    /// Mean specific internal energy there, signed.
+    /// Mean specific internal energy over the same range, relative to e2, signed.
     pub energy_plateau: Option<f64>,
     /// int |rho - rho_exact| dx [kg/m2], for Riemann problems.
     pub density_l1: Option<f64>,
-    /// Greatest error of density within ten cells of the interface, fraction of rho2: faults of
-    /// the energy show here, not in the pressure.
+    /// Greatest error of density within ten cells of the interface, as a fraction of rho2. Errors
+    /// of the energy appear here, not in the pressure.
     pub density_interface: Option<f64>,
-    /// Greatest error of specific internal energy there, fraction of e2.
+    /// Greatest error of specific internal energy there, as a fraction of e2.
     pub energy_interface: Option<f64>,
-    /// L1 by where it arises.
+    /// L1 split by the regions of the solution.
     pub waves: Option<WaveErrors>,
 }
 
-/// L1 split by the regions of the exact solution: the parts add up to the whole.
+/// L1 split by the regions of the exact solution; the parts add up to the total.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct WaveErrors {
-    /// About the shock: ahead of it, and up to ten cells behind it.
+    /// Region of the shock: ahead of it, and up to ten cells behind it.
     pub shock: f64,
     /// From there back to the head of the fan, or to the interface while there is no fan.
     pub plateau_2: f64,
-    /// Within the fan, from its head to where the second plateau begins.
+    /// Within the fan, from its head to the start of the second plateau.
     pub fan: f64,
     /// On the second plateau and behind it.
-    pub plateau_4: f64,
+    pub second_plateau: f64,
 }
 
-/// Reach of the shock's region behind it [cells]: no scheme smears a shock further.
+/// Extent of the shock's region behind the shock [cells]: no scheme smears a shock further.
 const SHOCK_REACH: f64 = 10.0;
 
-/// Parts of L1 by region; none where there is no shock in the body or no pressure.
+/// Parts of L1 by region; `None` if there is no shock in the body, or no pressure.
 fn wave_errors(
     computed: &[(f64, f64)],
     truth: &[(f64, f64)],
@@ -88,8 +89,8 @@ fn wave_errors(
     let (lower, upper) = (marks.interface, marks.far_end);
     let shock = (marks.shock? - SHOCK_REACH * h).max(lower);
     let head = marks.plateau.map_or(lower, |zone| zone[0]).clamp(lower, shock);
-    // without a second plateau all that is behind the head is the fan
-    let tail = marks.plateau_4.map_or(lower, |zone| zone[1]).clamp(lower, head);
+    // without a second plateau the whole range behind the head counts as the fan
+    let tail = marks.second_plateau.map_or(lower, |zone| zone[1]).clamp(lower, head);
     let part = |from: f64, to: f64| match to > from {
         true => integrals(&cut(computed, from, to), &cut(truth, from, to), from, to)[0] / size,
         false => 0.0,
@@ -98,21 +99,22 @@ fn wave_errors(
         shock: part(shock, upper),
         plateau_2: part(head, shock),
         fan: part(tail, head),
-        plateau_4: part(lower, tail),
+        second_plateau: part(lower, tail),
     })
 }
 
-/// Replaces the particles in each cell of the grid (cells of size `h`, one face at `origin`) by
-/// their mean, weighted by volume, at their mean place. `samples` sorted by x.
-pub fn cell_average(samples: &[Sample], h: f64, origin: f64) -> Vec<Sample> {
-    let cell = |s: &Sample| ((s.x - origin) / h).floor();
+/// Replaces the particles in each grid cell (cells of size `h`, one face at `origin`) by their
+/// volume-weighted mean, at their mean position. `samples` must be sorted by x.
+pub fn cell_average(samples: &[ScoreSample], h: f64, origin: f64) -> Vec<ScoreSample> {
+    let cell = |s: &ScoreSample| ((s.x - origin) / h).floor();
     samples
         .chunk_by(|a, b| cell(a) == cell(b))
         .map(|group| {
             let volume: f64 = group.iter().map(|s| s.volume).sum();
-            let mean =
-                |f: fn(&Sample) -> f64| group.iter().map(|s| s.volume * f(s)).sum::<f64>() / volume;
-            Sample {
+            let mean = |f: fn(&ScoreSample) -> f64| {
+                group.iter().map(|s| s.volume * f(s)).sum::<f64>() / volume
+            };
+            ScoreSample {
                 x: mean(|s| s.x),
                 volume,
                 p: mean(|s| s.p),
@@ -123,12 +125,17 @@ pub fn cell_average(samples: &[Sample], h: f64, origin: f64) -> Vec<Sample> {
         .collect()
 }
 
-/// A function made of straight lines.
-type Line = Vec<(f64, f64)>;
+/// A piecewise-linear function.
+type Polyline = Vec<(f64, f64)>;
 
-/// Joins the samples by lines over [`lower`, `upper`], the outermost values held to the ends.
-fn line(samples: &[Sample], lower: f64, upper: f64, value: fn(&Sample) -> f64) -> Line {
-    let mut points: Line = samples.iter().map(|s| (s.x, value(s))).collect();
+/// Joins the samples by lines over [`lower`, `upper`]; the outermost values extend to the ends.
+fn line(
+    samples: &[ScoreSample],
+    lower: f64,
+    upper: f64,
+    value: fn(&ScoreSample) -> f64,
+) -> Polyline {
+    let mut points: Polyline = samples.iter().map(|s| (s.x, value(s))).collect();
     if let (Some(&first), Some(&last)) = (points.first(), points.last()) {
         if first.0 > lower {
             points.insert(0, (lower, first.1));
@@ -141,13 +148,15 @@ fn line(samples: &[Sample], lower: f64, upper: f64, value: fn(&Sample) -> f64) -
 }
 
 /// The part of a line within [`lower`, `upper`].
-fn cut(points: &[(f64, f64)], lower: f64, upper: f64) -> Line {
-    let as_points = points.iter().map(|&(x, p)| Point { x, p, ..Point::default() }).collect();
+fn cut(points: &[(f64, f64)], lower: f64, upper: f64) -> Polyline {
+    let as_points =
+        points.iter().map(|&(x, p)| ProfilePoint { x, p, ..ProfilePoint::default() }).collect();
     let part = Profile { points: as_points }.between(lower, upper);
     part.points.iter().map(|q| (q.x, q.p)).collect()
 }
 
-/// Integrals over [`lower`, `upper`] of |a - b|, (a - b)^2, |b|, b^2 for two lines that cover it.
+/// Integrals over [`lower`, `upper`] of |a - b|, (a - b)^2, |b| and b^2, for two lines that cover
+/// the range.
 fn integrals(a: &[(f64, f64)], b: &[(f64, f64)], lower: f64, upper: f64) -> [f64; 4] {
     let mut places: Vec<f64> = a.iter().chain(b).map(|q| q.0).collect();
     places.extend([lower, upper]);
@@ -170,7 +179,7 @@ fn integrals(a: &[(f64, f64)], b: &[(f64, f64)], lower: f64, upper: f64) -> [f64
     sums
 }
 
-/// Mean of |d| on a piece where d goes straight from `d0` to `d1`.
+/// Mean of |d| on a piece where d varies linearly from `d0` to `d1`.
 fn mean_size(d0: f64, d1: f64) -> f64 {
     if d0 * d1 >= 0.0 {
         0.5 * (d0 + d1).abs()
@@ -179,7 +188,8 @@ fn mean_size(d0: f64, d1: f64) -> f64 {
     }
 }
 
-/// Values at both ends of [`x0`, `x1`], which lies within one piece of the line; `k` walks on.
+/// Values at both ends of [`x0`, `x1`], which lies within one piece of the line; `k` advances to
+/// that piece.
 fn piece(line: &[(f64, f64)], k: &mut usize, x0: f64, x1: f64) -> Option<(f64, f64)> {
     while *k + 1 < line.len() && (line[*k + 1].0 <= x0) {
         *k += 1;
@@ -200,7 +210,7 @@ fn mean_over(points: &[(f64, f64)], lower: f64, upper: f64) -> Option<f64> {
     (width > 0.0).then(|| area / width)
 }
 
-/// Where the line first reaches `level`, coming from the right.
+/// First position where the line reaches `level`, coming from the right.
 fn crossing(points: &[(f64, f64)], level: f64) -> Option<f64> {
     let k = points.iter().rposition(|q| q.1 >= level)?;
     let a = points[k];
@@ -208,16 +218,16 @@ fn crossing(points: &[(f64, f64)], level: f64) -> Option<f64> {
     Some(a.0 + (b.0 - a.0) * (a.1 - level) / (a.1 - b.1))
 }
 
-/// The middle `share` of a zone.
+/// The middle part of a zone, with the fraction `share` of its width.
 fn middle(zone: [f64; 2], share: f64) -> [f64; 2] {
     let (centre, half) = (0.5 * (zone[0] + zone[1]), 0.5 * share * (zone[1] - zone[0]));
     [centre - half, centre + half]
 }
 
-/// Mean, and rms about the straight line of least squares.
-fn mean_and_noise(samples: &[&Sample]) -> (f64, f64) {
+/// Mean pressure, and its rms deviation from the least-squares line.
+fn mean_and_noise(samples: &[&ScoreSample]) -> (f64, f64) {
     let n = samples.len() as f64;
-    let mean = |f: &dyn Fn(&Sample) -> f64| samples.iter().map(|s| f(s)).sum::<f64>() / n;
+    let mean = |f: &dyn Fn(&ScoreSample) -> f64| samples.iter().map(|s| f(s)).sum::<f64>() / n;
     let (x, p) = (mean(&|s| s.x), mean(&|s| s.p));
     let xx = mean(&|s| (s.x - x) * (s.x - x));
     let slope = if xx > 0.0 { mean(&|s| (s.x - x) * (s.p - p)) / xx } else { 0.0 };
@@ -225,17 +235,18 @@ fn mean_and_noise(samples: &[&Sample]) -> (f64, f64) {
     (p, rest.sqrt())
 }
 
-/// A reference turned so that its shock runs to the right.
+/// The samples and the reference, reflected if necessary so that the shock runs to the right.
 fn turned(
-    samples: &[Sample],
+    samples: &[ScoreSample],
     exact: &Profile,
     marks: &Landmarks,
-) -> (Vec<Sample>, Profile, Landmarks) {
+) -> (Vec<ScoreSample>, Profile, Landmarks) {
     if marks.direction > 0.0 {
         return (samples.to_vec(), exact.clone(), *marks);
     }
-    let samples = samples.iter().rev().map(|s| Sample { x: -s.x, ..*s }).collect();
-    let points = exact.points.iter().rev().map(|q| Point { x: -q.x, u: -q.u, ..*q }).collect();
+    let samples = samples.iter().rev().map(|s| ScoreSample { x: -s.x, ..*s }).collect();
+    let points =
+        exact.points.iter().rev().map(|q| ProfilePoint { x: -q.x, u: -q.u, ..*q }).collect();
     let zone = |z: [f64; 2]| [-z[1], -z[0]];
     let marks = Landmarks {
         direction: 1.0,
@@ -243,34 +254,34 @@ fn turned(
         far_end: -marks.far_end,
         shock: marks.shock.map(|x| -x),
         plateau: marks.plateau.map(zone),
-        plateau_4: marks.plateau_4.map(zone),
+        second_plateau: marks.second_plateau.map(zone),
         ..*marks
     };
     (samples, Profile { points }, marks)
 }
 
-/// Relative L1 difference of the pressures of two profiles, over where both are known.
+/// Relative L1 difference of the pressures of two profiles over their common range.
 pub fn difference(profile: &Profile, exact: &Profile) -> f64 {
-    let line = |p: &Profile| -> Line { p.points.iter().map(|q| (q.x, q.p)).collect() };
+    let line = |p: &Profile| -> Polyline { p.points.iter().map(|q| (q.x, q.p)).collect() };
     let (Some(a), Some(b)) = (profile.span(), exact.span()) else { return f64::NAN };
     let [d1, _, size, _] = integrals(&line(profile), &line(exact), a.0.max(b.0), a.1.min(b.1));
     d1 / size
 }
 
-/// Scores the `samples` of one body, sorted by x, against the exact profile of (at least) that
-/// body; `h` is the size of a cell [m].
-pub fn score(samples: &[Sample], exact: &Profile, landmarks: &Landmarks, h: f64) -> Errors {
+/// Scores the `samples` of one body, sorted by x, against an exact profile that covers at least
+/// that body; `h` is the cell size [m].
+pub fn score(samples: &[ScoreSample], exact: &Profile, landmarks: &Landmarks, h: f64) -> Errors {
     if samples.len() < 2 || !samples.iter().all(|s| s.x.is_finite() && s.p.is_finite()) {
         return Errors::default();
     }
     let (samples, exact, marks) = turned(samples, exact, landmarks);
     let (lower, upper) = (marks.interface, marks.far_end);
     let computed = line(&samples, lower, upper, |s| s.p);
-    let truth: Line = exact.between(lower, upper).points.iter().map(|q| (q.x, q.p)).collect();
+    let truth: Polyline = exact.between(lower, upper).points.iter().map(|q| (q.x, q.p)).collect();
     let [d1, d2, size, square] = integrals(&computed, &truth, lower, upper);
     let some_if = |ok: bool, value: f64| (ok && value.is_finite()).then_some(value);
     let p2 = marks.p2;
-    let greatest = |line: &Line| line.iter().map(|q| q.1).fold(f64::NEG_INFINITY, f64::max);
+    let greatest = |line: &Polyline| line.iter().map(|q| q.1).fold(f64::NEG_INFINITY, f64::max);
     let mut errors = Errors {
         l1: some_if(size > 0.0, d1 / size),
         l2: some_if(square > 0.0, (d2 / square).sqrt()),
@@ -286,10 +297,11 @@ pub fn score(samples: &[Sample], exact: &Profile, landmarks: &Landmarks, h: f64)
     }
     if let Some(zone) = marks.plateau.filter(|z| z[1] - z[0] >= 8.0 * h * (1.0 - 1e-9)) {
         let [from, to] = middle(zone, 0.4);
-        let inside: Vec<&Sample> = samples.iter().filter(|s| (from..=to).contains(&s.x)).collect();
+        let inside: Vec<&ScoreSample> =
+            samples.iter().filter(|s| (from..=to).contains(&s.x)).collect();
         if inside.len() >= 3 {
             let n = inside.len() as f64;
-            let mean = |f: fn(&Sample) -> f64| inside.iter().map(|s| f(s)).sum::<f64>() / n;
+            let mean = |f: fn(&ScoreSample) -> f64| inside.iter().map(|s| f(s)).sum::<f64>() / n;
             let (p, noise) = mean_and_noise(&inside);
             errors.plateau = some_if(p2 > 0.0, p / p2 - 1.0);
             errors.noise = some_if(p2 > 0.0, noise / p2);
@@ -297,27 +309,27 @@ pub fn score(samples: &[Sample], exact: &Profile, landmarks: &Landmarks, h: f64)
             errors.energy_plateau = some_if(marks.e2 > 0.0, mean(|s| s.e) / marks.e2 - 1.0);
         }
     }
-    if let Some(zone) = marks.plateau_4.filter(|z| z[1] - z[0] >= 5.0 * h * (1.0 - 1e-9)) {
+    if let Some(zone) = marks.second_plateau.filter(|z| z[1] - z[0] >= 5.0 * h * (1.0 - 1e-9)) {
         let [from, to] = middle(zone, 0.6);
         if let (Some(mean), Some(want)) =
             (mean_over(&computed, from, to), mean_over(&truth, from, to))
         {
-            errors.plateau_4 = some_if(want > 1e-3 * p2, mean / want - 1.0);
+            errors.second_plateau = some_if(want > 1e-3 * p2, mean / want - 1.0);
         }
     }
     errors
 }
 
-/// Scores samples of any bodies, sorted by x, between `lower` and `upper` where there is no one
-/// shock to look at (Riemann problems): l1, l2 of the pressure and density_l1.
-pub fn score_density(samples: &[Sample], exact: &Profile, lower: f64, upper: f64) -> Errors {
-    let finite = |s: &Sample| s.x.is_finite() && s.p.is_finite() && s.rho.is_finite();
+/// Scores samples of any bodies, sorted by x, between `lower` and `upper`, for problems without a
+/// single shock (Riemann problems): l1 and l2 of the pressure, and density_l1.
+pub fn score_density(samples: &[ScoreSample], exact: &Profile, lower: f64, upper: f64) -> Errors {
+    let finite = |s: &ScoreSample| s.x.is_finite() && s.p.is_finite() && s.rho.is_finite();
     if samples.len() < 2 || !samples.iter().all(finite) {
         return Errors::default();
     }
     let truth = exact.between(lower, upper).points;
-    let p: Line = truth.iter().map(|q| (q.x, q.p)).collect();
-    let rho: Line = truth.iter().map(|q| (q.x, q.rho)).collect();
+    let p: Polyline = truth.iter().map(|q| (q.x, q.p)).collect();
+    let rho: Polyline = truth.iter().map(|q| (q.x, q.rho)).collect();
     let [d1, d2, size, square] = integrals(&line(samples, lower, upper, |s| s.p), &p, lower, upper);
     let density = integrals(&line(samples, lower, upper, |s| s.rho), &rho, lower, upper)[0];
     Errors {
@@ -328,10 +340,10 @@ pub fn score_density(samples: &[Sample], exact: &Profile, lower: f64, upper: f64
     }
 }
 
-/// Greatest errors of density and of specific internal energy within ten cells of the interface,
-/// as fractions of rho2 and e2: faults of the energy show here, not in the pressure.
+/// Greatest errors of density and of specific internal energy within ten cells of the interface, as
+/// fractions of rho2 and e2. Errors of the energy appear here, not in the pressure.
 pub fn interface_errors(
-    samples: &[Sample],
+    samples: &[ScoreSample],
     exact: &Profile,
     landmarks: &Landmarks,
     h: f64,

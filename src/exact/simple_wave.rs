@@ -1,7 +1,7 @@
-//! A simple wave: what a piston whose velocity changes smoothly sends into material at rest.
+//! A simple wave: a piston whose velocity changes smoothly sends it into material at rest.
 //!
-//! All states lie on the isentrope through the state ahead, and each travels unchanged along its
-//! characteristic. Towards +x, with the velocity V(tau) of the piston, X its place:
+//! All states lie on the isentrope through the state ahead, and each state travels unchanged along
+//! its characteristic. Towards +x, with V(tau) the velocity of the piston and X(tau) its position:
 //!
 //! ```text
 //! u = V(tau),  du = C dchi,  dp = rho0 C^2 dchi      C(u): the Lagrangian sound speed, rho c/rho0
@@ -9,24 +9,24 @@
 //! steepens to a shock at  t = min over tau of tau + C/(C'(u) V'(tau))  where that is above tau
 //! ```
 //!
-//! (Courant & Friedrichs 1948, section 40.) Holds until then, and until the wave reaches the body's
-//! other face. Towards -x all velocities turn their sign. Pistons that pull make rarefactions,
-//! which never steepen where the material stiffens under compression.
+//! (Courant & Friedrichs 1948, section 40.) The solution holds until the wave steepens or reaches
+//! the body's other face. For a wave towards -x all velocities change sign. Pistons that pull cause
+//! rarefactions, which never steepen if the material stiffens under compression.
 
 use super::isentrope::to_velocity;
-use super::wave::{State, at_rest, density, sound_speed};
-use super::{ExactError, Landmarks, Point, Profile, finite, positive};
+use super::wave::{WaveState, at_rest, density, sound_speed};
+use super::{ExactError, Landmarks, Profile, ProfilePoint, finite, positive};
 use crate::material::MieGruneisen;
 
-/// Points of a profile within the wave.
+/// Number of points of a profile within the wave.
 const POINTS: usize = 4000;
 
-/// The course of a piston: velocity [m/s], how far it has gone since time 0 [m], and acceleration
-/// [m/s2] at a time [s].
+/// Motion of a piston: velocity [m/s], displacement since time 0 [m] and acceleration [m/s2] at a
+/// time [s].
 pub trait Drive {
     /// Velocity [m/s].
     fn velocity(&self, t: f64) -> f64;
-    /// Way since time 0 [m].
+    /// Displacement since time 0 [m].
     fn way(&self, t: f64) -> f64;
     /// Acceleration [m/s2].
     fn acceleration(&self, t: f64) -> f64;
@@ -34,29 +34,30 @@ pub trait Drive {
     fn kinks(&self) -> Vec<f64>;
 }
 
-/// A simple wave in a body that is at rest before it.
-pub struct SimpleWave<P> {
+/// A simple wave in a body that is undisturbed ahead of it.
+pub struct SimpleWaveSolution<P> {
     material: MieGruneisen,
     piston: P,
     /// +1 if the wave runs towards +x.
     direction: f64,
-    /// The piston's face and the other one at time 0 [m].
+    /// Piston face and opposite face at time 0 [m].
     faces: [f64; 2],
-    /// When the wave steepens to a shock [s]; infinite: never.
+    /// Time at which the wave steepens to a shock [s]; infinite if it never does.
     pub steepens: f64,
-    /// Until when the solution holds [s].
+    /// Time until which the solution holds [s].
     pub valid_until: f64,
-    /// Greatest pressure that the piston has made by then, or least where it only pulls [Pa].
+    /// Greatest pressure caused by the piston until then [Pa]; the least one if the piston only
+    /// pulls.
     pub p: f64,
 }
 
-impl<P: Drive> SimpleWave<P> {
-    /// A body from `lower` to `upper` with the velocity that the piston on its lower side (or its
-    /// upper one) has at time 0, looked at until `end` [s].
+impl<P: Drive> SimpleWaveSolution<P> {
+    /// A body from `lower` to `upper` [m] that moves at the piston's velocity at time 0. The piston
+    /// is on its lower or its upper side. The wave is evaluated until `end` [s].
     ///
     /// # Errors
     ///
-    /// Numbers out of range, and velocities that the material cannot be brought to.
+    /// If a number is out of range, or if the material cannot reach a velocity of the piston.
     pub fn new(
         material: MieGruneisen,
         lower: f64,
@@ -71,7 +72,7 @@ impl<P: Drive> SimpleWave<P> {
         let direction = if piston_on_lower_side { 1.0 } else { -1.0 };
         let faces = if piston_on_lower_side { [lower, upper] } else { [upper, lower] };
         let arrives = thickness / material.c0;
-        let mut wave = SimpleWave {
+        let mut wave = SimpleWaveSolution {
             material,
             piston,
             direction,
@@ -95,11 +96,11 @@ impl<P: Drive> SimpleWave<P> {
         Ok(wave)
     }
 
-    fn ahead(&self) -> State {
+    fn ahead(&self) -> WaveState {
         at_rest(self.piston.velocity(0.0))
     }
 
-    /// Times up to `end` at which characteristics leave the piston, those of kinks among them.
+    /// Times up to `end` at which characteristics leave the piston, including those of kinks [s].
     fn departures(&self, end: f64) -> Vec<f64> {
         let even = (0..=POINTS).map(|k| end * k as f64 / POINTS as f64);
         let mut times: Vec<f64> = even
@@ -110,13 +111,13 @@ impl<P: Drive> SimpleWave<P> {
         times
     }
 
-    /// The state that leaves the piston at `tau`; `near` is one on the isentrope.
-    fn state(&self, near: State, tau: f64) -> Result<State, ExactError> {
+    /// The state that leaves the piston at `tau`; `near` is another state on the isentrope.
+    fn state(&self, near: WaveState, tau: f64) -> Result<WaveState, ExactError> {
         to_velocity(&self.material, near, self.direction, self.piston.velocity(tau))
     }
 
-    /// |dC/du| on the isentrope, by differences.
-    fn speed_slope(&self, state: &State) -> Result<f64, ExactError> {
+    /// |dC/du| on the isentrope, by finite differences.
+    fn speed_slope(&self, state: &WaveState) -> Result<f64, ExactError> {
         let h = 1e-4 * self.material.c0;
         let at = |u: f64| {
             let state = to_velocity(&self.material, *state, self.direction, u)?;
@@ -126,7 +127,7 @@ impl<P: Drive> SimpleWave<P> {
         Ok((more - less) / (2.0 * h))
     }
 
-    /// The whole body at time `t`; `None` before 0 and after [`SimpleWave::valid_until`].
+    /// The whole body at time `t`; `None` before 0 and after [`SimpleWaveSolution::valid_until`].
     pub fn profile(&self, t: f64) -> Option<Profile> {
         if !(0.0..=self.valid_until).contains(&t) {
             return None;
@@ -135,22 +136,28 @@ impl<P: Drive> SimpleWave<P> {
         let mut state = self.ahead();
         let mut points = Vec::new();
         let far = self.faces[1] + state.u * t;
-        points.push(Point { x: far, u: state.u, rho: m.rho0, ..Point::default() });
+        points.push(ProfilePoint { x: far, u: state.u, rho: m.rho0, ..ProfilePoint::default() });
         for tau in self.departures(t) {
             state = self.state(state, tau).ok()?;
             let c = sound_speed(m, &state) * (1.0 - state.chi);
             let x =
                 self.faces[0] + self.piston.way(tau) + (state.u + self.direction * c) * (t - tau);
-            points.push(Point { x, p: state.p, u: state.u, rho: density(m, &state), e: state.e });
+            points.push(ProfilePoint {
+                x,
+                p: state.p,
+                u: state.u,
+                rho: density(m, &state),
+                e: state.e,
+            });
         }
-        // from the other face to the piston, against the wave's way
+        // the points run from the other face to the piston, against the direction of the wave
         if self.direction > 0.0 {
             points.reverse();
         }
         Some(Profile { points })
     }
 
-    /// What scoring looks at; `None` with the profile, and at t = 0.
+    /// Features for the scoring; `None` where the profile is `None`, and at t = 0.
     pub fn landmarks(&self, t: f64) -> Option<Landmarks> {
         if !(t > 0.0 && t <= self.valid_until) {
             return None;
@@ -167,7 +174,7 @@ impl<P: Drive> SimpleWave<P> {
             e2: now.e,
             rho2_flyer: f64::NAN,
             e2_flyer: f64::NAN,
-            plateau_4: None,
+            second_plateau: None,
             p4: None,
             behind_shock: now.p,
         })
@@ -179,7 +186,7 @@ mod tests {
     use super::*;
     use crate::exact::samples::COPPER;
 
-    /// From one velocity to another as half a cosine over 0.5 us.
+    /// The velocity changes from one value to another along half a cosine in 0.5 us.
     #[derive(Clone, Copy)]
     struct Swing {
         from: f64,
@@ -212,7 +219,7 @@ mod tests {
         Swing { from, change: to - from }
     }
 
-    /// Momentum that the piston has given, and the mass between the faces.
+    /// Mass between the faces, and the momentum that the piston has given.
     fn sums(profile: &Profile, still: f64) -> [f64; 2] {
         let mut sums = [0.0; 2];
         for w in profile.points.windows(2) {
@@ -231,7 +238,8 @@ mod tests {
         {
             let still = course.from;
             let (end, n) = (8e-7, 400);
-            let wave = SimpleWave::new(COPPER, 1e-3, 6e-3, lower_side, course, end).unwrap();
+            let wave =
+                SimpleWaveSolution::new(COPPER, 1e-3, 6e-3, lower_side, course, end).unwrap();
             let impulse: f64 = (0..n)
                 .map(|k| {
                     let t = end * (f64::from(k) + 0.5) / f64::from(n);
@@ -250,15 +258,17 @@ mod tests {
 
     #[test]
     fn it_steepens_when_characteristics_cross() {
-        let wave = SimpleWave::new(COPPER, 0.0, 1e-2, true, swing(0.0, 200.0), 5e-7).unwrap();
-        let far = SimpleWave { valid_until: f64::INFINITY, ..wave };
+        let wave =
+            SimpleWaveSolution::new(COPPER, 0.0, 1e-2, true, swing(0.0, 200.0), 5e-7).unwrap();
+        let far = SimpleWaveSolution { valid_until: f64::INFINITY, ..wave };
         let crosses = |t: f64| {
             let points = far.profile(t).unwrap().points;
             points.windows(2).any(|w| w[1].x < w[0].x)
         };
         assert!(far.steepens > 2e-6 && far.steepens < 3e-6, "{}", far.steepens);
         assert!(!crosses(0.99 * far.steepens) && crosses(1.01 * far.steepens));
-        let pulled = SimpleWave::new(COPPER, 0.0, 1e-2, true, swing(0.0, -50.0), 5e-7).unwrap();
+        let pulled =
+            SimpleWaveSolution::new(COPPER, 0.0, 1e-2, true, swing(0.0, -50.0), 5e-7).unwrap();
         assert!(pulled.p < 0.0 && pulled.steepens > 1e-5, "{}", pulled.steepens);
     }
 }

@@ -1,37 +1,38 @@
-//! From tracked fronts to a piecewise-linear solution of second order.
+//! Conversion of tracked fronts to a piecewise-linear solution of second order.
 //!
-//! Front tracking leaves a staircase: each small front carries a jump that stands for a stretch
-//! of a smooth wave. The true wave passes half-way up each jump, where the front is. Each jump is
-//! therefore spread: half of it is laid out as a ramp back to the neighbour of its family, half
-//! on to the next one, which joins the half-way points by straight lines. Waves of different
-//! families that run through each other are superposed, which is right to second order in their
-//! jumps. Strong fronts (shocks, interfaces) stay jumps and end the ramps. The axis may be a
-//! place (profiles) or time (histories).
+//! Front tracking yields a staircase: each small front carries a jump that stands for a section of
+//! a smooth wave. The true wave passes half-way up each jump at the position of the front. Each
+//! jump is therefore spread into two ramps: one half back to the neighbour of its family, the other
+//! half on to the next one. The ramps join the half-way points by straight lines. Waves of
+//! different families that cross each other are superposed, which is correct to second order in
+//! their jumps. Strong fronts (shocks, interfaces) remain jumps and end the ramps. The axis is
+//! either position (profiles) or time (histories).
 
 /// A front on the axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step<const N: usize> {
-    /// Where it stands on the axis.
+    /// Position on the axis.
     pub at: f64,
     /// 0 left-going, 1 contact, 2 right-going.
     pub family: usize,
-    /// Stays a jump.
+    /// Whether the front remains a jump.
     pub strong: bool,
-    /// Ends a wave: beyond it there is nothing to lean on.
+    /// Whether the front is the edge of a wave: it is not spread, and always counts as a neighbour.
     pub edge: bool,
-    /// Values after it.
+    /// Values after the front.
     pub after: [f64; N],
 }
 
-/// A neighbour this many times further away than the one on the other side belongs to another
-/// wave; a front this many times smaller is no neighbour at all.
+/// A neighbour that is this many times further away than the neighbour on the other side belongs to
+/// another wave. A front that is this many times smaller does not count as a neighbour.
 const APART: f64 = 5.0;
 
-/// Where the line bends: place, change of slope, jump.
+/// A bend of the line: position, change of slope, jump.
 type Bend<const N: usize> = (f64, [f64; N], [f64; N]);
 
-/// The smooth solution from `start` (values `first`) to `end`: corners, doubled where it jumps.
-/// The value numbered `measure` tells how strong a wave is: every wave must change it.
+/// The smooth solution from `start` (values `first`) to `end`: corner points, doubled where it
+/// jumps. The value with the index `measure` gives the strength of a wave: every wave must change
+/// it.
 pub(super) fn smooth<const N: usize>(
     start: f64,
     end: f64,
@@ -63,7 +64,7 @@ fn add<const N: usize>(to: &mut [f64; N], a: &[f64; N], w: f64) {
     }
 }
 
-/// One stretch without strong fronts.
+/// Smooths one section without strong fronts.
 fn segment<const N: usize>(
     limits: [f64; 2],
     first: [f64; N],
@@ -113,7 +114,7 @@ fn segment<const N: usize>(
     out.push((limits[1], value));
 }
 
-/// Lays out the jump of front `i` of one family.
+/// Spreads the jump of front `i` of one family.
 fn spread<const N: usize>(
     own: &[(&Step<N>, [f64; N])],
     i: usize,
@@ -123,7 +124,7 @@ fn spread<const N: usize>(
     start: &mut [f64; N],
 ) {
     let (step, jump) = &own[i];
-    // contacts have no jump of pressure: theirs is told by the last of the values
+    // contacts have no jump of pressure: the last of the values measures them
     let size = |j: &[f64; N]| if step.family == 1 { j[N - 1].abs() } else { j[measure].abs() };
     if step.edge || jump.iter().all(|&j| j == 0.0) {
         return;
@@ -135,7 +136,7 @@ fn spread<const N: usize>(
     };
     let mut left = away(own[..i].iter().rev().find(counts));
     let mut right = away(own[i + 1..].iter().find(counts));
-    // a wave that a strong front or the end of the axis cuts off goes on to it
+    // a wave that a strong front or the end of the axis cuts off extends to the cut
     let cut = [x - limits[0], limits[1] - x];
     let mut attached = [false; 2];
     match (left, right) {
@@ -162,7 +163,7 @@ fn spread<const N: usize>(
     let (Some(left), Some(right)) = (left, right) else { return };
     let zero = [0.0; N];
     if attached[0] {
-        // the line through the half-way points of this front and one like it beyond the limit
+        // the line through the half-way points of this front and of an equal one beyond the limit
         let w = (cut[0] / left).min(1.0);
         add(start, jump, 0.5 - w);
         let width = cut[0].max(f64::MIN_POSITIVE);

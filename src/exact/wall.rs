@@ -1,4 +1,4 @@
-//! A body that runs into a rigid wall, or is struck by a piston: one steady shock.
+//! A body that strikes a rigid wall, or that a piston strikes: one steady shock.
 //!
 //! With v the closing speed, relative to the material ahead (at rho0, p0, e0):
 //!
@@ -9,16 +9,16 @@
 //! ```
 //!
 //! (Rankine-Hugoniot; Noh's planar problem is the gas with e0 = 0.) The body's other face is
-//! taken to stand in the state ahead: free at p0 = 0, held otherwise. Holds until the shock
-//! reaches it.
+//! assumed to stay in the state ahead: free at p0 = 0, otherwise held. The solution holds until the
+//! first front reaches that face.
 
-use super::{ExactError, Landmarks, Point, Profile, finite, positive};
+use super::{ExactError, Landmarks, Profile, ProfilePoint, finite, positive};
 use crate::material::MieGruneisen;
 
-/// What runs into the wall.
+/// Material of the body that strikes the wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WallMaterial {
-    /// A solid at rest density and zero pressure.
+    /// A solid at the reference density and zero pressure.
     MieGruneisen(MieGruneisen),
     /// A gas.
     IdealGas {
@@ -29,21 +29,21 @@ pub enum WallMaterial {
         /// Specific internal energy [J/kg].
         e: f64,
     },
-    /// Any other material, whose fronts are known ([`super::hugoniot::piston`]).
+    /// Any other material whose fronts are known ([`super::hugoniot::piston`]).
     Fronts {
-        /// The state ahead, with the body's velocity.
-        ahead: Point,
-        /// State and speed [m/s] of an elastic precursor, relative to the material ahead of it;
-        /// velocities are those that a piston towards +x gives material at rest.
-        precursor: Option<(Point, f64)>,
+        /// State ahead, with the body's velocity.
+        ahead: ProfilePoint,
+        /// State behind an elastic precursor, and its speed relative to the material ahead of it
+        /// [m/s]. The velocity is the one that a piston towards +x gives to material at rest.
+        precursor: Option<(ProfilePoint, f64)>,
         /// Speed of the shock relative to the material ahead of it [m/s].
         speed: f64,
     },
 }
 
-/// The steady shock that leaves a wall or a piston.
+/// The steady shock from a wall or a piston.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WallImpact {
+pub struct WallImpactSolution {
     /// Pressure behind the shock [Pa].
     pub p: f64,
     /// Density behind the shock [kg/m3].
@@ -54,32 +54,32 @@ pub struct WallImpact {
     pub closing_speed: f64,
     /// Speed of the shock relative to the material ahead [m/s].
     pub shock_speed: f64,
-    /// When the shock reaches the body's other face [s].
+    /// Time at which the first front reaches the body's other face [s].
     pub valid_until: f64,
-    /// State ahead: pressure [Pa], density [kg/m3], energy [J/kg].
-    ahead: Point,
-    /// A front before the shock, which has left that state.
-    precursor: Option<Front>,
-    /// The state at rest, ahead of all fronts.
-    far: Point,
+    /// State ahead of the shock.
+    ahead: ProfilePoint,
+    /// Elastic precursor; the state behind it is `ahead`.
+    precursor: Option<ReflectedFront>,
+    /// Undisturbed state, ahead of all fronts.
+    far: ProfilePoint,
     /// +1 if the shock runs towards +x.
     direction: f64,
-    /// Struck face and other face at time 0 [m].
+    /// Struck face and opposite face at time 0 [m].
     faces: [f64; 2],
     wall_velocity: f64,
 }
 
-/// A front before the shock.
+/// A front ahead of the shock.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Front {
-    behind: Point,
-    /// Its speed relative to the material ahead [m/s].
+struct ReflectedFront {
+    behind: ProfilePoint,
+    /// Speed relative to the material ahead [m/s].
     speed: f64,
 }
 
-impl WallImpact {
-    /// A body from `lower` to `upper` at `velocity`, struck at t = 0 on its lower side (or its
-    /// upper one) by a wall that moves at `wall_velocity`.
+impl WallImpactSolution {
+    /// A body from `lower` to `upper` [m] with `velocity` [m/s]. At t = 0 a wall that moves at
+    /// `wall_velocity` [m/s] strikes its lower or its upper face.
     pub fn new(
         material: WallMaterial,
         lower: f64,
@@ -87,7 +87,7 @@ impl WallImpact {
         velocity: f64,
         wall_on_lower_side: bool,
         wall_velocity: f64,
-    ) -> Result<WallImpact, ExactError> {
+    ) -> Result<WallImpactSolution, ExactError> {
         finite("the body's velocity", velocity)?;
         finite("the wall's velocity", wall_velocity)?;
         finite("the body's lower face", lower)?;
@@ -111,7 +111,7 @@ impl WallImpact {
                         chi,
                     });
                 }
-                (us, Point { rho: m.rho0, u: velocity, ..Point::default() })
+                (us, ProfilePoint { rho: m.rho0, u: velocity, ..ProfilePoint::default() })
             }
             WallMaterial::IdealGas { gamma, rho, e } => {
                 positive("a gas's density", rho)?;
@@ -128,22 +128,22 @@ impl WallImpact {
                 }
                 let k = 0.25 * (gamma + 1.0) * v;
                 let us = k + (k * k + gamma * (gamma - 1.0) * e).sqrt();
-                (us, Point { x: 0.0, p: (gamma - 1.0) * rho * e, u: velocity, rho, e })
+                (us, ProfilePoint { x: 0.0, p: (gamma - 1.0) * rho * e, u: velocity, rho, e })
             }
             WallMaterial::Fronts { ahead, precursor, speed } => {
-                first = precursor.map(|(behind, speed)| Front {
-                    behind: Point { u: velocity + direction * behind.u, ..behind },
+                first = precursor.map(|(behind, speed)| ReflectedFront {
+                    behind: ProfilePoint { u: velocity + direction * behind.u, ..behind },
                     speed,
                 });
-                (speed, Point { u: velocity, ..ahead })
+                (speed, ProfilePoint { u: velocity, ..ahead })
             }
         };
-        // the shock runs into what the precursor has left
-        let ahead = first.map_or(far, |f: Front| f.behind);
+        // the shock runs into the state behind the precursor
+        let ahead = first.map_or(far, |f: ReflectedFront| f.behind);
         let v = direction * (wall_velocity - ahead.u);
         let p = ahead.p + ahead.rho * shock_speed * v;
         let rho = ahead.rho * shock_speed / (shock_speed - v);
-        Ok(WallImpact {
+        Ok(WallImpactSolution {
             p,
             rho,
             e: ahead.e + 0.5 * (p + ahead.p) * (1.0 / ahead.rho - 1.0 / rho),
@@ -159,22 +159,23 @@ impl WallImpact {
         })
     }
 
-    /// Places at `t` of the wall, the shock and the body's other face [m].
+    /// Positions of the wall, the shock and the body's other face at `t` [m].
     fn places(&self, t: f64) -> [f64; 3] {
         let [struck, other] = self.faces;
         let shock = self.ahead.u + self.direction * self.shock_speed;
         [struck + self.wall_velocity * t, struck + shock * t, other + self.far.u * t]
     }
 
-    /// The whole body at time `t`; `None` before 0 and after [`WallImpact::valid_until`].
+    /// The whole body at time `t`; `None` before 0 and after [`WallImpactSolution::valid_until`].
     pub fn profile(&self, t: f64) -> Option<Profile> {
         if !(0.0..=self.valid_until).contains(&t) {
             return None;
         }
         let [wall, shock, other] = self.places(t);
-        let behind = |x| Point { x, p: self.p, u: self.wall_velocity, rho: self.rho, e: self.e };
-        let ahead = |x| Point { x, ..self.ahead };
-        let far = |x| Point { x, ..self.far };
+        let behind =
+            |x| ProfilePoint { x, p: self.p, u: self.wall_velocity, rho: self.rho, e: self.e };
+        let ahead = |x| ProfilePoint { x, ..self.ahead };
+        let far = |x| ProfilePoint { x, ..self.far };
         let mut points = vec![behind(wall), behind(shock), ahead(shock)];
         if let Some(front) = &self.precursor {
             let place = self.faces[0] + (self.far.u + self.direction * front.speed) * t;
@@ -187,7 +188,7 @@ impl WallImpact {
         Some(Profile { points })
     }
 
-    /// What scoring looks at; `None` with the profile, and at t = 0.
+    /// Features for the scoring; `None` where the profile is `None`, and at t = 0.
     pub fn landmarks(&self, t: f64) -> Option<Landmarks> {
         if !(t > 0.0 && t <= self.valid_until) {
             return None;
@@ -204,7 +205,7 @@ impl WallImpact {
             e2: self.e,
             rho2_flyer: f64::NAN,
             e2_flyer: f64::NAN,
-            plateau_4: None,
+            second_plateau: None,
             p4: None,
             behind_shock: self.p,
         })
@@ -220,12 +221,12 @@ mod tests {
     fn a_wall_is_a_mirror() {
         // half of the symmetric impact at 1 km/s
         let solid = WallMaterial::MieGruneisen(COPPER);
-        let wall = WallImpact::new(solid, 0.0, 1e-3, -500.0, true, 0.0).unwrap();
+        let wall = WallImpactSolution::new(solid, 0.0, 1e-3, -500.0, true, 0.0).unwrap();
         assert!((wall.p - 20.916e9).abs() < 5e5 && (wall.shock_speed - 4684.5).abs() < 1e-9);
         let points = wall.profile(0.1e-6).unwrap().points;
         let mass: f64 = points.windows(2).map(|w| w[0].rho * (w[1].x - w[0].x)).sum();
         assert!((mass / (8930.0 * 1e-3) - 1.0).abs() < 1e-12);
-        let other = WallImpact::new(solid, 0.0, 1e-3, 500.0, false, 0.0).unwrap();
+        let other = WallImpactSolution::new(solid, 0.0, 1e-3, 500.0, false, 0.0).unwrap();
         let mirrored = other.profile(0.1e-6).unwrap().points;
         for (a, b) in points.iter().zip(mirrored.iter().rev()) {
             assert!((a.x + b.x - 1e-3).abs() < 1e-15 && a.u == -b.u && a.p == b.p);
@@ -235,7 +236,7 @@ mod tests {
     #[test]
     fn noh_in_the_plane() {
         let gas = WallMaterial::IdealGas { gamma: 5.0 / 3.0, rho: 1.0, e: 0.0 };
-        let noh = WallImpact::new(gas, 0.0, 1.0, -1.0, true, 0.0).unwrap();
+        let noh = WallImpactSolution::new(gas, 0.0, 1.0, -1.0, true, 0.0).unwrap();
         assert!((noh.rho - 4.0).abs() < 1e-12 && (noh.e - 0.5).abs() < 1e-12);
         assert!((noh.p - 4.0 / 3.0).abs() < 1e-12);
         assert!((noh.landmarks(0.6).unwrap().shock.unwrap() - 0.2).abs() < 1e-12);
@@ -243,11 +244,11 @@ mod tests {
 
     #[test]
     fn a_piston_in_gas_agrees_with_the_riemann_problem() {
-        use crate::exact::{GasState, Riemann};
+        use crate::exact::{GasState, RiemannSolution};
         let g = |u| GasState { rho: 1.2, u, p: 1e5, gamma: 1.4 };
-        let riemann = Riemann::solve(g(300.0), g(-300.0)).unwrap();
+        let riemann = RiemannSolution::solve(g(300.0), g(-300.0)).unwrap();
         let gas = WallMaterial::IdealGas { gamma: 1.4, rho: 1.2, e: 1e5 / (0.4 * 1.2) };
-        let piston = WallImpact::new(gas, 0.0, 1.0, -10.0, true, 290.0).unwrap();
+        let piston = WallImpactSolution::new(gas, 0.0, 1.0, -10.0, true, 290.0).unwrap();
         assert!((piston.p / riemann.p_star - 1.0).abs() < 1e-12);
         assert!((piston.rho / riemann.rho_star_left - 1.0).abs() < 1e-12);
     }
@@ -255,8 +256,8 @@ mod tests {
     #[test]
     fn refuses_what_cannot_be() {
         let solid = WallMaterial::MieGruneisen(COPPER);
-        assert!(WallImpact::new(solid, 0.0, 1e-3, 500.0, true, 0.0).is_err());
-        assert!(WallImpact::new(solid, 0.0, 1e-3, -1e6, true, 0.0).is_err());
-        assert!(WallImpact::new(solid, 0.0, 0.0, -1e2, true, 0.0).is_err());
+        assert!(WallImpactSolution::new(solid, 0.0, 1e-3, 500.0, true, 0.0).is_err());
+        assert!(WallImpactSolution::new(solid, 0.0, 1e-3, -1e6, true, 0.0).is_err());
+        assert!(WallImpactSolution::new(solid, 0.0, 0.0, -1e2, true, 0.0).is_err());
     }
 }

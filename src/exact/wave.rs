@@ -1,7 +1,8 @@
-//! One wave in a Mie-Grueneisen material, by the change of compression across it.
+//! One wave in a Mie-Grueneisen material, as a function of the change of compression across it.
 //!
-//! With d = chi* - chi ahead, the jump conditions of a shock in mass coordinates and the linear
-//! energy term of the EOS give everything without iteration and without cancellation:
+//! With d = chi* - chi (behind minus ahead), the jump conditions of a shock in mass coordinates and
+//! the linear energy term of the EOS give all quantities without iteration and without
+//! cancellation:
 //!
 //! ```text
 //! p* - p = K d,   K = (F + gamma0 p)/(1 - gamma0 d/2),   F = (f(chi*) - f(chi))/d
@@ -9,15 +10,15 @@
 //! e* - e = (p + p*)/2 d/rho0
 //! ```
 //!
-//! (Rankine-Hugoniot with v = (1 - chi)/rho0.) At d = 0, K = f' + gamma0 p and W is the
-//! Lagrangian sound speed. For d < 0 the same relation, taken in small steps, follows the
-//! isentrope with an error of third order in each step.
+//! (Rankine-Hugoniot with v = (1 - chi)/rho0.) At d = 0, K = f' + gamma0 p and W is the Lagrangian
+//! sound speed. For d < 0 the same relation, applied in small steps, follows the isentrope with an
+//! error of third order per step.
 
 use crate::material::{EquationOfState, MieGruneisen};
 
-/// A state of one material.
+/// State of one material.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct State {
+pub(super) struct WaveState {
     /// Compression 1 - rho0/rho [-].
     pub chi: f64,
     /// Pressure [Pa].
@@ -28,11 +29,11 @@ pub(super) struct State {
     pub e: f64,
 }
 
-/// What lies behind a wave, and how that changes with its strength d.
+/// The state behind a wave, with its derivatives by the strength d of the wave.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Jump {
-    /// Behind the wave, moving to the right; see [`jump`].
-    pub behind: State,
+    /// State behind the wave; see [`jump`] for the sign of the velocity.
+    pub behind: WaveState,
     /// Lagrangian speed of the front [m/s].
     pub speed: f64,
     /// dp*/dd [Pa].
@@ -58,15 +59,16 @@ fn secant(m: &MieGruneisen, chi: f64, d: f64) -> (f64, f64) {
         let change = stiffness * r * m.s * r_to * r_to * (inner + r_to * (1.0 - h));
         return (slope, change);
     }
-    // one end in tension, where f is a straight line
+    // one end is in tension, where f is a straight line
     let rise = slope * (to.max(0.0) - chi.max(0.0)) + stiffness * (to.min(0.0) - chi.min(0.0));
     let mean = rise / d;
     (mean, (m.cold_slope(to) - mean) / d)
 }
 
-/// One front of strength `d` into `ahead`; `side` is +1 if it moves to the right, -1 to the left.
+/// One front of strength `d` that moves into `ahead`; `side` is +1 if it moves to the right, -1 to
+/// the left.
 #[inline]
-pub(super) fn jump(m: &MieGruneisen, ahead: &State, d: f64, side: f64) -> Jump {
+pub(super) fn jump(m: &MieGruneisen, ahead: &WaveState, d: f64, side: f64) -> Jump {
     let (f, f_slope) = secant(m, ahead.chi, d);
     let denominator = 1.0 / (1.0 - 0.5 * m.gamma0 * d);
     let k = (f + m.gamma0 * ahead.p) * denominator;
@@ -74,7 +76,7 @@ pub(super) fn jump(m: &MieGruneisen, ahead: &State, d: f64, side: f64) -> Jump {
     let speed = (k / m.rho0).sqrt();
     let p = ahead.p + k * d;
     Jump {
-        behind: State {
+        behind: WaveState {
             chi: ahead.chi + d,
             p,
             u: ahead.u + side * speed * d,
@@ -86,8 +88,8 @@ pub(super) fn jump(m: &MieGruneisen, ahead: &State, d: f64, side: f64) -> Jump {
     }
 }
 
-/// A wave of strength `d`: one front, or `steps` equal fronts of a fan.
-pub(super) fn wave(m: &MieGruneisen, ahead: &State, d: f64, side: f64, steps: usize) -> Jump {
+/// A wave of strength `d`: a single front, or a fan of `steps` equal fronts.
+pub(super) fn wave(m: &MieGruneisen, ahead: &WaveState, d: f64, side: f64, steps: usize) -> Jump {
     if steps <= 1 {
         return jump(m, ahead, d, side);
     }
@@ -102,24 +104,24 @@ pub(super) fn wave(m: &MieGruneisen, ahead: &State, d: f64, side: f64, steps: us
 }
 
 /// Lagrangian sound speed, rho c/rho0 [m/s].
-pub(super) fn sound_speed(m: &MieGruneisen, state: &State) -> f64 {
+pub(super) fn sound_speed(m: &MieGruneisen, state: &WaveState) -> f64 {
     jump(m, state, 0.0, 1.0).speed
 }
 
-/// The material at rest at velocity `u`.
-pub(super) fn at_rest(u: f64) -> State {
-    State { u, ..State::default() }
+/// The undisturbed material (pressure 0) at the velocity `u` [m/s].
+pub(super) fn at_rest(u: f64) -> WaveState {
+    WaveState { u, ..WaveState::default() }
 }
 
-/// The state behind a shock of velocity jump `up` into material at rest and at pressure 0; `u`
-/// is the jump alone.
-pub(super) fn shocked(m: &MieGruneisen, up: f64) -> State {
+/// The state behind a shock with the velocity jump `up` [m/s] into undisturbed material at pressure
+/// 0; its `u` is the jump alone.
+pub(super) fn shocked(m: &MieGruneisen, up: f64) -> WaveState {
     let us = m.c0 + m.s * up;
-    State { chi: up / us, p: m.rho0 * us * up, u: up, e: 0.5 * up * up }
+    WaveState { chi: up / us, p: m.rho0 * us * up, u: up, e: 0.5 * up * up }
 }
 
 /// Density of a state [kg/m3].
-pub(super) fn density(m: &MieGruneisen, state: &State) -> f64 {
+pub(super) fn density(m: &MieGruneisen, state: &WaveState) -> f64 {
     m.reference_density() / (1.0 - state.chi)
 }
 
@@ -133,7 +135,7 @@ mod tests {
         for (chi, d) in
             [(0.0, 0.1), (0.05, 0.1), (-0.02, 0.1), (0.1, -0.12), (0.1, 1e-9), (-0.01, -0.02)]
         {
-            let start = State { chi, p: COPPER.pressure(1.0 - chi, 1e4), u: 30.0, e: 1e4 };
+            let start = WaveState { chi, p: COPPER.pressure(1.0 - chi, 1e4), u: 30.0, e: 1e4 };
             for side in [-1.0, 1.0] {
                 let j = jump(&COPPER, &start, d, side);
                 let b = j.behind;
@@ -151,7 +153,7 @@ mod tests {
     #[test]
     fn slopes_are_derivatives() {
         for (chi, d) in [(0.0, 0.1), (0.05, -0.03), (-0.02, 0.1), (0.1, -0.13), (0.1, 0.0)] {
-            let start = State { chi, p: ALUMINIUM.pressure(1.0 - chi, 2e4), u: 0.0, e: 2e4 };
+            let start = WaveState { chi, p: ALUMINIUM.pressure(1.0 - chi, 2e4), u: 0.0, e: 2e4 };
             let at = |d| jump(&ALUMINIUM, &start, d, 1.0);
             let h = 1e-6;
             let dp = (at(d + h).behind.p - at(d - h).behind.p) / (2.0 * h);
@@ -163,7 +165,7 @@ mod tests {
 
     #[test]
     fn a_front_without_strength_runs_at_the_sound_speed() {
-        let start = State { chi: 0.1, p: ALUMINIUM.pressure(0.9, 2e5), u: 0.0, e: 2e5 };
+        let start = WaveState { chi: 0.1, p: ALUMINIUM.pressure(0.9, 2e5), u: 0.0, e: 2e5 };
         let c = ALUMINIUM.sound_speed_squared(0.9, start.p).sqrt() / 0.9;
         assert!((sound_speed(&ALUMINIUM, &start) / c - 1.0).abs() < 1e-14);
     }

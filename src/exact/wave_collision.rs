@@ -1,12 +1,13 @@
-//! What leaves a point where two fronts meet: the Riemann problem between two states, of one or
-//! two materials, and against a free surface.
+//! Outgoing waves of a collision of two fronts: the Riemann problem between two states, of one or
+//! two materials, and at a free surface.
 //!
-//! Left-going wave of strength a, right-going wave of strength b; equal pressure and velocity
-//! between them. Newton's rule from the strengths of the fronts that came in; where it fails, as in
-//! strong impacts of compressible materials, bisection for the pressure.
+//! The left-going wave has the strength a, the right-going wave the strength b; pressure and
+//! velocity are equal between them. Newton's method starts from the strengths of the incoming
+//! fronts. If it fails, as in strong impacts of compressible materials, the pressure is found by
+//! bisection.
 
 use super::isentrope::least_pressure;
-use super::wave::{Jump, State, wave};
+use super::wave::{Jump, WaveState, wave};
 use crate::material::MieGruneisen;
 
 /// The two waves that leave a collision.
@@ -14,31 +15,31 @@ use crate::material::MieGruneisen;
 pub(super) struct Outgoing {
     /// Strength (change of compression) and number of steps of the left-going wave.
     pub left: (f64, usize),
-    /// The same of the right-going wave.
+    /// Strength and number of steps of the right-going wave.
     pub right: (f64, usize),
     /// State behind the left-going wave.
-    pub left_star: State,
+    pub left_star: WaveState,
     /// State behind the right-going wave.
-    pub right_star: State,
+    pub right_star: WaveState,
 }
 
-/// A material and the state that a wave runs into.
-pub(super) type Side<'a> = (&'a MieGruneisen, &'a State);
+/// A material and the state ahead of a wave.
+pub(super) type CollidingState<'a> = (&'a MieGruneisen, &'a WaveState);
 
-/// In how many steps a wave with change of pressure `dp` is taken; shocks are never split.
+/// Number of steps of a wave with the change of pressure `dp` [Pa]; shocks are never split.
 fn steps(dp: f64, quantum: f64) -> usize {
     if dp < -1.5 * quantum { (-dp / quantum).round() as usize } else { 1 }
 }
 
-/// Keeps a strength within what the material can be compressed or stretched to.
-fn bounded(m: &MieGruneisen, state: &State, d: f64) -> f64 {
+/// Limits a strength to the range in which the material can be compressed or stretched.
+fn bounded(m: &MieGruneisen, state: &WaveState, d: f64) -> f64 {
     let room = (1.0f64.min(1.0 / m.s) - state.chi).max(1e-3);
     d.clamp(-3.0, 0.9 * room)
 }
 
-/// A wave whose number of steps follows its strength, until `fixed` holds it.
+/// A wave whose number of steps follows its strength, unless it is `fixed`.
 fn stepped(
-    (m, state): Side,
+    (m, state): CollidingState,
     d: f64,
     side: f64,
     quantum: f64,
@@ -56,11 +57,12 @@ fn stepped(
     out
 }
 
-/// Solves between `left` and `right`; `guess` are the strengths to start from, `quantum` the
-/// pressure of one step of a fan [Pa], `tolerance` what the pressures may differ by [Pa].
+/// Solves the Riemann problem between `left` and `right`. `guess` holds the initial strengths,
+/// `quantum` is the pressure of one step of a fan [Pa], and `tolerance` the allowed difference of
+/// the pressures [Pa].
 pub(super) fn collide(
-    left: Side,
-    right: Side,
+    left: CollidingState,
+    right: CollidingState,
     guess: (f64, f64),
     quantum: f64,
     tolerance: f64,
@@ -93,15 +95,19 @@ pub(super) fn collide(
     collide_by_bisection(left, right, quantum)
 }
 
-/// As [`collide`], by bisection for the pressure between the waves. `None` if the two sides part
-/// faster than tension can stretch them.
-fn collide_by_bisection(left: Side, right: Side, quantum: f64) -> Option<Outgoing> {
+/// Same as [`collide`], by bisection for the pressure between the waves. `None` if the two sides
+/// separate faster than tension can stretch them.
+fn collide_by_bisection(
+    left: CollidingState,
+    right: CollidingState,
+    quantum: f64,
+) -> Option<Outgoing> {
     let at = |p: f64| {
         let l = reach(left.0, left.1, p, -1.0, quantum)?;
         let r = reach(right.0, right.1, p, 1.0, quantum)?;
         Some((l, r))
     };
-    // the left side's velocity falls with the pressure, the right side's rises
+    // the left side's velocity decreases with the pressure, the right side's increases
     let rises = |p: f64| at(p).is_some_and(|(l, r)| l.2.u > r.2.u);
     let scale = left.1.p.abs().max(right.1.p.abs()).max(left.0.rho0 * left.0.c0 * left.0.c0);
     let least = least_pressure(left.0).max(least_pressure(right.0));
@@ -112,7 +118,7 @@ fn collide_by_bisection(left: Side, right: Side, quantum: f64) -> Option<Outgoin
         }
     } else {
         (low, high) = if least.is_finite() { (least, 0.0) } else { (-scale, 0.0) };
-        // Mie-Grueneisen without gamma0 stretches without a bound
+        // a Mie-Grueneisen material without gamma0 has no lower bound of the pressure
         while !least.is_finite() && !rises(low) {
             (low, high) = (2.0 * low, low);
             if low < -1e3 * scale {
@@ -128,27 +134,28 @@ fn collide_by_bisection(left: Side, right: Side, quantum: f64) -> Option<Outgoin
         if rises(middle) { low = middle } else { high = middle }
     }
     let ((a, na, left_star), (b, nb, right_star)) = at(high)?;
-    // without a root the search ends at the least pressure, where the velocities still differ
+    // without a root the search ends at the lowest pressure, where the velocities still differ
     let speed = left.0.c0.max(right.0.c0);
     let meets = (left_star.u - right_star.u).abs() <= 1e-9 * speed;
     meets.then_some(Outgoing { left: (a, na), right: (b, nb), left_star, right_star })
 }
 
-/// The wave that brings `state` to the pressure `p`: strength, steps, state. By bisection.
+/// The wave that brings `state` to the pressure `p`: strength, number of steps, state behind. Found
+/// by bisection.
 fn reach(
     m: &MieGruneisen,
-    state: &State,
+    state: &WaveState,
     p: f64,
     side: f64,
     quantum: f64,
-) -> Option<(f64, usize, State)> {
+) -> Option<(f64, usize, WaveState)> {
     if p == state.p {
         return Some((0.0, 1, *state));
     }
     let count = steps(p - state.p, quantum);
     let too_much = |d: f64| {
         let there = wave(m, state, d, side, count).behind.p;
-        // past its limit density a material has no state
+        // beyond its limit density a material has no state
         there >= p || !there.is_finite()
     };
     let (mut low, mut high);
@@ -172,20 +179,21 @@ fn reach(
         }
         if too_much(middle) { high = middle } else { low = middle }
     }
-    // both ends differ by rounding; the lower one is inside of the limit density
+    // both ends differ by rounding; the lower one is within the limit density
     let behind = wave(m, state, low, side, count).behind;
     let close = (behind.p - p).abs() <= 1e-9 * (p.abs() + state.p.abs());
-    (close && behind.u.is_finite()).then_some((low, count, State { p, ..behind }))
+    (close && behind.u.is_finite()).then_some((low, count, WaveState { p, ..behind }))
 }
 
-/// The wave that brings `state` to the pressure 0 of a free surface: strength, steps, state.
+/// The wave that brings `state` to the pressure 0 of a free surface: strength, number of steps,
+/// state behind.
 pub(super) fn set_free(
     m: &MieGruneisen,
-    state: &State,
+    state: &WaveState,
     side: f64,
     quantum: f64,
     tolerance: f64,
-) -> Option<(f64, usize, State)> {
+) -> Option<(f64, usize, WaveState)> {
     let (mut d, mut count) = (0.0, 1);
     for round in 0..60 {
         let out = stepped((m, state), d, side, quantum, &mut count, round > 4);
@@ -193,7 +201,7 @@ pub(super) fn set_free(
             break;
         }
         if out.behind.p.abs() <= tolerance {
-            return Some((d, count, State { p: 0.0, ..out.behind }));
+            return Some((d, count, WaveState { p: 0.0, ..out.behind }));
         }
         d = bounded(m, state, d - out.behind.p / out.dp);
     }

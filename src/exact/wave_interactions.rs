@@ -1,31 +1,22 @@
-//! The source document's solution: a chain of impedance matches, each rarefaction taken as a
-//! shock that runs back along the Hugoniot.
+//! The solution of Burghardt (2010): a chain of impedance matches, in which each rarefaction is
+//! treated as a shock that runs back along the Hugoniot.
 //!
-//! Frame: flyer [-L, 0] at +U, target [0, inf) at rest, contact at t = 0. Hugoniot of a material
-//! about (u0, P = 0), P = rho0 (C0 + S w) w, with w = u - u0 for right-going waves and u0 - u for
-//! left-going ones. States: 0 target, 1 flyer, even ones at the interface, odd ones at the
-//! flyer's free rear. Source: Burghardt (2010), Shock wave propagation verification test of the
-//! Uintah MPM code, section 2; its eq. 3 lost rho0.
+//! Frame: flyer [-L, 0] at +U, target [0, inf) at rest, contact at t = 0. The Hugoniot of a
+//! material about (u0, P = 0) is P = rho0 (C0 + S w) w, with w = u - u0 for right-going and u0 - u
+//! for left-going waves. States: 0 target, 1 flyer, even numbers at the interface, odd numbers at
+//! the flyer's free rear. Source: Burghardt (2010), Shock wave propagation verification test of the
+//! Uintah MPM code, section 2; its eq. 3 lacks rho0.
 //!
-//! Wave speeds are Lagrangian (relative to the undeformed material), the chord of the curve
-//! between the two states: C0 + S (ua + ub - 2 u0). Compressions follow from the mass jump across
-//! each wave. Holds until a later wave in the target overtakes an earlier one
-//! ([`Chain::valid_until`]), and to the order of the entropy change, cubic in the shock's
-//! strength.
+//! Wave speeds are Lagrangian (relative to the undeformed material). They follow from the chord of
+//! the curve between the two states: C0 + S (ua + ub - 2 u0). Compressions follow from the mass
+//! jump across each wave. The solution holds until a later wave in the target overtakes an earlier
+//! one ([`Chain::valid_until`]). It neglects the change of entropy, which is cubic in the strength
+//! of the shock.
 
-use super::{ExactError, Point, Profile, finite, positive};
+use super::{ExactError, Plate, Profile, ProfilePoint, finite, positive};
 use crate::material::MieGruneisen;
 
-/// One of the two plates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Plate {
-    /// The body that strikes.
-    Flyer,
-    /// The body that is struck; the one that is scored.
-    Target,
-}
-
-/// Kinds of waves.
+/// Kind of a wave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WaveKind {
     /// Pressure rises across it.
@@ -37,7 +28,7 @@ pub enum WaveKind {
 /// A state of the chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChainState {
-    /// The document's number.
+    /// Number of the state in Burghardt (2010).
     pub number: usize,
     /// Pressure [Pa].
     pub p: f64,
@@ -52,7 +43,7 @@ pub struct ChainState {
 /// A wave of the chain, a straight line in the x-t diagram.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChainWave {
-    /// Whose plate it runs in.
+    /// Plate in which the wave runs.
     pub plate: Plate,
     /// Shock or rarefaction.
     pub kind: WaveKind,
@@ -62,34 +53,35 @@ pub struct ChainWave {
     pub to: usize,
     /// Speed relative to the undeformed material [m/s], positive.
     pub lagrangian_speed: f64,
-    /// Whether it runs towards -x.
+    /// Whether the wave runs towards -x.
     pub leftward: bool,
-    /// Time [s] and place [m] of its start.
+    /// Time [s] and position [m] of its start.
     pub start: [f64; 2],
-    /// Time [s] and place [m] of its end; `None` in the target, where it goes on.
+    /// Time [s] and position [m] of its end; `None` in the target, where the wave continues.
     pub end: Option<[f64; 2]>,
     /// Speed in space, dx/dt [m/s].
     pub velocity: f64,
 }
 
-/// The chain of wave interactions, rarefactions taken as shocks.
+/// The chain of wave interactions, with rarefactions treated as shocks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
-    /// States by number.
+    /// States, sorted by number.
     pub states: Vec<ChainState>,
-    /// Waves by the time of their start.
+    /// Waves, sorted by the time of their start.
     pub waves: Vec<ChainWave>,
-    /// Whether the plates part: the pressure of state 4 would be negative, since state 3 has
-    /// u < 0 (softer flyer). State 4 is then the target's, at P = 0, and the flyer stays in
-    /// state 3.
+    /// Whether the plates separate: the pressure of state 4 would be negative, since state 3 has
+    /// u < 0 (softer flyer). State 4 then belongs to the target alone, at P = 0, and the flyer
+    /// stays in state 3.
     pub separates: bool,
-    /// When the plates part [s].
+    /// Time of separation of the plates [s].
     pub separation_time: Option<f64>,
-    /// Time from which a later wave of the target has overtaken an earlier one [s].
+    /// Time at which a later wave of the target overtakes an earlier one [s].
     pub valid_until: f64,
     /// Density of the target at rest [kg/m3].
     target_density: f64,
-    /// Breaks of the interface's (after separation: the target face's) path: time, place.
+    /// Corner points of the interface's path: time [s], position [m]. After separation the path is
+    /// that of the target's face.
     interface: Vec<[f64; 2]>,
 }
 
@@ -113,14 +105,14 @@ pub fn centre_left(m: &MieGruneisen, p: f64, u: f64) -> f64 {
     u + velocity_jump(m, p)
 }
 
-/// The w of P = rho0 (C0 + S w) w [m/s].
+/// The positive root w of P = rho0 (C0 + S w) w [m/s].
 pub(super) fn velocity_jump(m: &MieGruneisen, p: f64) -> f64 {
     let b = m.rho0 * m.c0;
     2.0 * p / (b + (b * b + 4.0 * m.rho0 * m.s * p).sqrt())
 }
 
-/// Where the right-going Hugoniot of `target` about (0, 0) meets the left-going one of `flyer`
-/// about (`speed`, 0) [m/s].
+/// Velocity [m/s] at which the right-going Hugoniot of `target` about (0, 0) meets the left-going
+/// Hugoniot of `flyer` about (`speed`, 0).
 pub(super) fn impedance_match(flyer: &MieGruneisen, target: &MieGruneisen, speed: f64) -> f64 {
     let a = target.rho0 * target.s - flyer.rho0 * flyer.s;
     let b = target.rho0 * target.c0 + flyer.rho0 * (flyer.c0 + 2.0 * flyer.s * speed);
@@ -128,7 +120,7 @@ pub(super) fn impedance_match(flyer: &MieGruneisen, target: &MieGruneisen, speed
     2.0 * c / (b + (b * b + 4.0 * a * c).sqrt())
 }
 
-/// Refuses constants and impacts outside of what the equation of state can bear.
+/// Refuses constants and impacts outside of the range of the equation of state.
 pub(super) fn check(
     flyer: &MieGruneisen,
     target: &MieGruneisen,
@@ -157,8 +149,8 @@ pub(super) fn check(
 }
 
 impl Chain {
-    /// The chain up to the state numbered `last_state`, at least 2; it ends earlier when the
-    /// plates part or come to rest.
+    /// The chain up to the state number `last_state`, at least 2. It ends earlier if the plates
+    /// separate or come to rest.
     pub fn new(
         flyer: MieGruneisen,
         target: MieGruneisen,
@@ -192,8 +184,8 @@ impl Chain {
             interface: vec![[0.0, 0.0]],
         };
         let mut t = 0.0;
-        let (mut face, mut rear) = (0.0, -thickness); // places of the flyer's two faces
-        let (mut ahead_u, mut ahead_chi) = (0.0, 0.0); // the target before the next wave
+        let (mut face, mut rear) = (0.0, -thickness); // positions of the flyer's faces
+        let (mut ahead_u, mut ahead_chi) = (0.0, 0.0); // state of the target ahead of the next wave
         let mut flyer_u = speed;
         for number in (2..=last_state.max(2)).step_by(2) {
             let parts = flyer_u < 0.0;
@@ -224,7 +216,8 @@ impl Chain {
                 chain.states.push(ChainState { number, p, u, rho_flyer: None, rho_target });
                 break;
             }
-            // the shock back through the flyer, and its rarefaction from the free rear
+            // the shock back through the flyer, and its reflection from the free rear as a
+            // rarefaction
             let up = flyer_u - u;
             let w = flyer.c0 + flyer.s * up;
             let chi = up / w;
@@ -249,7 +242,7 @@ impl Chain {
             if number == last_state.max(2) {
                 break;
             }
-            // symmetric about state 2, 4, ...: the rarefaction undoes the shock's jump
+            // symmetric about state 2, 4, ...: the rarefaction cancels the shock's jump
             let mut next_u = u - up;
             if next_u.abs() <= 1e-12 * speed {
                 next_u = 0.0;
@@ -287,7 +280,7 @@ impl Chain {
         self.waves.push(wave);
     }
 
-    /// Waves of the target, the earliest first.
+    /// Waves of the target, in the order of their start.
     fn target_waves(&self) -> impl Iterator<Item = &ChainWave> {
         self.waves.iter().filter(|w| w.plate == Plate::Target)
     }
@@ -305,7 +298,7 @@ impl Chain {
         self.valid_until = first;
     }
 
-    /// Place of the interface (after separation: of the target's face) at time `t` [m].
+    /// Position of the interface at time `t` [m]; after separation, of the target's face.
     pub fn interface_position(&self, t: f64) -> f64 {
         let k = self.interface.partition_point(|b| b[0] <= t).max(1) - 1;
         let [from, x] = self.interface[k];
@@ -315,17 +308,17 @@ impl Chain {
         x + state.map_or(0.0, |s| s.u) * (t - from)
     }
 
-    /// The document's black line: pressure, velocity and density in the target at time `t`,
-    /// constant between the waves that have entered it, from the interface to a little ahead
-    /// of the shock (as far again as the shock has run). The energy is that of the jump
-    /// conditions. `None` outside of 0 < t <= `valid_until`.
+    /// The black line of Burghardt (2010): the state in the target at time `t` [s], constant
+    /// between the waves that have entered it. It extends from the interface past the shock, by the
+    /// distance that the shock has run. The energy follows from the jump conditions. `None` outside
+    /// of 0 < t <= `valid_until`.
     pub fn shock_profile(&self, t: f64) -> Option<Profile> {
         if !(t > 0.0 && t <= self.valid_until) {
             return None;
         }
         let mut points = Vec::new();
-        let mut at = Point { rho: self.target_density, ..Point::default() };
-        let mut place = None; // Lagrangian and Eulerian place of the wave before
+        let mut at = ProfilePoint { rho: self.target_density, ..ProfilePoint::default() };
+        let mut place = None; // Lagrangian and Eulerian position of the previous wave
         for wave in self.target_waves().take_while(|w| w.start[0] < t) {
             let lagrangian = wave.lagrangian_speed * (t - wave.start[0]);
             let x = match place {
@@ -333,18 +326,18 @@ impl Chain {
                 Some((l, x)) => x - (l - lagrangian) * self.target_density / at.rho,
             };
             if place.is_none() {
-                points.push(Point { x: 2.0 * x, ..at });
+                points.push(ProfilePoint { x: 2.0 * x, ..at });
             }
             place = Some((lagrangian, x));
-            points.push(Point { x, ..at });
+            points.push(ProfilePoint { x, ..at });
             let Some(behind) = self.states.iter().find(|s| s.number == wave.to) else { break };
             let rho = behind.rho_target.unwrap_or(at.rho);
             let work = 0.5 * (at.p + behind.p) * (1.0 / at.rho - 1.0 / rho);
-            at = Point { x, p: behind.p, u: behind.u, rho, e: at.e + work };
+            at = ProfilePoint { x, p: behind.p, u: behind.u, rho, e: at.e + work };
             points.push(at);
         }
         let (l, x) = place?;
-        points.push(Point { x: x - l * self.target_density / at.rho, ..at });
+        points.push(ProfilePoint { x: x - l * self.target_density / at.rho, ..at });
         points.reverse();
         Some(Profile { points })
     }

@@ -1,23 +1,23 @@
-//! From a region of the scene to a checked solid, with the place of a fault.
+//! Conversion of a region of the scene to a checked solid; a fault names the key inside the region.
 
 use robust::{Coord, orient2d};
 use serde::Serialize;
 use serde_json::Value;
 
 use super::Point;
-use super::ellipse::Ellipse;
+use super::ellipse::EllipseCurve;
 use super::region::{Annulus, BoxShape, Disk, HalfPlane, Polygon, Region, Rotation};
 use super::solid::{Operation, Outline, Solid};
 
-/// What is wrong with a region.
+/// A fault in a region.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{path} = {value}: {reason}")]
 pub struct RegionFault {
-    /// Path of the key inside of the region, such as `union[1].disk.radius`.
+    /// Path of the key inside the region, such as `union[1].disk.radius`.
     pub path: String,
-    /// What stands there.
+    /// Value of that key.
     pub value: Value,
-    /// What is wrong, and what is allowed.
+    /// Description of the fault, and the allowed values.
     pub reason: String,
 }
 
@@ -28,27 +28,27 @@ impl RegionFault {
     }
 }
 
-/// Greatest length or coordinate: its fourth power is still a number.
+/// Greatest length or coordinate [m]: its fourth power is still finite.
 const GREATEST: f64 = 1e60;
 
-/// Least length, likewise.
+/// Smallest length [m]: its fourth power is still above 0.
 const LEAST: f64 = 1e-60;
 
-/// A polygon thinner than this, over its length, has no area but rounding.
+/// Greatest thickness over length of a polygon whose area is only rounding.
 const THIN: f64 = 1e-12;
 
-/// A turn about the origin, then a shift.
+/// A rotation about the origin, followed by a translation.
 #[derive(Clone, Copy)]
-struct Motion {
+struct Placement {
     cos: f64,
     sin: f64,
     shift: [f64; 2],
 }
 
-impl Motion {
-    const NONE: Motion = Motion { cos: 1.0, sin: 0.0, shift: [0.0; 2] };
+impl Placement {
+    const NONE: Placement = Placement { cos: 1.0, sin: 0.0, shift: [0.0; 2] };
 
-    /// Quarter turns are exact.
+    /// A rotation about the point `about`; quarter turns are exact.
     fn turn(degrees: f64, about: Point) -> Self {
         let (sin, cos) = match degrees.rem_euclid(360.0) {
             0.0 => (0.0, 1.0),
@@ -57,9 +57,9 @@ impl Motion {
             270.0 => (-1.0, 0.0),
             angle => angle.to_radians().sin_cos(),
         };
-        let turn = Motion { cos, sin, shift: [0.0; 2] };
+        let turn = Placement { cos, sin, shift: [0.0; 2] };
         let moved = turn.vector(about);
-        Motion { shift: [about[0] - moved[0], about[1] - moved[1]], ..turn }
+        Placement { shift: [about[0] - moved[0], about[1] - moved[1]], ..turn }
     }
 
     fn vector(&self, [x, y]: [f64; 2]) -> [f64; 2] {
@@ -71,20 +71,20 @@ impl Motion {
         [x + self.shift[0], y + self.shift[1]]
     }
 
-    /// First `inner`, then this.
-    fn after(&self, inner: &Motion) -> Self {
+    /// The placement that applies `inner` first, then this one.
+    fn after(&self, inner: &Placement) -> Self {
         let cos = self.cos * inner.cos - self.sin * inner.sin;
         let sin = self.sin * inner.cos + self.cos * inner.sin;
-        Motion { cos, sin, shift: self.point(inner.shift) }
+        Placement { cos, sin, shift: self.point(inner.shift) }
     }
 }
 
 /// The solid of a region.
 pub(super) fn solid(region: &Region) -> Result<Solid, RegionFault> {
-    build(region, "", &Motion::NONE)
+    build(region, "", &Placement::NONE)
 }
 
-/// Key of a region's only entry.
+/// The key of a region's only entry.
 pub(super) fn key(region: &Region) -> &'static str {
     match region {
         Region::Box(_) => "box",
@@ -100,7 +100,7 @@ pub(super) fn key(region: &Region) -> &'static str {
     }
 }
 
-fn build(region: &Region, parent: &str, motion: &Motion) -> Result<Solid, RegionFault> {
+fn build(region: &Region, parent: &str, motion: &Placement) -> Result<Solid, RegionFault> {
     let dot = if parent.is_empty() { "" } else { "." };
     let path = format!("{parent}{dot}{}", key(region));
     let join = |operation, parts: &[Region]| {
@@ -113,7 +113,7 @@ fn build(region: &Region, parent: &str, motion: &Motion) -> Result<Solid, Region
         Ok(Solid::Joined(operation, parts))
     };
     let ellipse = |centre, radii| {
-        let ellipse = Ellipse::tilted(motion.point(centre), radii, motion.cos, motion.sin);
+        let ellipse = EllipseCurve::tilted(motion.point(centre), radii, motion.cos, motion.sin);
         Solid::Outline(Outline::Ellipse(ellipse))
     };
     let polygon = |vertices: Vec<Point>| {
@@ -169,7 +169,7 @@ fn build(region: &Region, parent: &str, motion: &Motion) -> Result<Solid, Region
         Region::Rotation(Rotation { angle, about, of }) => {
             let about = point(about, &format!("{path}.about"))?;
             let angle = number(*angle, &format!("{path}.angle"))?;
-            let turned = motion.after(&Motion::turn(angle, about));
+            let turned = motion.after(&Placement::turn(angle, about));
             build(of, &format!("{path}.of"), &turned)?
         }
     })
@@ -199,7 +199,7 @@ fn point(values: &[f64], path: &str) -> Result<Point, RegionFault> {
     Ok([number(x, &format!("{path}[0]"))?, number(y, &format!("{path}[1]"))?])
 }
 
-/// Corners of a box.
+/// Lower and upper corner of a box.
 pub(super) fn corners(extent: &BoxShape, path: &str) -> Result<[Point; 2], RegionFault> {
     let lower = point(&extent.lower, &format!("{path}.lower"))?;
     let path = format!("{path}.upper");
@@ -213,7 +213,7 @@ pub(super) fn corners(extent: &BoxShape, path: &str) -> Result<[Point; 2], Regio
     Ok([lower, upper])
 }
 
-/// Vertices of a polygon that has an area and does not touch itself.
+/// Checks that a polygon has an area and does not touch itself; returns its vertices.
 fn check_polygon(vertices: &[Vec<f64>], path: &str) -> Result<Vec<Point>, RegionFault> {
     let fault = |reason: String| Err(RegionFault::new(path, vertices, reason));
     if vertices.len() < 3 {
@@ -255,7 +255,7 @@ fn check_polygon(vertices: &[Vec<f64>], path: &str) -> Result<Vec<Point>, Region
     Ok(points)
 }
 
-/// Whether the edges from vertices `i` < `j` meet elsewhere than at a vertex that they share.
+/// Whether the edges from the vertices `i` < `j` meet anywhere except at a shared vertex.
 fn touch(points: &[Point], i: usize, j: usize) -> bool {
     let n = points.len();
     let [a, b, c, d] = [points[i], points[(i + 1) % n], points[j], points[(j + 1) % n]];
@@ -271,7 +271,7 @@ fn touch(points: &[Point], i: usize, j: usize) -> bool {
         let side = orient2d(coord(p), coord(q), coord(r));
         if side == 0.0 { 0.0 } else { side.signum() }
     };
-    // neighbours: they meet elsewhere only if one folds back onto the other
+    // neighbours meet elsewhere only if one folds back onto the other
     let folds = |p: Point, q: Point, r: Point| {
         let along = (p[0] - q[0]) * (r[0] - q[0]) + (p[1] - q[1]) * (r[1] - q[1]);
         side(p, q, r) == 0.0 && along > 0.0

@@ -1,71 +1,26 @@
-//! The curves that bound a piece: graphs y(x), straight or an arc of an ellipse.
-
-use smallvec::SmallVec;
+//! The curves that bound a piece: graphs y(x), either straight lines or arcs of ellipses.
 
 use super::Point;
-use super::ellipse::Ellipse;
+use super::ellipse::EllipseCurve;
+use super::line::{Line, Places};
 use super::moments::Moments;
 
-/// A graph y(x).
+/// A curve as a graph y(x).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Curve {
     Line(Line),
     Arc(Arc),
 }
 
-/// A straight line that is not vertical.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Line {
-    /// A point of it [m].
-    pub at: Point,
-    /// dy/dx [-].
-    pub slope: f64,
-    /// Least and greatest y of an edge [m]; they hold a steep one within its ends against
-    /// rounding.
-    pub range: [f64; 2],
-}
-
 /// The upper or lower half of an ellipse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Arc {
-    pub ellipse: Ellipse,
+    pub ellipse: EllipseCurve,
     /// 1 for the upper half, -1 for the lower.
     pub side: f64,
 }
 
-/// Places x [m] at which curves meet.
-pub(super) type Places = SmallVec<[f64; 4]>;
-
-impl Line {
-    /// The edge from `a` to `b`; none if it is vertical.
-    pub fn through(a: Point, b: Point) -> Option<Self> {
-        let slope = (b[1] - a[1]) / (b[0] - a[0]);
-        let range = [a[1].min(b[1]), a[1].max(b[1])];
-        slope.is_finite().then_some(Line { at: a, slope, range })
-    }
-
-    /// The line at constant `y` [m].
-    pub fn level(y: f64) -> Self {
-        Line { at: [0.0, y], slope: 0.0, range: [y, y] }
-    }
-
-    pub fn y(&self, x: f64) -> f64 {
-        let y = self.at[1] + self.slope * (x - self.at[0]);
-        y.max(self.range[0]).min(self.range[1])
-    }
-
-    /// Where two lines cross, their ends left aside.
-    pub fn meet(&self, other: &Line) -> Option<f64> {
-        // from a point of the steeper, where rounding of y moves x least
-        let (steep, flat) =
-            if self.slope.abs() > other.slope.abs() { (self, other) } else { (other, self) };
-        let gap = flat.at[1] + flat.slope * (steep.at[0] - flat.at[0]) - steep.at[1];
-        let x = steep.at[0] + gap / (steep.slope - flat.slope);
-        x.is_finite().then_some(x)
-    }
-}
-
-/// Nodes and weights of the Gauss-Legendre rule of 8 points on [-1, 1], one half of them
+/// Nodes and weights of the 8-point Gauss-Legendre rule on [-1, 1]; the positive nodes only
 /// (Abramowitz and Stegun 1964, table 25.4).
 const GAUSS: [(f64, f64); 4] = [
     (0.183_434_642_495_649_8, 0.362_683_783_378_362),
@@ -74,8 +29,8 @@ const GAUSS: [(f64, f64); 4] = [
     (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
 ];
 
-/// Longest stretch of an arc for one Gauss rule [rad]: what is integrated are products of three
-/// sines and cosines at most, and the rule's error on them stays below 1e-15.
+/// Longest section of an arc for one Gauss rule [rad]. The integrands are products of at most three
+/// sines and cosines, for which the error of the rule stays below 1e-15.
 const STRETCH: f64 = 1.0;
 
 impl Curve {
@@ -91,7 +46,8 @@ impl Curve {
         }
     }
 
-    /// Where the curve crosses a line; a crossing of the ellipse's other half may be among them.
+    /// Positions x [m] at which the curve crosses a line; they may include crossings of the
+    /// ellipse's other half.
     pub fn meet(&self, line: &Line) -> Places {
         match self {
             Curve::Line(own) => own.meet(line).into_iter().collect(),
@@ -100,7 +56,7 @@ impl Curve {
     }
 
     /// Area and moments between the curve and the level of `origin`, from `x0` to `x1` [m], about
-    /// `origin`; the area is negative where the curve lies below.
+    /// `origin`. The area is negative where the curve is below that level.
     pub fn under(&self, x0: f64, x1: f64, origin: Point) -> Moments {
         let mut sum = Moments::default();
         let mut add = |x: f64, y: f64, dx: f64| {
@@ -110,7 +66,7 @@ impl Curve {
         };
         match self {
             Curve::Line(line) => {
-                // the Gauss rule of two points: exact for cubics, and these are quadratic
+                // the two-point Gauss rule: exact for cubics, and the integrands are quadratic
                 let (middle, half) = (0.5 * (x0 + x1), 0.5 * (x1 - x0));
                 let node = half / 3.0_f64.sqrt();
                 for x in [middle - node, middle + node] {
@@ -155,19 +111,11 @@ mod tests {
 
     #[test]
     fn a_half_disk_has_its_area_and_moments() {
-        let ellipse = Ellipse::upright([2.0, 1.0], [3.0, 3.0]);
+        let ellipse = EllipseCurve::upright([2.0, 1.0], [3.0, 3.0]);
         let arc = Curve::Arc(Arc { ellipse, side: 1.0 });
         let half = arc.under(-1.0, 5.0, [2.0, 1.0]);
         assert!((half.area - 4.5 * std::f64::consts::PI).abs() < 1e-14);
         assert!(half.first[0].abs() < 1e-13);
         assert!((half.first[1] - 18.0).abs() < 1e-13, "2 r^3/3");
-    }
-
-    #[test]
-    fn lines_cross_where_they_must() {
-        let steep = Line::through([1.0, 0.0], [1.0 + 1e-9, 1.0]).unwrap();
-        let flat = Line::through([0.0, 0.5], [2.0, 0.5]).unwrap();
-        assert!((steep.meet(&flat).unwrap() - (1.0 + 5e-10)).abs() < 1e-15);
-        assert_eq!(flat.meet(&Line::level(3.0)), None, "parallel");
     }
 }

@@ -1,76 +1,77 @@
-//! An ellipse as two graphs over x, and where it crosses lines and other ellipses.
+//! An ellipse as two graphs over x, and its crossings with lines and other ellipses.
 //!
 //! With X = x - xc the two halves are y = yc + k X +- h sqrt(1 - (X/w)^2): a tilted ellipse is an
 //! upright one under a shear k. If S = R diag(a^2, b^2) R^T for half axes a, b and a rotation R,
-//! then w^2 = S_xx, k = S_xy/S_xx and h w = a b. Points of it are (w cos t, k w cos t + h sin t)
-//! from the centre.
+//! then w^2 = S_xx, k = S_xy/S_xx and h w = a b. Its points are (w cos t, k w cos t + h sin t)
+//! relative to the centre.
 
 use polycool::Quartic;
 
 use super::Point;
-use super::curve::{Line, Places};
+use super::line::{Line, Places};
 
 /// An ellipse.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Ellipse {
+pub(super) struct EllipseCurve {
     /// Centre [m].
     pub centre: Point,
-    /// Half the extent in x, w [m].
+    /// Half extent in x, w [m].
     pub half_width: f64,
-    /// Half the height above the centre, h [m].
+    /// Half height at the centre, h [m].
     pub half_height: f64,
-    /// Slope of the line through the middles of the vertical chords, k [-].
+    /// Slope k of the line through the midpoints of the vertical chords [-].
     pub skew: f64,
 }
 
-/// How far beyond [-1, 1] the roots of the half-angle are looked for, so that none is lost
+/// Margin beyond [-1, 1] in which roots of the half-angle are searched, so that none is lost
 /// between the two halves of the circle.
 const BEYOND: f64 = 1e-3;
 
-impl Ellipse {
-    /// With half axes `radii` [m] along x and y.
+impl EllipseCurve {
+    /// The ellipse with half axes `radii` [m] along x and y.
     pub fn upright(centre: Point, radii: [f64; 2]) -> Self {
-        Ellipse { centre, half_width: radii[0], half_height: radii[1], skew: 0.0 }
+        EllipseCurve { centre, half_width: radii[0], half_height: radii[1], skew: 0.0 }
     }
 
-    /// With half axes `radii` [m] turned counter-clockwise by the angle of `cos` and `sin`.
+    /// The ellipse with half axes `radii` [m], rotated counter-clockwise by the angle of `cos` and
+    /// `sin`.
     pub fn tilted(centre: Point, radii: [f64; 2], cos: f64, sin: f64) -> Self {
         let [a, b] = radii;
         if a == b || sin == 0.0 {
-            return Ellipse::upright(centre, radii);
+            return EllipseCurve::upright(centre, radii);
         }
         if cos == 0.0 {
-            return Ellipse::upright(centre, [b, a]);
+            return EllipseCurve::upright(centre, [b, a]);
         }
         let half_width = (a * cos).hypot(b * sin);
         let skew = (a - b) * (a + b) * cos * sin / (half_width * half_width);
-        Ellipse { centre, half_width, half_height: a * b / half_width, skew }
+        EllipseCurve { centre, half_width, half_height: a * b / half_width, skew }
     }
 
-    /// (x - xc)/w, held within [-1, 1].
+    /// (x - xc)/w, clamped to [-1, 1].
     pub fn share(&self, x: f64) -> f64 {
         ((x - self.centre[0]) / self.half_width).clamp(-1.0, 1.0)
     }
 
-    /// Half the extent in y [m].
+    /// Half extent in y [m].
     pub fn half_extent_y(&self) -> f64 {
         self.half_height.hypot(self.skew * self.half_width)
     }
 
-    /// Places x [m] of the least and the greatest x and y.
+    /// Positions x [m] of the least and the greatest x and y.
     pub fn extremes(&self) -> [f64; 4] {
         let [w, top] =
             [self.half_width, self.skew * self.half_width.powi(2) / self.half_extent_y()];
         [-w, w, -top, top].map(|dx| self.centre[0] + dx)
     }
 
-    /// Where a line crosses it: with y = yc + L + m X on the line,
+    /// Positions x [m] of the crossings with a line. With y = yc + L + m X on the line:
     /// (L + (m - k) X)^2 = h^2 (1 - X^2/w^2).
     pub fn meet_line(&self, line: &Line) -> Places {
         let (w, h) = (self.half_width, self.half_height);
         let slope = line.slope - self.skew;
         let offset = line.at[1] + line.slope * (self.centre[0] - line.at[0]) - self.centre[1];
-        // a fourth of the discriminant over h^2, without the square of a great offset
+        // a quarter of the discriminant over h^2, without squaring a large offset
         let discriminant = slope * slope + (h - offset) * (h + offset) / (w * w);
         if discriminant < 0.0 {
             return Places::new();
@@ -80,9 +81,9 @@ impl Ellipse {
         [-root, root].map(|r| self.centre[0] + (middle + r) / scale).into_iter().collect()
     }
 
-    /// Where another ellipse crosses it: its points put into the other's equation give a
-    /// polynomial in cos t and sin t, and in tan(t/2) a quartic.
-    pub fn meet(&self, other: &Ellipse) -> Places {
+    /// Positions x [m] of the crossings with another ellipse. The points of this ellipse in the
+    /// equation of the other give a polynomial in cos t and sin t, which is a quartic in tan(t/2).
+    pub fn meet(&self, other: &EllipseCurve) -> Places {
         let (w, h, k) = (self.half_width, self.half_height, self.skew);
         let dx = self.centre[0] - other.centre[0];
         let dy = self.centre[1] - other.centre[1] - other.skew * dx;
@@ -93,7 +94,7 @@ impl Ellipse {
         let (cosine, sine) = (2.0 * (a0 * a1 + b0 * b1), 2.0 * b0 * b2);
         let (cosine2, product) = (a1 * a1 + b1 * b1 - b2 * b2, 2.0 * b1 * b2);
         let mut places = Places::new();
-        // t about 0, then about pi, where sine and cosine change sign
+        // t around 0, then around pi, where sine and cosine change sign
         for sign in [1.0, -1.0] {
             let (c, s) = (sign * cosine, sign * sine);
             let quartic = Quartic::new([
@@ -124,9 +125,9 @@ mod tests {
 
     #[test]
     fn circles_cross_where_they_must() {
-        let unit = Ellipse::upright([0.0, 0.0], [1.0, 1.0]);
-        let at = |x, y, r| Ellipse::upright([x, y], [r, r]);
-        // both crossings at one x; on one y; one inside of the other; apart
+        let unit = EllipseCurve::upright([0.0, 0.0], [1.0, 1.0]);
+        let at = |x, y, r| EllipseCurve::upright([x, y], [r, r]);
+        // both crossings at one x; both at one y; one ellipse inside the other; separate
         let places = sorted(unit.meet(&at(1.0, 0.0, 1.0)));
         assert!(places.iter().all(|x| (x - 0.5).abs() < 1e-14) && !places.is_empty());
         let places = sorted(unit.meet(&at(0.0, 1.0, 1.0)));
@@ -139,12 +140,12 @@ mod tests {
 
     #[test]
     fn ellipses_cross_in_four_points_of_both() {
-        let a = Ellipse::tilted([0.1, -0.2], [2.0, 0.7], 0.8, 0.6);
-        let b = Ellipse::tilted([0.0, 0.1], [1.8, 0.6], 0.6, -0.8);
+        let a = EllipseCurve::tilted([0.1, -0.2], [2.0, 0.7], 0.8, 0.6);
+        let b = EllipseCurve::tilted([0.0, 0.1], [1.8, 0.6], 0.6, -0.8);
         let places = sorted(a.meet(&b));
         assert_eq!(places.len(), 4, "{places:?}");
         for x in places {
-            let on = |e: &Ellipse, side: f64| {
+            let on = |e: &EllipseCurve, side: f64| {
                 let u = e.share(x);
                 e.centre[1]
                     + e.skew * (x - e.centre[0])
@@ -160,7 +161,7 @@ mod tests {
 
     #[test]
     fn a_line_crosses_a_tilted_ellipse_on_its_border() {
-        let e = Ellipse::tilted([1.0, 2.0], [3.0, 0.5], 0.6, 0.8);
+        let e = EllipseCurve::tilted([1.0, 2.0], [3.0, 0.5], 0.6, 0.8);
         let line = Line::through([0.0, 1.5], [2.0, 2.25]).unwrap();
         let places = e.meet_line(&line);
         assert_eq!(places.len(), 2);
@@ -176,7 +177,7 @@ mod tests {
     fn extremes_are_those_of_the_axes() {
         // half axes 2 and 1 at 30 degrees: extents^2 a^2 c^2 + b^2 s^2 and a^2 s^2 + b^2 c^2
         let (sin, cos) = std::f64::consts::FRAC_PI_6.sin_cos();
-        let e = Ellipse::tilted([0.0, 0.0], [2.0, 1.0], cos, sin);
+        let e = EllipseCurve::tilted([0.0, 0.0], [2.0, 1.0], cos, sin);
         assert!((e.half_width - 3.25_f64.sqrt()).abs() < 1e-15);
         assert!((e.half_extent_y() - 1.75_f64.sqrt()).abs() < 1e-15);
     }

@@ -1,89 +1,38 @@
-//! Tiles that fill a shape: whole ones of a lattice, and those that its border cuts.
+//! Tiles that fill a shape: whole tiles of a lattice, and tiles cut by the border of the shape.
 
 use super::Point;
+use super::lattice::{Cut, Lattice};
 use super::merge::merge;
 use super::moments::Moments;
-use super::piece::Trapezium;
-use super::shape::Shape;
+use super::shape::BoundedRegion;
 
-/// A part of a shape that one particle stands for.
+/// The part of a shape that one particle represents.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tile {
     /// Centroid [m].
     pub centre: [f64; 2],
     /// Area [m2].
     pub area: f64,
-    /// Edges of the box of the same area that stands for it [m].
+    /// Edges of the box with the same area that represents the tile [m].
     pub size: [f64; 2],
 }
 
-/// The tiles of a lattice.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Lattice {
-    /// A corner of it [m].
-    pub lower: Point,
-    /// Edges of a cell of the grid [m].
-    pub cell: [f64; 2],
-    /// Tiles in a cell, in each direction.
-    pub per_cell: [usize; 2],
-}
-
-/// What lies in a tile of the lattice, and what was merged into it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Cut {
-    /// Place in the lattice: y, then x.
-    pub index: [i64; 2],
-    /// Area and moments about the tile's centre.
-    pub moments: Moments,
-}
-
-/// Share of a tile below which rounding is all that lies in it or is missing from it.
+/// Fraction of a tile below which its content, or the missing part, is only rounding.
 const ROUNDING: f64 = 1e-12;
 
-impl Lattice {
-    /// Edges of a tile [m].
-    pub fn size(&self) -> [f64; 2] {
-        [0, 1].map(|d| self.cell[d] / self.per_cell[d] as f64)
-    }
-
-    /// Place of the lower side of tile `i` in direction `d` [m].
-    fn side(&self, d: usize, i: i64) -> f64 {
-        self.lower[d] + i as f64 * self.cell[d] / self.per_cell[d] as f64
-    }
-
-    /// Centre of a tile [m].
-    pub fn centre(&self, [row, column]: [i64; 2]) -> Point {
-        [0, 1].map(|d| {
-            let i = [column, row][d];
-            self.lower[d] + (2 * i + 1) as f64 * self.cell[d] / (2 * self.per_cell[d]) as f64
-        })
-    }
-
-    /// A tile's box.
-    fn trapezium(&self, [row, column]: [i64; 2]) -> Trapezium {
-        let corner = |k| [self.side(0, column + k), self.side(1, row + k)];
-        Trapezium::upright(corner(0), corner(1))
-    }
-
-    /// First tile that reaches into `range` [m] and the first beyond, in direction `d`.
-    fn reach(&self, d: usize, range: [f64; 2]) -> [i64; 2] {
-        let [from, to] = range.map(|x| (x - self.lower[d]) / self.size()[d]);
-        [from.floor() as i64, to.ceil() as i64]
-    }
-}
-
-/// The tiles of a shape, in the order of y and then of x. Their areas add up to the shape's, and
-/// area times centre to its first moments.
+/// The tiles of a shape, in the order of y, then x. The sum of their areas is the area of the
+/// shape, and the sum of area times centre its first moments.
 ///
-/// They are those of the lattice that `particles_per_cell` makes of the grid's cells of `cell_size`
-/// [m] from `lower` [m], each cut by the shape: a cut tile stands at the centroid of what is left
-/// of it, and its `size` has the lattice's proportions. What lies in one tile is one tile, even in
-/// parts. Slivers are merged into neighbours, see [`merge`].
+/// `particles_per_cell` divides the grid's cells of `cell_size` [m], which start at `lower` [m],
+/// into a lattice of tiles. The shape cuts each tile; the centre of a cut tile is the centroid of
+/// its remaining part, and its `size` has the proportions of the lattice. The content of one
+/// lattice tile is one tile, even if it consists of several parts. Slivers are merged into
+/// neighbours, see [`merge`].
 ///
-/// A shape that is a box, given as such, has its own lattice instead: as many equal tiles in each
-/// direction as come nearest to `particles_per_cell`, one at least.
+/// A shape that is given as a box has its own lattice instead. The equal tiles in each direction
+/// are as many as come closest to `particles_per_cell`, at least one.
 pub fn fill(
-    shape: &Shape,
+    shape: &BoundedRegion,
     lower: [f64; 2],
     cell_size: [f64; 2],
     particles_per_cell: [usize; 2],
@@ -122,8 +71,8 @@ fn fill_box([lower, upper]: [Point; 2], cell: [f64; 2], per_cell: [usize; 2]) ->
     (0..counts[1]).flat_map(row).map(tile).collect()
 }
 
-/// What of the shape lies in each tile of the lattice, column by column.
-fn cut(shape: &Shape, lattice: &Lattice) -> Vec<Cut> {
+/// The part of the shape in each tile of the lattice, column by column.
+fn cut(shape: &BoundedRegion, lattice: &Lattice) -> Vec<Cut> {
     let [size_x, size_y] = lattice.size();
     let whole = size_x * size_y;
     let [lower, upper] = shape.bounds();

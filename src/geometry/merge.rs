@@ -1,38 +1,38 @@
-//! Slivers: tiles of which the border leaves little, merged into a neighbour.
+//! Merges slivers, cut tiles of which little is left, into neighbours.
 //!
-//! A light particle among heavy ones is what makes a material point method fail at a cut border.
+//! A light particle among heavy ones makes a material point method fail at a cut border.
 
 use std::collections::HashMap;
 
-use super::fill::{Cut, Lattice};
+use super::lattice::{Cut, Lattice};
 use super::piece::Trapezium;
-use super::shape::Shape;
+use super::shape::BoundedRegion;
 
-/// Share of a whole tile below which a cut one is a sliver.
+/// Fraction of a whole tile below which a cut tile is a sliver.
 pub(super) const SLIVER: f64 = 0.02;
 
-/// Thickness, over a tile's edge, of the boxes that find what two tiles share of an edge.
+/// Thickness, over a tile's edge, of the boxes that measure the shared part of an edge.
 const THICKNESS: f64 = 1e-6;
 
-/// Steps to neighbours: in y, then in x.
+/// Index offsets of neighbours: in y, then in x.
 const FACES: [[i64; 2]; 4] = [[-1, 0], [0, -1], [0, 1], [1, 0]];
 const CORNERS: [[i64; 2]; 4] = [[-1, -1], [-1, 1], [1, -1], [1, 1]];
 
-/// Tiles while they are merged.
+/// State of the tiles during the merging.
 struct Merger<'a> {
-    shape: &'a Shape,
+    shape: &'a BoundedRegion,
     lattice: &'a Lattice,
     cuts: &'a mut [Cut],
-    /// The tile that each went into: itself, or one to ask further.
+    /// For each tile, the tile into which it was merged: itself, or the next one in the chain.
     into: Vec<usize>,
-    /// What went into a tile, itself included, if anything did.
+    /// For each tile that received others, the indices of all its parts, itself included.
     members: HashMap<usize, Vec<usize>>,
 }
 
-/// Merges each sliver, the least first, into the neighbour with which it shares most of an edge,
-/// of several the nearest; failing that into one across a gap or a corner. One that has no
-/// neighbour stays. `cuts` are in the order of their index; areas and moments are added exactly.
-pub(super) fn merge(shape: &Shape, lattice: &Lattice, cuts: &mut Vec<Cut>) {
+/// Merges each sliver, smallest first, into the neighbour with the longest shared part of an edge;
+/// of several, into the nearest. If there is none, it is merged across a gap or a corner. A sliver
+/// without neighbours stays. `cuts` are sorted by their index; areas and moments are added exactly.
+pub(super) fn merge(shape: &BoundedRegion, lattice: &Lattice, cuts: &mut Vec<Cut>) {
     let size = lattice.size();
     let least = SLIVER * size[0] * size[1];
     let mut slivers: Vec<usize> =
@@ -40,7 +40,7 @@ pub(super) fn merge(shape: &Shape, lattice: &Lattice, cuts: &mut Vec<Cut>) {
     slivers.sort_by(|&a, &b| cuts[a].moments.area.total_cmp(&cuts[b].moments.area).then(a.cmp(&b)));
     let into = (0..cuts.len()).collect();
     let mut merger = Merger { shape, lattice, cuts, into, members: HashMap::new() };
-    // one pass is enough: what has been looked at is merged, no sliver any more, or alone
+    // one pass is enough: a processed sliver is merged, no longer a sliver, or isolated
     for sliver in slivers {
         if merger.cuts[sliver].moments.area < least {
             merger.merge(sliver);
@@ -55,7 +55,7 @@ pub(super) fn merge(shape: &Shape, lattice: &Lattice, cuts: &mut Vec<Cut>) {
 }
 
 impl Merger<'_> {
-    /// Merges a tile into the best neighbour, if it has one.
+    /// Merges a tile into its best neighbour, if it has one.
     fn merge(&mut self, tile: usize) {
         let members = self.members.remove(&tile).unwrap_or_else(|| vec![tile]);
         let Some(target) = self.neighbour(tile, &members) else {
@@ -78,8 +78,8 @@ impl Merger<'_> {
         tile
     }
 
-    /// The neighbour of `tile`, which consists of `members`, that shares most of an edge with it;
-    /// of several the nearest, lest a row of slivers become one.
+    /// The neighbour with the longest shared edge with `tile`, which consists of `members`; of
+    /// several the nearest, so that a row of slivers does not become one tile.
     fn neighbour(&self, tile: usize, members: &[usize]) -> Option<usize> {
         for (steps, touching) in [(FACES, true), (CORNERS, false)] {
             let mut best: Option<(f64, f64, usize)> = None;
@@ -118,8 +118,9 @@ impl Merger<'_> {
         (a[0] - b[0]).hypot(a[1] - b[1])
     }
 
-    /// Share, to a thousandth, of the edge between a tile and its neighbour on both sides of which
-    /// the shape lies, from what lies in a thin box on each side.
+    /// Length shared by a tile and its neighbour, as a fraction of their common edge, in
+    /// thousandths: the part with the shape on both sides. It is measured by a thin box on each
+    /// side.
     fn shared(&self, index: [i64; 2], step: [i64; 2]) -> f64 {
         let (centre, size) = (self.lattice.centre(index), self.lattice.size());
         let side = |inner: f64, outer: f64| {

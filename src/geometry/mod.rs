@@ -1,17 +1,20 @@
-//! Plane geometry of bodies: how much of a region lies in a box, and the tiles that fill it.
+//! Plane geometry of bodies: the part of a region inside a box, and the tiles that fill a region.
 //!
-//! A [`Shape`] is a region of the scene, checked, and cut by vertical lines into *pieces*, each
-//! between two curves that are graphs over x: straight lines and arcs of ellipses. So the area
-//! and the first moments of the region in any box or cell are integrals under single curves, all
-//! of them in closed form or by a Gauss rule that is exact to rounding; no border is replaced by
-//! chords. [`fill`] cuts a shape by a lattice, [`voronoi`] by the cells of given points.
+//! A [`BoundedRegion`] is a checked region of the scene. Vertical lines cut it into *pieces*, each between
+//! two curves that are graphs over x: straight lines or arcs of ellipses. The area and the first
+//! moments of the region in any box or cell are therefore integrals under single curves. They are
+//! evaluated in closed form, or by a Gauss rule that is exact to rounding; no border is
+//! approximated by chords. [`fill`] cuts a shape by a lattice, [`voronoi`] by the cells of given
+//! points.
 //!
-//! Knows no particles, no grid, no MPI.
+//! This module knows no particles, no grid and no MPI.
 
 mod build;
 mod curve;
 mod ellipse;
 mod fill;
+mod lattice;
+mod line;
 mod merge;
 mod moments;
 mod piece;
@@ -28,8 +31,8 @@ pub use build::RegionFault;
 pub use fill::{Tile, fill};
 pub use moments::Moments;
 pub use points::{PointsFault, read_points};
-pub use shape::Shape;
+pub use shape::BoundedRegion;
 pub use voronoi::{PointFault, voronoi, voronoi_line};
 
-/// A point or a vector of the plane [m].
+/// A point or a vector in the plane [m].
 type Point = [f64; 2];

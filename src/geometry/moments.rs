@@ -2,23 +2,24 @@
 
 use std::ops::{Add, AddAssign, Sub};
 
-/// Area of a region and its first moments about some point.
+/// Area of a region, and its first moments about a reference point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moments {
     /// Area [m2].
     pub area: f64,
-    /// Integrals of x and y, from the point, over the area [m3].
+    /// Integrals over the area of x and y, measured from the reference point [m3].
     pub first: [f64; 2],
 }
 
 impl Moments {
-    /// Those about a point from which the present one lies at `shift` [m].
+    /// The moments about another reference point; `shift` is the position of the current one
+    /// relative to it [m].
     pub fn shifted(self, shift: [f64; 2]) -> Self {
         let first = [0, 1].map(|d| self.first[d] + self.area * shift[d]);
         Moments { area: self.area, first }
     }
 
-    /// Centroid [m], from the point that the moments are about.
+    /// Centroid [m], relative to the reference point.
     pub fn centroid(self) -> [f64; 2] {
         self.first.map(|m| m / self.area)
     }

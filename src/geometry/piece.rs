@@ -1,25 +1,26 @@
-//! A piece of a region: what lies between two graphs over an interval of x.
+//! A piece of a region: the area between two graphs over an interval of x.
 
 use smallvec::SmallVec;
 
 use super::Point;
-use super::curve::{Curve, Line};
+use super::curve::Curve;
+use super::line::Line;
 use super::moments::Moments;
 
-/// What lies between two curves over an interval of x. The curves do not cross in it, and each
-/// rises or falls throughout.
+/// The area between two curves over an interval of x. The curves do not cross within the interval,
+/// and each is monotonic.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
-    /// The interval [m].
+    /// Interval of x [m].
     pub x: [f64; 2],
     pub lower: Curve,
     pub upper: Curve,
 }
 
-/// A piece between straight lines: a trapezium with upright sides.
+/// A piece between straight lines: a trapezium with vertical sides.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Trapezium {
-    /// The interval [m].
+    /// Interval of x [m].
     pub x: [f64; 2],
     pub lower: Line,
     pub upper: Line,
@@ -43,7 +44,7 @@ impl Piece {
         self.upper.under(x0, x1, origin) - self.lower.under(x0, x1, origin)
     }
 
-    /// Area and moments, about `origin`, of what the piece shares with `other`.
+    /// Area and moments, about `origin`, of the intersection of the piece with `other`.
     pub fn overlap(&self, other: &Trapezium, origin: Point) -> Moments {
         let x = [self.x[0].max(other.x[0]), self.x[1].min(other.x[1])];
         if x[0] >= x[1] {

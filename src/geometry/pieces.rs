@@ -1,39 +1,39 @@
-//! A region cut into pieces by vertical lines at every place where its section changes: at the
-//! vertices, at the extremes of ellipses, and where borders cross.
+//! Decomposition of a region into pieces, by vertical lines at all positions where its section
+//! changes: at vertices, at the extremes of ellipses, and at crossings of borders.
 //!
-//! Between two such places the section has the same passages throughout, in the same order, so
-//! that one look at its middle tells all of it. A place too many does no harm.
+//! Between two such positions the section has the same passages in the same order, so that its
+//! middle represents all of it. Additional positions do no harm.
 
-use super::curve::Line;
-use super::ellipse::Ellipse;
+use super::ellipse::EllipseCurve;
+use super::line::Line;
 use super::piece::Piece;
 use super::solid::{Edge, Outline, Solid};
 
-/// What of a border can cross another: an edge, a line without ends or a whole ellipse.
+/// A part of a border that can cross others: an edge, an infinite line or a whole ellipse.
 struct Border {
-    kind: Kind,
+    kind: PieceKind,
     x: [f64; 2],
     y: [f64; 2],
 }
 
-enum Kind {
+enum PieceKind {
     Line(Line),
-    Ellipse(Ellipse),
+    Ellipse(EllipseCurve),
 }
 
-/// Why a region has no pieces.
+/// Reasons why a region has no pieces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NoPieces {
-    /// It is not bounded.
+    /// The region is not bounded.
     Unbounded,
-    /// Nothing is left of it.
+    /// The region is empty.
     Empty,
 }
 
-/// Area of a region below which nothing is left but rounding, over the square of its width.
+/// Area over the square of the width, below which a region is empty except for rounding.
 const NOTHING: f64 = 1e-13;
 
-/// The pieces of a region, from left to right, and in each strip from below.
+/// The pieces of a region, from left to right, and from bottom to top within each strip.
 pub(super) fn pieces(solid: &Solid) -> Result<Vec<Piece>, NoPieces> {
     let places = places(solid);
     let (Some(&first), Some(&last)) = (places.first(), places.last()) else {
@@ -55,12 +55,12 @@ pub(super) fn pieces(solid: &Solid) -> Result<Vec<Piece>, NoPieces> {
         }
     }
     let area: f64 = pieces.iter().map(|p| p.moments([p.x[0], p.lower.y(p.x[0])]).area).sum();
-    // not "<=": the area may be no number
+    // not "<=": the area may be NaN
     let something = area > NOTHING * (last - first) * (last - first);
     if something { Ok(pieces) } else { Err(NoPieces::Empty) }
 }
 
-/// Places x [m] between which the section keeps its form, in order.
+/// Sorted positions x [m] between which the structure of the section does not change.
 fn places(solid: &Solid) -> Vec<f64> {
     let mut outlines = Vec::new();
     solid.outlines(&mut outlines);
@@ -79,19 +79,19 @@ fn places(solid: &Solid) -> Vec<f64> {
     places.retain(|x| x.is_finite());
     places.sort_by(f64::total_cmp);
     let scale = places.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
-    // one place computed twice differs by rounding
+    // the same position computed twice differs by rounding
     places.dedup_by(|next, kept| *next - *kept <= 4.0 * f64::EPSILON * scale);
     places
 }
 
-/// The borders of an outline; where they begin, end and turn goes into `places`.
+/// The borders of an outline; adds the positions of their ends and extremes to `places`.
 fn borders_of(outline: &Outline, places: &mut Vec<f64>) -> Vec<Border> {
     match outline {
         Outline::Polygon(edges) => {
             places.extend(edges.iter().map(|e| e.from[0]));
             let border = |Edge { from, to, line }: &Edge| {
                 let x = [from[0].min(to[0]), from[0].max(to[0])];
-                line.map(|line| Border { kind: Kind::Line(line), x, y: line.range })
+                line.map(|line| Border { kind: PieceKind::Line(line), x, y: line.range })
             };
             edges.iter().filter_map(border).collect()
         }
@@ -100,7 +100,7 @@ fn borders_of(outline: &Outline, places: &mut Vec<f64>) -> Vec<Border> {
             let around = |middle: f64, half: f64| [middle - half, middle + half];
             let x = around(ellipse.centre[0], ellipse.half_width);
             let y = around(ellipse.centre[1], ellipse.half_extent_y());
-            vec![Border { kind: Kind::Ellipse(*ellipse), x, y }]
+            vec![Border { kind: PieceKind::Ellipse(*ellipse), x, y }]
         }
         Outline::HalfPlane { point, line: None, .. } => {
             places.push(point[0]);
@@ -108,25 +108,28 @@ fn borders_of(outline: &Outline, places: &mut Vec<f64>) -> Vec<Border> {
         }
         Outline::HalfPlane { line: Some(line), .. } => {
             let all = [f64::NEG_INFINITY, f64::INFINITY];
-            vec![Border { kind: Kind::Line(*line), x: all, y: all }]
+            vec![Border { kind: PieceKind::Line(*line), x: all, y: all }]
         }
     }
 }
 
-/// Puts into `places` where two borders cross.
+/// Adds the positions at which two borders cross to `places`.
 fn crossings(a: &Border, b: &Border, places: &mut Vec<f64>) {
     let apart = |p: [f64; 2], q: [f64; 2]| p[1] < q[0] || q[1] < p[0];
     if apart(a.x, b.x) || apart(a.y, b.y) {
         return;
     }
     match (&a.kind, &b.kind) {
-        (Kind::Line(line), Kind::Line(other)) => {
+        (PieceKind::Line(line), PieceKind::Line(other)) => {
             let meet = line.meet(other);
             let within = |x: &f64| [a.x, b.x].iter().all(|r| r[0] <= *x && *x <= r[1]);
             places.extend(meet.filter(within));
         }
-        (Kind::Ellipse(ellipse), Kind::Ellipse(other)) => places.extend(ellipse.meet(other)),
-        (Kind::Line(line), Kind::Ellipse(ellipse)) | (Kind::Ellipse(ellipse), Kind::Line(line)) => {
+        (PieceKind::Ellipse(ellipse), PieceKind::Ellipse(other)) => {
+            places.extend(ellipse.meet(other))
+        }
+        (PieceKind::Line(line), PieceKind::Ellipse(ellipse))
+        | (PieceKind::Ellipse(ellipse), PieceKind::Line(line)) => {
             places.extend(ellipse.meet_line(line));
         }
     }

@@ -1,12 +1,12 @@
 //! Positions of particles from CSV text.
 
-/// What is wrong with a list of points.
+/// A fault in a list of points.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("line {line}: {reason}")]
 pub struct PointsFault {
-    /// Line, from 1.
+    /// Line number, from 1.
     pub line: u64,
-    /// What is wrong, and what is allowed.
+    /// Description of the fault, and the allowed values.
     pub reason: String,
 }
 
@@ -19,17 +19,17 @@ impl PointsFault {
 /// Names of the columns.
 const NAMES: [&str; 3] = ["x", "y", "z"];
 
-/// Reads points of `D` coordinates [m], one a line, with commas between them.
+/// Reads points of `D` coordinates [m], one per line, separated by commas.
 ///
-/// A first line that is not all numbers names the columns: `x`, `y` in any order, and others that
-/// are left aside. Without it the columns are the coordinates. Blank lines, and lines that begin
-/// with `#`, are skipped.
+/// If the first line is not all numbers, it names the columns: `x`, `y` in any order; other columns
+/// are ignored. Without such a header the columns are the coordinates. Blank lines and lines that
+/// start with `#` are skipped.
 ///
 /// # Errors
 ///
-/// The first line that is no point, or a text without points.
+/// The first line that is not a point, or a text without points.
 pub fn read_points<const D: usize>(text: &str) -> Result<Vec<[f64; D]>, PointsFault> {
-    // the csv crate would count blank lines to the record after them, and so misplace a fault
+    // the csv crate would count blank lines with the record after them, and so misplace a fault
     let text = text.trim_start_matches('\u{feff}');
     let lines = (1..).zip(text.lines().map(str::trim));
     let mut columns: Option<([usize; D], usize)> = None;
@@ -66,7 +66,7 @@ pub fn read_points<const D: usize>(text: &str) -> Result<Vec<[f64; D]>, PointsFa
     Ok(points)
 }
 
-/// Where the coordinates stand, by the names of the columns.
+/// Column indices of the coordinates, from the column names.
 fn header<const D: usize>(names: &[&str], line: u64) -> Result<[usize; D], PointsFault> {
     let mut places = [0; D];
     for (place, wanted_name) in places.iter_mut().zip(NAMES) {

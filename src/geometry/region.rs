@@ -1,16 +1,16 @@
-//! Regions of the plane that bodies fill: shapes, and what can be made of several.
+//! Regions of the plane that bodies fill: shapes and their combinations.
 //!
-//! Points are arrays of two numbers. That they are two, and that a region has an area, is held
-//! by [`crate::geometry::Shape::new`], which can name the place of a fault inside of the region.
+//! Points are arrays of two numbers. [`crate::geometry::BoundedRegion::new`] checks that they have two, and
+//! that a region has an area; it can name the position of a fault inside the region.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A region of the plane: an object of one key.
+/// A region of the plane: an object with one key.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Region {
-    /// A box along the axes.
+    /// A box with edges along x and y.
     Box(BoxShape),
     /// A disk.
     Disk(Disk),
@@ -18,17 +18,17 @@ pub enum Region {
     Ellipse(Ellipse),
     /// A polygon.
     Polygon(Polygon),
-    /// What lies between two circles about one centre.
+    /// The area between two circles with the same centre.
     Annulus(Annulus),
-    /// One side of a straight line; alone it has no end.
+    /// One side of a straight line; unbounded unless combined with other regions.
     HalfPlane(HalfPlane),
-    /// What lies in any of the regions.
+    /// All points that are in any of the regions.
     Union(#[schemars(length(min = 1))] Vec<Region>),
-    /// What lies in the first region and in none of the others.
+    /// All points that are in the first region and in none of the others.
     Difference(#[schemars(length(min = 1))] Vec<Region>),
-    /// What lies in each of the regions.
+    /// All points that are in each of the regions.
     Intersection(#[schemars(length(min = 1))] Vec<Region>),
-    /// A region turned about a point.
+    /// A region rotated about a point.
     Rotation(Rotation),
 }
 
@@ -54,16 +54,16 @@ pub struct Ellipse {
     pub radii: Vec<f64>,
 }
 
-/// A polygon whose edges do not meet but at its vertices.
+/// A polygon whose edges meet only at its vertices.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Polygon {
-    /// Vertices [m] in order, either way round; the last is joined to the first.
+    /// Vertices [m] in order, clockwise or counter-clockwise; the last is joined to the first.
     #[schemars(length(min = 1))]
     pub vertices: Vec<Vec<f64>>,
 }
 
-/// What lies between two circles about one centre.
+/// The area between two circles with the same centre.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Annulus {
@@ -77,25 +77,25 @@ pub struct Annulus {
     pub outer: f64,
 }
 
-/// The side of a line that its normal points away from.
+/// The side of a line that the normal points away from.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HalfPlane {
-    /// A point of the line [m].
+    /// A point on the line [m].
     pub point: Vec<f64>,
-    /// Normal out of the half-plane, of any length [-].
+    /// Normal that points out of the half-plane, of any length [-].
     pub normal: Vec<f64>,
 }
 
-/// A region turned about a point.
+/// A region rotated about a point.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rotation {
-    /// Angle, counter-clockwise [degrees].
+    /// Angle of rotation, counter-clockwise [degrees].
     pub angle: f64,
-    /// Point that stays where it is [m].
+    /// Centre of rotation [m].
     pub about: Vec<f64>,
-    /// The region that is turned.
+    /// The region that is rotated.
     pub of: Box<Region>,
 }
 

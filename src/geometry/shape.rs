@@ -1,4 +1,4 @@
-//! A checked region, ready to be measured.
+//! A checked region, with its area, moments and overlaps.
 
 use super::Point;
 use super::build::{self, RegionFault};
@@ -9,18 +9,18 @@ use super::region::Region;
 
 /// A region that is bounded and has an area.
 #[derive(Clone, Debug)]
-pub struct Shape {
+pub struct BoundedRegion {
     pieces: Vec<Piece>,
     bounds: [Point; 2],
     own_box: Option<[Point; 2]>,
 }
 
-impl Shape {
+impl BoundedRegion {
     /// Checks a region and cuts it into pieces.
     ///
     /// # Errors
     ///
-    /// The place inside of the region and what is wrong there.
+    /// A fault, with its path inside the region.
     pub fn new(region: &Region) -> Result<Self, RegionFault> {
         let solid = build::solid(region)?;
         let pieces = pieces(&solid).map_err(|why| {
@@ -39,22 +39,22 @@ impl Shape {
             _ => None,
         };
         let bounds = own_box.unwrap_or_else(|| bounds(&pieces));
-        Ok(Shape { pieces, bounds, own_box })
+        Ok(BoundedRegion { pieces, bounds, own_box })
     }
 
-    /// Whether a point [m] lies in it or, to rounding, on its border.
+    /// Whether a point [m] is in the region or, to rounding, on its border.
     pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
         let start = self.pieces.partition_point(|p| p.x[1] < x);
         let mut pieces = self.pieces[start..].iter().take_while(|p| p.x[0] <= x);
         pieces.any(|p| p.lower.y(x) <= y && y <= p.upper.y(x))
     }
 
-    /// Lower and upper corner [m] of the smallest box around it.
+    /// Lower and upper corner [m] of the smallest box around the region.
     pub fn bounds(&self) -> [[f64; 2]; 2] {
         self.bounds
     }
 
-    /// The corners [m] of a region that is a box along the axes, given as such.
+    /// Corners [m] of the region if it is given as a box.
     pub fn own_box(&self) -> Option<[[f64; 2]; 2]> {
         self.own_box
     }
@@ -70,7 +70,7 @@ impl Shape {
         [0, 1].map(|d| origin[d] + from[d])
     }
 
-    /// Area and first moments about the origin of coordinates of what lies in the box from
+    /// Area and first moments, about the origin of coordinates, of the part inside the box from
     /// `lower` to `upper` [m].
     pub fn moments_within(&self, lower: [f64; 2], upper: [f64; 2]) -> Moments {
         let centre = [0, 1].map(|d| 0.5 * (lower[d] + upper[d]));
@@ -87,14 +87,14 @@ impl Shape {
         self.pieces.iter().fold(Moments::default(), |sum, p| sum + p.moments(origin))
     }
 
-    /// The pieces that reach into an interval of x.
+    /// The pieces that overlap an interval of x.
     pub(super) fn pieces_in(&self, [from, to]: [f64; 2]) -> &[Piece] {
         let start = self.pieces.partition_point(|p| p.x[1] <= from);
         let end = self.pieces.partition_point(|p| p.x[0] < to);
         &self.pieces[start..end.max(start)]
     }
 
-    /// Area and moments about `origin` of what lies in a trapezium.
+    /// Area and moments, about `origin`, of the part inside a trapezium.
     pub(super) fn overlap(&self, trapezium: &Trapezium, origin: Point) -> Moments {
         let pieces = self.pieces_in(trapezium.x).iter();
         pieces.fold(Moments::default(), |sum, p| sum + p.overlap(trapezium, origin))

@@ -1,17 +1,18 @@
-//! A region as outlines and what is made of them, and its section along a vertical line.
+//! A region as a combination of outlines, and its section along a vertical line.
 
 use super::Point;
-use super::curve::{Arc, Curve, Line};
-use super::ellipse::Ellipse;
+use super::curve::{Arc, Curve};
+use super::ellipse::EllipseCurve;
+use super::line::Line;
 
-/// A region: an outline, or regions joined by an operation.
+/// A region: a single outline, or regions combined by an operation.
 #[derive(Clone, Debug)]
 pub(super) enum Solid {
     Outline(Outline),
     Joined(Operation, Vec<Solid>),
 }
 
-/// How regions are joined.
+/// Operation that combines regions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Operation {
     Union,
@@ -23,13 +24,13 @@ pub(super) enum Operation {
 /// A region with one border.
 #[derive(Clone, Debug)]
 pub(super) enum Outline {
-    /// Edges in order; even-odd.
+    /// Edges in order; the even-odd rule defines the inside.
     Polygon(Vec<Edge>),
-    Ellipse(Ellipse),
+    Ellipse(EllipseCurve),
     HalfPlane {
         point: Point,
         normal: [f64; 2],
-        /// Its border, if that is not vertical.
+        /// Border line, if it is not vertical.
         line: Option<Line>,
     },
 }
@@ -39,16 +40,16 @@ pub(super) enum Outline {
 pub(super) struct Edge {
     pub from: Point,
     pub to: Point,
-    /// None if it is vertical.
+    /// Line through the edge; `None` if it is vertical.
     pub line: Option<Line>,
 }
 
-/// Where a vertical line passes from outside of a region to its inside, or back.
+/// Point at which a vertical line enters or leaves a region.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Passage {
-    /// Place [m], maybe infinite.
+    /// Position [m], possibly infinite.
     pub y: f64,
-    /// What it passes through; none at infinity.
+    /// Curve that it crosses; `None` at infinity.
     pub curve: Option<Curve>,
 }
 
@@ -111,7 +112,7 @@ impl Outline {
 }
 
 impl Solid {
-    /// Passages of the vertical line at `x` [m], in order of y: in and out by turns.
+    /// Passages of the vertical line at `x` [m], in order of y; entries and exits alternate.
     pub fn section(&self, x: f64) -> Vec<Passage> {
         match self {
             Solid::Outline(outline) => outline.section(x),
@@ -123,7 +124,7 @@ impl Solid {
         }
     }
 
-    /// Adds all outlines to `list`.
+    /// Appends all outlines to `list`.
     pub fn outlines<'a>(&'a self, list: &mut Vec<&'a Outline>) {
         match self {
             Solid::Outline(outline) => list.push(outline),
@@ -132,8 +133,8 @@ impl Solid {
     }
 }
 
-/// Passages of what `operation` makes of two sections. Passages at one place count together, so
-/// that borders which fall on each other leave nothing between them.
+/// Passages of the combination of two sections. Passages at the same position count together, so
+/// that coincident borders leave nothing between them.
 fn join(operation: Operation, a: &[Passage], b: &[Passage]) -> Vec<Passage> {
     let mut out = Vec::with_capacity(a.len() + b.len());
     let (mut i, mut j, mut inside) = (0, 0, false);

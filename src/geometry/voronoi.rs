@@ -1,8 +1,8 @@
-//! Tiles about given points: each is what of the shape lies nearer to its point than to any
-//! other, and its particle stands at the centroid rather than at the point.
+//! Tiles around given points: each tile is the part of the shape that is nearer to its point than
+//! to any other. Its particle is placed at the centroid instead of the point.
 //!
-//! Particles that do not tile their body leave the noise of their places in its density; with the
-//! areas of these cells, and moved to the centroids, they do not.
+//! Particles that do not tile their body cause noise in its density, from their irregular
+//! positions. The areas of these cells, together with the centroids as positions, avoid that noise.
 
 use delaunator::{EMPTY, next_halfedge, triangulate};
 
@@ -10,17 +10,17 @@ use super::Point;
 use super::fill::Tile;
 use super::moments::Moments;
 use super::piece::Trapezium;
-use super::shape::Shape;
+use super::shape::BoundedRegion;
 
-/// Why a point can have no tile.
+/// Reason why a point cannot have a tile.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("point {} at {place:?}: {reason}", number + 1)]
 pub struct PointFault {
-    /// Number of the point, from 0; the text counts from 1.
+    /// Index of the point, from 0; the message counts from 1.
     pub number: usize,
-    /// Where it is [m].
+    /// Position [m].
     pub place: Vec<f64>,
-    /// What is wrong, and what is allowed.
+    /// Description of the fault, and the allowed values.
     pub reason: String,
 }
 
@@ -35,20 +35,21 @@ impl PointFault {
     }
 }
 
-/// Points nearer than this, over the mean distance between points, are one place.
+/// Distance over the mean distance of points, below which two points count as one.
 const SAME: f64 = 1e-6;
 
-/// Greatest difference between the tiles' area and the shape's, over the latter.
+/// Greatest allowed difference between the area of all tiles and that of the shape, over the
+/// latter.
 const MISSING: f64 = 1e-10;
 
-/// The tiles of a shape about `points` [m], in their order; each is of `size` a square. Their
-/// areas add up to the shape's, and area times centre to its first moments. A cell that reaches
-/// across a gap of the shape is one tile nevertheless.
+/// The tiles of a shape around `points` [m], in their order; `size` is that of a square. The sum of
+/// their areas is the area of the shape, and the sum of area times centre its first moments. A cell
+/// that extends across a gap of the shape is still one tile.
 ///
 /// # Errors
 ///
-/// A point outside of the shape, or in the place of another.
-pub fn voronoi(shape: &Shape, points: &[[f64; 2]]) -> Result<Vec<Tile>, PointFault> {
+/// A point is outside the shape, or coincides with another.
+pub fn voronoi(shape: &BoundedRegion, points: &[[f64; 2]]) -> Result<Vec<Tile>, PointFault> {
     let outside = |point: &Point| point.iter().any(|x| !x.is_finite()) || !shape.contains(*point);
     if let Some(number) = points.iter().position(outside) {
         let reason = "outside of the region; allowed: points within it";
@@ -88,12 +89,12 @@ pub fn voronoi(shape: &Shape, points: &[[f64; 2]]) -> Result<Vec<Tile>, PointFau
     Ok(tiles)
 }
 
-/// Intervals about `points` [m] from `lower` to `upper` [m], each the part nearer to its point
-/// than to any other: middle and length [m], in the points' order.
+/// Intervals around `points` [m] between `lower` and `upper` [m], each the part that is nearer to
+/// its point than to any other: midpoint and length [m], in the order of the points.
 ///
 /// # Errors
 ///
-/// A point outside, or in the place of another.
+/// A point is outside the range, or coincides with another.
 pub fn voronoi_line(lower: f64, upper: f64, points: &[f64]) -> Result<Vec<(f64, f64)>, PointFault> {
     let inside = |x: &f64| (lower..=upper).contains(x);
     if let Some(number) = points.iter().position(|x| !inside(x)) {
@@ -119,10 +120,10 @@ pub fn voronoi_line(lower: f64, upper: f64, points: &[f64]) -> Result<Vec<(f64, 
     Ok(cells)
 }
 
-/// Points in exactly one place, which the triangulation would leave out.
+/// Refuses points at exactly the same position, which the triangulation would omit.
 fn check_doubled(points: &[Point]) -> Result<(), PointFault> {
     let mut order: Vec<usize> = (0..points.len()).collect();
-    // 0 is added since -0 and 0 are one place
+    // 0 is added because -0 and 0 are the same position
     let key = |i: usize| points[i].map(|x| x + 0.0);
     order.sort_by(|&a, &b| {
         let ([x, y], [u, v]) = (key(a), key(b));
@@ -134,9 +135,10 @@ fn check_doubled(points: &[Point]) -> Result<(), PointFault> {
     }
 }
 
-/// The points whose cells share an edge with that of each, from the Delaunay triangulation.
+/// For each point, the points whose cells share an edge with its cell, from the Delaunay
+/// triangulation.
 fn neighbours(points: &[Point], lower: Point, extent: f64) -> Vec<Vec<usize>> {
-    // in units of the extent, since the triangulation's tolerance is absolute
+    // scaled by the extent, since the tolerance of the triangulation is absolute
     let [x, y] = [0, 1].map(|d| move |p: &Point| (p[d] - lower[d]) / extent);
     let scaled: Vec<_> = points.iter().map(|p| delaunator::Point { x: x(p), y: y(p) }).collect();
     let net = triangulate(&scaled);
@@ -144,13 +146,13 @@ fn neighbours(points: &[Point], lower: Point, extent: f64) -> Vec<Vec<usize>> {
     for (edge, &from) in net.triangles.iter().enumerate() {
         let to = net.triangles[next_halfedge(edge)];
         neighbours[from].push(to);
-        // on the hull no other triangle tells of the way back
+        // on the hull no other triangle adds the reverse direction
         if net.halfedges[edge] == EMPTY {
             neighbours[to].push(from);
         }
     }
     if net.triangles.is_empty() {
-        // all on one line, in whose order they are told
+        // all points are on one line; the hull lists them in order
         for pair in net.hull.windows(2) {
             neighbours[pair[0]].push(pair[1]);
             neighbours[pair[1]].push(pair[0]);
@@ -159,7 +161,7 @@ fn neighbours(points: &[Point], lower: Point, extent: f64) -> Vec<Vec<usize>> {
     neighbours
 }
 
-/// What of a convex polygon is nearer to `own` than to `other`.
+/// The part of a convex polygon that is nearer to `own` than to `other`.
 fn nearer(polygon: &[Point], own: Point, other: Point) -> Vec<Point> {
     let normal = [0, 1].map(|d| other[d] - own[d]);
     let half = 0.5 * (normal[0] * normal[0] + normal[1] * normal[1]);
@@ -178,7 +180,7 @@ fn nearer(polygon: &[Point], own: Point, other: Point) -> Vec<Point> {
     kept
 }
 
-/// A convex polygon, counter-clockwise, cut by the upright lines through its vertices.
+/// Trapezia of a convex, counter-clockwise polygon, cut by vertical lines through its vertices.
 fn trapezia(polygon: &[Point]) -> Vec<Trapezium> {
     let mut places: Vec<f64> = polygon.iter().map(|p| p[0]).collect();
     places.sort_by(f64::total_cmp);
@@ -194,9 +196,9 @@ fn trapezia(polygon: &[Point]) -> Vec<Trapezium> {
     places.windows(2).filter_map(strip).collect()
 }
 
-/// That the tiles cover the shape, each with an area: a triangulation can leave out points that
-/// lie almost in one place.
-fn check_cover(shape: &Shape, points: &[Point], tiles: &[Tile]) -> Result<(), PointFault> {
+/// Checks that the tiles cover the shape and that each has an area. A triangulation can omit points
+/// that almost coincide.
+fn check_cover(shape: &BoundedRegion, points: &[Point], tiles: &[Tile]) -> Result<(), PointFault> {
     let reason = "its cell cannot be told from others; allowed: points that lie further apart";
     if let Some(i) = tiles.iter().position(|tile| tile.area.is_nan() || tile.area <= 0.0) {
         return Err(PointFault::new(i, &points[i], reason));

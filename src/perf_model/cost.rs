@@ -1,4 +1,4 @@
-//! Counts times constants: the time of a step.
+//! The time of a step: counts times measured constants.
 
 use super::fit::dot;
 use super::load::{RankWork, Share, Work};
@@ -6,36 +6,36 @@ use super::machine::Machine;
 use super::network::Network;
 use crate::scene::FilterHalo;
 
-/// The time of a step on one way of sharing the work.
+/// Predicted time of a step for one distribution of the work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prediction {
     /// Ranks.
     pub ranks: usize,
     /// Threads of each rank.
     pub threads: usize,
-    /// Patches of all ranks.
+    /// Number of patches on all ranks.
     pub patches: usize,
-    /// Ranks that have a patch.
+    /// Number of ranks with at least one patch.
     pub working: usize,
-    /// How filters get what lies beyond a patch.
+    /// How filters get values outside of a patch.
     pub halo: FilterHalo,
     /// Time of a step \[s\].
     pub step: f64,
-    /// Share of the ranks' time in computing \[-\].
+    /// Fraction of the time of all ranks for computing \[-\].
     pub compute: f64,
-    /// In packing, copying, and in the overheads of messages \[-\].
+    /// Fraction for packing, copying, and the overheads of messages \[-\].
     pub exchange: f64,
-    /// In waiting: for messages, for the reduction, for the busiest rank \[-\].
+    /// Fraction for waiting: for messages, for the reduction, for the busiest rank \[-\].
     pub wait: f64,
-    /// Messages of all ranks in a step.
+    /// Messages of all ranks per step.
     pub messages: f64,
-    /// What they carry \[B\].
+    /// Bytes in these messages \[B\].
     pub bytes: f64,
-    /// Work of the busiest rank over the mean of all \[-\].
+    /// Computing time of the busiest rank over the mean of all ranks \[-\].
     pub imbalance: f64,
 }
 
-/// Predicts a step with `network` between ranks.
+/// Predicts the time of a step with `network` between all ranks.
 pub fn predict_with(
     machine: &Machine,
     network: &Network,
@@ -110,7 +110,7 @@ impl Total {
     }
 }
 
-/// What a rank waits for messages on their way that its inner patches do not fill.
+/// Time for which a rank waits for messages, beyond the computing on its inner patches \[s\].
 fn flight(network: &Network, rank: &RankWork, exchanges: [f64; 2], inner: f64) -> f64 {
     let count: f64 = exchanges.iter().sum();
     let mut waits = 0.0;
@@ -124,8 +124,8 @@ fn flight(network: &Network, rank: &RankWork, exchanges: [f64; 2], inner: f64) -
     waits
 }
 
-/// Predicts a step on `ranks` of `threads`: within a node by the machine's own messages, beyond by
-/// those of `network`.
+/// Predicts the time of a step: within a node with the messages of the machine, else with
+/// `network`.
 pub fn predict(machine: &Machine, network: &Network, work: &Work, share: &Share) -> Prediction {
     let within = share.ranks * share.threads <= machine.cores;
     predict_with(machine, if within { &machine.network } else { network }, work, share)
@@ -144,7 +144,7 @@ mod tests {
     }
 
     fn on(machine: &Machine, network: &Network, ranks: usize, halo: FilterHalo) -> Prediction {
-        let work = Work::new(&flyer(&["decomposition.skip_quiet=false"]));
+        let work = Work::new(&flyer(&["decomposition.skip_quiescent=false"]));
         let share = work.share(ranks.max(8), ranks, 1, halo);
         predict_with(machine, network, &work, &share)
     }
@@ -159,7 +159,7 @@ mod tests {
             assert!(step > before, "{step} s with {latency} s");
             before = step;
         }
-        // one rank hears of nobody
+        // a single rank receives no messages
         let slow = Network { latency: 1.0, ..own.clone() };
         let [slow, own] = [&slow, &own].map(|n| on(&machine(), n, 1, FilterHalo::Exchange).step);
         assert_eq!(slow, own);
@@ -180,7 +180,7 @@ mod tests {
         for k in 0..6 {
             let mut slower = machine();
             slower.coefficients.compute[k] += 1e-6;
-            // 1700 rows stay in cache
+            // 1700 particles stay in cache
             let same = k == 1 || k == 5;
             let now = on(&slower, &network, 4, FilterHalo::Exchange).step;
             assert_eq!(now > step, !same, "compute {k}");
@@ -196,15 +196,15 @@ mod tests {
     fn deep_ghosts_send_fewer_messages_and_compute_more() {
         let network = Network::assumed();
         for ranks in [2, 4, 8] {
-            let [exchange, deep] = [FilterHalo::Exchange, FilterHalo::Deep]
+            let [exchange, deep] = [FilterHalo::Exchange, FilterHalo::Redundant]
                 .map(|halo| on(&machine(), &network, ranks, halo));
             assert!(deep.messages < exchange.messages / 8.0, "{} ranks", ranks);
             assert!(deep.compute * deep.step > exchange.compute * exchange.step);
         }
-        // so they win where messages are slow
+        // so redundant halos win if messages are slow
         let slow = Network { latency: 1e-3, ..network };
-        let [exchange, deep] =
-            [FilterHalo::Exchange, FilterHalo::Deep].map(|halo| on(&machine(), &slow, 8, halo));
+        let [exchange, deep] = [FilterHalo::Exchange, FilterHalo::Redundant]
+            .map(|halo| on(&machine(), &slow, 8, halo));
         assert!(deep.step < exchange.step);
     }
 
@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn two_threads_share_patches_but_not_one() {
-        let work = Work::new(&flyer(&["decomposition.skip_quiet=false"]));
+        let work = Work::new(&flyer(&["decomposition.skip_quiescent=false"]));
         let mut quick = machine();
         quick.fork_join = 0.0;
         let step = |patches, threads| {

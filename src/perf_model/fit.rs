@@ -1,39 +1,39 @@
-//! Least squares with relative weights and coefficients that are not negative.
+//! Least squares with relative weights and non-negative coefficients.
 
 use nalgebra::{DMatrix, DVector};
 
-/// Singular values below this share of the greatest count as none: what the samples cannot tell
-/// apart is shared between the coefficients, and predicts the same.
+/// Singular values below this fraction of the largest count as zero. Features that the samples
+/// cannot distinguish then share their cost, with the same prediction.
 const SINGULAR: f64 = 1e-6;
 
-/// A fit.
+/// Result of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit<const N: usize> {
-    /// The coefficients, none negative.
+    /// Coefficients, not negative.
     pub coefficients: [f64; N],
-    /// Root of the mean square of the relative residuals \[-\].
+    /// Root mean square of the relative residuals \[-\].
     pub rms: f64,
-    /// The greatest relative residual \[-\].
+    /// Largest relative residual \[-\].
     pub largest: f64,
 }
 
-/// What was counted and measured once.
+/// Counts and measured value of one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample<const N: usize> {
-    /// Counts.
+    /// Counts, one per coefficient.
     pub features: [f64; N],
-    /// What was measured.
+    /// Measured value.
     pub value: f64,
-    /// What a residual is held against: the value itself, or a whole of which it is a part.
+    /// Scale of the residual: the value itself, or a total of which it is a part.
     pub whole: f64,
 }
 
-/// The coefficients c with the least sum of ((features.c - value) / whole)^2, none negative: where
-/// one comes out negative it is set to zero and the others are found anew. Samples whose whole is
-/// not positive are left out.
+/// The coefficients c >= 0 with the smallest sum of ((features.c - value) / whole)^2. A negative
+/// coefficient is set to zero and the others are fitted again. Samples with `whole` not above zero
+/// are omitted.
 pub fn fit<const N: usize>(samples: &[Sample<N>]) -> Fit<N> {
     let used: Vec<&Sample<N>> = samples.iter().filter(|s| s.whole > 0.0).collect();
-    // a column that is never anything has no coefficient
+    // a feature that is always zero gets no coefficient
     let mut kept: Vec<usize> =
         (0..N).filter(|&k| used.iter().any(|s| s.features[k] != 0.0)).collect();
     let mut coefficients = [0.0; N];
@@ -60,16 +60,16 @@ pub fn fit<const N: usize>(samples: &[Sample<N>]) -> Fit<N> {
     }
 }
 
-/// Sum of the products.
+/// Scalar product.
 pub fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The coefficients of the columns `kept`, of either sign.
+/// Coefficients of the columns `kept`, of any sign.
 fn solve<const N: usize>(samples: &[&Sample<N>], kept: &[usize]) -> Vec<f64> {
     let entry = |i: usize, k: usize| samples[i].features[kept[k]] / samples[i].whole;
     let mut matrix = DMatrix::from_fn(samples.len(), kept.len(), entry);
-    // columns of the same length, for the cut of singular values to mean something
+    // normalize the columns, so that the cut of singular values is meaningful
     let lengths: Vec<f64> =
         (0..kept.len()).map(|k| matrix.column(k).norm().max(f64::MIN_POSITIVE)).collect();
     for (mut column, length) in matrix.column_iter_mut().zip(&lengths) {

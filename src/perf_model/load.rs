@@ -1,32 +1,33 @@
-//! Who has how much: the patches of a scene, their ghosts and halos, and their ranks.
+//! Distribution of the work: patches of a scene with their ghosts and halos, and their ranks.
 
 use decomp::{assign_patches, choose_cuts};
 
 use super::machine::{COMPUTE, SERIAL};
 use super::particle_density::Terrain;
-use super::schedule::Schedule;
+use super::schedule::StepCounts;
+use crate::effects;
 use crate::scene::{BalanceCost, CheckedScene, FilterHalo};
 use crate::simulation::patch_counts;
-use crate::solver::{Reach, Stepper};
+use crate::solver::StencilRadius;
 
-/// A scene, as far as the time of its step goes.
+/// Properties of a scene that determine the time of a step.
 #[derive(Clone, Debug)]
 pub struct Work {
-    /// Its particles.
+    /// Particles over the cells.
     pub terrain: Terrain,
-    /// Its step.
-    pub schedule: Schedule,
-    /// How far its particles reach.
-    pub reach: Reach,
-    /// Bytes of a particle's row with its weights \[B\].
+    /// Counts of a step.
+    pub schedule: StepCounts,
+    /// Reach of the particles on the grid.
+    pub reach: StencilRadius,
+    /// Memory of a particle with its weights \[B\].
     pub row_bytes: f64,
-    /// Bytes of a ghost's row in a message \[B\].
+    /// Size of a ghost particle in a message \[B\].
     pub ghost_bytes: f64,
-    /// Whether inner patches are computed while messages are on their way.
+    /// Whether inner patches are computed while messages are in flight.
     pub overlap: bool,
-    /// How far moving material is noticed \[cells\]; 0 if no patch sleeps.
+    /// Distance at which moving material activates a patch \[cells\]; 0 if no patch is quiescent.
     notice: f64,
-    /// Whether loads are evened by cost.
+    /// Whether loads are balanced by measured cost.
     evened: bool,
 }
 
@@ -35,63 +36,64 @@ pub struct Work {
 pub struct PatchWork {
     lower: f64,
     upper: f64,
-    /// Its particles.
+    /// Own particles.
     pub rows: f64,
-    /// Copies of others' particles.
+    /// Ghost particles.
     pub ghosts: f64,
-    /// Nodes on which it computes.
+    /// Nodes on which the patch computes.
     pub nodes: f64,
-    /// Nodes whose values come from other patches.
+    /// Nodes with values from other patches.
     pub halo: f64,
 }
 
-/// One way to share a scene.
+/// One distribution of a scene over ranks.
 #[derive(Clone, Debug)]
 pub struct Share {
     /// Ranks.
     pub ranks: usize,
     /// Threads of each rank.
     pub threads: usize,
-    /// How filters get what lies beyond a patch.
+    /// How filters get values outside of a patch.
     pub halo: FilterHalo,
     /// All patches.
     pub patches: Vec<PatchWork>,
-    /// First patch of each rank that has any, and their end.
+    /// First patch of each rank that has patches, and the end of the last.
     pub starts: Vec<usize>,
 }
 
-/// What a rank does in a step.
+/// Work of one rank in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RankWork {
-    /// What it computes, by [`COMPUTE`], on the busiest thread.
+    /// Computing on the busiest thread, counted by [`COMPUTE`].
     pub compute: [f64; COMPUTE.len()],
-    /// The part of it on patches that hear of no other rank.
+    /// Part of the computing on patches that need no data from other ranks.
     pub inner: [f64; COMPUTE.len()],
-    /// What it packs, copies and unpacks, by [`SERIAL`].
+    /// Packing, copying and unpacking, counted by [`SERIAL`].
     pub serial: [f64; SERIAL.len()],
-    /// Ranks that it hears of in an exchange of rows, and in one of nodes.
+    /// Number of ranks from which it receives ghost particles, and nodal values.
     pub neighbours: [f64; 2],
-    /// Bytes that come to it in one exchange of rows, and in all of nodes \[B\].
+    /// Bytes received in one exchange of ghost particles, and in all exchanges of nodal values
+    /// \[B\].
     pub bytes: [f64; 2],
-    /// Share of its rows that do not stay in cache.
+    /// Fraction of its particles that do not stay in cache.
     pub cold: f64,
 }
 
 impl Work {
     /// The work of a scene.
     pub fn new(scene: &CheckedScene) -> Self {
-        let (stepper, terrain) = (Stepper::<1>::new(scene), Terrain::new(scene));
+        let (stepper, terrain) = (effects::stepper::<1>(scene), Terrain::new(scene));
         let reach = stepper.reach(terrain.longest).expect("the scene check refuses longer ones");
         let columns = &stepper.columns.specs;
         let ghost_columns = columns.iter().filter(|c| c.ghost).count();
         let options = &scene.scene.decomposition;
         Work {
-            schedule: Schedule::of(&scene.scene.method),
-            // columns, weights and their gradients, place of the first node, cell and id
+            schedule: StepCounts::of(&scene.scene.method),
+            // columns, weights and their gradients, index of the first node, cell and id
             row_bytes: 8.0 * (columns.len() + 2 * reach.nodes + 2) as f64,
             // patch and kind, id, cell, columns
             ghost_bytes: 8.0 * (3 + ghost_columns) as f64,
-            notice: if scene.skips_quiet() { stepper.notice(reach) as f64 } else { 0.0 },
+            notice: if scene.skips_quiet() { stepper.influence_radius(reach) as f64 } else { 0.0 },
             overlap: options.overlap,
             evened: options.balance.every > 0 && options.balance.cost == BalanceCost::Time,
             reach,
@@ -99,7 +101,7 @@ impl Work {
         }
     }
 
-    /// The way that the program chooses for so many patches.
+    /// Halo method that the program chooses for this number of patches.
     pub fn chosen_halo(
         &self,
         scene: &CheckedScene,
@@ -112,12 +114,12 @@ impl Work {
         scene.scene.decomposition.filter_halo.unwrap_or_else(choose)
     }
 
-    /// Number of patches that the program makes.
+    /// Number of patches that the program creates.
     pub fn patches(scene: &CheckedScene, ranks: usize, threads: usize) -> usize {
         patch_counts(scene, ranks, threads)[0]
     }
 
-    /// Most patches that the program makes of its own accord, or those that the scene names.
+    /// Number of patches in the scene file, else the largest number that the program creates.
     pub fn most_patches(scene: &CheckedScene) -> usize {
         match &scene.scene.domain.patches {
             Some(patches) => patches[0],
@@ -125,15 +127,16 @@ impl Work {
         }
     }
 
-    /// How deep ghosts come from \[cells\].
+    /// Depth of the ghost layer \[cells\].
     fn depth(&self, halo: FilterHalo) -> f64 {
-        (self.reach.cells() + if halo == FilterHalo::Deep { self.reach.deeper() } else { 0 }) as f64
+        (self.reach.cells() + if halo == FilterHalo::Redundant { self.reach.deeper() } else { 0 })
+            as f64
     }
 
-    /// Shares the scene as the program does: patches of even width, a stretch of them a rank.
+    /// Distributes the scene like the program: patches of equal width, consecutive ones on a rank.
     pub fn share(&self, patches: usize, ranks: usize, threads: usize, halo: FilterHalo) -> Share {
         let (cells, depth) = (self.terrain.cells, self.depth(halo));
-        let computed = if halo == FilterHalo::Deep { self.reach.deeper() as f64 } else { 0.0 };
+        let computed = if halo == FilterHalo::Redundant { self.reach.deeper() as f64 } else { 0.0 };
         let cut = |k: usize| (k * cells / patches) as f64;
         let all: Vec<PatchWork> = (0..patches)
             .map(|k| {
@@ -149,7 +152,7 @@ impl Work {
                     ghosts: t.particles_in(lower - depth, lower)
                         + t.particles_in(upper, upper + depth),
                     nodes: filled,
-                    halo: if halo == FilterHalo::Deep {
+                    halo: if halo == FilterHalo::Redundant {
                         0.0
                     } else {
                         sides * (self.reach.halo() as f64 + 0.5)
@@ -157,7 +160,7 @@ impl Work {
                 }
             })
             .collect();
-        // a patch costs something beside its rows, and loads are evened by time
+        // a patch has a cost besides its particles, and loads are balanced by time
         let weight = |p: &PatchWork| match self.evened {
             true => (p.rows + 0.5 * (p.ghosts + p.nodes)).ceil() as u64 + 8,
             false => p.rows.round() as u64,
@@ -171,8 +174,8 @@ impl Work {
         Share { ranks, threads, halo, patches: all, starts }
     }
 
-    /// What each rank that has patches does in a step; `cache` is what stays near a
-    /// core, of rows and of patches \[B\].
+    /// Work of each rank that has patches. `cache`: effective cache sizes for particles and for
+    /// patches \[B\].
     pub fn rank_works(&self, share: &Share, cache: [f64; 2]) -> Vec<RankWork> {
         let count = share.starts.len() - 1;
         (0..count).map(|r| self.rank_work(share, r, cache)).collect()
@@ -186,7 +189,7 @@ impl Work {
         let alone = share.starts.len() == 2;
         let end = self.terrain.cells as f64;
         let joined = self.terrain.is_joined();
-        // what of `reach` cells about a patch other ranks have, below and above
+        // cells within `reach` of a patch that belong to other ranks, below and above
         let foreign = |p: &PatchWork, reach: f64| {
             let below = (first - (p.lower - reach)).max(0.0).min(reach);
             let above = (p.upper + reach - last).max(0.0).min(reach);
@@ -199,7 +202,7 @@ impl Work {
         };
         let rows: f64 = mine.iter().map(|p| p.rows).sum();
         let ghosts: f64 = mine.iter().map(|p| p.ghosts).sum();
-        // all rows are swept once a step at least, by each thread its part
+        // each thread sweeps through all of its particles at least once per step
         let threads = share.threads.min(mine.len()) as f64;
         let swept = (rows + ghosts) / threads * self.row_bytes;
         let [cold, cold_patch] = cache.map(|cache| cold_share(swept, cache));
@@ -233,7 +236,7 @@ impl Work {
         let foreign_nodes: f64 = mine.iter().map(|p| foreign(p, reach).iter().sum::<f64>()).sum();
         let node_bytes = match share.halo {
             FilterHalo::Exchange => 8.0 * schedule.node_fields * foreign_nodes,
-            FilterHalo::Deep => 0.0,
+            FilterHalo::Redundant => 0.0,
         };
         RankWork {
             compute,
@@ -245,13 +248,13 @@ impl Work {
         }
     }
 
-    /// Ranks with cells within `reach` of those of rank `r`.
+    /// Number of ranks with cells within `reach` of those of rank `r`.
     fn neighbours(&self, share: &Share, r: usize, reach: f64) -> f64 {
         let count = share.starts.len() - 1;
         let mine = &share.patches[share.starts[r]..share.starts[r + 1]];
         let (first, last) = (mine[0].lower, mine[mine.len() - 1].upper);
         let end = self.terrain.cells as f64;
-        // the rank of a cell
+        // rank that owns a cell
         let rank_of = |cell: f64| {
             let patch = share.patches.partition_point(|p| p.upper <= cell);
             share.starts.partition_point(|&s| s <= patch.min(share.patches.len() - 1)) - 1
@@ -271,20 +274,19 @@ impl Work {
     }
 }
 
-/// What of a set of rows that is swept again and again does not stay in a cache: none up to its
-/// size, all from twice its size on, for the rows used longest ago give way first.
+/// Fraction of repeatedly swept data that does not stay in a cache: none up to the size of the
+/// cache, all from twice its size, because the least recently used data are evicted first.
 pub fn cold_share(swept: f64, cache: f64) -> f64 {
     if cache <= 0.0 { 0.0 } else { (swept / cache - 1.0).clamp(0.0, 1.0) }
 }
 
-/// The busiest thread's features, patches dealt to the least busy one after another, large ones
-/// first.
+/// Counts of the busiest thread. Patches are assigned to the least busy thread, large ones first.
 fn busiest<const N: usize>(patches: &[[f64; N]], threads: usize) -> [f64; N] {
     let sum = |a: &[f64; N], b: &[f64; N]| std::array::from_fn(|k| a[k] + b[k]);
     if threads <= 1 {
         return patches.iter().fold([0.0; N], |a, b| sum(&a, b));
     }
-    // rows and ghosts, whatever they cost
+    // own and ghost particles, regardless of their cost
     let load = |p: &[f64; N]| p[0] + p[2];
     let mut sorted: Vec<&[f64; N]> = patches.iter().collect();
     sorted.sort_by(|a, b| load(b).total_cmp(&load(a)));

@@ -1,4 +1,4 @@
-//! The constants of a machine, and the file that holds them.
+//! Measured constants of a machine, and their file.
 
 use std::path::Path;
 
@@ -10,133 +10,133 @@ use super::schedule::method_name;
 use crate::scene::CheckedScene;
 use crate::scene::input_file;
 
-/// What computing is counted by, a step: own rows, those of them that do not stay in cache, ghost
-/// rows, nodes, patches, those of them whose arrays do not stay in a nearer cache.
+/// Counts of the computing in a step: own particles, those that do not stay in cache, ghost
+/// particles, nodes, patches, and those whose arrays do not stay in a nearer cache.
 pub const COMPUTE: [&str; 6] = ["row", "cold row", "ghost row", "node", "patch", "cold patch"];
 
-/// What packing, copying and unpacking is counted by, a step: rows looked at, ghost rows, halo
+/// Counts of packing, copying and unpacking in a step: particles examined, ghost particles, halo
 /// nodes times fields, patches times exchanges, exchanges, and the step itself.
 pub const SERIAL: [&str; 6] =
     ["row", "ghost row", "halo value", "patch and exchange", "exchange", "step"];
 
-/// Seconds of each thing that a step is counted by.
+/// Seconds per count.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Coefficients {
     /// In phases over patches, in the order of [`COMPUTE`] \[s\].
     pub compute: [f64; COMPUTE.len()],
-    /// Between them, in the order of [`SERIAL`] \[s\].
+    /// Between these phases, in the order of [`SERIAL`] \[s\].
     pub serial: [f64; SERIAL.len()],
-    /// What one worker keeps near: beyond the first its rows are cold, beyond the second its
-    /// patches \[B\].
+    /// Effective cache sizes of one worker \[B\]: beyond the first its particles are cold, beyond
+    /// the second its patches.
     pub cache: [f64; 2],
 }
 
-/// How much slower a core is while others are busy.
+/// Slowdown of a core while others are busy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Busy {
-    /// Cores that were busy at once.
+    /// Number of busy cores in the measurement.
     pub cores: usize,
-    /// Time of a step over that with one busy core, for rows that stay in cache \[-\].
+    /// Time of a step over that with one busy core, for particles that stay in cache \[-\].
     pub warm: f64,
-    /// The same for rows that do not \[-\].
+    /// The same for particles that do not stay in cache \[-\].
     pub cold: f64,
 }
 
-/// The method that the constants belong to.
+/// The scheme for which the constants were measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Scheme {
+pub struct SchemeCosts {
     /// Title of the scene.
     pub title: String,
     /// `method` of the scene.
     pub method: Value,
     /// `artificial_viscosity` of the scene.
     pub viscosity: Value,
-    /// Equations of state of its materials.
+    /// Equations of state of the materials.
     pub equations: Vec<String>,
 }
 
-/// How well a fit describes its samples.
+/// Quality of a fit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Quality {
-    /// Samples.
+    /// Number of samples.
     pub samples: usize,
-    /// Root of the mean square of the relative residuals \[-\].
+    /// Root mean square of the relative residuals \[-\].
     pub rms: f64,
-    /// The greatest \[-\].
+    /// Largest relative residual \[-\].
     pub largest: f64,
 }
 
-/// What `flyer-mpm calibrate` finds.
+/// Result of `flyer-mpm perf calibrate`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Machine {
-    /// Format of the file.
+    /// Version of the file format.
     pub format: u32,
-    /// The processor's name.
+    /// Name of the processor.
     pub processor: String,
     /// Cores that this process may use.
     pub cores: usize,
-    /// What was calibrated.
-    pub scheme: Scheme,
-    /// Seconds of what a step is counted by.
+    /// The calibrated scheme.
+    pub scheme: SchemeCosts,
+    /// Seconds per count.
     pub coefficients: Coefficients,
-    /// Slowing by other busy cores.
+    /// Slowdown by other busy cores.
     pub busy: Busy,
-    /// What it costs that the threads of a rank part and join once \[s\].
+    /// Cost of one fork and join of the threads of a rank \[s\].
     pub fork_join: f64,
-    /// What a patch adds to that \[s\].
+    /// Additional cost of a fork and join per patch \[s\].
     pub fork_patch: f64,
-    /// Whether those were measured.
+    /// Whether the costs of fork and join were measured.
     pub fork_measured: bool,
     /// Messages within the machine.
     pub network: Network,
-    /// Ranks over which messages were measured; 1: they were not.
+    /// Number of ranks in the measurement of messages; 1: not measured.
     pub ranks: usize,
-    /// The fit of whole steps on one thread.
+    /// Fit of whole steps on one thread.
     pub quality: Quality,
-    /// The fit of phases alone.
+    /// Fit of the phases alone.
     pub compute_quality: Quality,
-    /// The fit of steps on two threads.
+    /// Fit of steps on two threads.
     pub fork_quality: Quality,
 }
 
-/// The format that this program writes.
+/// Version of the file format that this program writes.
 pub const FORMAT: u32 = 1;
 
 /// A machine file that cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum MachineError {
-    /// It is not there, or no machine file.
+    /// The file is missing or not a machine file.
     #[error("{file}: {reason}")]
     File {
         /// The file.
         file: String,
-        /// What is wrong, and what to do.
+        /// The error, and how to correct it.
         reason: String,
     },
-    /// It is about another method.
+    /// The file belongs to another method.
     #[error(
         "{file}: calibrated for `{there}`, but the scene has `{here}`{more}; \
-         allowed: the file that `flyer-mpm calibrate` makes of this scene"
+         allowed: the file that `flyer-mpm perf calibrate` makes of this scene"
     )]
     Scheme {
         /// The file.
         file: String,
-        /// Its method.
+        /// Method of the file.
         there: String,
-        /// The scene's.
+        /// Method of the scene.
         here: String,
-        /// Where else they differ.
+        /// Other differences.
         more: String,
     },
 }
 
-impl Scheme {
-    /// What the cost of a scene's particle depends on.
+impl SchemeCosts {
+    /// The properties of a scene that determine the cost per particle.
     pub fn of(scene: &CheckedScene) -> Self {
         let json = |value: serde_json::Result<Value>| value.expect("a scene is plain data");
         let mut equations: Vec<String> = (0..scene.bodies.len())
@@ -147,7 +147,7 @@ impl Scheme {
             .collect();
         equations.sort();
         equations.dedup();
-        Scheme {
+        SchemeCosts {
             title: scene.scene.title.clone(),
             method: json(serde_json::to_value(&scene.scene.method)),
             viscosity: json(serde_json::to_value(scene.scene.artificial_viscosity)),
@@ -166,16 +166,17 @@ impl Machine {
         let file = path.display().to_string();
         let fail = |reason: String| MachineError::File { file: file.clone(), reason };
         let bytes = input_file::read(path, input_file::LARGEST_JSON)
-            .map_err(|e| fail(format!("{e}; `flyer-mpm calibrate SCENE.json` makes it")))?;
-        let machine: Machine = serde_json::from_slice(&bytes)
-            .map_err(|e| fail(format!("no machine file: {e}; `flyer-mpm calibrate` makes one")))?;
+            .map_err(|e| fail(format!("{e}; `flyer-mpm perf calibrate SCENE.json` makes it")))?;
+        let machine: Machine = serde_json::from_slice(&bytes).map_err(|e| {
+            fail(format!("no machine file: {e}; `flyer-mpm perf calibrate` makes one"))
+        })?;
         match machine.fault() {
             None => Ok(machine),
             Some(fault) => Err(fail(fault)),
         }
     }
 
-    /// The first number that no machine has.
+    /// Describes the first invalid number, if there is one.
     fn fault(&self) -> Option<String> {
         if self.format != FORMAT {
             return Some(format!("format = {}; allowed: {FORMAT}, calibrate again", self.format));
@@ -210,9 +211,9 @@ impl Machine {
         std::fs::write(path, text + "\n")
     }
 
-    /// Whether the constants are those of `scene`; `file` names them in messages.
+    /// Checks that the constants are valid for `scene`; `file` is named in messages.
     pub fn fits(&self, scene: &CheckedScene, file: &Path) -> Result<(), MachineError> {
-        let (there, here) = (&self.scheme, Scheme::of(scene));
+        let (there, here) = (&self.scheme, SchemeCosts::of(scene));
         if (&there.method, &there.viscosity, &there.equations)
             == (&here.method, &here.viscosity, &here.equations)
         {
@@ -226,8 +227,8 @@ impl Machine {
         Err(MachineError::Scheme { file, there: there.name(), here: here.name(), more })
     }
 
-    /// How much slower a core is with `workers` in all on a node of this machine's kind, for so
-    /// large a share of cold rows.
+    /// Slowdown of a core with `workers` busy cores in total on a node of this kind, for the
+    /// fraction `cold` of cold particles.
     pub fn slowing(&self, workers: usize, cold: f64) -> f64 {
         let others = (self.busy.cores - 1).max(1) as f64;
         let share = ((workers.max(1) - 1) as f64 / others).min(1.0);
@@ -247,14 +248,14 @@ pub(crate) mod tests {
         scene::parse(text, "flyer.json", &sets).unwrap()
     }
 
-    /// Round constants for the flyer plate's method.
+    /// Machine with round constants for the method of the flyer plate.
     pub fn machine() -> Machine {
         let quality = Quality { samples: 1, rms: 0.0, largest: 0.0 };
         Machine {
             format: FORMAT,
             processor: "a processor".into(),
             cores: 2,
-            scheme: Scheme::of(&flyer(&[])),
+            scheme: SchemeCosts::of(&flyer(&[])),
             coefficients: Coefficients {
                 compute: [70e-9, 30e-9, 35e-9, 60e-9, 700e-9, 1e-6],
                 serial: [2e-9, 40e-9, 2e-9, 10e-9, 150e-9, 1e-6],

@@ -1,15 +1,15 @@
-//! How long a step takes on so many ranks, threads and patches: counts times measured constants.
+//! Predicts the time of a step on given ranks, threads and patches: counts times constants.
 //!
-//! The parallel part is in the manner of LogGP (Alexandrov, Ionescu, Schauser & Scheiman 1995,
-//! "LogGP: incorporating long messages into the LogP model"): a message costs its sender and its
-//! receiver an overhead o each, comes L later, and G later for each of its bytes. The derivation
-//! stands in `docs/performance_model.md`.
+//! The parallel part follows LogGP (Alexandrov, Ionescu, Schauser & Scheiman 1995, "LogGP:
+//! incorporating long messages into the LogP model"): a message costs its sender and its receiver
+//! an overhead o each, arrives after a latency L, and takes G per byte. The derivation is in
+//! `docs/performance_model.md`.
 //!
-//! - [`Schedule`] counts what a step does, [`Work`] and [`Share`] who has how much of it.
-//! - [`Machine`] holds the constants, [`Network`] those of a network.
-//! - [`predict`] puts them together; [`Against`] holds predictions against a scaling study.
+//! - [`StepCounts`] counts the operations of a step; [`Work`] and [`Share`] distribute them.
+//! - [`Machine`] holds the constants of a machine, [`Network`] those of a network.
+//! - [`predict`] combines them; [`Against`] compares predictions with a scaling study.
 //!
-//! Knows no messages and runs no step: what is measured comes from [`crate::perf_model::calibrate`].
+//! Sends no messages and runs no steps: [`crate::perf_model::calibrate`] measures the constants.
 
 pub mod calibrate;
 mod cost;
@@ -25,10 +25,10 @@ mod validation;
 pub use cost::{Prediction, predict, predict_with};
 pub use load::{PatchWork, RankWork, Share, Work, cold_share};
 pub use machine::{
-    Busy, COMPUTE, Coefficients, FORMAT, Machine, MachineError, Quality, SERIAL, Scheme,
+    Busy, COMPUTE, Coefficients, FORMAT, Machine, MachineError, Quality, SERIAL, SchemeCosts,
 };
 pub use network::{NETWORKS, Network, NetworkError};
 pub use particle_density::Terrain;
-pub use schedule::{Schedule, method_name};
-pub use table::{Forecast, Limits, forecast, machine_table, ranks_to, table};
-pub use validation::{Against, Compared, StudyError};
+pub use schedule::{StepCounts, method_name};
+pub use table::{Forecast, ScalingLimits, forecast, machine_table, ranks_to, table};
+pub use validation::{Against, Compared, PredictionError};

@@ -1,45 +1,45 @@
-//! Networks: latency, time of a byte, overhead of a message, and a few typical ones.
+//! Networks: latency, time per byte and overhead of messages, and a few typical networks.
 
 use serde::{Deserialize, Serialize};
 
-/// What messages between ranks cost.
+/// Cost of messages between ranks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Network {
-    /// Its name.
+    /// Name of the network.
     pub name: String,
-    /// Where its numbers come from.
+    /// Source of the numbers.
     pub source: String,
-    /// L: from the end of a send to the message being there \[s\].
+    /// L: time from the end of a send to the arrival of the message \[s\].
     pub latency: f64,
-    /// G: time of a byte \[s/B\].
+    /// G: time per byte \[s/B\].
     pub seconds_per_byte: f64,
-    /// 2 o: what a message costs its sender and its receiver together \[s\].
+    /// 2 o: overhead of a message for its sender and its receiver together \[s\].
     pub overhead: f64,
-    /// What an exchange costs besides its messages \[s\].
+    /// Cost of an exchange besides its messages \[s\].
     pub call: f64,
-    /// One level of the tree of a reduction over all ranks \[s\].
+    /// Time per level of the reduction tree over all ranks \[s\].
     pub reduction_level: f64,
-    /// Whether it was measured where the machine file was made.
+    /// Whether it was measured on the machine of the file.
     pub measured: bool,
 }
 
-/// A network that is not the machine's own.
+/// The network on the command line cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum NetworkError {
-    /// No such name.
+    /// Unknown name.
     #[error("--network {0:?}: not known; allowed: measured, {names}, or LATENCY,BANDWIDTH such as 1.3e-6,25e9 [s, B/s]", names = names())]
     Unknown(String),
-    /// Numbers that no network has.
+    /// Invalid numbers.
     #[error(
         "--network {0:?}: not two numbers above 0; allowed: LATENCY,BANDWIDTH such as 1.3e-6,25e9 [s, B/s], latency at most 1 s"
     )]
     Numbers(String),
 }
 
-/// Name, latency \[s\], bandwidth \[B/s\] and source of some typical networks. Latencies are half
-/// round trips of small MPI messages, bandwidths those of large ones; real ones depend on the
-/// switches between and on who else sends.
+/// Name, latency \[s\], bandwidth \[B/s\] and source of typical networks. Latencies are half round
+/// trips of small MPI messages, bandwidths are those of large ones. Real values depend on the
+/// switches and on other traffic.
 pub const NETWORKS: [(&str, f64, f64, &str); 5] = [
     ("shared-memory", 0.5e-6, 8e9, "MPI between cores of a node, typical of copies through memory"),
     ("hdr", 1.2e-6, 24e9, "InfiniBand HDR, 200 Gb/s a port; MPI latency typically 1.0 to 1.3 us"),
@@ -53,7 +53,7 @@ fn names() -> String {
 }
 
 impl Network {
-    /// What stands in for a measurement: messages through the memory of a node.
+    /// Default without a measurement: messages through the memory of a node.
     pub fn assumed() -> Self {
         let (name, latency, bandwidth, source) = NETWORKS[0];
         Network {
@@ -68,9 +68,9 @@ impl Network {
         }
     }
 
-    /// The network that `text` names, or gives as `LATENCY,BANDWIDTH` in s and B/s. What the
-    /// processor does for a message is taken from `own`, the machine's own; a level of a reduction
-    /// takes longer by as much as the latency is longer.
+    /// The network given by name, or as `LATENCY,BANDWIDTH` in s and B/s. The processor costs of a
+    /// message are those of `own`, the network of the machine. The time per level of a reduction
+    /// increases by the difference of the latencies.
     pub fn parse(text: &str, own: &Network) -> Result<Network, NetworkError> {
         if text == "measured" {
             return Ok(own.clone());
@@ -102,7 +102,7 @@ impl Network {
         }
     }
 
-    /// A reduction over `ranks` \[s\]: the levels of a binary tree.
+    /// Time of a reduction over `ranks` in a binary tree \[s\].
     pub fn reduction(&self, ranks: usize) -> f64 {
         let levels = usize::BITS - ranks.saturating_sub(1).leading_zeros();
         self.reduction_level * f64::from(levels)

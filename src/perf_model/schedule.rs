@@ -1,60 +1,60 @@
-//! What a step does, counted: phases, exchanges of rows and of nodal values.
+//! Operations of a step, counted: phases, exchanges of ghost particles and of nodal values.
 //!
-//! Written in the order of [`crate::solver`]'s own phases, so that the two can be read side by side;
-//! a test holds the counts against the timeline of a real run.
+//! The order is that of the phases in [`crate::solver`], so that the two can be compared side by
+//! side; a test compares the counts with the timeline of a real run.
 
-use crate::scene::{EnergyUpdate, FilterHalo, Method, Stepping, StressUpdate, Transfer};
+use crate::scene::{EnergyUpdate, FilterHalo, Method, Stepping, StressUpdate};
 use crate::solver::relaxation;
-use crate::solver::transfer::Scheme;
+use crate::transfer::TransferPlan;
 
-/// Counts of one step; fractions where something is done every few steps.
+/// Counts per step; not whole numbers if an operation is not done in every step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Schedule {
-    /// Exchanges of particle rows.
+pub struct StepCounts {
+    /// Exchanges of ghost particles.
     pub row_exchanges: f64,
-    /// Exchanges of nodal values, each after a product, if halos are exchanged; else none.
+    /// Exchanges of nodal values, one after each product, if halos are exchanged.
     pub node_exchanges: f64,
-    /// Fields that those carry, summed over them.
+    /// Fields in these exchanges, in total.
     pub node_fields: f64,
     /// Phases over patches.
     pub phases: f64,
-    /// Those of them that stand outside of an exchange of rows.
+    /// Phases outside of an exchange of ghost particles.
     pub plain_phases: f64,
 }
 
-impl Schedule {
-    /// The average step of a method.
+impl StepCounts {
+    /// Average counts per step of a method.
     pub fn of(method: &Method) -> Self {
-        let with = Recorder::step(method, true);
+        let with = ScheduleRecorder::step(method, true);
         match method.pressure_relaxation {
             Some(r) if method.stepping == Stepping::Midpoint => {
                 let share = 1.0 / f64::from(r.interval.max(1));
-                with.times(share).plus(Recorder::step(method, false).times(1.0 - share))
+                with.times(share).plus(ScheduleRecorder::step(method, false).times(1.0 - share))
             }
             _ => with,
         }
     }
 
-    /// Exchanges of a step between ranks.
+    /// Exchanges between ranks per step.
     pub fn exchanges(&self, halo: FilterHalo) -> f64 {
         match halo {
             FilterHalo::Exchange => self.row_exchanges + self.node_exchanges,
-            FilterHalo::Deep => self.row_exchanges,
+            FilterHalo::Redundant => self.row_exchanges,
         }
     }
 
-    /// How often the threads of a rank part and join in a step: once a phase, and twice where a
-    /// phase follows an exchange, for inner patches and for the others; deep ghosts let all phases
-    /// after an exchange of rows run as one.
+    /// Forks and joins of the threads of a rank per step: one per phase, and a second one after an
+    /// exchange, for inner patches and for the others. With redundant halos, all phases after an
+    /// exchange of ghost particles run as one.
     pub fn forks(&self, halo: FilterHalo) -> f64 {
         match halo {
             FilterHalo::Exchange => self.phases + self.exchanges(halo),
-            FilterHalo::Deep => self.plain_phases + 2.0 * self.row_exchanges,
+            FilterHalo::Redundant => self.plain_phases + 2.0 * self.row_exchanges,
         }
     }
 
     fn times(self, factor: f64) -> Self {
-        Schedule {
+        StepCounts {
             row_exchanges: self.row_exchanges * factor,
             node_exchanges: self.node_exchanges * factor,
             node_fields: self.node_fields * factor,
@@ -64,7 +64,7 @@ impl Schedule {
     }
 
     fn plus(self, other: Self) -> Self {
-        Schedule {
+        StepCounts {
             row_exchanges: self.row_exchanges + other.row_exchanges,
             node_exchanges: self.node_exchanges + other.node_exchanges,
             node_fields: self.node_fields + other.node_fields,
@@ -74,22 +74,22 @@ impl Schedule {
     }
 }
 
-/// Counts phases as [`crate::solver::Nodal`] runs them: an exchange is asked for and done before the
-/// next phase.
-struct Recorder {
-    scheme: Scheme,
+/// Counts phases as [`crate::solver::Nodal`] runs them: an exchange is requested, and done before
+/// the next phase.
+struct ScheduleRecorder {
+    transfer: TransferPlan,
     masked: bool,
-    counted: Schedule,
-    /// Fields of the exchange that is asked for; `None`: none.
+    counted: StepCounts,
+    /// Number of fields of the requested exchange; `None`: no request.
     pending: Option<usize>,
 }
 
-impl Recorder {
-    fn step(method: &Method, relaxes: bool) -> Schedule {
-        let mut step = Recorder {
-            scheme: method.transfer.into(),
+impl ScheduleRecorder {
+    fn step(method: &Method, relaxes: bool) -> StepCounts {
+        let mut step = ScheduleRecorder {
+            transfer: method.transfer.plan(),
             masked: method.edge_mask.is_some(),
-            counted: Schedule::default(),
+            counted: StepCounts::default(),
             pending: None,
         };
         match method.stepping {
@@ -122,23 +122,16 @@ impl Recorder {
         self.plain(); // refresh
     }
 
-    /// The series of velocity, force and, in a step that relaxes it, pressure advance together.
+    /// The series of velocity, force and, in a step with relaxation, pressure advance together.
     fn solve_velocity(&mut self, relaxes: bool) {
-        let (order, force) = match self.scheme {
-            Scheme::Series { order, force } => (order, if force { order } else { 1 }),
-            Scheme::Blend(_) | Scheme::Affine => (1, 1),
-        };
+        let (order, force) = (self.transfer.order, self.transfer.force_order());
         let pressure = if relaxes { relaxation::ORDER } else { 0 };
         let others = if self.masked { 2 } else { 1 };
         self.sum_series(&[order, force, pressure], others);
     }
 
     fn solve_work(&mut self) {
-        let order = match self.scheme {
-            Scheme::Series { order, force: true } => order,
-            _ => 1,
-        };
-        self.sum_series(&[order], 0);
+        self.sum_series(&[self.transfer.force_order()], 0);
     }
 
     fn sum_series(&mut self, orders: &[u32], others: usize) {
@@ -167,14 +160,11 @@ impl Recorder {
     }
 }
 
-/// A method's name in a table, such as `cpdi, fmpm 4, midpoint`.
+/// Name of a method for tables, such as `cpdi, fmpm 4, midpoint`.
 pub fn method_name(method: &Method) -> String {
     let text = |value: serde_json::Value| value.to_string().replace(['"', '{', '}'], "");
     let of = |value: &dyn erased::Json| text(value.json());
-    let transfer = match method.transfer {
-        Transfer::Flip | Transfer::Pic | Transfer::Apic => of(&method.transfer),
-        _ => of(&method.transfer).replace(':', " "),
-    };
+    let transfer = of(&method.transfer).replace(':', " ");
     format!("{}, {transfer}, {}", of(&method.shape), of(&method.stepping))
 }
 

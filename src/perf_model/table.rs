@@ -1,4 +1,4 @@
-//! Predictions over many ranks, where they break, and as aligned text.
+//! Predictions for many ranks and the limits of scaling, as tables.
 
 use std::fmt::Write;
 
@@ -8,33 +8,33 @@ use super::machine::{COMPUTE, Machine, SERIAL};
 use super::network::Network;
 use crate::scene::{CheckedScene, FilterHalo};
 
-/// Most ranks that a table goes on to.
+/// Largest number of ranks in a table.
 const MOST_RANKS: usize = 100_000;
 
-/// A scene on several numbers of ranks.
+/// Predictions of a scene for several numbers of ranks.
 #[derive(Clone, Debug)]
 pub struct Forecast {
-    /// One rank and thread, what speed-up is held against.
+    /// One rank with one thread, the base of the speed-up.
     pub base: Prediction,
-    /// Each number of ranks: as the program does it, and with the other way of halos if that is
-    /// faster.
+    /// For each number of ranks: the prediction with the halo method of the program, and with the
+    /// other method if that is faster.
     pub rows: Vec<(Prediction, Option<Prediction>)>,
-    /// Where it breaks.
-    pub limits: Limits,
+    /// Limits of strong scaling.
+    pub limits: ScalingLimits,
 }
 
-/// Where strong scaling breaks.
+/// Limits of strong scaling.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
-    /// Most patches; more ranks have nothing to do.
+pub struct ScalingLimits {
+    /// Largest number of patches; additional ranks have no work.
     pub patches: usize,
-    /// Fewest ranks with an efficiency below one half; `None`: not up to 100 000.
+    /// Smallest number of ranks with an efficiency below one half; `None`: above 100 000.
     pub half: Option<usize>,
-    /// Ranks with the shortest step; `None`: the most that were looked at.
+    /// Number of ranks with the shortest step; `None`: the largest number examined.
     pub fastest: Option<usize>,
 }
 
-/// The ranks that are asked for, and 1, 2, 5, 10, ... beyond them.
+/// The requested numbers of ranks, followed by 1, 2, 5, 10, ... beyond them.
 pub fn ranks_to(asked: &[usize]) -> Vec<usize> {
     let greatest = asked.iter().copied().max().unwrap_or(0);
     let decades = (0..6).flat_map(|k| [1, 2, 5].map(|d| d * 10usize.pow(k)));
@@ -65,15 +65,16 @@ pub fn forecast(
         .map(|&ranks| {
             let own = on(ranks, threads, None);
             let other = match own.halo {
-                FilterHalo::Deep => FilterHalo::Exchange,
-                FilterHalo::Exchange => FilterHalo::Deep,
+                FilterHalo::Redundant => FilterHalo::Exchange,
+                FilterHalo::Exchange => FilterHalo::Redundant,
             };
             let other = on(ranks, threads, Some(other));
             let faster = other.step < own.step;
             (own, faster.then_some(other))
         })
         .collect();
-    let mut limits = Limits { patches: Work::most_patches(scene), half: None, fastest: None };
+    let mut limits =
+        ScalingLimits { patches: Work::most_patches(scene), half: None, fastest: None };
     let mut best = (1, f64::INFINITY);
     for ranks in scanned() {
         let step = on(ranks, threads, None).step;
@@ -88,7 +89,7 @@ pub fn forecast(
     Forecast { base, rows, limits }
 }
 
-/// All numbers of ranks up to 64, then each a sixteenth more.
+/// All numbers of ranks up to 32, then steps of a sixteenth.
 fn scanned() -> impl Iterator<Item = usize> {
     std::iter::successors(Some(1usize), |r| (*r < MOST_RANKS).then(|| (r + 1).max(r + r / 16)))
         .map(|r| r.min(MOST_RANKS))
@@ -98,22 +99,22 @@ fn efficiency(base: &Prediction, workers: usize, step: f64) -> f64 {
     base.step / (step * workers as f64)
 }
 
-/// The name of a way of halos in files and tables.
+/// Name of a halo method in files and tables.
 pub(super) fn halo_name(halo: FilterHalo) -> &'static str {
     match halo {
         FilterHalo::Exchange => "exchange",
-        FilterHalo::Deep => "deep",
+        FilterHalo::Redundant => "redundant",
     }
 }
 
-/// Whether a prediction goes beyond what was measured.
+/// Whether a prediction is outside of the measured range.
 pub(super) fn extrapolated(machine: &Machine, ranks: usize, threads: usize) -> bool {
     let messages = ranks > 1 && (ranks > machine.ranks || !machine.network.measured);
     let forks = threads > 1 && (threads > 2 || !machine.fork_measured);
     messages || forks || ranks * threads > machine.busy.cores.max(1)
 }
 
-/// The forecast as aligned text; a run takes `steps` steps.
+/// The forecast as aligned text, for a run of `steps` steps.
 pub fn table(machine: &Machine, network: &Network, forecast: &Forecast, steps: f64) -> String {
     let head = [
         "ranks",
@@ -173,7 +174,7 @@ pub fn table(machine: &Machine, network: &Network, forecast: &Forecast, steps: f
     text + &within + &beyond + &limits_text(&forecast.limits)
 }
 
-fn limits_text(limits: &Limits) -> String {
+fn limits_text(limits: &ScalingLimits) -> String {
     let mut text = format!(
         "patches run out at {0}: on more than {0} ranks some have nothing to do\n",
         limits.patches
@@ -242,7 +243,7 @@ pub fn machine_table(machine: &Machine) -> String {
     text
 }
 
-/// Three digits or more.
+/// A number with at least three digits.
 pub(super) fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".into();
@@ -251,7 +252,7 @@ pub(super) fn number(value: f64) -> String {
     format!("{value:.*}", digits.max(0) as usize)
 }
 
-/// Columns to the right, two spaces between.
+/// Right-aligned columns with two spaces between them.
 pub(super) fn aligned(lines: &[Vec<String>]) -> String {
     let columns = lines.iter().map(Vec::len).max().unwrap_or(0);
     let width =

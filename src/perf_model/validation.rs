@@ -1,4 +1,4 @@
-//! Predictions held against what `scripts/strong_scaling.sh` has measured.
+//! Comparison of predictions with measurements of `scripts/strong_scaling.sh`.
 
 use std::path::{Path, PathBuf};
 
@@ -12,23 +12,23 @@ use super::table::{aligned, extrapolated, halo_name, number};
 use crate::scene::input_file;
 use crate::scene::{CheckedScene, FilterHalo};
 
-/// A strong-scaling study's `scaling.json`, as far as it is needed.
+/// The required part of `scaling.json` of a strong-scaling study.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Against {
-    /// What the study held fixed.
+    /// Kind of scaling: the quantity that the study held fixed.
     kind: String,
-    /// The scene's file.
+    /// Scene file.
     pub scene: PathBuf,
-    /// The study's overrides of it.
+    /// Overrides of the scene.
     pub sets: Vec<String>,
-    rows: Vec<Row>,
+    rows: Vec<ValidationRow>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
-struct Row {
+struct ValidationRow {
     ranks: usize,
     threads: usize,
-    skip_quiet: bool,
+    skip_quiescent: bool,
     oversubscribed: bool,
     patches: usize,
     particles: u64,
@@ -39,12 +39,12 @@ struct Row {
 /// A study that cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[error("{file}: {reason}")]
-pub struct StudyError {
+pub struct PredictionError {
     file: String,
     reason: String,
 }
 
-/// One configuration.
+/// Prediction and measurement of one configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
     /// Ranks.
@@ -55,18 +55,18 @@ pub struct Compared {
     pub patches: usize,
     /// Particles.
     pub particles: u64,
-    /// How filters got what lies beyond a patch.
+    /// How filters got values outside of a patch.
     pub halo: FilterHalo,
-    /// Time of a step, predicted \[s\].
+    /// Predicted time of a step \[s\].
     pub predicted: f64,
-    /// The same, measured: wall time of the loop over its steps \[s\].
+    /// Measured time of a step: wall time of the loop over its steps \[s\].
     pub measured: f64,
-    /// Whether there were more workers than cores: the model knows nothing of that.
+    /// Whether there were more workers than cores, which the model does not describe.
     pub oversubscribed: bool,
 }
 
 impl Compared {
-    /// Predicted over measured, less one \[-\].
+    /// Predicted over measured time, minus one \[-\].
     pub fn deviation(&self) -> f64 {
         self.predicted / self.measured - 1.0
     }
@@ -74,8 +74,8 @@ impl Compared {
 
 impl Against {
     /// Reads a study.
-    pub fn read(path: &Path) -> Result<Self, StudyError> {
-        let fail = |reason: String| StudyError { file: path.display().to_string(), reason };
+    pub fn read(path: &Path) -> Result<Self, PredictionError> {
+        let fail = |reason: String| PredictionError { file: path.display().to_string(), reason };
         let bytes = input_file::read(path, input_file::LARGEST_JSON)
             .map_err(|e| fail(format!("{e}; scripts/strong_scaling.sh writes scaling.json")))?;
         let study: Against = serde_json::from_slice(&bytes).map_err(|e| {
@@ -85,7 +85,7 @@ impl Against {
             let kind = &study.kind;
             return Err(fail(format!("kind = {kind:?}; allowed: a study of strong scaling")));
         }
-        let sound = |r: &Row| {
+        let sound = |r: &ValidationRow| {
             r.ranks > 0 && r.threads > 0 && r.patches > 0 && r.steps > 0 && r.wall_seconds > 0.0
         };
         match study.rows.iter().position(|r| !sound(r)) {
@@ -94,21 +94,21 @@ impl Against {
         }
     }
 
-    /// Every configuration of which nothing was skipped; `scene` is the study's, its overrides put
-    /// in.
+    /// Compares all configurations that computed quiescent patches too; `scene` is that of the
+    /// study, with its overrides.
     pub fn compare(
         &self,
         machine: &Machine,
         network: &Network,
         scene: &CheckedScene,
         path: &Path,
-    ) -> Result<Vec<Compared>, StudyError> {
+    ) -> Result<Vec<Compared>, PredictionError> {
         let work = Work::new(scene);
         let mut found = Vec::new();
-        for row in self.rows.iter().filter(|r| !r.skip_quiet) {
-            let &Row { ranks, threads, patches, particles, oversubscribed, .. } = row;
+        for row in self.rows.iter().filter(|r| !r.skip_quiescent) {
+            let &ValidationRow { ranks, threads, patches, particles, oversubscribed, .. } = row;
             if particles != scene.particles {
-                return Err(StudyError {
+                return Err(PredictionError {
                     file: path.display().to_string(),
                     reason: format!(
                         "is of {particles} particles, but the scene has {}; allowed: a study of \
@@ -133,7 +133,7 @@ impl Against {
         Ok(found)
     }
 
-    /// Comparisons as aligned text, and the largest deviation where workers had cores of their own.
+    /// Comparisons as aligned text, with the largest deviation of those without oversubscription.
     pub fn table(machine: &Machine, all: &[Compared]) -> String {
         let head = [
             "particles",

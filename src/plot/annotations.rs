@@ -1,21 +1,24 @@
-//! What is written and shown inside a panel beside the series, where it covers least.
+//! Annotations inside a panel: labels, notes and the enlarged detail, placed where they cover the
+//! least data.
 
 use super::axes::{GRID, INK, LABEL_EM, outline};
-use super::canvas::{Align, Canvas, Place, Rect, Shape, Text};
+use super::axis::Axis;
+use super::canvas::{Align, Canvas, CanvasPoint, CanvasShape, Rect, Text};
 use super::color::Color;
 use super::curves::{self, place};
-use super::figure::{Axis, Figure, Label, Panel, Stroke};
+use super::figure::{Figure, Label, Panel};
 use super::occupancy::Occupancy;
+use super::series::Stroke;
 use super::text;
 use super::ticks::Ruler;
 
 const NOTE_EM: f64 = 18.0;
 const SMALL_EM: f64 = 15.0;
 
-/// Colour of what a close-up shows, behind the series.
+/// Background colour of the part of the x axis that a close-up enlarges.
 const BAND: Color = Color(0xfd, 0xf3, 0xda);
 
-/// A dot, and its text on the side where least is drawn.
+/// Draws a dot with its text, on the side of the dot where the text covers the least data.
 pub(super) fn label(
     canvas: &mut Canvas,
     occupancy: &mut Occupancy,
@@ -28,8 +31,8 @@ pub(super) fn label(
     else {
         return;
     };
-    canvas.shapes.push(Shape::Dot { at, radius: 8.0, color: Color::WHITE });
-    canvas.shapes.push(Shape::Dot { at, radius: 6.5, color: Color::BLACK });
+    canvas.shapes.push(CanvasShape::Dot { at, radius: 8.0, color: Color::WHITE });
+    canvas.shapes.push(CanvasShape::Dot { at, radius: 6.5, color: Color::BLACK });
     let (width, height) = (text::width(&label.text, LABEL_EM, true), 0.75 * LABEL_EM);
     let sides = [(1, -1), (-1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (-1, 0), (0, 1)];
     let boxes = sides.map(|(across, down)| {
@@ -41,7 +44,7 @@ pub(super) fn label(
     });
     let best =
         boxes.iter().min_by_key(|rect| occupancy.count(&rect.grown(3.0))).unwrap_or(&boxes[0]);
-    canvas.shapes.push(Shape::Text(Text {
+    canvas.shapes.push(CanvasShape::Text(Text {
         text: label.text.clone(),
         at: (0.5 * (best.left + best.right), best.bottom),
         em: LABEL_EM,
@@ -54,7 +57,7 @@ pub(super) fn label(
     occupancy.add_rect(&Rect { left: at.0, right: at.0, top: at.1, bottom: at.1 }.grown(8.0));
 }
 
-/// The notes in a box, in the corner where least is drawn.
+/// Draws the notes in a box, in the corner where the box covers the least data.
 pub(super) fn notes(canvas: &mut Canvas, occupancy: &Occupancy, notes: &[String], area: &Rect) {
     if notes.is_empty() {
         return;
@@ -72,9 +75,8 @@ pub(super) fn notes(canvas: &mut Canvas, occupancy: &Occupancy, notes: &[String]
     }
 }
 
-/// A part of the x axis, enlarged, in a free place; nothing where there is none. Its upright axis
-/// is the panel's.
-/// `below` is the number of shapes that belong under the series.
+/// Draws an enlarged part of the x axis in a free area, with the y axis of the panel. Draws nothing
+/// if no area is free. `below` is the number of shapes that lie under the series.
 pub(super) fn close_up(
     canvas: &mut Canvas,
     occupancy: &mut Occupancy,
@@ -101,7 +103,7 @@ pub(super) fn close_up(
 
     let across = |share: f64| area.left + share.clamp(0.0, 1.0) * area.width();
     let band = Rect { left: across(from), right: across(to), ..*area };
-    canvas.shapes.insert(below, Shape::Fill { rect: band, color: BAND, opacity: 1.0 });
+    canvas.shapes.insert(below, CanvasShape::Fill { rect: band, color: BAND, opacity: 1.0 });
     canvas.fill(whole.grown(4.0), Color::WHITE, 1.0);
     canvas.fill(inner, BAND.mix(Color::WHITE, 0.5), 1.0);
     for tick in part.ticks.iter().filter(|tick| !tick.text.is_empty()) {
@@ -120,7 +122,7 @@ pub(super) fn close_up(
         let mut series = series.clone();
         series.style.mark = series.style.mark.map(|radius| 1.3 * radius);
         let runs = curves::runs(&series.points, figure.x.scale, panel.y.scale);
-        let runs: Vec<Vec<Place>> = runs
+        let runs: Vec<Vec<CanvasPoint>> = runs
             .iter()
             .map(|run| run.iter().filter_map(|p| place(&inner, &part, y, *p)).collect())
             .collect();
@@ -130,8 +132,8 @@ pub(super) fn close_up(
     occupancy.add_rect(&whole.grown(6.0));
 }
 
-/// The place for a box of some size where least is drawn, corners first, and how much is drawn
-/// there.
+/// Finds the position for a box of this size that covers the least data, corners first. Returns the
+/// box and the number of occupied squares under it.
 fn freest(occupancy: &Occupancy, area: &Rect, width: f64, height: f64) -> Option<(Rect, usize)> {
     let room = area.grown(-14.0);
     let across = [1.0, 0.0, 0.5, 0.75, 0.25, 0.875, 0.625, 0.375, 0.125];

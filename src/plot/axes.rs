@@ -1,22 +1,25 @@
-//! What stands around a panel: frame, ticks, numbers, labels.
+//! The axes around a panel: frame, ticks, numbers and labels.
 
-use super::canvas::{Align, Canvas, Rect, Shape, Text};
+use super::canvas::{Align, Canvas, CanvasShape, Rect, Text};
 use super::color::Color;
-use super::figure::Stroke;
+use super::series::Stroke;
 use super::text;
 use super::ticks::Ruler;
 
+/// Nominal heights of the fonts of titles, labels and numbers \[pixel\].
+pub(super) const TITLE_EM: f64 = 25.0;
 pub(super) const LABEL_EM: f64 = 21.0;
 pub(super) const TICK_EM: f64 = 19.0;
-/// Length of a numbered tick.
+/// Length of a numbered tick \[pixel\].
 pub(super) const TICK: f64 = 7.0;
-/// Room at the page's border.
+/// Margin at the page border \[pixel\].
 pub(super) const MARGIN: f64 = 28.0;
 
 pub(super) const INK: Color = Color(0x33, 0x33, 0x38);
 pub(super) const GRID: Color = Color(0xe4, 0xe5, 0xe8);
+const FAINT: Color = Color(0x77, 0x77, 0x7c);
 
-/// Faint lines at the numbered ticks.
+/// Draws faint lines at the numbered ticks.
 pub(super) fn grid(canvas: &mut Canvas, area: &Rect, x: &Ruler, y: &Ruler) {
     for tick in x.ticks.iter().filter(|tick| !tick.text.is_empty()) {
         let at = area.left + tick.at * area.width();
@@ -28,7 +31,7 @@ pub(super) fn grid(canvas: &mut Canvas, area: &Rect, x: &Ruler, y: &Ruler) {
     }
 }
 
-/// The frame with its ticks, and the numbers and the label of the upright axis.
+/// Draws the frame with all ticks, and the numbers and the label of the y axis.
 pub(super) fn frame(canvas: &mut Canvas, area: &Rect, x: &Ruler, y: &Ruler, label: f64) {
     floor(canvas, area, x);
     for tick in &y.ticks {
@@ -41,7 +44,7 @@ pub(super) fn frame(canvas: &mut Canvas, area: &Rect, x: &Ruler, y: &Ruler, labe
     upright(canvas, &y.label, label, area);
 }
 
-/// The frame with the ticks of the x axis.
+/// Draws the frame with the ticks of the x axis.
 pub(super) fn floor(canvas: &mut Canvas, area: &Rect, x: &Ruler) {
     outline(canvas, area, 1.5);
     for tick in &x.ticks {
@@ -51,7 +54,7 @@ pub(super) fn floor(canvas: &mut Canvas, area: &Rect, x: &Ruler) {
     }
 }
 
-/// A rectangle's border.
+/// Draws the border of a rectangle.
 pub(super) fn outline(canvas: &mut Canvas, area: &Rect, width: f64) {
     let (a, b) = ((area.left, area.top), (area.right, area.bottom));
     let corners = [a, (b.0, a.1), b, (a.0, b.1), a];
@@ -60,11 +63,11 @@ pub(super) fn outline(canvas: &mut Canvas, area: &Rect, width: f64) {
     }
 }
 
-/// An upright label at `x`, along the middle of `area`.
+/// Draws a vertical label at `x`, centred on the height of `area`.
 pub(super) fn upright(canvas: &mut Canvas, label: &str, x: f64, area: &Rect) {
     let width = text::width(label, LABEL_EM, false);
     let room = area.height() + 16.0;
-    canvas.shapes.push(Shape::Text(Text {
+    canvas.shapes.push(CanvasShape::Text(Text {
         text: label.into(),
         at: (x, 0.5 * (area.top + area.bottom)),
         em: if width > room { LABEL_EM * room / width } else { LABEL_EM },
@@ -75,7 +78,7 @@ pub(super) fn upright(canvas: &mut Canvas, label: &str, x: f64, area: &Rect) {
     }));
 }
 
-/// The numbers and the label of the common axis, under the lowest panel.
+/// Draws the numbers and the label of the common x axis under the lowest panel.
 pub(super) fn x_numbers(canvas: &mut Canvas, area: &Rect, x: &Ruler) {
     let base = area.bottom + TICK + 5.0 + TICK_EM;
     for tick in &x.ticks {
@@ -84,4 +87,10 @@ pub(super) fn x_numbers(canvas: &mut Canvas, area: &Rect, x: &Ruler) {
     }
     let middle = 0.5 * (area.left + area.right);
     canvas.text(&x.label, (middle, base + LABEL_EM + 10.0), LABEL_EM, Align::Center, INK);
+}
+
+/// Says that a panel has no data.
+pub(super) fn no_data(canvas: &mut Canvas, area: &Rect) {
+    let middle = (0.5 * (area.left + area.right), 0.5 * (area.top + area.bottom));
+    canvas.text("no data", middle, LABEL_EM, Align::Center, FAINT);
 }

@@ -1,33 +1,34 @@
 //! Stacked bars, one below the other, in the right half of a page.
 
 use super::axes::{self, GRID, INK, LABEL_EM, TICK_EM};
+use super::axis::Axis;
 use super::canvas::{Align, Canvas, Rect};
 use super::color::Color;
-use super::figure::{Axis, Stroke, Style};
 use super::legend;
+use super::series::{Stroke, Style};
 use super::text;
 use super::ticks::Ruler;
 
 const NUMBER_EM: f64 = 16.0;
-/// Widest bar across.
+/// Largest thickness of a bar \[pixel\].
 const WIDEST: f64 = 64.0;
 
-/// Bars over one axis, each a sum of the same parts.
+/// Stacked horizontal bars over one axis; all bars have the same parts.
 #[derive(Debug, Clone)]
 pub struct Bars {
-    /// What is added up: "Share of time".
+    /// Name of the quantity: "Share of time".
     pub label: String,
-    /// Its unit.
+    /// Unit of the quantity.
     pub unit: String,
-    /// The parts, from the left.
-    pub parts: Vec<Part>,
-    /// The bars, from the top.
+    /// Parts of a bar, from left to right.
+    pub parts: Vec<BarPart>,
+    /// Bars, from top to bottom.
     pub bars: Vec<Bar>,
 }
 
 /// One part of every bar.
 #[derive(Debug, Clone)]
-pub struct Part {
+pub struct BarPart {
     /// Name in the legend.
     pub name: String,
     /// Colour.
@@ -37,14 +38,14 @@ pub struct Part {
 /// One bar.
 #[derive(Debug, Clone)]
 pub struct Bar {
-    /// Text on its left.
+    /// Text to the left of the bar.
     pub label: String,
-    /// Sizes of its parts, zero or more; a bar without any says that there are no data.
+    /// Sizes of the parts, not negative. A bar without values is drawn as "no data".
     pub values: Vec<f64>,
 }
 
 impl Bars {
-    /// Draws the names of the parts from `top` downwards; returns where they end.
+    /// Draws the legend of the parts from `top` downwards; returns its lower end.
     pub(super) fn draw_legend(&self, canvas: &mut Canvas, ends: (f64, f64), top: f64) -> f64 {
         let looks: Vec<Style> =
             self.parts.iter().map(|part| Style::line(part.color).width(14.0)).collect();
@@ -61,7 +62,7 @@ impl Bars {
     ) {
         let widths = self.bars.iter().map(|bar| text::width(&bar.label, TICK_EM, false));
         let labels = widths.fold(0.0, f64::max);
-        // Half of the room at most is for the labels.
+        // The labels take at most half of the width.
         let em = TICK_EM * (0.5 * (right - left) / labels.max(1.0)).min(1.0);
         let left = left + labels * em / TICK_EM + 12.0;
         let area = Rect { left, right, top, bottom };
@@ -114,7 +115,7 @@ impl Bars {
 }
 
 impl Bar {
-    /// The values, with zero for what cannot be drawn.
+    /// The values, with zero for each value that cannot be drawn.
     fn drawable(&self) -> impl Iterator<Item = f64> {
         self.values.iter().map(|v| if v.is_finite() { v.max(0.0) } else { 0.0 })
     }

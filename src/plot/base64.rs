@@ -1,6 +1,6 @@
-//! Bytes inside a text file.
+//! Base64 encoding, to embed images in SVG text.
 
-/// Bytes as text (RFC 4648).
+/// Bytes as base64 text (RFC 4648).
 pub(super) fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len() * 4 / 3 + 4);

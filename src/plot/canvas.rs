@@ -1,17 +1,17 @@
-//! A page of shapes in pixels, y downwards: what a figure becomes before it is painted.
+//! A page of shapes \[pixel\], y downwards: the result of the layout and the input of the painter.
 
 use super::color::Color;
-use super::figure::Stroke;
+use super::series::Stroke;
 
 /// Width of most pages \[pixel\].
 pub(super) const WIDTH: f64 = 1200.0;
 /// Height of most pages \[pixel\].
 pub(super) const HEIGHT: f64 = 800.0;
 
-/// A place on the page.
-pub(super) type Place = (f64, f64);
+/// Position on the page, x and y \[pixel\].
+pub(super) type CanvasPoint = (f64, f64);
 
-/// Which end of a text stands at its place.
+/// Horizontal alignment of a text at its position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Align {
     Left,
@@ -19,21 +19,21 @@ pub(super) enum Align {
     Right,
 }
 
-/// A text on its base line.
+/// A text; its position is on the base line.
 #[derive(Debug, Clone)]
 pub(super) struct Text {
     pub text: String,
-    pub at: Place,
-    /// Nominal height of the font.
+    pub at: CanvasPoint,
+    /// Nominal height of the font \[pixel\].
     pub em: f64,
     pub bold: bool,
     pub color: Color,
     pub align: Align,
-    /// Whether it runs upwards.
+    /// Whether the text runs upwards.
     pub upright: bool,
 }
 
-/// An upright rectangle.
+/// An axis-aligned rectangle \[pixel\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rect {
     pub left: f64,
@@ -51,7 +51,7 @@ impl Rect {
         self.bottom - self.top
     }
 
-    /// The rectangle with `by` more on every side.
+    /// The rectangle enlarged by `by` on every side.
     pub fn grown(&self, by: f64) -> Self {
         Self {
             left: self.left - by,
@@ -61,12 +61,12 @@ impl Rect {
         }
     }
 
-    pub fn contains(&self, (x, y): Place) -> bool {
+    pub fn contains(&self, (x, y): CanvasPoint) -> bool {
         (self.left..=self.right).contains(&x) && (self.top..=self.bottom).contains(&y)
     }
 
     /// The part of the straight line from `a` to `b` inside the rectangle (Liang and Barsky 1984).
-    pub fn clip(&self, a: Place, b: Place) -> Option<(Place, Place)> {
+    pub fn clip(&self, a: CanvasPoint, b: CanvasPoint) -> Option<(CanvasPoint, CanvasPoint)> {
         let (dx, dy) = (b.0 - a.0, b.1 - a.1);
         let (mut from, mut to) = (0.0f64, 1.0f64);
         let sides = [
@@ -91,33 +91,33 @@ impl Rect {
     }
 }
 
-/// Something to paint.
+/// A shape on the page.
 #[derive(Debug, Clone)]
-pub(super) enum Shape {
-    Line { points: Vec<Place>, width: f64, color: Color },
+pub(super) enum CanvasShape {
+    Line { points: Vec<CanvasPoint>, width: f64, color: Color },
     Fill { rect: Rect, color: Color, opacity: f64 },
-    Dot { at: Place, radius: f64, color: Color },
-    Polygon { corners: Vec<Place>, color: Color },
+    Dot { at: CanvasPoint, radius: f64, color: Color },
+    Polygon { corners: Vec<CanvasPoint>, color: Color },
     Text(Text),
 }
 
-/// Pixels to be stretched over a rectangle, rows from the top.
+/// An image that is stretched over a rectangle; rows from the top.
 #[derive(Debug, Clone)]
-pub(super) struct Image {
+pub(super) struct CanvasImage {
     pub rect: Rect,
     pub columns: usize,
     pub rows: usize,
     pub pixels: Vec<Color>,
 }
 
-/// A page: images at the bottom, shapes over them in their order.
+/// A page: images at the bottom, shapes over them in the order of the list.
 #[derive(Debug, Clone)]
 pub(super) struct Canvas {
     pub title: String,
     /// Width and height in whole pixels.
     pub size: (f64, f64),
-    pub images: Vec<Image>,
-    pub shapes: Vec<Shape>,
+    pub images: Vec<CanvasImage>,
+    pub shapes: Vec<CanvasShape>,
 }
 
 impl Canvas {
@@ -126,45 +126,45 @@ impl Canvas {
         Self { title: title.into(), size, images: Vec::new(), shapes: Vec::new() }
     }
 
-    /// Draws a line in a pattern.
-    pub fn line(&mut self, points: &[Place], width: f64, color: Color, stroke: Stroke) {
+    /// Draws a line with a pattern.
+    pub fn line(&mut self, points: &[CanvasPoint], width: f64, color: Color, stroke: Stroke) {
         let (on, off) = match stroke {
             Stroke::Solid => {
-                self.shapes.push(Shape::Line { points: points.to_vec(), width, color });
+                self.shapes.push(CanvasShape::Line { points: points.to_vec(), width, color });
                 return;
             }
             Stroke::Dashed => (12.0, 7.0),
             Stroke::Dotted => (2.5, 5.0),
         };
         for points in dashes(points, on, off) {
-            self.shapes.push(Shape::Line { points, width, color });
+            self.shapes.push(CanvasShape::Line { points, width, color });
         }
     }
 
-    /// Draws a round mark, or a ring.
-    pub fn mark(&mut self, at: Place, radius: f64, color: Color, hollow: bool) {
-        self.shapes.push(Shape::Dot { at, radius, color });
+    /// Draws a disc, or a ring if `hollow`.
+    pub fn mark(&mut self, at: CanvasPoint, radius: f64, color: Color, hollow: bool) {
+        self.shapes.push(CanvasShape::Dot { at, radius, color });
         if hollow {
-            self.shapes.push(Shape::Dot { at, radius: 0.55 * radius, color: Color::WHITE });
+            self.shapes.push(CanvasShape::Dot { at, radius: 0.55 * radius, color: Color::WHITE });
         }
     }
 
     /// Fills a rectangle.
     pub fn fill(&mut self, rect: Rect, color: Color, opacity: f64) {
-        self.shapes.push(Shape::Fill { rect, color, opacity });
+        self.shapes.push(CanvasShape::Fill { rect, color, opacity });
     }
 
     /// Draws a horizontal text.
-    pub fn text(&mut self, text: &str, at: Place, em: f64, align: Align, color: Color) {
+    pub fn text(&mut self, text: &str, at: CanvasPoint, em: f64, align: Align, color: Color) {
         let text = Text { text: text.into(), at, em, bold: false, color, align, upright: false };
-        self.shapes.push(Shape::Text(text));
+        self.shapes.push(CanvasShape::Text(text));
     }
 }
 
 /// Cuts a line into dashes of length `on` with gaps of length `off`.
-fn dashes(points: &[Place], on: f64, off: f64) -> Vec<Vec<Place>> {
+fn dashes(points: &[CanvasPoint], on: f64, off: f64) -> Vec<Vec<CanvasPoint>> {
     let mut done = Vec::new();
-    let mut dash: Vec<Place> = points.first().copied().into_iter().collect();
+    let mut dash: Vec<CanvasPoint> = points.first().copied().into_iter().collect();
     let (mut drawing, mut left) = (true, on);
     for pair in points.windows(2) {
         let (mut a, b) = (pair[0], pair[1]);

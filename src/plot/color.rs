@@ -1,24 +1,24 @@
-//! Colours: of materials as in the document, and a palette for the rest.
+//! Colours: those of Burghardt (2010) for its materials and curves, and a palette for all others.
 
-/// A colour: red, green, blue.
+/// An RGB colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Color(pub u8, pub u8, pub u8);
 
 impl Color {
-    /// Black, of the document's shock approximation.
+    /// Black: the shock approximation of Burghardt (2010).
     pub const BLACK: Color = Color(0x11, 0x11, 0x11);
     /// White.
     pub const WHITE: Color = Color(0xff, 0xff, 0xff);
-    /// Green, of the document's computed points.
+    /// Green: the computed points of Burghardt (2010).
     pub const GREEN: Color = Color(0x35, 0xb0, 0x4c);
-    /// Red, of the true solution.
+    /// Red: the exact solution.
     pub const RED: Color = Color(0xd8, 0x10, 0x40);
-    /// Orange, of copper in the document.
+    /// Orange: copper in Burghardt (2010).
     pub const ORANGE: Color = Color(0xe0, 0x7b, 0x1e);
-    /// Gray, of aluminium in the document.
+    /// Gray: aluminium in Burghardt (2010).
     pub const GRAY: Color = Color(0x80, 0x88, 0x90);
 
-    /// Colours told apart also by those who see red and green alike (after Okabe and Ito, darkened
+    /// Colours that red-green colour-blind readers can distinguish (after Okabe and Ito, darkened
     /// for thin lines).
     const PALETTE: [Color; 7] = [
         Color(0x1f, 0x6f, 0xb4),
@@ -30,13 +30,13 @@ impl Color {
         Color(0x6b, 0x4f, 0x3a),
     ];
 
-    /// The `index`-th colour of the palette, which repeats.
+    /// The colour number `index` of the palette, which repeats.
     pub fn palette(index: usize) -> Color {
         Self::PALETTE[index % Self::PALETTE.len()]
     }
 
-    /// The document's colour of a material: copper orange, aluminium gray; any other gets the
-    /// palette's `index`-th.
+    /// The colour of a material: as in Burghardt (2010) for copper (orange) and aluminium (gray),
+    /// else the palette colour number `index`.
     pub fn of_material(name: &str, index: usize) -> Color {
         let name = name.to_lowercase();
         if name.starts_with("copper") || name == "cu" {
@@ -48,7 +48,7 @@ impl Color {
         }
     }
 
-    /// This colour mixed with `other`, of which `share` (0 to 1) is taken.
+    /// A mixture of this colour and `other`; `share` (0 to 1) is the fraction of `other`.
     pub fn mix(self, other: Color, share: f64) -> Color {
         let mix =
             |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * share).round() as u8;

@@ -1,20 +1,30 @@
-//! Colour maps: a quantity over position and time as an image.
+//! Colour maps: a quantity over position and time, drawn as an image.
 
-use super::canvas::{Image, Rect};
+use super::canvas::{CanvasImage, Rect};
 use super::color::Color;
 use super::shades::Shades;
 use super::ticks::Ruler;
-use super::wave_diagram::Row;
 
-/// Colour where there is no material.
+/// Background colour: no material.
 const NOTHING: Color = Color(0xf1, 0xf1, 0xf3);
+
+/// Pressure along x at one time.
+#[derive(Debug, Clone)]
+pub struct DiagramRow {
+    /// Time \[s\].
+    pub time: f64,
+    /// Positions \[m\].
+    pub x: Vec<f64>,
+    /// Pressures \[Pa\].
+    pub pressure: Vec<f64>,
+}
 
 /// A quantity over position and time.
 #[derive(Debug, Clone)]
 pub(super) struct ColorMap {
     pub label: String,
     pub unit: String,
-    pub rows: Vec<Row>,
+    pub rows: Vec<DiagramRow>,
 }
 
 impl ColorMap {
@@ -23,12 +33,13 @@ impl ColorMap {
         self.rows.iter().flat_map(|row| row.pressure.iter().copied())
     }
 
-    /// The map in `rect`: between the points of a row straight, between rows the nearest in time.
-    pub fn image(&self, rect: Rect, x: &Ruler, t: &Ruler, colors: &Ruler) -> Image {
-        // Two pixels of the page a value: fine enough for the eye, and four times as cheap.
+    /// The image of the map in `rect`: linear between the points of a row, nearest row in time.
+    pub fn image(&self, rect: Rect, x: &Ruler, t: &Ruler, colors: &Ruler) -> CanvasImage {
+        // One value per two pixels of the page: fine enough for the eye, and four times cheaper.
         let columns = (rect.width() / 2.0).ceil().max(1.0) as usize;
         let rows = (rect.height() / 2.0).ceil().max(1.0) as usize;
-        let mut order: Vec<&Row> = self.rows.iter().filter(|row| row.time.is_finite()).collect();
+        let mut order: Vec<&DiagramRow> =
+            self.rows.iter().filter(|row| row.time.is_finite()).collect();
         order.sort_by(|a, b| a.time.total_cmp(&b.time));
         let mut pixels = Vec::with_capacity(columns * rows);
         let mut strip = (usize::MAX, Vec::new());
@@ -43,13 +54,13 @@ impl ColorMap {
                 None => pixels.resize(pixels.len() + columns, NOTHING),
             }
         }
-        Image { rect, columns, rows, pixels }
+        CanvasImage { rect, columns, rows, pixels }
     }
 }
 
-/// Index of the row nearest in time; none beyond the first and last by more than half their
-/// distance to the next.
-fn nearest(rows: &[&Row], time: f64) -> Option<usize> {
+/// Index of the row nearest in time. `None` if `time` is outside of the rows by more than half of
+/// the spacing there.
+fn nearest(rows: &[&DiagramRow], time: f64) -> Option<usize> {
     let after = rows.partition_point(|row| row.time < time);
     let distance = |index: usize| rows.get(index).map(|row| (row.time - time).abs());
     let (before, after) = (after.checked_sub(1), (after < rows.len()).then_some(after));
@@ -66,8 +77,8 @@ fn nearest(rows: &[&Row], time: f64) -> Option<usize> {
     }
 }
 
-/// A row's colours in `columns` even steps of the x axis.
-fn colors_of(row: &Row, columns: usize, x: &Ruler, colors: &Ruler) -> Vec<Color> {
+/// Colours of a row at `columns` even steps of the x axis.
+fn colors_of(row: &DiagramRow, columns: usize, x: &Ruler, colors: &Ruler) -> Vec<Color> {
     let mut points: Vec<(f64, f64)> = std::iter::zip(&row.x, &row.pressure)
         .filter(|(x, p)| x.is_finite() && p.is_finite())
         .map(|(&x, &p)| (x, p))
@@ -89,7 +100,7 @@ fn colors_of(row: &Row, columns: usize, x: &Ruler, colors: &Ruler) -> Vec<Color>
             }
             let before = next.checked_sub(1).and_then(|i| points.get(i));
             match (before, points.get(next)) {
-                // Further apart than this there is a gap between bodies.
+                // A larger distance between points is a gap between bodies.
                 (Some(a), Some(b)) if b.0 - a.0 <= (6.0 * usual).max(pixel) => {
                     let share = if b.0 > a.0 { (x - a.0) / (b.0 - a.0) } else { 0.0 };
                     shade(a.1 + share * (b.1 - a.1))
@@ -104,7 +115,7 @@ fn colors_of(row: &Row, columns: usize, x: &Ruler, colors: &Ruler) -> Vec<Color>
 
 #[cfg(test)]
 mod tests {
-    use super::super::figure::Axis;
+    use super::super::axis::Axis;
     use super::*;
 
     #[test]
@@ -113,7 +124,7 @@ mod tests {
         let x = Ruler::new(&axis("x"), [0.0, 10.0].into_iter(), 5);
         let colors = Ruler::new(&axis("p"), [0.0, 1.0].into_iter(), 5);
         let positions = vec![0.0, 0.5, 1.0, 1.5, 2.0, 8.0, 8.5, 9.0, 9.5, 10.0];
-        let row = Row { time: 0.0, x: positions, pressure: vec![1.0; 10] };
+        let row = DiagramRow { time: 0.0, x: positions, pressure: vec![1.0; 10] };
         let shades = colors_of(&row, 100, &x, &colors);
         assert_eq!(shades[5], Shades::Sequential.color(1.0));
         assert_eq!(shades[50], NOTHING);

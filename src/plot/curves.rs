@@ -1,23 +1,33 @@
-//! Series as lines and marks inside a panel.
+//! Draws series as lines and marks inside a panel.
 
-use super::canvas::{Canvas, Place, Rect};
+use super::axis::AxisScale;
+use super::canvas::{Canvas, CanvasPoint, Rect};
 use super::color::Color;
-use super::figure::{Points, Scale, Series};
 use super::occupancy::Occupancy;
+use super::series::{Points, Series};
 use super::thin::{LIMIT, thin};
 use super::ticks::{Ruler, drawable};
 
-/// Border of outlined lines.
+/// Colour of the border around outlined lines.
 const BORDER: Color = Color(0x10, 0x08, 0x20);
 
-/// Where a point stands in a panel.
-pub(super) fn place(area: &Rect, x: &Ruler, y: &Ruler, (px, py): (f64, f64)) -> Option<Place> {
+/// Position on the page of a point of the data; `None` if it cannot be drawn.
+pub(super) fn place(
+    area: &Rect,
+    x: &Ruler,
+    y: &Ruler,
+    (px, py): (f64, f64),
+) -> Option<CanvasPoint> {
     let (across, up) = (x.place(px)?, y.place(py)?);
     Some((area.left + across * area.width(), area.bottom - up * area.height()))
 }
 
-/// Drawable points in runs without a break, thinned.
-pub(super) fn runs(points: &Points, x_scale: Scale, y_scale: Scale) -> Vec<Vec<(f64, f64)>> {
+/// Drawable points, thinned and split into unbroken runs.
+pub(super) fn runs(
+    points: &Points,
+    x_scale: AxisScale,
+    y_scale: AxisScale,
+) -> Vec<Vec<(f64, f64)>> {
     let (mut run, mut good) = (0, Vec::new());
     for (&x, &y) in std::iter::zip(&points.x, &points.y) {
         if drawable(x, x_scale) && drawable(y, y_scale) {
@@ -39,17 +49,17 @@ pub(super) fn runs(points: &Points, x_scale: Scale, y_scale: Scale) -> Vec<Vec<(
     runs
 }
 
-/// Draws a series, whose points are in runs of places without a break.
+/// Draws a series from its unbroken runs of points on the page.
 pub(super) fn draw(
     canvas: &mut Canvas,
     occupancy: &mut Occupancy,
     series: &Series,
-    runs: &[Vec<Place>],
+    runs: &[Vec<CanvasPoint>],
     area: &Rect,
 ) {
     let style = &series.style;
     if let Some(stroke) = style.stroke {
-        let lines: Vec<Vec<Place>> = runs.iter().flat_map(|run| clipped(run, area)).collect();
+        let lines: Vec<Vec<CanvasPoint>> = runs.iter().flat_map(|run| clipped(run, area)).collect();
         for line in &lines {
             occupancy.add_line(line);
             if style.outlined {
@@ -60,7 +70,7 @@ pub(super) fn draw(
             canvas.line(line, style.width, style.color, stroke);
         }
     }
-    let lone = |run: &&Vec<Place>| run.len() == 1 && style.mark.is_none();
+    let lone = |run: &&Vec<CanvasPoint>| run.len() == 1 && style.mark.is_none();
     let radius = style.mark.unwrap_or(style.width);
     let marked = runs.iter().filter(|run| style.mark.is_some() || lone(run)).flatten();
     for &at in marked.filter(|at| area.grown(0.5).contains(**at)) {
@@ -69,10 +79,10 @@ pub(super) fn draw(
     }
 }
 
-/// The parts of a line inside a rectangle, without points too near to be told from their
-/// neighbours.
-fn clipped(points: &[Place], area: &Rect) -> Vec<Vec<Place>> {
-    let mut lines: Vec<Vec<Place>> = Vec::new();
+/// Parts of a line inside a rectangle, without points that are too close to their neighbours to be
+/// distinguished.
+fn clipped(points: &[CanvasPoint], area: &Rect) -> Vec<Vec<CanvasPoint>> {
+    let mut lines: Vec<Vec<CanvasPoint>> = Vec::new();
     let mut end = None;
     for pair in points.windows(2) {
         let Some((a, b)) = area.clip(pair[0], pair[1]) else {
@@ -112,8 +122,8 @@ mod tests {
     fn what_is_not_finite_breaks_a_line() {
         let points = Points::new([0.0, 1.0, 2.0, 3.0, 4.0], [1.0, 2.0, f64::NAN, 3.0, 4.0]);
         let expected = [[(0.0, 1.0), (1.0, 2.0)], [(3.0, 3.0), (4.0, 4.0)]];
-        assert_eq!(runs(&points, Scale::Linear, Scale::Linear), expected);
-        assert!(runs(&points, Scale::Linear, Scale::Log).len() == 2);
+        assert_eq!(runs(&points, AxisScale::Linear, AxisScale::Linear), expected);
+        assert!(runs(&points, AxisScale::Linear, AxisScale::Log).len() == 2);
     }
 
     #[test]

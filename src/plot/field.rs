@@ -1,37 +1,36 @@
-//! A quantity over a plane at one time, as colour.
+//! A quantity over a plane at one time, drawn as colour.
 
 use std::borrow::Cow;
 
-use super::PictureError;
-use super::figure::{Axis, Figure, Panel, Series};
+use super::error::PictureError;
 use super::limits::Shading;
-use super::profile::readable;
+use super::series::Series;
 
-/// A quantity over x and y, drawn with equal scales in both directions. A plane so thin that it
-/// would hardly be seen is stretched across, and the picture says so.
+/// A quantity over x and y, drawn with equal scales in both directions. A plane that would be too
+/// thin to see is stretched, and the picture states the factor.
 ///
 /// The last fields have defaults in [`Field::new`]:
 /// `Field { outlines: true, ..Field::new("Title", time, quantity, data) }`.
 #[derive(Debug, Clone)]
 pub struct Field {
-    /// The line at the top, to which the time is added.
+    /// Title of the picture; the time is appended.
     pub title: String,
     /// Time \[s\].
     pub time: f64,
-    /// What the colours mean.
-    pub quantity: Quantity,
-    /// Values and where they are painted.
+    /// The quantity and its colours.
+    pub quantity: FieldQuantity,
+    /// Values and their positions.
     pub data: FieldData,
-    /// Lower and upper corner of what is shown \[m\]; by default the grid, or what the particles
-    /// take.
+    /// Lower and upper corner of the shown part \[m\]; by default the grid, or the bounding box of
+    /// the particles.
     pub extent: Option<[[f64; 2]; 2]>,
     /// Names of the two directions; by default "x" and "y".
     pub axes: [String; 2],
-    /// Shows the other half of a symmetric model too.
-    pub mirror: Option<Mirror>,
-    /// Draws a hairline where bodies touch and a fainter one where they end.
+    /// Symmetry plane; if given, the mirrored half is shown too.
+    pub mirror: Option<SymmetryPlane>,
+    /// Whether to draw a thin line where bodies touch and a fainter one at their free edges.
     pub outlines: bool,
-    /// Curves over the field, both coordinates in \[m\].
+    /// Curves over the field, both coordinates \[m\].
     pub overlays: Vec<Series>,
     /// Short texts under the title.
     pub notes: Vec<String>,
@@ -39,41 +38,42 @@ pub struct Field {
 
 /// A quantity and its colours.
 #[derive(Debug, Clone)]
-pub struct Quantity {
-    /// Its name: "Pressure".
+pub struct FieldQuantity {
+    /// Name: "Pressure".
     pub label: String,
-    /// Its SI unit: "Pa"; the picture may show GPa.
+    /// SI unit: "Pa"; the picture may show GPa.
     pub unit: String,
-    /// Its colours.
+    /// Type of colour scale.
     pub shading: Shading,
-    /// Values \[`unit`\] at the ends of the colours, the same for all pictures of a series; by
-    /// default ends that hold nearly all values. Diverging colours go as far both ways.
+    /// Values \[`unit`\] at the ends of the colour scale, for the same scale in a series of
+    /// pictures. By default, it covers nearly all values. A diverging scale is symmetric about
+    /// zero.
     pub limits: Option<(f64, f64)>,
 }
 
-/// Values with their places. Values that are not finite leave their place empty.
+/// Values with their positions. A value that is not finite is not drawn.
 #[derive(Debug, Clone)]
 pub enum FieldData {
-    /// Particles as parallelograms; where several lie on a pixel, the mean of their values.
-    Particles(Vec<Tile>),
-    /// Cells of an even grid.
+    /// Particles as parallelograms. A pixel that several particles cover shows their mean value.
+    Particles(Vec<FieldTile>),
+    /// Cells of a uniform grid.
     Cells(Cells),
 }
 
-/// A particle: a parallelogram of one value.
+/// A particle: a parallelogram with one value.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tile {
-    /// Its middle \[m\].
+pub struct FieldTile {
+    /// Centre \[m\].
     pub centre: [f64; 2],
-    /// Vectors r1 and r2 from its middle to the middles of two adjacent sides \[m\].
+    /// Vectors r1 and r2 from the centre to the midpoints of two adjacent sides \[m\].
     pub half_edges: [[f64; 2]; 2],
-    /// The value, in the quantity's unit.
+    /// Value, in the unit of the quantity.
     pub value: f64,
-    /// Index of its body, for outlines.
+    /// Index of the body, for outlines.
     pub body: u32,
 }
 
-/// A grid of equal cells, each with a mean value or empty.
+/// A grid of equal cells; each cell has a mean value or is empty.
 #[derive(Debug, Clone)]
 pub struct Cells {
     /// Lower corner of the grid \[m\].
@@ -82,59 +82,53 @@ pub struct Cells {
     pub upper: [f64; 2],
     /// Number of cells along x and along y.
     pub counts: [usize; 2],
-    /// Mean values in the quantity's unit; cell (i, j) stands at i + counts\[0\] j.
+    /// Mean values in the unit of the quantity; cell (i, j) has the index i + counts\[0\] j.
     pub values: Vec<Option<f64>>,
 }
 
-/// The plane, in axisymmetry the axis, that bounds the half which was computed.
+/// Symmetry plane (axis, in axisymmetry) at the edge of the computed half.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Mirror {
-    /// The coordinate that changes across it.
+pub struct SymmetryPlane {
+    /// The direction normal to the plane.
     pub across: Direction,
-    /// Where it stands \[m\].
+    /// Coordinate of the plane \[m\].
     pub at: f64,
-    /// Whether values change their sign across it, as the velocity towards it does.
+    /// Whether values change sign across the plane, as the normal velocity does.
     pub changes_sign: bool,
 }
 
 /// One of the two directions of a plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
-    /// To the right.
+    /// Horizontal.
     X,
-    /// Upwards.
+    /// Vertical.
     Y,
 }
 
-impl Quantity {
-    /// A quantity whose colours end where nearly all values do.
+impl FieldQuantity {
+    /// A quantity whose colour scale covers nearly all values.
     pub fn new(label: impl Into<String>, unit: impl Into<String>, shading: Shading) -> Self {
         Self { label: label.into(), unit: unit.into(), shading, limits: None }
     }
 }
 
 impl Field {
-    /// A field alone, as far as its data reach.
-    pub fn new(title: impl Into<String>, time: f64, quantity: Quantity, data: FieldData) -> Self {
+    /// A field that shows the whole extent of its data, without overlays, notes or mirror.
+    pub fn new(
+        title: impl Into<String>,
+        time: f64,
+        quantity: FieldQuantity,
+        data: FieldData,
+    ) -> Self {
         let (title, axes) = (title.into(), ["x".into(), "y".into()]);
         let (overlays, notes) = (Vec::new(), Vec::new());
         let (extent, mirror, outlines) = (None, None, false);
         Self { title, time, quantity, data, extent, axes, mirror, outlines, overlays, notes }
     }
 
-    /// The figure, which takes the data; it fills its page and has room for no other panel.
-    pub fn figure(mut self) -> Figure {
-        let title = format!("{}, t = {}", self.title, readable(self.time));
-        let [x, y] = self.axes.each_ref().map(|name| Axis::linear(name, "m"));
-        let mut panel = Panel::new(y);
-        panel.series = std::mem::take(&mut self.overlays);
-        panel.notes = std::mem::take(&mut self.notes);
-        panel.field = Some(self);
-        Figure::new(title, x).panel(panel)
-    }
-
-    /// What is painted on the computed side: particles, or cells that have a value.
-    pub(super) fn tiles(&self, figure: &str) -> Result<Cow<'_, [Tile]>, PictureError> {
+    /// Tiles of the computed half: particles, or cells that have a value.
+    pub(super) fn tiles(&self, figure: &str) -> Result<Cow<'_, [FieldTile]>, PictureError> {
         match &self.data {
             FieldData::Particles(tiles) => Ok(tiles.into()),
             FieldData::Cells(cells) => {
@@ -150,14 +144,14 @@ impl Field {
 }
 
 impl Cells {
-    fn tiles(&self) -> Vec<Tile> {
+    fn tiles(&self) -> Vec<FieldTile> {
         let half =
             [0, 1].map(|d| 0.5 * (self.upper[d] - self.lower[d]) / self.counts[d].max(1) as f64);
         let place = |d: usize, index: usize| self.lower[d] + (2 * index + 1) as f64 * half[d];
         let filled =
             self.values.iter().enumerate().filter_map(|(index, &value)| Some((index, value?)));
         filled
-            .map(|(index, value)| Tile {
+            .map(|(index, value)| FieldTile {
                 centre: [place(0, index % self.counts[0]), place(1, index / self.counts[0])],
                 half_edges: [[half[0], 0.0], [0.0, half[1]]],
                 value,
@@ -167,9 +161,9 @@ impl Cells {
     }
 }
 
-impl Tile {
-    /// Its image across a plane.
-    pub(super) fn mirrored(&self, mirror: &Mirror) -> Self {
+impl FieldTile {
+    /// Mirror image of the tile.
+    pub(super) fn mirrored(&self, mirror: &SymmetryPlane) -> Self {
         let d = mirror.across as usize;
         let mut image = *self;
         image.centre[d] = 2.0 * mirror.at - image.centre[d];

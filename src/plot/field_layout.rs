@@ -1,32 +1,32 @@
-//! The page of a field: as large as equal scales in both directions make it.
+//! The page of a field; its size follows from equal scales in both directions.
 
-use super::PictureError;
-use super::axes::{self, INK, LABEL_EM, MARGIN, TICK, TICK_EM};
-use super::canvas::{Align, Canvas, Place, Rect, Shape, Text};
+use super::axes::{self, INK, LABEL_EM, MARGIN, TICK, TICK_EM, TITLE_EM};
+use super::axis::Axis;
+use super::canvas::{Align, Canvas, CanvasPoint, CanvasShape, Rect, Text};
 use super::color::Color;
 use super::color_bar::{self, BAR, ColorBar};
 use super::curves::{self, place};
+use super::error::PictureError;
 use super::field::Field;
 use super::field_map::{self, Extent};
-use super::figure::{Axis, Figure, Panel};
-use super::layout::{FAINT, TITLE_EM};
+use super::figure::{Figure, Panel};
 use super::legend;
-use super::limits::Limits;
+use super::limits::AxisLimits;
 use super::occupancy::Occupancy;
 use super::text;
 use super::ticks::Ruler;
 
-/// Most room for the plane.
+/// Largest size of the plane on the page \[pixel\].
 const WIDEST: f64 = 980.0;
 const HIGHEST: f64 = 800.0;
-/// A plane that would be thinner is stretched.
+/// Smallest size of the plane on the page \[pixel\]; a thinner plane is stretched.
 const THINNEST: f64 = 64.0;
-/// Least width of a page, for the title's sake.
+/// Smallest width of a page, so that the title has space \[pixel\].
 const NARROWEST: f64 = 620.0;
-/// The colour bar lies under a plane less high than this.
+/// Below this height of the plane, the colour bar is placed under it \[pixel\].
 const LOW: f64 = 240.0;
 const NOTE_EM: f64 = 18.0;
-/// Height of the numbers and the label under an axis.
+/// Height of the numbers and the label under an axis \[pixel\].
 const UNDER: f64 = TICK + 5.0 + TICK_EM + LABEL_EM + 10.0 + 6.0;
 
 /// Lays a field out.
@@ -39,7 +39,7 @@ pub(super) fn lay_out(
     let extent = Extent::of(field, &tiles);
     let shown = field_map::values(field, &tiles, &extent);
     let empty = shown.is_empty();
-    let limits = Limits::of(shown, field.quantity.shading, field.quantity.limits);
+    let limits = AxisLimits::of(shown, field.quantity.shading, field.quantity.limits);
     let (size, stretch) = panel_size(&extent);
     let is_low = size.1 < LOW;
 
@@ -51,7 +51,7 @@ pub(super) fn lay_out(
     };
     let ends = extent.lower.iter().chain(&extent.upper);
     let farthest = ends.fold(0.0f64, |most, v| most.max(v.abs()));
-    // One unit for both directions, unless one is stretched.
+    // The same unit in both directions, unless one is stretched.
     let unit_of = stretch.is_none().then_some(farthest);
     let x = across(&ranged(&figure.x, &extent, 0), size.0, unit_of);
     let y = upwards(&ranged(&panel.y, &extent, 1), size.1, unit_of);
@@ -70,7 +70,7 @@ pub(super) fn lay_out(
     let head = if content < width { MARGIN } else { left };
     let mut top = MARGIN + heading(&mut canvas, figure, head);
     top += notes(&mut canvas, (figure, panel), stretch, head, top);
-    let names = legend::entries(figure);
+    let names = figure.legend();
     top = legend::draw(&mut canvas, &names, (head, width - MARGIN), top);
     let top = (top + 16.0).ceil();
     let area = Rect { left, top, right: left + size.0, bottom: top + size.1 };
@@ -78,15 +78,14 @@ pub(super) fn lay_out(
     canvas.images.push(field_map::image(field, &tiles, area, &extent, (&colors, limits.shades)));
     draw_series(&mut canvas, figure, panel, &area, (&x, &y));
     if empty {
-        let middle = (0.5 * (area.left + area.right), 0.5 * (area.top + area.bottom));
-        canvas.text("no data", middle, LABEL_EM, Align::Center, FAINT);
+        axes::no_data(&mut canvas, &area);
     }
     axes::frame(&mut canvas, &area, &x, &y, MARGIN + 0.75 * LABEL_EM + shift);
     axes::x_numbers(&mut canvas, &area, &x);
     let bar = ColorBar { shades: limits.shades, under: limits.under, over: limits.over };
     let mut bottom = area.bottom + UNDER;
     if is_low {
-        // Shorter than the plane, lest it look like a part of it.
+        // Shorter than the plane, so that the bar does not look like a part of it.
         let inset = (0.18 * area.width()).round();
         let (left, right) = (area.left + inset, area.right - inset);
         let top = (bottom + 12.0).ceil();
@@ -100,8 +99,8 @@ pub(super) fn lay_out(
     Ok(canvas)
 }
 
-/// Width and height of the plane on the page, in whole pixels, and how much more the second or the
-/// first direction is stretched than the other if it is.
+/// Width and height of the plane on the page, in whole pixels. If a direction is stretched, its
+/// index and the factor by which it is stretched relative to the other.
 fn panel_size(extent: &Extent) -> ((f64, f64), Option<(usize, f64)>) {
     let (x, y) = (extent.length(0), extent.length(1));
     let scale = (WIDEST / x).min(HIGHEST / y);
@@ -114,18 +113,18 @@ fn ranged(axis: &Axis, extent: &Extent, d: usize) -> Axis {
     axis.clone().range(extent.lower[d], extent.upper[d])
 }
 
-/// An axis with as many round numbers as stand beside each other.
+/// A horizontal axis with as many round numbers as fit beside each other.
 fn across(axis: &Axis, length: f64, size: Option<f64>) -> Ruler {
     let most = ((length / 85.0) as usize).clamp(2, 9);
     fitting(axis, most, size, |ruler| length / (ruler.widest(TICK_EM) + 14.0))
 }
 
-/// An axis with as many round numbers as stand above each other.
+/// A vertical axis with as many round numbers as fit above each other.
 fn upwards(axis: &Axis, length: f64, size: Option<f64>) -> Ruler {
     fitting(axis, ((length / 62.0) as usize).clamp(2, 9), size, |_| length / (1.5 * TICK_EM))
 }
 
-/// The ruler with the most numbers, of which `room` fit on the axis' length.
+/// The ruler with the most ticks that fit; `room`: how many numbers fit on the axis.
 fn fitting(axis: &Axis, most: usize, size: Option<f64>, room: impl Fn(&Ruler) -> f64) -> Ruler {
     let ruler = |wanted| Ruler::with_size(axis, std::iter::empty(), wanted, size);
     let fits = |ruler: &Ruler| {
@@ -136,13 +135,13 @@ fn fitting(axis: &Axis, most: usize, size: Option<f64>, room: impl Fn(&Ruler) ->
     (1..=most).rev().map(ruler).find(fits).unwrap_or_else(|| ruler(1))
 }
 
-/// The title in as many lines as it takes; returns their height.
+/// Draws the title, wrapped to the page width; returns its height.
 fn heading(canvas: &mut Canvas, figure: &Figure, left: f64) -> f64 {
     let room = canvas.size.0 - MARGIN - left;
     let lines = text::wrapped(&figure.title, TITLE_EM, true, room);
     for (index, line) in lines.iter().enumerate() {
         let width = text::width(line, TITLE_EM, true);
-        canvas.shapes.push(Shape::Text(Text {
+        canvas.shapes.push(CanvasShape::Text(Text {
             text: line.clone(),
             at: (left, MARGIN + (0.8 + 1.25 * index as f64) * TITLE_EM),
             em: if width > room { TITLE_EM * room / width } else { TITLE_EM },
@@ -155,7 +154,7 @@ fn heading(canvas: &mut Canvas, figure: &Figure, left: f64) -> f64 {
     1.25 * TITLE_EM * lines.len() as f64
 }
 
-/// The notes from `top` downwards; returns their height.
+/// Draws the notes from `top` downwards; returns their height.
 fn notes(
     canvas: &mut Canvas,
     (figure, panel): (&Figure, &Panel),
@@ -188,7 +187,7 @@ fn draw_series(
     for series in &panel.series {
         let runs = curves::runs(&series.points, figure.x.scale, panel.y.scale);
         let places = |run: &Vec<_>| run.iter().filter_map(|p| place(area, x, y, *p)).collect();
-        let runs: Vec<Vec<Place>> = runs.iter().map(places).collect();
+        let runs: Vec<Vec<CanvasPoint>> = runs.iter().map(places).collect();
         curves::draw(canvas, &mut occupancy, series, &runs, area);
     }
 }

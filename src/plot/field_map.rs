@@ -1,20 +1,20 @@
-//! From a field to an image: what is shown of the plane, and the colour of each pixel.
+//! Image of a field: the shown part of the plane and the colour of each pixel.
 
-use super::canvas::{Image, Rect};
+use super::canvas::{CanvasImage, Rect};
 use super::color::Color;
-use super::field::{Field, FieldData, Mirror, Tile};
+use super::field::{Field, FieldData, FieldTile, SymmetryPlane};
 use super::raster::{NOBODY, Placed, Raster};
 use super::shades::Shades;
 use super::ticks::Ruler;
 
-/// Colour where there is no material: light gray is a value.
+/// Background colour: no material. White, because light gray stands for a value.
 const NOTHING: Color = Color::WHITE;
-/// Colour of hairlines.
+/// Colour of outlines.
 const HAIR: Color = Color(0x18, 0x18, 0x20);
-/// Pixels of the image a pixel of the page: as fine as the bitmap before it is averaged down.
+/// Image pixels per page pixel: the resolution of the bitmap before it is averaged down.
 const FINE: f64 = 2.0;
 
-/// Part of a plane: lower and upper corner \[m\].
+/// A part of the plane: lower and upper corner \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Extent {
     pub lower: [f64; 2],
@@ -22,16 +22,16 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    /// What a field shows: what it asks for, or else its grid or what its particles take, and the
-    /// mirror image of that.
-    pub fn of(field: &Field, tiles: &[Tile]) -> Self {
+    /// The shown part of a field: its `extent`, else its grid, else the bounding box of its
+    /// particles; extended by the mirror image.
+    pub fn of(field: &Field, tiles: &[FieldTile]) -> Self {
         let grid = match &field.data {
             FieldData::Cells(cells) => Some([cells.lower, cells.upper]),
             FieldData::Particles(_) => None,
         };
         let given = field.extent.or(grid).map(|[lower, upper]| Self { lower, upper });
         let mut extent = given.filter(Self::is_good).unwrap_or_else(|| Self::around(tiles));
-        if let Some(Mirror { across, at, .. }) = field.mirror.filter(|m| m.at.is_finite()) {
+        if let Some(SymmetryPlane { across, at, .. }) = field.mirror.filter(|m| m.at.is_finite()) {
             let d = across as usize;
             let (lower, upper) = (extent.lower[d], extent.upper[d]);
             extent.lower[d] = lower.min(2.0 * at - upper);
@@ -40,7 +40,7 @@ impl Extent {
         extent
     }
 
-    /// Length in a direction \[m\].
+    /// Length in direction `d` \[m\].
     pub fn length(&self, d: usize) -> f64 {
         self.upper[d] - self.lower[d]
     }
@@ -52,14 +52,15 @@ impl Extent {
     fn is_good(&self) -> bool {
         (0..2).all(|d| {
             let (low, high) = (self.lower[d], self.upper[d]);
-            // Less is lost in rounding.
+            // A smaller extent would be lost in rounding.
             high - low > 1e-9 * low.abs().max(high.abs()) && (high - low) < 1e100
         })
     }
 
-    fn around(tiles: &[Tile]) -> Self {
+    fn around(tiles: &[FieldTile]) -> Self {
         let (mut lower, mut upper) = ([f64::MAX; 2], [f64::MIN; 2]);
-        for Tile { centre, half_edges: [a, b], .. } in tiles.iter().filter(|t| is_drawable(t)) {
+        for FieldTile { centre, half_edges: [a, b], .. } in tiles.iter().filter(|t| is_drawable(t))
+        {
             for d in 0..2 {
                 let reach = a[d].abs() + b[d].abs();
                 lower[d] = lower[d].min(centre[d] - reach);
@@ -73,7 +74,7 @@ impl Extent {
         if lower[0] > upper[0] {
             return Self { lower: [0.0; 2], upper: [1.0; 2] };
         }
-        // Points, or a line of points.
+        // All tiles are points, or lie on one line.
         let longest = found.length(0).max(found.length(1));
         let far = lower.iter().chain(&upper).fold(0.0f64, |most, v| most.max(v.abs()));
         let room = [0.05 * longest, 0.01 * far, 0.5];
@@ -82,35 +83,38 @@ impl Extent {
     }
 }
 
-fn is_drawable(tile: &Tile) -> bool {
+fn is_drawable(tile: &FieldTile) -> bool {
     let [a, b] = tile.half_edges;
     let places = tile.centre.into_iter().chain(a).chain(b);
     places.chain([tile.value]).all(|v| v.abs() < 1e99)
 }
 
 /// Tiles with their mirror images.
-fn with_images(tiles: &[Tile], mirror: Option<Mirror>) -> impl Iterator<Item = Tile> {
+fn with_images(
+    tiles: &[FieldTile],
+    mirror: Option<SymmetryPlane>,
+) -> impl Iterator<Item = FieldTile> {
     let images = mirror.into_iter().flat_map(|m| tiles.iter().map(move |tile| tile.mirrored(&m)));
     tiles.iter().copied().chain(images).filter(is_drawable)
 }
 
-/// Values of what is shown.
-pub(super) fn values(field: &Field, tiles: &[Tile], extent: &Extent) -> Vec<f64> {
+/// Values of all shown tiles.
+pub(super) fn values(field: &Field, tiles: &[FieldTile], extent: &Extent) -> Vec<f64> {
     let shown = with_images(tiles, field.mirror).filter(|tile| extent.contains(tile.centre));
     shown.map(|tile| tile.value).collect()
 }
 
-/// The field in `rect`.
+/// Image of the field in `rect`.
 pub(super) fn image(
     field: &Field,
-    tiles: &[Tile],
+    tiles: &[FieldTile],
     rect: Rect,
     extent: &Extent,
     (colors, shades): (&Ruler, Shades),
-) -> Image {
+) -> CanvasImage {
     let [columns, rows] = [rect.width(), rect.height()].map(|v| (v * FINE).round().max(1.0));
     let scale = [columns / extent.length(0), -rows / extent.length(1)];
-    let place = |tile: Tile| Placed {
+    let place = |tile: FieldTile| Placed {
         centre: [
             (tile.centre[0] - extent.lower[0]) * scale[0],
             (tile.centre[1] - extent.upper[1]) * scale[1],
@@ -121,7 +125,7 @@ pub(super) fn image(
     };
     let (columns, rows) = (columns as usize, rows as usize);
     let raster = Raster::of(columns, rows, || with_images(tiles, field.mirror).map(place));
-    // A table: far more pixels than colours that the eye tells apart.
+    // A table of 1024 colours is enough: the eye cannot distinguish more.
     let table: Vec<Color> = (0..1024).map(|i| shades.color(f64::from(i) / 1023.0)).collect();
     let shade = |value: f64| match colors.place(value) {
         Some(at) => table[(at.clamp(0.0, 1.0) * 1023.0).round() as usize],
@@ -132,10 +136,10 @@ pub(super) fn image(
     if field.outlines {
         outline(&raster, &mut pixels);
     }
-    Image { rect, columns, rows, pixels }
+    CanvasImage { rect, columns, rows, pixels }
 }
 
-/// Draws hairlines between bodies, also across a gap of one pixel, and fainter ones at their ends.
+/// Draws thin lines between bodies, also across a gap of one pixel, and fainter ones at free edges.
 fn outline(raster: &Raster, pixels: &mut [Color]) {
     let mut strength = vec![0.0f64; pixels.len()];
     let mut compare = |a: usize, between: Option<usize>, b: usize| {

@@ -1,19 +1,19 @@
-//! Pictures of fields: what is where in which colour, and pages that suit any plane.
+//! Tests of field pictures: positions, colours, and page sizes for planes of any shape.
 
-use super::canvas::{Canvas, Image, Shape};
+use super::canvas::{Canvas, CanvasImage, CanvasShape};
 use super::shades::Shades;
 use super::tests::{count, drawn};
 use super::*;
 
-fn pressure(shading: Shading, limits: (f64, f64)) -> Quantity {
-    Quantity { limits: Some(limits), ..Quantity::new("Pressure", "Pa", shading) }
+fn pressure(shading: Shading, limits: (f64, f64)) -> FieldQuantity {
+    FieldQuantity { limits: Some(limits), ..FieldQuantity::new("Pressure", "Pa", shading) }
 }
 
-fn tile(centre: [f64; 2], half: f64, value: f64) -> Tile {
-    Tile { centre, half_edges: [[half, 0.0], [0.0, half]], value, body: 0 }
+fn tile(centre: [f64; 2], half: f64, value: f64) -> FieldTile {
+    FieldTile { centre, half_edges: [[half, 0.0], [0.0, half]], value, body: 0 }
 }
 
-fn field(tiles: Vec<Tile>, extent: [[f64; 2]; 2]) -> Field {
+fn field(tiles: Vec<FieldTile>, extent: [[f64; 2]; 2]) -> Field {
     let quantity = pressure(Shading::Sequential, (0.0, 1e9));
     let data = FieldData::Particles(tiles);
     Field { extent: Some(extent), ..Field::new("Field", 5e-7, quantity, data) }
@@ -23,8 +23,8 @@ fn laid_out(field: Field) -> Canvas {
     layout::lay_out(&field.figure()).unwrap()
 }
 
-/// The colour at a place of the plane, as fractions from its lower left corner.
-fn at(image: &Image, x: f64, y: f64) -> Color {
+/// Colour at a point of the plane, given as fractions from its lower left corner.
+fn at(image: &CanvasImage, x: f64, y: f64) -> Color {
     let column = (x * image.columns as f64) as usize;
     let row = ((1.0 - y) * image.rows as f64) as usize;
     image.pixels[row * image.columns + column]
@@ -33,7 +33,7 @@ fn at(image: &Image, x: f64, y: f64) -> Color {
 fn texts(canvas: &Canvas) -> Vec<&str> {
     let mut texts = Vec::new();
     for shape in &canvas.shapes {
-        if let Shape::Text(text) = shape {
+        if let CanvasShape::Text(text) = shape {
             texts.push(text.text.as_str());
         }
     }
@@ -46,7 +46,8 @@ const PURPLE: Color = Color(68, 1, 84);
 #[test]
 fn sheared_particles_are_painted_where_they_are() {
     // A square of 2 mm, sheared so that its upper side has moved by 1 mm.
-    let sheared = Tile { half_edges: [[1e-3, 0.0], [0.5e-3, 1e-3]], ..tile([0.0; 2], 1e-3, 1e9) };
+    let sheared =
+        FieldTile { half_edges: [[1e-3, 0.0], [0.5e-3, 1e-3]], ..tile([0.0; 2], 1e-3, 1e9) };
     let canvas = laid_out(field(vec![sheared], [[-2e-3; 2], [2e-3; 2]]));
     let image = &canvas.images[0];
     assert_eq!(at(image, 0.5, 0.5), YELLOW);
@@ -70,8 +71,8 @@ fn gaps_stay_empty_and_values_that_are_not_finite_leave_one() {
     let row = [0.4, 1.0, 2.0, 3.0, 4.0, 5.0].map(|x| at(&canvas.images[0], x / 6.0, 0.5));
     let none = Color::WHITE;
     assert_eq!(row, [none, PURPLE, none, YELLOW, none, none], "{row:?}");
-    // One tip, for the value beyond the upper end.
-    let tips = canvas.shapes.iter().filter(|s| matches!(s, Shape::Polygon { .. })).count();
+    // One pointed end, for the value above the upper end.
+    let tips = canvas.shapes.iter().filter(|s| matches!(s, CanvasShape::Polygon { .. })).count();
     assert_eq!(tips, 1);
 }
 
@@ -122,7 +123,7 @@ fn the_other_half_is_the_mirror_image() {
     let tiles = vec![tile([1.0, 0.5], 0.5, 1e9), tile([1.0, 2.5], 0.5, 1e9)];
     let mut half = field(tiles, [[0.0, 0.0], [2.0, 3.0]]);
     half.quantity = pressure(Shading::Diverging, (-1e9, 1e9));
-    half.mirror = Some(Mirror { across: Direction::Y, at: 0.0, changes_sign: true });
+    half.mirror = Some(SymmetryPlane { across: Direction::Y, at: 0.0, changes_sign: true });
     let canvas = laid_out(half);
     let image = &canvas.images[0];
     let column = [-2.5, -1.5, -0.5, 0.5, 1.5, 2.5].map(|y| at(image, 0.5, (y + 3.0) / 6.0));
@@ -133,8 +134,8 @@ fn the_other_half_is_the_mirror_image() {
 
 #[test]
 fn mirror_images_lean_the_other_way() {
-    let leaning = Tile { half_edges: [[0.2, 0.0], [0.8, 0.5]], ..tile([1.0, 0.5], 0.5, 1e9) };
-    let mirror = Some(Mirror { across: Direction::X, at: 0.0, changes_sign: false });
+    let leaning = FieldTile { half_edges: [[0.2, 0.0], [0.8, 0.5]], ..tile([1.0, 0.5], 0.5, 1e9) };
+    let mirror = Some(SymmetryPlane { across: Direction::X, at: 0.0, changes_sign: false });
     let canvas = laid_out(Field { mirror, ..field(vec![leaning], [[0.0; 2], [2.0, 1.0]]) });
     let image = &canvas.images[0];
     let row = [-1.75, -0.25, 0.25, 1.75].map(|x| at(image, (x + 2.0) / 4.0, 0.9));
@@ -143,7 +144,7 @@ fn mirror_images_lean_the_other_way() {
 
 #[test]
 fn a_hairline_parts_bodies() {
-    let square = |x: f64, body: u32| Tile { body, ..tile([x, 1.0], 1.0, 1e9) };
+    let square = |x: f64, body: u32| FieldTile { body, ..tile([x, 1.0], 1.0, 1e9) };
     let dark = |outlines: bool, body: u32| {
         let tiles = vec![square(1.0, 0), square(3.0, body)];
         let canvas = laid_out(Field { outlines, ..field(tiles, [[0.0; 2], [4.0, 2.0]]) });
@@ -177,7 +178,7 @@ fn both_files_show_the_field() {
 #[test]
 fn odd_fields_are_drawn_as_far_as_they_go() {
     let odd = [f64::NAN, f64::INFINITY, 0.0, -1e308, 1e150, 3e-3];
-    let quantity = Quantity::new("Pressure", "Pa", Shading::BySign);
+    let quantity = FieldQuantity::new("Pressure", "Pa", Shading::BySign);
     let alone = |tiles| Field::new("Odd", f64::NAN, quantity.clone(), FieldData::Particles(tiles));
     for i in 0..36 {
         let [value, place, size] = [i / 6, i % 6, (i / 6 + i) % 6].map(|k| odd[k]);
@@ -186,7 +187,7 @@ fn odd_fields_are_drawn_as_far_as_they_go() {
         assert!(canvas.size.0 < 1600.0 && canvas.size.1 < 1100.0);
     }
     for extent in [[[0.0; 2]; 2], [[f64::NAN; 2], [1.0; 2]], [[-1e300; 2], [1e300; 2]]] {
-        let mirror = Some(Mirror { across: Direction::X, at: f64::NAN, changes_sign: true });
+        let mirror = Some(SymmetryPlane { across: Direction::X, at: f64::NAN, changes_sign: true });
         drawn(&Field { extent: Some(extent), mirror, ..alone(vec![]) }.figure());
     }
     let (_, svg) = drawn(&alone(vec![]).figure());
@@ -196,7 +197,7 @@ fn odd_fields_are_drawn_as_far_as_they_go() {
 #[test]
 fn cells_without_their_values_are_refused() {
     let cells = Cells { lower: [0.0; 2], upper: [1.0; 2], counts: [3, 4], values: vec![None; 11] };
-    let quantity = Quantity::new("Pressure", "Pa", Shading::BySign);
+    let quantity = FieldQuantity::new("Pressure", "Pa", Shading::BySign);
     let figure = Field::new("Bad", 0.0, quantity, FieldData::Cells(cells)).figure();
     let error = layout::lay_out(&figure).unwrap_err().to_string();
     assert_eq!(error, "picture 'Bad, t = 0 µs': 12 cells but 11 values");

@@ -1,12 +1,14 @@
-//! Histories: what interface, free surface and tracers felt over time, beside the exact course.
+//! Histories: values at interface, free surface and tracers over time, with the exact solution.
 
+use super::axis::Axis;
 use super::color::Color;
-use super::figure::{Axis, Figure, Panel, Points, Series, Stroke, Style};
+use super::figure::{Figure, Panel};
+use super::series::{Points, Series, Stroke, Style};
 
-/// Series over time in panels, one a quantity.
+/// Series over time, one panel per quantity.
 #[derive(Debug, Clone)]
-pub struct Histories {
-    /// The line at the top.
+pub struct HistoriesFigure {
+    /// Title of the picture.
     pub title: String,
     /// Panels from top to bottom.
     pub panels: Vec<HistoryPanel>,
@@ -19,22 +21,22 @@ pub struct HistoryPanel {
     pub label: String,
     /// Its SI unit: "m/s".
     pub unit: String,
-    /// Series; one name has one colour in all panels.
-    pub series: Vec<History>,
+    /// Series; a name has the same colour in all panels.
+    pub series: Vec<HistoryCurve>,
 }
 
-/// What one place felt. Times \[s\] as x, values in the panel's unit as y.
+/// History at one location: times \[s\] as x, values in the unit of the panel as y.
 #[derive(Debug, Clone)]
-pub struct History {
+pub struct HistoryCurve {
     /// Name in the legend: "interface".
     pub name: String,
-    /// The computed course: an unbroken line.
+    /// Computed history: a solid line.
     pub computed: Points,
-    /// The exact course: a thin dashed line.
+    /// Exact history: a thin dashed line.
     pub exact: Option<Points>,
 }
 
-impl Histories {
+impl HistoriesFigure {
     /// The figure.
     pub fn figure(&self) -> Figure {
         let mut names: Vec<&str> = Vec::new();

@@ -1,21 +1,23 @@
-//! Figures 1, 2 and 3 of the document: pressure against particle velocity, with the states between
-//! waves.
+//! Figures 1, 2 and 3 of Burghardt (2010): pressure against particle velocity, with the states
+//! between waves.
 
+use super::axis::Axis;
 use super::color::Color;
-use super::figure::{Axis, Figure, Label, Panel, Points, Series, Style};
+use super::figure::{Figure, Label, Panel};
+use super::series::{Points, Series, Style};
 
 /// Hugoniot curves with labelled states.
 #[derive(Debug, Clone)]
-pub struct Hugoniot {
-    /// The line at the top.
+pub struct HugoniotFigure {
+    /// Title of the picture.
     pub title: String,
-    /// Curves, one a material or wave.
+    /// Curves, one per material or wave.
     pub curves: Vec<HugoniotCurve>,
     /// States to mark.
-    pub states: Vec<State>,
+    pub states: Vec<HugoniotPoint>,
 }
 
-/// The states that a shock into one material can reach.
+/// Hugoniot curve: the states that a shock into one material can reach.
 #[derive(Debug, Clone)]
 pub struct HugoniotCurve {
     /// Name in the legend: "copper, left-going shock".
@@ -26,10 +28,10 @@ pub struct HugoniotCurve {
     pub points: Points,
 }
 
-/// A state between waves, as the document numbers them.
+/// A state between waves, with its number in Burghardt (2010).
 #[derive(Debug, Clone)]
-pub struct State {
-    /// The number.
+pub struct HugoniotPoint {
+    /// Number of the state.
     pub label: String,
     /// Particle velocity [m/s].
     pub velocity: f64,
@@ -37,9 +39,9 @@ pub struct State {
     pub pressure: f64,
 }
 
-impl Hugoniot {
-    /// The figure. Curves are cut where they rise beyond twice the highest marked pressure, which
-    /// is what the picture is about.
+impl HugoniotFigure {
+    /// The figure. Curves are cut at twice the highest marked pressure, so that the marked states
+    /// fill the picture.
     pub fn figure(&self) -> Figure {
         let mut panel = Panel::new(self.pressure_axis());
         for curve in &self.curves {

@@ -1,25 +1,25 @@
-//! From a figure to shapes on a page.
+//! Layout: turns a figure into shapes on a page.
 
-use super::PictureError;
 use super::annotations;
-use super::axes::{self, LABEL_EM, MARGIN, TICK, TICK_EM};
-use super::canvas::{Align, Canvas, HEIGHT, Place, Rect, Shape, Text, WIDTH};
+use super::axes::{self, LABEL_EM, MARGIN, TICK, TICK_EM, TITLE_EM};
+use super::axis::Axis;
+use super::canvas::{Align, Canvas, CanvasPoint, CanvasShape, HEIGHT, Rect, Text, WIDTH};
 use super::color::Color;
 use super::color_bar::{self, ColorBar};
 use super::color_map::ColorMap;
 use super::curves::{self, place};
+use super::error::PictureError;
 use super::field_layout;
-use super::figure::{Axis, Figure, Panel, Points, Series};
+use super::figure::{Figure, Panel};
 use super::legend;
 use super::occupancy::Occupancy;
+use super::series::{Points, Series};
 use super::shades::Shades;
 use super::text;
 use super::ticks::{Ruler, drawable};
 
-pub(super) const TITLE_EM: f64 = 25.0;
-/// Room between panels and the bars beside them.
+/// Gap between the panels and the bars beside them \[pixel\].
 const GUTTER: f64 = 40.0;
-pub(super) const FAINT: Color = Color(0x77, 0x77, 0x7c);
 
 /// Lays a figure out.
 pub(super) fn lay_out(figure: &Figure) -> Result<Canvas, PictureError> {
@@ -30,7 +30,7 @@ pub(super) fn lay_out(figure: &Figure) -> Result<Canvas, PictureError> {
     let mut canvas = Canvas::new(&figure.title, (WIDTH, HEIGHT));
     let areas = areas(figure);
     let top = MARGIN + TITLE_EM + 6.0;
-    let names = legend::entries(figure);
+    let names = figure.legend();
     let mut legend_end = legend::draw(&mut canvas, &names, (areas.left, right_edge(figure)), top);
     let beside = (right_edge(figure) + GUTTER, WIDTH - MARGIN);
     if let Some(bars) = &figure.bars {
@@ -77,21 +77,21 @@ fn check(figure: &Figure) -> Result<(), PictureError> {
     Ok(())
 }
 
-/// The space that all panels share.
+/// Horizontal layout that all panels share \[pixel\].
 struct Areas {
     left: f64,
     right: f64,
-    /// Middle of the upright labels.
+    /// Middle of the vertical labels.
     label: f64,
 }
 
-/// Where the panels and what belongs to them end.
+/// Right edge of the panels with their colour bars.
 fn right_edge(figure: &Figure) -> f64 {
     if figure.bars.is_some() { 0.5 * (WIDTH - GUTTER) } else { WIDTH - MARGIN }
 }
 
 fn areas(figure: &Figure) -> Areas {
-    // under a long legend panels are low, without one high: room for the numbers of both
+    // Panels are lower under a long legend: reserve space for the numbers of low and high panels.
     let heights = [0.6, 0.9].map(|share| share * HEIGHT / figure.panels.len().max(1) as f64);
     let panels = || heights.iter().flat_map(|&h| figure.panels.iter().map(move |p| (p, h)));
     let rulers = panels().map(|(panel, height)| y_ruler(figure, panel, height));
@@ -120,7 +120,7 @@ fn wanted(length: f64, room: f64) -> usize {
     ((length / room) as usize).clamp(3, 10)
 }
 
-/// Abscissae that the x axis must hold; a colour map's go before those of series.
+/// Abscissae that the x axis must cover: those of a colour map, else those of series and labels.
 fn x_values(figure: &Figure) -> impl Iterator<Item = f64> {
     let rows =
         figure.panels.iter().filter_map(|panel| panel.map.as_ref()).flat_map(|map| &map.rows);
@@ -155,7 +155,7 @@ fn bar_ruler(map: &ColorMap, height: f64) -> Ruler {
 fn title(canvas: &mut Canvas, title: &str, left: f64) {
     let (room, width) = (WIDTH - MARGIN - left, text::width(title, TITLE_EM, true));
     let em = if width > room { TITLE_EM * room / width } else { TITLE_EM };
-    canvas.shapes.push(Shape::Text(Text {
+    canvas.shapes.push(CanvasShape::Text(Text {
         text: title.into(),
         at: (left, MARGIN + 0.8 * TITLE_EM),
         em,
@@ -187,14 +187,13 @@ fn draw_panel(
     for series in &panel.series {
         let runs = curves::runs(&series.points, figure.x.scale, panel.y.scale);
         let places = |run: &Vec<_>| run.iter().filter_map(|p| place(area, x, y, *p)).collect();
-        let runs: Vec<Vec<Place>> = runs.iter().map(places).collect();
+        let runs: Vec<Vec<CanvasPoint>> = runs.iter().map(places).collect();
         empty &= runs.is_empty();
         curves::draw(canvas, &mut occupancy, series, &runs, area);
     }
     let mapped = panel.map.as_ref().is_some_and(|map| map.values().any(f64::is_finite));
     if empty && !mapped && panel.labels.is_empty() {
-        let middle = (0.5 * (area.left + area.right), 0.5 * (area.top + area.bottom));
-        canvas.text("no data", middle, LABEL_EM, Align::Center, FAINT);
+        axes::no_data(canvas, area);
     }
     for label in &panel.labels {
         annotations::label(canvas, &mut occupancy, label, area, x, y);

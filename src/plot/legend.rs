@@ -1,8 +1,8 @@
-//! The legend: names of the series in rows under the title, where they cover no data.
+//! The legend: names of the series in rows under the title, outside of the panels.
 
 use super::canvas::{Align, Canvas, Rect};
 use super::color::Color;
-use super::figure::{Figure, Style};
+use super::series::Style;
 use super::shades::DARKEST;
 use super::text;
 
@@ -11,8 +11,8 @@ const ROW: f64 = 30.0;
 const SWATCH: f64 = 46.0;
 const SPACE: f64 = 34.0;
 
-/// Draws names with their looks from `top` downwards between `left` and `right`; returns where
-/// they end.
+/// Draws names with their styles from `top` downwards between `left` and `right`; returns the lower
+/// end of the legend.
 pub(super) fn draw(
     canvas: &mut Canvas,
     entries: &[(&str, &Style)],
@@ -35,17 +35,6 @@ pub(super) fn draw(
     y + 0.5 * ROW
 }
 
-/// Names of a figure's series with their first look, in the order of drawing.
-pub(super) fn entries(figure: &Figure) -> Vec<(&str, &Style)> {
-    let mut entries: Vec<(&str, &Style)> = Vec::new();
-    for series in figure.panels.iter().flat_map(|panel| &panel.series) {
-        if !series.name.is_empty() && entries.iter().all(|(name, _)| *name != series.name) {
-            entries.push((&series.name, &series.style));
-        }
-    }
-    entries
-}
-
 fn swatch(canvas: &mut Canvas, style: &Style, x: f64, y: f64) {
     let end = x + SWATCH;
     if style.outlined {
@@ -53,7 +42,7 @@ fn swatch(canvas: &mut Canvas, style: &Style, x: f64, y: f64) {
         canvas.fill(rect, DARKEST, 1.0);
     }
     if let Some(stroke) = style.stroke {
-        // A broad line's round ends reach beyond it.
+        // The round ends of a wide line extend beyond its end points.
         let inset = if style.outlined { 5.0 } else { (0.5 * style.width - 1.5).max(0.0) };
         canvas.line(&[(x + inset, y), (end - inset, y)], style.width, style.color, stroke);
     }

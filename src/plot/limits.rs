@@ -1,43 +1,43 @@
-//! Ends of a colour scale that a few stray values do not spoil.
+//! Ends of a colour scale, robust against a few outliers.
 
 use super::shades::Shades;
 
-/// How values are given colours.
+/// Type of colour scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Shading {
     /// From dark to bright: density, equivalent stress.
     Sequential,
     /// Blue, light gray, red, with zero in the middle: a velocity component.
     Diverging,
-    /// Sequential, or diverging where values below zero count: pressure.
+    /// Sequential, or diverging if there are significant negative values: pressure.
     #[default]
     BySign,
 }
 
-/// A colour scale made concrete.
+/// A colour scale with its ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Limits {
+pub(super) struct AxisLimits {
     pub shades: Shades,
     pub low: f64,
     pub high: f64,
-    /// Whether there are values clearly below `low`.
+    /// Whether some values are clearly below `low`.
     pub under: bool,
-    /// Whether there are values clearly above `high`.
+    /// Whether some values are clearly above `high`.
     pub over: bool,
 }
 
-/// Shares of the values, at each end, that may lie beyond the scale: the first that leaves most of
-/// the range is taken.
+/// Fractions of the values that may lie beyond each end of the scale. The first fraction that keeps
+/// most of the range is used.
 const TAILS: [f64; 5] = [1e-3, 1e-4, 1e-5, 1e-6, 0.0];
-/// Part of the range below which an end counts as zero, or as the extreme.
+/// Part of the range below which an end is set to zero, or to the extreme value.
 const NEAR: f64 = 0.05;
-/// The same for the extremes of fewer values than [`FEW`], of which one may be a peak.
+/// The same for the extremes of fewer values than [`FEW`]: one of these may be a peak.
 const NEAR_OF_FEW: f64 = 1.5;
 const FEW: usize = 10_000;
 
-impl Limits {
-    /// The scale for `values`, whose order is lost and which may be odd; `given` ends go before
-    /// those of the values.
+impl AxisLimits {
+    /// The scale for `values`, which are reordered and may be non-finite. Valid `given` ends take
+    /// precedence over those of the values.
     pub fn of(mut values: Vec<f64>, shading: Shading, given: Option<(f64, f64)>) -> Self {
         values.retain(|v| v.is_finite());
         let extremes = values.iter().fold(None, |ends, &v| match ends {
@@ -65,17 +65,17 @@ impl Limits {
     }
 }
 
-/// Whether there is more between two ends than rounding.
+/// Whether the difference of two ends is more than rounding.
 fn is_wide(low: f64, high: f64) -> bool {
     (high - low).is_finite() && high - low > 1e-9 * low.abs().max(high.abs())
 }
 
-/// Ends that hold nearly all values.
+/// Ends that cover nearly all values.
 fn robust(values: &mut [f64]) -> Option<(f64, f64)> {
     let ends: Vec<(f64, f64)> =
         TAILS.iter().map(|&tail| without_tails(values, tail)).collect::<Option<_>>()?;
     let width = |(low, high): (f64, f64)| high - low;
-    // What little is left out may be all there is to see: a small spot in a body at rest.
+    // The few omitted values may be the only ones of interest: a small spot in a body at rest.
     let wide = |pair: &&[(f64, f64)]| width(pair[0]) >= 0.02 * width(pair[1]);
     let all = ends[ends.len() - 1];
     let (mut low, mut high) = ends.windows(2).find(wide).map_or(all, |pair| pair[0]);
@@ -89,7 +89,7 @@ fn robust(values: &mut [f64]) -> Option<(f64, f64)> {
     Some((low, high))
 }
 
-/// Least and greatest value without a share of them at each end: at least one of many.
+/// Smallest and largest value without a fraction of the values at each end (at least one of many).
 fn without_tails(values: &mut [f64], share: f64) -> Option<(f64, f64)> {
     let last = values.len().checked_sub(1)?;
     let left_out =
@@ -106,7 +106,7 @@ fn around_zero(low: f64, high: f64) -> (f64, f64) {
     }
 }
 
-/// Zero is an end where it is near; values all alike stand in the middle.
+/// Moves an end to zero if it is near zero; equal values are placed in the middle of the scale.
 fn from_zero_if_near(low: f64, high: f64) -> (f64, f64) {
     if low == 0.0 && high == 0.0 {
         (0.0, 1.0)
@@ -119,7 +119,7 @@ fn from_zero_if_near(low: f64, high: f64) -> (f64, f64) {
     }
 }
 
-/// Ends at round numbers where these are just beyond, so that they are numbered.
+/// Moves ends to round numbers just beyond them, so that the ends have a number.
 fn rounded(low: f64, high: f64) -> (f64, f64) {
     let range = high - low;
     let power = 10f64.powf(range.log10().floor());
@@ -133,7 +133,7 @@ mod tests {
     use super::*;
 
     fn ends(values: &[f64], shading: Shading) -> (Shades, f64, f64, bool, bool) {
-        let found = Limits::of(values.to_vec(), shading, None);
+        let found = AxisLimits::of(values.to_vec(), shading, None);
         (found.shades, found.low, found.high, found.under, found.over)
     }
 
@@ -193,12 +193,12 @@ mod tests {
                 assert!(low < high && !under && !over, "{values:?} {shading:?} {low} {high}");
             }
         }
-        let given = Limits::of(vec![0.0, 9.0], Shading::BySign, Some((1.0, 2.0)));
+        let given = AxisLimits::of(vec![0.0, 9.0], Shading::BySign, Some((1.0, 2.0)));
         assert_eq!((given.low, given.high, given.under, given.over), (1.0, 2.0, true, true));
-        let given = Limits::of(vec![0.0, 9.0], Shading::Diverging, Some((-1.0, 2.0)));
+        let given = AxisLimits::of(vec![0.0, 9.0], Shading::Diverging, Some((-1.0, 2.0)));
         assert_eq!((given.low, given.high), (-2.0, 2.0));
         for bad in [(f64::NAN, 2.0), (5.0, 5.0 + 1e-12), (2.0, 1.0)] {
-            assert_eq!(Limits::of(vec![0.0, 9.0], Shading::BySign, Some(bad)).high, 9.0);
+            assert_eq!(AxisLimits::of(vec![0.0, 9.0], Shading::BySign, Some(bad)).high, 9.0);
         }
     }
 }

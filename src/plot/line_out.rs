@@ -1,60 +1,62 @@
 //! A quantity along a line, such as the centre line or a radius, at one time.
 
+use super::axis::Axis;
 use super::color::Color;
-use super::figure::{Axis, Figure, Panel, Points, Series, Stroke, Style};
+use super::figure::{Figure, Panel};
 use super::profile::readable;
+use super::series::{Points, Series, Stroke, Style};
 
-/// Curves and points of a quantity over a position.
+/// Curves and points of a quantity over position.
 #[derive(Debug, Clone)]
 pub struct LineOut {
-    /// The line at the top, to which the time is added.
+    /// Title of the picture; the time is appended.
     pub title: String,
     /// Time \[s\].
     pub time: f64,
-    /// The position: "Radius".
+    /// Name of the position: "Radius".
     pub position: String,
-    /// The quantity: "Pressure".
+    /// Name of the quantity: "Pressure".
     pub quantity: String,
-    /// Its SI unit: "Pa".
+    /// SI unit of the quantity: "Pa".
     pub unit: String,
-    /// Curves and points, drawn in this order.
+    /// Curves and points, in drawing order.
     pub curves: Vec<LineOutCurve>,
     /// Lines of text, such as errors.
     pub notes: Vec<String>,
-    /// Positions \[m\] between which the curves are shown once more, enlarged, if there is room.
+    /// Positions \[m\] between which the curves are shown again, enlarged, if there is space.
     pub close_up: Option<(f64, f64)>,
 }
 
-/// One curve: positions \[m\] as x, values in the quantity's unit as y.
+/// One curve: positions \[m\] as x, values in the unit of the quantity as y.
 #[derive(Debug, Clone)]
 pub struct LineOutCurve {
     /// Name in the legend: "particles within 5° of the axis".
     pub name: String,
-    /// How it is drawn.
-    pub look: Look,
-    /// The data; dots may come in any order.
+    /// Line style.
+    pub look: LineStyle,
+    /// The data; dots may be in any order.
     pub points: Points,
 }
 
-/// How a curve of a [`LineOut`] is drawn.
+/// Line style of a curve of a [`LineOut`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Look {
-    /// Dots: single particles.
+pub enum LineStyle {
+    /// Dots: individual particles.
     Dots,
     /// A line: means over bins or cells.
     Line,
-    /// A dashed black line: what should come out.
+    /// A dashed black line: the reference solution.
     Reference,
 }
 
 impl LineOut {
-    /// The figure. Curves that are no reference take the colours of the palette in turn.
+    /// The figure. Curves other than references take the palette colours in turn.
     pub fn figure(&self) -> Figure {
         let mut panel = Panel::new(Axis::linear(&self.quantity, &self.unit));
         let mut computed = 0;
         for curve in &self.curves {
             let (style, points) = match curve.look {
-                Look::Reference => {
+                LineStyle::Reference => {
                     let line = Style::line(Color::BLACK).stroke(Stroke::Dashed).width(2.0);
                     (line, curve.points.clone())
                 }
@@ -62,8 +64,9 @@ impl LineOut {
                     let color = Color::palette(computed);
                     computed += 1;
                     match look {
-                        // Of very many dots a few are drawn: the extremes of each part of the line.
-                        Look::Dots => (Style::marks(color), sorted(&curve.points)),
+                        // Thinning keeps the extremes of each part of the line, so the dots must be
+                        // sorted along it.
+                        LineStyle::Dots => (Style::marks(color), sorted(&curve.points)),
                         _ => (Style::line(color), curve.points.clone()),
                     }
                 }
@@ -77,8 +80,7 @@ impl LineOut {
     }
 }
 
-/// Points by ascending abscissa; as they are if the columns differ in length, which is an error for
-/// the drawing to find.
+/// Points sorted by abscissa. Unchanged if the columns differ in length: the drawing reports it.
 fn sorted(points: &Points) -> Points {
     if points.x.len() != points.y.len() {
         return points.clone();
@@ -102,9 +104,9 @@ mod tests {
             points: Points::new([2e-3, 1e-3], [5.0, 4.0]),
         };
         let curves = vec![
-            curve("particles", Look::Dots),
-            curve("mean", Look::Line),
-            curve("exact", Look::Reference),
+            curve("particles", LineStyle::Dots),
+            curve("mean", LineStyle::Line),
+            curve("exact", LineStyle::Reference),
         ];
         let figure = LineOut {
             title: "Ring".into(),

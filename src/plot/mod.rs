@@ -1,24 +1,24 @@
 //! Pictures: each figure is described once and drawn to PNG and to SVG.
 //!
-//! The pieces, from data to pixels:
-//! - [`Hugoniot`], [`Profile`], [`WaveDiagram`], [`Histories`] hold the data of the document's
-//!   figures and turn themselves into a [`Figure`]; other studies describe a [`Figure`] directly.
-//! - [`Field`] is a quantity over a plane, painted particle by particle or cell by cell through
-//!   `raster` on a page that suits the plane (`field_layout`), in colours after `limits`;
-//!   [`LineOut`] is a quantity along a line or a radius.
+//! From data to pixels:
+//! - [`HugoniotFigure`], [`ProfileFigure`], [`WaveDiagram`] and [`HistoriesFigure`] hold the data
+//!   of the figures of Burghardt (2010) and make a [`Figure`]; other studies describe one directly.
+//! - [`Field`] is a quantity over a plane with one value per particle or cell: `raster` paints it,
+//!   `field_layout` chooses the page, `limits` the colours. [`LineOut`] is a quantity along a line.
 //! - `layout` turns a figure into shapes on a page, with `ticks` (ends, units, round numbers),
-//!   `legend`, `curves` (beyond 5000 points thinned, see `thin`), `annotations` and `bars`.
-//! - `paint` draws the shapes through `plotters` into a bitmap and into SVG text.
+//!   `legend`, `curves` (thinned beyond 5000 points, see `thin`), `annotations` and `bars`.
+//! - `paint` draws the shapes with `plotters` into a bitmap and into SVG text.
 //!
-//! All numbers come in SI; axes choose readable units (mm, us, GPa). Values that are not finite
-//! break a line and are otherwise left out, and a figure without data says so: bad data never stop
-//! a run. The font is part of the program, so a machine without fonts draws text all the same; SVG
-//! text names common fallbacks.
+//! All input is in SI units; axes choose readable units (mm, us, GPa). Values that are not finite
+//! break a line and are otherwise omitted, and a figure without data says so: bad data never stop a
+//! run. The font is embedded, so machines without fonts draw text too; SVG text names common
+//! fallbacks.
 //!
-//! This module does not know particles, scenes, materials or MPI.
+//! This module does not depend on particles, scenes, materials or MPI.
 
 mod annotations;
 mod axes;
+mod axis;
 mod bars;
 mod base64;
 mod canvas;
@@ -26,7 +26,9 @@ mod color;
 mod color_bar;
 mod color_map;
 mod curves;
+mod error;
 mod field;
+mod field_figure;
 mod field_layout;
 mod field_map;
 mod figure;
@@ -40,6 +42,7 @@ mod occupancy;
 mod paint;
 mod profile;
 mod raster;
+mod series;
 mod shades;
 mod stroke;
 mod text;
@@ -55,61 +58,23 @@ mod tests;
 
 use std::path::{Path, PathBuf};
 
-pub use bars::{Bar, Bars, Part};
+pub use axis::{Axis, AxisScale};
+pub use bars::{Bar, BarPart, Bars};
 pub use color::Color;
-pub use field::{Cells, Direction, Field, FieldData, Mirror, Quantity, Tile};
-pub use figure::{Axis, Figure, Label, Panel, Points, Scale, Series, Stroke, Style};
-pub use histories::{Histories, History, HistoryPanel};
-pub use hugoniot::{Hugoniot, HugoniotCurve, State};
+pub use color_map::DiagramRow;
+pub use error::PictureError;
+pub use field::{Cells, Direction, Field, FieldData, FieldQuantity, FieldTile, SymmetryPlane};
+pub use figure::{Figure, Label, Panel};
+pub use histories::{HistoriesFigure, HistoryCurve, HistoryPanel};
+pub use hugoniot::{HugoniotCurve, HugoniotFigure, HugoniotPoint};
 pub use limits::Shading;
-pub use line_out::{LineOut, LineOutCurve, Look};
-pub use profile::Profile;
+pub use line_out::{LineOut, LineOutCurve, LineStyle};
+pub use profile::ProfileFigure;
+pub use series::{Points, Series, Stroke, Style};
 pub use tile_map::TileMap;
-pub use wave_diagram::{Row, WaveDiagram, WavePath};
+pub use wave_diagram::{WaveDiagram, WavePath};
 
-/// What can go wrong with a picture.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum PictureError {
-    /// Two columns of one series differ in length.
-    #[error("picture '{figure}': series '{series}' has {x} abscissae but {y} ordinates")]
-    Lengths {
-        /// Title of the figure.
-        figure: String,
-        /// Name of the series.
-        series: String,
-        /// Number of abscissae.
-        x: usize,
-        /// Number of ordinates.
-        y: usize,
-    },
-    /// A field has not one value a cell.
-    #[error("picture '{figure}': {cells} cells but {values} values")]
-    Cells {
-        /// Title of the figure.
-        figure: String,
-        /// Number of cells.
-        cells: usize,
-        /// Number of values.
-        values: usize,
-    },
-    /// The picture could not be written.
-    #[error("cannot write picture {}: {source}", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// The system's reason.
-        source: std::io::Error,
-    },
-    /// The pixels could not be made into PNG.
-    #[error("cannot encode picture as PNG: {0}")]
-    Encode(#[from] png::EncodingError),
-    /// The drawing library refused a shape.
-    #[error("cannot draw picture: {0}")]
-    Draw(String),
-}
-
-/// The two files of one picture.
+/// Paths of the two files of one picture.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Files {
     /// The bitmap.
@@ -120,11 +85,11 @@ pub struct Files {
 
 /// Draws `figure` to `stem.png` and `stem.svg`, and returns their paths.
 ///
-/// Only these endings are added: the stem `run/profile_0.5us` becomes `run/profile_0.5us.png`. The
+/// The extension is appended to the stem: `run/profile_0.5us` becomes `run/profile_0.5us.png`. The
 /// folder must exist.
 ///
 /// # Errors
-/// When columns differ in length or a file cannot be written. Data without a finite value are no
+/// If columns differ in length or a file cannot be written. Data without a finite value are not an
 /// error.
 pub fn draw(figure: &Figure, stem: &Path) -> Result<Files, PictureError> {
     let canvas = layout::lay_out(figure)?;

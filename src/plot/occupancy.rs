@@ -1,11 +1,11 @@
-//! Which parts of a panel are drawn upon, so that text finds free room.
+//! Map of the occupied parts of a panel, to find free space for text.
 
-use super::canvas::{Place, Rect};
+use super::canvas::{CanvasPoint, Rect};
 
-/// Side of the squares that are told apart \[pixel\].
+/// Side of a square of the map \[pixel\].
 const CELL: f64 = 8.0;
 
-/// A panel in squares, each free or not.
+/// A panel divided into squares; each is free or occupied.
 pub(super) struct Occupancy {
     panel: Rect,
     columns: usize,
@@ -13,15 +13,15 @@ pub(super) struct Occupancy {
 }
 
 impl Occupancy {
-    /// A free panel.
+    /// A panel with all squares free.
     pub fn new(panel: Rect) -> Self {
         let columns = (panel.width() / CELL).ceil().max(1.0) as usize;
         let rows = (panel.height() / CELL).ceil().max(1.0) as usize;
         Self { panel, columns, taken: vec![false; columns * rows] }
     }
 
-    /// Takes the squares along a line.
-    pub fn add_line(&mut self, points: &[Place]) {
+    /// Marks the squares along a line as occupied.
+    pub fn add_line(&mut self, points: &[CanvasPoint]) {
         for pair in points.windows(2) {
             let (a, b) = (pair[0], pair[1]);
             let steps = ((b.0 - a.0).hypot(b.1 - a.1) / (0.7 * CELL)).ceil().clamp(1.0, 1000.0);
@@ -32,8 +32,8 @@ impl Occupancy {
         }
     }
 
-    /// Takes the square of a point.
-    pub fn add_point(&mut self, at: Place) {
+    /// Marks the square of a point as occupied.
+    pub fn add_point(&mut self, at: CanvasPoint) {
         if self.panel.contains(at) {
             let column = ((at.0 - self.panel.left) / CELL) as usize;
             let row = ((at.1 - self.panel.top) / CELL) as usize;
@@ -44,7 +44,7 @@ impl Occupancy {
         }
     }
 
-    /// Takes the squares of a rectangle.
+    /// Marks the squares of a rectangle as occupied.
     pub fn add_rect(&mut self, rect: &Rect) {
         let indices: Vec<usize> = self.indices(rect).collect();
         for index in indices {
@@ -52,7 +52,7 @@ impl Occupancy {
         }
     }
 
-    /// Number of taken squares in a rectangle; parts outside the panel count as taken.
+    /// Number of occupied squares in a rectangle; parts outside the panel count as occupied.
     pub fn count(&self, rect: &Rect) -> usize {
         let outside = [
             self.panel.left - rect.left,

@@ -1,9 +1,8 @@
-//! From shapes to files, through `plotters`: the same shapes go to its bitmap and to its SVG
-//! backend.
+//! Paints shapes to files with the bitmap and SVG backends of `plotters`.
 //!
-//! Plotters' places are whole pixels. The bitmap is therefore painted twice as large and averaged
-//! down, with lines and text cut into spans of pixels here; the SVG is written in quarters of a
-//! pixel.
+//! Plotters accepts whole pixels only. The bitmap is therefore painted at twice the size and
+//! averaged down, with lines and text cut into spans of pixels here; the SVG is written in quarters
+//! of a pixel.
 
 use std::fmt::Write as _;
 
@@ -13,27 +12,27 @@ use plotters::style::{
     Color as _, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle,
 };
 
-use super::PictureError;
 use super::base64::base64;
-use super::canvas::{Align, Canvas, Image, Place, Shape, Text};
+use super::canvas::{Align, Canvas, CanvasImage, CanvasPoint, CanvasShape, Text};
 use super::color::Color;
+use super::error::PictureError;
 use super::stroke::Coverage;
 use super::text;
 
-/// How shapes go to a backend.
+/// Settings of a backend.
 struct Pen {
-    /// Its units a pixel of the page.
+    /// Backend units per page pixel.
     scale: f64,
-    /// Whether it draws lines and text well itself; else they go to it span by span.
+    /// Whether the backend draws lines and text well itself; else they are sent span by span.
     able: bool,
 }
 
 const BITMAP: Pen = Pen { scale: 2.0, able: false };
 const SVG: Pen = Pen { scale: 4.0, able: true };
 
-/// Plotters' size of a font in SVG, over the nominal height.
+/// Font size that plotters writes to SVG, over the nominal height.
 const SIZE_PER_EM: f64 = 1.24;
-/// Depth of the base line under the place that plotters writes to SVG, over the nominal height.
+/// Depth of the base line below the position that plotters writes to SVG, over the nominal height.
 const BASE_PER_EM: f64 = 0.76;
 
 /// The page as PNG.
@@ -61,7 +60,7 @@ pub(super) fn to_svg(canvas: &Canvas) -> Result<String, PictureError> {
         paint(&mut backend, &canvas.shapes, &SVG)?;
         backend.present().map_err(refused)?;
     }
-    // Our own head: plotters' would show the page in its fine units.
+    // Replace the SVG header: that of plotters would show the page at the size of its fine units.
     let body = drawn.split_once('\n').map_or("", |(_, body)| body);
     let body =
         body.replace(" opacity=\"1\"", "").replace(" stroke=\"none\" stroke-width=\"1\"", "");
@@ -102,7 +101,7 @@ fn refused(error: impl std::fmt::Display) -> PictureError {
 
 fn paint<B: DrawingBackend>(
     backend: &mut B,
-    shapes: &[Shape],
+    shapes: &[CanvasShape],
     pen: &Pen,
 ) -> Result<(), PictureError> {
     shapes.iter().try_for_each(|shape| paint_shape(backend, shape, pen))
@@ -110,39 +109,39 @@ fn paint<B: DrawingBackend>(
 
 fn paint_shape<B: DrawingBackend>(
     backend: &mut B,
-    shape: &Shape,
+    shape: &CanvasShape,
     pen: &Pen,
 ) -> Result<(), PictureError> {
     let whole = |v: f64| (v * pen.scale).round() as i32;
-    let units = |(x, y): Place| (whole(x), whole(y));
+    let units = |(x, y): CanvasPoint| (whole(x), whole(y));
     match shape {
-        Shape::Line { points, width, color } if pen.able => {
+        CanvasShape::Line { points, width, color } if pen.able => {
             let points: Vec<(i32, i32)> = points.iter().map(|&at| units(at)).collect();
             let style = solid(*color, 1.0).stroke_width(whole(*width).max(1) as u32);
             backend.draw_path(points, &style).map_err(refused)
         }
-        Shape::Line { points, width, color } => {
+        CanvasShape::Line { points, width, color } => {
             let fine = points.iter().map(|&(x, y)| (x * pen.scale, y * pen.scale));
-            let fine: Vec<Place> = fine.collect();
+            let fine: Vec<CanvasPoint> = fine.collect();
             let page = backend.get_size();
             let covered = Coverage::of_line(&fine, width * pen.scale, page);
             covered.spans().try_for_each(|(from, to, row, share)| {
                 backend.draw_line((from, row), (to, row), &solid(*color, share)).map_err(refused)
             })
         }
-        Shape::Fill { rect, color, opacity } => {
+        CanvasShape::Fill { rect, color, opacity } => {
             let (a, b) = (units((rect.left, rect.top)), units((rect.right, rect.bottom)));
             backend.draw_rect(a, b, &solid(*color, *opacity), true).map_err(refused)
         }
-        Shape::Dot { at, radius, color } => {
+        CanvasShape::Dot { at, radius, color } => {
             let radius = whole(*radius).max(1) as u32;
             backend.draw_circle(units(*at), radius, &solid(*color, 1.0), true).map_err(refused)
         }
-        Shape::Polygon { corners, color } => {
+        CanvasShape::Polygon { corners, color } => {
             let corners: Vec<(i32, i32)> = corners.iter().map(|&at| units(at)).collect();
             backend.fill_polygon(corners, &solid(*color, 1.0)).map_err(refused)
         }
-        Shape::Text(text) => paint_text(backend, text, pen),
+        CanvasShape::Text(text) => paint_text(backend, text, pen),
     }
 }
 
@@ -151,7 +150,7 @@ fn paint_text<B: DrawingBackend>(
     text: &Text,
     pen: &Pen,
 ) -> Result<(), PictureError> {
-    // Signs that XML forbids would spoil the file.
+    // Control characters are not allowed in XML and would make the file invalid.
     let shown: String = text.text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     let em = text.em * pen.scale;
     let (x, y) = (text.at.0 * pen.scale, text.at.1 * pen.scale);
@@ -177,13 +176,13 @@ fn paint_text<B: DrawingBackend>(
     backend.draw_text(&shown, &style, (x.round() as i32, y.round() as i32)).map_err(refused)
 }
 
-/// Writes a text with the embedded font.
+/// Draws a text with the embedded font.
 fn paint_glyphs<B: DrawingBackend>(
     backend: &mut B,
     text: &Text,
     shown: &str,
     em: f64,
-    (x, y): Place,
+    (x, y): CanvasPoint,
 ) -> Result<(), PictureError> {
     let before = match text.align {
         Align::Left => 0.0,
@@ -212,8 +211,8 @@ fn solid(color: Color, opacity: f64) -> ShapeStyle {
     ShapeStyle { color: rgb(color).mix(opacity), filled: true, stroke_width: 1 }
 }
 
-/// Copies an image onto the large bitmap, each pixel of which takes the nearest of the image.
-fn stretch(image: &Image, pixels: &mut [u8], width: usize) {
+/// Copies an image onto the large bitmap; each pixel takes the nearest image pixel.
+fn stretch(image: &CanvasImage, pixels: &mut [u8], width: usize) {
     let edge = |v: f64| (v * BITMAP.scale).round() as usize;
     let (left, right) = (edge(image.rect.left), edge(image.rect.right));
     let (top, bottom) = (edge(image.rect.top), edge(image.rect.bottom));
@@ -228,7 +227,7 @@ fn stretch(image: &Image, pixels: &mut [u8], width: usize) {
     }
 }
 
-/// The bitmap at half the size: each pixel the mean of four.
+/// The bitmap at half the size: each pixel is the mean of four.
 fn halved(pixels: &[u8], width: usize) -> Vec<u8> {
     let mut half = Vec::with_capacity(pixels.len() / 4);
     for rows in pixels.chunks_exact(6 * width) {
@@ -244,7 +243,7 @@ fn halved(pixels: &[u8], width: usize) -> Vec<u8> {
     half
 }
 
-/// Pixels as PNG, packed fast rather than small.
+/// Encodes pixels as PNG, for speed rather than for size.
 fn encode(pixels: &[u8], width: u32, height: u32) -> Result<Vec<u8>, PictureError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);

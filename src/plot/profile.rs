@@ -1,29 +1,31 @@
-//! Figure 4 of the document: pressure against position in the target at one time.
+//! Figure 4 of Burghardt (2010): pressure against position in the target at one time.
 
+use super::axis::Axis;
 use super::color::Color;
-use super::figure::{Axis, Figure, Panel, Points, Series, Style};
+use super::figure::{Figure, Panel};
+use super::series::{Points, Series, Style};
 
-/// A pressure profile beside its references. Positions \[m\], pressures \[Pa\].
+/// A pressure profile with its reference solutions: positions \[m\], pressures \[Pa\].
 #[derive(Debug, Clone)]
-pub struct Profile {
-    /// The line at the top, to which the time is added.
+pub struct ProfileFigure {
+    /// Title of the picture; the time is appended.
     pub title: String,
     /// Time \[s\].
     pub time: f64,
-    /// The document's solution, where release waves are shocks: the black line.
+    /// Solution of Burghardt (2010), with release waves as shocks: a black line.
     pub approximation: Option<Points>,
-    /// The true solution, where release waves spread.
+    /// Exact solution, with release fans: a red line.
     pub exact: Option<Points>,
-    /// Computed points: the green marks.
+    /// Computed points: green marks.
     pub computed: Points,
     /// Lines of text, such as errors.
     pub notes: Vec<String>,
-    /// Positions \[m\] between which the profile is shown once more, enlarged, if there is room: the
+    /// Positions \[m\] between which the profile is shown again, enlarged, if there is space: the
     /// shock front.
     pub close_up: Option<(f64, f64)>,
 }
 
-impl Profile {
+impl ProfileFigure {
     /// The figure.
     pub fn figure(&self) -> Figure {
         let mut panel = Panel::new(Axis::linear("Pressure", "Pa"));
@@ -43,7 +45,7 @@ impl Profile {
     }
 }
 
-/// A time in microseconds, or in seconds where those would be many, without needless digits.
+/// A time as text, in microseconds below 0.01 s, else in seconds, without trailing zeros.
 pub(super) fn readable(time: f64) -> String {
     let (scale, unit) = if time < 1e-2 { (1e6, "µs") } else { (1.0, "s") };
     let text = format!("{:.4}", time * scale);

@@ -1,12 +1,12 @@
-//! Parallelograms with values onto a grid of pixels.
+//! Paints parallelograms with values onto a grid of pixels.
 
-/// No body covers a pixel.
+/// Marks a pixel that no body covers.
 pub(super) const NOBODY: u32 = u32::MAX;
-/// How far parallelograms reach beyond their sides, where that covers nothing else \[pixel\]: the
-/// hairlines that open between neighbours of slightly different shape are no gaps.
+/// Distance by which parallelograms are extended into free pixels \[pixel\]. This closes the thin
+/// gaps between neighbours of slightly different shape.
 const REACH: f64 = 1.0;
 
-/// A parallelogram in pixels, y downwards: centre and half-edges.
+/// A parallelogram in pixels, y downwards: centre and half-edges (centre to midpoint of a side).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Placed {
     pub centre: [f64; 2],
@@ -15,7 +15,7 @@ pub(super) struct Placed {
     pub body: u32,
 }
 
-/// Pixels that know the mean value of what covers them, whatever the order.
+/// Grid of pixels, each with the mean value of what covers it, independent of the order.
 pub(super) struct Raster {
     pub columns: usize,
     pub rows: usize,
@@ -30,7 +30,7 @@ struct Pixel {
 }
 
 impl Raster {
-    /// Paints parallelograms; those whose numbers are not finite are left out.
+    /// Paints parallelograms; those with a non-finite number are omitted.
     pub fn of<I>(columns: usize, rows: usize, placed: impl Fn() -> I) -> Self
     where
         I: Iterator<Item = Placed>,
@@ -44,19 +44,19 @@ impl Raster {
         raster
     }
 
-    /// Mean value at a pixel, if something covers it.
+    /// Mean value at a pixel; `None` if it is free.
     pub fn value(&self, index: usize) -> Option<f64> {
         let pixel = &self.pixels[index];
         (pixel.count > 0).then(|| pixel.sum / f64::from(pixel.count))
     }
 
-    /// Body at a pixel: the lowest of those that cover it, or [`NOBODY`].
+    /// Index of the body at a pixel, the lowest of those that cover it, or [`NOBODY`].
     pub fn body(&self, index: usize) -> u32 {
         self.pixels[index].body
     }
 
-    /// Adds to the free pixels whose middle lies within `reach` of the parallelogram; without a
-    /// reach to one pixel at least.
+    /// Adds the value to the free pixels whose centre lies within `reach` of the parallelogram; if
+    /// `reach` is zero, to at least one pixel.
     fn paint(&mut self, placed: &Placed, reach: f64, free: &[bool]) {
         let Placed { centre: [x, y], half_edges: [a, b], value, body } = *placed;
         if ![x, y, a[0], a[1], b[0], b[1], value].iter().all(|v| v.is_finite()) {
@@ -65,7 +65,7 @@ impl Raster {
         let area = a[0] * b[1] - a[1] * b[0];
         let sides = [a[0].hypot(a[1]), b[0].hypot(b[1])];
         let mut painted = false;
-        // With centre + s a + t b: |s| and |t| are at most 1, and a little more for the reach.
+        // In centre + s a + t b, |s| and |t| are at most 1, or slightly more with `reach`.
         if area.abs() > 1e-9 * sides[0] * sides[1] {
             let most = [1.0 + reach * sides[1] / area.abs(), 1.0 + reach * sides[0] / area.abs()];
             let half = [0, 1].map(|i| a[i].abs() + b[i].abs() + reach);
@@ -98,15 +98,15 @@ impl Raster {
     }
 }
 
-/// Pixels of a row of `count` whose middle lies between `from` and `to`.
+/// Pixels of a row of `count` whose centre lies between `from` and `to`.
 fn middles(from: f64, to: f64, count: usize) -> std::ops::Range<usize> {
     let first = (from - 0.5).ceil().max(0.0);
     let end = ((to - 0.5).floor() + 1.0).min(count as f64);
-    // Casts saturate; an empty range has its end before its start.
+    // Casts saturate; the end of an empty range is before its start.
     first as usize..end.max(0.0) as usize
 }
 
-/// Between which d `slope d + start` is at most `most` in size.
+/// Interval of d in which |slope d + start| is at most `most`.
 fn between(slope: f64, start: f64, most: f64) -> Option<(f64, f64)> {
     if slope == 0.0 {
         return (start.abs() <= most).then_some((f64::NEG_INFINITY, f64::INFINITY));
@@ -137,7 +137,7 @@ mod tests {
             let (sin, cos) = (f64::from(turn) * 0.55).sin_cos();
             let (a, b) = ([20.0 * cos, 20.0 * sin], [12.0 * cos - 15.0 * sin, 15.0 * cos]);
             let area = 4.0 * (a[0] * b[1] - a[1] * b[0]).abs();
-            // The reach adds a rim.
+            // `REACH` adds a rim.
             let expected = area + 4.0 * (a[0].hypot(a[1]) + b[0].hypot(b[1])) * REACH;
             let found = covered(&painted(&[tile([50.3, 39.7], [a, b], 1.0)])) as f64;
             assert!((found - expected).abs() < 0.03 * expected, "{turn}: {found} of {expected}");

@@ -1,18 +1,18 @@
-//! From a number between 0 and 1 to a colour.
+//! Colour scales: a colour for each number between 0 and 1.
 
 use super::color::Color;
 
-/// A row of colours for a quantity.
+/// A colour scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shades {
-    /// From dark to bright, even to the eye.
+    /// From dark to bright, perceptually uniform.
     Sequential,
-    /// From blue over light gray, in the middle, to red.
+    /// From blue over light gray (middle) to red.
     Diverging,
 }
 
 impl Shades {
-    /// The colour of a fraction from 0 to 1; beyond it that of the nearer end.
+    /// The colour at a fraction from 0 to 1; values beyond are clamped.
     pub fn color(self, fraction: f64) -> Color {
         let colors = match self {
             Shades::Sequential => &VIRIDIS,
@@ -24,7 +24,7 @@ impl Shades {
     }
 }
 
-/// The colour map "viridis" (van der Walt and Smith 2015, CC0), even to the eye: every 1/16.
+/// The colour map "viridis" (van der Walt and Smith 2015, CC0), perceptually uniform: every 1/16.
 const VIRIDIS: [Color; 17] = [
     Color(68, 1, 84),
     Color(72, 24, 106),
@@ -67,7 +67,7 @@ const COOL_WARM: [Color; 17] = [
     Color(180, 4, 38),
 ];
 
-/// The lowest colour of the sequential row.
+/// The lowest colour of the sequential scale.
 pub(super) const DARKEST: Color = VIRIDIS[0];
 
 #[cfg(test)]

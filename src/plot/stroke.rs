@@ -1,9 +1,9 @@
-//! Smooth lines for the bitmap: plotters draws wide lines between whole pixels, which shows on
-//! gentle curves.
+//! Antialiased lines for the bitmap. Plotters draws wide lines between whole pixels, which is
+//! visible on gentle curves.
 
-use super::canvas::Place;
+use super::canvas::CanvasPoint;
 
-/// How much of each pixel a line covers, in the rectangle that holds it.
+/// Coverage of pixels by a line, within its bounding rectangle.
 pub(super) struct Coverage {
     left: i32,
     top: i32,
@@ -14,9 +14,9 @@ pub(super) struct Coverage {
 }
 
 impl Coverage {
-    /// Covers a line of some width through places in pixels, with round ends and corners, on a page
-    /// of some size.
-    pub fn of_line(points: &[Place], width: f64, page: (u32, u32)) -> Self {
+    /// Coverage of a line with this width through `points` \[pixel\], with round ends and corners,
+    /// on a page of size `page`.
+    pub fn of_line(points: &[CanvasPoint], width: f64, page: (u32, u32)) -> Self {
         let reach = 0.5 * width + 1.0;
         let ends = |values: &mut dyn Iterator<Item = f64>, size: u32| {
             let (low, high) =
@@ -30,14 +30,14 @@ impl Coverage {
         let covered = vec![0; columns * rows];
         let touched = vec![(columns, 0); rows];
         let mut coverage = Self { left, top, width: columns, covered, touched };
-        let local = |at: Place| (at.0 - f64::from(left), at.1 - f64::from(top));
+        let local = |at: CanvasPoint| (at.0 - f64::from(left), at.1 - f64::from(top));
         for pair in points.windows(2) {
             coverage.add(local(pair[0]), local(pair[1]), 0.5 * width);
         }
         coverage
     }
 
-    /// Spans of pixels equally covered: first and last column, row, and share (0 to 1).
+    /// Spans of pixels with equal coverage: first and last column, row, and coverage (0 to 1).
     pub fn spans(&self) -> impl Iterator<Item = (i32, i32, i32, f64)> {
         self.touched.iter().enumerate().flat_map(move |(row, &(from, to))| {
             let start = row * self.width;
@@ -52,9 +52,9 @@ impl Coverage {
         })
     }
 
-    /// Adds a straight piece: a pixel is covered as far as its middle lies within `radius` of the
-    /// piece.
-    fn add(&mut self, a: Place, b: Place, radius: f64) {
+    /// Adds a straight segment. The coverage of a pixel follows from the distance of its centre to
+    /// the segment, relative to `radius`.
+    fn add(&mut self, a: CanvasPoint, b: CanvasPoint, radius: f64) {
         let (dx, dy) = (b.0 - a.0, b.1 - a.1);
         let square = dx * dx + dy * dy;
         let reach = radius + 1.0;
@@ -63,7 +63,7 @@ impl Coverage {
         let to = (a.1.max(b.1) + reach).ceil().clamp(0.0, rows) as usize;
         for row in from..to {
             let y = row as f64 + 0.5;
-            // Where the piece passes this row, give or take its reach.
+            // Interval in which the segment passes this row, plus or minus the reach.
             let at = |y: f64| a.0 + ((y - a.1) / dy).clamp(0.0, 1.0) * dx;
             let (p, q) = if dy == 0.0 { (a.0, b.0) } else { (at(y - reach), at(y + reach)) };
             let first = (p.min(q) - reach).floor().clamp(0.0, self.width as f64) as usize;
@@ -91,7 +91,7 @@ impl Coverage {
 mod tests {
     use super::*;
 
-    fn area(points: &[Place], width: f64) -> f64 {
+    fn area(points: &[CanvasPoint], width: f64) -> f64 {
         let spans = Coverage::of_line(points, width, (100, 100));
         spans.spans().map(|(from, to, _, share)| f64::from(to - from + 1) * share).sum()
     }

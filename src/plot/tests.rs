@@ -1,4 +1,4 @@
-//! Whole pictures: text and points appear in both files, and odd data do no harm.
+//! Tests of whole pictures: text and points appear in both files; non-finite data do no harm.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ fn decoded(path: &Path) -> (usize, usize, Vec<u8>) {
     (info.width as usize, info.height as usize, pixels)
 }
 
-/// Draws and returns the bitmap and the SVG text.
+/// Draws a figure and returns the bitmap and the SVG text.
 pub(super) fn drawn(figure: &Figure) -> ((usize, usize, Vec<u8>), String) {
     let folder = tempfile::tempdir().unwrap();
     let files = draw(figure, &folder.path().join("a picture.of 0.5us")).unwrap();
@@ -21,7 +21,7 @@ pub(super) fn drawn(figure: &Figure) -> ((usize, usize, Vec<u8>), String) {
     (decoded(&files.png), std::fs::read_to_string(&files.svg).unwrap())
 }
 
-/// Number of pixels in a part of a bitmap for which `wanted` holds.
+/// Number of pixels in a part of a bitmap that satisfy `wanted`.
 pub(super) fn count(
     (width, _, pixels): &(usize, usize, Vec<u8>),
     [left, top, right, bottom]: [usize; 4],
@@ -31,10 +31,10 @@ pub(super) fn count(
     rows.flat_map(|row| row.chunks_exact(3).take(right).skip(left)).filter(|p| wanted(p)).count()
 }
 
-fn profile() -> Profile {
+fn profile() -> ProfileFigure {
     let x: Vec<f64> = (0..400).map(|i| f64::from(i) * 2e-5).collect();
     let p: Vec<f64> = x.iter().map(|x| if *x < 5e-3 { 12e9 } else { 0.0 }).collect();
-    Profile {
+    ProfileFigure {
         title: "Copper <on> aluminium & more".into(),
         time: 0.5e-6,
         approximation: Some(Points::new(x.clone(), p.clone())),
@@ -70,7 +70,7 @@ fn profile_shows_text_and_points_in_both_files() {
 #[test]
 fn figures_without_data_say_so() {
     let empty = [
-        Hugoniot { title: "Nothing".into(), curves: vec![], states: vec![] }.figure(),
+        HugoniotFigure { title: "Nothing".into(), curves: vec![], states: vec![] }.figure(),
         WaveDiagram {
             title: "Nothing".into(),
             rows: vec![],
@@ -93,7 +93,7 @@ fn figures_without_data_say_so() {
         assert!(count(&png, [300, 200, 900, 600], |p| p[0] < 200) > 50);
     }
     let panels = vec![];
-    drawn(&Histories { title: "No panel".into(), panels }.figure());
+    drawn(&HistoriesFigure { title: "No panel".into(), panels }.figure());
 }
 
 #[test]
@@ -112,9 +112,9 @@ fn odd_data_are_drawn_as_far_as_they_go() {
         }
     }
     let rows = vec![
-        Row { time: f64::NAN, x: vec![0.0], pressure: vec![1.0] },
-        Row { time: 1e-6, x: vec![0.0, 0.0, f64::NAN], pressure: vec![f64::NAN, 2.0, 1.0] },
-        Row { time: 1e-6, x: vec![], pressure: vec![] },
+        DiagramRow { time: f64::NAN, x: vec![0.0], pressure: vec![1.0] },
+        DiagramRow { time: 1e-6, x: vec![0.0, 0.0, f64::NAN], pressure: vec![f64::NAN, 2.0, 1.0] },
+        DiagramRow { time: 1e-6, x: vec![], pressure: vec![] },
     ];
     drawn(
         &WaveDiagram { title: "odd".into(), rows, paths: vec![], end: None, notes: vec![] }
@@ -124,7 +124,7 @@ fn odd_data_are_drawn_as_far_as_they_go() {
 
 #[test]
 fn bars_stand_beside_the_panels() {
-    let part = |name: &str, index| Part { name: name.into(), color: Color::palette(index) };
+    let part = |name: &str, index| BarPart { name: name.into(), color: Color::palette(index) };
     let bar = |label: &str, values: &[f64]| Bar { label: label.into(), values: values.into() };
     let bars = Bars {
         label: "Share of time".into(),
@@ -179,7 +179,7 @@ fn colour_map_is_in_both_files() {
     let rows = (0..50).map(|i| {
         let x: Vec<f64> = (0..100).map(|j| f64::from(j) * 1e-5).collect();
         let pressure = x.iter().map(|x| if *x < f64::from(i) * 2e-5 { 1e9 } else { 0.0 }).collect();
-        Row { time: f64::from(i) * 1e-8, x, pressure }
+        DiagramRow { time: f64::from(i) * 1e-8, x, pressure }
     });
     let path = WavePath {
         name: "shock".into(),

@@ -1,13 +1,13 @@
-//! The font, which is part of the program: DejaVu Sans from the crate `dejavu`.
+//! The embedded font: DejaVu Sans from the crate `dejavu`.
 //!
-//! Plotters can write with it too, but sets glyphs without their side bearings, so that words look
-//! uneven; on the bitmap glyphs are set here.
+//! Plotters can use it too, but places glyphs without their side bearings, so that words look
+//! uneven. On the bitmap, this module therefore places the glyphs.
 
 use std::sync::LazyLock;
 
 use ab_glyph::{Font, FontRef, PxScale, ScaleFont, point};
 
-/// Font family for SVG: the embedded font first, then what other machines have that looks alike.
+/// Font family for SVG: the embedded font, then similar fonts of other machines.
 pub(super) const FAMILY: &str = "DejaVu Sans, Verdana, Arial, sans-serif";
 
 static REGULAR: LazyLock<FontRef> = LazyLock::new(|| embedded(dejavu::sans::regular()));
@@ -21,12 +21,12 @@ fn font(bold: bool) -> &'static FontRef<'static> {
     if bold { &BOLD } else { &REGULAR }
 }
 
-/// Width of a text of nominal height `em`.
+/// Width of a text with nominal height `em`.
 pub(super) fn width(text: &str, em: f64, bold: bool) -> f64 {
     place(text, em, bold, |_, _| ())
 }
 
-/// A text in lines that are at most `room` wide, as far as its words allow.
+/// Splits a text between words into lines at most `room` wide; a longer word stays whole.
 pub(super) fn wrapped(text: &str, em: f64, bold: bool, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -41,8 +41,8 @@ pub(super) fn wrapped(text: &str, em: f64, bold: bool, room: f64) -> Vec<String>
     lines
 }
 
-/// Pixels of a text of nominal height `em`, which starts at the origin on its base line, y
-/// downwards: column, row and share (0 to 1) of each.
+/// Pixels of a text with nominal height `em`: column, row and coverage (0 to 1) of each. The text
+/// starts at the origin on its base line, y downwards.
 pub(super) fn draw(text: &str, em: f64, bold: bool, mut pixel: impl FnMut(i32, i32, f64)) {
     let font = font(bold);
     let scale = scale(em, font);
@@ -55,7 +55,7 @@ pub(super) fn draw(text: &str, em: f64, bold: bool, mut pixel: impl FnMut(i32, i
     });
 }
 
-/// Calls `set` with each sign and where it starts; returns where the text ends.
+/// Calls `set` with each character and its start position; returns the end of the text.
 fn place(text: &str, em: f64, bold: bool, mut set: impl FnMut(char, f64)) -> f64 {
     let font = font(bold);
     let scaled = font.as_scaled(scale(em, font));
@@ -70,7 +70,7 @@ fn place(text: &str, em: f64, bold: bool, mut set: impl FnMut(char, f64)) -> f64
     x
 }
 
-/// The font library counts the height of a line.
+/// Font size; the font library expects the height of a line.
 fn scale(em: f64, font: &FontRef) -> PxScale {
     let line_per_em = font.height_unscaled() / font.units_per_em().unwrap_or(2048.0);
     PxScale::from(em as f32 * line_per_em)
@@ -108,7 +108,7 @@ mod tests {
         });
         let width = width("HHH", 40.0, false);
         assert!(left >= 0 && f64::from(right) < width && f64::from(right) > 0.9 * width);
-        // A capital of this font is 0.729 em high.
+        // A capital letter of this font is 0.729 em high.
         assert!((28..=30).contains(&-top) && (-1..=0).contains(&bottom), "{top} {bottom}");
     }
 }

@@ -1,13 +1,13 @@
-//! Thinning: a curve of very many points is drawn with fewer, and looks the same.
+//! Thinning: draws a curve of very many points with fewer points, without a visible change.
 
-/// Most points of a series that are drawn.
+/// Largest number of points drawn per series.
 pub(super) const LIMIT: usize = 5000;
 
 /// Indices of the points to draw: all, or at most `limit`.
 ///
-/// The points are cut, in their order, into `limit / 2` runs of equal length; of each the least and
-/// the greatest value are kept, so that no peak is lost. The first and the last point of all are
-/// always kept. `values` must be finite.
+/// The points are divided, in their order, into `(limit - 2) / 2` runs of equal length. Of each run the
+/// smallest and the largest value are kept, so that no peak is lost. The first and the last point
+/// are always kept. `values` must be finite.
 pub(super) fn thin(values: &[f64], limit: usize) -> Vec<usize> {
     let count = values.len();
     if count <= limit {

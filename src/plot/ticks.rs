@@ -1,19 +1,19 @@
-//! Axes made concrete: ends, readable unit, round ticks.
+//! Rulers: ends, readable unit and round ticks of an axis.
 
-use super::figure::{Axis, Scale};
+use super::axis::{Axis, AxisScale};
 
-/// Values beyond this are not drawn: differences of such numbers overflow.
+/// Larger values are not drawn, because differences of such numbers overflow.
 const HUGE: f64 = 1e200;
 
-/// Whether a value can be drawn on an axis of this spacing.
-pub(super) fn drawable(value: f64, scale: Scale) -> bool {
-    value.abs() < HUGE && (scale == Scale::Linear || value > 1.0 / HUGE)
+/// Whether a value can be drawn on an axis of this scale.
+pub(super) fn drawable(value: f64, scale: AxisScale) -> bool {
+    value.abs() < HUGE && (scale == AxisScale::Linear || value > 1.0 / HUGE)
 }
 
-/// A mark on an axis.
+/// A tick of an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Tick {
-    /// Where, as a fraction of the axis.
+    /// Position, as a fraction of the axis.
     pub at: f64,
     /// Its number; empty for a minor tick.
     pub text: String,
@@ -22,22 +22,22 @@ pub(super) struct Tick {
 /// An axis with ends and ticks.
 #[derive(Debug, Clone)]
 pub(super) struct Ruler {
-    /// Label with the unit shown.
+    /// Label with its unit.
     pub label: String,
-    /// Ticks in ascending order of kind, then place.
+    /// Ticks: first the numbered, then the minor ones, each in ascending order.
     pub ticks: Vec<Tick>,
     low: f64,
     high: f64,
-    scale: Scale,
+    scale: AxisScale,
 }
 
 impl Ruler {
-    /// Makes `axis` concrete for `values`, with about `wanted` numbered ticks.
+    /// The ruler of `axis` for `values`, with about `wanted` numbered ticks.
     pub fn new(axis: &Axis, values: impl Iterator<Item = f64>, wanted: usize) -> Self {
         Self::with_size(axis, values, wanted, None)
     }
 
-    /// The same, in the unit that suits values of this `size`; by default those of the axis.
+    /// The same, with the unit for values of magnitude `size`; by default that of the axis ends.
     pub fn with_size(
         axis: &Axis,
         values: impl Iterator<Item = f64>,
@@ -54,39 +54,39 @@ impl Ruler {
         });
         let (low, high) = match (given, scale) {
             (Some(ends), _) => ends,
-            (None, Scale::Linear) => ends_linear(data, axis.margin),
-            (None, Scale::Log) => ends_log(data, axis.margin),
+            (None, AxisScale::Linear) => ends_linear(data, axis.margin),
+            (None, AxisScale::Log) => ends_log(data, axis.margin),
         };
         let (unit, factor) = match scale {
-            Scale::Linear => {
+            AxisScale::Linear => {
                 readable_unit(&axis.unit, size.unwrap_or_else(|| low.abs().max(high.abs())))
             }
-            Scale::Log => (axis.unit.clone(), 1.0),
+            AxisScale::Log => (axis.unit.clone(), 1.0),
         };
         let label =
             if unit.is_empty() { axis.label.clone() } else { format!("{} ({unit})", axis.label) };
         let mut ruler = Self { label, ticks: Vec::new(), low, high, scale };
         ruler.ticks = match scale {
             _ if !axis.ticks.is_empty() => ruler.ticks_given(&axis.ticks, factor),
-            Scale::Linear => ruler.ticks_linear(factor, wanted),
-            Scale::Log => ruler.ticks_log(wanted),
+            AxisScale::Linear => ruler.ticks_linear(factor, wanted),
+            AxisScale::Log => ruler.ticks_log(wanted),
         };
         ruler
     }
 
-    /// Where `value` stands, as a fraction of the axis: below 0 and above 1 outside; `None` if it
+    /// Position of `value` as a fraction of the axis, below 0 or above 1 if outside; `None` if it
     /// cannot be drawn.
     pub fn place(&self, value: f64) -> Option<f64> {
         if !drawable(value, self.scale) {
             return None;
         }
         Some(match self.scale {
-            Scale::Linear => (value - self.low) / (self.high - self.low),
-            Scale::Log => (value / self.low).ln() / (self.high / self.low).ln(),
+            AxisScale::Linear => (value - self.low) / (self.high - self.low),
+            AxisScale::Log => (value / self.low).ln() / (self.high / self.low).ln(),
         })
     }
 
-    /// The value at a fraction of a linear axis.
+    /// Value at a fraction of a linear axis.
     pub fn value(&self, fraction: f64) -> f64 {
         self.low + fraction * (self.high - self.low)
     }
@@ -138,7 +138,7 @@ impl Ruler {
             .collect()
     }
 
-    /// Ticks of a logarithmic axis that shows few powers of ten: other digits are numbered too.
+    /// Ticks of a logarithmic axis with few powers of ten: other digits have numbers too.
     fn ticks_within_decades(&self, wanted: usize) -> Vec<Tick> {
         let first = self.low.log10().floor() as i32;
         let round = |digits: &[f64]| -> Vec<Tick> {
@@ -168,7 +168,7 @@ impl Ruler {
     }
 }
 
-/// Whether two ends are so near that rounding shows between them.
+/// Whether two ends are so close that rounding is visible between them.
 fn is_flat(low: f64, high: f64) -> bool {
     high - low <= 1e-10 * low.abs().max(high.abs())
 }
@@ -180,7 +180,7 @@ fn ends_linear(data: Option<(f64, f64)>, margin: f64) -> (f64, f64) {
         return (low - room, high + room);
     }
     if margin > 0.0 {
-        // Zero is shown where it is near.
+        // Include zero if it is near.
         if low > 0.0 && low < 0.3 * high {
             low = 0.0;
         }
@@ -201,7 +201,7 @@ fn ends_log(data: Option<(f64, f64)>, margin: f64) -> (f64, f64) {
     (low / room, high * room)
 }
 
-/// The unit to show for values up to `greatest`, and its size in `unit`.
+/// The unit shown for values up to `greatest`, and its size in `unit`.
 fn readable_unit(unit: &str, greatest: f64) -> (String, f64) {
     if greatest == 0.0 || (unit == "m/s" && (0.1..1e4).contains(&greatest)) {
         return (unit.into(), 1.0);
@@ -209,7 +209,7 @@ fn readable_unit(unit: &str, greatest: f64) -> (String, f64) {
     let power = greatest.log10();
     let base = unit.split(['/', '·', ' ']).next().unwrap_or_default();
     if ["Pa", "m", "s", "J", "N", "W", "Hz"].contains(&base) {
-        // The shown numbers go up to between 0.1 and 100.
+        // The largest shown number is between 0.1 and 100.
         let thousands = ((power + 1.0) / 3.0).floor() as i32;
         if let Some(prefix) = ["f", "p", "n", "µ", "m", "", "k", "M", "G", "T", "P"]
             .get((thousands + 5).max(0) as usize)
@@ -226,7 +226,7 @@ fn readable_unit(unit: &str, greatest: f64) -> (String, f64) {
     (shown.trim_end().into(), 10f64.powi(power))
 }
 
-/// The round step next to `raw`, and into how many parts minor ticks cut it.
+/// The round step next above `raw`, and the number of parts into which minor ticks divide it.
 fn round_step(raw: f64) -> (f64, f64) {
     let power = 10f64.powf(raw.log10().floor());
     match raw / power {
@@ -241,14 +241,14 @@ fn round_step(raw: f64) -> (f64, f64) {
 fn multiples(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
     let first = (low / step - 1e-6).ceil();
     let last = (high / step + 1e-6).floor();
-    // Adding zero makes minus zero plain zero.
+    // Adding zero turns minus zero into zero.
     (0..100)
         .map(move |i| first + f64::from(i))
         .take_while(move |&n| n <= last)
         .map(move |n| n * step + 0.0)
 }
 
-/// A number with a real minus sign in place of the hyphen.
+/// A number with a minus sign instead of the hyphen.
 fn with_minus(number: &str) -> String {
     number.replace('-', "−")
 }
@@ -312,7 +312,7 @@ mod tests {
     fn any_data_give_finite_ticks_in_range() {
         let odd =
             [f64::NAN, f64::INFINITY, 1e300, f64::MIN_POSITIVE, 0.0, -1e-250, 5.0, 5.0 + 1e-15];
-        for scale in [Scale::Linear, Scale::Log] {
+        for scale in [AxisScale::Linear, AxisScale::Log] {
             for margin in [0.0, 0.05] {
                 for a in odd {
                     for b in odd {

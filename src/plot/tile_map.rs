@@ -1,32 +1,33 @@
-//! A number over two others as tiles of colour.
+//! A value over two coordinates, drawn as coloured tiles.
 
+use super::axis::Axis;
 use super::color::Color;
-use super::color_map::ColorMap;
-use super::figure::{Axis, Figure, Panel, Points, Series, Style};
-use super::wave_diagram::Row;
+use super::color_map::{ColorMap, DiagramRow};
+use super::figure::{Figure, Panel};
+use super::series::{Points, Series, Style};
 
-/// A table of values over two coordinates, a tile each.
+/// A table of values over two coordinates, one tile per value.
 #[derive(Debug, Clone)]
 pub struct TileMap {
-    /// The line at the top.
+    /// Title of the picture.
     pub title: String,
-    /// The axis along x.
+    /// The x axis.
     pub x: Axis,
-    /// The upright axis.
+    /// The y axis.
     pub y: Axis,
-    /// Coordinates of the tiles along x and upwards, ascending.
+    /// Coordinates of the tile centres along x and y, ascending.
     pub places: [Vec<f64>; 2],
-    /// Values, a row an upright place; none leaves the tile empty.
+    /// Values, one row per y coordinate; `None` leaves a tile empty.
     pub values: Vec<Vec<Option<f64>>>,
-    /// What the colours mean.
+    /// Name of the quantity.
     pub label: String,
     /// Unit of the values.
     pub unit: String,
-    /// Named places: text, x, y.
+    /// Marked points: text, x, y.
     pub marks: Vec<(String, f64, f64)>,
 }
 
-/// Points along x of which a row of tiles is made.
+/// Points along x per row of tiles.
 const POINTS: usize = 1200;
 
 impl TileMap {
@@ -35,7 +36,7 @@ impl TileMap {
         let [xs, ys] = &self.places;
         let (x_ends, y_ends) = (edges(xs), edges(ys));
         let mut rows = Vec::new();
-        // the map takes of two rows the nearer one: a pair at the edges of a tile fills it
+        // The colour map draws the nearest row: two rows at the edges of a tile fill it.
         for (values, ends) in self.values.iter().zip(y_ends.windows(2)) {
             let thin = 1e-6 * (ends[1] - ends[0]);
             for time in [ends[0] + thin, ends[1] - thin] {
@@ -60,7 +61,7 @@ fn ranged(axis: Axis, ends: &[f64]) -> Axis {
     }
 }
 
-/// Edges of tiles about ascending places, halfway between them.
+/// Edges of tiles: halfway between the ascending `places`.
 fn edges(places: &[f64]) -> Vec<f64> {
     let mut edges: Vec<f64> = places.windows(2).map(|p| 0.5 * (p[0] + p[1])).collect();
     if let (Some(&first), Some(&last)) = (places.first(), places.last()) {
@@ -74,15 +75,15 @@ fn edges(places: &[f64]) -> Vec<f64> {
     edges
 }
 
-/// Even points across a row of tiles; an empty tile has values that are none.
-fn row(time: f64, values: &[Option<f64>], edges: &[f64]) -> Row {
+/// Evenly spaced points across a row of tiles; an empty tile has the value NaN.
+fn row(time: f64, values: &[Option<f64>], edges: &[f64]) -> DiagramRow {
     let (low, high) = (edges[0], edges[edges.len() - 1]);
     let at = |k: usize| low + (high - low) * (k as f64 + 0.5) / POINTS as f64;
     let x: Vec<f64> = (0..POINTS).map(at).collect();
     let tile = |x: f64| edges.partition_point(|e| *e <= x).clamp(1, values.len()) - 1;
     let value = |&x: &f64| values[tile(x)].unwrap_or(f64::NAN);
     let pressure = x.iter().map(value).collect();
-    Row { time, x, pressure }
+    DiagramRow { time, x, pressure }
 }
 
 #[cfg(test)]

@@ -1,33 +1,24 @@
-//! The x-t diagram: computed pressure as colour, with exact wave paths over it.
+//! The x-t diagram: computed pressure as colour, with the exact wave paths.
 
+use super::axis::Axis;
 use super::color::Color;
-use super::color_map::ColorMap;
-use super::figure::{Axis, Figure, Panel, Points, Series, Stroke, Style};
+use super::color_map::{ColorMap, DiagramRow};
+use super::figure::{Figure, Panel};
+use super::series::{Points, Series, Stroke, Style};
 
-/// Computed pressure over position and time, and the paths of waves.
+/// Computed pressure over position and time, and wave paths.
 #[derive(Debug, Clone)]
 pub struct WaveDiagram {
-    /// The line at the top.
+    /// Title of the picture.
     pub title: String,
-    /// Computed pressure, a row a time; rows may differ in length.
-    pub rows: Vec<Row>,
-    /// Wave paths; paths of one name share a colour and an entry in the legend.
+    /// Computed pressure, one row per time; rows may differ in length.
+    pub rows: Vec<DiagramRow>,
+    /// Wave paths; paths with the same name share a colour and a legend entry.
     pub paths: Vec<WavePath>,
-    /// Upper end of the time axis \[s\]; none: the last of the data.
+    /// Upper end of the time axis \[s\]; `None`: the last time of the data.
     pub end: Option<f64>,
-    /// Lines of text in the picture.
+    /// Lines of text inside the panel.
     pub notes: Vec<String>,
-}
-
-/// Pressure along x at one time.
-#[derive(Debug, Clone)]
-pub struct Row {
-    /// Time \[s\].
-    pub time: f64,
-    /// Positions \[m\].
-    pub x: Vec<f64>,
-    /// Pressures \[Pa\].
-    pub pressure: Vec<f64>,
 }
 
 /// The path of a wave, of an interface or of a free surface.
@@ -42,7 +33,7 @@ pub struct WavePath {
 }
 
 impl WaveDiagram {
-    /// Colours that show on every shade of the map.
+    /// Colours that are visible on every colour of the map.
     const COLORS: [Color; 4] =
         [Color::WHITE, Color(0xff, 0x6e, 0x6e), Color(0xff, 0xb0, 0xe8), Color(0xff, 0xc8, 0x5a)];
 

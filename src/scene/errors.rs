@@ -1,17 +1,19 @@
-//! What can be wrong with a scene, told in one line.
+//! Errors of a scene, each with a message of one line.
 
 use std::fmt::Write;
 
 use serde::Serialize;
 use serde_json::Value;
 
-/// Characters of a value or a path that a message shows.
+use crate::material::ParameterError;
+
+/// Maximum number of characters of a value or a path in a message.
 pub(super) const LONGEST_VALUE: usize = 120;
 
-/// Characters of what is wrong and what is allowed.
+/// Maximum number of characters of the reason in a message.
 pub(super) const LONGEST_REASON: usize = 1000;
 
-/// Why a scene cannot be run; the text is one line.
+/// Reason why a scene cannot be run; the message is one line.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SceneError {
     /// The file cannot be read.
@@ -19,7 +21,7 @@ pub enum SceneError {
     File {
         /// Path of the scene.
         file: String,
-        /// Why.
+        /// Reason.
         reason: String,
     },
     /// The text is not JSON.
@@ -27,11 +29,11 @@ pub enum SceneError {
     Syntax {
         /// Path of the scene.
         file: String,
-        /// Line of the fault, from 1.
+        /// Line of the error, from 1.
         line: usize,
-        /// Column of the fault in bytes, from 1.
+        /// Column of the error in bytes, from 1.
         column: usize,
-        /// Key that stands there, or the nearest above it; empty at the top.
+        /// Path of the key at this place, or of the nearest one above it; empty at the top level.
         path: String,
         /// What was found, and what is allowed.
         reason: String,
@@ -41,22 +43,22 @@ pub enum SceneError {
     Set {
         /// The override, `PATH=VALUE`.
         set: String,
-        /// Why, and what is allowed.
+        /// Reason, and what is allowed.
         reason: String,
     },
-    /// A key is wrong, alone or beside another.
+    /// The value of a key is invalid, by itself or in combination with another key.
     #[error("{file}: {path}{}: {reason}", equals(value))]
     Key {
         /// Path of the scene.
         file: String,
-        /// Path of the key, as `--set` takes it.
+        /// Path of the key, in the syntax of `--set`.
         path: String,
-        /// Its value as JSON; empty where it is missing.
+        /// Value of the key as JSON; empty if the key is missing.
         value: String,
-        /// What is wrong, and what is allowed.
+        /// Reason, and what is allowed.
         reason: String,
     },
-    /// The run needs more memory than there is.
+    /// The run needs more memory than is available.
     #[error(
         "{file}: {particles} particles{} need about {} of memory; allowed: {}, what \
          this machine has left; coarsen domain.cell_size, lower bodies' particles_per_cell, or start it \
@@ -66,53 +68,62 @@ pub enum SceneError {
     Memory {
         /// Path of the scene.
         file: String,
-        /// Particles of all bodies.
+        /// Number of particles of all bodies.
         particles: u64,
-        /// Cells of the domain; 0: not counted yet.
+        /// Number of cells of the domain; 0: not counted yet.
         cells: u64,
-        /// Estimate of what the run needs [bytes].
+        /// Estimated memory of the run [bytes].
         needed: u64,
-        /// What the machine has left [bytes].
+        /// Memory available on the machine [bytes].
         available: u64,
     },
 }
 
-/// A wrong key, before the file that it stands in is named.
+/// An invalid key, without the name of its file.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Fault {
+pub(super) struct SceneFault {
     path: String,
     value: String,
     reason: String,
 }
 
-impl Fault {
-    /// A key and its value, with what is wrong and what is allowed.
+impl SceneFault {
+    /// Fault of a key and its value; `reason` says what is wrong and what is allowed.
     pub(super) fn new(
         path: impl Into<String>,
         value: impl Serialize,
         reason: impl Into<String>,
     ) -> Self {
         let value = serde_json::to_value(value).unwrap_or(Value::Null);
-        Fault {
+        SceneFault {
             path: path.into(),
             value: shorten(&value.to_string(), LONGEST_VALUE),
             reason: reason.into(),
         }
     }
 
-    /// A key that is not there.
-    pub(super) fn missing(path: impl Into<String>, reason: impl Into<String>) -> Self {
-        Fault { path: path.into(), value: String::new(), reason: reason.into() }
+    /// Fault of a parameter of the model at `path`.
+    pub(super) fn of_parameter(error: ParameterError, path: &str) -> Self {
+        let path = format!("{path}.{}", error.key);
+        match error.value {
+            Some(value) => SceneFault::new(path, value, error.reason),
+            None => SceneFault::missing(path, error.reason),
+        }
     }
 
-    /// The same fault, told from above: its path now begins with `parent`.
+    /// Fault of a missing key.
+    pub(super) fn missing(path: impl Into<String>, reason: impl Into<String>) -> Self {
+        SceneFault { path: path.into(), value: String::new(), reason: reason.into() }
+    }
+
+    /// The same fault with `parent` prepended to its path.
     pub(super) fn below(mut self, parent: &str) -> Self {
         let dot = if self.path.is_empty() || self.path.starts_with('[') { "" } else { "." };
         self.path = format!("{parent}{dot}{}", self.path);
         self
     }
 
-    /// The error, with the file named.
+    /// The error, with the name of the file.
     pub(super) fn within(self, file: &str) -> SceneError {
         let path = if self.path.is_empty() { "the scene" } else { &self.path };
         SceneError::Key {
@@ -137,7 +148,7 @@ pub(super) fn one_line(text: &str) -> String {
     line
 }
 
-/// At most `most` characters of `text`.
+/// The first `most` characters of `text`.
 pub(super) fn shorten(text: &str, most: usize) -> String {
     match text.char_indices().nth(most) {
         Some((end, _)) => format!("{}...", &text[..end]),
@@ -145,7 +156,7 @@ pub(super) fn shorten(text: &str, most: usize) -> String {
     }
 }
 
-/// The known name that `name` was perhaps meant to be.
+/// The known name that is most similar to `name`, if any is similar.
 pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     const LONGEST: usize = 60;
     let name = name.to_lowercase();
@@ -158,7 +169,7 @@ pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) 
         .map(|(_, k)| k)
 }
 
-/// `; did you mean ...?` where a known name is near, then the list of all.
+/// `; did you mean ...?` if a known name is similar, then the list of all.
 pub(super) fn suggest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> String {
     let mut text = String::new();
     if let Some(near) = nearest(name, known.clone()) {
@@ -168,7 +179,7 @@ pub(super) fn suggest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> +
     text
 }
 
-/// Names with commas between them; of many, the first alone.
+/// Names separated by commas; of a long list, only the first ones.
 pub(super) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     const MOST: usize = 20;
     let names: Vec<_> = names.into_iter().collect();
@@ -191,7 +202,7 @@ fn in_cells(cells: u64) -> String {
     if cells == 0 { String::new() } else { format!(" in {cells} cells") }
 }
 
-/// A number of bytes as people read it.
+/// A number of bytes in readable units.
 fn readable(count: u64) -> String {
     const UNITS: [&str; 7] = ["B", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
     let mut size = count as f64;
@@ -218,7 +229,7 @@ mod tests {
 
     #[test]
     fn messages_stay_on_one_line() {
-        let fault = Fault::new("bodies.a\nb", "x\ny", "wrong\r\nhere");
+        let fault = SceneFault::new("bodies.a\nb", "x\ny", "wrong\r\nhere");
         let text = fault.within("a\tb.json").to_string();
         assert_eq!(text.lines().count(), 1, "{text}");
         assert_eq!(text, r#"a\tb.json: bodies.a\nb = "x\ny": wrong\r\nhere"#);

@@ -1,7 +1,8 @@
-//! Files that a user names: regular ones alone, whole, up to a size.
+//! Input files named by the user: only regular files, read whole, up to a maximum size.
 //!
-//! A FIFO or a device has no end and may never answer, so its kind is looked at before it is opened
-//! for reading, and again once it is open: it may have been replaced meanwhile.
+//! A FIFO or a device has no end and may never answer. The kind of a file is therefore checked
+//! before it is opened for reading, and again after opening because it may have been replaced in
+//! between.
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, Read};
@@ -10,49 +11,49 @@ use std::path::Path;
 
 use nix::fcntl::OFlag;
 
-/// What the first line of a checkpoint begins with.
+/// Start of the first line of a checkpoint.
 pub const CHECKPOINT_START: &str = "flyer-mpm checkpoint";
 
-/// Most bytes of a file that holds keys and values, such as a scene, a study or a material [bytes].
+/// Maximum size of a file of keys and values, such as a scene, a study or a material [bytes].
 pub const LARGEST_JSON: u64 = 16 << 20;
 
-/// Most bytes of a file of numbers, such as positions, a table or a pressure over time [bytes].
+/// Maximum size of a file of numbers, such as positions, a table or a pressure over time [bytes].
 pub const LARGEST_NUMBERS: u64 = 1 << 30;
 
-/// Most bytes of a file that a run has written, such as a profile [bytes].
+/// Maximum size of a file written by a run, such as a profile [bytes].
 pub const LARGEST_RESULT: u64 = 4 << 30;
 
-/// A file that cannot be taken as an input.
+/// Reason why a file cannot be used as an input.
 #[derive(Debug, thiserror::Error)]
 pub enum InputFault {
-    /// The system refused.
+    /// Error of the operating system on reading.
     #[error("cannot be read: {0}")]
     Io(#[from] io::Error),
-    /// The system refuses to write there.
+    /// Error of the operating system on writing.
     #[error("cannot be written: {0}")]
     Write(io::Error),
-    /// It is a folder, a FIFO or a device.
+    /// The path is a folder, a FIFO or a device.
     #[error("is {0}; allowed: a regular file")]
     Kind(&'static str),
-    /// It is too long.
+    /// The file is too long.
     #[error("is {} long; allowed: at most {most} bytes", at_least(*length, *most))]
     Length {
-        /// Its length, as far as it is known [bytes].
+        /// Known length [bytes].
         length: u64,
-        /// What is allowed [bytes].
+        /// Maximum length [bytes].
         most: u64,
     },
-    /// It is no text.
+    /// The file is not UTF-8 text.
     #[error("is not UTF-8 from byte {0} on; allowed: text in UTF-8")]
     Text(usize),
 }
 
-/// A length in words; that of a file which claims to be shorter than it is is not known.
+/// A length in words; the length of a file that is longer than it reports is not known.
 fn at_least(length: u64, most: u64) -> String {
     if length > most { format!("{length} bytes") } else { format!("more than {most} bytes") }
 }
 
-/// What stands in the place of a regular file; none where it is one.
+/// Kind of a file that is not a regular one; `None` for a regular file.
 fn other_kind(metadata: &Metadata) -> Option<&'static str> {
     let kind = metadata.file_type();
     Some(match () {
@@ -65,11 +66,11 @@ fn other_kind(metadata: &Metadata) -> Option<&'static str> {
     })
 }
 
-/// Refuses what is there but is no regular file.
+/// Checks that `path` is a regular file or does not exist.
 ///
 /// # Errors
 ///
-/// The kind of what is there; nothing where nothing is there.
+/// The kind of the file if it is not a regular one.
 pub fn check_kind(path: &Path) -> Result<(), InputFault> {
     match std::fs::metadata(path).ok().and_then(|found| other_kind(&found)) {
         Some(kind) => Err(InputFault::Kind(kind)),
@@ -77,11 +78,11 @@ pub fn check_kind(path: &Path) -> Result<(), InputFault> {
     }
 }
 
-/// Refuses a place where no file can be written, so far as that can be told without writing one.
+/// Checks that a file can be written at `path`, as far as this is possible without writing.
 ///
 /// # Errors
 ///
-/// As [`check_kind`], or what the system says of the file or of the folder that it would stand in.
+/// As [`check_kind`], or the error of the operating system for the file or its folder.
 pub fn check_place(path: &Path) -> Result<(), InputFault> {
     check_kind(path)?;
     if path.exists() {
@@ -96,13 +97,13 @@ pub fn check_place(path: &Path) -> Result<(), InputFault> {
     }
 }
 
-/// Opens a regular file for reading, and never waits for it.
+/// Opens a regular file for reading, without ever blocking.
 ///
 /// # Errors
 ///
-/// What the system says, or the kind of what is there instead.
+/// The error of the operating system, or the kind of a file that is not a regular one.
 pub fn open(path: &Path) -> Result<File, InputFault> {
-    // to open a device may do something
+    // opening a device may have side effects
     if let Some(kind) = other_kind(&std::fs::metadata(path)?) {
         return Err(InputFault::Kind(kind));
     }
@@ -114,22 +115,23 @@ pub fn open(path: &Path) -> Result<File, InputFault> {
     }
 }
 
-/// Refuses what is no regular file of at most `most` bytes, for a library that opens it by its name.
+/// Checks that `path` is a regular file of at most `most` bytes, for a library that opens it by
+/// name.
 ///
 /// # Errors
 ///
-/// As [`open`], or its length.
+/// As [`open`], or the length of the file.
 pub fn check(path: &Path, most: u64) -> Result<(), InputFault> {
     let length = open(path)?.metadata()?.len();
     if length > most { Err(InputFault::Length { length, most }) } else { Ok(()) }
 }
 
-/// The bytes of a regular file, at most `most`.
+/// Bytes of a regular file, at most `most`.
 ///
 /// # Errors
 ///
-/// As [`open`], or its length. A file that claims to be shorter than it is is read no further than
-/// `most`.
+/// As [`open`], or the length of the file. If a file is longer than it reports, reading stops just
+/// after `most` bytes.
 pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, InputFault> {
     let file = open(path)?;
     let length = file.metadata()?.len();
@@ -141,18 +143,18 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, InputFault> {
     if bytes.len() as u64 > most { Err(InputFault::Length { length, most }) } else { Ok(bytes) }
 }
 
-/// Whether a regular file begins with `text`; false where that cannot be told.
+/// Whether a regular file begins with `text`; false if it cannot be read.
 pub fn begins_with(path: &Path, text: &str) -> bool {
     let mut head = vec![0; text.len()];
     let read = open(path).ok().and_then(|mut file| file.read_exact(&mut head).ok());
     read.is_some() && head == text.as_bytes()
 }
 
-/// The text of a regular file of at most `most` bytes.
+/// Text of a regular file of at most `most` bytes.
 ///
 /// # Errors
 ///
-/// As [`read`], or where it ceases to be UTF-8.
+/// As [`read`], or the position of the first byte that is not UTF-8.
 pub fn read_text(path: &Path, most: u64) -> Result<String, InputFault> {
     String::from_utf8(read(path, most)?)
         .map_err(|fault| InputFault::Text(fault.utf8_error().valid_up_to()))
@@ -176,7 +178,7 @@ mod tests {
         File::create(&path).unwrap().set_len(1 << 40).unwrap();
         assert!(told(read(&path, LARGEST_NUMBERS).unwrap_err()).contains("1099511627776 bytes"));
         assert!(told(check(&path, LARGEST_JSON).unwrap_err()).contains("16777216"));
-        // of no length by what the system says, but with contents
+        // the system reports a length of 0, but the file has contents
         assert!(matches!(read(Path::new("/proc/self/status"), 9), Err(InputFault::Length { .. })));
         assert!(!read(Path::new("/proc/self/status"), 1 << 20).unwrap().is_empty());
     }

@@ -1,23 +1,24 @@
-//! Materials by name or from a file of their own, with keys beside them that override.
+//! Materials by name or from a separate file, with keys beside them that override.
 //!
-//! `{"library": "copper"}` is replaced by a material that stands in the program itself, with its
-//! sources; `{"file": "mine.json"}` by the one in a file beside the scene's. Objects are merged key
-//! by key; one whose `type` is another is replaced as a whole. Files are read by one rank
-//! ([`inline_files`]), names are resolved by all, after the overrides of the command line
+//! `{"library": "copper"}` is replaced by a material built into the program, with its sources;
+//! `{"file": "mine.json"}` by the material in a file next to the scene. Objects are merged key by
+//! key; an object with a different `type` is replaced as a whole. One rank reads the files
+//! ([`inline_files`]). All ranks resolve the names, after the overrides of the command line
 //! ([`resolve`]). Nothing is ever written.
 
 use std::path::Path;
 
+use serde::Deserialize;
 use serde_json::Value;
 
-use super::errors::{Fault, SceneError, one_line, suggest};
-use super::model::Course;
+use super::errors::{SceneError, SceneFault, one_line, suggest};
+use super::model::{Course, Side};
 use super::table::{is_hdf5, read_hdf5};
 use super::validate::join;
 use crate::material::Table;
 use crate::scene::input_file::{self, InputFault, LARGEST_JSON, LARGEST_NUMBERS};
 
-/// The materials of the library; each file holds one as it stands in a scene.
+/// The materials of the library; each file contains one material in the format of a scene.
 pub const LIBRARY: [(&str, &str); 29] = [
     ("aluminium_1100", include_str!("../../inputs/materials/aluminium_1100.json")),
     ("aluminium_2024", include_str!("../../inputs/materials/aluminium_2024.json")),
@@ -65,8 +66,8 @@ pub const LIBRARY: [(&str, &str); 29] = [
     ("water", include_str!("../../inputs/materials/water.json")),
 ];
 
-/// Puts `edit` into `base`: objects key by key, unless they are of another `type`, anything else as
-/// a whole.
+/// Merges `edit` into `base`: objects key by key, unless their `type` differs; other values as a
+/// whole.
 fn merge(base: &mut Value, edit: Value) {
     match (base, edit) {
         (Value::Object(base), Value::Object(edit))
@@ -80,8 +81,8 @@ fn merge(base: &mut Value, edit: Value) {
     }
 }
 
-/// Replaces names of the library by what they stand for.
-pub(super) fn resolve(scene: &mut Value) -> Result<(), Fault> {
+/// Replaces names of the library by their materials.
+pub(super) fn resolve(scene: &mut Value) -> Result<(), SceneFault> {
     let Some(materials) = scene.get_mut("materials").and_then(Value::as_object_mut) else {
         return Ok(());
     };
@@ -91,14 +92,14 @@ pub(super) fn resolve(scene: &mut Value) -> Result<(), Fault> {
         if let Some(file) = object.get("file") {
             let reason = "is read with the scene's own file alone; allowed: to name it there, or \
                           \"library\"";
-            return Err(Fault::new(format!("{path}.file"), file, reason));
+            return Err(SceneFault::new(format!("{path}.file"), file, reason));
         }
         let Some(name) = object.remove("library") else { continue };
         let known = LIBRARY.iter().map(|(name, _)| *name);
         let found = LIBRARY.iter().find(|(known, _)| name == *known);
         let Some((_, text)) = found else {
             let reason = format!("no such material{}", suggest(name.as_str().unwrap_or(""), known));
-            return Err(Fault::new(format!("{path}.library"), name, reason));
+            return Err(SceneFault::new(format!("{path}.library"), name, reason));
         };
         let mut made: Value = serde_json::from_str(text).expect("the library is JSON");
         merge(&mut made, material.take());
@@ -107,13 +108,13 @@ pub(super) fn resolve(scene: &mut Value) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Replaces files of materials and of tables by what stands in them; `folder` is the scene's.
-/// Tells whether there was one.
+/// Replaces files of materials and tables by their contents; `folder` is that of the scene. Returns
+/// whether there were any.
 pub(super) fn inline_files(scene: &mut Value, folder: &Path) -> Result<bool, SceneError> {
     let mut found = false;
     let materials = scene.get_mut("materials").and_then(Value::as_object_mut);
     for material in materials.into_iter().flat_map(|m| m.values_mut()) {
-        // a table beside the name of a file is the scene's own
+        // the path of a table next to the key `file` is relative to the scene
         found |= inline_tables(material, folder)?;
         let Some(object) = material.as_object_mut() else { continue };
         let Some(Value::String(name)) = object.get("file") else { continue };
@@ -137,14 +138,14 @@ pub(super) fn inline_files(scene: &mut Value, folder: &Path) -> Result<bool, Sce
     Ok(found)
 }
 
-/// Replaces the file of a material's table by the table.
+/// Replaces the file name of a material's table by the table.
 fn inline_tables(material: &mut Value, folder: &Path) -> Result<bool, SceneError> {
     let mut found = false;
     for place in ["/eos/table", "/eos/solid/table"] {
         let Some(Value::String(name)) = material.pointer(place) else { continue };
         let file = folder.join(name);
         let table = match is_hdf5(&file) {
-            // that it is a file at all is told in the same words
+            // so that a missing or irregular file gives the same message as for text files
             true => input_file::check(&file, LARGEST_NUMBERS)
                 .map_err(|reason| cannot(&file, &reason))
                 .and_then(|()| read_hdf5(&file).map_err(|reason| fault(&file, reason))),
@@ -161,19 +162,19 @@ fn inline_tables(material: &mut Value, folder: &Path) -> Result<bool, SceneError
     Ok(found)
 }
 
-/// Replaces files of the pressures and velocities of sides by what stands in them; `folder` is the
-/// scene's. Tells whether there was one.
+/// Replaces files of time functions of sides by their contents; `folder` is that of the scene.
+/// Returns whether there were any.
 pub(super) fn inline_courses(scene: &mut Value, folder: &Path) -> Result<bool, SceneError> {
     let mut found = false;
     let sides = scene.get_mut("boundary").and_then(Value::as_object_mut);
     for side in sides.into_iter().flat_map(|sides| sides.values_mut()) {
-        for quantity in ["pressure", "velocity"] {
-            let Some(Value::String(name)) = side.get(quantity) else { continue };
-            let file = folder.join(name);
-            let points = Course::read(&read_text(&file, LARGEST_NUMBERS)?, quantity);
-            side[quantity] = serde_json::json!(points.map_err(|reason| fault(&file, reason))?);
-            found = true;
-        }
+        // the check of the scene rejects an invalid side
+        let Ok(kind) = Side::deserialize(&*side) else { continue };
+        let (Some(Course::File(name)), quantity) = (kind.course(), kind.name()) else { continue };
+        let file = folder.join(name);
+        let points = Course::read(&read_text(&file, LARGEST_NUMBERS)?, quantity);
+        side[quantity] = serde_json::json!(points.map_err(|reason| fault(&file, reason))?);
+        found = true;
     }
     Ok(found)
 }
@@ -193,13 +194,13 @@ fn fault(file: &Path, reason: String) -> SceneError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::hugoniot::{MaterialState, piston};
-    use crate::material::constitutive::{equation, flow_of, products};
-    use crate::material::strength::Condition;
+    use crate::exact::hugoniot::{HugoniotState, piston};
+    use crate::material::constitutive::{equation, strength_model};
+    use crate::material::strength::MaterialState;
     use crate::scene::Material;
     use serde_json::json;
 
-    fn resolved(material: Value) -> Result<Value, Fault> {
+    fn resolved(material: Value) -> Result<Value, SceneFault> {
         let mut scene = json!({"materials": {"m": material}});
         resolve(&mut scene)?;
         Ok(scene["materials"]["m"].take())
@@ -231,8 +232,8 @@ mod tests {
         let yields = |name: &str, strain: f64, pressure: f64| {
             let text = LIBRARY.iter().find(|(known, _)| *known == name).unwrap().1;
             let material: Material = serde_json::from_str(text).unwrap();
-            let at = Condition { compression: 1.0, pressure, temperature: 298.0 };
-            flow_of(&material).unwrap().yield_stress(strain, &at)
+            let at = MaterialState { compression: 1.0, pressure, temperature: 298.0 };
+            strength_model(&material).unwrap().yield_stress(strain, &at)
         };
         // a + b ep^n at the reference rate; Y0 (1 + beta ep)^n up to Ymax, times 1 + A p
         for (name, strain, pressure, want) in [
@@ -259,15 +260,15 @@ mod tests {
             }
             let material: Material = serde_json::from_value(value).unwrap();
             assert!(material.source.len() > 30, "{name}");
-            if let Some(products) = products(&material.eos, material.density) {
-                // the speed that the handbook gives beside the constants
+            if let Some(products) = material.eos.products(material.density) {
+                // the detonation velocity that the handbook gives with the constants
                 let (_, said) = material.source.split_once("detonation velocity of ").unwrap();
                 let said: f64 = said.split(' ').next().unwrap().parse().unwrap();
                 let speed = products.detonation().speed;
                 assert!((speed / said - 1.0).abs() < 0.01, "{name}: {speed}");
             } else {
                 let eos = equation(&material).unwrap().unwrap();
-                let rest = MaterialState::at_rest(&*eos, 0.0, 0.0);
+                let rest = HugoniotState::at_rest(&*eos, 0.0, 0.0);
                 let front = piston(&*eos, &rest, 100.0).unwrap()[0];
                 let (c, us) = (rest.sound_speed, front.speed);
                 assert!(us > c && us < c + 500.0, "{name}: {c} {us}");

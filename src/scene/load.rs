@@ -1,7 +1,7 @@
-//! From a file to a checked scene: read, parse, override, hold against the schema, check.
+//! From a file to a checked scene: read, parse, override, validate against the schema, check.
 //!
-//! Knows no MPI: one rank reads the bytes and sends them, every rank parses them, and
-//! [`parse`] looks at nothing but its arguments, so that all reach the same verdict.
+//! Independent of MPI: one rank reads the bytes and sends them, and every rank parses them.
+//! [`parse`] depends only on its arguments, so all ranks reach the same result.
 
 use std::fmt;
 use std::path::Path;
@@ -10,17 +10,18 @@ use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 
 use super::check::tiles;
-use super::errors::{Fault, LONGEST_VALUE, SceneError, one_line, shorten};
+use super::errors::{LONGEST_VALUE, SceneError, SceneFault, one_line, shorten};
 use super::library::{inline_courses, inline_files, resolve};
+use super::migrate::check_format;
 use super::overrides::{apply, check_allowed};
 use super::{BYTES_PER_PARTICLE, CheckedScene, Scene, validate::conform};
 use crate::geometry::read_points;
 use crate::scene::input_file::{self, InputFault};
 
-/// A scene's file may be this long [bytes].
+/// Maximum size of a scene file [bytes].
 pub const LARGEST_FILE: u64 = input_file::LARGEST_JSON;
 
-/// Reads the text of a scene, at most [`LARGEST_FILE`] bytes; it is not looked into.
+/// Reads the text of a scene, at most [`LARGEST_FILE`] bytes, without checking its contents.
 pub fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
     let fail = |reason: String| SceneError::File {
         file: one_line(&path.display().to_string()),
@@ -42,10 +43,10 @@ pub fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
     with_files(bytes, path)
 }
 
-/// The text of a scene with what its files of positions, materials, tables, pressures and velocities
-/// hold in their place: what the other ranks are sent is whole.
+/// The text of a scene with the contents of its files of positions, materials, tables, pressures
+/// and velocities inserted, so that the text sent to the other ranks is complete.
 fn with_files(bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>, SceneError> {
-    // what is wrong with the text is told when it is parsed
+    // errors of the text are reported when it is parsed
     let Ok(mut scene) = serde_json::from_slice::<Value>(&bytes) else { return Ok(bytes) };
     let plane =
         scene.pointer("/domain/lower").and_then(Value::as_array).is_some_and(|l| l.len() > 1);
@@ -71,9 +72,10 @@ fn with_files(bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>, SceneError> {
     Ok(if found { serde_json::to_vec(&scene).unwrap_or(bytes) } else { bytes })
 }
 
-/// Makes a checked scene of a file's bytes and the overrides `PATH=VALUE`, in their order.
+/// Parses the bytes of a file, applies the overrides `PATH=VALUE` in their order, and checks the
+/// scene.
 ///
-/// `file` names the scene in messages. The first fault ends it.
+/// `file` is the name of the scene in messages. The first fault is returned.
 pub fn parse(bytes: &[u8], file: &str, sets: &[String]) -> Result<CheckedScene, SceneError> {
     let mut value = parse_json(bytes, file)?;
     if value.is_object() {
@@ -84,8 +86,8 @@ pub fn parse(bytes: &[u8], file: &str, sets: &[String]) -> Result<CheckedScene, 
     from_value(value, file)
 }
 
-/// Refuses a scene of which the particles that are made one by one as it is checked need more than
-/// `available` bytes; other faults are left to [`parse`], which makes them.
+/// Rejects a scene whose individually generated particles, which the check of the scene creates,
+/// need more than `available` bytes. Other faults are left to [`parse`].
 pub fn check_size(
     bytes: &[u8],
     file: &str,
@@ -108,8 +110,8 @@ pub fn check_size(
     }
 }
 
-/// Makes a checked scene of that of a checkpoint and of overrides, which may change only keys that
-/// are in `allowed` or stand below one that is.
+/// Parses and checks the scene of a checkpoint with overrides, which may change only keys in
+/// `allowed` or below them.
 pub fn parse_changed(
     bytes: &[u8],
     file: &str,
@@ -120,23 +122,25 @@ pub fn parse_changed(
     parse(bytes, file, sets)
 }
 
-/// Checks a scene that was not read from a file; `file` names it in messages.
+/// Checks a scene that was not read from a file; `file` is its name in messages.
 pub fn check(scene: Scene, file: &str) -> Result<CheckedScene, SceneError> {
-    // a number that is not finite becomes null here, and is refused as such
-    let value =
-        serde_json::to_value(scene).map_err(|e| Fault::missing("", e.to_string()).within(file))?;
+    // a number that is not finite becomes null here, and is rejected as such
+    let value = serde_json::to_value(scene)
+        .map_err(|e| SceneFault::missing("", e.to_string()).within(file))?;
     from_value(value, file)
 }
 
 fn from_value(mut value: Value, file: &str) -> Result<CheckedScene, SceneError> {
     resolve(&mut value).map_err(|fault| fault.within(file))?;
+    check_format(&value).map_err(|fault| fault.within(file))?;
     conform(&value).map_err(|fault| fault.within(file))?;
-    let scene = serde_path_to_error::deserialize(value)
-        .map_err(|e| Fault::missing(e.path().to_string(), e.inner().to_string()).within(file))?;
+    let scene = serde_path_to_error::deserialize(value).map_err(|e| {
+        SceneFault::missing(e.path().to_string(), e.inner().to_string()).within(file)
+    })?;
     CheckedScene::new(scene, file).map_err(|fault| fault.within(file))
 }
 
-/// Parses JSON text; a key that stands twice is a fault.
+/// Parses JSON text; a duplicate key is an error.
 fn parse_json(bytes: &[u8], file: &str) -> Result<Value, SceneError> {
     let fail = |reason: &str| SceneError::File { file: one_line(file), reason: reason.to_string() };
     let text = std::str::from_utf8(bytes).map_err(|error| {
@@ -167,7 +171,7 @@ fn key_path(path: &str) -> &str {
     path.trim_end_matches('?').trim_end_matches('.')
 }
 
-/// What serde_json says, in plain words and with the text that it stumbled over.
+/// The message of serde_json in plain words, with the text at which it failed.
 fn syntax_reason(text: &str, error: &serde_json::Error) -> String {
     let said = error.to_string();
     let said = said.split(" at line ").next().unwrap_or(&said);
@@ -198,7 +202,7 @@ fn is_word(token: &str) -> bool {
     token.chars().any(char::is_alphanumeric)
 }
 
-/// The word about a line and column, both from 1, the column in bytes.
+/// The word at a line and column, both from 1, the column in bytes.
 fn token_at(text: &str, line: usize, column: usize) -> String {
     let line = text.split('\n').nth(line.saturating_sub(1)).unwrap_or("");
     let mut at = column.saturating_sub(1).min(line.len());
@@ -215,7 +219,7 @@ fn token_at(text: &str, line: usize, column: usize) -> String {
     shorten(&word, LONGEST_VALUE)
 }
 
-/// A JSON value in whose objects no key stands twice.
+/// A JSON value without duplicate keys in its objects.
 struct Strict(Value);
 
 impl<'de> Deserialize<'de> for Strict {

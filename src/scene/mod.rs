@@ -1,14 +1,15 @@
-//! The scene: what a run is told, read from JSON and checked once, whole.
+//! The scene: the input of a run, read from JSON and checked as a whole once.
 //!
-//! [`read`] takes the bytes from a file, [`parse`] makes a [`CheckedScene`] of them or one
-//! [`SceneError`] of one line: the key's path, its value, what is allowed. Knows no MPI and no
-//! particles.
+//! [`read`] takes the bytes from a file. [`parse`] turns them into a [`CheckedScene`] or a
+//! [`SceneError`] of one line: path of the key, its value, and what is allowed. Independent of MPI
+//! and particles.
 
 mod check;
 mod errors;
 pub mod input_file;
 mod library;
 mod load;
+mod migrate;
 mod model;
 pub mod motion;
 pub mod moving_frame;
@@ -24,5 +25,6 @@ pub use check::{
 pub use errors::SceneError;
 pub use library::LIBRARY;
 pub use load::{LARGEST_FILE, check, check_size, parse, parse_changed, read};
+pub use migrate::migrate;
 pub use model::*;
 pub use schema::schema;

@@ -1,35 +1,36 @@
-//! Motions that bodies start with, and body forces: functions of place and time.
+//! Initial motions of bodies, and body forces: functions of position and time.
 //!
-//! Knows no particles and no grid. Places and velocities are pairs; on a line y is 0.
+//! Independent of particles and grid. Positions and velocities are pairs; in one dimension y is 0.
 
 use crate::exact::plane::{Gresho, ShearLayer, ShearProfile, Vector, Vortex, rotation};
+use crate::material::IdealGasParameters;
 use crate::scene::{Eos, Material, RingVortex, ShearForm, VelocityField};
 
-/// A velocity that differs from place to place.
+/// A velocity that varies in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
     /// A rigid rotation about a point [m] at a rate [rad/s].
     Rotation(Vector, f64),
     /// A shear layer.
     ShearLayer(ShearLayer),
-    /// Gresho's vortex.
+    /// The Gresho vortex.
     Gresho(Gresho),
-    /// Away from a point [m] at a speed [m/s].
+    /// Uniform speed [m/s] away from a point [m].
     Radial(Vector, f64),
     /// The generalized vortex at time 0.
     Vortex(Vortex),
 }
 
-/// The generalized vortex of a solid of `material`; `None` for what is no neo-Hookean solid.
+/// The generalized vortex of a solid of `material`; `None` unless this is a neo-Hookean solid.
 pub fn vortex_of(ring: &RingVortex, material: &Material) -> Option<Vortex> {
-    let Eos::NeoHookean { youngs_modulus, poissons_ratio } = material.eos else { return None };
+    let Eos::NeoHookean(solid) = &material.eos else { return None };
     Some(Vortex {
         inner: ring.inner,
         outer: ring.outer,
         amplitude: ring.amplitude,
         period: ring.period,
-        youngs_modulus,
-        poissons_ratio,
+        youngs_modulus: solid.youngs_modulus,
+        poissons_ratio: solid.poissons_ratio,
         density: material.density,
     })
 }
@@ -39,8 +40,8 @@ fn pair(numbers: &[f64]) -> Vector {
 }
 
 impl Motion {
-    /// The motion that a scene names, of a body of `material`. Fails on constants that make none,
-    /// or a material that has no such motion: the words of a fault.
+    /// The motion of a velocity field of the scene, for a body of `material`. The error is the
+    /// reason if the constants are invalid or the material does not support the motion.
     pub fn new(field: &VelocityField, material: &Material) -> Result<Motion, String> {
         let told = |error: crate::exact::ExactError| error.to_string();
         Ok(match field {
@@ -55,7 +56,7 @@ impl Motion {
                 Motion::ShearLayer(layer.map_err(told)?)
             }
             VelocityField::Gresho(g) => {
-                let Eos::IdealGas { gamma } = material.eos else {
+                let Eos::IdealGas(IdealGasParameters { gamma }) = material.eos else {
                     return Err("Gresho's vortex is one of an ideal gas".into());
                 };
                 let vortex = Gresho {
@@ -78,7 +79,7 @@ impl Motion {
         })
     }
 
-    /// Velocity at the place `x` [m/s].
+    /// Velocity at the position `x` [m/s].
     pub fn velocity(&self, x: Vector) -> Vector {
         match self {
             Motion::Rotation(about, rate) => rotation::rigid_velocity(x, *about, *rate),
@@ -93,7 +94,7 @@ impl Motion {
         }
     }
 
-    /// Gradient of the velocity at `x`, by differences over `step` [m] about it [1/s].
+    /// Gradient of the velocity at `x` [1/s], by differences over `step` [m].
     pub fn gradient(&self, x: Vector, step: f64) -> [[f64; 2]; 2] {
         let along = |b: usize| {
             let at = |h: f64| {
@@ -108,7 +109,7 @@ impl Motion {
         [0, 1].map(|a| [columns[0][a], columns[1][a]])
     }
 
-    /// Pressure at `x` [Pa], where the motion has one of its own.
+    /// Pressure at `x` [Pa], if the motion defines one.
     pub fn pressure(&self, x: Vector) -> Option<f64> {
         match self {
             Motion::Gresho(vortex) => {
@@ -119,7 +120,7 @@ impl Motion {
         }
     }
 
-    /// Greatest pressure anywhere [Pa], where the motion has one of its own.
+    /// Largest pressure anywhere [Pa], if the motion defines one.
     pub fn top_pressure(&self) -> Option<f64> {
         match self {
             Motion::Gresho(vortex) => Some(vortex.pressure(2.0 * vortex.radius)),
@@ -127,7 +128,7 @@ impl Motion {
         }
     }
 
-    /// No speed in a box from `lower` to `upper` is greater [m/s].
+    /// Upper bound of the speed in the box from `lower` to `upper` [m/s].
     pub fn top_speed(&self, lower: &[f64], upper: &[f64]) -> f64 {
         match self {
             Motion::Rotation(about, rate) => {
@@ -187,7 +188,7 @@ mod tests {
         let field = VelocityField::Radial(crate::scene::Radial { about: vec![0.5], speed: -2.0 });
         let material = Material {
             density: 1.0,
-            eos: Eos::IdealGas { gamma: 1.4 },
+            eos: Eos::IdealGas(IdealGasParameters { gamma: 1.4 }),
             source: String::new(),
             strength: None,
             failure: None,

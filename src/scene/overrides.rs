@@ -1,14 +1,15 @@
-//! Overrides `PATH=VALUE` from the command line, put into a scene's JSON before it is checked.
+//! Overrides `PATH=VALUE` from the command line, applied to the JSON of a scene before it is
+//! checked.
 //!
-//! A path is keys joined by dots. An entry of an array is told by its `name` or its number,
-//! `bodies.flyer` or `bodies.0` or `bodies[0]`; a key with a dot in it stands in double quotes,
-//! `materials."Al 6061.T6".density`. Objects that are missing on the way are made.
+//! A path is a list of keys joined by dots. An entry of an array is given by its `name` or its
+//! number: `bodies.flyer`, `bodies.0` or `bodies[0]`. A key that contains a dot is in double
+//! quotes: `materials."Al 6061.T6".density`. Missing objects along the path are created.
 
 use serde_json::{Map, Value};
 
 use super::errors::{LONGEST_REASON, LONGEST_VALUE, SceneError, list, nearest, one_line, shorten};
 
-/// More keys than any path of a scene has.
+/// Maximum number of keys in a path, more than any path of a scene has.
 const LONGEST_PATH: usize = 32;
 
 const FORM: &str = "allowed: PATH=VALUE, such as time.end=1e-6 or bodies.flyer.velocity=[500]";
@@ -31,7 +32,7 @@ pub(super) fn apply(scene: &mut Value, set: &str) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Refuses an override of a key that is none of `allowed` nor stands below one of them.
+/// Rejects an override of a key that is neither in `allowed` nor below such a key.
 pub(super) fn check_allowed(set: &str, allowed: &[&str]) -> Result<(), SceneError> {
     let fail = |reason: String| SceneError::Set {
         set: one_line(&shorten(set, LONGEST_VALUE)),
@@ -50,7 +51,7 @@ pub(super) fn check_allowed(set: &str, allowed: &[&str]) -> Result<(), SceneErro
     )))
 }
 
-/// The keys of the path, and the text of the value.
+/// Splits an override into the keys of its path and the text of its value.
 fn split(set: &str) -> Result<(Vec<String>, &str), String> {
     let mut keys = Vec::new();
     let mut rest = set;
@@ -85,7 +86,7 @@ fn split(set: &str) -> Result<(Vec<String>, &str), String> {
     }
 }
 
-/// The place of `key` in `parent`, which stands at `path`; made if an object lacks it.
+/// The value of `key` in `parent`, which is at `path`; created if an object lacks it.
 fn enter<'a>(parent: &'a mut Value, path: &str, key: &str) -> Result<&'a mut Value, String> {
     if parent.is_null() {
         *parent = Value::Object(Map::new());
@@ -103,7 +104,7 @@ fn enter<'a>(parent: &'a mut Value, path: &str, key: &str) -> Result<&'a mut Val
     }
 }
 
-/// The entry whose name is `key`, else the one whose number it is.
+/// Index of the entry whose name is `key`, else of the one whose number it is.
 fn find_entry(entries: &[Value], path: &str, key: &str) -> Result<usize, String> {
     let names: Vec<_> =
         entries.iter().filter_map(|entry| entry.get("name").and_then(Value::as_str)).collect();

@@ -1,23 +1,24 @@
-//! The JSON schema of a scene, made from its structs.
+//! The JSON schema of a scene, generated from its structs.
 
 use schemars::{Schema, generate::SchemaSettings, transform::RecursiveTransform};
 use serde_json::{Value, json};
 
-/// No number of a scene has a greater magnitude: products of four, such as an energy of a body,
-/// stay finite.
+/// Largest magnitude of any number in a scene. Products of four such numbers, for example an energy
+/// of a body, stay finite.
 pub(super) const GREATEST: f64 = 1e75;
 
-/// No number of a scene that has to be above 0 is smaller: quotients of four stay finite.
+/// Smallest value of a number in a scene that must be positive. Quotients of four such numbers stay
+/// finite.
 pub(super) const LEAST: f64 = 1e-150;
 
-/// The JSON schema of a scene (draft 2020-12); units stand in the descriptions. A number that has
-/// no bounds of its own has those of every number.
+/// The JSON schema of a scene (draft 2020-12); units are in the descriptions. A number without
+/// bounds of its own has the general bounds.
 pub fn schema() -> Value {
     let settings = SchemaSettings::draft2020_12().with_transform(RecursiveTransform(bound));
     settings.into_generator().into_root_schema_for::<super::Scene>().to_value()
 }
 
-/// Adds the bounds of every number to those of one.
+/// Adds the general bounds to those of one number.
 fn bound(schema: &mut Schema) {
     let of = |key: &str| schema.get(key).and_then(Value::as_f64);
     let is_number = schema.get("type").is_some_and(|kind| match kind {

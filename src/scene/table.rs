@@ -1,26 +1,27 @@
-//! Tables of equations of state beside a scene's file: CSV, or HDF5 with the data sets `density` and
-//! `specific_internal_energy` of one dimension and `pressure` of two, a row a density.
+//! Tables of equations of state in separate files: CSV, or HDF5 with the one-dimensional data sets
+//! `density` and `specific_internal_energy` and the two-dimensional `pressure`, one row per
+//! density.
 
 use std::path::Path;
 
 use crate::material::Table;
 
-/// A table may have this many nodes: a hundred bytes each as text.
+/// Maximum number of nodes of a table, at about a hundred bytes of text each.
 const MOST_NODES: usize = 1 << 22;
 
-/// Whether a file is HDF5 by its name.
+/// Whether a file name denotes HDF5.
 pub(super) fn is_hdf5(file: &Path) -> bool {
     let ends = |known: &str| file.extension().is_some_and(|e| e.eq_ignore_ascii_case(known));
     ["h5", "hdf5", "hdf"].into_iter().any(ends)
 }
 
-/// Reads a table from HDF5; fails with what is wrong.
+/// Reads a table from HDF5; the error is the reason.
 pub(super) fn read_hdf5(file: &Path) -> Result<Table, String> {
     let open = || -> hdf5::Result<Result<Table, String>> {
         let file = hdf5::File::open(file)?;
         let data = |name: &str| file.dataset(name);
         let line = |name: &str| data(name)?.read_1d::<f64>();
-        // what a data set claims to hold takes memory before a value is read
+        // check the declared size, which takes memory before any value is read
         for name in ["density", "specific_internal_energy", "pressure"] {
             let shape = data(name)?.shape();
             let values = shape.iter().fold(1, |product: usize, &n| product.saturating_mul(n));

@@ -1,29 +1,29 @@
-//! A scene's JSON text held against the schema of its structs.
+//! Validation of a scene's JSON text against the schema of its structs.
 //!
-//! Faults of type, name and bounds are found here rather than by serde, whose messages lose the
-//! path inside of tagged enums; so what an editor shows, what `schema` prints and what a run
-//! accepts cannot differ. Only those words of JSON schema are known here that the scene's
-//! structs bring forth.
+//! Errors of type, name and bounds are found here rather than by serde, whose messages lose the
+//! path inside tagged enums. The schema in an editor, the output of `schema` and the input that a
+//! run accepts can therefore not differ. Only those JSON schema keywords are supported that the
+//! structs of the scene produce.
 
 use std::cell::RefCell;
 
 use serde_json::{Map, Value};
 
-use super::errors::{Fault, list, nearest, suggest};
+use super::errors::{SceneFault, list, nearest, suggest};
 use super::schema::{GREATEST, LEAST};
 
-/// `key` as a path takes it: in double quotes where it could be misread.
+/// `key` as written in a path: in double quotes if it would be ambiguous.
 pub(super) fn quote(key: &str) -> String {
     let plain = !key.is_empty() && !key.contains(['.', '[', ']', '=', '"']);
     if plain { key.to_string() } else { Value::from(key).to_string() }
 }
 
-/// Path of `key` below `path`, as `--set` takes it.
+/// Path of `key` below `path`, in the syntax of `--set`.
 pub(super) fn join(path: &str, key: &str) -> String {
     if path.is_empty() { quote(key) } else { format!("{path}.{}", quote(key)) }
 }
 
-/// The key of an entry of an array: its name where no other has the same, else its number.
+/// Key of an array entry in a path: its name if that is unique, else its number.
 fn entry_key(entries: &[Value], i: usize) -> String {
     let name = |entry: &Value| entry.get("name").and_then(Value::as_str).map(str::to_string);
     let unlike_others = |own: &String| {
@@ -32,8 +32,8 @@ fn entry_key(entries: &[Value], i: usize) -> String {
     name(&entries[i]).filter(unlike_others).map_or(format!("[{i}]"), |own| quote(&own))
 }
 
-/// Holds `scene` against the schema; the first fault is told.
-pub(super) fn conform(scene: &Value) -> Result<(), Fault> {
+/// Validates `scene` against the schema; returns the first fault.
+pub(super) fn conform(scene: &Value) -> Result<(), SceneFault> {
     let root = super::schema();
     let empty = Map::new();
     let definitions = root.get("$defs").and_then(Value::as_object).unwrap_or(&empty);
@@ -42,7 +42,7 @@ pub(super) fn conform(scene: &Value) -> Result<(), Fault> {
 
 struct Conform<'a> {
     definitions: &'a Map<String, Value>,
-    /// Definitions that are being put into words: one that holds itself is told by its name.
+    /// Definitions that are being described; a recursive one is referred to by its name.
     open: RefCell<Vec<String>>,
 }
 
@@ -52,7 +52,7 @@ impl Conform<'_> {
         name.and_then(|name| self.definitions.get(name)).unwrap_or(schema)
     }
 
-    fn check(&self, schema: &Value, value: &Value) -> Result<(), Fault> {
+    fn check(&self, schema: &Value, value: &Value) -> Result<(), SceneFault> {
         let schema = self.resolve(schema);
         if let Some(options) = schema.get("anyOf").and_then(Value::as_array) {
             let option = options.iter().find(|o| has_type(self.resolve(o), value));
@@ -75,8 +75,8 @@ impl Conform<'_> {
         }
     }
 
-    /// What is allowed instead of `value`.
-    fn wrong(&self, schema: &Value, value: &Value) -> Fault {
+    /// Fault of `value`, with a description of the allowed values.
+    fn wrong(&self, schema: &Value, value: &Value) -> SceneFault {
         if let Some(number) = value.as_f64().filter(|_| types(schema).contains(&"number")) {
             let is = |key: &str, bound: f64| {
                 schema.get(key).and_then(Value::as_f64).is_some_and(|known| known == bound)
@@ -87,17 +87,22 @@ impl Conform<'_> {
                 let reason = format!(
                     "too great for a computation; allowed: a magnitude of at most {GREATEST:e}"
                 );
-                return Fault::new("", value, reason);
+                return SceneFault::new("", value, reason);
             }
             if number > 0.0 && number < LEAST && is("minimum", LEAST) {
                 let reason = format!("too small for a computation; allowed: at least {LEAST:e}");
-                return Fault::new("", value, reason);
+                return SceneFault::new("", value, reason);
             }
         }
-        Fault::new("", value, format!("not allowed; allowed: {}", self.allowed(schema)))
+        SceneFault::new("", value, format!("not allowed; allowed: {}", self.allowed(schema)))
     }
 
-    fn check_array(&self, schema: &Value, entries: &[Value], value: &Value) -> Result<(), Fault> {
+    fn check_array(
+        &self,
+        schema: &Value,
+        entries: &[Value],
+        value: &Value,
+    ) -> Result<(), SceneFault> {
         let least = schema.get("minItems").and_then(Value::as_u64).unwrap_or(0);
         let most = schema.get("maxItems").and_then(Value::as_u64).unwrap_or(u64::MAX);
         if !(least..=most).contains(&(entries.len() as u64)) {
@@ -110,7 +115,7 @@ impl Conform<'_> {
         Ok(())
     }
 
-    fn check_object(&self, schema: &Value, object: &Map<String, Value>) -> Result<(), Fault> {
+    fn check_object(&self, schema: &Value, object: &Map<String, Value>) -> Result<(), SceneFault> {
         let empty = Map::new();
         let known = schema.get("properties").and_then(Value::as_object).unwrap_or(&empty);
         let others = schema.get("additionalProperties").filter(|others| others.is_object());
@@ -120,7 +125,7 @@ impl Conform<'_> {
                 None => {
                     let names = known.keys().map(String::as_str);
                     let reason = format!("unknown key{}", suggest(key, names));
-                    return Err(Fault::new(quote(key), value, reason));
+                    return Err(SceneFault::new(quote(key), value, reason));
                 }
             }
         }
@@ -129,19 +134,19 @@ impl Conform<'_> {
             if !object.contains_key(key) {
                 let allowed = self.allowed(&known[key]);
                 let reason = format!("missing key; allowed: {allowed}");
-                return Err(Fault::missing(key, reason));
+                return Err(SceneFault::missing(key, reason));
             }
         }
         Ok(())
     }
 
-    /// An enum: plain names, objects of one key, or objects that say their `type`.
+    /// An enum: plain names, objects with one key, or objects with a `type`.
     fn check_variants(
         &self,
         schema: &Value,
         variants: &[Value],
         value: &Value,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), SceneFault> {
         if variants.iter().any(|variant| constant(variant) == Some(value)) {
             return Ok(());
         }
@@ -160,35 +165,44 @@ impl Conform<'_> {
             None => {
                 let known: Vec<_> = variants.iter().filter_map(variant_name).collect();
                 let reason = format!("unknown name{}", suggest(key, known));
-                Err(Fault::new(quote(key), inner, reason))
+                Err(SceneFault::new(quote(key), inner, reason))
             }
         }
     }
 
-    /// An object that says by its `type` which variant it is.
-    fn check_tagged(&self, variants: &[Value], object: &Map<String, Value>) -> Result<(), Fault> {
+    /// An object whose `type` selects the variant.
+    fn check_tagged(
+        &self,
+        variants: &[Value],
+        object: &Map<String, Value>,
+    ) -> Result<(), SceneFault> {
         let known: Vec<_> = variants.iter().filter_map(tag).collect();
         let Some(value) = object.get("type") else {
-            return Err(Fault::missing("type", format!("missing key; allowed: {}", list(known))));
+            return Err(SceneFault::missing(
+                "type",
+                format!("missing key; allowed: {}", list(known)),
+            ));
         };
         let name = value.as_str().unwrap_or("");
         match variants.iter().find(|variant| tag(variant) == Some(name)) {
             Some(variant) => self.check_object(variant, object),
-            None => Err(Fault::new("type", value, format!("unknown type{}", suggest(name, known)))),
+            None => {
+                Err(SceneFault::new("type", value, format!("unknown type{}", suggest(name, known))))
+            }
         }
     }
 
-    /// A value that is none of the variants; a name that is near to one is told.
-    fn no_variant(&self, schema: &Value, variants: &[Value], value: &Value) -> Fault {
+    /// Fault of a value that is none of the variants; suggests a similar name.
+    fn no_variant(&self, schema: &Value, variants: &[Value], value: &Value) -> SceneFault {
         let name = value.as_str().unwrap_or("");
         let near = nearest(name, variants.iter().filter_map(variant_name));
         let near = variants.iter().find(|v| near.is_some() && variant_name(v) == near);
         let Some(near) = near else { return self.wrong(schema, value) };
         let (near, allowed) = (self.allowed(near), self.allowed(schema));
-        Fault::new("", value, format!("not allowed; did you mean {near}? allowed: {allowed}"))
+        SceneFault::new("", value, format!("not allowed; did you mean {near}? allowed: {allowed}"))
     }
 
-    /// What a schema allows, in words.
+    /// Description of the values that a schema allows.
     fn allowed(&self, schema: &Value) -> String {
         let name = schema.get("$ref").and_then(Value::as_str).and_then(|r| r.rsplit('/').next());
         let Some(name) = name else { return self.allowed_inside(schema) };
@@ -255,17 +269,17 @@ impl Conform<'_> {
     }
 }
 
-/// The one value that a variant stands for.
+/// The constant value of a variant, if it has one.
 fn constant(variant: &Value) -> Option<&Value> {
     variant.get("const")
 }
 
-/// The `type` of a variant that says it.
+/// The `type` of a tagged variant.
 fn tag(variant: &Value) -> Option<&str> {
     variant.get("properties")?.get("type")?.get("const")?.as_str()
 }
 
-/// The name of a variant: itself, or the only key of its object.
+/// Name of a variant: the constant itself, or the only key of its object.
 fn variant_name(variant: &Value) -> Option<&str> {
     match constant(variant) {
         Some(name) => name.as_str(),
@@ -281,7 +295,7 @@ fn types(schema: &Value) -> Vec<&str> {
     }
 }
 
-/// Whether `value` is of a type that the schema allows; variants are told apart later.
+/// Whether `value` is of a type that the schema allows; variants are distinguished later.
 fn has_type(schema: &Value, value: &Value) -> bool {
     if schema.get("oneOf").is_some() {
         return !value.is_null();
@@ -315,7 +329,7 @@ fn within_bounds(schema: &Value, value: &Value) -> bool {
         && number <= widest
 }
 
-/// The bounds of a number in words, with a blank before them.
+/// Description of the bounds of a number, with a leading space.
 fn bounds(schema: &Value) -> String {
     let mut texts = Vec::new();
     for (key, words) in [
@@ -325,7 +339,7 @@ fn bounds(schema: &Value) -> String {
         ("maximum", "at most"),
     ] {
         if let Some(bound) = schema.get(key).and_then(Value::as_f64)
-            // the bounds of every number go without saying, and so does one that another implies
+            // the general bounds are not shown, nor a bound that another one implies
             && ![GREATEST, -GREATEST, LEAST].contains(&bound)
             && !(key == "minimum" && schema.get("exclusiveMinimum").is_some())
         {

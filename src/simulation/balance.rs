@@ -1,22 +1,22 @@
-//! Patches move between ranks so that none waits for the busiest.
+//! Load balancing: patches move between ranks so that no rank waits for the busiest.
 
 use std::time::Instant;
 
 use decomp::{assign_patches, busiest_share, relocate};
 
-use super::Simulation;
+use super::run::Simulation;
 use crate::scene::BalanceCost;
 use crate::solver::clock::Activity;
 use crate::solver::patch::Patch;
 
-/// Steps between two in which the patches' cost is measured: looking at the clock is not free.
+/// Interval in steps between measurements of the patches' cost: reading the clock costs time.
 const SAMPLE_EVERY: u64 = 5;
 
-/// Handing a particle to another rank costs as much as this many steps of it: it is packed, sent
-/// and unpacked with all its columns, and its patch starts anew.
+/// Cost of moving a particle to another rank, in steps of that particle: it is packed, sent and
+/// unpacked with all its columns, and its patch is set up again.
 const MOVE_COST: u64 = 4;
 
-/// A gain smaller than this share of the busiest rank's load is noise.
+/// Gains below this fraction of the load of the busiest rank are noise.
 const WORTH: f64 = 0.03;
 
 impl<const D: usize> Simulation<'_, D> {
@@ -33,8 +33,8 @@ impl<const D: usize> Simulation<'_, D> {
         every > 0 && self.comm.size() > 1 && self.layout.patches().len() > 1
     }
 
-    /// Moves patches if a step asks for it and what was lost by not moving exceeds what moving
-    /// costs: however often it looks, it never loses more than twice what it must. Collective.
+    /// Moves patches if the step is due for it and the accumulated loss exceeds the cost of moving:
+    /// for any interval, the loss is at most twice the unavoidable one. Collective.
     pub(super) fn balance(&mut self) {
         let every = self.scene.scene.decomposition.balance.every;
         if !self.may_balance() || !self.step.is_multiple_of(every) {
@@ -42,26 +42,26 @@ impl<const D: usize> Simulation<'_, D> {
         }
         let start = Instant::now();
         let waited = self.comm.traffic().waited;
-        let (costs, rows) = self.gather_costs();
+        let (costs, particles) = self.gather_costs();
         let ranks = self.comm.size();
         let wanted = assign_patches(&costs, &self.order, ranks);
         let now = busiest_share(&costs, self.layout.ranks(), ranks);
         let then = busiest_share(&costs, &wanted, ranks);
-        let moved: u64 = (0..rows.len())
+        let moved: u64 = (0..particles.len())
             .filter(|&p| wanted[p] != self.layout.rank_of(p))
-            .map(|p| rows[p].max(1))
+            .map(|p| particles[p].max(1))
             .sum();
-        let mean = costs.iter().sum::<u64>() as f64 / rows.iter().sum::<u64>().max(1) as f64;
+        let mean = costs.iter().sum::<u64>() as f64 / particles.iter().sum::<u64>().max(1) as f64;
         let gain = (now - then.min(now)) as f64;
         let worth = gain > WORTH * now as f64;
-        self.forgone += if worth { gain * every as f64 } else { 0.0 };
-        let pays = self.forgone > (MOVE_COST * moved) as f64 * mean;
+        self.imbalance_debt += if worth { gain * every as f64 } else { 0.0 };
+        let pays = self.imbalance_debt > (MOVE_COST * moved) as f64 * mean;
         let waited = self.comm.traffic().waited - waited;
         self.clock.event("balance", start);
         self.clock.add(Activity::Wait, waited);
         self.clock.add_since(Activity::Balance, start, waited);
         if worth && pays {
-            self.forgone = 0.0;
+            self.imbalance_debt = 0.0;
             self.move_patches(wanted);
         }
     }
@@ -70,19 +70,19 @@ impl<const D: usize> Simulation<'_, D> {
     fn gather_costs(&self) -> (Vec<u64>, Vec<u64>) {
         let by_time = self.scene.scene.decomposition.balance.cost == BalanceCost::Time;
         let count = self.layout.patches().len();
-        let mut told = vec![0; 2 * count];
+        let mut sums = vec![0; 2 * count];
         let mine = self.layout.patches_of(self.comm.rank());
         for (patch, index) in self.patches.iter().zip(mine) {
-            let rows = patch.block.own() as i64;
-            let computed = if patch.rest.asleep() { 0 } else { rows };
-            // nanoseconds, so that a patch that was measured once has a cost
-            let measured = patch.watch.cost().map_or(computed, |c| (c * 1e9) as i64);
-            told[index] = if by_time { measured } else { computed };
-            told[count + index] = rows;
+            let particles = patch.block.own() as i64;
+            let computed = if patch.quiescence.is_quiescent() { 0 } else { particles };
+            // in nanoseconds, so that a patch that was measured once has a nonzero cost
+            let measured = patch.stopwatch.cost().map_or(computed, |c| (c * 1e9) as i64);
+            sums[index] = if by_time { measured } else { computed };
+            sums[count + index] = particles;
         }
-        self.comm.sum(&mut told);
-        let mut told = told.into_iter().map(|t| t as u64);
-        (told.by_ref().take(count).collect(), told.collect())
+        self.comm.sum(&mut sums);
+        let mut sums = sums.into_iter().map(|t| t as u64);
+        (sums.by_ref().take(count).collect(), sums.collect())
     }
 
     fn move_patches(&mut self, ranks: Vec<usize>) {
@@ -95,7 +95,7 @@ impl<const D: usize> Simulation<'_, D> {
         let limit = self.stepper.longest_within(reach);
         // the timeline of a patch stays with the rank that computed it
         self.given_events = self.take_patch_events();
-        // and so does what it tells of its last step's contact
+        // and so do the contact forces of its last step
         let rank = self.comm.rank();
         for (patch, index) in self.patches.iter().zip(self.layout.patches_of(rank)) {
             if new.rank_of(index) != rank {

@@ -1,12 +1,13 @@
-//! What a run tells of its particles: sums, tables, what is followed.
+//! Diagnostics of the particles: sums, tables, followed particles.
 
-use decomp::{exact_sums, gather_rows};
+use decomp::{exact_sums, gather_particles};
 use sha2::{Digest, Sha256};
 
-use super::Simulation;
+use super::run::Simulation;
 use crate::simulation::{ParticleTable, TableColumn};
+use crate::solver::effect::Account;
 
-/// Sums over all particles, to the same bits for any layout.
+/// Sums over all particles, bitwise the same for any layout.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Totals<const D: usize> {
     /// Mass [kg].
@@ -19,19 +20,19 @@ pub struct Totals<const D: usize> {
     pub kinetic: f64,
     /// Internal energy [J].
     pub internal: f64,
-    /// Work that a body force has done so far [J].
+    /// Accumulated work of the body force [J].
     pub body_force_work: f64,
-    /// Its impulse so far [kg m/s].
+    /// Accumulated impulse of the body force [kg m/s].
     pub body_force_impulse: [f64; D],
-    /// Heat that sides held at a temperature have given so far [J].
+    /// Accumulated heat from sides of prescribed temperature [J].
     pub conducted: f64,
-    /// Particles that have failed.
+    /// Number of failed particles.
     pub failed: u64,
-    /// Elastic energy that failure has made heat so far [J].
+    /// Elastic energy that failure has converted to heat so far [J].
     pub released: f64,
 }
 
-/// What a particle that is followed tells.
+/// State of a followed particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Followed<const D: usize> {
     /// Its position [m].
@@ -40,10 +41,10 @@ pub struct Followed<const D: usize> {
     pub velocity: [f64; D],
     /// Its pressure [Pa].
     pub pressure: f64,
-    /// Its pressure if the traction across x were zero, as on a free face [Pa]: 0 in a fluid, the
-    /// deviator's xx component where a material has strength.
+    /// Its pressure if the traction across x were zero, as on a free surface [Pa]: 0 in a fluid,
+    /// the xx component of the deviator if the material has strength.
     pub free_pressure: f64,
-    /// Half of its length [m]; in a plane that of a square of its volume.
+    /// Half of its length [m]; in a plane half the edge of a square of its volume.
     pub half_length: f64,
 }
 
@@ -67,10 +68,10 @@ impl<const D: usize> Simulation<'_, D> {
             released,
         ] = exact_sums(self.comm, |add: &mut dyn FnMut(usize, &[f64])| {
             for block in self.patches.iter().map(|patch| &patch.block) {
-                for from in (0..block.own()).step_by(ROWS) {
-                    let rows = from..block.own().min(from + ROWS);
-                    let n = rows.len();
-                    let column = |k: usize| &block.columns[k][rows.clone()][..n];
+                for from in (0..block.own()).step_by(PARTICLES_AT_ONCE) {
+                    let particles = from..block.own().min(from + PARTICLES_AT_ONCE);
+                    let n = particles.len();
+                    let column = |k: usize| &block.columns[k][particles.clone()][..n];
                     let (m, e) = (column(c.mass), column(c.energy));
                     let v: [&[f64]; D] = std::array::from_fn(|a| column(c.velocity + a));
                     let v = |a: usize, r: usize| v[a][r] + grid[a];
@@ -84,25 +85,10 @@ impl<const D: usize> Simulation<'_, D> {
                     for a in 0..D {
                         terms.each(4 + a, |r| m[r] * v(a, r));
                     }
-                    if let Some(force) = &c.body_force {
-                        let (work, pull) = (column(force.work), column(force.impulse));
-                        let pull = [pull, column(force.impulse + D - 1)];
-                        // seen from the scene, the grid's travel does work too, which is in the
-                        // books already where it accelerates
-                        let booked = c.frame_force.is_some();
-                        let travel = |a: usize, r| if booked { 0.0 } else { pull[a][r] * grid[a] };
-                        terms.each(6, |r| work[r] + (0..D).map(|a| travel(a, r)).sum::<f64>());
-                        for a in 0..D {
-                            terms.each(7 + a, |r| pull[a][r]);
-                        }
-                    }
-                    if let Some(received) = c.thermal.and_then(|c| c.received) {
-                        add(9, column(received));
-                    }
-                    if let Some(failure) = c.failure {
-                        let damage = column(failure.damage);
-                        Terms { add, n }.each(10, |r| f64::from(u8::from(damage[r] >= 1.0)));
-                        add(11, column(failure.released));
+                    for effect in self.stepper.effects.iter() {
+                        effect.totals(block, particles.clone(), grid, &mut |account, terms| {
+                            add(number_of(account), terms);
+                        });
                     }
                 }
             }
@@ -122,9 +108,9 @@ impl<const D: usize> Simulation<'_, D> {
         }
     }
 
-    /// Force between bodies in contact over the last step [N], in 1-D per unit area and in a plane
-    /// per unit depth: the sums over all places of contact of what presses across the plane of
-    /// contact, and of what drags along it. Zero without contact. Collective.
+    /// Contact force between bodies in the last step [N], in 1-D per unit area and in a plane per
+    /// unit depth: sums over all contact nodes of the normal and of the tangential force. Zero
+    /// without contact. Collective.
     pub fn contact_force(&self) -> [f64; 2] {
         exact_sums(self.comm, |add: &mut dyn FnMut(usize, &[f64])| {
             let told = self.patches.iter().flat_map(|p| &p.contact.told);
@@ -134,19 +120,29 @@ impl<const D: usize> Simulation<'_, D> {
         })
     }
 
-    /// All particles and the digest of the whole state, every bit in order of id, at rank 0;
-    /// nothing elsewhere. Collective.
+    /// All particles, and the digest of every bit of the whole state in order of id, at rank 0;
+    /// `None` on other ranks. Collective.
     pub fn gather(&self) -> Option<(ParticleTable, String)> {
         let c = &self.stepper.columns;
         let state = c.state();
-        let (ids, columns) = gather_rows(self.comm, self.patches.iter().map(|p| &p.block), &state);
+        let (ids, columns) =
+            gather_particles(self.comm, self.patches.iter().map(|p| &p.block), &state);
         if self.comm.rank() != 0 {
             return None;
         }
-        let digest = digest(&ids, &columns);
+        let digest = digest(&ids, &self.by_name(&state, &columns));
         let mut places = vec![usize::MAX; self.stepper.columns.specs.len()];
         state.iter().enumerate().for_each(|(place, &k)| places[k] = place);
         Some((self.table(&ids, |k| &columns[places[k]]), digest))
+    }
+
+    /// Columns of the `state` sorted by name, so that the digest does not depend on the order of
+    /// declaration.
+    fn by_name<'b>(&self, state: &[usize], columns: &'b [Vec<f64>]) -> Vec<&'b [f64]> {
+        let name = |k: &usize| self.stepper.columns.specs[state[*k]].name;
+        let mut order: Vec<usize> = (0..state.len()).collect();
+        order.sort_by_key(name);
+        order.into_iter().map(|k| &columns[k][..]).collect()
     }
 
     fn table<'b>(&self, ids: &[u64], column: impl Fn(usize) -> &'b Vec<f64>) -> ParticleTable {
@@ -156,10 +152,10 @@ impl<const D: usize> Simulation<'_, D> {
             column(c.position + a).iter().map(|x| x + travel[a]).collect()
         };
         let place: [Vec<f64>; D] = std::array::from_fn(moved);
-        // rows stand in order of id
+        // particles are in order of id
         let mut order: Vec<(f64, usize)> = place[0].iter().copied().zip(0..).collect();
         order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let order: Vec<usize> = order.into_iter().map(|(_, row)| row).collect();
+        let order: Vec<usize> = order.into_iter().map(|(_, particle)| particle).collect();
         let taken = |values: &Vec<f64>| pick(&order, |r| values[r]);
         let named = |name: &str, unit: &str, values| TableColumn {
             name: name.into(),
@@ -182,7 +178,7 @@ impl<const D: usize> Simulation<'_, D> {
             named("specific_internal_energy", "J/kg", taken(column(c.energy))),
             named("artificial_viscosity", "Pa", q.map_or_else(|| vec![0.0; ids.len()], taken)),
         ]);
-        if let Some(reference) = c.body_force.and_then(|c| c.reference) {
+        if let Some(reference) = c.initial_position.filter(|_| c.shows_initial_position) {
             for (a, name) in ["reference_x", "reference_y"].into_iter().enumerate() {
                 columns.push(named(name, "m", taken(column(reference + a))));
             }
@@ -193,7 +189,7 @@ impl<const D: usize> Simulation<'_, D> {
             for (k, name) in names.into_iter().enumerate().take(count) {
                 columns.push(named(name, "Pa", taken(column(stress + k))));
             }
-            // across, the trace leaves what is not in the plane; on a line half of it
+            // out of plane the component follows from the zero trace; on a line each takes half
             let (p, xx) = (column(c.pressure), column(stress));
             let yy = (D > 1).then(|| column(stress + 1));
             let across = |r: usize| {
@@ -202,19 +198,8 @@ impl<const D: usize> Simulation<'_, D> {
             };
             columns.push(named("stress_zz", "Pa", pick(&order, across)));
         }
-        if let Some(strength) = c.strength {
-            columns.push(named("plastic_strain", "-", taken(column(strength.plastic_strain))));
-        }
-        if let Some(failure) = c.failure {
-            columns.push(named("damage", "-", taken(column(failure.damage))));
-        }
-        if let Some(thermal) = c.thermal {
-            columns.push(named("temperature", "K", taken(column(thermal.temperature))));
-        }
-        let histories =
-            [("distension", c.distension), ("burn_fraction", c.burn.map(|c| c.fraction))];
-        for (name, k) in histories.into_iter().filter_map(|(name, k)| Some((name, k?))) {
-            columns.push(named(name, "-", taken(column(k))));
+        for output in &c.outputs {
+            columns.push(named(output.name, output.unit, taken(column(c.get(output.column)))));
         }
         if D > 1 {
             columns.push(named("volume", "m3", pick(&order, |r| v0[r] * j[r])));
@@ -233,8 +218,8 @@ impl<const D: usize> Simulation<'_, D> {
         }
     }
 
-    /// In a plane the half edges of the particles' parallelograms [m]: of those that have none,
-    /// squares of their volume.
+    /// In a plane the half edges of the particles' parallelograms [m]; a particle without one gets
+    /// a square of its volume.
     fn half_edges<'b>(
         &self,
         order: &[usize],
@@ -260,31 +245,31 @@ impl<const D: usize> Simulation<'_, D> {
         order.iter().map(|&r| edges(r)).collect()
     }
 
-    /// The particles of the ids in `wanted` (in order) at rank 0; `None` for one that has left.
-    /// Nothing elsewhere. Collective.
+    /// Particles with the ids in `wanted` (in order) at rank 0; `None` for a removed particle.
+    /// Empty on other ranks. Collective.
     pub fn follow(&self, wanted: &[u64]) -> Vec<Option<Followed<D>>> {
         let c = &self.stepper.columns;
         let (grid, travel) = (self.frame.velocity(self.time), self.frame.travel(self.time));
         let mut words = Vec::new();
-        // most ids differ from all wanted ones in their last bits already
+        // most ids differ from all wanted ids in their last bits
         let bit = |id: u64| 1u64 << (id % 64);
         let some = wanted.iter().fold(0, |bits, &id| bits | bit(id));
         for patch in &self.patches {
             let column = |k: usize, r: usize| patch.block.columns[k][r];
-            for (row, &id) in patch.block.ids[..patch.block.own()].iter().enumerate() {
+            for (particle, &id) in patch.block.ids[..patch.block.own()].iter().enumerate() {
                 if some & bit(id) == 0 || !wanted.contains(&id) {
                     continue;
                 }
-                let volume = column(c.volume0, row) * column(c.jacobian, row);
+                let volume = column(c.volume0, particle) * column(c.jacobian, particle);
                 let half = 0.5 * if D == 1 { volume } else { volume.sqrt() };
                 words.push(id);
                 for a in 0..D {
-                    let x = column(c.position + a, row) + travel[a];
-                    let v = column(c.velocity + a, row) + grid[a];
+                    let x = column(c.position + a, particle) + travel[a];
+                    let v = column(c.velocity + a, particle) + grid[a];
                     words.extend([x, v].map(f64::to_bits));
                 }
-                let p = column(c.pressure, row);
-                let free = c.stress.map_or(0.0, |stress| p + column(stress, row));
+                let p = column(c.pressure, particle);
+                let free = c.stress.map_or(0.0, |stress| p + column(stress, particle));
                 words.extend([p, free, half].map(f64::to_bits));
             }
         }
@@ -292,12 +277,12 @@ impl<const D: usize> Simulation<'_, D> {
         if self.comm.rank() != 0 {
             return Vec::new();
         }
-        let rows: Vec<&[u64]> = all.iter().flat_map(|w| w.chunks(4 + 2 * D)).collect();
+        let particles: Vec<&[u64]> = all.iter().flat_map(|w| w.chunks(4 + 2 * D)).collect();
         let value = |w: &[u64], k: usize| f64::from_bits(w[k]);
         wanted
             .iter()
             .map(|id| {
-                rows.iter().find(|w| w[0] == *id).map(|w| Followed {
+                particles.iter().find(|w| w[0] == *id).map(|w| Followed {
                     position: std::array::from_fn(|a| value(w, 1 + 2 * a)),
                     velocity: std::array::from_fn(|a| value(w, 2 + 2 * a)),
                     pressure: value(w, 1 + 2 * D),
@@ -308,17 +293,17 @@ impl<const D: usize> Simulation<'_, D> {
             .collect()
     }
 
-    /// Position and pressure of every `stride`th particle by id, sorted by x, at rank 0; empty
-    /// elsewhere. Collective.
+    /// Position [m] and pressure [Pa] of every `stride`th particle by id, sorted by x, at rank 0;
+    /// empty on other ranks. Collective.
     pub fn sample_pressure(&self, stride: u64) -> Vec<(f64, f64)> {
         let c = &self.stepper.columns;
         let shift = self.frame.travel(self.time)[0];
         let mut words = Vec::new();
         for patch in &self.patches {
-            for row in 0..patch.block.own() {
-                if patch.block.ids[row].is_multiple_of(stride) {
-                    words.push((patch.block.columns[c.position][row] + shift).to_bits());
-                    words.push(patch.block.columns[c.pressure][row].to_bits());
+            for particle in 0..patch.block.own() {
+                if patch.block.ids[particle].is_multiple_of(stride) {
+                    words.push((patch.block.columns[c.position][particle] + shift).to_bits());
+                    words.push(patch.block.columns[c.pressure][particle].to_bits());
                 }
             }
         }
@@ -333,21 +318,32 @@ impl<const D: usize> Simulation<'_, D> {
     }
 }
 
-/// Rows whose terms of a sum are found at a time.
-const ROWS: usize = 128;
+/// Index of an account among the sums over all particles.
+fn number_of(account: Account) -> usize {
+    match account {
+        Account::ExternalWork => 6,
+        Account::ExternalImpulse(direction) => 7 + direction,
+        Account::ExternalHeat => 9,
+        Account::FailedParticles => 10,
+        Account::ReleasedEnergy => 11,
+    }
+}
 
-/// Takes the terms of some rows to their sums.
+/// Number of particles whose terms of a sum are computed at a time.
+const PARTICLES_AT_ONCE: usize = 128;
+
+/// Adds the terms of some particles to their sums.
 struct Terms<'a> {
     add: &'a mut dyn FnMut(usize, &[f64]),
-    /// Rows.
+    /// Number of particles.
     n: usize,
 }
 
 impl Terms<'_> {
-    /// Adds what `of` says of each row to sum number `sum`.
+    /// Adds the term `of` each particle to sum number `sum`.
     #[inline(always)]
     fn each(&mut self, sum: usize, of: impl Fn(usize) -> f64) {
-        let mut terms = [0.0; ROWS];
+        let mut terms = [0.0; PARTICLES_AT_ONCE];
         for r in 0..self.n {
             terms[r] = of(r);
         }
@@ -355,26 +351,26 @@ impl Terms<'_> {
     }
 }
 
-/// What `of` says of each row, in the order of a table.
+/// Values `of` each particle, in the order of a table.
 fn pick(order: &[usize], of: impl Fn(usize) -> f64) -> Vec<f64> {
     order.iter().map(|&r| of(r)).collect()
 }
 
-/// SHA-256 of rows: id and columns of each, as the bytes that a little-endian machine has of them.
-fn digest(ids: &[u64], columns: &[Vec<f64>]) -> String {
-    // many rows at a time, so that the digest runs over long stretches
-    const ROWS: usize = 256;
+/// SHA-256 of particles: id and columns of each, as little-endian bytes.
+fn digest(ids: &[u64], columns: &[&[f64]]) -> String {
+    // many particles at a time, so that the digest processes long blocks
+    const PARTICLES_AT_ONCE: usize = 256;
     let width = 1 + columns.len();
-    let mut words = vec![[0; 8]; ROWS * width];
+    let mut words = vec![[0; 8]; PARTICLES_AT_ONCE * width];
     let mut digest = Sha256::new();
-    for from in (0..ids.len()).step_by(ROWS) {
-        let rows = from..ids.len().min(from + ROWS);
-        let words = &mut words[..rows.len() * width];
+    for from in (0..ids.len()).step_by(PARTICLES_AT_ONCE) {
+        let particles = from..ids.len().min(from + PARTICLES_AT_ONCE);
+        let words = &mut words[..particles.len() * width];
         let places = words.iter_mut().step_by(width);
-        places.zip(&ids[rows.clone()]).for_each(|(word, id)| *word = id.to_le_bytes());
+        places.zip(&ids[particles.clone()]).for_each(|(word, id)| *word = id.to_le_bytes());
         for (k, column) in columns.iter().enumerate() {
             let places = words[1 + k..].iter_mut().step_by(width);
-            places.zip(&column[rows.clone()]).for_each(|(word, v)| *word = v.to_le_bytes());
+            places.zip(&column[particles.clone()]).for_each(|(word, v)| *word = v.to_le_bytes());
         }
         digest.update(words.as_flattened());
     }
@@ -386,19 +382,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_digest_is_that_of_rows_one_after_the_other() {
-        // more than are taken at a time, and not a multiple
+    fn the_digest_is_that_of_particles_one_after_the_other() {
+        // more particles than one block, and not a multiple of it
         let ids: Vec<u64> = (0..700).map(|k| 3 * k).collect();
         let column = |c: usize| (0..700).map(|r| 0.1 * (c as f64 + 2.0) * f64::from(r)).collect();
         let columns: Vec<Vec<f64>> = (0..3).map(column).collect();
         let mut bytes = Vec::new();
-        for (row, id) in ids.iter().enumerate() {
+        for (particle, id) in ids.iter().enumerate() {
             bytes.extend(id.to_le_bytes());
-            columns.iter().for_each(|c| bytes.extend(c[row].to_le_bytes()));
+            columns.iter().for_each(|c| bytes.extend(c[particle].to_le_bytes()));
         }
         let whole = Sha256::digest(&bytes);
         assert_eq!(
-            digest(&ids, &columns),
+            digest(&ids, &columns.iter().map(|c| &c[..]).collect::<Vec<_>>()),
             whole.iter().map(|b| format!("{b:02x}")).collect::<String>()
         );
     }

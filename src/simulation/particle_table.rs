@@ -1,17 +1,17 @@
-//! A table of particles at one time, as the outputs see it.
+//! Table of particles at one time, for outputs.
 
 /// One named column of a [`ParticleTable`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableColumn {
-    /// Name as it stands in files, such as `pressure`.
+    /// Name as in output files, such as `pressure`.
     pub name: String,
     /// SI unit, such as `Pa`.
     pub unit: String,
-    /// One value a particle.
+    /// One value per particle.
     pub values: Vec<f64>,
 }
 
-/// Every particle of the run at one time, sorted by x (ties by id).
+/// All particles of the run at one time, sorted by x (ties by id).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParticleTable {
     /// Time [s].
@@ -26,10 +26,10 @@ pub struct ParticleTable {
     pub materials: Vec<String>,
     /// Body of each particle, an index into the scene's bodies.
     pub body: Vec<u32>,
-    /// The columns in the order of the files: x, pressure, velocity, density,
-    /// specific_internal_energy, artificial_viscosity, then those that an effect adds.
+    /// Columns in the order of the files: x, pressure, velocity, density, specific_internal_energy,
+    /// artificial_viscosity, then those of effects.
     pub columns: Vec<TableColumn>,
-    /// In a plane the half edges of each particle's parallelogram [m]; none on a line.
+    /// In a plane the half edges of the parallelogram of each particle [m]; empty on a line.
     pub half_edges: Vec<[[f64; 2]; 2]>,
 }
 
@@ -39,7 +39,7 @@ impl ParticleTable {
         self.ids.len()
     }
 
-    /// Whether there is no particle.
+    /// Whether there are no particles.
     pub fn is_empty(&self) -> bool {
         self.ids.is_empty()
     }

@@ -1,20 +1,22 @@
-//! All that the next step needs, taken out of a run and put into another: whatever its ranks,
-//! threads and patches, it goes on to the same bits.
+//! Snapshot: the complete state of a run, from which another run continues bit for bit, whatever
+//! its ranks, threads and patches.
 //!
-//! Rows carry every column that is declared as state; the rest of a step's memory is computed anew
-//! in each step, as it is for a patch that has moved to another rank. Sums over what has left and
-//! what sides have given are exact, so that one rank may go on with those of all.
+//! Particles carry every column that is declared as state; other memory of a step is recomputed in
+//! each step, as it is for a patch that has moved to another rank. The sums over removed particles
+//! and over the work of sides are exact, so that one rank can continue with the sums of all ranks.
 
-use decomp::{Census, ExactSum, StoredRows, deal_rows, words_of};
+use decomp::{Census, ExactSum, StoredParticles, deal_particles, words_of};
 
-use super::conservation::left_sums;
-use super::{RunError, Simulation, Tally};
+use super::accounts::Counters;
+use super::accounts::left_sums;
+use super::error::RunError;
+use super::run::Simulation;
 use crate::scene::CheckedScene;
 use crate::simulation::monitor::Peaks;
 use crate::solver::clock::Clock;
 use crate::solver::patch::Patch;
 
-/// What a run needs to go on.
+/// State from which a run continues.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Saved {
     /// Time [s].
@@ -25,36 +27,36 @@ pub struct Saved {
     pub stable: f64,
     /// Greatest extent of a particle along a direction [cells].
     pub longest: f64,
-    /// Times that a step was redone half as long.
+    /// Steps repeated with half the length.
     pub redone_steps: u64,
-    /// Particles that have left: their number and marks.
+    /// Census of removed particles: their number and checksums.
     pub left: Census,
-    /// Totals of the sums over what has left and what the sides have given.
+    /// Totals of the sums over removed particles and over the work and impulse of sides.
     pub sums: Vec<i128>,
     /// Greatest values so far.
     pub peaks: Peaks,
     /// All particles.
-    pub rows: StoredRows,
+    pub particles: StoredParticles,
 }
 
 /// Number of [`Saved::sums`] of a run of `scene`.
 pub fn saved_sums(scene: &CheckedScene) -> usize {
     let dimension = scene.dimension;
-    // those of what was eroded, and its number
+    // the sums over eroded particles, and their number
     let eroded = if scene.erodes() { left_sums(dimension) + 1 } else { 0 };
-    // of what has left; work and impulse of the sides
+    // the sums over removed particles; work and impulse of the sides
     left_sums(dimension) + eroded + 1 + dimension
 }
 
 impl<const D: usize> Simulation<'_, D> {
-    /// What the next step needs, at rank 0; nothing elsewhere. Collective.
+    /// The state for the next step, at rank 0; `None` on other ranks. Collective.
     pub fn save(&self) -> Option<Saved> {
         let books = self.outflow.sums.iter().chain(&self.side_books.sums);
         let mut sums: Vec<ExactSum> = books.cloned().collect();
         ExactSum::over_ranks(self.comm, &mut sums);
         let left = self.outflow.census.over_ranks(self.comm);
         let blocks = self.patches.iter().map(|p| &p.block);
-        let rows = StoredRows::gather(self.comm, &self.stepper.columns.specs, blocks);
+        let particles = StoredParticles::gather(self.comm, &self.stepper.columns.specs, blocks);
         (self.comm.rank() == 0).then(|| Saved {
             time: self.time,
             step: self.step,
@@ -64,15 +66,15 @@ impl<const D: usize> Simulation<'_, D> {
             left,
             sums: sums.iter().map(ExactSum::total).collect(),
             peaks: self.peaks,
-            rows,
+            particles,
         })
     }
 
-    /// Goes on from what rank 0 gives, and the others do not: this run must be one of the same
-    /// scene at its start. Collective.
+    /// Continues from the state that rank 0 passes; other ranks pass `None`. This run must be of
+    /// the same scene and at its start. Collective.
     ///
     /// # Panics
-    /// If the number of columns or sums is another, or a cell is not within the domain.
+    /// If the number of columns or sums differs, or a cell is outside the domain.
     pub fn restore(&mut self, saved: Option<&Saved>) -> Result<(), RunError> {
         let head = saved.map_or(Vec::new(), |s| {
             let floats = [s.time, s.stable, s.longest].map(f64::to_bits);
@@ -101,17 +103,18 @@ impl<const D: usize> Simulation<'_, D> {
             }
         }
         let specs = &self.stepper.columns.specs;
-        let rows = saved.map(|s| &s.rows);
-        let (layout, blocks) = deal_rows(self.comm, self.layout.clone(), &self.order, specs, rows);
+        let particles = saved.map(|s| &s.particles);
+        let (layout, blocks) =
+            deal_particles(self.comm, self.layout.clone(), &self.order, specs, particles);
         let mine = layout.patches_of(self.comm.rank()).into_iter().zip(blocks);
         self.patches = mine.map(|(p, block)| Patch::new(&layout, p, block)).collect();
         self.layout = layout;
         self.reach = None;
         self.follow_reach(self.longest);
-        self.plan.rows.take_migrated();
-        self.tally = Tally { redone_steps: words[4], ..Tally::default() };
+        self.plan.particles.take_migrated();
+        self.tally = Counters { redone_steps: words[4], ..Counters::default() };
         self.clock = Clock::new();
-        self.hold();
+        self.keep_good_state();
         match self.count() == self.census {
             true => Ok(()),
             false => Err(RunError::Foreign),

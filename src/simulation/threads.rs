@@ -1,4 +1,4 @@
-//! Threads of a rank, each on a core of its own where that is known to be free.
+//! Threads of a rank, each pinned to a core if free cores are known.
 
 use std::sync::OnceLock;
 
@@ -6,24 +6,23 @@ use nix::sched::{CpuSet, sched_getaffinity, sched_setaffinity};
 use nix::unistd::Pid;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// The cores that this thread may use.
+/// Cores that this thread may use.
 fn own_cores() -> Vec<usize> {
     let set = sched_getaffinity(Pid::from_raw(0)).unwrap_or_default();
     (0..CpuSet::count()).filter(|&c| set.is_set(c).unwrap_or(false)).collect()
 }
 
-/// The cores that this process may use: those before a thread of it was kept on one of them, for
-/// threads begin with those of the one that starts them.
+/// Cores that this process may use, recorded before any thread was pinned: a new thread inherits
+/// the cores of the thread that creates it.
 fn allowed_cores() -> &'static [usize] {
     static ALLOWED: OnceLock<Vec<usize>> = OnceLock::new();
     ALLOWED.get_or_init(own_cores)
 }
 
-/// Which core each of `threads` threads of this rank is to stay on; `None` where that would be
-/// guessing: with fewer cores than threads, or where other ranks of this machine may use the same
-/// cores.
+/// Cores for the `threads` threads of this rank; `None` if a choice would be a guess: with fewer
+/// cores than threads, or if other ranks of this machine may use the same cores.
 ///
-/// A scheduler may well leave two threads on one core and the other idle: they sleep and wake too
+/// A scheduler may leave two threads on one core and another core idle, as they sleep and wake too
 /// often for it to notice.
 fn choose_cores(allowed: &[usize], threads: usize, ranks_here: usize) -> Option<&[usize]> {
     let alone = ranks_here <= 1 && allowed.len() >= threads;
@@ -31,7 +30,7 @@ fn choose_cores(allowed: &[usize], threads: usize, ranks_here: usize) -> Option<
     (alone || bound).then_some(allowed)
 }
 
-/// Ranks that the launcher has started on this machine; 1 without a launcher.
+/// Number of ranks that the launcher has started on this machine; 1 without a launcher.
 fn ranks_here() -> usize {
     ["OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS", "SLURM_NTASKS_PER_NODE"]
         .iter()
@@ -39,18 +38,18 @@ fn ranks_here() -> usize {
         .unwrap_or(1)
 }
 
-/// Keeps this thread on some cores.
+/// Pins this thread to some cores.
 fn stay_on(cores: &[usize]) {
     let mut set = CpuSet::new();
-    // where the system refuses, threads run as it likes
+    // if the system refuses, threads run unpinned
     if cores.iter().all(|&core| set.set(core).is_ok()) {
         let _ = sched_setaffinity(Pid::from_raw(0), &set);
     }
 }
 
-/// A pool of `threads` threads, the calling one among them: it works instead of waiting for
-/// others to wake. A thread can belong to one such pool in its life; for a later run it stands
-/// beside.
+/// Pool of `threads` threads including the calling thread, which works instead of waiting for
+/// others to wake. A thread can belong to only one such pool in its life; the pool of a later run
+/// does not include it.
 pub fn make_pool(threads: usize) -> ThreadPool {
     let allowed = allowed_cores();
     let cores = choose_cores(allowed, threads, ranks_here());

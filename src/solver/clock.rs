@@ -1,16 +1,16 @@
-//! Where the time goes: seconds of each activity of a rank, cost of each patch, and a timeline.
+//! Timing: seconds of each activity of a rank, cost of each patch, and a timeline.
 
-use nix::sys::resource::{UsageWho, getrusage};
 use std::time::Instant;
 
-use crate::effects::Effect;
+use nix::sys::resource::{UsageWho, getrusage};
+use smallvec::SmallVec;
 
-/// What a rank does.
+/// Activity of a rank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
     /// Phases over patches.
     Compute,
-    /// Packing, copying and unpacking of ghosts, moved particles and nodal values.
+    /// Packing, copying and unpacking of ghosts, migrating particles and nodal values.
     Exchange,
     /// Waiting for other ranks.
     Wait,
@@ -18,12 +18,12 @@ pub enum Activity {
     Migrate,
     /// Deciding which patches move.
     Balance,
-    /// Gathering what is written.
+    /// Gathering of output data.
     Output,
 }
 
 impl Activity {
-    /// All of them, in the order of [`Clock::seconds`].
+    /// All activities, in the order of [`Clock::seconds`].
     pub const ALL: [Activity; 6] = [
         Activity::Compute,
         Activity::Exchange,
@@ -46,25 +46,25 @@ impl Activity {
     }
 }
 
-/// A stretch of time on a timeline.
+/// Interval on a timeline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event {
-    /// What was done.
+    /// Name of the activity.
     pub name: &'static str,
     /// Number of the step.
     pub step: u64,
-    /// Start since the clock's [ns].
+    /// Start since that of the clock [ns].
     pub start: u64,
-    /// Length [ns].
+    /// Duration [ns].
     pub length: u64,
 }
 
-/// The clock of a rank.
+/// Clock of a rank.
 #[derive(Clone, Debug)]
 pub struct Clock {
     /// Seconds of each activity, in the order of [`Activity::ALL`].
     pub seconds: [f64; Activity::ALL.len()],
-    /// The rank's own events, while a timeline is kept.
+    /// Events of the rank, while a timeline is recorded.
     pub events: Vec<Event>,
     origin: Instant,
     step: u64,
@@ -85,22 +85,23 @@ impl Clock {
         }
     }
 
-    /// Sets what is kept of `step`: its events on the timeline, and the cost of patches.
+    /// Sets what to record in `step`: timeline events, and the cost of patches.
     pub fn start_step(&mut self, step: u64, traced: bool, sampled: bool) {
         (self.step, self.traced, self.sampled) = (step, traced, sampled);
     }
 
-    /// Counts seconds of an activity.
+    /// Adds seconds of an activity.
     pub fn add(&mut self, activity: Activity, seconds: f64) {
         self.seconds[activity as usize] += seconds;
     }
 
-    /// Counts an activity from `start` to now, less `other` seconds that are counted elsewhere.
+    /// Adds the time from `start` to now to an activity, minus `other` seconds that are counted
+    /// elsewhere.
     pub fn add_since(&mut self, activity: Activity, start: Instant, other: f64) {
         self.add(activity, (start.elapsed().as_secs_f64() - other).max(0.0));
     }
 
-    /// Notes an event of the rank from `start` to now, if a timeline is kept.
+    /// Records an event of the rank from `start` to now, if a timeline is recorded.
     pub fn event(&mut self, name: &'static str, start: Instant) {
         if self.traced {
             let event = self.watcher().event(name, start);
@@ -108,7 +109,7 @@ impl Clock {
         }
     }
 
-    /// What a patch needs for its own clock.
+    /// Settings that the stopwatches of patches need.
     pub fn watcher(&self) -> Watcher {
         Watcher { origin: self.origin, step: self.step, traced: self.traced, sampled: self.sampled }
     }
@@ -120,7 +121,7 @@ impl Default for Clock {
     }
 }
 
-/// The part of a clock that all threads share.
+/// Part of a clock that all threads share.
 #[derive(Clone, Copy, Debug)]
 pub struct Watcher {
     origin: Instant,
@@ -130,10 +131,10 @@ pub struct Watcher {
 }
 
 impl Watcher {
-    /// Runs a phase of a patch by the patch's `watch`.
+    /// Runs a phase of a patch, timed by the stopwatch of the patch.
     pub fn time<T>(&self, name: &'static str, patch: &mut T, phase: impl FnOnce(&mut T))
     where
-        T: AsMut<Watch>,
+        T: AsMut<Stopwatch>,
     {
         if !self.traced && !self.sampled {
             return phase(patch);
@@ -158,50 +159,71 @@ impl Watcher {
     }
 }
 
-/// Runs what an effect adds to a phase of a patch, and counts its time where phases are timed.
+/// Runs the contribution of a [part](super::parts) of a step to a phase of a patch, and adds its
+/// time if phases are timed.
 #[inline(always)]
-pub fn spend<T: AsMut<Watch>>(effect: Effect, patch: &mut T, part: impl FnOnce(&mut T)) {
+pub fn timed<T: AsMut<Stopwatch>>(part: usize, patch: &mut T, phase: impl FnOnce(&mut T)) {
     if !patch.as_mut().runs {
-        return part(patch);
+        return phase(patch);
     }
     let start = Instant::now();
-    part(patch);
-    patch.as_mut().effects[effect as usize] += start.elapsed().as_secs_f64();
+    phase(patch);
+    let seconds = start.elapsed().as_secs_f64();
+    let parts = &mut patch.as_mut().parts;
+    if parts.len() <= part {
+        parts.resize(part + 1, 0.0);
+    }
+    parts[part] += seconds;
 }
 
-/// Measurements of which a patch's cost is the median: one that was disturbed counts for little.
+/// Like `timed`, with `part` optional, for a phase that does not need the patch.
+#[inline(always)]
+pub fn timed_if<R>(part: Option<usize>, watch: &mut Stopwatch, phase: impl FnOnce() -> R) -> R {
+    let Some(part) = part else { return phase() };
+    let mut result = None;
+    timed(part, watch, |_| result = Some(phase()));
+    result.expect("the phase has run")
+}
+
+impl AsMut<Stopwatch> for Stopwatch {
+    fn as_mut(&mut self) -> &mut Stopwatch {
+        self
+    }
+}
+
+/// Number of measurements whose median is the cost of a patch: outliers have little effect.
 const MEASURED: usize = 9;
 
-/// The clock of a patch.
+/// Stopwatch of a patch.
 #[derive(Clone, Debug, Default)]
-pub struct Watch {
-    /// Its events, while a timeline is kept.
+pub struct Stopwatch {
+    /// Events of the patch, while a timeline is recorded.
     pub events: Vec<Event>,
     /// Seconds of the phases that were timed.
     pub computed: f64,
-    /// Seconds of each effect in them, in the order of [`Effect::ALL`].
-    pub effects: [f64; Effect::COUNT],
+    /// Seconds of each part of a step in these phases; trailing parts without time may be missing.
+    pub parts: SmallVec<[f64; 32]>,
     /// Whether a phase is being timed.
     runs: bool,
     spent: f64,
-    /// Seconds of the steps measured last, the oldest overwritten first.
+    /// Seconds of the last measured steps; the oldest is overwritten first.
     measured: [f64; MEASURED],
     count: usize,
 }
 
-impl Watch {
-    /// Ends a step that was measured.
+impl Stopwatch {
+    /// Ends a measured step.
     pub fn end_step(&mut self) {
         self.measured[self.count % MEASURED] = std::mem::take(&mut self.spent);
         self.count += 1;
     }
 
-    /// Ends a step that was timed for the effects' sake alone.
+    /// Ends a step that was timed only for the shares of effects.
     pub fn forget_step(&mut self) {
         self.spent = 0.0;
     }
 
-    /// Seconds a step; `None` until measured.
+    /// Seconds per step; `None` before the first measurement.
     pub fn cost(&self) -> Option<f64> {
         let mut known = self.measured;
         let known = &mut known[..self.count.min(MEASURED)];
@@ -222,16 +244,10 @@ pub fn user_cpu_seconds() -> f64 {
 mod tests {
     use super::*;
 
-    impl AsMut<Watch> for Watch {
-        fn as_mut(&mut self) -> &mut Watch {
-            self
-        }
-    }
-
     #[test]
     fn a_patch_is_timed_where_it_is_asked_for() {
-        let (mut clock, mut watch) = (Clock::new(), Watch::default());
-        let busy = |_: &mut Watch| std::thread::sleep(std::time::Duration::from_millis(2));
+        let (mut clock, mut watch) = (Clock::new(), Stopwatch::default());
+        let busy = |_: &mut Stopwatch| std::thread::sleep(std::time::Duration::from_millis(2));
         clock.start_step(1, false, false);
         clock.watcher().time("phase", &mut watch, busy);
         assert_eq!((watch.spent, watch.events.len()), (0.0, 0));
@@ -245,7 +261,7 @@ mod tests {
 
     #[test]
     fn a_cost_is_the_median_of_the_last_steps() {
-        let mut watch = Watch::default();
+        let mut watch = Stopwatch::default();
         assert_eq!(watch.cost(), None);
         for (spent, cost) in [(5.0, 5.0), (1.0, 5.0), (2.0, 2.0)] {
             watch.spent = spent;

@@ -1,75 +1,75 @@
-//! The patches of a rank and the exchanges between them: where physics and `decomp` meet.
+//! The patches of a rank and the exchanges between them: interface between physics and `decomp`.
 //!
-//! An exchange and the phase after it are one call: the phase runs on inner patches, which hear
-//! of no other rank, while messages to and from the others are on their way.
+//! An exchange and the phase after it are one call: while messages to and from other ranks are in
+//! transit, the phase runs on inner patches, which receive nothing from other ranks.
 
 use std::time::Instant;
 
-use decomp::{Comm, Layout, NodeExchange, Parity, RowError, RowExchange, fold_mirrors};
+use decomp::{Comm, GhostExchange, Layout, NodeExchange, Parity, ParticleError, fold_mirrors};
 use rayon::prelude::*;
 
 use crate::scene::FilterHalo;
-use crate::solver::clock::{Activity, Clock, Watcher};
+use crate::solver::clock::{self, Activity, Clock, Watcher};
 use crate::solver::patch::Patch;
 
-/// The patches of this rank and the way to the others, for one step.
+/// The patches of this rank and their exchanges, for one step.
 pub struct World<'a, const D: usize> {
-    /// The ranks.
+    /// Communicator.
     pub comm: &'a dyn Comm,
-    /// The patches of all ranks.
+    /// Patches of all ranks.
     pub layout: &'a Layout<D>,
-    /// This rank's patches.
+    /// Patches of this rank.
     pub patches: &'a mut [Patch<D>],
-    /// Ghosts and migration.
-    pub rows: &'a mut RowExchange<D>,
-    /// Finished nodal values.
+    /// Exchange of ghosts and migrating particles.
+    pub particles: &'a mut GhostExchange<D>,
+    /// Exchange of final nodal values.
     pub nodes: &'a mut NodeExchange<D>,
-    /// Which patches hear of no other rank as rows are exchanged.
-    pub inner_rows: &'a [bool],
-    /// Which patches hear of no other rank as nodal values are.
+    /// Patches that receive nothing from other ranks in an exchange of particles.
+    pub inner_particles: &'a [bool],
+    /// Patches that receive nothing from other ranks in an exchange of nodal values.
     pub inner_nodes: &'a [bool],
-    /// How filters get what lies beyond a patch.
+    /// How filters obtain values beyond a patch.
     pub filter: FilterHalo,
-    /// Whether inner patches are computed while messages fly.
+    /// Whether inner patches are computed while messages are in transit.
     pub overlap: bool,
-    /// When patches sleep, until the step's first exchange of rows has seen to it.
+    /// Conditions for quiescent patches; taken by the first exchange of particles of the step.
     pub sleep: Option<Sleep>,
-    /// Threads over patches; `None`: this thread alone.
+    /// Threads over patches; `None`: this thread only.
     pub pool: Option<&'a rayon::ThreadPool>,
-    /// Where the time goes.
+    /// Clock of the rank.
     pub clock: &'a mut Clock,
 }
 
-/// When a patch at rest may sleep.
+/// Conditions under which a patch at rest becomes quiescent.
 #[derive(Clone, Copy, Debug)]
 pub struct Sleep {
-    /// Steps without anything near that moves after which a step computes nothing new.
+    /// Steps without motion nearby after which a step computes nothing new.
     pub needed: u32,
     /// Nodal fields that are not zero at rest.
     pub kept: [usize; 5],
 }
 
-/// Which patches a phase runs on.
+/// Patches on which a phase runs.
 #[derive(Clone, Copy)]
 enum Which<'a> {
     All,
-    /// Those that are inner, or those that are not.
+    /// Inner patches, or all others.
     Inner(&'a [bool], bool),
 }
 
-/// A phase on one patch. A call through a pointer, one a patch, so that the exchanges and the threads
-/// about it are compiled once and not for each phase.
-type Phase<'a, const D: usize> = &'a (dyn Fn(&mut Patch<D>) + Send + Sync);
+/// Phase on one patch. One call per patch through a pointer, so that exchanges and threading are
+/// compiled once and not for each phase.
+type PatchPhase<'a, const D: usize> = &'a (dyn Fn(&mut Patch<D>) + Send + Sync);
 
-/// Runs a phase on every patch of `which` that is awake.
+/// Runs a phase on every patch of `which` that is not quiescent.
 fn for_each<const D: usize>(
     pool: Option<&rayon::ThreadPool>,
     patches: &mut [Patch<D>],
     which: Which<'_>,
-    phase: Phase<'_, D>,
+    phase: PatchPhase<'_, D>,
 ) {
     let wanted = |k: usize, patch: &Patch<D>| {
-        !patch.rest.asleep()
+        !patch.quiescence.is_quiescent()
             && match which {
                 Which::All => true,
                 Which::Inner(inner, is) => inner[k] == is,
@@ -87,7 +87,7 @@ fn for_each<const D: usize>(
 }
 
 impl<const D: usize> World<'_, D> {
-    /// Runs a phase on every patch that is awake.
+    /// Runs a phase on every patch that is not quiescent.
     pub fn each(&mut self, name: &'static str, phase: impl Fn(&mut Patch<D>) + Send + Sync) {
         let start = Instant::now();
         let watcher = self.clock.watcher();
@@ -95,21 +95,21 @@ impl<const D: usize> World<'_, D> {
         self.clock.add_since(Activity::Compute, start, 0.0);
     }
 
-    /// The step's exchange of rows, migration and ghosts, and the phases after it up to the next,
-    /// which see nodal values beyond their patch: once for all patches, with messages, or for
-    /// each patch by itself where its ghosts are deep enough. Patches fall asleep and wake by the
-    /// first exchange of a step. Collective between neighbours.
-    pub fn exchange_rows(
+    /// Exchanges particles (migration and ghosts) and runs the phases up to the next exchange,
+    /// which read nodal values beyond their patch: once for all patches, with messages, or for each
+    /// patch separately if its ghost layer is deep enough. The first exchange of a step decides
+    /// which patches are quiescent. Collective between neighbours.
+    pub fn exchange_particles(
         &mut self,
         phases: impl Fn(&mut Nodal<'_, D>) + Send + Sync,
-    ) -> Result<(), RowError> {
+    ) -> Result<(), ParticleError> {
         self.run_phases(&phases)
     }
 
     fn run_phases(
         &mut self,
         phases: &(dyn Fn(&mut Nodal<'_, D>) + Send + Sync),
-    ) -> Result<(), RowError> {
+    ) -> Result<(), ParticleError> {
         let sleep = self.sleep.take();
         let settle = move |patch: &mut Patch<D>| {
             if let Some(sleep) = &sleep {
@@ -124,13 +124,14 @@ impl<const D: usize> World<'_, D> {
                     watcher: self.clock.watcher(),
                     halo: Halo::Exchange {
                         ranks: Ranks { comm: self.comm, overlap: self.overlap, clock: self.clock },
-                        inner_rows: self.inner_rows,
+                        inner_particles: self.inner_particles,
                         inner_nodes: self.inner_nodes,
-                        rows: Some((self.rows, &settle)),
+                        particles: Some((self.particles, &settle)),
                         plan: self.nodes,
                         failed: None,
                     },
                     pending: None,
+                    part: None,
                 };
                 phases(&mut nodal);
                 match nodal.halo {
@@ -138,22 +139,30 @@ impl<const D: usize> World<'_, D> {
                     _ => Ok(()),
                 }
             }
-            FilterHalo::Deep => {
+            FilterHalo::Redundant => {
                 let (layout, watcher) = (self.layout, self.clock.watcher());
                 let alone = |patch: &mut Patch<D>| {
                     let patches = std::slice::from_mut(patch);
                     let halo = Halo::Deep(layout);
-                    phases(&mut Nodal { patches, pool: None, watcher, halo, pending: None });
+                    let (pending, part) = (None, None);
+                    phases(&mut Nodal { patches, pool: None, watcher, halo, pending, part });
                 };
                 let mut ranks = Ranks { comm: self.comm, overlap: self.overlap, clock: self.clock };
-                let inner = self.inner_rows;
-                ranks.exchange_rows(self.patches, self.rows, inner, self.pool, &settle, &alone)
+                let inner = self.inner_particles;
+                ranks.exchange_particles(
+                    self.patches,
+                    self.particles,
+                    inner,
+                    self.pool,
+                    &settle,
+                    &alone,
+                )
             }
         }
     }
 }
 
-/// The other ranks, and what computing overlaps with their messages.
+/// Exchanges with other ranks, and their overlap with computing.
 struct Ranks<'a> {
     comm: &'a dyn Comm,
     overlap: bool,
@@ -161,33 +170,34 @@ struct Ranks<'a> {
 }
 
 impl Ranks<'_> {
-    /// Exchanges rows and runs a phase on every patch.
-    fn exchange_rows<const D: usize>(
+    /// Exchanges particles and runs a phase on every patch.
+    fn exchange_particles<const D: usize>(
         &mut self,
         patches: &mut [Patch<D>],
-        rows: &mut RowExchange<D>,
+        particles: &mut GhostExchange<D>,
         inner: &[bool],
         pool: Option<&rayon::ThreadPool>,
         settle: Settle<'_, D>,
-        phase: Phase<'_, D>,
-    ) -> Result<(), RowError> {
+        phase: PatchPhase<'_, D>,
+    ) -> Result<(), ParticleError> {
         let mut result = Ok(());
         self.around(
-            "exchange rows",
+            "exchange particles",
             patches,
             pool,
             inner,
-            |comm, patches, meanwhile| result = rows.run(comm, patches, meanwhile),
+            |comm, patches, meanwhile| result = particles.run(comm, patches, meanwhile),
             &|patch| settle(patch),
             phase,
         );
         result
     }
 
-    /// Runs `exchange` and `phase` on every patch, on the inner ones within the exchange; `ready`
-    /// is called on each patch before its phase, asleep or not.
-    // one place for the order of exchange and phase; a struct of its arguments would be used once
-    #[allow(clippy::too_many_arguments)]
+    /// Runs `exchange`, and `phase` on every patch, on inner patches during the exchange; `ready`
+    /// is called on each patch before its phase, also on quiescent ones.
+    // one function keeps the order of exchange and phase; a struct for its arguments would be used
+    // only once
+    #[expect(clippy::too_many_arguments)]
     fn around<const D: usize>(
         &mut self,
         name: &'static str,
@@ -196,7 +206,7 @@ impl Ranks<'_> {
         inner: &[bool],
         exchange: impl FnOnce(&dyn Comm, &mut [Patch<D>], &mut dyn FnMut(&mut [Patch<D>])),
         ready: &dyn Fn(&mut Patch<D>),
-        phase: Phase<'_, D>,
+        phase: PatchPhase<'_, D>,
     ) {
         let mut computed = 0.0;
         let mut compute = |patches: &mut [Patch<D>], is: bool| {
@@ -228,41 +238,54 @@ impl Ranks<'_> {
     }
 }
 
-/// Patches whose phases follow each other with nodal values in between.
+/// Patches in a sequence of phases with exchanges of nodal values between them.
 pub struct Nodal<'a, const D: usize> {
     patches: &'a mut [Patch<D>],
     pool: Option<&'a rayon::ThreadPool>,
     watcher: Watcher,
     halo: Halo<'a, D>,
-    /// Fields to be made whole before the next phase.
+    /// Fields to exchange before the next phase.
     pending: Option<smallvec::SmallVec<[(usize, Parity); 8]>>,
+    /// Part of the step that these phases belong to.
+    part: Option<usize>,
 }
 
-/// Lets a patch sleep or wakes it, once its rows are there.
+/// Makes a patch quiescent or active, once its particles are known.
 type Settle<'a, const D: usize> = &'a (dyn Fn(&mut Patch<D>) + Sync);
 
 enum Halo<'a, const D: usize> {
     Exchange {
         ranks: Ranks<'a>,
-        inner_rows: &'a [bool],
+        inner_particles: &'a [bool],
         inner_nodes: &'a [bool],
-        /// The rows to be exchanged before the first phase.
-        rows: Option<(&'a mut RowExchange<D>, Settle<'a, D>)>,
+        /// Particles to exchange before the first phase.
+        particles: Option<(&'a mut GhostExchange<D>, Settle<'a, D>)>,
         plan: &'a mut NodeExchange<D>,
-        failed: Option<RowError>,
+        failed: Option<ParticleError>,
     },
     Deep(&'a Layout<D>),
 }
 
 impl<const D: usize> Nodal<'_, D> {
-    /// Runs a phase on every patch that is awake, once the values it needs are there.
+    /// Accounts the time of the following phases to a [part](super::parts) of the step.
+    pub fn count_as(&mut self, part: Option<usize>) {
+        self.part = part;
+    }
+
+    /// Runs a phase on every patch that is not quiescent, after the exchange that it needs.
     pub fn each(&mut self, name: &'static str, phase: impl Fn(&mut Patch<D>) + Send + Sync) {
         self.run(name, &phase);
     }
 
-    fn run(&mut self, name: &'static str, phase: Phase<'_, D>) {
+    fn run(&mut self, name: &'static str, phase: PatchPhase<'_, D>) {
         let watcher = self.watcher;
-        let timed = |patch: &mut Patch<D>| watcher.time(name, patch, phase);
+        let part = self.part;
+        let timed = |patch: &mut Patch<D>| {
+            watcher.time(name, patch, |patch| match part {
+                Some(part) => clock::timed(part, patch, phase),
+                None => phase(patch),
+            });
+        };
         let fields = self.pending.take();
         match &mut self.halo {
             Halo::Deep(layout) => {
@@ -273,13 +296,21 @@ impl<const D: usize> Nodal<'_, D> {
                     timed(patch);
                 }
             }
-            // the run ends on such a failure
+            // such a failure ends the run
             Halo::Exchange { failed: Some(_), .. } => {}
-            Halo::Exchange { ranks, inner_rows, inner_nodes, rows, plan, failed } => {
-                if let Some((rows, settle)) = rows.take() {
+            Halo::Exchange { ranks, inner_particles, inner_nodes, particles, plan, failed } => {
+                if let Some((particles, settle)) = particles.take() {
                     let (patches, pool) = (&mut *self.patches, self.pool);
-                    *failed =
-                        ranks.exchange_rows(patches, rows, inner_rows, pool, settle, &timed).err();
+                    *failed = ranks
+                        .exchange_particles(
+                            patches,
+                            particles,
+                            inner_particles,
+                            pool,
+                            settle,
+                            &timed,
+                        )
+                        .err();
                 } else if let Some(fields) = &fields {
                     ranks.around(
                         "exchange nodes",
@@ -299,7 +330,7 @@ impl<const D: usize> Nodal<'_, D> {
         }
     }
 
-    /// Makes nodal values whole beyond the patches before the next phase.
+    /// Requests an exchange of nodal values beyond the patches before the next phase.
     pub fn refresh(&mut self, fields: &[(usize, Parity)]) {
         debug_assert!(self.pending.is_none(), "a phase comes between two exchanges");
         self.pending = Some(fields.into());

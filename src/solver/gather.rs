@@ -1,54 +1,57 @@
-//! Grid to particles: own rows alone.
+//! Grid to particles, for own particles only.
 
 use std::ops::DerefMut;
 
+use super::Stepper;
 use super::solid::{Taken, put_back};
-use super::{MOST_NODES, Stepper, with_width};
-use crate::effects::Effect;
-use crate::effects::artificial_viscosity::{self, Nodes};
 use crate::scene::Limiter;
-use crate::solver::clock::spend;
+use crate::shape::with_width;
+use crate::solver::artificial_viscosity::{self, Nodes};
+use crate::solver::clock::timed;
+use crate::solver::particle_weights::ParticleWeights;
+use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
-use crate::solver::transfer::{Row, Scheme};
+use crate::transfer::VelocityUpdate;
 
-/// The product of two lines of nodes.
+/// Product of two lines of nodes.
 #[inline(always)]
 fn times<const K: usize>(a: &[f64; K], b: &[f64; K]) -> [f64; K] {
     std::array::from_fn(|k| a[k] * b[k])
 }
 
-/// The columns of a vector, out of their block: what is written leaves it while the others are read.
+/// Columns of a vector, taken out of their block: they are written while other columns are read.
 fn take_vector<const D: usize>(columns: &mut [Vec<f64>], first: usize) -> [Vec<f64>; D] {
     std::array::from_fn(|a| std::mem::take(&mut columns[first + a]))
 }
 
-/// Those of a tensor with `count` components, if there is one.
+/// Columns of a tensor with `count` components, if it exists.
 fn take_tensor(columns: &mut [Vec<f64>], first: Option<usize>, count: usize) -> Taken {
     first.into_iter().flat_map(|k| k..k + count).map(|k| std::mem::take(&mut columns[k])).collect()
 }
 
-/// The own rows, the first `rows`, of `N` columns.
+/// Own particles (the first `particles`) of `N` columns.
 #[inline(always)]
-fn own<const N: usize>(columns: &mut [Vec<f64>], rows: usize) -> [&mut [f64]; N] {
-    let mut columns = columns.iter_mut().map(|column| &mut column[..rows]);
+fn own<const N: usize>(columns: &mut [Vec<f64>], particles: usize) -> [&mut [f64]; N] {
+    let mut columns = columns.iter_mut().map(|column| &mut column[..particles]);
     std::array::from_fn(|_| columns.next().expect("as many columns"))
 }
 
-/// Those of a tensor in a plane, if there is one.
+/// Own particles of the columns of a tensor in a plane, if it exists.
 #[inline(always)]
-fn own_tensor(columns: &mut [Vec<f64>], rows: usize) -> Option<[&mut [f64]; 4]> {
-    (!columns.is_empty()).then(|| own(columns, rows))
+fn own_tensor(columns: &mut [Vec<f64>], particles: usize) -> Option<[&mut [f64]; 4]> {
+    (!columns.is_empty()).then(|| own(columns, particles))
 }
 
-/// Half the sum of two lines of nodes.
+/// Mean of two lines of nodes.
 #[inline(always)]
 fn half_sum<const K: usize>(a: &[f64; K], b: &[f64; K]) -> [f64; K] {
     std::array::from_fn(|k| 0.5 * (a[k] + b[k]))
 }
 
 impl<const D: usize> Stepper<D> {
-    /// What the end of a leapfrog step brings the own rows: velocity by the scheme, the affine part
-    /// with it, and position x += dt N v'; with `strain` what [`Self::gather_gradient`] brings.
+    /// Updates the own particles at the end of a leapfrog step: velocity by the transfer scheme,
+    /// its affine part, and position x += dt N v'; with `strain` also the results of
+    /// [`Self::gather_gradient`].
     pub(super) fn gather_leapfrog(&self, patch: &mut Patch<D>, dt: f64, strain: bool) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
@@ -68,14 +71,16 @@ impl<const D: usize> Stepper<D> {
                 }
             }
             if let Some(affine) = s.columns.affine {
-                spend(Effect::Affine, patch, |patch| s.gather_affine::<K>(patch, affine));
+                timed(StepPart::Affine as usize, patch, |patch| {
+                    s.gather_affine::<K>(patch, affine)
+                });
             }
         }
         with_width!(patch.stencils.width, go(patch, self, dt, strain));
     }
 
-    /// Divergence of v' at the own rows, its whole gradient where domains deform, and the limiter
-    /// from it.
+    /// Divergence of v' at the own particles, its full gradient if domains deform, and the limiter
+    /// computed from it.
     pub(super) fn gather_gradient(&self, patch: &mut Patch<D>) {
         fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
             if const { D == 1 } {
@@ -87,8 +92,8 @@ impl<const D: usize> Stepper<D> {
         with_width!(patch.stencils.width, go(patch, self));
     }
 
-    /// Moves the own rows by `dt`, strains them, or both: in one pass, since finding a row's weights
-    /// and nodes takes as long as a sum over them.
+    /// Moves the own particles by `dt`, computes their velocity gradients, or both, in one pass:
+    /// finding the weights and nodes of a particle takes as long as a sum over them.
     fn gather_end<const K: usize, const L: usize, const MOVE: bool, const STRAIN: bool>(
         &self,
         patch: &mut Patch<D>,
@@ -97,29 +102,29 @@ impl<const D: usize> Stepper<D> {
         let (c, f) = (&self.columns, &self.fields);
         let n = patch.block.own();
         let fields = &patch.nodes.fields;
-        // of one length, so that a window is looked up once for all of them
+        // slices of equal length, so that the bounds of a window are checked only once
         let nodes = fields[f.mass].len();
         let vector = |k: usize| std::array::from_fn::<&[f64], D, _>(|a| &fields[k + a][..nodes]);
-        let (lumped, star) = (vector(f.lumped), vector(f.velocity_star));
+        let (lumped, star) = (vector(f.lumped_velocity), vector(f.velocity_star));
         let columns = &mut patch.block.columns;
         let [mut x, mut v] = [c.position, c.velocity].map(|k| take_vector::<D>(columns, k));
-        let mut divergence = std::mem::take(&mut columns[c.gradient]);
+        let mut divergence = std::mem::take(&mut columns[c.divergence]);
         let mut tensor = take_tensor(columns, c.velocity_gradient, D * D);
         let (own_x, own_v) = (&mut own::<D>(&mut x, n), &mut own::<D>(&mut v, n));
         let own_divergence = &mut divergence[..n];
         let mut own_gradient = own_tensor(&mut tensor, n);
-        for (r, row) in patch.stencils.rows::<K, D>(0..n).enumerate() {
-            let star = row.windows::<L, D>(star);
+        for (r, weights) in patch.stencils.particles::<K, D>(0..n).enumerate() {
+            let star = weights.windows::<L, D>(star);
             if MOVE {
                 for a in 0..D {
-                    let new = row.sum(row.values, |line| star[a][line]);
+                    let new = weights.sum(weights.values, |line| star[a][line]);
                     let v = &mut own_v[a][r];
-                    *v = match self.scheme {
-                        Scheme::Blend(share) => {
-                            let old = row.dot(row.values, lumped[a]);
+                    *v = match self.transfer.update {
+                        VelocityUpdate::Blend(share) => {
+                            let old = weights.dot(weights.values, lumped[a]);
                             share * *v + (1.0 - share) * old + (new - old)
                         }
-                        Scheme::Series { .. } | Scheme::Affine => new,
+                        VelocityUpdate::Filtered | VelocityUpdate::Affine => new,
                     };
                     own_x[a][r] += dt * new;
                 }
@@ -127,23 +132,24 @@ impl<const D: usize> Stepper<D> {
             if STRAIN {
                 let plane = match &mut own_gradient {
                     Some(gradient) => {
-                        let l = tensor_of(&row, |a, line| star[a][line]);
+                        let l = tensor_of(&weights, |a, line| star[a][line]);
                         put(gradient, 0, r, &l);
                         trace(&l)
                     }
                     None => {
-                        let along = |a: usize| row.sum(row.gradient(a), |line| star[a][line]);
+                        let along =
+                            |a: usize| weights.sum(weights.gradient(a), |line| star[a][line]);
                         (1..D).fold(along(0), |sum, a| sum + along(a))
                     }
                 };
                 let radial = |line: usize| star[0][line];
-                own_divergence[r] = self.with_hoop(patch, &row, r, plane, radial);
+                own_divergence[r] = self.with_hoop(patch, &weights, r, plane, radial);
             }
         }
         let columns = &mut patch.block.columns;
         put_back(columns, c.position, x);
         put_back(columns, c.velocity, v);
-        columns[c.gradient] = divergence;
+        columns[c.divergence] = divergence;
         if let Some(first) = c.velocity_gradient {
             put_back(columns, first, tensor);
         }
@@ -152,19 +158,19 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// C = B D^-1 with B = sum N v' (x_i - x_p) and D = sum N (x_i - x_p) (x_i - x_p) (Jiang et
-    /// al. 2015): exact for a linear velocity, also where a sheared domain gives D a component xy.
+    /// C = B D^-1 with B = sum N v' (x_i - x_p) and D = sum N (x_i - x_p) (x_i - x_p) (Jiang et al.
+    /// 2015): exact for a linear velocity, also if a sheared domain gives D an xy component.
     fn gather_affine<const K: usize>(&self, patch: &mut Patch<D>, affine: usize) {
         for r in 0..patch.block.own() {
             let offset = self.offset(patch, r, patch.stencils.first[r] as usize);
-            let row = patch.stencils.row::<K, D>(r);
+            let weights = patch.stencils.particle::<K, D>(r);
             let apart = |b: usize, line: usize, k: usize| {
                 offset[b] + if b == 0 { k as f64 } else { line as f64 }
             };
             let second = |a: usize, b: usize| {
                 let product =
                     |line: usize| std::array::from_fn(|k| apart(a, line, k) * apart(b, line, k));
-                row.sum(row.values, product)
+                weights.sum(weights.values, product)
             };
             let square: [f64; D] = std::array::from_fn(|b| second(b, b));
             let (first, last) = (0, D - 1);
@@ -174,20 +180,20 @@ impl<const D: usize> Stepper<D> {
                 let star = &patch.nodes.fields[self.fields.velocity_star + a][..];
                 let moment = |b: usize| {
                     let product = |line: usize| {
-                        let v = row.line(star, line);
+                        let v = weights.line(star, line);
                         std::array::from_fn(|k| v[k] * apart(b, line, k))
                     };
-                    row.sum(row.values, product)
+                    weights.sum(weights.values, product)
                 };
-                // on a node of hat functions both vanish, and their ratio tends to the gradient
+                // at a node of hat functions both vanish, and their ratio tends to the gradient
                 let flat = square.iter().any(|d| *d <= 1e-9);
                 for b in 0..D {
                     patch.block.columns[affine + D * a + b][r] = if flat {
-                        let slopes = match self.total {
+                        let slopes = match self.total_lagrangian {
                             true => patch.stencils.first_gradient::<K, D>(r, b),
-                            false => row.gradient(b),
+                            false => weights.gradient(b),
                         };
-                        row.dot(slopes, star)
+                        weights.dot(slopes, star)
                     } else if D == 1 {
                         moment(b) / square[b] * self.inverse_cell[b]
                     } else {
@@ -200,29 +206,35 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// The divergence `plane` of a velocity in the plane, and about an axis the rate of strain
-    /// N v_x/x of a row that a radius adds to it; `radial` gives v_x for each line of nodes.
+    /// Divergence of a velocity: that in the plane, `plane`, plus with axial symmetry the hoop
+    /// strain rate N v_x/x of a particle; `radial` gives v_x for each line of nodes.
     #[inline(always)]
-    pub(super) fn with_hoop<const K: usize>(
+    pub(crate) fn with_hoop<const K: usize>(
         &self,
         patch: &Patch<D>,
-        row: &Row<'_, K, D>,
+        weights: &ParticleWeights<'_, K, D>,
         r: usize,
         plane: f64,
         radial: impl Fn(usize) -> [f64; K],
     ) -> f64 {
         match D > 1 && self.axisymmetric {
-            true => plane + row.sum(row.values, radial) / self.radius(patch, r),
+            true => plane + weights.sum(weights.values, radial) / self.radius(patch, r),
             false => plane,
         }
     }
 
     fn gather_limiter<const K: usize>(&self, patch: &mut Patch<D>) {
-        let (Some(limiter), Some(column)) =
+        if let (Some(limiter), Some(column)) =
             (self.viscosity.and_then(|v| v.limiter), self.columns.limiter)
-        else {
-            return;
-        };
+        {
+            timed(StepPart::Viscosity as usize, patch, |patch| {
+                self.find_limiter::<K>(patch, limiter, column);
+            });
+        }
+    }
+
+    /// Writes the viscosity limiter of the own particles to its column.
+    fn find_limiter<const K: usize>(&self, patch: &mut Patch<D>, limiter: Limiter, column: usize) {
         let (fields, star) = (&patch.nodes.fields, self.fields.velocity_star);
         let stride = patch.stencils.stride;
         let nodes = Nodes {
@@ -238,9 +250,9 @@ impl<const D: usize> Stepper<D> {
         let first = &patch.stencils.first;
         let layer = |r: usize| if layers > 1 { first[r] as usize / count * count } else { 0 };
         let mut limiters = std::mem::take(&mut patch.block.columns[column]);
-        let (phi, gradient) = (&mut limiters, &patch.block.columns[self.columns.gradient]);
+        let (phi, gradient) = (&mut limiters, &patch.block.columns[self.columns.divergence]);
         for r in 0..n {
-            // without compression there is no viscosity to limit
+            // in expansion there is no viscosity to limit
             phi[r] = if gradient[r] >= 0.0 {
                 0.0
             } else {
@@ -253,10 +265,10 @@ impl<const D: usize> Stepper<D> {
                         artificial_viscosity::christensen(&nodes, node)
                     }
                     Limiter::Nodal => {
-                        let row = patch.stencils.row::<K, D>(r);
+                        let weights = patch.stencils.particle::<K, D>(r);
                         artificial_viscosity::nodal(
                             &nodes,
-                            &row,
+                            &weights,
                             gradient[r],
                             self.push_of(patch, r),
                         )
@@ -267,28 +279,29 @@ impl<const D: usize> Stepper<D> {
         patch.block.columns[column] = limiters;
     }
 
-    /// All that the end of a mid-point step brings the own rows: volume and energy from the
-    /// gradients of the mean velocity and of w, the filter's heat, velocity, position, and domain.
+    /// Updates the own particles at the end of a mid-point step: volume and energy from the
+    /// gradients of the mean velocity and of w, heat of the filter, velocity, position and domain.
     pub(super) fn gather_midpoint(&self, patch: &mut Patch<D>, dt: f64) {
-        self.gather_contact(patch, dt);
         fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, dt: f64) {
             if const { D == 1 } {
-                s.gather_rows::<K, 1, false>(patch, dt);
+                s.gather_particles::<K, 1, false>(patch, dt);
             } else {
                 match s.tensor_stress() {
-                    false => s.gather_rows::<K, K, false>(patch, dt),
-                    true => s.gather_rows::<K, K, true>(patch, dt),
+                    false => s.gather_particles::<K, K, false>(patch, dt),
+                    true => s.gather_particles::<K, K, true>(patch, dt),
                 }
             }
             if let Some(affine) = s.columns.affine {
-                spend(Effect::Affine, patch, |patch| s.gather_affine::<K>(patch, affine));
+                timed(StepPart::Affine as usize, patch, |patch| {
+                    s.gather_affine::<K>(patch, affine)
+                });
             }
             s.gather_limiter::<K>(patch);
         }
         with_width!(patch.stencils.width, go(patch, self, dt));
     }
 
-    fn gather_rows<const K: usize, const L: usize, const TENSOR: bool>(
+    fn gather_particles<const K: usize, const L: usize, const TENSOR: bool>(
         &self,
         patch: &mut Patch<D>,
         dt: f64,
@@ -296,16 +309,17 @@ impl<const D: usize> Stepper<D> {
         let (c, f) = (&self.columns, &self.fields);
         let n = patch.block.own();
         let fields = &patch.nodes.fields;
-        // of one length, so that a window is looked up once for all of them
+        // slices of equal length, so that the bounds of a window are checked only once
         let nodes = fields[f.mass].len();
         let vector = |k: usize| std::array::from_fn::<&[f64], D, _>(|a| &fields[k + a][..nodes]);
-        let (lumped, start, star) = (vector(f.lumped), vector(f.velocity), vector(f.velocity_star));
+        let (lumped, start, star) =
+            (vector(f.lumped_velocity), vector(f.velocity), vector(f.velocity_star));
         let work = vector(f.work);
-        let remainder = f.remainder.filter(|_| self.filter_heat).map(vector);
+        let remainder = f.filter_residual.filter(|_| self.filter_heat).map(vector);
         let columns = &mut patch.block.columns;
         let [mut x, mut v] = [c.position, c.velocity].map(|k| take_vector::<D>(columns, k));
         let [mut j, mut e, mut d] =
-            [c.jacobian, c.energy, c.gradient].map(|k| std::mem::take(&mut columns[k]));
+            [c.jacobian, c.energy, c.divergence].map(|k| std::mem::take(&mut columns[k]));
         let [mut deformation, mut gradient] =
             [c.deformation, c.velocity_gradient].map(|k| take_tensor(columns, k, D * D));
         let (own_x, own_v) = (&mut own::<D>(&mut x, n), &mut own::<D>(&mut v, n));
@@ -315,13 +329,13 @@ impl<const D: usize> Stepper<D> {
         let column = |k: usize| &patch.block.columns[k][..n];
         let mid = c.jacobian_mid.expect("mid-point stepping has the column");
         let (mass, j_mid, stress) = (column(c.mass), column(mid), column(c.stress_volume));
-        for (r, row) in patch.stencils.rows::<K, D>(0..n).enumerate() {
-            // looked up once, for they are summed many times
-            let (mut means, star) = (row.windows::<L, D>(start), row.windows::<L, D>(star));
+        for (r, weights) in patch.stencils.particles::<K, D>(0..n).enumerate() {
+            // fetched once, as several sums use them
+            let (mut means, star) = (weights.windows::<L, D>(start), weights.windows::<L, D>(star));
             let mut filtered = [0.0; D];
             if remainder.is_some() {
                 for a in 0..D {
-                    filtered[a] = row.sum(row.values, |line| means[a][line]);
+                    filtered[a] = weights.sum(weights.values, |line| means[a][line]);
                 }
             }
             for a in 0..D {
@@ -333,87 +347,90 @@ impl<const D: usize> Stepper<D> {
             let (mut heat, mut new) = (0.0, [0.0; D]);
             for a in 0..D {
                 let old = own_v[a][r];
-                new[a] = row.sum(row.values, |line| star[a][line]);
-                match self.scheme {
-                    Scheme::Series { .. } => {
+                new[a] = weights.sum(weights.values, |line| star[a][line]);
+                match self.transfer.update {
+                    VelocityUpdate::Filtered => {
                         if let Some(lost) = remainder {
-                            let [lost] = row.windows::<L, 1>([lost[a]]);
+                            let [lost] = weights.windows::<L, 1>([lost[a]]);
                             let both = |l: usize| times(&lost[l], &mean(a, l));
                             let rest = old - filtered[a];
                             heat += 0.5 * rest * rest
-                                + (row.sum(row.values, both)
-                                    - row.sum(row.values, |l| lost[l])
-                                        * row.sum(row.values, |l| mean(a, l)));
+                                + (weights.sum(weights.values, both)
+                                    - weights.sum(weights.values, |l| lost[l])
+                                        * weights.sum(weights.values, |l| mean(a, l)));
                         }
                     }
-                    Scheme::Blend(share) => {
-                        let [lumped] = row.windows::<L, 1>([lumped[a]]);
-                        let on_grid = row.sum(row.values, |l| lumped[l]);
+                    VelocityUpdate::Blend(share) => {
+                        let [lumped] = weights.windows::<L, 1>([lumped[a]]);
+                        let on_grid = weights.sum(weights.values, |l| lumped[l]);
                         let change = new[a] - on_grid;
                         if self.filter_heat {
                             let square = |l: usize| times(&lumped[l], &lumped[l]);
                             let rest = old - on_grid;
                             heat += 0.5 * (1.0 - share * share) * rest * rest
-                                + (1.0 - share) * (row.sum(row.values, square) - on_grid * on_grid);
+                                + (1.0 - share)
+                                    * (weights.sum(weights.values, square) - on_grid * on_grid);
                         }
                         new[a] = share * old + (1.0 - share) * on_grid + change;
                     }
-                    Scheme::Affine => {}
+                    VelocityUpdate::Affine => {}
                 }
             }
-            // where domains deform the whole gradients are needed, else their traces
+            // if domains deform the full gradients are needed, otherwise only their traces
             let plane = match (&mut own_deformation, &own_gradient) {
                 (Some(deformation), Some(gradient)) => {
-                    let during = tensor_of(&row, mean);
-                    if self.total {
+                    let during = tensor_of(&weights, mean);
+                    if self.total_lagrangian {
                         deform_linearly(deformation, gradient, r, &during, dt);
                     } else {
                         deform(deformation, r, &during, dt);
                     }
                     trace(&during)
                 }
-                _ => (0..D).map(|a| row.sum(row.gradient(a), |l| mean(a, l))).sum(),
+                _ => (0..D).map(|a| weights.sum(weights.gradient(a), |l| mean(a, l))).sum(),
             };
             let end = match &mut own_gradient {
                 Some(gradient) => {
-                    let end = tensor_of(&row, |a, l| star[a][l]);
+                    let end = tensor_of(&weights, |a, l| star[a][l]);
                     put(gradient, 0, r, &end);
                     trace(&end)
                 }
-                None => (0..D).map(|a| row.sum(row.gradient(a), |l| star[a][l])).sum(),
+                None => (0..D).map(|a| weights.sum(weights.gradient(a), |l| star[a][l])).sum(),
             };
-            let divergence = self.with_hoop(patch, &row, r, plane, |l| mean(0, l));
-            // the velocity that does the work
-            let does = if self.compatible { row.windows::<L, D>(work) } else { means };
+            let divergence = self.with_hoop(patch, &weights, r, plane, |l| mean(0, l));
+            // the velocity whose gradient does the work
+            let does = if self.compatible { weights.windows::<L, D>(work) } else { means };
             let work_done = if TENSOR {
-                dt * self.stress_power(patch, &row, r, |a, line| does[a][line])
+                dt * self.stress_power(patch, &weights, r, |a, line| does[a][line])
             } else {
                 let working = if self.compatible {
-                    let along = |a: usize| row.sum(row.gradient(a), |line| does[a][line]);
-                    self.with_hoop(patch, &row, r, (0..D).map(along).sum(), |line| does[0][line])
+                    let along = |a: usize| weights.sum(weights.gradient(a), |line| does[a][line]);
+                    self.with_hoop(patch, &weights, r, (0..D).map(along).sum(), |line| {
+                        does[0][line]
+                    })
                 } else {
                     divergence
                 };
                 stress[r] * dt * working
             };
             for a in 0..D {
-                own_x[a][r] += match self.scheme {
-                    // with the grid: the particles' own velocities would tear their tiling
-                    Scheme::Blend(_) => dt * row.sum(row.values, |l| mean(a, l)),
+                own_x[a][r] += match self.transfer.update {
+                    // with the grid: the particles' own velocities would break up the tiling
+                    VelocityUpdate::Blend(_) => dt * weights.sum(weights.values, |l| mean(a, l)),
                     _ => 0.5 * dt * (own_v[a][r] + new[a]),
                 };
                 own_v[a][r] = new[a];
             }
             own_j[r] += dt * j_mid[r] * divergence;
             own_e[r] += heat - work_done / mass[r];
-            own_d[r] = self.with_hoop(patch, &row, r, end, |l| star[0][l]);
+            own_d[r] = self.with_hoop(patch, &weights, r, end, |l| star[0][l]);
         }
         let columns = &mut patch.block.columns;
         put_back(columns, c.position, x);
         put_back(columns, c.velocity, v);
         columns[c.jacobian] = j;
         columns[c.energy] = e;
-        columns[c.gradient] = d;
+        columns[c.divergence] = d;
         for (first, taken) in [(c.deformation, deformation), (c.velocity_gradient, gradient)] {
             if let Some(first) = first {
                 put_back(columns, first, taken);
@@ -422,75 +439,80 @@ impl<const D: usize> Stepper<D> {
     }
 }
 
-/// The gradient of the velocity at a row, whose components `of` gives for each line of nodes.
+/// Velocity gradient at a particle; `of` gives the velocity components for each line of nodes.
 #[inline(always)]
-pub(super) fn tensor_of<const K: usize, const D: usize>(
-    row: &Row<'_, K, D>,
+pub(crate) fn tensor_of<const K: usize, const D: usize>(
+    weights: &ParticleWeights<'_, K, D>,
     of: impl Fn(usize, usize) -> [f64; K],
 ) -> [[f64; D]; D] {
-    // no nested closures: they stay calls
+    // no nested closures: compilers do not inline them
     let mut tensor = [[0.0; D]; D];
     for a in 0..D {
         for b in 0..D {
-            tensor[a][b] = row.sum(row.gradient(b), |line| of(a, line));
+            tensor[a][b] = weights.sum(weights.gradient(b), |line| of(a, line));
         }
     }
     tensor
 }
 
-/// The deformation gradient F in `columns` of a row after `dt` at the gradient `l` of the velocity, by
-/// Cayley's form (1 - dt/2 l)^-1 (1 + dt/2 l) F, which turns without stretching.
+/// Deformation gradient F of a particle in `columns` after `dt` with the velocity gradient `l`, by
+/// Cayley's form (1 - dt/2 l)^-1 (1 + dt/2 l) F, which keeps a rotation free of stretching.
 #[inline(always)]
-fn deform<const D: usize>(columns: &mut [&mut [f64]; 4], row: usize, l: &[[f64; D]; D], dt: f64) {
+fn deform<const D: usize>(
+    columns: &mut [&mut [f64]; 4],
+    particle: usize,
+    l: &[[f64; D]; D],
+    dt: f64,
+) {
     let half = 0.5 * dt;
     let [xx, xy, yx, yy] = [l[0][0], l[0][D - 1], l[D - 1][0], l[D - 1][D - 1]].map(|l| half * l);
     let inverse = 1.0 / ((1.0 - xx) * (1.0 - yy) - xy * yx);
     for k in [0, 1] {
-        let (x, y) = (columns[k][row], columns[k + 2][row]);
+        let (x, y) = (columns[k][particle], columns[k + 2][particle]);
         let (x, y) = (x + xx * x + xy * y, y + yx * x + yy * y);
-        columns[k][row] = inverse * ((1.0 - yy) * x + xy * y);
-        columns[k + 2][row] = inverse * (yx * x + (1.0 - xx) * y);
+        columns[k][particle] = inverse * ((1.0 - yy) * x + xy * y);
+        columns[k + 2][particle] = inverse * (yx * x + (1.0 - xx) * y);
     }
 }
 
-/// F + dt l F_h of a row, with F_h = (1 + dt/2 L) F that of the middle of the step, which the
-/// gradient `l` of the velocity has been pushed forward by, and L the gradient in `before`: F is that
-/// of the displacements on the grid.
+/// F + dt l F_h of a particle, with the deformation at the middle of the step F_h = (1 + dt/2 L) F,
+/// which has pushed the velocity gradient `l` forward, and L the gradient in `before`: F then
+/// follows from the displacements of the grid.
 #[inline(always)]
 fn deform_linearly<const D: usize>(
     columns: &mut [&mut [f64]; 4],
     before: &[&mut [f64]; 4],
-    row: usize,
+    particle: usize,
     l: &[[f64; D]; D],
     dt: f64,
 ) {
     let half = 0.5 * dt;
     for k in [0, 1] {
-        let (x, y) = (columns[k][row], columns[k + 2][row]);
-        let at = |a: usize| half * (before[2 * a][row] * x + before[2 * a + 1][row] * y);
+        let (x, y) = (columns[k][particle], columns[k + 2][particle]);
+        let at = |a: usize| half * (before[2 * a][particle] * x + before[2 * a + 1][particle] * y);
         let (mid_x, mid_y) = (x + at(0), y + at(1));
-        columns[k][row] = x + dt * (l[0][0] * mid_x + l[0][D - 1] * mid_y);
-        columns[k + 2][row] = y + dt * (l[D - 1][0] * mid_x + l[D - 1][D - 1] * mid_y);
+        columns[k][particle] = x + dt * (l[0][0] * mid_x + l[0][D - 1] * mid_y);
+        columns[k + 2][particle] = y + dt * (l[D - 1][0] * mid_x + l[D - 1][D - 1] * mid_y);
     }
 }
 
-/// Sum of the diagonal.
+/// Trace of a tensor.
 #[inline(always)]
-pub(super) fn trace<const D: usize>(tensor: &[[f64; D]; D]) -> f64 {
+pub(crate) fn trace<const D: usize>(tensor: &[[f64; D]; D]) -> f64 {
     (1..D).fold(tensor[0][0], |sum, a| sum + tensor[a][a])
 }
 
-/// Writes a tensor into its columns from `first` on.
+/// Writes a tensor to its columns from `first` on.
 #[inline(always)]
-pub(super) fn put<const D: usize>(
+pub(crate) fn put<const D: usize>(
     columns: &mut [impl DerefMut<Target = [f64]>],
     first: usize,
-    row: usize,
+    particle: usize,
     tensor: &[[f64; D]; D],
 ) {
     for a in 0..D {
         for b in 0..D {
-            columns[first + D * a + b][row] = tensor[a][b];
+            columns[first + D * a + b][particle] = tensor[a][b];
         }
     }
 }

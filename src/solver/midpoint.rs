@@ -9,129 +9,86 @@
 //! e += -s V0 J_h dt (G w)/m + heat
 //! ```
 //!
-//! With w of [`Stepper::solve_work`] and the filter's heat, kinetic and internal energy add up
-//! to rounding.
+//! With w of [`Stepper::solve_work`] and the heat of the filter, the sum of kinetic and internal
+//! energy is constant to rounding.
 
-use decomp::RowError;
+use decomp::ParticleError;
 
 use super::{Stepper, World};
-use crate::effects::Effect::{
-    AcceleratedGrid, BodyForce, Conduction, Contact, Erosion, Failure, LoadedSides, Relaxation,
-    Strength, Stress, TransmittingSides, Viscosity,
-};
-use crate::solver::clock::spend;
+use crate::solver::clock::timed;
+use crate::solver::effect::{Phase, StepContext};
+use crate::solver::parts::StepPart;
 
 impl<const D: usize> Stepper<D> {
-    /// One step from `time`; `relax` is the rate of pressure relaxation if this step has it. Collective.
+    /// One step of `dt` from `start` [s]; `relax` is the rate of pressure relaxation, if this step
+    /// relaxes. Collective.
     pub(super) fn advance_midpoint(
         &self,
         world: &mut World<'_, D>,
-        time: f64,
+        start: f64,
         dt: f64,
         relax: Option<f64>,
-    ) -> Result<(), RowError> {
-        let mid = self.columns.jacobian_mid.expect("mid-point stepping has the column");
+    ) -> Result<(), ParticleError> {
+        let jacobian = self.columns.jacobian_mid.expect("mid-point stepping has the column");
+        let step = StepContext { stepper: self, start, time: start + 0.5 * dt, dt, jacobian };
         world.each("start", |patch| {
             patch.block.drop_ghosts();
             self.half_step_volume(patch, dt);
-            self.find_push(patch, 0.5 * dt, mid);
-            spend(Viscosity, patch, |patch| self.find_viscosity(patch, mid));
-            if self.columns.strength.is_some() {
-                spend(Strength, patch, |patch| self.shear_to_middle(patch, 0.5 * dt, mid));
-            }
-            self.burn(patch, time + 0.5 * dt, mid);
+            self.invert_deformation(patch, 0.5 * dt, jacobian);
+            self.find_viscosity(patch, jacobian);
+            self.effects.act(Phase::MidState, &step, patch);
             self.mid_step_stress(patch, relax.is_some());
-            if self.columns.failure.is_some() {
-                spend(Failure, patch, |patch| self.bear_no_tension(patch, mid));
-            }
-            if self.columns.stress.is_some() {
-                let deviator = self.columns.stress;
-                let ahead = 0.5 * dt;
-                spend(Stress, patch, |p| self.find_solid_stress(p, ahead, mid, deviator));
-            }
-            if self.columns.pressed.is_some() {
-                spend(Contact, patch, |patch| self.find_pressed(patch, mid, dt));
-            }
-            if self.columns.body_force.is_some() {
-                spend(BodyForce, patch, |patch| self.find_body_force(patch, time + 0.5 * dt));
-            }
-            if self.columns.frame_force.is_some() {
-                spend(AcceleratedGrid, patch, |patch| self.find_inertia(patch, time, dt));
-            }
-            if self.columns.side.is_some() {
-                spend(TransmittingSides, patch, |patch| self.find_impedance(patch, mid));
-            }
-            if self.columns.load.is_some() {
-                spend(LoadedSides, patch, |patch| self.find_loaded_volume(patch, mid));
-            }
-            if self.conduction.is_some() {
-                spend(Conduction, patch, |patch| self.find_conductance(patch, mid));
-            }
-            self.locate(patch, 0.5 * dt, mid);
+            self.effects.act(Phase::MidStress, &step, patch);
+            self.find_solid_stress(patch, 0.5 * dt, jacobian, self.columns.stress);
+            self.find_contact_impulse(patch, jacobian, dt);
+            self.effects.act(Phase::ParticleForce, &step, patch);
+            self.find_cells(patch, 0.5 * dt, jacobian);
             self.find_active(patch);
         });
-        world.exchange_rows(|nodal| {
+        world.exchange_particles(|nodal| {
             nodal.each("scatter", |patch| {
-                self.scatter(patch, true, time + 0.5 * dt, dt);
+                self.scatter(patch, true, &step);
                 if relax.is_some() {
-                    spend(Relaxation, patch, |patch| self.start_pressure(patch));
+                    timed(StepPart::Relaxation as usize, patch, |patch| self.start_pressure(patch));
                 }
-                if self.conduction.is_some() {
-                    spend(Conduction, patch, |patch| self.scatter_heat(patch));
-                }
+                self.effects.act(Phase::NodalStart, &step, patch);
             });
             self.solve_velocity(nodal, dt, relax.is_some());
             if self.compatible {
                 self.solve_work(nodal);
             }
-            self.conduct(nodal, dt);
+            self.effects.solve(&step, nodal);
             self.solve_friction_heat(nodal, dt);
             nodal.each("gather", |patch| {
-                if self.columns.strength.is_some() {
-                    spend(Strength, patch, |patch| self.gather_rate(patch));
-                }
+                self.effects.act(Phase::Gather, &step, patch);
+                self.gather_contact(patch, dt);
                 self.gather_midpoint(patch, dt);
-                if self.columns.strength.is_some() {
-                    spend(Strength, patch, |patch| self.shear(patch, dt));
-                }
-                self.book_body_force(patch, dt);
-                self.book_inertia(patch, time, dt);
-                self.book_sides(patch, dt);
-                if let Some(rate) = relax {
-                    spend(Relaxation, patch, |patch| self.relax_pressure(patch, rate));
-                }
-                if let Some(rate) = self.volume_relaxation {
-                    spend(Relaxation, patch, |patch| self.relax_volume(patch, rate));
-                }
-                self.burn(patch, time + dt, self.columns.jacobian);
-                if self.erosion.is_some() {
-                    spend(Erosion, patch, |patch| self.erode(patch));
-                }
-                self.refresh(patch);
-                if self.columns.failure.is_some() {
-                    spend(Failure, patch, |patch| self.fail(patch, dt));
-                }
+                self.effects.act(Phase::Gathered, &step, patch);
+                self.accumulate_side_forces(patch, dt);
+                self.relax(patch, relax);
+                self.end_step(patch, &step);
             });
         })
     }
 
-    /// The gradient of the starting velocity, which the first step needs: a step of no length
-    /// that moves nothing. Collective.
-    pub(super) fn prime_gradient(&self, world: &mut World<'_, D>) -> Result<(), RowError> {
+    /// Gradient of the initial velocity for the first step, by a step of zero length that moves
+    /// nothing. Collective.
+    pub(super) fn prime_gradient(&self, world: &mut World<'_, D>) -> Result<(), ParticleError> {
         let jacobian = self.columns.jacobian;
+        let step = StepContext { stepper: self, start: 0.0, time: 0.0, dt: 0.0, jacobian };
         world.each("start", |patch| {
             self.current_stress(patch);
-            self.find_push(patch, 0.0, jacobian);
-            self.locate(patch, 0.0, jacobian);
-            // ghosts carry every declared column
+            self.invert_deformation(patch, 0.0, jacobian);
+            self.find_cells(patch, 0.0, jacobian);
+            // ghosts must have every declared column
             for (spec, column) in self.columns.specs.iter().zip(&mut patch.block.columns) {
                 if spec.ghost {
                     column.resize(patch.block.ids.len(), 0.0);
                 }
             }
         });
-        world.exchange_rows(|nodal| {
-            nodal.each("scatter", |patch| self.scatter(patch, false, 0.0, 0.0));
+        world.exchange_particles(|nodal| {
+            nodal.each("scatter", |patch| self.scatter(patch, false, &step));
             self.solve_velocity(nodal, 0.0, false);
             nodal.each("gather", |patch| {
                 self.gather_gradient(patch);

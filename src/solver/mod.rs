@@ -1,240 +1,195 @@
-//! One time step, written as the method reads in a paper.
+//! One time step, written like the description of the method in a paper.
 //!
-//! [`Stepper`] holds what a scene chose; [`Steps::advance`] runs the list of phases of
-//! [`midpoint`] or [`leapfrog`]. Physics and messages meet in [`World`], which calls a phase on
-//! every patch and the exchanges between phases.
+//! [`Stepper`] holds the settings of a scene; [`Steps::advance`] runs the phases of [`midpoint`] or
+//! [`leapfrog`]. [`World`] joins physics and messages: it runs a phase on every patch, and the
+//! exchanges between phases.
 
-mod body_force;
-mod burn;
+pub mod artificial_viscosity;
 pub mod clock;
-mod conduction;
+pub mod columns;
 mod contact;
-mod erosion;
-mod exchange;
-mod failure;
+pub mod declare;
+pub mod effect;
+pub mod exchange;
 pub mod gather;
-mod inertial_force;
 pub mod leapfrog;
+mod material_state;
 pub mod midpoint;
+mod motion_columns;
 pub mod nodal_fields;
 mod particle_domains;
-mod particle_update;
+pub mod particle_update;
+pub mod particle_weights;
 pub mod particles;
+pub mod parts;
 pub mod patch;
-mod pressure_load;
 mod reach;
 pub mod relaxation;
 pub mod scatter;
 pub mod series;
-pub mod shape;
 pub mod shape_weights;
-mod sides;
+pub mod sides;
 mod solid;
-mod strength;
-mod thermal;
+mod tension_free;
 mod total_lagrangian;
-pub mod transfer;
 
 pub use exchange::{Nodal, Sleep, World};
-pub use reach::Reach;
+pub use reach::StencilRadius;
 
-use self::shape::{Extent, Shape};
-use crate::effects::artificial_viscosity::Viscosity;
-use crate::effects::contact::Contact;
-use crate::material::constitutive::{self, Criterion, Erosion, Flow, Matter, Outside, Thermal};
-use crate::material::strength::Condition;
-use crate::scene::moving_frame::Frame;
-use crate::scene::{
-    CheckedScene, EnergyUpdate, FrameKind, Material, PressureRelaxation, ShapeKind, Side, Stepping,
-    StressUpdate,
+use crate::contact::ContactCondition;
+use crate::material::constitutive::{
+    self, ConstitutiveModel, CustomModel, StrengthModel, ThermalModel,
 };
+use crate::material::strength::MaterialState;
+use crate::scene::{
+    CheckedScene, EnergyUpdate, FrameKind, Material, PressureRelaxation, ShapeKind, SideProperties,
+    Stepping, StressUpdate,
+};
+use crate::shape::{DomainExtent, Shape, most_nodes, with_shape, with_width};
+use crate::solver::artificial_viscosity::Viscosity;
+use crate::solver::columns::Columns;
+use crate::solver::effect::{Effects, Registry, Setup, StepContext};
 use crate::solver::nodal_fields::{Fields, Wanted};
-use crate::solver::particles::Columns;
+use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
-use crate::solver::transfer::{MOST_NODES, Scheme};
+use crate::transfer::TransferPlan;
 
-/// What a scene chose, made ready for stepping.
+/// Settings of a scene, prepared for time stepping.
 pub struct Stepper<const D: usize> {
-    /// Where the columns stand.
+    /// Indices of the columns.
     pub columns: Columns,
-    /// Where the nodal fields stand.
+    /// Indices of the nodal fields.
     pub fields: Fields,
-    scheme: Scheme,
+    /// Effects of the scene.
+    pub effects: Effects<D>,
+    /// External forces on particles, each with the part of a step that it belongs to.
+    forces: Vec<(usize, usize)>,
+    /// Part of a step that friction heat belongs to.
+    friction_part: usize,
+    transfer: TransferPlan,
     stepping: Stepping,
     stress_update: StressUpdate,
-    compatible: bool,
+    /// Whether the work uses the velocity that conserves energy exactly.
+    pub(crate) compatible: bool,
     filter_heat: bool,
     relaxation: Option<PressureRelaxation>,
     volume_relaxation: Option<f64>,
     edge_mask: Option<f64>,
     viscosity: Option<Viscosity>,
-    body_force: Option<body_force::Force>,
-    /// The grid's, if it accelerates.
-    frame: Option<Frame<D>>,
-    /// Contact between velocity fields of the bodies' own.
-    contact: Option<Contact>,
-    /// Velocity fields, each in a layer of the nodal arrays: one for all bodies, or one a body.
+    /// Contact between bodies with separate velocity fields.
+    contact: Option<ContactCondition>,
+    /// Number of velocity fields, each in a layer of the nodal arrays: one for all bodies, or one
+    /// per body.
     pub layers: usize,
-    /// rho c^2 of each body as it starts [Pa].
+    /// Initial rho c^2 of each body [Pa].
     stiffness: Vec<f64>,
-    /// Acoustic impedance rho c of each body as it starts [Pa s/m].
+    /// Initial acoustic impedance rho c of each body [Pa s/m].
     impedances: Vec<f64>,
-    /// The speed of the scene's impacts, the most of all its bodies [m/s].
+    /// Shear wave speed in each body at rest [m/s]; 0 in fluids without strength.
+    pub(crate) shear_speeds: Vec<f64>,
+    /// Impact speed of the scene, maximum over its bodies [m/s].
     impact: f64,
-    /// The most impulse that each body may give back where it is pulled on [Pa s].
-    most_pull: Vec<f64>,
-    /// The state in which each body starts.
-    rest: Vec<sides::Rest<D>>,
-    /// One a body.
-    models: Vec<Matter>,
-    /// What each body's material bears of shear beside its equation of state.
-    flows: Vec<Option<Box<dyn Flow>>>,
-    /// When each body's material fails.
-    criteria: Vec<Option<Criterion>>,
-    /// When each body's particles are taken out, if those of any are.
-    erosion: Option<Vec<Option<Erosion>>>,
-    /// How each body's temperature follows.
-    thermals: Vec<Option<Thermal>>,
-    /// How heat is conducted.
-    conduction: Option<conduction::Conduction<D>>,
-    /// The column of its material's history, one a body.
+    /// Greatest impulse that each body can return as adhesion under tension [Pa s].
+    max_adhesion_impulse: Vec<f64>,
+    /// Constitutive model of each body.
+    pub(crate) models: Vec<ConstitutiveModel>,
+    /// Strength of each body's material, in addition to its equation of state.
+    pub(crate) strengths: Vec<Option<Box<dyn StrengthModel>>>,
+    /// Thermal model of each body.
+    pub(crate) thermals: Vec<Option<ThermalModel>>,
+    /// Column of the history variable of each body's equation of state.
     history: Vec<Option<usize>>,
-    /// How it burns, one a body, if any does.
-    burns: Option<Vec<Option<burn::Burns>>>,
     shape: ShapeKind,
-    /// Whether the shape functions are taken at the particles' first places.
-    total: bool,
+    /// Whether shape functions are evaluated at the initial positions of the particles.
+    pub(crate) total_lagrangian: bool,
     /// Edges of a cell [m] and their inverse.
-    cell: [f64; D],
+    pub(crate) cell: [f64; D],
     inverse_cell: [f64; D],
-    /// Edge of a square or line of a cell's volume [m].
+    /// Edge of a square or line with the volume of a cell [m].
     edge: f64,
     /// Lower corner of the domain [m] and its number of cells.
     lower: [f64; D],
-    cells: [i64; D],
-    sides: [[Side; 2]; D],
-    /// Directions with a wall without slip.
+    pub(crate) cells: [i64; D],
+    sides: [[SideProperties; 2]; D],
+    /// Directions with a no-slip wall.
     no_slip: [bool; D],
-    /// Whether x is a radius: what moves outward is strained about the axis.
-    axisymmetric: bool,
-    /// Longest half diagonal of a particle's domain [cells], with a limit.
+    /// Whether x is a radius: radial motion then causes hoop strain.
+    pub(crate) axisymmetric: bool,
+    /// Longest half diagonal of a particle's domain [cells], if it is limited.
     domain_limit: Option<f64>,
-    /// Whether patches at rest are left out.
+    /// Longest step of diffusive effects at a Courant number of 1 [s].
+    diffusion_step: f64,
+    /// Whether quiescent patches are skipped.
     may_sleep: bool,
-    /// The fastest speed of the start, of bodies or sound [m/s].
+    /// Greatest initial speed, of bodies or sound [m/s].
     pub fastest: f64,
     /// Mass below which a node counts as empty [kg].
-    empty_mass: f64,
+    pub(crate) empty_mass: f64,
     /// Nodal speed below which a node counts as at rest [m/s].
-    still_speed: f64,
-    /// Acceleration that brings a node to that speed while the fastest wave passes a cell [m/s2].
+    quiescent_speed: f64,
+    /// Acceleration that brings a node to that speed while the fastest wave crosses a cell [m/s2].
     still_acceleration: f64,
     /// Nodal pressure below which a node counts as free of stress [Pa].
     still_pressure: f64,
 }
 
-/// Share of a scene's fastest speed at which a nodal velocity counts as none; accelerations and
-/// pressures go with it. Alike everywhere, whatever sleeps.
+/// Fraction of the fastest speed of a scene below which nodal velocities count as zero; the limits
+/// of acceleration and pressure follow from it. It applies to all patches, quiescent or not.
 const STILL: f64 = 1.0 / (1u64 << 50) as f64;
 
-/// Calls `$call` with the type of a shape function, a number of nodes known at compile time, at
-/// least `$nodes`, and the dimension. One line a shape function.
-macro_rules! with_shape {
-    ($kind:expr, $nodes:expr, $call:ident ( $($arg:expr),* )) => {
-        match $kind {
-            ShapeKind::Linear => $call::<shape::Linear, 2, D>($($arg),*),
-            ShapeKind::Gimp => with_shape!(@wide $call, shape::Gimp, $nodes, $($arg),*),
-            ShapeKind::Cpdi => with_shape!(@wide $call, shape::Cpdi, $nodes, $($arg),*),
-            ShapeKind::BsplineQuadratic => $call::<shape::BsplineQuadratic, 3, D>($($arg),*),
-            ShapeKind::BsplineCubic => $call::<shape::BsplineCubic, 4, D>($($arg),*),
-            ShapeKind::CpdiBsplineQuadratic => {
-                with_shape!(@wide $call, shape::CpdiBsplineQuadratic, $nodes, $($arg),*)
-            }
-        }
-    };
-    (@wide $call:ident, $shape:ty, $nodes:expr, $($arg:expr),*) => {
-        match $nodes {
-            0..=3 => $call::<$shape, 3, D>($($arg),*),
-            4 => $call::<$shape, 4, D>($($arg),*),
-            5..=6 => $call::<$shape, 6, D>($($arg),*),
-            _ if D > 1 || $nodes <= 10 => $call::<$shape, 10, D>($($arg),*),
-            _ => $call::<$shape, MOST_NODES, D>($($arg),*),
-        }
-    };
-}
-
-/// Calls `$call` with the width of a patch's stencils known at compile time, and the dimension.
-macro_rules! with_width {
-    ($width:expr, $call:ident ( $($arg:expr),* )) => {
-        match $width {
-            0..=2 => $call::<2, D>($($arg),*),
-            3 => $call::<3, D>($($arg),*),
-            4 => $call::<4, D>($($arg),*),
-            6 => $call::<6, D>($($arg),*),
-            _ if D > 1 || $width <= 10 => $call::<10, D>($($arg),*),
-            _ => $call::<MOST_NODES, D>($($arg),*),
-        }
-    };
-}
-use with_width;
-
-/// Most nodes along one direction that a particle may touch, in a plane.
-const MOST_NODES_IN_PLANE: usize = 10;
-
-/// Most nodes along one direction that a particle may touch.
-const fn most_nodes(dimension: usize) -> usize {
-    if dimension == 1 { MOST_NODES } else { MOST_NODES_IN_PLANE }
-}
-
-/// How much longer a particle may be at the middle of a step than at its start.
+/// Ratio by which a particle may be longer at the middle of a step than at its start.
 const STRETCH: f64 = 1.25;
 
-/// Waves in a body at rest.
+/// Wave speeds in a body at rest.
 struct Waves {
-    /// Speed of shear waves [m/s]; none in a fluid without strength.
+    /// Shear wave speed [m/s]; 0 in a fluid without strength.
     shear: f64,
-    /// What shear adds to the square of the sound speed, 4 G/(3 rho) of a material with strength
-    /// [m2/s2].
+    /// Contribution of shear to the square of the sound speed, 4 G/(3 rho) of a material with
+    /// strength [m2/s2].
     added: f64,
 }
 
 impl Waves {
-    fn of(material: &Material, model: &Matter, flow: Option<&dyn Flow>) -> Self {
-        let rest = Condition {
+    fn of(
+        material: &Material,
+        model: &ConstitutiveModel,
+        strength: Option<&dyn StrengthModel>,
+    ) -> Self {
+        let rest = MaterialState {
             compression: 1.0,
             pressure: 0.0,
             temperature: material.thermal.map_or(f64::NAN, |t| t.reference_temperature),
         };
-        match flow {
+        match strength {
             None => Waves { shear: model.shear_speed(), added: 0.0 },
-            Some(flow) => {
-                let square = flow.shear_modulus(&rest) / material.density;
+            Some(strength) => {
+                let square = strength.shear_modulus(&rest) / material.density;
                 Waves { shear: square.sqrt(), added: 4.0 / 3.0 * square }
             }
         }
     }
 
-    /// Speed of the fastest wave where the sound speed without strength is `sound` [m/s].
+    /// Speed of the fastest wave, if the sound speed without strength is `sound` [m/s].
     fn fastest(&self, sound: f64) -> f64 {
         if self.added > 0.0 { (sound * sound + self.added).sqrt() } else { sound }
     }
 }
 
 impl<const D: usize> Stepper<D> {
-    /// What `scene` chose.
-    pub fn new(scene: &CheckedScene) -> Self {
-        Self::with_models(scene, &|_| None).expect("there is nothing to replace")
+    /// Stepper of `scene`, with the effects of `R`.
+    pub fn new<R: Registry>(scene: &CheckedScene) -> Self {
+        Self::with_models::<R>(scene, &|_| None).expect("there is nothing to replace")
     }
 
-    /// What `scene` chose, with the models of `outside` in place of those of materials; it is
-    /// asked by name, once a body.
+    /// Stepper of `scene`, with custom models from `outside` in place of the models of the scene;
+    /// `outside` is called with the material name once per body.
     ///
     /// # Errors
     ///
-    /// The material's name, and why it has no place for them.
-    pub fn with_models(
+    /// Name of the material, and the reason why it cannot use the custom model.
+    pub fn with_models<R: Registry>(
         scene: &CheckedScene,
-        outside: &dyn Fn(&str) -> Option<Outside>,
+        outside: &dyn Fn(&str) -> Option<CustomModel>,
     ) -> Result<Self, (String, String)> {
         let method = &scene.scene.method;
         let viscosity = scene.scene.artificial_viscosity.as_ref();
@@ -243,24 +198,22 @@ impl<const D: usize> Stepper<D> {
         let cell: [f64; D] = std::array::from_fn(|a| scene.cell_size[a]);
         let volume: f64 = cell.iter().product();
         let smallest = cell.iter().copied().fold(f64::INFINITY, f64::min);
-        let mut models: Vec<Matter> =
+        let mut models: Vec<ConstitutiveModel> =
             bodies.iter().map(|b| constitutive::build(&materials[&b.material])).collect();
-        let mut flows: Vec<_> =
-            bodies.iter().map(|b| constitutive::flow_of(&materials[&b.material])).collect();
-        for (b, (model, flow)) in bodies.iter().zip(models.iter_mut().zip(&mut flows)) {
+        let mut strengths: Vec<_> =
+            bodies.iter().map(|b| constitutive::strength_model(&materials[&b.material])).collect();
+        for (b, (model, strength)) in bodies.iter().zip(models.iter_mut().zip(&mut strengths)) {
             if let Some(own) = outside(&b.material) {
-                own.replace(&materials[&b.material], model, flow)
+                own.replace(&materials[&b.material], model, strength)
                     .map_err(|reason| (b.material.clone(), reason))?;
             }
         }
-        let criteria = bodies.iter().map(|b| constitutive::criterion_of(&materials[&b.material]));
-        let erosion = scene.erodes().then(|| {
-            bodies.iter().map(|b| constitutive::erosion_of(&materials[&b.material])).collect()
-        });
         let thermals = (bodies.iter().zip(&models))
             .map(|(b, model)| constitutive::thermal_of(&materials[&b.material], model));
-        let waves: Vec<Waves> = (bodies.iter().zip(models.iter().zip(&flows)))
-            .map(|(b, (model, flow))| Waves::of(&materials[&b.material], model, flow.as_deref()))
+        let waves: Vec<Waves> = (bodies.iter().zip(models.iter().zip(&strengths)))
+            .map(|(b, (model, strength))| {
+                Waves::of(&materials[&b.material], model, strength.as_deref())
+            })
             .collect();
         let fastest = (bodies.iter().zip(&waves).zip(models.iter().zip(&scene.bodies)))
             .map(|((b, w), (m, c))| {
@@ -279,7 +232,7 @@ impl<const D: usize> Stepper<D> {
         let impact = scene.impact_speed::<D>();
         let speed =
             |pressure: f64, density: f64, c: f64| impact.max(pressure.abs() / (density * c));
-        let most_pull = speeds()
+        let max_adhesion_impulse = speeds()
             .map(|(b, density, c)| {
                 contact::PULL * density * smallest * speed(b.pressure, density, c)
             })
@@ -287,39 +240,46 @@ impl<const D: usize> Stepper<D> {
         let impact =
             speeds().map(|(b, density, c)| speed(b.pressure, density, c)).fold(0.0, f64::max);
         let densest = bodies.iter().map(|b| materials[&b.material].density).fold(0.0, f64::max);
-        // of a cell, and of a radian about an axis: that of the outermost
+        // volume of a cell, with axial symmetry per radian at the outermost radius
         let around = match scene.axisymmetric() {
             true => scene.scene.domain.lower[0] + scene.cells[0] as f64 * cell[0],
             false => 1.0,
         };
-        // exact where all are the same
+        // exact if all edges are equal
         let edge = match cell.iter().all(|&h| h == cell[0]) {
             true => cell[0],
             false => volume.powf(1.0 / D as f64),
         };
-        let scheme: Scheme = method.transfer.into();
-        let series = match scheme {
-            Scheme::Series { force, .. } => 1 + usize::from(force),
-            Scheme::Blend(_) | Scheme::Affine => 0,
-        };
+        let transfer = method.transfer.plan();
+        let series = transfer.series();
         let relaxed = method.pressure_relaxation.is_some();
-        let contact = scene.scene.contact.as_ref().and_then(Contact::new);
+        let contact = scene.scene.contact.and_then(|contact| contact.condition());
         let contact = contact.filter(|_| scene.velocity_fields() > 1);
-        let rubs = D > 1 && contact.is_some_and(|c| c.coefficient.is_some());
-        let rubs = rubs || scene.has_frictional_wall();
-        let columns = Columns::new(scene);
-        let history = burn::histories(&columns, &models, scene);
-        let (masked, sides) = (method.edge_mask.is_some(), Self::side_sums(scene));
+        let has_friction = D > 1 && contact.is_some_and(|c| c.coefficient.is_some());
+        let columns = Columns::new::<R>(scene);
+        let friction_part = if has_friction { None } else { columns.friction_heat };
+        let has_friction = has_friction || columns.friction_heat.is_some();
+        let masked = method.edge_mask.is_some();
+        let mut fields = Fields::new(D, Wanted { series, masked, relaxed, has_friction });
+        let mut setup = Setup { scene, columns: &columns, fields: &mut fields, matrices: 0 };
+        let effects = Effects::new(R::build(&mut setup));
+        let owner = |column: usize| columns.owners[column].expect("a force is an effect's");
+        let history = (columns.history.iter().zip(&models)).map(|(column, model)| match model {
+            ConstitutiveModel::Fluid(model) => column.filter(|_| model.first_history().is_some()),
+            ConstitutiveModel::Solid(_) => None,
+        });
         Ok(Stepper {
-            burns: burn::Burns::of(scene),
-            history,
+            history: history.collect(),
+            forces: columns.forces.iter().map(|&force| (force, owner(force))).collect(),
+            friction_part: friction_part.unwrap_or(StepPart::Contact as usize),
+            diffusion_step: effects
+                .iter()
+                .map(|e| e.diffusion_step())
+                .fold(f64::INFINITY, f64::min),
+            effects,
             columns,
-            fields: Fields::new(
-                D,
-                Wanted { series, masked, relaxed, rubs, conducts: scene.conducts(), sides },
-            ),
-            conduction: conduction::Conduction::new(scene),
-            scheme,
+            fields,
+            transfer,
             stepping: method.stepping,
             stress_update: method.stress_update,
             compatible: method.energy == EnergyUpdate::Compatible,
@@ -328,45 +288,42 @@ impl<const D: usize> Stepper<D> {
             volume_relaxation: method.volume_relaxation,
             edge_mask: method.edge_mask,
             viscosity: viscosity.map(|v| Viscosity::new(v, edge)),
-            body_force: body_force::Force::new(scene),
-            frame: scene.accelerates().then(|| scene.frame()),
             contact,
             layers: scene.velocity_fields(),
             stiffness,
             impedances,
             impact,
-            most_pull,
-            rest: sides::Rest::of(scene, &models, &waves),
-            criteria: criteria.collect(),
-            erosion,
+            max_adhesion_impulse,
+            shear_speeds: waves.iter().map(|w| w.shear).collect(),
             thermals: thermals.collect(),
             models,
-            flows,
+            strengths,
             shape: method.shape,
-            total: method.frame == FrameKind::TotalLagrangian,
+            total_lagrangian: method.frame == FrameKind::TotalLagrangian,
             cell,
             inverse_cell: cell.map(|h| 1.0 / h),
             edge,
             lower: std::array::from_fn(|a| scene.scene.domain.lower[a]),
             cells: std::array::from_fn(|a| scene.cells[a] as i64),
-            no_slip: scene.sides().map(|ends| ends.contains(&Side::NoSlip)),
-            sides: scene.sides(),
+            no_slip: scene.side_properties().map(|ends| ends.iter().any(|side| side.no_slip)),
+            sides: scene.side_properties(),
             axisymmetric: scene.axisymmetric(),
             domain_limit: method.domain_limit,
             may_sleep: scene.skips_quiet(),
             fastest,
-            // what such a node holds is below rounding of its neighbours
+            // the content of such a node is below the rounding of its neighbours
             empty_mass: densest * volume * around * 2f64.powi(-90),
-            // far ahead of a wave values would fall and fall, until they are denormal; at this
-            // share of the scene's speeds they are below rounding of what is behind it
-            still_speed: fastest * STILL,
+            // far ahead of a wave, values would decay until they are denormal numbers; below this
+            // fraction of the speeds of the scene they are below the rounding of the values behind
+            // the wave
+            quiescent_speed: fastest * STILL,
             still_acceleration: fastest * fastest * STILL / smallest,
             still_pressure: densest * fastest * fastest * STILL,
         })
     }
 
-    /// The specific internal energy at which `body` starts at `pressure` [J/kg].
-    /// With a `temperature` of its own [K], the energy is what that one takes.
+    /// Initial specific internal energy of `body` at `pressure` [J/kg]. If a `temperature` [K] is
+    /// given, the energy follows from the temperature.
     pub fn starting_energy(&self, body: usize, pressure: f64, temperature: Option<f64>) -> f64 {
         match (temperature, &self.thermals[body]) {
             (Some(t), Some(thermal)) if thermal.isentrope.is_some() => thermal.energy_at(t),
@@ -374,8 +331,9 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// The least specific internal energy that the particles of each body may have [J/kg]: what
-    /// adiabatic flow leaves of the energy of the start, or where heat is conducted absolute zero.
+    /// Lowest admissible specific internal energy for particles of each body [J/kg]: the part of
+    /// the initial energy that adiabatic flow cannot convert, or the energy at absolute zero if the
+    /// body conducts heat.
     pub fn least_energies(&self, scene: &CheckedScene) -> Vec<f64> {
         let bodies = scene.scene.bodies.iter().zip(&self.models).enumerate();
         bodies
@@ -391,22 +349,27 @@ impl<const D: usize> Stepper<D> {
             .collect()
     }
 
-    /// Acoustic impedance rho c of `body` as it starts [Pa s/m].
+    /// Initial acoustic impedance rho c of `body` [Pa s/m].
     pub fn impedance(&self, body: usize) -> f64 {
         self.impedances[body]
     }
 
-    /// Whether conduction moves heat into and out of `body`.
+    /// Initial speed of the fastest waves in `body` [m/s].
+    pub fn sound_speed_at_start(&self, scene: &CheckedScene, body: usize) -> f64 {
+        self.impedances[body] / scene.material_of(body).density
+    }
+
+    /// Whether heat conduction acts on `body`.
     pub fn conducts_heat(&self, body: usize) -> bool {
         self.thermals[body].as_ref().is_some_and(|thermal| thermal.conductivity.is_some())
     }
 
-    /// What `body` has been pressed with where it starts at `pressure` [Pa s].
+    /// Initial contact impulse of `body` at the initial `pressure` [Pa s].
     pub fn starting_impulse(&self, body: usize, pressure: f64) -> f64 {
-        if pressure > 0.0 { self.most_pull[body] } else { self.starting_pull(body) }
+        if pressure > 0.0 { self.max_adhesion_impulse[body] } else { self.starting_pull(body) }
     }
 
-    /// The greatest extent along a direction of the particles that `scene` starts with [cells].
+    /// Greatest initial extent of particles along a direction [cells].
     pub fn longest_at_start(&self, scene: &CheckedScene) -> f64 {
         let bodies = scene.bodies.iter();
         bodies
@@ -425,41 +388,28 @@ impl<const D: usize> Stepper<D> {
             .fold(0.0, f64::max)
     }
 
-    /// The reach of particles up to `length` long [cells], with room to stretch in a step; `None`
-    /// if they are longer than any stencil.
-    pub fn reach(&self, length: f64) -> Option<Reach> {
-        fn nodes<S: Shape, const K: usize, const D: usize>(length: f64) -> usize {
-            S::nodes(length)
-        }
+    /// Stencil radius of particles up to `length` long [cells], with room to stretch in a step;
+    /// `None` if they are longer than any stencil.
+    pub fn reach(&self, length: f64) -> Option<StencilRadius> {
         let length = if self.domains_deform() { length * STRETCH } else { length };
-        let nodes = with_shape!(self.shape, 4usize, nodes(length));
-        (nodes <= most_nodes(D)).then_some(Reach { nodes, products: self.products() })
+        let nodes = self.shape.nodes(length);
+        (nodes <= most_nodes(D)).then_some(StencilRadius { nodes, products: self.products() })
     }
 
-    /// Products with a matrix that lie between the particles' sums and what they take back.
+    /// Number of products with a matrix between sums over particles and the gather.
     fn products(&self) -> usize {
-        let own = match self.scheme {
-            Scheme::Series { order, force } => {
-                let work = if force { order } else { 1 };
-                order - 1 + if self.compatible { work } else { 0 }
-            }
-            Scheme::Blend(_) if self.compatible => 1,
-            Scheme::Blend(_) | Scheme::Affine => 0,
-        };
+        let own = self.transfer.products(self.compatible);
         let relaxed = self.relaxation.map_or(0, |_| relaxation::ORDER - 1);
-        own.max(relaxed).max(self.conduction.as_ref().map_or(0, |_| conduction::ORDER)) as usize
+        let effects = self.effects.iter().map(|e| e.products()).max().unwrap_or(0);
+        own.max(relaxed).max(effects) as usize
     }
 
-    /// How far about moving material a step may change a row by `reach` [cells]: the filters' and
-    /// the pressure projection's terms spread velocity and pressure, in each of a step's passes
-    /// over the grid. What does the work spreads further, but on material without stress it does
-    /// none.
-    pub fn notice(&self, reach: Reach) -> i64 {
-        let order = match self.scheme {
-            Scheme::Series { order, .. } => order,
-            Scheme::Blend(_) | Scheme::Affine => 1,
-        };
-        let order = order.max(self.relaxation.map_or(0, |_| relaxation::ORDER));
+    /// Distance from moving material within which a step may change a particle, for a stencil
+    /// radius [cells]. The terms of the filters and of the pressure projection spread velocity and
+    /// pressure in each pass of a step over the grid. The velocity that does the work spreads
+    /// further, but it does no work on material without stress.
+    pub fn influence_radius(&self, reach: StencilRadius) -> i64 {
+        let order = self.transfer.order.max(self.relaxation.map_or(0, |_| relaxation::ORDER));
         let pass = reach.cells() + i64::from(order) * (reach.nodes as i64 - 1) + 2;
         match (self.stepping, self.stress_update) {
             (Stepping::Midpoint, _) | (_, StressUpdate::Last) => pass,
@@ -467,8 +417,8 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// When patches may sleep: once everything that a step computes has been computed at rest,
-    /// pressure relaxation included.
+    /// Conditions for quiescent patches: everything that a step computes has been computed at rest,
+    /// including pressure relaxation.
     pub fn sleep(&self) -> Sleep {
         let f = &self.fields;
         Sleep {
@@ -477,36 +427,33 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// The longest particle [cells] that `reach` is deep enough for.
-    pub fn longest_within(&self, reach: Reach) -> f64 {
-        fn nodes<S: Shape, const K: usize, const D: usize>() -> usize {
-            S::nodes(0.01)
-        }
-        (reach.nodes + 1 - with_shape!(self.shape, 4usize, nodes())) as f64
+    /// Longest particle [cells] for which `reach` is sufficient.
+    pub fn longest_within(&self, reach: StencilRadius) -> f64 {
+        (reach.nodes + 1 - self.shape.nodes(0.01)) as f64
     }
 
-    /// The longest particle [cells] that any reach is deep enough for, with room to stretch.
+    /// Longest particle [cells] for which any stencil is sufficient, with room to stretch.
     fn longest_ever(&self) -> f64 {
-        self.longest_within(Reach { nodes: most_nodes(D), products: 0 }) / STRETCH
+        self.longest_within(StencilRadius { nodes: most_nodes(D), products: 0 }) / STRETCH
     }
 
-    /// The shortest edge of a cell [m].
+    /// Shortest edge of a cell [m].
     pub fn shortest_edge(&self) -> f64 {
         self.cell.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether the shape function grows with the particle.
+    /// Whether the domain of the shape function grows with the particle.
     pub fn grows(&self) -> bool {
-        self.extent() == Extent::Current
+        self.extent() == DomainExtent::Current
     }
 
-    fn extent(&self) -> Extent {
-        Extent::of(self.shape)
+    fn extent(&self) -> DomainExtent {
+        self.shape.extent()
     }
 
-    /// Whether the shape function looks at a domain that deforms.
+    /// Whether the shape function depends on a deforming domain.
     fn domains_deform(&self) -> bool {
-        self.extent() == Extent::Current && !self.total
+        self.extent() == DomainExtent::Current && !self.total_lagrangian
     }
 
     /// Whether step number `step` (from 1) relaxes the pressure.
@@ -514,42 +461,39 @@ impl<const D: usize> Stepper<D> {
         self.relaxation.filter(|r| step.is_multiple_of(r.interval as u64)).map(|r| r.rate)
     }
 
-    /// Weights of all rows of a patch, as wide as its longest row needs. Tells whether they have
-    /// been found anew, not kept.
+    /// Finds the weights of all particles of a patch, with windows as wide as its longest particle
+    /// needs. Returns whether they have been recomputed, not kept.
     fn find_weights(&self, patch: &mut Patch<D>) -> bool {
         fn find<S: Shape, const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
             let layer = (s.layers > 1).then_some(s.columns.body);
             patch.find_weights::<S, K>(s.columns.fraction, s.columns.domain, s.inverse_cell, layer)
         }
-        fn nodes<S: Shape, const K: usize, const D: usize>(length: f64) -> usize {
-            S::nodes(length)
-        }
         fn push<const K: usize, const D: usize>(patch: &mut Patch<D>, push: usize) {
             patch.stencils.push_gradients::<K, D>(&patch.block, push);
         }
-        let anew = !(self.total && patch.stencils.are_kept(&patch.block));
-        if anew {
-            let width = with_shape!(self.shape, 4usize, nodes(self.longest(&patch.block)));
+        let recomputed = !(self.total_lagrangian && patch.stencils.are_kept(&patch.block));
+        if recomputed {
+            let width = self.shape.nodes(self.longest(&patch.block));
             with_shape!(self.shape, width, find(patch, self));
         }
-        if let Some(inverse) = self.columns.push {
-            if anew {
+        if let Some(inverse) = self.columns.inverse_deformation {
+            if recomputed {
                 patch.stencils.keep(&patch.block);
             }
             with_width!(patch.stencils.width, push(patch, inverse));
         }
-        anew
+        recomputed
     }
 
-    /// The greatest extent along a direction of the domains of all rows of a patch [cells].
+    /// Greatest extent of the domains of all particles of a patch along a direction [cells].
     fn longest(&self, block: &decomp::Block<D>) -> f64 {
         let column = |k: usize| &block.columns[self.columns.domain + k][..];
         let greatest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
         match (D, self.extent()) {
             (1, _) => greatest(column(0)),
-            (_, Extent::Point) => 0.0,
-            (_, Extent::Undeformed) => greatest(column(0)).max(greatest(column(1))),
-            (_, Extent::Current) => {
+            (_, DomainExtent::Point) => 0.0,
+            (_, DomainExtent::Undeformed) => greatest(column(0)).max(greatest(column(1))),
+            (_, DomainExtent::Current) => {
                 let along = |a: usize| {
                     let edges = column(a).iter().zip(column(a + 2));
                     edges.fold(0.0f64, |l, (r1, r2)| l.max(2.0 * (r1.abs() + r2.abs())))
@@ -560,13 +504,13 @@ impl<const D: usize> Stepper<D> {
     }
 }
 
-/// Whole steps, compiled once in this crate for each dimension: what they call is generic over
-/// shape functions, widths and dimensions, and every program that used them as generic functions
-/// would compile all of it again.
+/// Complete steps, compiled once in this crate for each dimension: they call functions that are
+/// generic over shape functions, widths and dimensions, which otherwise would be compiled again in
+/// every program that uses them.
 pub trait Steps<const D: usize> {
-    /// Makes the starting state whole: pressure, sound speed and, where the scheme needs it, the
-    /// gradient of the starting velocity. Collective.
-    fn prime(&self, world: &mut World<'_, D>) -> Result<(), decomp::RowError>;
+    /// Completes the initial state: pressure, sound speed and, if the scheme needs it, the gradient
+    /// of the initial velocity. Collective.
+    fn prime(&self, world: &mut World<'_, D>) -> Result<(), decomp::ParticleError>;
 
     /// Advances all patches from `time` by `dt` [s]; `step` numbers the steps from 1. Collective.
     fn advance(
@@ -575,17 +519,19 @@ pub trait Steps<const D: usize> {
         time: f64,
         dt: f64,
         step: u64,
-    ) -> Result<(), decomp::RowError>;
+    ) -> Result<(), decomp::ParticleError>;
 }
 
 macro_rules! compile_steps {
     ($($dimension:literal),*) => {$(
         impl Steps<$dimension> for Stepper<$dimension> {
-            fn prime(&self, world: &mut World<'_, $dimension>) -> Result<(), decomp::RowError> {
-                world.each("refresh", |patch| self.refresh(patch));
+            fn prime(&self, world: &mut World<'_, $dimension>) -> Result<(), decomp::ParticleError> {
+                let jacobian = self.columns.jacobian;
+                let step = StepContext { stepper: self, start: 0.0, time: 0.0, dt: 0.0, jacobian };
+                world.each("refresh", |patch| self.refresh(patch, &step));
                 if self.stepping == Stepping::Midpoint {
                     self.prime_gradient(world)?;
-                    world.each("refresh", |patch| self.refresh(patch));
+                    world.each("refresh", |patch| self.refresh(patch, &step));
                 }
                 Ok(())
             }
@@ -596,7 +542,7 @@ macro_rules! compile_steps {
                 time: f64,
                 dt: f64,
                 step: u64,
-            ) -> Result<(), decomp::RowError> {
+            ) -> Result<(), decomp::ParticleError> {
                 match self.stepping {
                     Stepping::Midpoint => {
                         self.advance_midpoint(world, time, dt, self.relaxes(step))

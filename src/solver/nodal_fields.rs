@@ -1,90 +1,69 @@
-//! Nodal fields of one patch and the mass matrix on them.
+//! Nodal fields of a patch, and the mass matrix on them.
 //!
-//! Knows no materials and no messages.
+//! This module does not depend on materials or messages.
 
 use std::ops::Range;
 
-use crate::solver::transfer::{NARROW, Row, add_product, lines};
+use crate::shape::add_product;
+use crate::solver::particle_weights::{NARROW, ParticleWeights, lines};
 
-/// Where each nodal field stands in a patch's arrays. A vector takes D fields that follow each
-/// other; its number is that of the first.
+/// Indices of the nodal fields in a patch's arrays. A vector takes D consecutive fields; its index
+/// is that of the first.
 ///
-/// Fields that a scheme has no use for have no array: their number is past the end.
+/// Fields that a scheme does not need have no array: their index is past the end.
 #[derive(Clone, Debug)]
 pub struct Fields {
     /// Lumped mass m_i [kg].
     pub mass: usize,
-    /// 1/m_i, 0 where there is no mass [1/kg].
+    /// Inverse mass 1/m_i, 0 at nodes without mass [1/kg].
     pub inverse: usize,
-    /// Lumped velocity vL [m/s], a vector; momentum while it is being summed.
-    pub lumped: usize,
-    /// Velocity at the start of the step, v [m/s], a vector: without a filter the lumped one
+    /// Lumped velocity vL [m/s], a vector; momentum during the sum over particles.
+    pub lumped_velocity: usize,
+    /// Velocity at the start of the step, v [m/s], a vector; without a filter the lumped velocity
     /// itself.
     pub velocity: usize,
     /// Velocity at the end of the step, v' [m/s], a vector.
     pub velocity_star: usize,
-    /// Acceleration b [m/s2], a vector; internal force while it is being summed.
+    /// Acceleration b [m/s2], a vector; internal force during the sum over particles.
     pub acceleration: usize,
     /// Velocity whose gradient does the work, w [m/s], a vector.
     pub work: usize,
-    /// K^(k-1) vL, the last term of the filter's series [m/s], a vector; with a filter.
-    pub remainder: Option<usize>,
-    /// Scratch for products: as many fields that follow each other as vectors are multiplied at a
-    /// time.
+    /// Last term of the filter's series, K^(k-1) vL [m/s], a vector; only with a filter.
+    pub filter_residual: Option<usize>,
+    /// Scratch for products: as many consecutive fields as vectors are multiplied at a time.
     pub scratch: usize,
-    /// Their number.
+    /// Number of scratch fields.
     pub scratches: usize,
     /// First terms of the series of force and work, a vector.
     pub first: usize,
-    /// Fraction of the node's volume that holds material [-], with an edge mask.
+    /// Fraction of the node's volume filled with material [-], with an edge mask.
     pub volume: usize,
-    /// Relaxation: summed compliance and its inverse, the projected pressure, and its first term,
-    /// in the end its last.
+    /// Relaxation: summed compliance and its inverse, projected pressure, and the first term of its
+    /// series, which later holds the last term.
     pub relaxation: [usize; 4],
-    /// Heat of friction [J/kg], with contact or a wall that has friction.
+    /// Heat of friction [J/kg], with frictional contact or a wall with friction.
     pub heat: Option<usize>,
-    /// What heat conduction takes, with it.
-    pub conduction: Option<ConductionFields>,
-    /// Scratch for the sums of a side.
-    pub side: usize,
     /// Number of fields.
     pub count: usize,
 }
 
-/// Where the fields of heat conduction stand.
-#[derive(Clone, Copy, Debug)]
-pub struct ConductionFields {
-    /// 1/C_i of the heat capacity, 0 where there is none [K/J].
-    pub inverse: usize,
-    /// Temperature T_i [K].
-    pub temperature: usize,
-    /// Temperature projected through the full matrix of capacities [K].
-    pub projected: usize,
-    /// Its rate [K/s].
-    pub rate: usize,
-}
-
-/// What of the fields a scheme and its effects ask for.
+/// Nodal fields that a scheme needs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wanted {
-    /// Series of vectors that a filter sums up together, 0 without one.
+    /// Number of vector series that a filter evaluates together; 0 without a filter.
     pub series: usize,
-    /// An edge mask.
+    /// Edge mask.
     pub masked: bool,
     /// Pressure relaxation.
     pub relaxed: bool,
     /// Friction.
-    pub rubs: bool,
-    /// Heat conduction.
-    pub conducts: bool,
-    /// Sums of a side.
-    pub sides: usize,
+    pub has_friction: bool,
 }
 
 impl Fields {
-    /// The fields in `dimension` directions.
+    /// Indices of the fields in `dimension` directions.
     pub fn new(dimension: usize, wanted: Wanted) -> Self {
-        let Wanted { series, masked, relaxed, rubs, conducts, sides } = wanted;
+        let Wanted { series, masked, relaxed, has_friction: rubs } = wanted;
         let filtered = series > 0;
         let mut count = 0;
         let mut add = |n: usize, wanted: bool| {
@@ -102,83 +81,82 @@ impl Fields {
         let volume = add(1, masked);
         let r = add(4, relaxed);
         let heat = rubs.then(|| add(1, true));
-        let conduction = conducts.then(|| ConductionFields {
-            inverse: add(1, true),
-            temperature: add(1, true),
-            projected: add(1, true),
-            rate: add(1, true),
-        });
-        let side = add(sides, true);
         Fields {
             mass,
             inverse,
-            lumped,
+            lumped_velocity: lumped,
             velocity,
             velocity_star,
             acceleration,
             work,
-            remainder,
+            filter_residual: remainder,
             scratch,
             scratches,
             first,
             volume,
             relaxation: [r, r + 1, r + 2, r + 3],
             heat,
-            conduction,
-            side,
             count,
         }
     }
+
+    /// Adds consecutive fields, and returns the index of the first.
+    pub fn add(&mut self, fields: usize) -> usize {
+        let first = self.count;
+        self.count += fields;
+        first
+    }
 }
 
-/// Nodes whose sums are made at a time: what they take of a matrix stays in the nearest cache.
+/// Number of nodes whose sums are computed at a time, so that their part of a matrix stays in the
+/// L1 cache.
 const BLOCK: usize = 64;
 
-/// Numbers of a page of memory: those as far apart share a place in the nearest cache, ...
+/// Doubles per page of memory: addresses at this distance share a set of the L1 cache, ...
 const PAGE: usize = 512;
 
-/// ... so those of a node on all diagonals are this much further apart.
+/// ... so the entries of a node on successive diagonals are shifted by this many doubles.
 const APART: usize = 24;
 
-/// A symmetric matrix M_ij = sum_p m_p N_ip N_jp over the nodes of a patch, one diagonal after
-/// the other: a diagonal holds M_(i,i+offset) at i, for the offsets to nodes that come later.
+/// Symmetric matrix M_ij = sum_p m_p N_ip N_jp over the nodes of a patch, stored by diagonals: a
+/// diagonal holds M_(i,i+offset) at i, for offsets to later nodes.
 #[derive(Clone, Debug, Default)]
 pub struct Band {
-    /// The same, a node after the other, while particles are added; else zeros.
+    /// The matrix stored by nodes, while particles are added; otherwise zeros.
     rows: Vec<f64>,
-    /// What has been added to in each block of nodes.
+    /// Entries that particles have changed, for each block of nodes.
     touched: Vec<Touched>,
-    /// One after the other, `stride` apart.
+    /// Diagonals one after another, `stride` apart.
     diagonals: Vec<f64>,
     stride: usize,
-    /// For each block of nodes, the diagonals that are not zero throughout.
+    /// For each block of nodes, the diagonals with nonzero entries.
     filled: Vec<bool>,
-    /// From a node to the other of each diagonal, in the patch's arrays.
+    /// Distance from a node to the other node of each diagonal, in the patch's arrays.
     offsets: Vec<usize>,
-    /// Whether narrow particles add to each diagonal.
+    /// Whether narrow particles contribute to each diagonal.
     near: Vec<bool>,
 }
 
-/// What particles have added to.
+/// Entries that particles have changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 enum Touched {
-    /// Nothing.
+    /// None.
     #[default]
     No,
-    /// The diagonals of narrow ones.
+    /// Diagonals of narrow particles.
     Near,
     /// All diagonals.
     All,
 }
 
-/// Diagonals for windows of `width` nodes along each of `dimension` directions.
+/// Number of diagonals for windows of `width` nodes along each of `dimension` directions.
 const fn diagonals(width: usize, dimension: usize) -> usize {
     (lines(2 * width - 1, dimension) * (2 * width - 1)).div_ceil(2)
 }
 
 impl Band {
-    /// Makes ready for a sum over `nodes` nodes of particles that touch `width` nodes along each of
-    /// `dimension` directions, in arrays whose lines are `stride` long.
+    /// Prepares a sum over particles with `width` nodes along each of `dimension` directions, on
+    /// `nodes` nodes, in arrays with lines of length `stride`.
     pub fn clear(&mut self, nodes: usize, width: usize, dimension: usize, stride: usize) {
         let count = diagonals(width, dimension);
         let across = if dimension == 1 { 1 } else { width };
@@ -190,7 +168,7 @@ impl Band {
         let places = lengths.flat_map(|(line, length)| (0..length).map(move |k| (line, k)));
         let offsets = places.clone().map(|(line, k)| place(line, k));
         if self.rows.len() == nodes * count && offsets.clone().eq(self.offsets.iter().copied()) {
-            // what was added before has left zeros behind
+            // the last sum has left zeros
             return;
         }
         self.offsets.clear();
@@ -214,19 +192,23 @@ impl Band {
         self.diagonals.resize(self.stride * count, 0.0);
     }
 
-    /// Some nodes of a diagonal.
+    /// Entries of a diagonal for some nodes.
     #[inline(always)]
     fn diagonal(&self, d: usize, nodes: Range<usize>) -> &[f64] {
         &self.diagonals[d * self.stride + nodes.start..d * self.stride + nodes.end]
     }
 
-    /// Adds one particle of mass `mass`.
+    /// Adds a particle of mass `mass`.
     #[inline(always)]
-    pub fn add<const K: usize, const D: usize>(&mut self, row: &Row<'_, K, D>, mass: f64) {
-        if row.is_narrow() {
-            self.add_part::<K, D, NARROW>(row, mass);
+    pub fn add<const K: usize, const D: usize>(
+        &mut self,
+        weights: &ParticleWeights<'_, K, D>,
+        mass: f64,
+    ) {
+        if weights.is_narrow() {
+            self.add_part::<K, D, NARROW>(weights, mass);
         } else {
-            self.add_part::<K, D, K>(row, mass);
+            self.add_part::<K, D, K>(weights, mass);
         }
     }
 
@@ -234,21 +216,21 @@ impl Band {
     #[inline(always)]
     fn add_part<const K: usize, const D: usize, const M: usize>(
         &mut self,
-        row: &Row<'_, K, D>,
+        weights: &ParticleWeights<'_, K, D>,
         mass: f64,
     ) {
         let count = const { diagonals(K, D) };
         let first_nodes =
             |values: &[f64; K]| -> [f64; M] { *values.first_chunk().expect("as many nodes") };
         for line in 0..const { lines(M, D) } {
-            let from = row.first + line * row.stride;
+            let from = weights.first + line * weights.stride;
             for node in [from, from + M - 1] {
                 let touched = &mut self.touched[node / BLOCK];
                 *touched = (*touched).max(if M < K { Touched::Near } else { Touched::All });
             }
-            // of a length known at compile time, so that no place in it is checked
+            // a length known at compile time avoids bounds checks
             let rows = &mut self.rows[from * count..][..const { K * diagonals(K, D) }];
-            let (here, later) = row.values[..const { lines(M, D) }][line..]
+            let (here, later) = weights.values[..const { lines(M, D) }][line..]
                 .split_first()
                 .expect("the lines from this one on");
             for i in 0..M {
@@ -264,7 +246,7 @@ impl Band {
         }
     }
 
-    /// Must be called once all particles are in.
+    /// Completes the matrix after all particles have been added.
     pub fn finish(&mut self) {
         let count = self.offsets.len();
         let nodes = self.rows.len() / count;
@@ -273,7 +255,7 @@ impl Band {
             let from = block * BLOCK;
             let to = nodes.min(from + BLOCK);
             let touched = std::mem::take(touched);
-            // a block at a time, so that its rows are fetched once
+            // block by block, so that its rows are loaded once
             let rows = &mut self.rows[from * count..to * count];
             let diagonals = self.diagonals.chunks_exact_mut(self.stride);
             for (d, (diagonal, filled)) in diagonals.zip(filled).enumerate() {
@@ -296,13 +278,14 @@ impl Band {
         }
     }
 
-    /// y = M x on the nodes `range`, which must lie at least the band's width from the ends.
+    /// y = M x on the nodes `range`, which must be at least the width of the band away from the
+    /// ends.
     pub fn product(&self, x: &[f64], range: Range<usize>, y: &mut [f64]) {
         self.each_product([x], range, [y], |product, _, _| product);
     }
 
-    /// y = t + x - d M x on the nodes `range` for several vectors at a time, d a diagonal matrix: a
-    /// sum of a series and its next by Horner's rule.
+    /// y = t + x - d M x on the nodes `range` for several vectors at a time, with a diagonal matrix
+    /// d: from one sum of a series to the next by Horner's rule.
     pub fn next_sums<'a, const V: usize>(
         &self,
         x: [&'a [f64]; V],
@@ -316,7 +299,7 @@ impl Band {
         self.each_product(x, range, y, |product, v, i| t[v][i] + (x_here[v][i] - d[i] * product));
     }
 
-    /// y = f((M x)_i, v, i) on the nodes of `range` for each vector v, i counted from its start.
+    /// y = f((M x)_i, v, i) on the nodes of `range` for each vector v; i is relative to its start.
     #[inline(always)]
     fn each_product<const V: usize>(
         &self,
@@ -332,8 +315,8 @@ impl Band {
         }
     }
 
-    /// The same sums in the same order, a diagonal after the other: for many of them. Blocks without
-    /// anything on a diagonal are passed over, which changes no bit: sums start from +0.
+    /// The same sums in the same order, diagonal by diagonal, for many diagonals. Blocks of zeros
+    /// on a diagonal are skipped, which does not change a bit, as sums start from +0.
     #[inline(always)]
     fn products_by_diagonals<const V: usize>(
         &self,
@@ -380,7 +363,8 @@ impl Band {
         }
     }
 
-    /// The same sums in the same order, with few diagonals known so that they run in vectors.
+    /// The same sums in the same order, for a few diagonals known at compile time, so that
+    /// compilers vectorize them.
     #[inline(always)]
     fn products_of<const W: usize, const V: usize>(
         &self,
@@ -417,11 +401,11 @@ impl Band {
 mod tests {
     use super::*;
 
-    /// A particle: its first node, mass and values.
+    /// A particle: first node, mass and values.
     type Particle<const K: usize> = (usize, f64, Vec<[f64; K]>);
 
-    /// Adds particles to `band` and holds its products with several vectors at a time against those
-    /// of a full matrix.
+    /// Adds particles to `band` and compares its products with several vectors at a time with the
+    /// products of a full matrix.
     fn check_with<const K: usize, const D: usize>(
         band: &mut Band,
         extent: [usize; 2],
@@ -435,9 +419,14 @@ mod tests {
             let beyond = |l: usize, k: usize| l >= NARROW || k >= NARROW;
             let mut places = (0..values.len()).flat_map(|l| (0..K).map(move |k| (l, k)));
             let narrow = K > NARROW && places.all(|(l, k)| !beyond(l, k) || values[l][k] == 0.0);
-            let row: Row<'_, K, D> =
-                Row { first: *first, stride: extent[0], narrow, values, gradients: &[] };
-            band.add(&row, *mass);
+            let weights: ParticleWeights<'_, K, D> = ParticleWeights {
+                first: *first,
+                stride: extent[0],
+                narrow,
+                values,
+                gradients: &[],
+            };
+            band.add(&weights, *mass);
             let place = |l: usize, k: usize| first + l * extent[0] + k;
             for (l, k) in (0..values.len()).flat_map(|l| (0..K).map(move |k| (l, k))) {
                 for (m, j) in (0..values.len()).flat_map(|m| (0..K).map(move |j| (m, j))) {
@@ -496,8 +485,8 @@ mod tests {
         check::<3, 2>([12, 9], &particles, 36..80);
     }
 
-    /// One matrix for one sum after the other: what is left of the last is in none, where particles
-    /// are narrow, where they are wide, and where there are none.
+    /// One matrix used for several sums: a sum contains nothing of the previous one, for narrow
+    /// particles, for wide particles, and without particles.
     #[test]
     fn a_matrix_holds_its_last_sum_alone() {
         const K: usize = 6;

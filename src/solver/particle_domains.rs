@@ -1,33 +1,33 @@
-//! The rows' domains: what the shape functions see of a particle's extent, and how far it reaches.
+//! Particle domains: the extent of a particle as the shape functions use it, and its reach.
 //!
-//! Parallelograms are computed for some rows at a time, every operation for all of them before the
-//! next: compilers take one lane of a register for each row then.
+//! Parallelograms are computed for several particles at a time, each operation for all of them
+//! before the next, so that compilers assign one vector lane to each particle.
 
 use std::ops::Range;
 
 use super::Stepper;
-use crate::solver::patch::{Patch, Phase};
-use crate::solver::shape::{Domain, Extent};
+use crate::shape::{DomainExtent, ParticleDomain};
+use crate::solver::patch::{FaultPhase, Patch};
 
-/// Rows that are computed together.
+/// Number of particles computed together.
 const LANES: usize = 4;
 
-/// Rows whose parallelograms are kept at a time where only their extents are wanted.
+/// Number of particles whose parallelograms are kept at a time if only their extents are needed.
 const BLOCK: usize = 128;
 
-/// `L` rows of a column from `first` on.
+/// Values of `L` particles of a column from `first` on.
 #[inline(always)]
 fn lanes<const L: usize>(column: &[f64], first: usize) -> [f64; L] {
     column[first..first + L].try_into().expect("a slice of that length")
 }
 
-/// One operation for `L` rows.
+/// One operation on `L` particles.
 #[inline(always)]
 fn each<const L: usize>(of: impl Fn(usize) -> f64) -> [f64; L] {
     std::array::from_fn(of)
 }
 
-/// (1 + l) F, with the components of a tensor by rows.
+/// (1 + l) F, with the components of a tensor row by row.
 #[inline(always)]
 fn moved_by<const L: usize>(l: &[[f64; L]; 4], f: &[[f64; L]; 4]) -> [[f64; L]; 4] {
     let ([lxx, lxy, lyx, lyy], [xx, xy, yx, yy]) = (l, f);
@@ -39,7 +39,7 @@ fn moved_by<const L: usize>(l: &[[f64; L]; 4], f: &[[f64; L]; 4]) -> [[f64; L]; 
     ]
 }
 
-/// Raises each of `most` to the value beside it; what is not a number counts as nothing.
+/// Raises each of `most` to the corresponding value; NaN is ignored.
 #[inline(always)]
 fn raise<const L: usize>(most: &mut [f64; L], values: &[f64; L]) {
     for (most, x) in most.iter_mut().zip(values) {
@@ -47,7 +47,7 @@ fn raise<const L: usize>(most: &mut [f64; L], values: &[f64; L]) {
     }
 }
 
-/// The greatest value, at least 0; what is not a number counts as nothing.
+/// Greatest value, at least 0; NaN is ignored.
 pub(super) fn greatest(values: &[f64]) -> f64 {
     let mut most = [0.0; LANES];
     let (chunks, rest) = values.as_chunks::<LANES>();
@@ -55,42 +55,42 @@ pub(super) fn greatest(values: &[f64]) -> f64 {
     rest.iter().chain(&most).copied().fold(0.0, f64::max)
 }
 
-/// Columns that rows' parallelograms come from.
+/// Columns from which the parallelograms of particles are computed.
 struct Strained<'a> {
-    /// F.
+    /// Deformation gradient F [-].
     deformation: [&'a [f64]; 4],
-    /// Gradient of the velocity [1/s] and the time [s] that the domain is ahead of F by it.
+    /// Velocity gradient [1/s] and the time [s] by which it extrapolates F.
     ahead: Option<([&'a [f64]; 4], f64)>,
-    /// Half lengths at the start [m].
+    /// Initial half lengths [m].
     half: [&'a [f64]; 2],
-    /// Volume at the start [m3] and its ratio.
+    /// Initial volume [m3] and volume ratio [-].
     volume: [&'a [f64]; 2],
-    /// Place [m] and velocity [m/s] across the axis, where there is one.
+    /// Radial position [m] and velocity [m/s], with axial symmetry.
     radius: Option<[&'a [f64]; 2]>,
 }
 
-/// Columns that the extents of rows' domains come from.
+/// Columns from which the extents of particle domains are computed.
 enum Outlines<'a> {
-    /// Lengths: the volume at the start and its ratio.
+    /// Current lengths: initial volume and volume ratio.
     Length([&'a [f64]; 2]),
-    /// Lengths that stay: the volume at the start.
+    /// Constant lengths: initial volume.
     FirstLength(&'a [f64]),
-    /// Half lengths of boxes that stay [m].
+    /// Boxes of constant size: half lengths [m].
     Boxes([&'a [f64]; 2]),
-    /// What deforms in a plane.
+    /// Deforming domains in a plane.
     Parallelograms(Strained<'a>),
     /// No extent.
     Points,
 }
 
 impl<const D: usize> Stepper<D> {
-    /// The own rows' domains [cells] at volume ratio `jacobian` (a column), and the volume that
-    /// they fill where an edge mask asks for it.
+    /// Domains of the own particles [cells] at the volume ratio in column `jacobian`, and their
+    /// volume if an edge mask needs it.
     pub(super) fn find_domains(&self, patch: &mut Patch<D>, ahead: f64, jacobian: usize) {
         let c = &self.columns;
         let n = patch.block.own();
         let scale: f64 = self.inverse_cell.iter().product();
-        let filled = c.filled.filter(|&k| k != c.domain);
+        let filled = c.fill_fraction.filter(|&k| k != c.domain);
         for k in filled.into_iter().chain((D == 1).then_some(c.domain)) {
             let [volume0, j, out] = patch
                 .block
@@ -99,11 +99,11 @@ impl<const D: usize> Stepper<D> {
                 .expect("columns differ");
             out.resize(n, 0.0);
             match self.extent() {
-                Extent::Undeformed if k == c.domain => {
+                DomainExtent::Undeformed if k == c.domain => {
                     (0..n).for_each(|r| out[r] = volume0[r] * scale);
                 }
-                Extent::Point if k == c.domain => {}
-                Extent::Current if D == 1 => {
+                DomainExtent::Point if k == c.domain => {}
+                DomainExtent::Current if D == 1 => {
                     (0..n).for_each(|r| out[r] = self.domain_length(volume0[r] * j[r] * scale));
                 }
                 _ => (0..n).for_each(|r| out[r] = volume0[r] * j[r] * scale),
@@ -120,7 +120,7 @@ impl<const D: usize> Stepper<D> {
         if let (Some(half_edges), Some(_)) = (c.half_edges, c.deformation) {
             self.find_parallelograms(patch, half_edges, ahead, jacobian);
         }
-        if let (Some(half_lengths), Extent::Undeformed) = (c.half_lengths, self.extent()) {
+        if let (Some(half_lengths), DomainExtent::Undeformed) = (c.half_lengths, self.extent()) {
             for a in 0..D {
                 let [half, out] = patch
                     .block
@@ -133,16 +133,16 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// Length of a particle's domain on a line that fills `length` [cells]: at most twice the
-    /// greatest half diagonal that the scene allows. What is not a number stays so.
+    /// Length of the domain on a line of a particle with `length` [cells]: at most twice the
+    /// greatest half diagonal that the scene allows. NaN stays NaN.
     #[inline(always)]
     pub(super) fn domain_length(&self, length: f64) -> f64 {
         let most = self.domain_limit.map_or(f64::INFINITY, |limit| 2.0 * limit);
         if length > most { most } else { length }
     }
 
-    /// The own rows' parallelograms [cells] `ahead` of their state in time, with the area of
-    /// their volume, and as long as the scene lets them be.
+    /// Parallelograms of the own particles [cells] at the time `ahead` [s] of their state, with the
+    /// area of their volume, limited to the length that the scene allows.
     fn find_parallelograms(
         &self,
         patch: &mut Patch<D>,
@@ -161,21 +161,26 @@ impl<const D: usize> Stepper<D> {
         let [ax, ay, bx, by] = columns.each_ref().map(|column| &column[..n]);
         let limit = if self.domains_deform() { patch.reach_length } else { f64::INFINITY };
         let torn = |r: usize| extent([ax[r], ay[r]], [bx[r], by[r]]) > limit;
-        // without a way out of the loop, which would keep it from taking rows together
-        let row = match (0..n).fold(false, |any, r| any | torn(r)) {
+        // no early exit from the loop, which would prevent vectorization
+        let particle = match (0..n).fold(false, |any, r| any | torn(r)) {
             true => (0..n).find(|&r| torn(r)),
             false => None,
         };
         for (k, column) in columns.into_iter().enumerate() {
             patch.block.columns[half_edges + k] = column;
         }
-        if let Some(row) = row {
-            self.fault(patch, Phase::Start, row, "it is torn apart within one step".into());
+        if let Some(particle) = particle {
+            self.fault(
+                patch,
+                FaultPhase::Start,
+                particle,
+                "it is torn apart within one step".into(),
+            );
         }
     }
 
-    /// What parallelograms come from, `ahead` of the rows' state in time at volume ratio `jacobian`
-    /// (a column); `None` where domains do not deform.
+    /// Input of the parallelograms at the time `ahead` [s] of the particles' state and the volume
+    /// ratio in column `jacobian`; `None` if domains do not deform.
     fn strained<'a>(
         &self,
         block: &'a decomp::Block<D>,
@@ -196,13 +201,19 @@ impl<const D: usize> Stepper<D> {
         })
     }
 
-    /// Half edges of `rows` [cells], in the order of their columns, as long as the scene lets them be.
-    fn parallelograms(&self, from: &Strained<'_>, rows: Range<usize>, mut out: [&mut [f64]; 4]) {
+    /// Half edges of `particles` [cells], in the order of their columns, limited to the length that
+    /// the scene allows.
+    fn parallelograms(
+        &self,
+        from: &Strained<'_>,
+        particles: Range<usize>,
+        mut out: [&mut [f64]; 4],
+    ) {
         match (from.ahead.is_some(), from.radius.is_some()) {
-            (false, false) => self.whole_parallelograms::<false, false>(from, rows, &mut out),
-            (true, false) => self.whole_parallelograms::<true, false>(from, rows, &mut out),
-            (false, true) => self.whole_parallelograms::<false, true>(from, rows, &mut out),
-            (true, true) => self.whole_parallelograms::<true, true>(from, rows, &mut out),
+            (false, false) => self.whole_parallelograms::<false, false>(from, particles, &mut out),
+            (true, false) => self.whole_parallelograms::<true, false>(from, particles, &mut out),
+            (false, true) => self.whole_parallelograms::<false, true>(from, particles, &mut out),
+            (true, true) => self.whole_parallelograms::<true, true>(from, particles, &mut out),
         }
         if let Some(most) = self.domain_limit {
             limit(out, most);
@@ -212,24 +223,25 @@ impl<const D: usize> Stepper<D> {
     fn whole_parallelograms<const AHEAD: bool, const AXIS: bool>(
         &self,
         from: &Strained<'_>,
-        rows: Range<usize>,
+        particles: Range<usize>,
         out: &mut [&mut [f64]; 4],
     ) {
-        let whole = rows.len() - rows.len() % LANES;
+        let whole = particles.len() - particles.len() % LANES;
         for at in (0..whole).step_by(LANES) {
-            self.some_parallelograms::<LANES, AHEAD, AXIS>(from, rows.start + at, out, at);
+            self.some_parallelograms::<LANES, AHEAD, AXIS>(from, particles.start + at, out, at);
         }
-        for at in whole..rows.len() {
-            self.some_parallelograms::<1, AHEAD, AXIS>(from, rows.start + at, out, at);
+        for at in whole..particles.len() {
+            self.some_parallelograms::<1, AHEAD, AXIS>(from, particles.start + at, out, at);
         }
     }
 
-    /// The parallelograms of `L` rows from `first` on, however long they are, to place `at` of `out`.
+    /// Parallelograms of `L` particles from `first` on, without a limit of length, written at index
+    /// `at` of `out`.
     ///
-    /// What F and J differ by, the relaxation's share of the volume and rounding of the time
-    /// step, goes to the directions that have been strained, with the squares of their strains:
-    /// what is compressed along one direction alone keeps its width, as on a line.
-    // inlined it is unrolled to no gain
+    /// The ratio of J to det F, from volume relaxation and rounding of the time step, is applied to
+    /// the strained directions, weighted by the squares of their strains: material compressed along
+    /// one direction only keeps its width, as on a line.
+    // inlining would unroll it without a gain
     #[inline(never)]
     fn some_parallelograms<const L: usize, const AHEAD: bool, const AXIS: bool>(
         &self,
@@ -266,7 +278,7 @@ impl<const D: usize> Stepper<D> {
         let ss: [f64; L] = each(|r| es[r] * (ex[r] + ey[r]));
         let share: [f64; L] = each(|r| {
             let trace = sx[r] + sy[r];
-            // found either way, then chosen
+            // computed in both cases, then selected: no branch
             let share = (q[r] - 1.0) / trace;
             if trace > 0.0 { share } else { 0.0 }
         });
@@ -284,8 +296,9 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// The deformation of the own rows after a leapfrog step, (1 + dt L) F: what the places within
-    /// a particle move by as it does, at the velocity of the step's end about its start.
+    /// Deformation of the own particles after a leapfrog step, (1 + dt L) F: points within a
+    /// particle move with it, by the final velocity gradient and their positions at the start of
+    /// the step.
     pub(super) fn deform_forward(&self, patch: &mut Patch<D>, dt: f64) {
         #[inline(never)]
         fn go<const L: usize>(f: &mut [&mut [f64]; 4], l: [&[f64]; 4], dt: f64, first: usize) {
@@ -313,13 +326,13 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// What the extents of the own rows come from.
+    /// Input for the extents of the own particles.
     fn outlines<'a>(&self, block: &'a decomp::Block<D>) -> Outlines<'a> {
         let c = &self.columns;
         let column = |k: usize| &block.columns[k][..block.own()];
-        let deforms = self.extent() == Extent::Current && !self.total;
+        let deforms = self.extent() == DomainExtent::Current && !self.total_lagrangian;
         match c.half_lengths {
-            None if self.extent() == Extent::Current && !self.total => {
+            None if self.extent() == DomainExtent::Current && !self.total_lagrangian => {
                 Outlines::Length([column(c.volume0), column(c.jacobian)])
             }
             None if D == 1 => Outlines::FirstLength(column(c.volume0)),
@@ -327,38 +340,38 @@ impl<const D: usize> Stepper<D> {
             Some(_) if deforms => self
                 .strained(block, 0.0, c.jacobian)
                 .map_or(Outlines::Points, Outlines::Parallelograms),
-            Some(_) if self.extent() == Extent::Point => Outlines::Points,
+            Some(_) if self.extent() == DomainExtent::Point => Outlines::Points,
             Some(half) => Outlines::Boxes([column(half), column(half + 1)]),
         }
     }
 
-    /// The greater extent along a direction of `rows`, at most a block of them [cells].
-    fn lengths(&self, from: &Outlines<'_>, rows: Range<usize>) -> [f64; BLOCK] {
+    /// Greatest extent along a direction of each of `particles`, at most a block of them [cells].
+    fn lengths(&self, from: &Outlines<'_>, particles: Range<usize>) -> [f64; BLOCK] {
         let mut lengths = [0.0; BLOCK];
-        let out = &mut lengths[..rows.len()];
+        let out = &mut lengths[..particles.len()];
         let inverse = [self.inverse_cell[0], self.inverse_cell[D - 1]];
         match from {
             Outlines::Length(volume) => {
-                let [volume0, jacobian] = volume.map(|column| &column[rows.clone()]);
+                let [volume0, jacobian] = volume.map(|column| &column[particles.clone()]);
                 for ((length, v), j) in out.iter_mut().zip(volume0).zip(jacobian) {
                     *length = self.domain_length(v * j * inverse[0]);
                 }
             }
             Outlines::FirstLength(volume0) => {
-                for (length, v) in out.iter_mut().zip(&volume0[rows]) {
+                for (length, v) in out.iter_mut().zip(&volume0[particles]) {
                     *length = v * inverse[0];
                 }
             }
             Outlines::Boxes(half) => {
-                let [x, y] = half.map(|column| &column[rows.clone()]);
+                let [x, y] = half.map(|column| &column[particles.clone()]);
                 for ((length, x), y) in out.iter_mut().zip(x).zip(y) {
                     *length = (2.0 * x * inverse[0]).max(2.0 * y * inverse[1]);
                 }
             }
             Outlines::Parallelograms(from) => {
                 let mut edges = [[0.0; BLOCK]; 4];
-                let n = rows.len();
-                self.parallelograms(from, rows, edges.each_mut().map(|edges| &mut edges[..n]));
+                let n = particles.len();
+                self.parallelograms(from, particles, edges.each_mut().map(|edges| &mut edges[..n]));
                 let [ax, ay, bx, by] = edges.each_ref().map(|edges| &edges[..n]);
                 for r in 0..n {
                     out[r] = extent([ax[r], ay[r]], [bx[r], by[r]]);
@@ -369,7 +382,7 @@ impl<const D: usize> Stepper<D> {
         lengths
     }
 
-    /// The greatest extent along a direction of the own rows [cells].
+    /// Greatest extent of the own particles along a direction [cells].
     #[inline(never)]
     pub(super) fn longest_own(&self, block: &decomp::Block<D>) -> f64 {
         let (from, n) = (self.outlines(block), block.own());
@@ -377,29 +390,30 @@ impl<const D: usize> Stepper<D> {
             return 0.0;
         }
         let blocks = (0..n).step_by(BLOCK).map(|first| first..n.min(first + BLOCK));
-        blocks.fold(0.0, |most, rows| greatest(&self.lengths(&from, rows)).max(most))
+        blocks.fold(0.0, |most, particles| greatest(&self.lengths(&from, particles)).max(most))
     }
 
-    /// The first own row of more than `limit` [cells] along a direction, and its extent.
+    /// First own particle longer than `limit` [cells] along a direction, and its extent.
     pub(super) fn first_longer(
         &self,
         block: &decomp::Block<D>,
         limit: f64,
     ) -> Option<(usize, f64)> {
         let from = self.outlines(block);
-        let mut lengths = (0..block.own()).map(|row| (row, self.lengths(&from, row..row + 1)[0]));
+        let mut lengths = (0..block.own())
+            .map(|particle| (particle, self.lengths(&from, particle..particle + 1)[0]));
         lengths.find(|(_, length)| *length > limit)
     }
 }
 
-/// The greater extent along a direction of a parallelogram by its half edges.
+/// Greatest extent along a direction of a parallelogram with given half edges.
 #[inline(always)]
 fn extent(a: [f64; 2], b: [f64; 2]) -> f64 {
-    let [x, y] = Domain { half_edges: [a, b] }.extent();
+    let [x, y] = ParticleDomain { half_edges: [a, b] }.extent();
     x.max(y)
 }
 
-/// Shortens parallelograms to `most`: see [`Domain::limited`].
+/// Limits parallelograms to `most` [cells]: see [`ParticleDomain::limited`].
 fn limit(edges: [&mut [f64]; 4], most: f64) {
     let [ax, ay, bx, by] = edges;
     let n = ax.len();
@@ -411,10 +425,10 @@ fn limit(edges: [&mut [f64]; 4], most: f64) {
         let minus = square(ax[r] - bx[r], ay[r] - by[r]);
         long | !within(plus) | !within(minus)
     };
-    // mostly none is
+    // in most cases none is too long
     if (0..n).fold(false, long) {
         for r in 0..n {
-            let domain = Domain { half_edges: [[ax[r], ay[r]], [bx[r], by[r]]] };
+            let domain = ParticleDomain { half_edges: [[ax[r], ay[r]], [bx[r], by[r]]] };
             [[ax[r], ay[r]], [bx[r], by[r]]] = domain.limited(most).half_edges;
         }
     }
@@ -437,20 +451,21 @@ mod tests {
         }
     }
 
-    /// What only some of a patch's rows need may not change the others.
+    /// Particles of a patch that are not too long must not change.
     #[test]
     fn long_parallelograms_are_shortened_alone() {
         let short = [0.25, 0.0, 0.0, 0.25];
         let long = [3.0, 0.5, -0.1, 0.25];
-        let mut rows: Vec<[f64; 4]> = vec![short; 7];
-        rows[3] = long;
+        let mut particles: Vec<[f64; 4]> = vec![short; 7];
+        particles[3] = long;
         let mut columns: [Vec<f64>; 4] =
-            std::array::from_fn(|k| rows.iter().map(|r| r[k]).collect());
+            std::array::from_fn(|k| particles.iter().map(|r| r[k]).collect());
         limit(columns.each_mut().map(|column| &mut column[..]), 1.0);
-        let alone = Domain { half_edges: [[3.0, 0.5], [-0.1, 0.25]] }.limited(1.0).half_edges;
-        for (r, row) in rows.iter().enumerate() {
+        let alone =
+            ParticleDomain { half_edges: [[3.0, 0.5], [-0.1, 0.25]] }.limited(1.0).half_edges;
+        for (r, particle) in particles.iter().enumerate() {
             let found: [f64; 4] = std::array::from_fn(|k| columns[k][r]);
-            let expected = if r == 3 { alone.as_flattened() } else { &row[..] };
+            let expected = if r == 3 { alone.as_flattened() } else { &particle[..] };
             assert_eq!(found, expected, "{r}");
         }
     }

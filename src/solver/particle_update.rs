@@ -1,29 +1,30 @@
-//! Phases that look at rows alone: where they are, their stress, the state they end in.
+//! Phases on particles alone: their cells, their stress, and their state at the end of a step.
 
 use std::ops::Range;
 
 use decomp::IndexBox;
+use smallvec::SmallVec;
 
 use super::particle_domains::greatest;
-use super::{Stepper, failure};
-use crate::effects::Effect;
-use crate::effects::artificial_viscosity::Flow;
-use crate::material::constitutive::{Matter, MidStep, VolumeChange};
-use crate::scene::Side;
-use crate::solver::clock::spend;
-use crate::solver::patch::{Departed, Fault, Patch, Phase};
-use crate::solver::shape::{floor, integer};
+use super::{Stepper, tension_free};
+use crate::material::constitutive::{ConstitutiveModel, MidStep, VolumeChange};
+use crate::shape::{floor, integer};
+use crate::solver::artificial_viscosity::{Flow, Viscosity};
+use crate::solver::clock::{timed, timed_if};
+use crate::solver::effect::{Phase, StepContext};
+use crate::solver::parts::StepPart;
+use crate::solver::patch::{Fault, FaultPhase, Patch, RemovedParticle};
 
-/// Stiffness that pressure relaxation takes a gas to have at least, over the pressure that counts
-/// as none: 2^-30 of the scene's. What rounding leaves of pressure then moves no volume.
+/// Smallest stiffness of a gas in pressure relaxation, over the pressure that counts as zero: 2^-30
+/// of the stiffness of the scene. Rounding errors of pressure then change no volume.
 const COLD: f64 = (1u64 << 20) as f64;
 
-/// Rows whose cells along a direction are kept at a time.
+/// Number of particles whose cells along a direction are kept at a time.
 const BLOCK: usize = 128;
 
-/// Cells of rows at x + `drift` v along a direction of the grid, which has a lower end, an inverse
-/// edge and a count of cells, and the rows' places in them; whether any lies outside the grid.
-// inlined it is no longer computed for some rows at a time
+/// Cells of particles at x + `drift` v along a direction of a grid (lower end, inverse edge, number
+/// of cells), and the positions of the particles in them; returns whether any is outside the grid.
+// inlining would prevent vectorization
 #[inline(never)]
 fn find_cells(
     [x, v]: [&[f64]; 2],
@@ -45,8 +46,8 @@ fn find_cells(
     outside
 }
 
-/// Ranges of rows of one body.
-pub(super) fn bodies(column: &[f64]) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
+/// Ranges of particles of the same body.
+pub(crate) fn bodies(column: &[f64]) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
     let mut at = 0;
     std::iter::from_fn(move || {
         let body = *column.get(at)?;
@@ -57,10 +58,10 @@ pub(super) fn bodies(column: &[f64]) -> impl Iterator<Item = (usize, Range<usize
 }
 
 impl<const D: usize> Stepper<D> {
-    /// Finds the cell of each own row at x + `ahead` v, its place in it, and its domain for the
-    /// shape function at volume ratio `jacobian` (a column). Rows beyond an open side leave. In the
-    /// total-Lagrangian frame both are those of the start.
-    pub(super) fn locate(&self, patch: &mut Patch<D>, ahead: f64, jacobian: usize) {
+    /// Finds the cell of each own particle at x + `ahead` v, its position in the cell, and its
+    /// domain for the shape function at the volume ratio in column `jacobian`. Particles beyond an
+    /// open side are removed. In the total-Lagrangian frame cell and domain are the initial ones.
+    pub(super) fn find_cells(&self, patch: &mut Patch<D>, ahead: f64, jacobian: usize) {
         patch.block.drop_ghosts();
         let c = &self.columns;
         let n = patch.block.own();
@@ -73,7 +74,7 @@ impl<const D: usize> Stepper<D> {
             patch.block.columns[c.fraction + a].resize(n, 0.0);
         }
         for start in (0..n).step_by(BLOCK) {
-            let rows = start..n.min(start + BLOCK);
+            let particles = start..n.min(start + BLOCK);
             let mut cells = [[0; BLOCK]; D];
             for (a, cells) in cells.iter_mut().enumerate() {
                 let [x, v, fraction] = patch
@@ -82,14 +83,14 @@ impl<const D: usize> Stepper<D> {
                     .get_disjoint_mut([position + a, c.velocity + a, c.fraction + a])
                     .expect("columns differ");
                 let grid = (self.lower[a], self.inverse_cell[a], self.cells[a] as f64);
-                let from = [&x[rows.clone()], &v[rows.clone()]];
-                outside |= find_cells(from, drift, grid, &mut fraction[rows.clone()], cells);
+                let from = [&x[particles.clone()], &v[particles.clone()]];
+                outside |= find_cells(from, drift, grid, &mut fraction[particles.clone()], cells);
             }
-            for (r, cell) in patch.block.cells[rows].iter_mut().enumerate() {
+            for (r, cell) in patch.block.cells[particles].iter_mut().enumerate() {
                 *cell = std::array::from_fn(|a| cells[a][r]);
             }
         }
-        if self.total {
+        if self.total_lagrangian {
             self.find_first_domains(patch);
             self.find_shift(patch, ahead, jacobian);
             self.fault_beyond_walls(patch);
@@ -97,51 +98,52 @@ impl<const D: usize> Stepper<D> {
             self.find_domains(patch, ahead, jacobian);
         }
         if outside {
-            self.leave(patch);
+            self.handle_exit(patch);
         }
     }
 
-    /// Wraps rows across joined sides, books those that leave by an outflow, faults the others.
-    fn leave(&self, patch: &mut Patch<D>) {
+    /// Wraps particles across periodic sides, removes particles at outflow sides, and reports a
+    /// fault for others.
+    fn handle_exit(&self, patch: &mut Patch<D>) {
         const NAMES: [[&str; 2]; 2] = [["lower", "upper"], ["lower y", "upper y"]];
         let mut keep = vec![true; patch.block.own()];
-        for (row, keep) in keep.iter_mut().enumerate() {
+        for (particle, keep) in keep.iter_mut().enumerate() {
             for a in 0..D {
-                let cell = i64::from(patch.block.cells[row][a]);
+                let cell = i64::from(patch.block.cells[particle][a]);
                 if (0..self.cells[a]).contains(&cell) {
                     continue;
                 }
-                let side = usize::from(cell >= 0);
-                match &self.sides[a][side] {
-                    Side::Periodic => {
-                        patch.block.cells[row][a] = cell.rem_euclid(self.cells[a]) as i32;
-                        continue;
-                    }
-                    side if side.lets_out() => *keep = false,
-                    _ => {
-                        let name = NAMES[a][side];
-                        let what = format!("it leaves the domain by its {name} side");
-                        self.fault(patch, Phase::Locate, row, what);
-                    }
+                let end = usize::from(cell >= 0);
+                let side = &self.sides[a][end];
+                if side.is_periodic() {
+                    patch.block.cells[particle][a] = cell.rem_euclid(self.cells[a]) as i32;
+                    continue;
                 }
-                // it stays within the arrays until it is taken out or the run ends
-                patch.block.cells[row][a] = cell.clamp(0, self.cells[a] - 1) as i32;
-                patch.block.columns[self.columns.fraction + a][row] = 0.5;
+                if side.lets_out {
+                    *keep = false;
+                } else {
+                    let what = format!("it leaves the domain by its {} side", NAMES[a][end]);
+                    self.fault(patch, FaultPhase::Locate, particle, what);
+                }
+                // it stays within the arrays until it is removed or the run ends
+                patch.block.cells[particle][a] = cell.clamp(0, self.cells[a] - 1) as i32;
+                patch.block.columns[self.columns.fraction + a][particle] = 0.5;
             }
         }
         if keep.contains(&false) {
             let gone: Vec<usize> = (0..keep.len()).filter(|&r| !keep[r]).collect();
-            self.depart(patch, &gone, false);
+            self.remove_particles(patch, &gone, false);
         }
     }
 
-    /// Takes out and books the own rows of `gone`, which ascend. There must be no ghosts.
-    pub(super) fn depart(&self, patch: &mut Patch<D>, gone: &[usize], eroded: bool) {
+    /// Removes and records the own particles in `gone`, in ascending order. There must be no
+    /// ghosts.
+    pub(crate) fn remove_particles(&self, patch: &mut Patch<D>, gone: &[usize], eroded: bool) {
         let c = &self.columns;
-        for &row in gone {
-            let column = |k: usize| patch.block.columns[k][row];
-            patch.departed.push(Departed {
-                id: patch.block.ids[row],
+        for &particle in gone {
+            let column = |k: usize| patch.block.columns[k][particle];
+            patch.removed.push(RemovedParticle {
+                id: patch.block.ids[particle],
                 mass: column(c.mass),
                 velocity: std::array::from_fn(|a| column(c.velocity + a)),
                 energy: column(c.energy),
@@ -156,7 +158,7 @@ impl<const D: usize> Stepper<D> {
         let c = &self.columns;
         let mid = c.jacobian_mid.expect("mid-point stepping has the column");
         let [j, d, j_mid] =
-            patch.block.columns.get_disjoint_mut([c.jacobian, c.gradient, mid]).expect("differ");
+            patch.block.columns.get_disjoint_mut([c.jacobian, c.divergence, mid]).expect("differ");
         j_mid.resize(j.len(), 0.0);
         for r in 0..j.len() {
             j_mid[r] = j[r] * (1.0 + 0.5 * dt * d[r]);
@@ -168,14 +170,32 @@ impl<const D: usize> Stepper<D> {
         let j_mid = &patch.block.columns[mid];
         let (limit, scale) = (patch.reach_length, self.inverse_cell[0]);
         let torn = |r: &usize| self.domain_length(volume0[*r] * j_mid[*r] * scale) > limit;
-        if let Some(row) = (0..j_mid.len()).find(torn) {
-            self.fault(patch, Phase::Start, row, "it is torn apart within one step".into());
+        if let Some(particle) = (0..j_mid.len()).find(torn) {
+            self.fault(
+                patch,
+                FaultPhase::Start,
+                particle,
+                "it is torn apart within one step".into(),
+            );
         }
     }
 
-    /// q of own rows at volume ratio `jacobian` (a column), into its column.
+    /// Writes q of own particles, at the volume ratio in column `jacobian`, to its column.
     pub(super) fn find_viscosity(&self, patch: &mut Patch<D>, jacobian: usize) {
-        let (Some(viscosity), Some(q)) = (&self.viscosity, self.columns.viscosity) else { return };
+        if let (Some(viscosity), Some(q)) = (&self.viscosity, self.columns.viscosity) {
+            timed(StepPart::Viscosity as usize, patch, |patch| {
+                self.fill_viscosity(patch, viscosity, q, jacobian);
+            });
+        }
+    }
+
+    fn fill_viscosity(
+        &self,
+        patch: &mut Patch<D>,
+        viscosity: &Viscosity,
+        q: usize,
+        jacobian: usize,
+    ) {
         let c = &self.columns;
         let mut out = std::mem::take(&mut patch.block.columns[q]);
         let column = |k: usize| &patch.block.columns[k][..out.len()];
@@ -184,16 +204,16 @@ impl<const D: usize> Stepper<D> {
             volume0: column(c.volume0),
             jacobian: column(jacobian),
             sound_speed: column(c.sound_speed),
-            gradient: column(c.gradient),
+            gradient: column(c.divergence),
         };
         let phi = c.limiter.map(column);
-        if self.total && D > 1 {
+        if self.total_lagrangian && D > 1 {
             for r in 0..out.len() {
                 let (limited, stretch) = (phi.map_or(0.0, |phi| phi[r]), self.stretch(patch, r));
                 out[r] = viscosity.of(&at, r, limited, stretch);
             }
         } else {
-            viscosity.fill(&mut out, &at, phi, self.total.then_some(at.jacobian));
+            viscosity.fill(&mut out, &at, phi, self.total_lagrangian.then_some(at.jacobian));
         }
         patch.block.columns[q] = out;
     }
@@ -203,7 +223,7 @@ impl<const D: usize> Stepper<D> {
         let c = &self.columns;
         let n = patch.block.own();
         let mid = c.jacobian_mid.expect("mid-point stepping has the column");
-        // columns that are written leave the block while the others are read
+        // columns to write are taken out of the block while others are read
         let mut take = |k: usize| {
             let mut column = std::mem::take(&mut patch.block.columns[k]);
             column.resize(n, 0.0);
@@ -211,34 +231,36 @@ impl<const D: usize> Stepper<D> {
         };
         let mut stress = take(c.stress_volume);
         let mut relaxed = c.pressure_mid.zip(c.compliance).map(|(p, w)| (take(p), take(w)));
-        let column = |k: usize| &patch.block.columns[k];
-        let energy = c.strength.map_or(c.energy, |c| c.energy_mid);
-        for (body, rows) in bodies(&column(c.body)[..patch.block.own()]) {
-            let Matter::Fluid(model) = &self.models[body] else {
-                // pressure relaxation leaves solids alone
+        let (columns, watch) = (&patch.block.columns, &mut patch.stopwatch);
+        let column = |k: usize| &columns[k];
+        let energy = c.energy_mid.unwrap_or(c.energy);
+        for (body, particles) in bodies(&column(c.body)[..n]) {
+            let ConstitutiveModel::Fluid(model) = &self.models[body] else {
+                // pressure relaxation does not apply to solids
                 if let Some((p, w)) = &mut relaxed {
-                    p[rows.clone()].fill(0.0);
-                    w[rows.clone()].fill(0.0);
+                    p[particles.clone()].fill(0.0);
+                    w[particles.clone()].fill(0.0);
                 }
                 continue;
             };
-            model.mid_step(MidStep {
-                mass: &column(c.mass)[rows.clone()],
-                volume0: &column(c.volume0)[rows.clone()],
-                jacobian: &column(c.jacobian)[rows.clone()],
-                jacobian_mid: &column(mid)[rows.clone()],
-                energy: &column(energy)[rows.clone()],
-                gradient: &column(c.gradient)[rows.clone()],
+            let mid_step = MidStep {
+                mass: &column(c.mass)[particles.clone()],
+                volume0: &column(c.volume0)[particles.clone()],
+                jacobian: &column(c.jacobian)[particles.clone()],
+                jacobian_mid: &column(mid)[particles.clone()],
+                energy: &column(energy)[particles.clone()],
+                gradient: &column(c.divergence)[particles.clone()],
                 edge: self.edge,
                 floor: COLD * self.still_pressure,
-                q: c.viscosity.map(|q| &column(q)[rows.clone()]),
-                history: self.history[body].map(|h| &column(h)[rows.clone()]),
-                stress_volume: &mut stress[rows.clone()],
+                q: c.viscosity.map(|q| &column(q)[particles.clone()]),
+                history: self.history[body].map(|h| &column(h)[particles.clone()]),
+                stress_volume: &mut stress[particles.clone()],
                 compliance: relaxed
                     .as_mut()
                     .filter(|_| relax)
-                    .map(|(p, w)| (&mut p[rows.clone()], &mut w[rows])),
-            });
+                    .map(|(p, w)| (&mut p[particles.clone()], &mut w[particles])),
+            };
+            timed_if(self.history_part(body), watch, || model.mid_step(mid_step));
         }
         patch.block.columns[c.stress_volume] = stress;
         if let (Some((p, w)), Some(pressure), Some(compliance)) =
@@ -249,8 +271,9 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// The cells of the own rows that are not at rest, once their stress is known: a row is at
-    /// rest where velocity, its gradients and stress are zero, so that it pushes nothing.
+    /// Finds the cells of the own particles that are not at rest, after their stress is known: a
+    /// particle is at rest if velocity, its gradients and stress are zero, so that it exerts no
+    /// force.
     pub(super) fn find_active(&self, patch: &mut Patch<D>) {
         if !self.may_sleep {
             return;
@@ -258,21 +281,22 @@ impl<const D: usize> Stepper<D> {
         let c = &self.columns;
         let n = patch.block.own();
         let column = |k: usize| &patch.block.columns[k][..n];
-        let foretold = c.side.map(|side| side.gradient);
-        let tensors = c.affine.into_iter().chain(c.velocity_gradient).chain(foretold);
+        let tensors = c.affine.into_iter().chain(c.velocity_gradient);
         let tensors = tensors.flat_map(|k| k..k + D * D);
         let vector = c.velocity..c.velocity + D;
         let stress = c.stress_volume..c.stress_volume + c.stress_volumes;
-        let pulled = c.body_force.map(|c| c.force..c.force + D).into_iter().flatten();
-        let scalars = [c.gradient].into_iter().chain(pulled).chain(stress).chain(c.pressure_mid);
-        let watched: smallvec::SmallVec<[&[f64]; 16]> =
-            vector.chain(scalars).chain(tensors).map(column).collect();
-        let burns = c.burn.map(|c| (column(c.lighting_time), column(c.fraction)));
-        // what waits to be lit moves by itself
-        let waits = |r: usize| burns.is_some_and(|(lit, f)| lit[r] >= 0.0 && f[r] < 1.0);
-        let moves = |r: usize| watched.iter().any(|column| column[r] != 0.0) || waits(r);
-        // rows from the first to the last that moves: those between mostly do
-        patch.block.active = match (0..n).find(|&r| moves(r)) {
+        let scalars = [c.divergence].into_iter().chain(stress).chain(c.pressure_mid);
+        let of_effects = c.zero_at_rest.iter().copied();
+        let watched: SmallVec<[&[f64]; 16]> =
+            vector.chain(scalars).chain(tensors).chain(of_effects).map(column).collect();
+        let acting = self.effects.iter().filter(|effect| effect.changes_particles_at_rest());
+        let acting: SmallVec<[_; 4]> = acting.collect();
+        let moves = |r: usize| {
+            watched.iter().any(|column| column[r] != 0.0)
+                || acting.iter().any(|effect| effect.may_act(patch, r))
+        };
+        // all particles between the first and the last moving one: most of them move
+        let active = match (0..n).find(|&r| moves(r)) {
             None => IndexBox::new([0; D], [0; D]),
             Some(first) => {
                 let last = (first..n).rev().find(|&r| moves(r)).unwrap_or(first);
@@ -286,9 +310,10 @@ impl<const D: usize> Stepper<D> {
                 IndexBox::new(lower, upper)
             }
         };
+        patch.block.active = active;
     }
 
-    /// (p + q) V from the columns of pressure and viscosity, into its own.
+    /// Writes (p + q) V, from the columns of pressure and viscosity, to its column.
     pub(super) fn current_stress(&self, patch: &mut Patch<D>) {
         let c = &self.columns;
         let n = patch.block.own();
@@ -301,99 +326,154 @@ impl<const D: usize> Stepper<D> {
             None => (0..n).for_each(|r| stress[r] = p[r] * volume0[r] * j[r]),
         }
         patch.block.columns[c.stress_volume] = stress;
-        self.find_solid_stress(patch, 0.0, c.jacobian, c.strength.map(|c| c.deviator));
+        self.find_solid_stress(patch, 0.0, c.jacobian, c.deviator);
     }
 
     /// Volume, viscosity, energy and pressure after `dt` at the divergence in its column.
-    pub(super) fn update_stress(&self, patch: &mut Patch<D>, dt: f64) {
-        let c = &self.columns;
+    pub(super) fn update_stress(&self, patch: &mut Patch<D>, step: &StepContext<'_, D>) {
+        let (c, dt) = (&self.columns, step.dt);
         let mut before = std::mem::take(&mut patch.kept);
         before.clear();
         before.extend_from_slice(&patch.block.columns[c.jacobian]);
         let [j, d] =
-            patch.block.columns.get_disjoint_mut([c.jacobian, c.gradient]).expect("differ");
+            patch.block.columns.get_disjoint_mut([c.jacobian, c.divergence]).expect("differ");
         for r in 0..before.len() {
             j[r] = before[r] * (1.0 + dt * d[r]);
         }
-        self.find_push(patch, dt, c.jacobian);
-        spend(Effect::Viscosity, patch, |patch| self.find_viscosity(patch, c.jacobian));
+        self.invert_deformation(patch, dt, c.jacobian);
+        self.find_viscosity(patch, c.jacobian);
         let mut pressure = std::mem::take(&mut patch.block.columns[c.pressure]);
         let mut energy = std::mem::take(&mut patch.block.columns[c.energy]);
-        let column = |k: usize| &patch.block.columns[k];
-        for (body, rows) in bodies(&column(c.body)[..patch.block.own()]) {
-            let Matter::Fluid(model) = &self.models[body] else { continue };
-            model.change_volume(VolumeChange {
-                mass: &column(c.mass)[rows.clone()],
-                volume0: &column(c.volume0)[rows.clone()],
-                before: &before[rows.clone()],
-                after: &column(c.jacobian)[rows.clone()],
-                q: c.viscosity.map(|q| &column(q)[rows.clone()]),
-                history: self.history[body].map(|h| &column(h)[rows.clone()]),
-                pressure: &mut pressure[rows.clone()],
-                energy: &mut energy[rows],
-            });
+        let n = patch.block.own();
+        let (columns, watch) = (&patch.block.columns, &mut patch.stopwatch);
+        let column = |k: usize| &columns[k];
+        for (body, particles) in bodies(&column(c.body)[..n]) {
+            let ConstitutiveModel::Fluid(model) = &self.models[body] else { continue };
+            let change = VolumeChange {
+                mass: &column(c.mass)[particles.clone()],
+                volume0: &column(c.volume0)[particles.clone()],
+                before: &before[particles.clone()],
+                after: &column(c.jacobian)[particles.clone()],
+                q: c.viscosity.map(|q| &column(q)[particles.clone()]),
+                history: self.history[body].map(|h| &column(h)[particles.clone()]),
+                pressure: &mut pressure[particles.clone()],
+                energy: &mut energy[particles],
+            };
+            timed_if(self.history_part(body), watch, || model.change_volume(change));
         }
         self.work_on_solids(patch, dt, &before, &mut energy);
-        self.release_tension(patch, &before, &mut pressure, &mut energy);
         patch.block.columns[c.pressure] = pressure;
         patch.block.columns[c.energy] = energy;
-        if c.strength.is_some() {
-            spend(Effect::Strength, patch, |patch| self.shear_and_heat(patch, &before, dt));
-        }
         patch.kept = before;
+        self.effects.act(Phase::PressureUpdate, step, patch);
+        self.effects.act(Phase::StressUpdate, step, patch);
         self.deform_forward(patch, dt);
     }
 
-    /// Pressure, sound speed, and what the patch tells: time step, longest particle, faults.
-    pub(super) fn refresh(&self, patch: &mut Patch<D>) {
+    /// Ends a step: effects, then pressure, sound speed, and the report of the patch.
+    pub(super) fn end_step(&self, patch: &mut Patch<D>, step: &StepContext<'_, D>) {
+        self.effects.act(Phase::EndState, step, patch);
+        self.refresh(patch, step);
+        self.effects.act(Phase::End, step, patch);
+    }
+
+    /// Pressure, temperature, sound speed and stress, and the report of the patch: time step,
+    /// longest particle, faults.
+    pub(super) fn refresh(&self, patch: &mut Patch<D>, step: &StepContext<'_, D>) {
+        let of_fluids = self.find_pressure(patch);
+        self.effects.act(Phase::EndTemperature, step, patch);
+        self.effects.act(Phase::EndSoundSpeed, step, patch);
+        let of_solids = self.find_end_stress(patch);
+        self.report(patch, of_fluids.into_iter().chain(of_solids).collect());
+    }
+
+    /// Pressure and sound speed of the own particles of fluids by their equations of state; returns
+    /// the first fault.
+    fn find_pressure(&self, patch: &mut Patch<D>) -> Option<(usize, String)> {
         let c = &self.columns;
         let mut pressure = std::mem::take(&mut patch.block.columns[c.pressure]);
         let mut speed = std::mem::take(&mut patch.block.columns[c.sound_speed]);
         let mut histories = self.take_histories(patch);
-        let column = |k: usize| &patch.block.columns[k];
+        let n = patch.block.own();
+        let (columns, watch) = (&patch.block.columns, &mut patch.stopwatch);
+        let column = |k: usize| &columns[k];
         let mut found = None;
-        for (body, rows) in bodies(&column(c.body)[..patch.block.own()]) {
-            let Matter::Fluid(model) = &self.models[body] else { continue };
+        for (body, particles) in bodies(&column(c.body)[..n]) {
+            let ConstitutiveModel::Fluid(model) = &self.models[body] else { continue };
             let history = histories.iter_mut().find(|(k, _)| self.history[body] == Some(*k));
-            let history = history.map(|(_, h)| &mut h[rows.clone()]);
-            let (j, e) = (&column(c.jacobian)[rows.clone()], &column(c.energy)[rows.clone()]);
-            let (p, speed) = (&mut pressure[rows.clone()], &mut speed[rows.clone()]);
-            let told = match c.failure.filter(|_| self.criteria[body].is_some()) {
-                Some(failure) => {
-                    let damage = &column(failure.damage)[rows.clone()];
-                    failure::refresh((model.as_ref(), damage), (j, e), history, (p, speed))
+            let history = history.map(|(_, h)| &mut h[particles.clone()]);
+            let (j, e) =
+                (&column(c.jacobian)[particles.clone()], &column(c.energy)[particles.clone()]);
+            let (p, speed) = (&mut pressure[particles.clone()], &mut speed[particles.clone()]);
+            let told = timed_if(self.history_part(body), watch, || match c.tension_free[body] {
+                Some(damage) => {
+                    let damage = &column(damage)[particles.clone()];
+                    tension_free::refresh((model.as_ref(), damage), (j, e), history, (p, speed))
                 }
                 None => model.refresh(j, e, history, p, speed),
-            };
-            if let (None, Some((row, what))) = (&found, told) {
-                found = Some((rows.start + row, what));
+            });
+            if let (None, Some((particle, what))) = (&found, told) {
+                found = Some((particles.start + particle, what));
             }
         }
         for (k, history) in histories {
             patch.block.columns[k] = history;
         }
-        if c.thermal.is_some() {
-            spend(Effect::Temperature, patch, |patch| self.refresh_temperature(patch, &pressure));
+        patch.block.columns[c.pressure] = pressure;
+        patch.block.columns[c.sound_speed] = speed;
+        found
+    }
+
+    /// Takes the columns of history variables out of a patch's block, with their indices.
+    fn take_histories(&self, patch: &mut Patch<D>) -> SmallVec<[(usize, Vec<f64>); 2]> {
+        let mut taken: SmallVec<[(usize, Vec<f64>); 2]> = SmallVec::new();
+        for &k in self.history.iter().flatten() {
+            if taken.iter().all(|(known, _)| *known != k) {
+                taken.push((k, std::mem::take(&mut patch.block.columns[k])));
+            }
         }
-        if c.strength.is_some() {
-            spend(Effect::Strength, patch, |patch| self.stiffen(patch, &pressure, &mut speed));
-        }
-        let mut of_solids = None;
-        if c.stress.is_some() {
-            spend(Effect::Stress, patch, |patch| {
-                of_solids = self.refresh_solids(patch, &mut pressure, &mut speed);
-            });
-        }
-        let mut found: Vec<(usize, String)> = found.into_iter().chain(of_solids).collect();
+        taken
+    }
+
+    /// Part of a step to which the equation of state of a body is accounted, if it belongs to an
+    /// effect.
+    fn history_part(&self, body: usize) -> Option<usize> {
+        self.history[body].and_then(|column| self.columns.owners[column])
+    }
+
+    /// Stress of the own particles, and pressure and sound speed of solids; returns the first
+    /// fault.
+    fn find_end_stress(&self, patch: &mut Patch<D>) -> Option<(usize, String)> {
+        let c = &self.columns;
+        c.stress?;
+        let mut found = None;
+        timed(StepPart::StressTensor as usize, patch, |patch| {
+            let mut pressure = std::mem::take(&mut patch.block.columns[c.pressure]);
+            let mut speed = std::mem::take(&mut patch.block.columns[c.sound_speed]);
+            found = self.refresh_solids(patch, &mut pressure, &mut speed);
+            patch.block.columns[c.pressure] = pressure;
+            patch.block.columns[c.sound_speed] = speed;
+        });
+        found
+    }
+
+    /// Writes the report of a patch at the end of a step, with the faults `found` so far: longest
+    /// stable time step, longest particle, first fault.
+    fn report(&self, patch: &mut Patch<D>, mut found: SmallVec<[(usize, String); 2]>) {
+        let c = &self.columns;
+        let mut total = std::mem::take(&mut patch.kept);
         let column = |k: usize| &patch.block.columns[k];
         let velocity: [&[f64]; D] = std::array::from_fn(|a| &column(c.velocity + a)[..]);
-        let d = column(c.gradient);
-        // the most cells that a signal or particle passes along a direction in a second [1/s]
+        let d = column(c.divergence);
+        let speed = &column(c.sound_speed)[..patch.block.own()];
+        // greatest number of cells that a signal or particle crosses along a direction per second
+        // [1/s]
         let mut fastest = 0.0f64;
         let mut lost = false;
-        // how much shorter than at the start a cell that moves with the material is
+        // greatest ratio of the initial to the current length of a cell that moves with the
+        // material
         let mut shortest = 1.0f64;
-        let stretched = if self.total { speed.len() } else { 0 };
+        let stretched = if self.total_lagrangian { speed.len() } else { 0 };
         for r in 0..stretched {
             let (rate, shorter) = self.signal_rate(&patch.block, r, speed[r]);
             fastest = fastest.max(rate);
@@ -401,33 +481,30 @@ impl<const D: usize> Stepper<D> {
             lost |= rate.is_nan() || !velocity.iter().all(|v| v[r].is_finite());
         }
         let viscosity = self.viscosity;
-        let mut total = std::mem::take(&mut patch.kept);
         total.resize(speed.len() - stretched, 0.0);
-        for a in 0..if self.total { 0 } else { D } {
-            // slices of one length, so that the loops have no checks within
+        for a in 0..if self.total_lagrangian { 0 } else { D } {
+            // slices of equal length, so that the loops have no bounds checks
             let (total, d) = (&mut total[..], &d[..speed.len()]);
             let (speed, v) = (&speed[..total.len()], &velocity[a][..total.len()]);
             for r in 0..total.len() {
                 let added = viscosity.map_or(0.0, |q| q.speed(speed[r], d[r], 1.0));
                 total[r] = speed[r] + v[r].abs() + added;
             }
-            // which passes over NaN
+            // ignores NaN
             let most = greatest(total);
             fastest = fastest.max(if D == 1 { most } else { most * self.inverse_cell[a] });
             lost |= total.iter().fold(false, |lost, total| lost | total.is_nan());
         }
         patch.kept = total;
         let edge = if D == 1 { self.cell[0] } else { 1.0 };
-        patch.told.time_step = if fastest > 0.0 { edge / fastest } else { f64::INFINITY };
-        if let Some(conduction) = &self.conduction {
-            patch.told.time_step =
-                patch.told.time_step.min(conduction.step / (shortest * shortest));
-        }
+        patch.report.time_step = if fastest > 0.0 { edge / fastest } else { f64::INFINITY };
+        patch.report.time_step =
+            patch.report.time_step.min(self.diffusion_step / (shortest * shortest));
         let limit = self.longest_ever();
-        patch.told.length = self.longest_own(&patch.block);
-        if patch.told.length > limit && self.domains_deform() {
-            found.extend(self.first_longer(&patch.block, limit).map(|(row, cells)| {
-                (row, format!(
+        patch.report.length = self.longest_own(&patch.block);
+        if patch.report.length > limit && self.domains_deform() {
+            found.extend(self.first_longer(&patch.block, limit).map(|(particle, cells)| {
+                (particle, format!(
                     "it has been stretched over {cells:.1} cells, further than its shape function reaches"
                 ))
             }));
@@ -438,28 +515,26 @@ impl<const D: usize> Stepper<D> {
                     && d[*r].is_finite()
                     && !speed[*r].is_nan()
             };
-            let row = (0..d.len()).find(|r| !finite(r));
-            found.push((row.unwrap_or(0), "its velocity is not a number".into()));
+            let particle = (0..d.len()).find(|r| !finite(r));
+            found.push((particle.unwrap_or(0), "its velocity is not a number".into()));
         }
-        // the first row of all, for a patch that begins elsewhere has others before and after it
-        let found = found.into_iter().min_by_key(|(row, _)| *row);
-        patch.block.columns[c.pressure] = pressure;
-        patch.block.columns[c.sound_speed] = speed;
-        if let Some((row, what)) = found {
-            self.fault(patch, Phase::End, row, what);
+        // the first particle of all faults, so that the result does not depend on the patches
+        let found = found.into_iter().min_by_key(|(particle, _)| *particle);
+        if let Some((particle, what)) = found {
+            self.fault(patch, FaultPhase::End, particle, what);
         }
     }
 
-    /// The most cells that a signal passes along a direction in a second at an own row, as the time
-    /// step has it [1/s].
-    pub fn wave_rate(&self, block: &decomp::Block<D>, row: usize) -> f64 {
-        let column = |k: usize| block.columns[k][row];
+    /// Greatest number of cells that a signal crosses along a direction per second at an own
+    /// particle, as in the time step [1/s].
+    pub fn wave_rate(&self, block: &decomp::Block<D>, particle: usize) -> f64 {
+        let column = |k: usize| block.columns[k][particle];
         let speed = column(self.columns.sound_speed);
-        if self.total {
-            let (rate, _) = self.signal_rate(block, row, speed);
+        if self.total_lagrangian {
+            let (rate, _) = self.signal_rate(block, particle, speed);
             return if D == 1 { rate * self.inverse_cell[0] } else { rate };
         }
-        let gradient = column(self.columns.gradient);
+        let gradient = column(self.columns.divergence);
         let added = self.viscosity.map_or(0.0, |q| q.speed(speed, gradient, 1.0));
         let along = |a: usize| {
             (speed + column(self.columns.velocity + a).abs() + added) * self.inverse_cell[a]
@@ -467,36 +542,43 @@ impl<const D: usize> Stepper<D> {
         (0..D).map(along).fold(0.0, f64::max)
     }
 
-    /// The cells that an own row fills; of a grid that moves with the material, those of the start.
-    pub fn filled_cells(&self, block: &decomp::Block<D>, row: usize) -> f64 {
-        let column = |k: usize| block.columns[k][row];
+    /// Number of cells that an own particle fills; initial cells if the grid moves with the
+    /// material.
+    pub fn filled_cells(&self, block: &decomp::Block<D>, particle: usize) -> f64 {
+        let column = |k: usize| block.columns[k][particle];
         let c = &self.columns;
         let about = if self.axisymmetric { column(c.position) } else { 1.0 };
         let scale: f64 = self.inverse_cell.iter().product();
-        let jacobian = if self.total { 1.0 } else { column(c.jacobian) };
+        let jacobian = if self.total_lagrangian { 1.0 } else { column(c.jacobian) };
         column(c.volume0) * jacobian * scale / about
     }
 
-    /// Kinetic and internal energy of an own row over its mass [J/kg].
-    pub fn specific_energy(&self, block: &decomp::Block<D>, row: usize) -> f64 {
-        let column = |k: usize| block.columns[k][row];
+    /// Kinetic and internal energy of an own particle per unit mass [J/kg].
+    pub fn specific_energy(&self, block: &decomp::Block<D>, particle: usize) -> f64 {
+        let column = |k: usize| block.columns[k][particle];
         let v = |a: usize| column(self.columns.velocity + a);
         column(self.columns.energy) + 0.5 * (0..D).map(|a| v(a) * v(a)).sum::<f64>()
     }
 
-    /// Notes a fault, if it comes before those that are known.
-    pub(super) fn fault(&self, patch: &mut Patch<D>, phase: Phase, row: usize, what: String) {
+    /// Records a fault, if it comes before the known ones.
+    pub(crate) fn fault(
+        &self,
+        patch: &mut Patch<D>,
+        phase: FaultPhase,
+        particle: usize,
+        what: String,
+    ) {
         let block = &patch.block;
         let fault = Fault {
             phase,
-            cell: block.cells[row].map(i64::from),
-            id: block.ids[row],
-            position: std::array::from_fn(|a| block.columns[self.columns.position + a][row]),
-            body: block.columns[self.columns.body][row] as usize,
+            cell: block.cells[particle].map(i64::from),
+            id: block.ids[particle],
+            position: std::array::from_fn(|a| block.columns[self.columns.position + a][particle]),
+            body: block.columns[self.columns.body][particle] as usize,
             what,
         };
-        if patch.told.fault.as_ref().is_none_or(|known| fault.order() < known.order()) {
-            patch.told.fault = Some(fault);
+        if patch.report.fault.as_ref().is_none_or(|known| fault.order() < known.order()) {
+            patch.report.fault = Some(fault);
         }
     }
 }

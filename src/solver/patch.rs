@@ -1,32 +1,32 @@
-//! One patch: its rows, its nodes, and what a step keeps for them.
+//! A patch: its particles, its nodes, and the buffers of a step.
 
 use std::ops::Range;
 
 use decomp::{Block, IndexBox, Layout, NodeArrays};
 
-use crate::effects::contact::ContactNodes;
-use crate::solver::clock::Watch;
+use crate::shape::{ParticleDomain, Shape, Weights};
+use crate::solver::clock::Stopwatch;
+use crate::solver::contact::ContactNodes;
 use crate::solver::nodal_fields::Band;
-use crate::solver::shape::{Domain, Shape, Weights};
+use crate::solver::particle_weights::{NARROW, lines};
 use crate::solver::shape_weights::Stencils;
-use crate::solver::transfer::{NARROW, lines};
 
-/// What a patch tells of its step.
+/// Results of a patch in one step.
 #[derive(Clone, Debug, Default)]
-pub struct Told<const D: usize> {
+pub struct StepReport<const D: usize> {
     /// Longest time step that its particles allow at a Courant number of 1 [s].
     pub time_step: f64,
     /// Greatest extent of a particle along a direction [cells].
     pub length: f64,
-    /// The first fault.
+    /// First fault.
     pub fault: Option<Fault<D>>,
 }
 
-/// A state that ends the run.
+/// Invalid particle state that ends the run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault<const D: usize> {
-    /// When in the step it was found.
-    pub phase: Phase,
+    /// Part of the step in which it was found.
+    pub phase: FaultPhase,
     /// Cell of the particle.
     pub cell: [i64; D],
     /// Id of the particle.
@@ -35,23 +35,23 @@ pub struct Fault<const D: usize> {
     pub position: [f64; D],
     /// Its body.
     pub body: usize,
-    /// What is wrong with it.
+    /// Description of the fault.
     pub what: String,
 }
 
-/// When in a step a fault is found.
+/// Part of a step in which a fault is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Phase {
-    /// As the rows are brought to the middle of the step.
+pub enum FaultPhase {
+    /// When particles are moved to the middle of the step.
     Start,
-    /// As their cells are found.
+    /// When their cells are determined.
     Locate,
-    /// As the step's end is looked at.
+    /// When the state at the end of the step is checked.
     End,
 }
 
 impl<const D: usize> Fault<D> {
-    /// Which of a step's faults comes first, in a way that does not depend on the layout: by
+    /// Sort key that does not depend on the layout: the first fault of a step is the least by
     /// phase, then in canonical order.
     pub fn order(&self) -> [u64; 4] {
         let place =
@@ -60,9 +60,9 @@ impl<const D: usize> Fault<D> {
     }
 }
 
-/// A particle that has left by an outflow or was eroded, as seen in the grid's frame.
+/// Particle removed at an outflow side or by erosion, in the frame of the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Departed<const D: usize> {
+pub struct RemovedParticle<const D: usize> {
     /// Its id.
     pub id: u64,
     /// Mass [kg].
@@ -75,99 +75,100 @@ pub struct Departed<const D: usize> {
     pub eroded: bool,
 }
 
-/// A force of a side of the domain on a node.
+/// Force of a side of the domain on a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SideForce<const D: usize> {
-    /// Place of the node.
+    /// Index of the node in the arrays.
     pub at: usize,
-    /// Share of it that is this patch's own: 0 for a node of another, 1/2 on a mirror, whose sums
-    /// hold each particle twice.
+    /// Share of the force that this patch accounts for [-]: 0 for a node of another patch, 1/2 on a
+    /// mirror, whose sums count each particle twice.
     pub share: f64,
-    /// The force [N].
+    /// Force [N].
     pub force: [f64; D],
     /// Whether it is friction, whose work becomes heat of the material.
-    pub rubs: bool,
+    pub has_friction: bool,
 }
 
-/// What sides have given in a step, as seen in the grid's frame.
+/// Work and impulse of sides in a step, in the frame of the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Given<const D: usize> {
-    /// Work, without that of friction [J].
+pub struct BoundaryWork<const D: usize> {
+    /// Work without that of friction [J].
     pub work: f64,
     /// Impulse [N s].
     pub impulse: [f64; D],
 }
 
-/// One patch.
+/// A patch.
 #[derive(Clone, Debug)]
 pub struct Patch<const D: usize> {
-    /// Its rows.
+    /// Its particles.
     pub block: Block<D>,
     /// Its nodes.
     pub nodes: NodeArrays<D>,
-    /// Weights of its rows.
+    /// Weights of its particles.
     pub stencils: Stencils,
     /// Mass matrix.
     pub band: Band,
     /// Matrix of compliances, for pressure relaxation.
     pub compliance_band: Band,
-    /// Matrix of heat capacities, for conduction.
-    pub capacity_band: Band,
-    /// Runs of rows in canonical order.
+    /// Matrices of effects.
+    pub bands: Vec<Band>,
+    /// Ranges of particles in canonical order.
     pub runs: Vec<Range<usize>>,
-    /// Nodes that hold material, of those that the patch computes: its own, and with deep ghosts
-    /// those about it. A box a layer.
+    /// Computed nodes that hold material, one box per layer; with deep ghosts a patch also computes
+    /// nodes around its own.
     pub active: Vec<IndexBox<D>>,
-    /// Their places in its arrays.
+    /// Ranges of these nodes in the arrays.
     pub active_lines: Vec<Range<usize>>,
-    /// Places of the nodes whose values its own rows or products on active nodes may take.
+    /// Ranges of the nodes that own particles or products on active nodes may read.
     pub span_lines: Vec<Range<usize>>,
-    /// Places of the nodes with little material that it computes, which filters leave out.
+    /// Computed nodes with little material, which filters leave out.
     pub edge: Vec<usize>,
-    /// Where its bodies' velocity fields touch, with contact.
+    /// Nodes where velocity fields of bodies meet, with contact.
     pub contact: ContactNodes<D>,
-    /// How far beyond its own nodes it computes [nodes].
-    pub deeper: i64,
-    /// What it tells of its step.
-    pub told: Told<D>,
-    /// Forces of the sides on the nodes that it computes.
+    /// Layers of nodes that the patch computes beyond its own.
+    pub extra_ghost_layers: i64,
+    /// Results of the step.
+    pub report: StepReport<D>,
+    /// Forces of the sides on the computed nodes.
     pub side_forces: Vec<SideForce<D>>,
-    /// What they have given its own nodes in this step.
-    pub given: Vec<Given<D>>,
-    /// Particles that have left in this step.
-    pub departed: Vec<Departed<D>>,
-    /// Longest particle that ghosts and halos are deep enough for [cells].
+    /// Work and impulse of the sides on the own nodes in this step.
+    pub boundary_work: Vec<BoundaryWork<D>>,
+    /// Particles removed in this step.
+    pub removed: Vec<RemovedParticle<D>>,
+    /// Longest particle for which ghost layers and halos are deep enough [cells].
     pub reach_length: f64,
-    /// A buffer of a value a row, kept from step to step.
+    /// Reusable buffer with one value per particle: the volume ratios before the step while the
+    /// stress update runs.
     pub kept: Vec<f64>,
-    /// Whether it sleeps.
-    pub rest: Rest,
-    /// Its clock.
-    pub watch: Watch,
+    /// Whether the patch is quiescent.
+    pub quiescence: Quiescence,
+    /// Timer of the patch.
+    pub stopwatch: Stopwatch,
 }
 
-/// The sleep of a patch at rest that no wave has reached, or of one without rows: a step would
-/// change none of its bits.
+/// Quiescence: the patch is at rest and no wave has reached it, or it has no particles, so that a
+/// step would not change a single bit of it.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Rest {
-    /// Steps computed in a row with nothing near that moves.
+pub struct Quiescence {
+    /// Consecutive steps computed with nothing moving nearby.
     settled: u32,
-    /// Whether this step leaves it out.
+    /// Whether this step skips the patch.
     asleep: bool,
 }
 
-impl Rest {
-    /// Whether this step leaves the patch out.
-    pub fn asleep(&self) -> bool {
+impl Quiescence {
+    /// Whether this step skips the patch.
+    pub fn is_quiescent(&self) -> bool {
         self.asleep
     }
 
-    /// Takes note of whether anything near may change the patch in this step. After `needed`
-    /// steps without, all that a step computes for it, nodal values included, has become what
-    /// the next one would compute again. Tells whether the patch has just fallen asleep.
+    /// Records whether anything nearby may change the patch in this step. After `needed` steps
+    /// without such a change, another step would reproduce all results, nodal values included.
+    /// Returns whether the patch has just become quiescent.
     fn note(&mut self, stirred: bool, needed: u32) -> bool {
         if stirred {
-            *self = Rest::default();
+            *self = Quiescence::default();
             return false;
         }
         let falls_asleep = !self.asleep && self.settled >= needed;
@@ -178,7 +179,7 @@ impl Rest {
 }
 
 impl<const D: usize> Patch<D> {
-    /// The patch `index` of `layout`, with `block`'s rows and no nodal fields yet.
+    /// Patch `index` of `layout`, with the particles of `block` and no nodal fields yet.
     pub fn new(layout: &Layout<D>, index: usize, block: Block<D>) -> Self {
         Patch {
             block,
@@ -186,29 +187,29 @@ impl<const D: usize> Patch<D> {
             stencils: Stencils::default(),
             band: Band::default(),
             compliance_band: Band::default(),
-            capacity_band: Band::default(),
+            bands: Vec::new(),
             runs: Vec::new(),
             active: Vec::new(),
             active_lines: Vec::new(),
             span_lines: Vec::new(),
             edge: Vec::new(),
             contact: ContactNodes::default(),
-            deeper: 0,
-            told: Told::default(),
+            extra_ghost_layers: 0,
+            report: StepReport::default(),
             side_forces: Vec::new(),
-            given: Vec::new(),
-            departed: Vec::new(),
+            boundary_work: Vec::new(),
+            removed: Vec::new(),
             reach_length: f64::INFINITY,
             kept: Vec::new(),
-            rest: Rest::default(),
-            watch: Watch::default(),
+            quiescence: Quiescence::default(),
+            stopwatch: Stopwatch::default(),
         }
     }
 }
 
 impl<const D: usize> Patch<D> {
-    /// Gives it arrays of `fields` nodal values in `layers` with halos of `depth` nodes, of which
-    /// it computes those up to `deeper` beyond its own.
+    /// Allocates arrays of `fields` nodal values in `layers` with halos of `depth` nodes; the patch
+    /// computes nodes up to `deeper` beyond its own.
     pub fn set_arrays(
         &mut self,
         layout: &Layout<D>,
@@ -219,19 +220,19 @@ impl<const D: usize> Patch<D> {
         layers: usize,
     ) {
         self.nodes = NodeArrays::layered(layout, index, depth, fields, layers);
-        self.deeper = deeper;
+        self.extra_ghost_layers = deeper;
         self.stencils.forget();
-        // what it held for its sleep is gone
-        self.rest = Rest::default();
+        // the nodal values of a quiescent patch are lost
+        self.quiescence = Quiescence::default();
     }
 
-    /// Lets it sleep or wakes it, once it is known what moves near it. A patch that falls asleep
-    /// keeps the nodal fields of `kept`, the masses, and holds zeros in the others, as if it had
-    /// computed them.
+    /// Makes the patch quiescent or active, once nearby motion is known. A patch that becomes
+    /// quiescent keeps the nodal fields `kept` (the masses) and sets the others to zero, as if it
+    /// had computed them.
     pub fn settle(&mut self, needed: u32, kept: &[usize]) {
-        // what moves nearby cannot change a patch that none of its rows reach
-        let stirred = self.block.stirred && self.block.rows() > 0;
-        if self.rest.note(stirred, needed) {
+        // nearby motion cannot change a patch that no particle reaches
+        let stirred = self.block.stirred && self.block.particles() > 0;
+        if self.quiescence.note(stirred, needed) {
             self.contact.clear();
             self.side_forces.clear();
             for (k, field) in self.nodes.fields.iter_mut().enumerate() {
@@ -244,8 +245,8 @@ impl<const D: usize> Patch<D> {
 }
 
 impl<const D: usize> Patch<D> {
-    /// Computes the weights of all rows from the columns that start at `fraction` and at `domain`
-    /// [cells]; `inverse_cell` is 1/edge of a cell [1/m], `layer` the column with each row's
+    /// Computes the weights of all particles from the columns that start at `fraction` and `domain`
+    /// [cells]; `inverse_cell` is 1/edge of a cell [1/m], `layer` the column of each particle's
     /// layer, if there are several.
     pub fn find_weights<S: Shape, const K: usize>(
         &mut self,
@@ -254,18 +255,18 @@ impl<const D: usize> Patch<D> {
         inverse_cell: [f64; D],
         layer: Option<usize>,
     ) {
-        let rows = self.block.rows();
+        let particles = self.block.particles();
         let stencils = &mut self.stencils;
         let nodes = const { K * lines(K, D) };
         stencils.width = K;
         stencils.stride = self.nodes.nodes.extent(0);
-        stencils.first.resize(rows, 0);
-        stencils.values.resize(rows * nodes, 0.0);
-        stencils.gradients.resize(rows * nodes * D, 0.0);
-        stencils.narrow.resize(if K > NARROW { rows } else { 0 }, false);
+        stencils.first.resize(particles, 0);
+        stencils.values.resize(particles * nodes, 0.0);
+        stencils.gradients.resize(particles * nodes * D, 0.0);
+        stencils.narrow.resize(if K > NARROW { particles } else { 0 }, false);
         let lower = self.nodes.nodes.lower.map(|l| l as i32);
-        let column = |k: usize| &self.block.columns[k][..rows];
-        let cells = &self.block.cells[..rows];
+        let column = |k: usize| &self.block.columns[k][..particles];
+        let cells = &self.block.cells[..particles];
         let (mut least, mut most) = ([i32::MAX; D], [i32::MIN; D]);
         let narrow = &mut stencils.narrow;
         let out = stencils
@@ -275,13 +276,13 @@ impl<const D: usize> Patch<D> {
             .zip(stencils.gradients.chunks_exact_mut(nodes * D));
         if D == 1 {
             let (fractions, lengths) = (column(fraction), column(domain));
-            for (row, ((first, values), gradients)) in out.enumerate() {
-                let w: Weights<K> = S::weights(fractions[row], lengths[row]);
-                let at = cells[row][0] + w.first - lower[0];
+            for (particle, ((first, values), gradients)) in out.enumerate() {
+                let w: Weights<K> = S::weights(fractions[particle], lengths[particle]);
+                let at = cells[particle][0] + w.first - lower[0];
                 (least[0], most[0]) = (least[0].min(at), most[0].max(at));
                 *first = at as u32;
                 if K > NARROW {
-                    narrow[row] = S::nodes(lengths[row]) <= NARROW;
+                    narrow[particle] = S::nodes(lengths[particle]) <= NARROW;
                 }
                 values.copy_from_slice(&w.values);
                 for (out, g) in gradients.iter_mut().zip(w.gradients) {
@@ -294,11 +295,11 @@ impl<const D: usize> Patch<D> {
                 if k < S::EXTENT.plane_columns() { column(domain + k) } else { &[] }
             });
             let stride = stencils.stride as i32;
-            for (row, ((first, values), gradients)) in out.enumerate() {
-                let place = fractions.map(|f| f[row]);
-                let domain = Domain::from_columns(S::EXTENT, &domains, row);
+            for (particle, ((first, values), gradients)) in out.enumerate() {
+                let place = fractions.map(|f| f[particle]);
+                let domain = ParticleDomain::from_columns(S::EXTENT, &domains, particle);
                 let (gx, gy) = gradients.split_at_mut(nodes);
-                let mut lines = crate::solver::shape::Plane {
+                let mut lines = crate::shape::Plane {
                     values: values.as_chunks_mut::<K>().0,
                     gradients: [gx.as_chunks_mut::<K>().0, gy.as_chunks_mut::<K>().0],
                 };
@@ -308,13 +309,14 @@ impl<const D: usize> Patch<D> {
                     true => lines.fill_first::<S, NARROW>(place, &domain),
                     false => S::plane(place, &domain, &mut lines),
                 };
-                let at: [i32; D] = std::array::from_fn(|a| cells[row][a] + corner[a] - lower[a]);
+                let at: [i32; D] =
+                    std::array::from_fn(|a| cells[particle][a] + corner[a] - lower[a]);
                 for a in 0..D {
                     (least[a], most[a]) = (least[a].min(at[a]), most[a].max(at[a]));
                 }
                 *first = (at[0] + stride * at[D - 1]) as u32;
                 if K > NARROW {
-                    narrow[row] = is_narrow;
+                    narrow[particle] = is_narrow;
                 }
                 gx.iter_mut().for_each(|g| *g *= inverse_cell[0]);
                 gy.iter_mut().for_each(|g| *g *= inverse_cell[D - 1]);
@@ -323,7 +325,7 @@ impl<const D: usize> Patch<D> {
         self.find_runs(layer, K as i64, least, most);
     }
 
-    /// Finds the runs of rows in canonical order, and the nodes that they reach.
+    /// Finds the ranges of particles in canonical order, and the nodes within their reach.
     fn find_runs(&mut self, layer: Option<usize>, width: i64, least: [i32; D], most: [i32; D]) {
         self.block.runs(&mut self.runs);
         self.active.clear();
@@ -336,13 +338,13 @@ impl<const D: usize> Patch<D> {
         self.find_span(width);
     }
 
-    /// Moves each row's window to the layer in `column`.
+    /// Shifts the window of each particle to the layer in `column`.
     fn separate(&mut self, column: usize, width: i64) {
         let (count, stride) = (self.nodes.nodes.count(), self.stencils.stride);
         for layer in 0..self.nodes.layers {
             let (mut least, mut most) = ([i32::MAX; D], [i32::MIN; D]);
-            let rows = self.stencils.first.iter_mut().zip(&self.block.columns[column]);
-            for (first, _) in rows.filter(|(_, l)| **l as usize == layer) {
+            let particles = self.stencils.first.iter_mut().zip(&self.block.columns[column]);
+            for (first, _) in particles.filter(|(_, l)| **l as usize == layer) {
                 let at = *first as usize;
                 for a in 0..D {
                     let at = if D == 1 { at } else { [at % stride, at / stride][a] } as i32;
@@ -354,11 +356,11 @@ impl<const D: usize> Patch<D> {
         }
     }
 
-    /// The nodes of a layer to compute that any row touches; windows of `width` nodes start
-    /// between `least` and `most`, counted from the arrays' first node.
+    /// Finds the nodes of a layer that the patch computes and that any particle touches. Windows of
+    /// `width` nodes start between `least` and `most`, relative to the first node of the arrays.
     fn find_active(&mut self, layer: usize, width: i64, least: [i32; D], most: [i32; D]) {
         let all = self.nodes.nodes;
-        let own = self.nodes.owned.grow(self.deeper).intersect(&all);
+        let own = self.nodes.owned.grow(self.extra_ghost_layers).intersect(&all);
         let touched = IndexBox {
             lower: std::array::from_fn(|a| all.lower[a] + i64::from(least[a])),
             upper: std::array::from_fn(|a| all.lower[a] + i64::from(most[a]) + width),
@@ -377,8 +379,8 @@ impl<const D: usize> Patch<D> {
         self.active.push(active);
     }
 
-    /// The nodes about those that are computed, alike in every layer: a limiter looks on in another
-    /// body's flow, of which the patch itself may compute nothing.
+    /// Finds the nodes around the computed ones, the same in every layer: a limiter also reads the
+    /// flow of another body, of which the patch itself may compute no nodes.
     fn find_span(&mut self, width: i64) {
         let all = self.nodes.nodes;
         let filled = self.active.iter().filter(|active| active.count() > 0);
@@ -395,9 +397,9 @@ impl<const D: usize> Patch<D> {
     }
 }
 
-impl<const D: usize> AsMut<Watch> for Patch<D> {
-    fn as_mut(&mut self) -> &mut Watch {
-        &mut self.watch
+impl<const D: usize> AsMut<Stopwatch> for Patch<D> {
+    fn as_mut(&mut self) -> &mut Stopwatch {
+        &mut self.stopwatch
     }
 }
 

@@ -1,64 +1,53 @@
-//! How far particles reach, which decides how deep ghosts and halos are.
+//! Stencil radius of particles, which determines the depth of ghost layers and halos.
 
-use super::MOST_NODES;
 use crate::scene::FilterHalo;
+use crate::shape::padded_width;
 
-/// How far particles reach in one step.
+/// Stencil radius of particles in one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Reach {
-    /// Nodes that the longest particle may touch.
+pub struct StencilRadius {
+    /// Number of nodes in the support of the longest particle along a direction.
     pub nodes: usize,
-    /// Products with a matrix between the particles' sums and what they take back.
+    /// Number of products with a matrix between sums over particles and the gather.
     pub products: usize,
 }
 
-impl Reach {
-    /// Cells from which particles reach a patch's nodes.
+impl StencilRadius {
+    /// Distance within which particles contribute to the nodes of a patch [cells].
     pub fn cells(&self) -> i64 {
         self.nodes.div_ceil(2) as i64
     }
 
-    /// Depth of the halo in which a patch needs other owners' nodal values.
+    /// Depth of the halo in which a patch needs nodal values of other owners [nodes].
     pub fn halo(&self) -> i64 {
         (2 * self.cells() - 1).max(2)
     }
 
-    /// How much deeper ghosts must come from for a patch to do without others' nodal values:
-    /// each product spoils the outermost nodes, as many as a particle touches less one.
+    /// Additional depth of ghosts that makes nodal values of other owners unnecessary [cells]: each
+    /// product invalidates the outermost nodes, one less than a particle's number of nodes.
     pub fn deeper(&self) -> i64 {
         self.cells() + (self.products * (self.nodes - 1)) as i64 + 1
     }
 
-    /// Depth of the nodal arrays for ghosts from `ghosts` cells away, so that neither a ghost's
-    /// stencil nor a product with the mass matrix ever leaves them.
+    /// Depth of the nodal arrays for a ghost layer of `ghosts` cells, such that no stencil of a
+    /// ghost and no product with the mass matrix exceeds the arrays.
     pub fn depth(&self, ghosts: i64) -> i64 {
         let stencils = ghosts + self.cells() - 1 + self.nodes.max(4) as i64;
-        // at an open side the nodes that are computed end with the padded stencil of a particle
-        // in the last cell, and a product looks as far again
-        stencils.max(2 * self.padded_nodes() as i64 - 3)
-    }
-
-    /// Nodes that the stencil of the longest particle has room for, as `with_shape!` rounds them.
-    fn padded_nodes(&self) -> usize {
-        match self.nodes {
-            0..=4 => self.nodes,
-            5..=6 => 6,
-            7..=10 => 10,
-            _ => MOST_NODES,
-        }
+        // at an open side the computed nodes end with the padded stencil of a particle in the last
+        // cell, and a product reads as many nodes further
+        stencils.max(2 * padded_width(self.nodes) as i64 - 3)
     }
 }
 
-/// Share of its own cells that a patch may compute a second time before messages are cheaper.
+/// Fraction of its own cells that a patch may compute redundantly before messages are cheaper.
 const WORTH: f64 = 0.35;
 
 impl FilterHalo {
-    /// The cheaper way for patches of at least `narrowest` cells on `workers` ranks times
-    /// threads.
-    pub fn choose(reach: Reach, narrowest: usize, workers: usize) -> Self {
+    /// Cheaper method for patches of at least `narrowest` cells on `workers` ranks times threads.
+    pub fn choose(reach: StencilRadius, narrowest: usize, workers: usize) -> Self {
         let twice = 2 * (reach.cells() + reach.deeper());
         if workers > 1 && (twice as f64) < WORTH * narrowest as f64 {
-            FilterHalo::Deep
+            FilterHalo::Redundant
         } else {
             FilterHalo::Exchange
         }

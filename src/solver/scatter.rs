@@ -1,23 +1,28 @@
-//! Particles to grid: each sum runs over own rows and ghosts in canonical order, so that all
-//! patches that hold a node get the same bits for it.
+//! Particles to grid: each sum runs over own particles and ghosts in canonical order, so that all
+//! patches with a node get bitwise the same sums for it.
 
-use super::{MOST_NODES, Stepper, with_width};
-use crate::effects::Effect;
-use crate::solver::clock::spend;
+use super::Stepper;
+use crate::shape::with_width;
+use crate::solver::clock::timed;
+use crate::solver::effect::{Phase, StepContext};
+use crate::solver::particle_weights::{cut, lines};
+use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
-use crate::solver::transfer::{Scheme, cut, lines};
 
 impl<const D: usize> Stepper<D> {
-    /// All sums of a patch at new places of its rows, with or without the force, and the lumped
-    /// velocity and acceleration from them in a step of `dt`, with the forces at `time` [s].
-    pub(super) fn scatter(&self, patch: &mut Patch<D>, force: bool, time: f64, dt: f64) {
-        let anew = self.find_weights(patch);
-        self.scatter_rows(patch, force, anew);
+    /// All sums of a patch at new positions of its particles, with or without the force, and the
+    /// lumped velocity and acceleration from them.
+    pub(super) fn scatter(&self, patch: &mut Patch<D>, force: bool, step: &StepContext<'_, D>) {
+        let recomputed = self.find_weights(patch);
+        self.scatter_particles(patch, force, recomputed);
         if force {
-            self.push_at_sides(patch, time, dt);
+            patch.side_forces.clear();
+            self.effects.act(Phase::NodalForce, step, patch);
         }
         if let Some(contact) = &self.contact {
-            spend(Effect::Contact, patch, |p| self.find_contact(p, contact, dt, force));
+            timed(StepPart::Contact as usize, patch, |patch| {
+                self.find_contact(patch, contact, step.dt, force);
+            });
         }
         self.divide_by_mass(patch);
         self.start_series(patch);
@@ -25,25 +30,21 @@ impl<const D: usize> Stepper<D> {
 
     /// Whether the scheme needs the mass matrix.
     pub(super) fn needs_matrix(&self) -> bool {
-        match self.scheme {
-            Scheme::Series { order, .. } => order > 1 || self.compatible,
-            Scheme::Blend(_) => self.compatible,
-            Scheme::Affine => false,
-        }
+        self.transfer.needs_matrix(self.compatible)
     }
 
-    /// Mass and momentum of the nodes, the mass matrix and the filled volume where the scheme
-    /// needs them, and with `force` the internal force f_i = sum_p (p + q) V G_i (pressure is
-    /// positive in compression, so it pushes along the gradient): all in one pass over the rows.
-    /// Where the weights are not `anew`, mass, matrix and volume are those of the last step.
-    pub(super) fn scatter_rows(&self, patch: &mut Patch<D>, force: bool, anew: bool) {
+    /// Mass and momentum of the nodes, the mass matrix and the filled volume if the scheme needs
+    /// them, and with `force` the internal force f_i = sum_p (p + q) V G_i (pressure is positive in
+    /// compression, so it pushes along the gradient), in one pass over the particles. If the
+    /// weights are not `recomputed`, mass, matrix and volume of the last step are kept.
+    pub(super) fn scatter_particles(&self, patch: &mut Patch<D>, force: bool, recomputed: bool) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
             s: &Stepper<D>,
             force: bool,
-            anew: bool,
+            recomputed: bool,
         ) {
-            if !anew && s.columns.affine.is_none() && s.contact.is_none() {
+            if !recomputed && s.columns.affine.is_none() && s.contact.is_none() {
                 return s.scatter_moving::<K>(patch, force);
             }
             match (s.needs_matrix(), s.columns.affine) {
@@ -53,17 +54,35 @@ impl<const D: usize> Stepper<D> {
                 (false, Some(_)) => s.scatter_width::<K, false, true>(patch, force),
             }
         }
-        self.turn_images(patch);
+        self.reflect_ghosts(patch);
         let tensor = self.tensor_stress();
-        with_width!(patch.stencils.width, go(patch, self, force && !tensor, anew));
+        with_width!(patch.stencils.width, go(patch, self, force && !tensor, recomputed));
         if force && tensor {
-            self.scatter_stress(patch);
+            timed(StepPart::StressTensor as usize, patch, |patch| self.scatter_stress(patch));
         }
         if force {
             self.turn_forces(patch);
-            self.scatter_body_force(patch);
-            self.scatter_inertia(patch);
+            for (force, part) in &self.forces {
+                timed(*part, patch, |patch| self.scatter_force(patch, *force));
+            }
         }
+    }
+
+    /// Adds the force of all particles, in the columns from `from` on, to the nodes.
+    fn scatter_force(&self, patch: &mut Patch<D>, from: usize) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, from: usize) {
+            for a in 0..D {
+                let field = s.fields.acceleration + a;
+                let mut nodal = std::mem::take(&mut patch.nodes.fields[field]);
+                let force = &patch.block.columns[from + a];
+                for r in patch.runs.iter().cloned().flatten() {
+                    let weights = patch.stencils.particle::<K, D>(r);
+                    weights.add(&mut nodal, weights.values, |n| n * force[r]);
+                }
+                patch.nodes.fields[field] = nodal;
+            }
+        }
+        with_width!(patch.stencils.width, go(patch, self, from));
     }
 
     fn scatter_width<const K: usize, const MATRIX: bool, const AFFINE: bool>(
@@ -73,7 +92,7 @@ impl<const D: usize> Stepper<D> {
     ) {
         let (c, f) = (&self.columns, &self.fields);
         let scalars = [f.mass].into_iter().chain(f.scratch..f.scratch + f.scratches);
-        let vectors = [f.lumped, f.acceleration].into_iter().chain(f.remainder);
+        let vectors = [f.lumped_velocity, f.acceleration].into_iter().chain(f.filter_residual);
         let components = vectors.flat_map(|v| v..v + D);
         for field in scalars.chain(components) {
             patch.nodes.fields[field].fill(0.0);
@@ -82,13 +101,13 @@ impl<const D: usize> Stepper<D> {
             let nodes = patch.nodes.layers * patch.nodes.nodes.count();
             patch.band.clear(nodes, K, D, patch.nodes.nodes.extent(0));
         }
-        // fields leave the list while the others are read and written
+        // fields are taken out while others are read and written
         let mut take = |k: usize| std::mem::take(&mut patch.nodes.fields[k]);
         let mut masses = take(f.mass);
-        let mut momenta: [Vec<f64>; D] = std::array::from_fn(|a| take(f.lumped + a));
+        let mut momenta: [Vec<f64>; D] = std::array::from_fn(|a| take(f.lumped_velocity + a));
         let mut forces: [Vec<f64>; D] = std::array::from_fn(|a| take(f.acceleration + a));
         let mut volumes = self.edge_mask.map(|_| take(f.volume));
-        // of one length, so that a window is looked up once for all of them
+        // slices of equal length, so that the bounds of a window are checked only once
         let nodes = masses.len();
         let nodal_mass = &mut masses[..];
         let momentum = &mut momenta.each_mut().map(|field| &mut field[..nodes]);
@@ -97,27 +116,27 @@ impl<const D: usize> Stepper<D> {
         if let Some(volume) = &mut volume {
             volume.fill(0.0);
         }
-        let rows = patch.block.rows();
-        let column = |k: usize| &patch.block.columns[k][..rows];
+        let particles = patch.block.particles();
+        let column = |k: usize| &patch.block.columns[k][..particles];
         let vector = |k: usize| -> [&[f64]; D] { std::array::from_fn(|a| column(k + a)) };
         let (mass, velocity) = (column(c.mass), vector(c.velocity));
         let stress = column(c.stress_volume);
-        let filled = c.filled.map_or(&[][..], column);
+        let filled = c.fill_fraction.map_or(&[][..], column);
         let affine = c.affine.filter(|_| AFFINE);
         for run in &patch.runs {
-            for (r, row) in run.clone().zip(patch.stencils.rows::<K, D>(run.clone())) {
+            for (r, weights) in run.clone().zip(patch.stencils.particles::<K, D>(run.clone())) {
                 let m = mass[r];
-                row.add(nodal_mass, row.values, |n| n * m);
+                weights.add(nodal_mass, weights.values, |n| n * m);
                 match affine {
                     None => {
                         for a in 0..D {
                             let mv = m * velocity[a][r];
-                            row.add(momentum[a], row.values, |n| n * mv);
+                            weights.add(momentum[a], weights.values, |n| n * mv);
                         }
                     }
                     Some(affine) => {
                         // m N (v + C (x_i - x_p))
-                        let offset = self.offset(patch, r, row.first);
+                        let offset = self.offset(patch, r, weights.first);
                         for a in 0..D {
                             let mv = m * velocity[a][r];
                             let mc: [f64; D] = std::array::from_fn(|b| {
@@ -129,8 +148,8 @@ impl<const D: usize> Stepper<D> {
                                 } else {
                                     mv + mc[D - 1] * (offset[D - 1] + line as f64)
                                 };
-                                let n = &row.values[line];
-                                let at = row.first + line * row.stride;
+                                let n = &weights.values[line];
+                                let at = weights.first + line * weights.stride;
                                 for k in 0..K {
                                     momentum[a][at + k] +=
                                         n[k] * (across + mc[0] * (offset[0] + k as f64));
@@ -140,21 +159,21 @@ impl<const D: usize> Stepper<D> {
                     }
                 }
                 if MATRIX {
-                    patch.band.add(&row, m);
+                    patch.band.add(&weights, m);
                 }
                 if let Some(volume) = &mut volume {
                     let filled = filled[r];
-                    row.add(volume, row.values, |n| n * filled);
+                    weights.add(volume, weights.values, |n| n * filled);
                 }
                 if force {
                     let s = stress[r];
                     for a in 0..D {
-                        row.add(nodal_force[a], row.gradient(a), |g| g * s);
+                        weights.add(nodal_force[a], weights.gradient(a), |g| g * s);
                     }
-                    // what moves a node outward strains the material about the axis
+                    // radial motion of a node strains the material in the hoop direction
                     if D > 1 && self.axisymmetric {
                         let hoop = s / self.radius(patch, r);
-                        row.add(nodal_force[0], row.values, |n| n * hoop);
+                        weights.add(nodal_force[0], weights.values, |n| n * hoop);
                     }
                 }
             }
@@ -165,7 +184,7 @@ impl<const D: usize> Stepper<D> {
         let fields = &mut patch.nodes.fields;
         fields[f.mass] = masses;
         for (a, (momentum, force)) in momenta.into_iter().zip(forces).enumerate() {
-            fields[f.lumped + a] = momentum;
+            fields[f.lumped_velocity + a] = momentum;
             fields[f.acceleration + a] = force;
         }
         if let Some(volume) = volumes {
@@ -173,16 +192,16 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// Distance of a row from the axis at the place of its weights [m]; of an image beyond the axis
-    /// or a wall about it that of the row itself, negative, since what pushes the row outward
-    /// pushes its image inward.
+    /// Distance of a particle from the axis at the position of its weights [m]. For an image beyond
+    /// the axis or an axial wall it is minus the distance of the particle itself, as a force that
+    /// pushes the particle outward pushes its image inward.
     #[inline(always)]
-    pub(super) fn radius(&self, patch: &Patch<D>, row: usize) -> f64 {
+    pub(crate) fn radius(&self, patch: &Patch<D>, particle: usize) -> f64 {
         if let Some(radius) = self.columns.radius {
-            return patch.block.columns[radius][row];
+            return patch.block.columns[radius][particle];
         }
-        let fraction = patch.block.columns[self.columns.fraction][row];
-        let cell = patch.block.cells[row][0];
+        let fraction = patch.block.columns[self.columns.fraction][particle];
+        let cell = patch.block.cells[particle][0];
         let (lower, edge) = (self.lower[0], self.cell[0]);
         let at = lower + (f64::from(cell) + fraction) * edge;
         match i64::from(cell) {
@@ -192,10 +211,10 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// Where the window of `row` from node `first` on starts, seen from the row [cells].
+    /// Start of the window of `particle` with first node `first`, relative to the particle [cells].
     #[inline(always)]
-    pub(super) fn offset(&self, patch: &Patch<D>, row: usize, first: usize) -> [f64; D] {
-        let (nodes, cell) = (&patch.nodes.nodes, patch.block.cells[row]);
+    pub(crate) fn offset(&self, patch: &Patch<D>, particle: usize, first: usize) -> [f64; D] {
+        let (nodes, cell) = (&patch.nodes.nodes, patch.block.cells[particle]);
         let stride = patch.stencils.stride;
         let first = if patch.nodes.layers > 1 { first % nodes.count() } else { first };
         std::array::from_fn(|a| {
@@ -204,17 +223,17 @@ impl<const D: usize> Stepper<D> {
                 (_, 0) => first % stride,
                 _ => first / stride,
             };
-            let fraction = patch.block.columns[self.columns.fraction + a][row];
+            let fraction = patch.block.columns[self.columns.fraction + a][particle];
             (at as i64 + nodes.lower[a] - i64::from(cell[a])) as f64 - fraction
         })
     }
 
-    /// Lumped velocity and acceleration of the owned nodes from their sums; those too small to
-    /// matter are cut to zero.
+    /// Lumped velocity and acceleration of the nodes from their sums; negligible values are set to
+    /// zero.
     pub(super) fn divide_by_mass(&self, patch: &mut Patch<D>) {
         let f = &self.fields;
         patch.nodes.fields[f.inverse].fill(0.0);
-        let (still, slow) = (self.still_speed, self.still_acceleration);
+        let (still, slow) = (self.quiescent_speed, self.still_acceleration);
         for line in &patch.active_lines {
             let [mass, inverse] = patch.nodes.fields_mut([f.mass, f.inverse]);
             for i in line.clone() {
@@ -222,7 +241,7 @@ impl<const D: usize> Stepper<D> {
             }
             for a in 0..D {
                 let [inverse, lumped, acceleration] =
-                    patch.nodes.fields_mut([f.inverse, f.lumped + a, f.acceleration + a]);
+                    patch.nodes.fields_mut([f.inverse, f.lumped_velocity + a, f.acceleration + a]);
                 for i in line.clone() {
                     lumped[i] = cut(lumped[i] * inverse[i], still);
                     acceleration[i] = cut(acceleration[i] * inverse[i], slow);

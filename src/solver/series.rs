@@ -1,53 +1,67 @@
-//! The nodal equations: filtered velocity, acceleration through the full mass matrix, projected
+//! Nodal equations: filtered velocity, acceleration through the full mass matrix, projected
 //! pressure, and the velocity whose gradient does the work.
 //!
 //! With the lumped masses m_i, the mass matrix M and K = 1 - m^-1 M, the series sum_(l<k) K^l
-//! approximates (m^-1 M)^-1 (Nairn & Hammerquist 2021). Each product needs the finished values
-//! of its neighbours' nodes, which the owners send; sums never cross a border. Series that do not
-//! need each other's results advance together, so that their terms travel together.
+//! approximates (m^-1 M)^-1 (Nairn & Hammerquist 2021). Each product needs final values at
+//! neighbour nodes, which their owners send; partial sums are never sent. Independent series
+//! advance together, so that their terms share messages.
 
 use decomp::Parity;
 use smallvec::SmallVec;
 
-use super::{Nodal, Stepper, conduction, relaxation};
-use crate::solver::nodal_fields::ConductionFields;
+use super::{Nodal, Stepper, relaxation};
+use crate::solver::particle_weights::cut;
 use crate::solver::patch::Patch;
-use crate::solver::transfer::{Scheme, cut};
+use crate::transfer::VelocityUpdate;
 
-/// A series s = sum_(l<order) t_l with t_l = K t_(l-1), summed up by Horner's rule,
-/// s' = t_0 + K s: one pass over the nodes a term. A vector has one a component, in fields that
-/// follow each other.
+/// Series s = sum_(l<order) t_l with t_l = K t_(l-1), evaluated by Horner's rule, s' = t_0 + K s:
+/// one pass over the nodes per term. For a vector, one series per component, in consecutive fields.
 #[derive(Clone, Copy)]
-pub(super) struct Series {
-    /// The field of the sum; in the beginning t_0 on the nodes that the patch computes.
+pub(super) struct ProductSeries {
+    /// Field of the sum; initially t_0 on the nodes that the patch computes.
     pub(super) sum: usize,
-    /// The field that keeps t_0.
+    /// Field that keeps t_0.
     first: usize,
-    /// Where the last term is wanted too, what the last product adds to the sum.
+    /// Field for the last term, if it is needed: the change of the sum by the last product.
     last: Option<usize>,
     order: u32,
     matrix: Matrix,
     mask: Mask,
 }
 
-/// The matrix in K.
+/// Matrix in K.
 #[derive(Clone, Copy, PartialEq)]
 enum Matrix {
-    /// Of masses, for a vector.
+    /// Mass matrix, for a vector.
     Mass,
-    /// Of compliances, for a scalar.
+    /// Compliance matrix, for a scalar.
     Compliance,
-    /// Of heat capacities, for a scalar.
-    Capacity,
+    /// Matrix of an effect, for a scalar: its number, and the field of its inverse row sums.
+    Effect(usize, usize),
 }
 
-impl Series {
-    /// Whether it is of a scalar.
+/// Series of a scalar with a matrix of an effect.
+#[derive(Clone, Copy)]
+pub struct ScalarSeries {
+    /// Field of the sum; initially t_0 on the nodes that the patch computes.
+    pub sum: usize,
+    /// Field that keeps t_0.
+    pub first: usize,
+    /// Number of terms.
+    pub order: u32,
+    /// Number of the matrix.
+    pub matrix: usize,
+    /// Field of its inverse row sums.
+    pub inverse: usize,
+}
+
+impl ProductSeries {
+    /// Whether the series is of a scalar.
     pub(super) fn is_scalar(&self) -> bool {
         self.matrix != Matrix::Mass
     }
 
-    /// The same for component `axis`.
+    /// The series of component `axis`.
     fn component(mut self, axis: usize) -> Self {
         self.sum += axis;
         self.first += axis;
@@ -55,7 +69,7 @@ impl Series {
         self
     }
 
-    /// Its components and how each behaves in a mirror.
+    /// Series of all components, each with its parity in a mirror.
     fn components<const D: usize>(self) -> impl Iterator<Item = (Self, Parity)> {
         let scalar = self.is_scalar();
         let parity = move |axis| if scalar { Parity::Even } else { Parity::Odd(axis) };
@@ -63,8 +77,8 @@ impl Series {
     }
 }
 
-/// Where nodes with little material are taken out: t_l = K chi t_(l-1), or chi K t_(l-1). A node
-/// is taken out by the patch that computes it, before others see its value.
+/// Position of the edge mask chi, which removes nodes with little material: t_l = K chi t_(l-1), or
+/// chi K t_(l-1). The patch that computes a node masks it before other patches receive its value.
 #[derive(Clone, Copy, PartialEq)]
 enum Mask {
     No,
@@ -72,35 +86,41 @@ enum Mask {
     After,
 }
 
-/// Series of one matrix whose next terms are found together, so that it is looked up once.
+/// Series with the same matrix whose next terms are computed in one pass over the matrix.
 struct Together {
-    series: SmallVec<[Series; 2]>,
-    /// Their components.
-    vectors: SmallVec<[Series; 4]>,
-    /// Terms that they have then.
+    series: SmallVec<[ProductSeries; 2]>,
+    /// Components of these series.
+    vectors: SmallVec<[ProductSeries; 4]>,
+    /// Number of terms after the pass.
     terms: u32,
 }
 
 impl Together {
-    /// Those of `all` that have as many terms as `terms`, a matrix after the other.
-    fn all<const D: usize>(all: &[Series], terms: u32) -> SmallVec<[Self; 2]> {
+    /// Series in `all` with at least `terms` terms, grouped by matrix.
+    fn all<const D: usize>(all: &[ProductSeries], terms: u32) -> SmallVec<[Self; 2]> {
+        let mut matrices: SmallVec<[Matrix; 2]> = SmallVec::new();
+        for series in all {
+            if !matrices.contains(&series.matrix) {
+                matrices.push(series.matrix);
+            }
+        }
         let of = |matrix: Matrix| {
             let some = all.iter().filter(|s| s.matrix == matrix && s.order >= terms);
-            let series: SmallVec<[Series; 2]> = some.copied().collect();
+            let series: SmallVec<[ProductSeries; 2]> = some.copied().collect();
             let components = series.iter().flat_map(|s| s.components::<D>());
             Together { vectors: components.map(|(vector, _)| vector).collect(), series, terms }
         };
-        let together = [Matrix::Mass, Matrix::Compliance, Matrix::Capacity].map(of);
-        together.into_iter().filter(|together| !together.series.is_empty()).collect()
+        let together = matrices.into_iter().map(of);
+        together.filter(|together| !together.series.is_empty()).collect()
     }
 
-    /// Whether these are the last terms of a series.
-    fn ends(&self, series: &Series) -> bool {
+    /// Whether this pass computes the last term of a series.
+    fn ends(&self, series: &ProductSeries) -> bool {
         series.order == self.terms
     }
 }
 
-/// The last term of a series, from its sum and the sum before, which `last` holds.
+/// Last term of a series: the sum minus the previous sum, which is in `last`.
 fn find_last<const D: usize>(patch: &mut Patch<D>, sum: usize, last: usize) {
     let [sum, last] = patch.nodes.fields_mut([sum, last]);
     for span in &patch.span_lines {
@@ -118,9 +138,9 @@ fn copy<const D: usize>(patch: &mut Patch<D>, from: usize, to: usize) {
 }
 
 impl<const D: usize> Stepper<D> {
-    /// Notes the nodes that a patch computes and the mask takes out, so that no field has to be looked
-    /// through: chi = 0 where the filled fraction of the node's volume is below the edge mask. Nodes
-    /// without material hold zeros anyway.
+    /// Lists the computed nodes that the edge mask removes, so that later passes need not search
+    /// the fields: chi = 0 where the filled fraction of the node's volume is below the edge mask.
+    /// Nodes without material hold zeros anyway.
     pub(super) fn find_edge(&self, patch: &mut Patch<D>) {
         let Some(least) = self.edge_mask else { return };
         let [volume, inverse] = patch.nodes.fields_mut([self.fields.volume, self.fields.inverse]);
@@ -129,9 +149,8 @@ impl<const D: usize> Stepper<D> {
         patch.edge.extend(nodes.filter(|&i| volume[i] < least && inverse[i] > 0.0));
     }
 
-    /// Takes nodes with little material out of a sum: what a product has just made becomes t_0 there,
-    /// or 0.
-    fn mask(&self, patch: &mut Patch<D>, series: &Series) {
+    /// Masks nodes with little material in a sum: resets the new value there to t_0, or to 0.
+    fn mask(&self, patch: &mut Patch<D>, series: &ProductSeries) {
         if self.edge_mask.is_none() {
             return;
         }
@@ -147,8 +166,8 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// The sums of series of one matrix with one more term, on the nodes that the patch computes;
-    /// beyond them they are what the next exchange makes of them.
+    /// Sums of series of one matrix with one more term, on the nodes that the patch computes;
+    /// values beyond come from the next exchange.
     fn next_sums(&self, patch: &mut Patch<D>, together: &Together) {
         match together.vectors[..] {
             [a] => self.next_terms(patch, [a]),
@@ -157,18 +176,18 @@ impl<const D: usize> Stepper<D> {
             _ => unreachable!("one or two series, of one or two components"),
         }
         for (vector, scratch) in together.vectors.iter().zip(self.fields.scratch..) {
-            // nodes without material hold zeros in both
+            // nodes without material hold zeros in both fields
             patch.nodes.fields.swap(vector.sum, scratch);
             if let (true, Some(last)) = (together.ends(vector), vector.last) {
                 patch.nodes.fields.swap(scratch, last);
             }
         }
         for series in &together.series {
-            // bodies in contact exchange no heat
-            if self.contact.is_some() && series.matrix != Matrix::Capacity {
+            // bodies in contact share only velocity and pressure
+            if self.contact.is_some() && !matches!(series.matrix, Matrix::Effect(..)) {
                 self.join_series(patch, series, together.ends(series));
             }
-            // the sum itself is not masked, what the next product takes from it is
+            // the final sum is not masked, only the input of the next product
             let goes_on = !together.ends(series);
             if series.mask == Mask::After || (series.mask == Mask::Before && goes_on) {
                 self.mask(patch, series);
@@ -176,15 +195,12 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// The next sums of series of one matrix, one a vector, into as many scratches.
-    fn next_terms<const V: usize>(&self, patch: &mut Patch<D>, all: [Series; V]) {
+    /// Next sums of series of one matrix, each vector into its own scratch field.
+    fn next_terms<const V: usize>(&self, patch: &mut Patch<D>, all: [ProductSeries; V]) {
         let (band, inverse) = match all[0].matrix {
             Matrix::Mass => (&patch.band, self.fields.inverse),
             Matrix::Compliance => (&patch.compliance_band, self.fields.relaxation[1]),
-            Matrix::Capacity => {
-                let fields = self.fields.conduction.expect("the matrix comes with its fields");
-                (&patch.capacity_band, fields.inverse)
-            }
+            Matrix::Effect(number, inverse) => (&patch.bands[number], inverse),
         };
         let fields = &mut patch.nodes.fields;
         let mut next: [Vec<f64>; V] =
@@ -199,14 +215,14 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// Sums up `all` series, halos included, together with the halos of the fields `others`, and
-    /// then runs `last`. Collective between neighbours.
+    /// Evaluates `all` series including halos, exchanges the halos of the fields `others` with
+    /// them, then runs `last`. Collective between neighbours.
     fn sum_series(
         &self,
         nodal: &mut Nodal<'_, D>,
         name: &'static str,
         others: &[(usize, Parity)],
-        all: &[Series],
+        all: &[ProductSeries],
         last: impl Fn(&mut Patch<D>) + Send + Sync,
     ) {
         let rounds = all.iter().map(|s| s.order).max().unwrap_or(0);
@@ -217,17 +233,15 @@ impl<const D: usize> Stepper<D> {
             let components = going().flat_map(|s| s.components::<D>());
             fields.extend(components.map(|(s, parity)| (s.sum, parity)));
             nodal.refresh(&fields);
-            let finished: SmallVec<[Series; 8]> = going()
+            let finished: SmallVec<[ProductSeries; 8]> = going()
                 .filter(|s| s.order == l + 1)
                 .flat_map(|s| s.components::<D>())
                 .map(|(vector, _)| vector)
                 .collect();
             let next = Together::all::<D>(all, l + 2);
             nodal.each(name, |patch| {
-                self.hold(patch, &fields);
-                if self.conduction.is_some() {
-                    self.hold_temperature(patch, &fields);
-                }
+                self.apply_no_slip(patch, &fields);
+                self.effects.set_boundary(self, patch, &fields);
                 for vector in &finished {
                     if let Some(last) = vector.last {
                         find_last(patch, vector.sum, last);
@@ -243,44 +257,37 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// The nodal temperature of `fields` projected, halos included, and then `last`. Collective
-    /// between neighbours.
-    pub(super) fn project_temperature(
+    /// Evaluates a series of an effect including halos, exchanges the halos of the fields `others`
+    /// with it, then runs `last`. Collective between neighbours.
+    pub(crate) fn sum_scalar(
         &self,
         nodal: &mut Nodal<'_, D>,
-        fields: ConductionFields,
+        name: &'static str,
+        others: &[(usize, Parity)],
+        series: ScalarSeries,
         last: impl Fn(&mut Patch<D>) + Send + Sync,
     ) {
-        let series = Series {
-            sum: fields.projected,
-            first: fields.temperature,
-            last: None,
-            order: conduction::ORDER,
-            matrix: Matrix::Capacity,
-            mask: Mask::No,
-        };
-        let others = [(fields.inverse, Parity::Even), (fields.temperature, Parity::Even)];
-        self.sum_series(nodal, "heat series", &others, &[series], last);
+        let ScalarSeries { sum, first, order, matrix, inverse } = series;
+        let matrix = Matrix::Effect(matrix, inverse);
+        let series = ProductSeries { sum, first, last: None, order, matrix, mask: Mask::No };
+        self.sum_series(nodal, name, others, &[series], last);
     }
 
-    /// The series of velocity and force: v = sum_(l<k) K^l vL; b = sum_(l<k) t_l with t_0 = f/m
-    /// and t_l = K chi t_(l-1), or b = f/m where the scheme lumps the force.
-    fn velocity_series(&self) -> [Series; 2] {
+    /// Series of velocity and force: v = sum_(l<k) K^l vL; b = sum_(l<k) t_l with t_0 = f/m and t_l
+    /// = K chi t_(l-1), or b = f/m if the scheme lumps the force.
+    fn velocity_series(&self) -> [ProductSeries; 2] {
         let f = &self.fields;
-        let (order, force_order) = match self.scheme {
-            Scheme::Series { order, force } => (order, if force { order } else { 1 }),
-            Scheme::Blend(_) | Scheme::Affine => (1, 1),
-        };
-        let velocity = Series {
+        let (order, force_order) = (self.transfer.order, self.transfer.force_order());
+        let velocity = ProductSeries {
             sum: f.velocity,
-            first: f.lumped,
-            // what the filter's heat is counted from
-            last: f.remainder,
+            first: f.lumped_velocity,
+            // the heat of the filter is computed from it
+            last: f.filter_residual,
             order,
             matrix: Matrix::Mass,
             mask: Mask::No,
         };
-        let force = Series {
+        let force = ProductSeries {
             sum: f.acceleration,
             first: f.first,
             last: None,
@@ -291,7 +298,7 @@ impl<const D: usize> Stepper<D> {
         [velocity, force]
     }
 
-    /// The first terms of the series of velocity and force, from lumped velocity and f/m.
+    /// First terms of the series of velocity and force: lumped velocity and f/m.
     pub(super) fn start_series(&self, patch: &mut Patch<D>) {
         let [velocity, force] = self.velocity_series();
         for axis in 0..D {
@@ -306,15 +313,15 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// From the first terms of the series to velocity, acceleration and end-of-step velocity
-    /// v' = v + dt b, halos included, and with `relax` to the nodal pressure as well. Collective
-    /// between neighbours.
+    /// From the first terms of the series, computes velocity, acceleration and the velocity at the
+    /// end of the step v' = v + dt b, halos included; with `relax` also the nodal pressure.
+    /// Collective between neighbours.
     pub(super) fn solve_velocity(&self, nodal: &mut Nodal<'_, D>, dt: f64, relax: bool) {
         let f = &self.fields;
-        let mut all: SmallVec<[Series; 3]> = self.velocity_series().into_iter().collect();
+        let mut all: SmallVec<[ProductSeries; 3]> = self.velocity_series().into_iter().collect();
         if relax {
             let [_, _, sum, first] = f.relaxation;
-            all.push(Series {
+            all.push(ProductSeries {
                 sum,
                 first,
                 last: Some(first),
@@ -325,13 +332,13 @@ impl<const D: usize> Stepper<D> {
         }
         let mut others: SmallVec<[(usize, Parity); 2]> = SmallVec::new();
         others.push((f.inverse, Parity::Even));
-        // particles compare their volumes with the space at all of their nodes
+        // particles compare their volumes with the space at all their nodes
         if self.volume_relaxation.is_some() {
             others.push((f.volume, Parity::Even));
         }
-        // pressure may have more terms than velocity
+        // the pressure series may have more terms than the velocity series
         self.sum_series(nodal, "series", &others, &all, |patch| {
-            let still = self.still_speed;
+            let still = self.quiescent_speed;
             for span in &patch.span_lines {
                 for a in 0..D {
                     let [v, b, star] = patch.nodes.fields_mut([
@@ -356,15 +363,15 @@ impl<const D: usize> Stepper<D> {
         });
     }
 
-    /// What [`solve_work`](Self::solve_work) starts from, on the nodes that the patch computes:
-    /// (vL + A v')/2 with A = m^-1 M, or with a blend w itself.
+    /// Start of [`solve_work`](Self::solve_work) on the nodes that the patch computes: (vL + A
+    /// v')/2 with A = m^-1 M, or for a blend w itself.
     fn start_work(&self, patch: &mut Patch<D>, axis: usize) {
         let f = &self.fields;
-        let (star, lumped) = (f.velocity_star + axis, f.lumped + axis);
+        let (star, lumped) = (f.velocity_star + axis, f.lumped_velocity + axis);
         let (work, first) = (f.work + axis, f.first + axis);
         let lines = &patch.active_lines;
-        match self.scheme {
-            Scheme::Series { .. } => {
+        match self.transfer.update {
+            VelocityUpdate::Filtered => {
                 let [inverse, star, lumped, w, first] =
                     patch.nodes.fields_mut([f.inverse, star, lumped, work, first]);
                 w.fill(0.0);
@@ -376,14 +383,14 @@ impl<const D: usize> Stepper<D> {
                     }
                 }
             }
-            Scheme::Blend(a) => {
+            VelocityUpdate::Blend(a) => {
                 let [lumped, star, x] = patch.nodes.fields_mut([lumped, star, first]);
                 for i in 0..x.len() {
                     x[i] = (1.0 - a) * lumped[i] + 0.5 * (star[i] - lumped[i]);
                 }
                 let [inverse, lumped, x, y, w] = patch.nodes.fields_mut([
                     f.inverse,
-                    f.lumped + axis,
+                    f.lumped_velocity + axis,
                     f.first + axis,
                     f.scratch,
                     work,
@@ -396,21 +403,20 @@ impl<const D: usize> Stepper<D> {
                     }
                 }
             }
-            Scheme::Affine => unreachable!("the scene check refuses compatible energy with APIC"),
+            VelocityUpdate::Affine => {
+                unreachable!("the scene check refuses compatible energy with APIC")
+            }
         }
     }
 
-    /// The velocity w with which f.w is the exact change of kinetic energy, so that the work
-    /// done on the particles adds up with it to rounding. Collective between neighbours.
+    /// Velocity w for which f.w is the exact change of kinetic energy, so that the work on the
+    /// particles and this change add up to rounding. Collective between neighbours.
     ///
-    /// Series: w = sum_(l<k) (chi K)^l (vL + A v')/2 (l = 0 alone where the force is lumped);
+    /// Series: w = sum_(l<k) (chi K)^l (vL + A v')/2 (only l = 0 if the force is lumped);
     /// blend: w = a vL + A ((1 - a) vL + dt b/2); A = m^-1 M.
     pub(super) fn solve_work(&self, nodal: &mut Nodal<'_, D>) {
-        let order = match self.scheme {
-            Scheme::Series { order, force: true } => order,
-            _ => 1,
-        };
-        let series = Series {
+        let order = self.transfer.force_order();
+        let series = ProductSeries {
             sum: self.fields.work,
             first: self.fields.first,
             last: None,

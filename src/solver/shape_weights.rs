@@ -1,73 +1,81 @@
-//! The weights of a patch's rows on its nodes, and what a frame keeps of them.
+//! Weights of a patch's particles on its nodes, and the weights that the total-Lagrangian frame
+//! keeps.
 //!
-//! Knows no materials, no time stepping, no messages.
+//! This module does not depend on materials, time stepping or messages.
 
 use std::ops::Range;
 
 use decomp::Block;
 
-use crate::solver::transfer::{NARROW, Row, lines};
+use crate::solver::particle_weights::{NARROW, ParticleWeights, lines};
 
-/// The weights of every row of a patch, ghosts too, on windows of `width` nodes along each
+/// Weights of all particles of a patch, including ghosts, on windows of `width` nodes along each
 /// direction.
 #[derive(Clone, Debug, Default)]
 pub struct Stencils {
-    /// Nodes along one direction.
+    /// Number of nodes along one direction.
     pub width: usize,
-    /// From a line of nodes to the next in the patch's arrays.
+    /// Distance from a line of nodes to the next in the patch's arrays.
     pub stride: usize,
-    /// First node of each row, in the patch's arrays.
+    /// First node of each particle's window, as index in the patch's arrays.
     pub first: Vec<u32>,
-    /// Whether a row's weights beyond the first [`NARROW`] nodes are zero, where windows are wider.
+    /// Whether a particle's weights beyond the first [`NARROW`] nodes are zero, if windows are
+    /// wider.
     pub narrow: Vec<bool>,
-    /// Values, `width`^D a row.
+    /// Values, `width`^D per particle.
     pub values: Vec<f64>,
-    /// Gradients [1/m], `width`^D a row for each direction.
+    /// Gradients [1/m], `width`^D per particle and direction.
     pub gradients: Vec<f64>,
-    /// What the total-Lagrangian frame keeps.
+    /// Data kept by the total-Lagrangian frame.
     kept: Kept,
 }
 
-/// What the total-Lagrangian frame keeps from step to step: a row's weights follow from its id and
-/// the cell that it, or its image, is seen in.
+/// Data that the total-Lagrangian frame keeps from step to step: the weights of a particle or its
+/// image depend only on its id and its cell.
 #[derive(Clone, Debug, Default)]
 struct Kept {
-    /// Gradients with regard to the first places [1/m].
+    /// Gradients with respect to the initial positions [1/m].
     gradients: Vec<f64>,
     ids: Vec<u64>,
-    /// Cells, a component after the other.
+    /// Cells, component by component.
     cells: Vec<i32>,
 }
 
 impl Stencils {
-    /// The weights of `row`.
+    /// Weights of `particle`.
     #[inline(always)]
-    pub fn row<const K: usize, const D: usize>(&self, row: usize) -> Row<'_, K, D> {
+    pub fn particle<const K: usize, const D: usize>(
+        &self,
+        particle: usize,
+    ) -> ParticleWeights<'_, K, D> {
         let nodes = const { K * lines(K, D) };
-        Row {
-            first: self.first[row] as usize,
+        ParticleWeights {
+            first: self.first[particle] as usize,
             stride: self.stride,
-            narrow: K > NARROW && self.narrow[row],
-            values: self.values[row * nodes..(row + 1) * nodes].as_chunks().0,
-            gradients: self.gradients[row * nodes * D..(row + 1) * nodes * D].as_chunks().0,
+            narrow: K > NARROW && self.narrow[particle],
+            values: self.values[particle * nodes..(particle + 1) * nodes].as_chunks().0,
+            gradients: self.gradients[particle * nodes * D..(particle + 1) * nodes * D]
+                .as_chunks()
+                .0,
         }
     }
 
-    /// The weights of `rows`, one after the other: without the checks of looking each up.
+    /// Weights of `particles` in order, with fewer bounds checks than one by one.
     #[inline(always)]
-    pub fn rows<const K: usize, const D: usize>(
+    pub fn particles<const K: usize, const D: usize>(
         &self,
-        rows: Range<usize>,
-    ) -> impl Iterator<Item = Row<'_, K, D>> {
+        particles: Range<usize>,
+    ) -> impl Iterator<Item = ParticleWeights<'_, K, D>> {
         let nodes = const { K * lines(K, D) };
-        let first = self.first[rows.clone()].iter();
-        let values = self.values[rows.start * nodes..rows.end * nodes].chunks_exact(nodes);
-        let gradients =
-            self.gradients[rows.start * nodes * D..rows.end * nodes * D].chunks_exact(nodes * D);
-        // none where windows are not wider
-        let narrow = self.narrow.get(rows).unwrap_or_default();
+        let first = self.first[particles.clone()].iter();
+        let values =
+            self.values[particles.start * nodes..particles.end * nodes].chunks_exact(nodes);
+        let gradients = self.gradients[particles.start * nodes * D..particles.end * nodes * D]
+            .chunks_exact(nodes * D);
+        // empty if windows are not wider
+        let narrow = self.narrow.get(particles).unwrap_or_default();
         let weights = first.zip(values).zip(gradients).enumerate();
-        weights.map(move |(at, ((&first, values), gradients))| Row {
+        weights.map(move |(at, ((&first, values), gradients))| ParticleWeights {
             first: first as usize,
             stride: self.stride,
             narrow: K > NARROW && narrow[at],
@@ -76,39 +84,39 @@ impl Stencils {
         })
     }
 
-    /// Whether all rows of `block`, ghosts too, are those whose weights were last kept.
+    /// Whether the particles of `block`, including ghosts, are those whose weights were last kept.
     pub fn are_kept<const D: usize>(&self, block: &Block<D>) -> bool {
-        let cells = &block.cells[..block.rows()];
+        let cells = &block.cells[..block.particles()];
         !self.kept.ids.is_empty()
             && self.kept.ids == block.ids
             && self.kept.cells.as_slice() == cells.as_flattened()
     }
 
-    /// Keeps the weights just found for `block`, whose gradients are with regard to the first places.
+    /// Keeps the new weights of `block`, whose gradients are with respect to the initial positions.
     pub fn keep<const D: usize>(&mut self, block: &Block<D>) {
         let Stencils { gradients, kept, .. } = self;
         std::mem::swap(gradients, &mut kept.gradients);
         gradients.resize(kept.gradients.len(), 0.0);
         kept.ids.clone_from(&block.ids);
         kept.cells.clear();
-        kept.cells.extend_from_slice(block.cells[..block.rows()].as_flattened());
+        kept.cells.extend_from_slice(block.cells[..block.particles()].as_flattened());
     }
 
-    /// Forgets what it keeps.
+    /// Discards the kept data.
     pub fn forget(&mut self) {
         self.kept = Kept::default();
     }
 
-    /// Pushes the kept gradients of all rows of `block` forward with the inverse of F in the columns
-    /// from `push` on, G = F^-T G0.
+    /// Pushes the kept gradients of all particles of `block` forward with the inverse of F in the
+    /// columns from `push` on, G = F^-T G0.
     pub fn push_gradients<const K: usize, const D: usize>(
         &mut self,
         block: &Block<D>,
         push: usize,
     ) {
-        let rows = block.rows();
+        let particles = block.particles();
         let nodes = const { K * lines(K, D) };
-        let inverse = |k: usize| &block.columns[push + k][..rows];
+        let inverse = |k: usize| &block.columns[push + k][..particles];
         let pairs = (self.gradients.chunks_exact_mut(nodes * D))
             .zip(self.kept.gradients.chunks_exact(nodes * D))
             .enumerate();
@@ -132,14 +140,15 @@ impl Stencils {
         }
     }
 
-    /// Gradients of a row with regard to its first place along `axis` [1/m], a line after the other.
+    /// Gradients of a particle with respect to its initial position along `axis` [1/m], line by
+    /// line.
     pub fn first_gradient<const K: usize, const D: usize>(
         &self,
-        row: usize,
+        particle: usize,
         axis: usize,
     ) -> &[[f64; K]] {
         let nodes = const { K * lines(K, D) };
-        let from = (row * D + axis) * nodes;
+        let from = (particle * D + axis) * nodes;
         self.kept.gradients[from..from + nodes].as_chunks().0
     }
 }

@@ -1,4 +1,4 @@
-//! What a scene with a solid adds to a step: stress as a tensor, in all of its rows.
+//! Solids: the stress tensor of all particles of a scene with a solid.
 //!
 //! ```text
 //! F_h = (1 + dt/2 L) F          L: gradient of the last v'; at the middle of the step
@@ -7,42 +7,46 @@
 //! e += -dt S : grad w/m
 //! ```
 //!
-//! A fluid's S is (p + q) V 1, less what its strength bears, s V. On a line S is a scalar, which a fluid's loops take as it is;
-//! about an axis its component zz pushes outward, as a fluid's pressure does.
+//! For a fluid, S is (p + q) V 1 minus the deviator of its strength s V. On a line S is a scalar,
+//! used directly by the kernels of fluids. With axial symmetry the component zz pushes outward, as
+//! the pressure of a fluid does.
 
 use std::ops::Range;
 
+use super::Stepper;
 use super::particle_update::bodies;
-use super::{MOST_NODES, Stepper, with_width};
 use crate::material::Symmetric;
-use crate::material::constitutive::{Matter, PlaneStrain, Strain, TensorRows};
+use crate::material::constitutive::{ConstitutiveModel, PlaneStrain, Strain, TensorColumns};
+use crate::shape::with_width;
+use crate::solver::clock::timed;
+use crate::solver::particle_weights::ParticleWeights;
+use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
-use crate::solver::transfer::Row;
 
-/// The columns of a tensor, out of their block: xx, yy, xy, zz, those that there are.
+/// Columns of a tensor taken out of their block: those of xx, yy, xy and zz that exist.
 pub(super) type Taken = smallvec::SmallVec<[Vec<f64>; 4]>;
 
-/// Rows of a tensor's columns.
-fn tensor_rows(columns: &mut Taken, rows: Range<usize>) -> TensorRows<'_> {
+/// Given particles of the columns of a tensor.
+fn tensor_columns(columns: &mut Taken, particles: Range<usize>) -> TensorColumns<'_> {
     let mut all = columns.iter_mut();
-    let mut next = || all.next().map(|column| &mut column[rows.clone()]);
+    let mut next = || all.next().map(|column| &mut column[particles.clone()]);
     let xx = next().expect("a tensor has a component");
     let plane = next().zip(next()).map(|(yy, xy)| [yy, xy]);
-    TensorRows { xx, plane, across: next() }
+    TensorColumns { xx, plane, across: next() }
 }
 
-/// Takes `count` columns from `first` on out of a block, `rows` long.
-fn take(columns: &mut [Vec<f64>], first: usize, count: usize, rows: usize) -> Taken {
+/// Takes `count` columns from `first` on out of a block, resized to `particles`.
+fn take(columns: &mut [Vec<f64>], first: usize, count: usize, particles: usize) -> Taken {
     let mut taken = Taken::new();
     for column in &mut columns[first..first + count] {
         let mut column = std::mem::take(column);
-        column.resize(rows, 0.0);
+        column.resize(particles, 0.0);
         taken.push(column);
     }
     taken
 }
 
-/// Puts columns back.
+/// Returns columns to their block.
 pub(super) fn put_back(
     columns: &mut [Vec<f64>],
     first: usize,
@@ -54,37 +58,38 @@ pub(super) fn put_back(
 }
 
 impl<const D: usize> Stepper<D> {
-    /// Whether the rows' stress is a tensor.
+    /// Whether the stress of the particles is a tensor.
     pub(super) fn tensor_stress(&self) -> bool {
         D > 1 && self.columns.stress.is_some()
     }
 
-    /// F of `rows`, in a plane `ahead` of its columns, with the volume ratios `jacobian`.
+    /// Deformation of `particles`: in a plane F extrapolated by the time `ahead` [s], otherwise the
+    /// volume ratios `jacobian`.
     fn strain<'a>(
         &self,
         patch: &'a Patch<D>,
-        rows: Range<usize>,
+        particles: Range<usize>,
         ahead: f64,
         jacobian: &'a [f64],
     ) -> Strain<'a> {
         let c = &self.columns;
         let tensor = |first: usize| -> [&'a [f64]; 4] {
-            std::array::from_fn(|k| &patch.block.columns[first + k][rows.clone()])
+            std::array::from_fn(|k| &patch.block.columns[first + k][particles.clone()])
         };
         let (Some(deformation), Some(gradient)) = (c.deformation, c.velocity_gradient) else {
-            return Strain::Line(&jacobian[rows]);
+            return Strain::Line(&jacobian[particles]);
         };
         let plane =
             PlaneStrain { deformation: tensor(deformation), gradient: tensor(gradient), ahead };
         match self.axisymmetric {
-            true => Strain::Axis(plane, &jacobian[rows]),
+            true => Strain::Axis(plane, &jacobian[particles]),
             false => Strain::Plane(plane),
         }
     }
 
-    /// S of own rows at volume ratio `jacobian` (a column) and `ahead` of their deformation, once
-    /// that of the fluids, a scalar, is in the column of xx; what strength bears stands in the
-    /// columns from `deviator` on.
+    /// S of own particles at the volume ratio in column `jacobian` and the time `ahead` [s] of
+    /// their deformation. The scalar S of fluids must be in the column of xx. The deviator of
+    /// strength is in the columns from `deviator` on.
     pub(super) fn find_solid_stress(
         &self,
         patch: &mut Patch<D>,
@@ -92,40 +97,51 @@ impl<const D: usize> Stepper<D> {
         jacobian: usize,
         deviator: Option<usize>,
     ) {
-        let c = &self.columns;
-        if c.stress.is_none() {
-            return;
+        if self.columns.stress.is_some() {
+            timed(StepPart::StressTensor as usize, patch, |patch| {
+                self.fill_solid_stress(patch, ahead, jacobian, deviator);
+            });
         }
+    }
+
+    fn fill_solid_stress(
+        &self,
+        patch: &mut Patch<D>,
+        ahead: f64,
+        jacobian: usize,
+        deviator: Option<usize>,
+    ) {
+        let c = &self.columns;
         let n = patch.block.own();
         let mut s = take(&mut patch.block.columns, c.stress_volume, c.stress_volumes, n);
         let column = |k: usize| &patch.block.columns[k][..n];
         let (volume0, j) = (column(c.volume0), column(jacobian));
-        for (body, rows) in bodies(column(c.body)) {
+        for (body, particles) in bodies(column(c.body)) {
             match &self.models[body] {
-                Matter::Fluid(_) => {
-                    for r in rows.clone() {
+                ConstitutiveModel::Fluid(_) => {
+                    for r in particles.clone() {
                         for k in 1..s.len() {
                             s[k][r] = if k == 2 { 0.0 } else { s[0][r] };
                         }
                     }
-                    let Some(first) = deviator.filter(|_| self.flows[body].is_some()) else {
+                    let Some(first) = deviator.filter(|_| self.strengths[body].is_some()) else {
                         continue;
                     };
-                    let stress = self.deviator(patch, first, rows.clone());
-                    for (k, r) in rows.enumerate() {
+                    let stress = self.deviator(patch, first, particles.clone());
+                    for (k, r) in particles.enumerate() {
                         let (shear, volume) = (stress.at(k), volume0[r] * j[r]);
                         let parts = [shear.xx, shear.yy, shear.xy, shear.zz];
                         s.iter_mut().zip(parts).for_each(|(s, part)| s[r] -= part * volume);
                     }
                 }
-                Matter::Solid(solid) => {
-                    let strain = self.strain(patch, rows.clone(), ahead, j);
-                    let out = tensor_rows(&mut s, rows.clone());
-                    solid.stress_volume(strain, &volume0[rows.clone()], out);
+                ConstitutiveModel::Solid(solid) => {
+                    let strain = self.strain(patch, particles.clone(), ahead, j);
+                    let out = tensor_columns(&mut s, particles.clone());
+                    solid.stress_volume(strain, &volume0[particles.clone()], out);
                     let Some(q) = c.viscosity.map(column) else { continue };
-                    // no shear
+                    // not the shear component
                     for (_, s) in s.iter_mut().enumerate().filter(|(k, _)| *k != 2) {
-                        rows.clone().for_each(|r| s[r] += q[r] * volume0[r] * j[r]);
+                        particles.clone().for_each(|r| s[r] += q[r] * volume0[r] * j[r]);
                     }
                 }
             }
@@ -133,8 +149,8 @@ impl<const D: usize> Stepper<D> {
         put_back(&mut patch.block.columns, c.stress_volume, s);
     }
 
-    /// Stress, pressure and sound speed of the own rows of solids, and the stress of the fluids
-    /// from their pressure; tells the first row that is at fault.
+    /// Stress, pressure and sound speed of the own particles of solids, and the stress of fluids
+    /// from their pressure; returns the first particle with a fault.
     pub(super) fn refresh_solids(
         &self,
         patch: &mut Patch<D>,
@@ -146,13 +162,13 @@ impl<const D: usize> Stepper<D> {
         let n = patch.block.own();
         let mut found = None;
         let mut s = take(&mut patch.block.columns, stress, if D == 1 { 1 } else { 3 }, n);
-        for (body, rows) in bodies(&patch.block.columns[c.body][..n]) {
-            let mut out = tensor_rows(&mut s, rows.clone());
+        for (body, particles) in bodies(&patch.block.columns[c.body][..n]) {
+            let mut out = tensor_columns(&mut s, particles.clone());
             match &self.models[body] {
-                Matter::Fluid(_) => {
-                    let first = c.strength.filter(|_| self.flows[body].is_some());
-                    let shear = first.map(|c| self.deviator(patch, c.deviator, rows.clone()));
-                    for (k, r) in rows.enumerate() {
+                ConstitutiveModel::Fluid(_) => {
+                    let first = c.deviator.filter(|_| self.strengths[body].is_some());
+                    let shear = first.map(|first| self.deviator(patch, first, particles.clone()));
+                    for (k, r) in particles.enumerate() {
                         let mut all = Symmetric::isotropic(-pressure[r]);
                         if let Some(shear) = shear.map(|s| s.at(k)) {
                             all.xx += shear.xx;
@@ -163,13 +179,14 @@ impl<const D: usize> Stepper<D> {
                         out.set(k, &all, 1.0);
                     }
                 }
-                Matter::Solid(solid) => {
+                ConstitutiveModel::Solid(solid) => {
                     let j = &patch.block.columns[c.jacobian];
-                    let strain = self.strain(patch, rows.clone(), 0.0, j);
-                    let (p, speed) = (&mut pressure[rows.clone()], &mut speed[rows.clone()]);
+                    let strain = self.strain(patch, particles.clone(), 0.0, j);
+                    let (p, speed) =
+                        (&mut pressure[particles.clone()], &mut speed[particles.clone()]);
                     let told = solid.refresh(strain, out, p, speed);
-                    if let (None, Some((row, what))) = (&found, told) {
-                        found = Some((rows.start + row, what));
+                    if let (None, Some((particle, what))) = (&found, told) {
+                        found = Some((particles.start + particle, what));
                     }
                 }
             }
@@ -178,8 +195,8 @@ impl<const D: usize> Stepper<D> {
         found
     }
 
-    /// Energy of the own rows of solids after `dt` at the gradient in its columns, from the
-    /// volume ratios `before` to those of now.
+    /// Energy of the own particles of solids after `dt` with the velocity gradient in its columns,
+    /// from the volume ratios `before` to the current ones.
     pub(super) fn work_on_solids(
         &self,
         patch: &mut Patch<D>,
@@ -192,17 +209,17 @@ impl<const D: usize> Stepper<D> {
             return;
         }
         let n = before.len();
-        // a scratch that is found anew before it is needed
+        // scratch memory here; the column is recomputed before its next use
         let mut work = std::mem::take(&mut patch.block.columns[c.stress_volume]);
         work.resize(n, 0.0);
         let column = |k: usize| &patch.block.columns[k][..n];
         let (mass, volume0, after) = (column(c.mass), column(c.volume0), column(c.jacobian));
-        for (body, rows) in bodies(column(c.body)) {
-            let Matter::Solid(solid) = &self.models[body] else { continue };
-            let from = self.strain(patch, rows.clone(), 0.0, before);
-            let to = self.strain(patch, rows.clone(), dt, after);
-            solid.work(from, to, &volume0[rows.clone()], &mut work[rows.clone()]);
-            for r in rows {
+        for (body, particles) in bodies(column(c.body)) {
+            let ConstitutiveModel::Solid(solid) = &self.models[body] else { continue };
+            let from = self.strain(patch, particles.clone(), 0.0, before);
+            let to = self.strain(patch, particles.clone(), dt, after);
+            solid.work(from, to, &volume0[particles.clone()], &mut work[particles.clone()]);
+            for r in particles {
                 let q = c.viscosity.map_or(0.0, |q| patch.block.columns[q][r]);
                 energy[r] += (work[r] - q * (after[r] - before[r]) * volume0[r]) / mass[r];
             }
@@ -210,7 +227,7 @@ impl<const D: usize> Stepper<D> {
         patch.block.columns[c.stress_volume] = work;
     }
 
-    /// n.S n of a row, what it presses with along a normal [J].
+    /// Normal component n.S n of a particle [J].
     #[inline(always)]
     pub(super) fn pressing(&self, patch: &Patch<D>, r: usize, normal: &[f64; D]) -> f64 {
         let s = |k: usize| patch.block.columns[self.columns.stress_volume + k][r];
@@ -223,7 +240,7 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// The internal force of all rows, f_i = sum S G_i, onto the nodes.
+    /// Adds the internal force of all particles, f_i = sum S G_i, to the nodes.
     pub(super) fn scatter_stress(&self, patch: &mut Patch<D>) {
         fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
             let c = &s.columns;
@@ -233,15 +250,15 @@ impl<const D: usize> Stepper<D> {
             let column = |k: usize| &patch.block.columns[c.stress_volume + k][..];
             let (xx, yy, xy) = (column(0), column(1), column(2));
             for r in patch.runs.iter().cloned().flatten() {
-                let row = patch.stencils.row::<K, D>(r);
-                let (gx, gy) = (row.gradient(0), row.gradient(D - 1));
+                let weights = patch.stencils.particle::<K, D>(r);
+                let (gx, gy) = (weights.gradient(0), weights.gradient(D - 1));
                 for (a, [sx, sy]) in [[xx[r], xy[r]], [xy[r], yy[r]]].into_iter().enumerate() {
-                    row.add(&mut force[a], gx, |g| g * sx);
-                    row.add(&mut force[a], gy, |g| g * sy);
+                    weights.add(&mut force[a], gx, |g| g * sx);
+                    weights.add(&mut force[a], gy, |g| g * sy);
                 }
                 if s.axisymmetric {
                     let hoop = column(3)[r] / s.radius(patch, r);
-                    row.add(&mut force[0], row.values, |n| n * hoop);
+                    weights.add(&mut force[0], weights.values, |n| n * hoop);
                 }
             }
             for (a, force) in force.into_iter().enumerate() {
@@ -251,21 +268,24 @@ impl<const D: usize> Stepper<D> {
         with_width!(patch.stencils.width, go(patch, self));
     }
 
-    /// S : grad w of a row [J/s], w the nodal velocity in the fields `w`.
+    /// S : grad w of a particle [J/s], with the nodal velocity w in the fields `w`.
     #[inline(always)]
     pub(super) fn stress_power<const K: usize>(
         &self,
         patch: &Patch<D>,
-        row: &Row<'_, K, D>,
+        weights: &ParticleWeights<'_, K, D>,
         r: usize,
         w: impl Fn(usize, usize) -> [f64; K],
     ) -> f64 {
         let s = |k: usize| patch.block.columns[self.columns.stress_volume + k][r];
-        let along = |a: usize, b: usize| row.sum(row.gradient(b), |line| w(a, line));
+        let along = |a: usize, b: usize| weights.sum(weights.gradient(b), |line| w(a, line));
         let (x, y) = (0, D - 1);
         let plane = s(0) * along(x, x) + s(1) * along(y, y) + s(2) * (along(x, y) + along(y, x));
         match self.axisymmetric {
-            true => plane + s(3) * row.sum(row.values, |line| w(x, line)) / self.radius(patch, r),
+            true => {
+                plane
+                    + s(3) * weights.sum(weights.values, |line| w(x, line)) / self.radius(patch, r)
+            }
             false => plane,
         }
     }

@@ -1,25 +1,25 @@
-//! The total-Lagrangian frame: shape functions of the particles' first places.
+//! Total-Lagrangian frame: shape functions of the initial positions of the particles.
 //!
 //! ```text
 //! N = N(X),  G = F_h^-T G0(X)                 on a line G0/J_h
 //! F += dt l F_h                               l the gradient of the step's velocity with G
-//! h = dx/|F^-1 n|                             a cell's edge along what is compressed most, n
-//! dt = courant * min dx/(|row a of F^-1| (c + 2 (a1 c + a2 h |D|)))
+//! h = dx/|F^-1 n|                             edge of a cell along the most compressed direction n
+//! dt = courant * min dx/(|particle a of F^-1| (c + 2 (a1 c + a2 h |D|)))
 //! ```
 //!
-//! The grid moves with the material (de Vaucorbeil, Nguyen & Hutchinson 2020), so that values,
-//! mass matrix and cells of the particles never change, no particle passes another cell's edge, and
-//! the speed of the material does not bound the time step. All else of a step is that of the updated
-//! frame, at the current volumes. What the frame cannot do: bodies that are apart do not come
-//! together, and a body does not touch itself.
+//! The grid moves with the material (de Vaucorbeil, Nguyen & Hutchinson 2020), so that weights,
+//! mass matrix and cells of the particles never change, no particle crosses a cell boundary, and
+//! the speed of the material does not limit the time step. The rest of a step is the same as in the
+//! updated-Lagrangian frame, at the current volumes. Limits of this frame: separate bodies cannot
+//! collide, and a body cannot touch itself.
 
 use decomp::Block;
 
 use super::Stepper;
-use crate::solver::patch::{Patch, Phase};
-use crate::solver::shape::Extent;
+use crate::shape::DomainExtent;
+use crate::solver::patch::{FaultPhase, Patch};
 
-/// The inverse of a tensor's rows xx, xy, yx, yy, and its determinant.
+/// Inverse and determinant of a tensor with the components xx, xy, yx, yy.
 #[inline(always)]
 fn inverse([xx, xy, yx, yy]: [f64; 4]) -> ([f64; 4], f64) {
     let determinant = xx * yy - xy * yx;
@@ -27,8 +27,9 @@ fn inverse([xx, xy, yx, yy]: [f64; 4]) -> ([f64; 4], f64) {
     ([yy * scale, -xy * scale, -yx * scale, xx * scale], determinant)
 }
 
-/// 1/|F^-1 n| along the direction n that is compressed most, or where the volume grows stretched most,
-/// with the projector n n = (E - e2)/(e1 - e2) of the rate of strain E with eigenvalues e1 and e2.
+/// 1/|F^-1 n| along the direction n of strongest compression, or of strongest stretching if the
+/// volume grows, with the projector n n = (E - e2)/(e1 - e2) of the strain rate E with eigenvalues
+/// e1 and e2.
 #[inline(always)]
 fn stretch_of([ixx, ixy, iyx, iyy]: [f64; 4], [lxx, lxy, lyx, lyy]: [f64; 4]) -> f64 {
     // C = F^-T F^-1
@@ -44,11 +45,12 @@ fn stretch_of([ixx, ixy, iyx, iyy]: [f64; 4], [lxx, lxy, lyx, lyy]: [f64; 4]) ->
     1.0 / square.sqrt()
 }
 
-/// F of a row, `ahead` of its column, from the columns that start at `f` and at `l`: F itself and the
-/// gradient of the velocity.
+/// F of a particle extrapolated by the time `ahead` [s], from the columns that start at `f` (F) and
+/// `l` (velocity gradient).
 #[inline(always)]
-fn ahead_of(columns: &[Vec<f64>], row: usize, [f, l]: [usize; 2], ahead: f64) -> [f64; 4] {
-    let tensor = |first: usize| -> [f64; 4] { std::array::from_fn(|k| columns[first + k][row]) };
+fn ahead_of(columns: &[Vec<f64>], particle: usize, [f, l]: [usize; 2], ahead: f64) -> [f64; 4] {
+    let tensor =
+        |first: usize| -> [f64; 4] { std::array::from_fn(|k| columns[first + k][particle]) };
     let (f, l) = (tensor(f), tensor(l));
     std::array::from_fn(|k| {
         let (a, b) = (k / 2, k % 2);
@@ -57,10 +59,10 @@ fn ahead_of(columns: &[Vec<f64>], row: usize, [f, l]: [usize; 2], ahead: f64) ->
 }
 
 impl<const D: usize> Stepper<D> {
-    /// What pushes the own rows' gradients forward, `ahead` of their deformation and at volume ratio
-    /// `jacobian` (a column).
-    pub(super) fn find_push(&self, patch: &mut Patch<D>, ahead: f64, jacobian: usize) {
-        let Some(push) = self.columns.push else { return };
+    /// F^-1, which pushes the gradients of the own particles forward, at the time `ahead` [s] of
+    /// their deformation and the volume ratio in column `jacobian`.
+    pub(super) fn invert_deformation(&self, patch: &mut Patch<D>, ahead: f64, jacobian: usize) {
+        let Some(push) = self.columns.inverse_deformation else { return };
         let n = patch.block.own();
         for k in 0..D * D {
             patch.block.columns[push + k].resize(n, 0.0);
@@ -81,22 +83,27 @@ impl<const D: usize> Stepper<D> {
                 turned = Some(r);
             }
         }
-        if let Some(row) = turned {
-            self.fault(patch, Phase::Start, row, "it is turned inside out within one step".into());
+        if let Some(particle) = turned {
+            self.fault(
+                patch,
+                FaultPhase::Start,
+                particle,
+                "it is turned inside out within one step".into(),
+            );
         }
     }
 
-    /// F of a row in a plane, `ahead` of its column.
+    /// F of a particle in a plane, extrapolated by the time `ahead` [s].
     #[inline(always)]
-    fn deformation(&self, columns: &[Vec<f64>], row: usize, ahead: f64) -> [f64; 4] {
+    fn deformation(&self, columns: &[Vec<f64>], particle: usize, ahead: f64) -> [f64; 4] {
         let both = self.columns.deformation.zip(self.columns.velocity_gradient);
         let (f, l) = both.expect("the frame has the columns in a plane");
-        ahead_of(columns, row, [f, l], ahead)
+        ahead_of(columns, particle, [f, l], ahead)
     }
 
-    /// The gradients of the own rows' velocity in the columns from `out` on taken with regard to
-    /// their first places, L F.
-    pub(super) fn pull_gradient(&self, patch: &mut Patch<D>, out: usize, jacobian: usize) {
+    /// Transforms the velocity gradients of the own particles in the columns from `out` on to
+    /// gradients with respect to the initial positions, L F.
+    pub(crate) fn pull_gradient(&self, patch: &mut Patch<D>, out: usize, jacobian: usize) {
         for r in 0..patch.block.own() {
             let columns = &mut patch.block.columns;
             if D == 1 {
@@ -112,18 +119,19 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// The own rows' domains at the start and the volume that they fill then [cells].
+    /// Initial domains and volumes of the own particles [cells].
     pub(super) fn find_first_domains(&self, patch: &mut Patch<D>) {
         let c = &self.columns;
         let n = patch.block.own();
         let scale: f64 = self.inverse_cell.iter().product();
-        for k in c.filled.into_iter().chain((D == 1).then_some(c.domain)) {
+        for k in c.fill_fraction.into_iter().chain((D == 1).then_some(c.domain)) {
             let [volume0, out] =
                 patch.block.columns.get_disjoint_mut([c.volume0, k]).expect("columns differ");
             out.clear();
             out.extend(volume0[..n].iter().map(|v| v * scale));
         }
-        if let (true, Some(filled), Some(first)) = (self.axisymmetric, c.filled, c.reference) {
+        if let (true, Some(filled), Some(first)) = (self.axisymmetric, c.fill_fraction, c.reference)
+        {
             let [x, out] = patch.block.columns.get_disjoint_mut([first, filled]).expect("differ");
             out.iter_mut().zip(x).for_each(|(out, x)| *out /= *x);
         }
@@ -136,17 +144,18 @@ impl<const D: usize> Stepper<D> {
                 out.extend(half[..n].iter().map(|h| edge * h * self.inverse_cell[a]));
             };
             match self.extent() {
-                Extent::Point => {}
-                Extent::Undeformed => set(c.domain + a, 2.0),
-                Extent::Current => (0..D).for_each(|edge| {
+                DomainExtent::Point => {}
+                DomainExtent::Undeformed => set(c.domain + a, 2.0),
+                DomainExtent::Current => (0..D).for_each(|edge| {
                     set(c.domain + D * edge + a, if edge == a { 1.0 } else { 0.0 });
                 }),
             }
         }
     }
 
-    /// Where the own rows are, `ahead` of their places: their distance from an axis, and what contact
-    /// looks at, with what they fill at volume ratio `jacobian` (a column).
+    /// Positions of the own particles at the time `ahead` [s]: distance from the axis, and for
+    /// contact displacement and current volume, the latter from the volume ratio in column
+    /// `jacobian`.
     pub(super) fn find_shift(&self, patch: &mut Patch<D>, ahead: f64, jacobian: usize) {
         let c = &self.columns;
         if let Some(radius) = c.radius {
@@ -158,7 +167,11 @@ impl<const D: usize> Stepper<D> {
             out.clear();
             out.extend(x.iter().zip(&*v).map(|(x, v)| x + ahead * v));
         }
-        let (Some(shift), Some(room), Some(first)) = (c.shift, c.room, c.reference) else { return };
+        let (Some(shift), Some(room), Some(first)) =
+            (c.displacement, c.current_volume, c.reference)
+        else {
+            return;
+        };
         let n = patch.block.own();
         let scale: f64 = self.inverse_cell.iter().product();
         let columns = &mut patch.block.columns;
@@ -175,85 +188,87 @@ impl<const D: usize> Stepper<D> {
         out.extend((0..n).map(|r| volume0[r] * j[r] * scale));
     }
 
-    /// How much longer a cell is at a row than at the start, along the direction in which it is
-    /// compressed most, in a plane.
+    /// Ratio of the current to the initial length of a cell at a particle, along the direction of
+    /// strongest compression, in a plane.
     #[inline(always)]
-    pub(super) fn stretch(&self, patch: &Patch<D>, row: usize) -> f64 {
+    pub(super) fn stretch(&self, patch: &Patch<D>, particle: usize) -> f64 {
         let tensor = |first: Option<usize>| -> [f64; 4] {
             let first = first.expect("the frame has the columns in a plane");
-            std::array::from_fn(|k| patch.block.columns[first + k][row])
+            std::array::from_fn(|k| patch.block.columns[first + k][particle])
         };
-        stretch_of(tensor(self.columns.push), tensor(self.columns.velocity_gradient))
+        stretch_of(tensor(self.columns.inverse_deformation), tensor(self.columns.velocity_gradient))
     }
 
-    /// Cells of the start that a signal from a row passes in a second, at most [1/s], on a line times
-    /// a cell's edge [m/s]; and how much shorter than at the start a cell is there.
+    /// Greatest number of initial cells that a signal from a particle crosses per second [1/s], on
+    /// a line times the edge of a cell [m/s]; and the ratio of the initial to the current length of
+    /// a cell there.
     #[inline(always)]
-    pub(super) fn signal_rate(&self, block: &Block<D>, row: usize, sound: f64) -> (f64, f64) {
+    pub(super) fn signal_rate(&self, block: &Block<D>, particle: usize, sound: f64) -> (f64, f64) {
         let c = &self.columns;
-        let d = block.columns[c.gradient][row];
+        let d = block.columns[c.divergence][particle];
         let of = |stretch: f64| sound + self.viscosity.map_or(0.0, |q| q.speed(sound, d, stretch));
         if D == 1 {
-            let j = block.columns[c.jacobian][row];
+            let j = block.columns[c.jacobian][particle];
             return (of(j) / j, 1.0 / j);
         }
         let columns = &block.columns;
-        let (push, _) = inverse(self.deformation(columns, row, 0.0));
+        let (push, _) = inverse(self.deformation(columns, particle, 0.0));
         let first = c.velocity_gradient.expect("the frame has the column in a plane");
-        let stretch = stretch_of(push, std::array::from_fn(|k| columns[first + k][row]));
+        let stretch = stretch_of(push, std::array::from_fn(|k| columns[first + k][particle]));
         let [xx, xy, yx, yy] = push;
         let shorter = [(xx * xx + xy * xy).sqrt(), (yx * yx + yy * yy).sqrt()];
         let rate = |a: usize| shorter[a] * self.inverse_cell[a];
         (of(stretch) * rate(0).max(rate(D - 1)), shorter[0].max(shorter[1]))
     }
 
-    /// Momentum of the nodes, and with `force` the internal force of a fluid, where weights, masses
-    /// and matrix are those of the last step: the same sums as of all.
+    /// Momentum of the nodes, and with `force` the internal force of a fluid, if weights, masses
+    /// and matrix are those of the last step; the sums are the same as in a full pass.
     pub(super) fn scatter_moving<const K: usize>(&self, patch: &mut Patch<D>, force: bool) {
         let (c, f) = (&self.columns, &self.fields);
-        let vectors = [f.lumped, f.acceleration].into_iter().chain(f.remainder);
+        let vectors = [f.lumped_velocity, f.acceleration].into_iter().chain(f.filter_residual);
         let scratches = f.scratch..f.scratch + f.scratches;
         for field in vectors.flat_map(|v| v..v + D).chain(scratches) {
             patch.nodes.fields[field].fill(0.0);
         }
         let mut take = |k: usize| std::mem::take(&mut patch.nodes.fields[k]);
-        let mut momentum: [Vec<f64>; D] = std::array::from_fn(|a| take(f.lumped + a));
+        let mut momentum: [Vec<f64>; D] = std::array::from_fn(|a| take(f.lumped_velocity + a));
         let mut nodal_force: [Vec<f64>; D] = std::array::from_fn(|a| take(f.acceleration + a));
-        let column = |k: usize| &patch.block.columns[k][..patch.block.rows()];
+        let column = |k: usize| &patch.block.columns[k][..patch.block.particles()];
         let velocity: [&[f64]; D] = std::array::from_fn(|a| column(c.velocity + a));
         let (mass, stress) = (column(c.mass), column(c.stress_volume));
         for r in patch.runs.iter().cloned().flatten() {
-            let row = patch.stencils.row::<K, D>(r);
+            let weights = patch.stencils.particle::<K, D>(r);
             for a in 0..D {
                 let mv = mass[r] * velocity[a][r];
-                row.add(&mut momentum[a], row.values, |n| n * mv);
+                weights.add(&mut momentum[a], weights.values, |n| n * mv);
                 if force {
-                    row.add(&mut nodal_force[a], row.gradient(a), |g| g * stress[r]);
+                    weights.add(&mut nodal_force[a], weights.gradient(a), |g| g * stress[r]);
                 }
             }
             if force && D > 1 && self.axisymmetric {
                 let hoop = stress[r] / self.radius(patch, r);
-                row.add(&mut nodal_force[0], row.values, |n| n * hoop);
+                weights.add(&mut nodal_force[0], weights.values, |n| n * hoop);
             }
         }
         for (a, (momentum, force)) in momentum.into_iter().zip(nodal_force).enumerate() {
-            patch.nodes.fields[f.lumped + a] = momentum;
+            patch.nodes.fields[f.lumped_velocity + a] = momentum;
             patch.nodes.fields[f.acceleration + a] = force;
         }
     }
 
-    /// F^-1 of a row at the time of the forces, where the frame has it.
+    /// F^-1 of a particle at the time of the forces, in the total-Lagrangian frame.
     #[inline(always)]
-    pub(super) fn push_of(&self, patch: &Patch<D>, row: usize) -> Option<[[f64; D]; D]> {
-        let push = self.columns.push?;
-        let at = |a: usize, b: usize| patch.block.columns[push + D * a + b][row];
+    pub(super) fn push_of(&self, patch: &Patch<D>, particle: usize) -> Option<[[f64; D]; D]> {
+        let push = self.columns.inverse_deformation?;
+        let at = |a: usize, b: usize| patch.block.columns[push + D * a + b][particle];
         Some(std::array::from_fn(|a| std::array::from_fn(|b| at(a, b))))
     }
 
-    /// Faults what has passed a rigid side: the frame knows walls where material stood at the start.
+    /// Reports a fault for particles beyond a rigid side: in this frame a wall acts only on
+    /// material that touched it at the start.
     pub(super) fn fault_beyond_walls(&self, patch: &mut Patch<D>) {
         for (a, end) in (0..D).flat_map(|a| [(a, 0), (a, 1)]) {
-            if self.sides[a][end].rigid_velocity().is_none() {
+            if !self.sides[a][end].is_rigid() {
                 continue;
             }
             let upper = self.lower[a] + self.cells[a] as f64 * self.cell[a];
@@ -262,10 +277,10 @@ impl<const D: usize> Stepper<D> {
                 0 => x < self.lower[a],
                 _ => x > upper,
             });
-            if let Some(row) = passed {
+            if let Some(particle) = passed {
                 let what = "it passes a wall that its body did not touch at the start; \
                             method.frame \"updated_lagrangian\" knows such a wall";
-                self.fault(patch, Phase::Locate, row, what.into());
+                self.fault(patch, FaultPhase::Locate, particle, what.into());
             }
         }
     }
@@ -275,28 +290,28 @@ impl<const D: usize> Stepper<D> {
 mod tests {
     use super::*;
 
-    /// The inverse of F.
+    /// Inverse of F.
     fn inverse_of(f: [f64; 4]) -> [f64; 4] {
         inverse(f).0
     }
 
     #[test]
     fn a_cell_shortens_along_what_is_compressed_most() {
-        // half as long along x, which is compressed, or along y, which is not
+        // half the length along x, which is compressed, or along y, which is not
         let (along, across) = (inverse_of([0.5, 0.0, 0.0, 1.0]), inverse_of([1.0, 0.0, 0.0, 0.5]));
         let compression = [-2.0, 0.0, 0.0, -0.5];
         assert!((stretch_of(along, compression) - 0.5).abs() < 1e-15);
         assert!((stretch_of(across, compression) - 1.0).abs() < 1e-15);
-        // the same turned by 30 degrees: R F, with the rate R E R^T
+        // the same rotated by 30 degrees: R F, with the rate R E R^T
         let (s, c) = (0.5, 0.75f64.sqrt());
         let turned = inverse_of([0.5 * c, -s, 0.5 * s, c]);
         let rate =
             [-2.0 * c * c - 0.5 * s * s, -1.5 * s * c, -1.5 * s * c, -2.0 * s * s - 0.5 * c * c];
         assert!((stretch_of(turned, rate) - 0.5).abs() < 1e-15);
-        // what grows is looked at along what grows most
+        // in expansion, the direction of strongest stretching counts
         assert!((stretch_of(along, [2.0, 0.0, 0.0, 0.5]) - 0.5).abs() < 1e-15);
         assert!((stretch_of(along, [0.5, 0.0, 0.0, 2.0]) - 1.0).abs() < 1e-15);
-        // no direction is compressed most
+        // no direction of strongest compression
         let even = inverse_of([0.8, 0.0, 0.0, 0.8]);
         assert!((stretch_of(even, [-1.0, 0.0, 0.0, -1.0]) - 0.8).abs() < 1e-15);
     }

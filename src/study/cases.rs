@@ -1,27 +1,27 @@
-//! From a study to its cases: every combination of what is swept.
+//! The cases of a study: all combinations of the swept values.
 
 use std::collections::BTreeMap;
 
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use super::spec::{Axis, Study};
+use super::spec::{Study, StudyAxis};
 use crate::scene::{self, CheckedScene};
 
-/// A case: a scene with overrides, on some ranks and threads.
+/// A case: a scene with overrides, and its numbers of ranks and threads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
-    /// What tells it from the others: a text for each axis of the sweep.
+    /// Labels that identify the case: one text per axis of the sweep.
     pub labels: BTreeMap<String, String>,
     /// Overrides `PATH=VALUE` of the scene.
     pub sets: Vec<String>,
     /// Ranks.
     pub ranks: usize,
-    /// Threads a rank.
+    /// Threads of each rank.
     pub threads: usize,
 }
 
-/// A value as a label: text without quotes, numbers shortly.
+/// A value as a label: text without quotes, numbers in short form.
 pub fn text(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
@@ -29,21 +29,21 @@ pub fn text(value: &Value) -> String {
     }
 }
 
-/// Whether labels are those that are asked for.
+/// Whether the labels match the selection `only`.
 pub fn fits(labels: &BTreeMap<String, String>, only: &BTreeMap<String, Value>) -> bool {
     only.iter().all(|(label, value)| labels.get(label) == Some(&text(value)))
 }
 
-/// All cases of a study, but for those that it leaves out.
+/// All cases of a study, except those that it leaves out.
 pub fn cases(study: &Study) -> Vec<Case> {
     let sets = study.set.iter().map(|(path, value)| format!("{path}={value}")).collect();
     let mut all = vec![Case { labels: BTreeMap::new(), sets, ranks: 1, threads: 1 }];
     for axis in &study.sweep {
         let variations: Vec<(String, Vec<(&String, &Value)>)> = match axis {
-            Axis::Key { key, values } => {
+            StudyAxis::Key { key, values } => {
                 values.iter().map(|value| (text(value), vec![(key, value)])).collect()
             }
-            Axis::Variations { cases, .. } => {
+            StudyAxis::Variations { cases, .. } => {
                 cases.iter().map(|case| (case.name.clone(), case.set.iter().collect())).collect()
             }
         };
@@ -71,12 +71,12 @@ impl Case {
         case
     }
 
-    /// The scene as it would run; the message where it is refused.
+    /// The checked scene of the case. The error is the message of the scene check.
     pub fn scene(&self, bytes: &[u8], file: &str) -> Result<CheckedScene, String> {
         scene::parse(bytes, file, &self.sets).map_err(|error| error.to_string())
     }
 
-    /// What the result is kept by: the resolved scene, the program, ranks and threads.
+    /// Key of the record: a hash of the resolved scene, the program, ranks and threads.
     pub fn key(&self, scene: &CheckedScene, program: &str) -> String {
         let mut digest = Sha256::new();
         let text = serde_json::to_string(&scene.scene).expect("a scene is plain data");

@@ -1,11 +1,11 @@
-//! The error wanted, the cheapest choice that reaches it, and its cost.
+//! The list of cheapest choices: target errors, the cheapest case that reaches each, and its cost.
 
-use super::Row;
+use super::StudyRow;
 use super::curves::quantity;
 use super::spec::Choices;
 
-/// The list as a table in Markdown.
-pub fn markdown(choices: &Choices, rows: &[Row]) -> String {
+/// The list as a Markdown table.
+pub fn markdown(choices: &Choices, rows: &[StudyRow]) -> String {
     let (name, unit, factor) = quantity(&choices.error);
     let mut text = format!(
         "| {name} wanted | cheapest choice | {name} | CPU seconds of the time loop |\n|---|---|---|---|\n"
@@ -31,7 +31,7 @@ pub fn markdown(choices: &Choices, rows: &[Row]) -> String {
     text
 }
 
-/// A swept key and its value, in the unit that curves show it in.
+/// A swept key and its value, in the unit used for curves.
 fn setting(name: &str, value: &str) -> String {
     let (label, unit, factor) = quantity(name);
     let shown = match value.parse::<f64>() {
@@ -41,12 +41,12 @@ fn setting(name: &str, value: &str) -> String {
     format!("{} {shown} {unit}", label.to_lowercase()).trim_end().to_string()
 }
 
-/// The cheapest row whose error is at most the one wanted, its error and its cost \[s\].
+/// The cheapest row whose error is at most `wanted`, its error and its cost \[s\].
 pub fn cheapest<'a>(
     choices: &Choices,
-    rows: &'a [Row],
+    rows: &'a [StudyRow],
     wanted: f64,
-) -> Option<(&'a Row, f64, f64)> {
+) -> Option<(&'a StudyRow, f64, f64)> {
     rows.iter()
         .filter_map(|row| {
             let error = row.number(&choices.error, choices.time)?.abs();

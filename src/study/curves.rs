@@ -1,12 +1,12 @@
-//! Curves of a study: errors over a cost or over a key.
+//! Curves of a study: errors over a cost or a key.
 
-use super::Row;
+use super::StudyRow;
 use super::cases::fits;
 use super::front::front;
 use super::spec::{CurvesPicture, Study};
 use crate::plot::{Axis, Color, Figure, Panel, Points, Series, Stroke, Style};
 
-/// How a number is shown: name, unit, and what its SI value is multiplied by.
+/// Label of a quantity: name, unit, and conversion factor from SI.
 pub fn quantity(name: &str) -> (String, &'static str, f64) {
     let (text, percent) = match name {
         "l1" => ("L1", true),
@@ -17,12 +17,12 @@ pub fn quantity(name: &str) -> (String, &'static str, f64) {
         "rise_cells" => return ("Rise".into(), "cells", 1.0),
         "shock_position_cells" => return ("Shock's place".into(), "cells", 1.0),
         "overshoot" => ("Overshoot", true),
-        "plateau_4" => ("2nd plateau", true),
+        "second_plateau" => ("2nd plateau", true),
         "energy_drift" => return ("Energy drift".into(), "", 1.0),
         "waves.shock" => ("L1, shock", true),
         "waves.fan" => ("L1, fan", true),
         "waves.plateau_2" => ("L1, plateau 2", true),
-        "waves.plateau_4" => ("L1, plateau 4", true),
+        "waves.second_plateau" => ("L1, plateau 4", true),
         "loop_cpu_seconds" => return ("User CPU time of the time loop".into(), "s", 1.0),
         "loop_wall_seconds" => return ("Wall time of the time loop".into(), "s", 1.0),
         "core_seconds" => return ("Wall time of the time loop × cores".into(), "s", 1.0),
@@ -35,8 +35,8 @@ pub fn quantity(name: &str) -> (String, &'static str, f64) {
     if percent { (text.into(), "%", 100.0) } else { (text.into(), "", 1.0) }
 }
 
-/// A look for each of many curves: the palette with discs, then with rings, then dashed.
-fn look(index: usize) -> Style {
+/// Style of curve `index`: the palette with discs, then dashed with rings, then dotted with discs.
+fn style_of(index: usize) -> Style {
     let style = Style { mark: Some(5.0), ..Style::line(Color::palette(index)).width(2.0) };
     match index / 7 {
         0 => style,
@@ -45,7 +45,7 @@ fn look(index: usize) -> Style {
     }
 }
 
-/// Slope of log y over log x by least squares; none below two places.
+/// Slope of log y over log x by least squares; `None` for fewer than two distinct x.
 pub fn order(points: &[(f64, f64)]) -> Option<f64> {
     let logs: Vec<(f64, f64)> =
         points.iter().filter(|p| p.0 > 0.0 && p.1 > 0.0).map(|p| (p.0.ln(), p.1.ln())).collect();
@@ -58,8 +58,8 @@ pub fn order(points: &[(f64, f64)]) -> Option<f64> {
 }
 
 /// The figure of these curves.
-pub fn figure(study: &Study, picture: &CurvesPicture, rows: &[Row]) -> Figure {
-    let rows: Vec<&Row> = rows.iter().filter(|row| fits(&row.labels, &picture.only)).collect();
+pub fn figure(study: &Study, picture: &CurvesPicture, rows: &[StudyRow]) -> Figure {
+    let rows: Vec<&StudyRow> = rows.iter().filter(|row| fits(&row.labels, &picture.only)).collect();
     let mut names: Vec<String> = Vec::new();
     for name in rows.iter().map(|row| row.name(&picture.series)) {
         if !names.contains(&name) {
@@ -83,7 +83,7 @@ pub fn figure(study: &Study, picture: &CurvesPicture, rows: &[Row]) -> Figure {
     for error in &picture.y {
         let (label, unit, factor) = quantity(error);
         let mut panel = Panel::new(Axis::log(label, unit));
-        let place = |row: &Row| {
+        let place = |row: &StudyRow| {
             let x = row.number(&picture.x, picture.time)? * x_factor;
             Some((x, row.number(error, picture.time)?.abs() * factor))
         };
@@ -106,7 +106,7 @@ pub fn figure(study: &Study, picture: &CurvesPicture, rows: &[Row]) -> Figure {
                 panel = panel.note(format!("{name}: order {order:.2}"));
             }
             let (x, y): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
-            panel = panel.series(Series::new(name, Points::new(x, y), look(k)));
+            panel = panel.series(Series::new(name, Points::new(x, y), style_of(k)));
         }
         if picture.peers {
             panel = with_peers(panel, study, picture, error, factor);
@@ -116,7 +116,7 @@ pub fn figure(study: &Study, picture: &CurvesPicture, rows: &[Row]) -> Figure {
     figure
 }
 
-/// Looks of the peers: bold rings, after a line of the legend that says whose they are.
+/// Adds other codes as bold rings, after a legend line that says that they are other codes.
 fn with_peers(
     mut panel: Panel,
     study: &Study,

@@ -1,7 +1,7 @@
-//! What none beats: the Pareto front of cost and error.
+//! The Pareto front of cost and error.
 
-/// Indices of the points of which no other is at most as dear and at most as wrong (and better in
-/// one of the two), by cost. Points that are not finite are left out.
+/// Indices of the Pareto-optimal points (cost, error), by cost: no other point is at most as large
+/// in both and smaller in one. Points that are not finite are omitted.
 pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> =
         (0..points.len()).filter(|&k| points[k].0.is_finite() && points[k].1.is_finite()).collect();

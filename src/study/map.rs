@@ -1,14 +1,14 @@
-//! A map of a study: an error over two keys, as colour.
+//! A map of a study: an error over two keys, drawn as colour.
 
-use super::Row;
+use super::StudyRow;
 use super::cases::fits;
 use super::curves::quantity;
 use super::spec::MapPicture;
 use crate::plot::{Axis, Figure, TileMap};
 
-/// The figure of this map. Cases that failed leave their place empty.
-pub fn figure(picture: &MapPicture, rows: &[Row]) -> Figure {
-    let rows: Vec<&Row> = rows.iter().filter(|row| fits(&row.labels, &picture.only)).collect();
+/// The figure of this map. The tiles of failed cases are empty.
+pub fn figure(picture: &MapPicture, rows: &[StudyRow]) -> Figure {
+    let rows: Vec<&StudyRow> = rows.iter().filter(|row| fits(&row.labels, &picture.only)).collect();
     let places = |key: &str| {
         let mut all: Vec<f64> = rows.iter().filter_map(|row| row.number(key, 0.0)).collect();
         all.sort_by(f64::total_cmp);
@@ -18,7 +18,7 @@ pub fn figure(picture: &MapPicture, rows: &[Row]) -> Figure {
     let (xs, ys) = (places(&picture.x), places(&picture.y));
     let (label, unit, factor) = quantity(&picture.value);
     let value = |x: f64, y: f64| {
-        let at = |row: &&&Row| {
+        let at = |row: &&&StudyRow| {
             row.number(&picture.x, 0.0) == Some(x) && row.number(&picture.y, 0.0) == Some(y)
         };
         Some(rows.iter().find(at)?.number(&picture.value, picture.time)?.abs())

@@ -1,5 +1,5 @@
-//! What is kept of a case: one file, written aside and renamed, so that an interruption leaves
-//! whole ones only.
+//! The stored result of a case: one file, written under another name and then renamed, so that an
+//! interrupted write leaves no incomplete record.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use super::StudyError;
 use crate::driver::output::summary::Summary;
 use crate::scene::input_file;
 
-/// Seconds of one run.
+/// CPU and wall times of one run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Seconds {
     /// User CPU time of the time loop, all ranks \[s\].
@@ -24,48 +24,49 @@ pub struct Seconds {
     pub wall: f64,
 }
 
-/// Errors of a profile.
+/// Errors of one profile.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProfileErrors {
     /// Time \[s\].
     pub time: f64,
-    /// Errors as in `summary.json`; null without a reference.
+    /// Errors as in `summary.json`; `None` without a reference.
     pub errors: Option<Value>,
 }
 
-/// What a run that ended well has left.
+/// Result of a successful run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// Particles.
+    /// Number of particles.
     pub particles: u64,
-    /// Cells.
+    /// Number of cells.
     pub cells: u64,
-    /// Steps.
+    /// Number of time steps.
     pub steps: u64,
     /// Drift of the total energy \[-\].
     pub energy_drift: Option<f64>,
     /// Drift of the momentum \[-\].
     pub momentum_drift: Option<f64>,
-    /// Errors, a profile each.
+    /// Errors, one entry per profile.
     pub profiles: Vec<ProfileErrors>,
-    /// The run's own statement of its errors, where the scene asks for it.
+    /// Error estimate of the run, if the scene requests it.
     #[serde(default)]
     pub estimate: Option<Value>,
 }
 
-/// What is kept of a case.
+/// The stored result of a case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Record {
-    /// The result; none where it failed.
+pub struct StudyRecord {
+    /// The result; `None` if the case failed.
     pub measured: Option<Measured>,
-    /// Why it failed.
+    /// Reason of the failure.
     pub failure: Option<String>,
-    /// One entry a repeat.
+    /// Times, one entry per repeat.
     pub seconds: Vec<Seconds>,
 }
 
-impl Record {
-    /// Adds a run that ended well. Repeats have the same bits, so the first one's errors stay.
+impl StudyRecord {
+    /// Adds a successful run. Repeats are bitwise identical, so the errors of the first one are
+    /// kept.
     pub fn add(&mut self, summary: &Summary) {
         self.seconds.push(Seconds {
             loop_cpu: summary.loop_cpu_seconds,
@@ -88,15 +89,15 @@ impl Record {
         });
     }
 
-    /// The record of a key, if it is there and whole.
-    pub fn read(folder: &Path, key: &str) -> Option<Record> {
+    /// Reads the record of a key; `None` if it is missing or damaged.
+    pub fn read(folder: &Path, key: &str) -> Option<StudyRecord> {
         serde_json::from_slice(
             &input_file::read(&path(folder, key), input_file::LARGEST_JSON).ok()?,
         )
         .ok()
     }
 
-    /// Writes it.
+    /// Writes the record.
     pub fn write(&self, folder: &Path, key: &str) -> Result<(), StudyError> {
         let (place, aside) = (path(folder, key), folder.join(format!("{key}.part")));
         let text = serde_json::to_vec_pretty(self).expect("a record is plain data");

@@ -1,24 +1,24 @@
-//! A row of a study's table: labels, errors and seconds of a case.
+//! A row of the table of a study: labels, errors and times of a case.
 
 use std::collections::BTreeMap;
 
-use super::record::{Record, Seconds};
+use super::record::{Seconds, StudyRecord};
 
-/// A case and what became of it.
+/// A case and its result.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
-    /// Its labels.
+pub struct StudyRow {
+    /// Labels of the case.
     pub labels: BTreeMap<String, String>,
     /// Ranks.
     pub ranks: usize,
-    /// Threads a rank.
+    /// Threads of each rank.
     pub threads: usize,
-    /// What was measured.
-    pub record: Record,
+    /// Stored result.
+    pub record: StudyRecord,
 }
 
-/// Errors that the table has of each profile, as they are named in `summary.json`; a dot goes into
-/// an object.
+/// Errors of each profile in the table, with their names in `summary.json`; a dot selects a key of
+/// a nested object.
 pub const ERRORS: [&str; 19] = [
     "l1",
     "l2",
@@ -28,7 +28,7 @@ pub const ERRORS: [&str; 19] = [
     "rise_cells",
     "shock_position_cells",
     "overshoot",
-    "plateau_4",
+    "second_plateau",
     "density_plateau",
     "energy_plateau",
     "density_l1",
@@ -38,11 +38,11 @@ pub const ERRORS: [&str; 19] = [
     "waves.shock",
     "waves.fan",
     "waves.plateau_2",
-    "waves.plateau_4",
+    "waves.second_plateau",
 ];
 
-impl Row {
-    /// Median over the repeats.
+impl StudyRow {
+    /// Median of a time over the repeats \[s\].
     pub fn seconds(&self, of: fn(&Seconds) -> f64) -> Option<f64> {
         let mut all: Vec<f64> = self.record.seconds.iter().map(of).collect();
         all.sort_by(f64::total_cmp);
@@ -54,7 +54,7 @@ impl Row {
         }
     }
 
-    /// Least and greatest over the repeats.
+    /// Smallest and largest value of a time over the repeats \[s\].
     pub fn spread(&self, of: fn(&Seconds) -> f64) -> Option<(f64, f64)> {
         let all = self.record.seconds.iter().map(of);
         all.fold(None, |range: Option<(f64, f64)>, s| match range {
@@ -63,7 +63,7 @@ impl Row {
         })
     }
 
-    /// The error `name` of the profile at `time` \[s\], signed; none where it is undefined.
+    /// The error `name` of the profile at `time` \[s\], signed; `None` if undefined.
     pub fn error(&self, name: &str, time: f64) -> Option<f64> {
         let measured = self.record.measured.as_ref()?;
         let near = |t: f64| (t - time).abs() <= 1e-9 * time.abs();
@@ -71,9 +71,9 @@ impl Row {
         name.split('.').try_fold(profile.errors.as_ref()?, |v, key| v.get(key))?.as_f64()
     }
 
-    /// A number by its name: `loop_cpu_seconds`, `loop_wall_seconds`, `cpu_seconds`,
-    /// `core_seconds` (wall time of the loop times cores held), `energy_drift`, `momentum_drift`,
-    /// `particles`, `steps`, a label that is a number, or an error at `time` \[s\].
+    /// A number by its name: `loop_cpu_seconds`, `loop_wall_seconds`, `cpu_seconds`, `core_seconds`
+    /// (wall time of the loop times cores), `energy_drift`, `momentum_drift`, `particles`, `steps`,
+    /// a numeric label, or an error at `time` \[s\].
     pub fn number(&self, name: &str, time: f64) -> Option<f64> {
         let measured = self.record.measured.as_ref();
         match name {
@@ -94,7 +94,7 @@ impl Row {
         }
     }
 
-    /// The values of these labels as one name.
+    /// The values of these labels, joined to one name.
     pub fn name(&self, labels: &[String]) -> String {
         let values = labels.iter().filter_map(|label| self.labels.get(label).map(String::as_str));
         values.collect::<Vec<_>>().join(", ")

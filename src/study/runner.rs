@@ -1,4 +1,4 @@
-//! Runs the cases of a study, each in a process of its own, and keeps what they give.
+//! Runs the cases of a study, each in a process of its own, and stores their results.
 
 use std::fs;
 use std::io::{IsTerminal, Read};
@@ -10,34 +10,34 @@ use indicatif::{ProgressBar, ProgressStyle};
 use sha2::{Digest, Sha256};
 
 use super::cases::{Case, cases};
-use super::record::Record;
+use super::record::StudyRecord;
 use super::spec::Study;
-use super::{Row, StudyError};
+use super::{StudyError, StudyRow};
 use crate::driver::output::summary::Summary;
 use crate::scene;
 
-/// Starts the program and keeps its results.
+/// Runs the program and stores its results.
 #[derive(Clone, Debug)]
-pub struct Runner {
-    /// The program.
+pub struct StudyRunner {
+    /// Path of the program.
     pub program: PathBuf,
-    /// Folder of the study's results.
+    /// Folder for the results of the study.
     pub folder: PathBuf,
-    /// Say nothing.
+    /// Suppresses progress messages.
     pub quiet: bool,
 }
 
-/// How often a running case is looked at.
+/// Interval between checks of a running case.
 const LOOK: Duration = Duration::from_millis(2);
 
-/// A case with what it runs and where its record is.
+/// A case with its scene and its record.
 struct Job {
     case: Case,
-    /// The resolved scene and the record's key; the message where the scene is refused.
+    /// The resolved scene and the key of the record. The error is the message of the scene check.
     scene: Result<(String, String), String>,
-    /// Particles times cells: what a run's time goes with.
+    /// Particles times cells, to which the run time is proportional.
     weight: f64,
-    record: Record,
+    record: StudyRecord,
 }
 
 impl Job {
@@ -46,9 +46,9 @@ impl Job {
     }
 }
 
-impl Runner {
-    /// Runs what is missing; rows in the order of the cases.
-    pub fn run(&self, study: &Study) -> Result<Vec<Row>, StudyError> {
+impl StudyRunner {
+    /// Runs the missing cases; returns rows in the order of the cases.
+    pub fn run(&self, study: &Study) -> Result<Vec<StudyRow>, StudyError> {
         let records = self.folder.join("runs");
         fs::create_dir_all(&records).map_err(StudyError::io("cannot be made", &records))?;
         let mut jobs = self.jobs(study, &records)?;
@@ -59,8 +59,8 @@ impl Runner {
             };
             jobs.iter().map(missing).sum()
         };
-        let mut progress = Progress::new(left(&jobs, 0), !self.quiet);
-        // all cases in turn, so that a machine that slows down slows all alike
+        let mut progress = StudyProgress::new(left(&jobs, 0), !self.quiet);
+        // repeat the whole sweep, so that a slow period of the machine affects all cases alike
         for repeat in 0..study.repeats {
             for k in 0..jobs.len() {
                 let job = &mut jobs[k];
@@ -78,7 +78,7 @@ impl Runner {
             }
         }
         progress.finish();
-        let row = |job: Job| Row {
+        let row = |job: Job| StudyRow {
             labels: job.case.labels,
             ranks: job.case.ranks,
             threads: job.case.threads,
@@ -87,7 +87,7 @@ impl Runner {
         Ok(jobs.into_iter().map(row).collect())
     }
 
-    /// The cases, with what is known of them already.
+    /// The cases with their stored records.
     fn jobs(&self, study: &Study, records: &Path) -> Result<Vec<Job>, StudyError> {
         let refused =
             |reason: String| StudyError::Study { file: study.scene.display().to_string(), reason };
@@ -103,17 +103,18 @@ impl Runner {
                 (text, case.key(&c, &version))
             });
             let record = match &scene {
-                Ok((_, key)) => Record::read(records, key).unwrap_or_default(),
-                Err(reason) => {
-                    Record { failure: Some(format!("refused: {reason}")), ..Record::default() }
-                }
+                Ok((_, key)) => StudyRecord::read(records, key).unwrap_or_default(),
+                Err(reason) => StudyRecord {
+                    failure: Some(format!("refused: {reason}")),
+                    ..StudyRecord::default()
+                },
             };
             Job { case, scene, weight, record }
         };
         Ok(cases(study).into_iter().map(job).collect())
     }
 
-    /// The program's version: its number and what its file holds, for results are those of its
+    /// Version of the program: its number and a hash of its file, because results depend on the
     /// code.
     fn version(&self) -> Result<String, StudyError> {
         let bytes = fs::read(&self.program)
@@ -123,8 +124,7 @@ impl Runner {
         Ok(format!("{} {digest}", env!("CARGO_PKG_VERSION")))
     }
 
-    /// Runs a case once. A process that the system ended stops the study, for that says nothing
-    /// of the case.
+    /// Runs a case once. A run that fails, also one that a signal ends, is recorded as failed.
     fn once(&self, case: &Case, scene: &str, key: &str, limit: f64) -> Result<Ended, StudyError> {
         let place = self.folder.join("running");
         fs::create_dir_all(&place).map_err(StudyError::io("cannot be made", &place))?;
@@ -142,7 +142,7 @@ impl Runner {
         Ok(outcome)
     }
 
-    /// The command that runs a case.
+    /// Command that runs a case.
     fn command(&self, case: &Case, file: &Path, results: &Path) -> Command {
         let mut command = match case.ranks {
             1 => Command::new(&self.program),
@@ -162,7 +162,7 @@ impl Runner {
         command
     }
 
-    /// Waits for the end of a run; why it failed, if it did.
+    /// Waits for the end of a run; returns the reason if it failed.
     fn wait(&self, command: &mut Command, limit: f64) -> Result<Option<String>, StudyError> {
         let program = command.get_program().to_string_lossy().into_owned();
         let start = |source| StudyError::Start { program: program.clone(), source };
@@ -191,7 +191,7 @@ impl Runner {
     }
 }
 
-/// What a run that has ended wrote as errors.
+/// Error output of a finished run.
 fn said(child: &mut Child) -> String {
     let mut text = String::new();
     if let Some(stderr) = &mut child.stderr {
@@ -200,14 +200,14 @@ fn said(child: &mut Child) -> String {
     text
 }
 
-/// How a run has ended.
+/// Outcome of a run.
 enum Ended {
     Well(Box<Summary>),
     Badly { reason: String },
 }
 
-/// Tells how far a study is: a bar on a terminal, else a line now and then.
-struct Progress {
+/// Progress of a study: a bar on a terminal, else a line every ten seconds.
+struct StudyProgress {
     bar: Option<ProgressBar>,
     whole: f64,
     started: Instant,
@@ -215,18 +215,18 @@ struct Progress {
     speaks: bool,
 }
 
-impl Progress {
-    fn new(whole: f64, speaks: bool) -> Progress {
+impl StudyProgress {
+    fn new(whole: f64, speaks: bool) -> StudyProgress {
         let bar = (speaks && std::io::stderr().is_terminal()).then(|| {
             let bar = ProgressBar::new(1000);
             let style = "{bar:40} {percent:>3} %  {msg}";
             bar.set_style(ProgressStyle::with_template(style).expect("the template is sound"));
             bar
         });
-        Progress { bar, whole, started: Instant::now(), told: Instant::now(), speaks }
+        StudyProgress { bar, whole, started: Instant::now(), told: Instant::now(), speaks }
     }
 
-    /// `left` of the whole weight is left to do.
+    /// Reports progress; `left` is the remaining part of the total weight.
     fn tell(&mut self, left: f64, name: &str) {
         let share = if self.whole > 0.0 { 1.0 - left / self.whole } else { 1.0 };
         let seconds = self.started.elapsed().as_secs_f64() * (1.0 / share.max(1e-9) - 1.0);

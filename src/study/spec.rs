@@ -1,4 +1,4 @@
-//! The file of a study: plain structs, read strictly.
+//! The file of a study. Unknown keys are refused.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -9,38 +9,38 @@ use serde_json::Value;
 use super::StudyError;
 use crate::scene::input_file;
 
-/// A study: what is run, how often, and what is drawn of it.
+/// A study: its cases, their repeats, and the pictures.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Study {
-    /// One line that names it.
+    /// Title, one line.
     pub title: String,
-    /// What it asks.
+    /// Purpose of the study.
     #[serde(default)]
     pub description: String,
-    /// The scene's file, relative to that of the study.
+    /// Scene file, relative to the file of the study.
     pub scene: PathBuf,
-    /// Overrides of all cases: path of a key and its value.
+    /// Overrides for all cases: path of a key and its value.
     #[serde(default)]
     pub set: BTreeMap<String, Value>,
-    /// What is swept; the cases are all combinations, the last changing fastest.
-    pub sweep: Vec<Axis>,
-    /// Combinations that are left out: the labels of each.
+    /// Axes of the sweep. The cases are all combinations; the last axis changes fastest.
+    pub sweep: Vec<StudyAxis>,
+    /// Combinations to leave out, given by their labels.
     #[serde(default)]
     pub leave_out: Vec<BTreeMap<String, Value>>,
-    /// How often each case is run, all cases in turn: seconds are medians.
+    /// Number of runs of each case; the whole sweep is repeated. Times are medians.
     #[serde(default = "one")]
     pub repeats: usize,
-    /// Wall time after which a run is ended and counts as failed \[s\].
+    /// Wall time after which a run is stopped and counts as failed \[s\].
     #[serde(default = "ten_minutes")]
     pub limit_seconds: f64,
     /// Pictures.
     #[serde(default)]
     pub pictures: Vec<Picture>,
-    /// What others reach, measured elsewhere.
+    /// Results of other codes, measured elsewhere.
     #[serde(default)]
     pub peers: Vec<Peer>,
-    /// The list of cheapest choices.
+    /// List of cheapest choices.
     #[serde(default)]
     pub choices: Option<Choices>,
 }
@@ -53,18 +53,18 @@ fn ten_minutes() -> f64 {
     600.0
 }
 
-/// What is swept: one key over `values`, or named variations of several keys at once.
+/// One axis of a sweep: `values` of one key, or named variations of several keys at once.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(untagged, deny_unknown_fields)]
-pub enum Axis {
-    /// One key, or `run.ranks` and `run.threads`.
+pub enum StudyAxis {
+    /// One key; `run.ranks` and `run.threads` are allowed too.
     Key {
-        /// Its path, which is the name of its label too.
+        /// Path of the key, also the name of its label.
         key: String,
         /// Its values.
         values: Vec<Value>,
     },
-    /// Variations of several keys.
+    /// Named variations of several keys.
     Variations {
         /// Name of the label.
         name: String,
@@ -77,9 +77,9 @@ pub enum Axis {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Variation {
-    /// Its label.
+    /// Value of the label.
     pub name: String,
-    /// Paths of keys and their values, put in after those of all cases.
+    /// Paths of keys and their values, applied after those of all cases.
     pub set: BTreeMap<String, Value>,
 }
 
@@ -89,94 +89,94 @@ pub struct Variation {
 pub enum Picture {
     /// Curves over a cost or a key.
     Curves(CurvesPicture),
-    /// A map over two keys.
+    /// Colour map over two keys.
     Map(MapPicture),
 }
 
-/// Curves, a panel an error.
+/// Curves, one panel per error.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CurvesPicture {
-    /// Name of its files.
+    /// File name, without extension.
     pub name: String,
-    /// The line at the top.
+    /// Title of the picture.
     pub title: String,
-    /// A label or a number of [`super::Row::number`].
+    /// A label or a number of [`super::StudyRow::number`].
     pub x: String,
-    /// Errors, a panel each.
+    /// Errors, one panel each.
     pub y: Vec<String>,
     /// Time of the profile whose errors are shown \[s\].
     pub time: f64,
-    /// The labels that tell one curve from the next.
+    /// Labels that distinguish the curves.
     #[serde(default)]
     pub series: Vec<String>,
-    /// Rows that are shown: their labels; all where empty.
+    /// Labels of the rows to show; if empty, all rows.
     #[serde(default)]
     pub only: BTreeMap<String, Value>,
-    /// Mark the rows that none beats in both x and y.
+    /// Marks the Pareto front, the rows that no other row beats in both x and y.
     #[serde(default)]
     pub front: bool,
-    /// Write the observed order, the slope over x, beside the curves.
+    /// Writes the observed order, the slope over x, beside the curves.
     #[serde(default)]
     pub order: bool,
-    /// Show the peers.
+    /// Shows the results of other codes.
     #[serde(default)]
     pub peers: bool,
 }
 
-/// A number over two keys as colour.
+/// An error over two keys, drawn as colour.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MapPicture {
-    /// Name of its files.
+    /// File name, without extension.
     pub name: String,
-    /// The line at the top.
+    /// Title of the picture.
     pub title: String,
-    /// Label along x.
+    /// Label of the x axis.
     pub x: String,
-    /// Label upwards.
+    /// Label of the y axis.
     pub y: String,
-    /// The error that is shown, by size.
+    /// Error to show, as absolute value.
     pub value: String,
     /// Time of the profile \[s\].
     pub time: f64,
-    /// Places that are named: text, x, y.
+    /// Marked points: text, x, y.
     #[serde(default)]
     pub marks: Vec<(String, f64, f64)>,
-    /// Values beyond this are drawn like it \[in the error's unit\].
+    /// Upper limit of the colour scale; larger values get the same colour \[in the error's unit\].
     #[serde(default)]
     pub most: Option<f64>,
-    /// Rows that are shown.
+    /// Labels of the rows to show; if empty, all rows.
     #[serde(default)]
     pub only: BTreeMap<String, Value>,
 }
 
-/// What another code reaches, measured elsewhere.
+/// Result of another code, measured elsewhere.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Peer {
-    /// Its name and settings.
+    /// Name and settings of the code.
     pub name: String,
-    /// User CPU seconds of the run.
+    /// User CPU time of the run \[s\].
     pub seconds: f64,
-    /// Errors: by name, pairs of time \[s\] and error.
+    /// Errors by name: pairs of time \[s\] and error.
     pub errors: BTreeMap<String, Vec<[f64; 2]>>,
 }
 
-/// Errors wanted, for each of which the cheapest row is listed.
+/// Target errors, for which the cheapest rows are listed.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Choices {
-    /// The error.
+    /// Name of the error.
     pub error: String,
     /// Time of the profile \[s\].
     pub time: f64,
-    /// Sizes wanted.
+    /// Target values.
     pub wanted: Vec<f64>,
 }
 
 impl Study {
-    /// Reads a study's file; paths in it become relative to here.
+    /// Reads the file of a study; makes its paths relative to the current directory.
     pub fn read(path: &Path) -> Result<Study, StudyError> {
         let fail = |reason: String| StudyError::Study { file: path.display().to_string(), reason };
         let text = input_file::read_text(path, input_file::LARGEST_JSON)
@@ -189,9 +189,9 @@ impl Study {
         Ok(study)
     }
 
-    /// Names of the labels of its rows, in the order of the sweep.
+    /// Names of the labels, in the order of the sweep.
     pub fn labels(&self) -> Vec<&str> {
-        self.sweep.iter().map(Axis::name).collect()
+        self.sweep.iter().map(StudyAxis::name).collect()
     }
 
     fn check(&self) -> Result<(), String> {
@@ -233,12 +233,12 @@ impl Study {
     }
 }
 
-impl Axis {
-    /// Name of its label.
+impl StudyAxis {
+    /// Name of the label.
     pub fn name(&self) -> &str {
         match self {
-            Axis::Key { key, .. } => key,
-            Axis::Variations { name, .. } => name,
+            StudyAxis::Key { key, .. } => key,
+            StudyAxis::Variations { name, .. } => name,
         }
     }
 }

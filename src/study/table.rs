@@ -1,11 +1,11 @@
-//! The table of a study as CSV: one row a case, failed ones with their reason.
+//! The table of a study as CSV: one row per case; failed cases have the reason of the failure.
 
-use super::Row;
+use super::StudyRow;
 use super::row::ERRORS;
 use super::spec::Study;
 
-/// The table. Times are written in the heads of the columns \[us\].
-pub fn csv(study: &Study, rows: &[Row]) -> String {
+/// The table as CSV. Column heads contain the profile time \[us\].
+pub fn csv(study: &Study, rows: &[StudyRow]) -> String {
     let mut times: Vec<f64> = rows
         .iter()
         .filter_map(|row| row.record.measured.as_ref())
@@ -82,7 +82,7 @@ fn number(value: Option<f64>) -> String {
     value.map_or(String::new(), |v| format!("{v:e}"))
 }
 
-/// A text in quotes where CSV asks for it.
+/// A field, quoted if CSV requires it.
 fn field(text: &str) -> String {
     match text.contains([',', '"', '\n']) {
         true => format!("\"{}\"", text.replace('"', "\"\"").replace('\n', " ")),

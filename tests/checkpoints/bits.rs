@@ -215,7 +215,7 @@ fn patches_at_rest() {
     let scene = small("flyer.json");
     let saved = whole::<1>(&checked(&scene), &[12]).1;
     let quiet = |skip: bool| {
-        let edit = json!({"domain": {"patches": [16]}, "decomposition": {"skip_quiet": skip}});
+        let edit = json!({"domain": {"patches": [16]}, "decomposition": {"skip_quiescent": skip}});
         gone_on::<1>(&checked(&with(&scene, &edit)), &saved[0], 2, 1)
     };
     assert_eq!(quiet(true), quiet(false));
@@ -226,7 +226,7 @@ fn patches_at_rest() {
 fn particles_of_another_scene() {
     let scene = checked(&small("flyer.json"));
     let mut saved = whole::<1>(&scene, &[3]).1.remove(0);
-    saved.rows.columns[0][5] *= 1.5;
+    saved.particles.columns[0][5] *= 1.5;
     let errors = run_ranks(2, |comm| {
         let mut run = Simulation::<1>::new(&scene, comm, 1).unwrap();
         run.restore((comm.rank() == 0).then_some(&saved)).unwrap_err().to_string()

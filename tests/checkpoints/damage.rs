@@ -3,13 +3,13 @@
 use std::fs;
 use std::path::Path;
 
-use decomp::{Census, StoredRows};
+use decomp::{Census, StoredParticles};
 use flyer_mpm::driver::checkpoint::seal::HEAD;
 use flyer_mpm::driver::checkpoint::{
     Checkpoint, CheckpointError, Contents, Due, StateColumn, file, folder,
 };
 use flyer_mpm::driver::figures::PressureRow;
-use flyer_mpm::driver::output::histories::Histories;
+use flyer_mpm::driver::output::histories::HistoryTable;
 use flyer_mpm::driver::output::origin::{Origin, RUN};
 use flyer_mpm::simulation::Saved;
 use flyer_mpm::simulation::monitor::Peaks;
@@ -32,7 +32,7 @@ fn example() -> Checkpoint {
         columns: vec![named("x", &[0.1, -0.0, 3.0]), named("y", &[1.0, f64::MIN_POSITIVE, -3.0])],
         half_edges: vec![[[1.0, 2.0], [3.0, 4.0]]; 3],
     };
-    let mut histories = Histories::new([("time", "s"), ("interface_x", "m")]);
+    let mut histories = HistoryTable::new([("time", "s"), ("interface_x", "m")]);
     histories.push(&[0.0, 0.1]);
     histories.push(&[1e-9, 1.0 / 3.0]);
     let mut checkpoint = Checkpoint {
@@ -46,10 +46,10 @@ fn example() -> Checkpoint {
             stable: f64::INFINITY,
             longest: 1.0 / 3.0,
             redone_steps: 5,
-            left: Census { rows: 3, marks: u64::MAX - 5 },
+            left: Census { particles: 3, marks: u64::MAX - 5 },
             sums: vec![i128::MIN, -1, 0, i128::MAX],
-            peaks: Peaks::of([1.5, 2e6, 0.1 + 0.2, 1.0 / 3.0, 0.0]),
-            rows: StoredRows {
+            peaks: Peaks::of([1.5, 2e6, 0.1 + 0.2, 1.0 / 3.0, 0.0, 0.7 / 3.0, 1e-3]),
+            particles: StoredParticles {
                 ids: vec![0, 3, u64::MAX],
                 cells: vec![0, 1, 2, 3, -4, i32::MAX],
                 columns: vec![vec![1.0, -0.0, 5e-324], vec![f64::MAX, 0.1, -1e-300]],
@@ -105,14 +105,14 @@ fn all_comes_back() {
     let back = file::read(&path).unwrap();
     assert_eq!(back, example());
     let bits = |c: &Checkpoint| -> Vec<u64> {
-        c.saved.rows.columns.iter().flatten().map(|v| v.to_bits()).collect()
+        c.saved.particles.columns.iter().flatten().map(|v| v.to_bits()).collect()
     };
     assert_eq!(bits(&back), bits(&example()));
     // nothing in it depends on the clock or the place
     assert!(written(&home.path().join("d.hdf5")) == bytes);
     let mut empty = example();
     empty.record = Default::default();
-    empty.saved.rows = StoredRows { columns: vec![vec![]; 2], ..Default::default() };
+    empty.saved.particles = StoredParticles { columns: vec![vec![]; 2], ..Default::default() };
     file::write(&path, &contents(&empty), &|| {}).unwrap();
     assert_eq!(file::read(&path).unwrap(), empty);
 }
@@ -176,7 +176,7 @@ fn another_format_is_refused_in_words() {
     file::write_as(&path, &contents(&example()), &|| {}, 7).unwrap();
     let error = file::read(&path).unwrap_err().to_string();
     let version = env!("CARGO_PKG_VERSION");
-    for words in ["format 7", &format!("version {version}"), "reads format 1", "c.hdf5"] {
+    for words in ["format 7", &format!("version {version}"), "reads format 2", "c.hdf5"] {
         assert!(error.contains(words), "{error}");
     }
     assert!(!error.contains('\n'));

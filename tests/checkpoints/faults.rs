@@ -1,44 +1,29 @@
 //! Faults of the machine leave what was good, and say what to do.
 
 use std::fs;
-use std::io::Read;
-use std::os::unix::fs::OpenOptionsExt;
 use std::process::Command;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+#[cfg(feature = "mpi")]
 use std::time::{Duration, Instant};
-
-use nix::fcntl::OFlag;
 
 use crate::home::{Home, names};
 use crate::program::signal;
 use crate::restarts::{recorded, same};
-use crate::stops::{fifo, wait};
+use crate::stops::Unheard;
 
 #[test]
 fn the_second_run_into_a_folder_is_refused() {
     let home = Home::with(&recorded(20));
     let whole = home.run("output/scene", &[]);
     fs::remove_dir_all(home.at("output")).unwrap();
-    fifo(&home, "fifo");
-    let mut first = home.call(["scene.json", "--quiet", "--trace", "fifo"]).start();
-    wait(&mut first, || home.at("output/.scene.flyer.lock").exists());
-    let process = format!("process {} on ", first.id());
+    let first = Unheard::start(&home);
+    let process = format!("process {} on ", first.run.id());
     for _ in 0..2 {
         let second = home.call(["scene.json", "--quiet"]).end();
         second.failed(&["output/scene: ", &process, "another --output"]);
         assert_eq!(second.status.code(), Some(2));
     }
     // the first goes on as if nothing had been
-    let reader = fs::File::open(home.at("fifo")).unwrap();
-    let mut trace = Vec::new();
-    std::thread::scope(|scope| {
-        scope.spawn(|| {
-            // its timeline comes by the fifo, at its check and at its end
-            let _ = std::io::copy(&mut &reader, &mut trace);
-            let _ = std::io::copy(&mut fs::File::open(home.at("fifo")).unwrap(), &mut trace);
-        });
-        assert_eq!(first.end().succeeded(), "");
-    });
+    first.end().succeeded();
     same(&home.results("output/scene"), &whole);
     assert_eq!(names(&home.at("output")), ["scene", "scene.checkpoints"]);
 }
@@ -46,13 +31,10 @@ fn the_second_run_into_a_folder_is_refused() {
 #[test]
 fn a_killed_run_holds_nobody_up() {
     let home = Home::with(&recorded(20));
-    fifo(&home, "fifo");
-    let mut run = home.call(["scene.json", "--quiet", "--trace", "fifo"]).start();
-    let lock = home.at("output/.scene.flyer.lock");
-    wait(&mut run, || lock.exists());
-    signal("-KILL", run.id());
+    let run = Unheard::start(&home);
+    signal("-KILL", run.run.id());
     assert!(!run.end().status.success());
-    assert!(lock.exists());
+    assert!(home.at("output/.scene.flyer.lock").exists());
     home.run("output/scene", &[]);
     assert_eq!(names(&home.at("output")), ["scene", "scene.checkpoints"]);
 }
@@ -87,28 +69,9 @@ fn a_full_disk_leaves_the_last_good_checkpoint() {
 
 /// Lets a run begin, does something to its folder, and lets it go on; how it ends.
 fn while_it_runs(home: &Home, what: impl FnOnce()) -> crate::program::Ended {
-    fifo(home, "fifo");
-    let mut run = home.call(["scene.json", "--quiet", "--trace", "fifo"]).start();
-    wait(&mut run, || home.at("output/.scene.flyer.lock").exists());
+    let run = Unheard::start(home);
     what();
-    let ended = AtomicBool::new(false);
-    std::thread::scope(|scope| {
-        scope.spawn(|| {
-            // its timeline comes by the fifo, at its check and at its end if it comes to that
-            let mut options = fs::OpenOptions::new();
-            options.read(true).write(true).custom_flags(OFlag::O_NONBLOCK.bits());
-            let mut fifo = options.open(home.at("fifo")).unwrap();
-            let (mut timeline, since) = ([0; 4096], Instant::now());
-            while !ended.load(Relaxed) && since.elapsed() < Duration::from_secs(90) {
-                if fifo.read(&mut timeline).is_err() {
-                    std::thread::sleep(Duration::from_millis(2));
-                }
-            }
-        });
-        let end = run.end();
-        ended.store(true, Relaxed);
-        end
-    })
+    run.end()
 }
 
 /// A folder that vanishes is made anew, and the results are whole.

@@ -214,7 +214,7 @@ where
     }
     let ends = run_ranks(ranks, |comm| match of_rank::<D>(scene, comm) {
         // one rank alone knows of it, and ends all in the program
-        Err(RunError::Row(error)) => panic!("{LOST}{error}"),
+        Err(RunError::Exchange(error)) => panic!("{LOST}{error}"),
         end => end,
     });
     let failed = ends.iter().filter(|end| end.is_err()).count();

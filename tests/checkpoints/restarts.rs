@@ -167,7 +167,7 @@ fn what_may_not_change_after_the_start_is_refused() {
     for (set, fragments) in [
         (
             "bodies.flyer.velocity=[900]",
-            vec!["--set bodies.flyer", "cannot change after", "time, watch, o"],
+            vec!["--set bodies.flyer", "cannot change after", "time, monitor, o"],
         ),
         ("domain.cell_size=1e-6", vec!["cannot change after", "domain.patches"]),
         ("domain={}", vec!["cannot change after", "domain.patches"]),

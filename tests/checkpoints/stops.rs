@@ -1,12 +1,14 @@
 //! A signal, or the end of the wall time, ends a run in good order.
 
+use std::io::{PipeReader, Write};
 use std::os::unix::process::ExitStatusExt;
 use std::time::{Duration, Instant};
 
+use nix::fcntl::{FcntlArg, fcntl};
 use serde_json::json;
 
 use crate::home::Home;
-use crate::program::{Started, signal};
+use crate::program::{Ended, Started, signal};
 use crate::restarts::{recorded, same};
 
 /// Waits until something holds; the run must go on meanwhile.
@@ -20,11 +22,33 @@ pub fn wait(run: &mut Started, holds: impl Fn() -> bool) {
     }
 }
 
-/// A fifo, for which a run waits before its first step: until it is opened it holds its lock, and
-/// notes signals.
-pub fn fifo(home: &Home, name: &str) {
-    let made = std::process::Command::new("mkfifo").arg(home.at(name)).status().unwrap();
-    assert!(made.success());
+/// A run that waits with its first line, before its first step, until somebody hears it: it holds
+/// its lock, and notes signals.
+pub struct Unheard {
+    pub run: Started,
+    said: PipeReader,
+}
+
+impl Unheard {
+    /// A run of the scene of `home`; it has taken its lock.
+    #[track_caller]
+    pub fn start(home: &Home) -> Unheard {
+        let (said, mut pipe) = std::io::pipe().unwrap();
+        // a full pipe takes nothing more
+        let room = fcntl(&pipe, FcntlArg::F_GETPIPE_SZ).unwrap();
+        pipe.write_all(&vec![b'\n'; room as usize]).unwrap();
+        let mut run = home.call(["scene.json"]).stderr(pipe).start();
+        wait(&mut run, || home.at("output/.scene.flyer.lock").exists());
+        Unheard { run, said }
+    }
+
+    /// Hears it, and waits for its end.
+    #[track_caller]
+    pub fn end(mut self) -> Ended {
+        let hearer = std::thread::spawn(move || std::io::read_to_string(&mut self.said).unwrap());
+        let ended = self.run.end();
+        Ended { stderr: hearer.join().unwrap().trim_start().into(), ..ended }
+    }
 }
 
 #[test]
@@ -58,9 +82,7 @@ fn a_signal_writes_a_checkpoint_and_ends_the_run() {
 #[test]
 fn a_second_signal_ends_it_at_once() {
     let home = Home::with(&recorded(5));
-    fifo(&home, "fifo");
-    let mut run = home.call(["scene.json", "--quiet", "--trace", "fifo"]).start();
-    wait(&mut run, || home.at("output/.scene.flyer.lock").exists());
+    let Unheard { mut run, said: _said } = Unheard::start(&home);
     signal("-TERM", run.id());
     std::thread::sleep(Duration::from_millis(600));
     assert!(run.runs(), "the first signal waits for a step");

@@ -1,10 +1,11 @@
-//! Few combinations of many factors in which every pair of values occurs (pairwise covering).
+//! Pairwise covering: a small set of combinations of many factors in which every pair of values
+//! occurs.
 
-/// Combinations, each with one value for each factor, such that every pair of values of any two
-/// factors is in one of them; factor `k` has values 0 to `levels[k]` - 1.
+/// Combinations, each with one value per factor, such that every pair of values of any two factors
+/// occurs in at least one of them. Factor `k` has the values 0 to `levels[k]` - 1.
 ///
-/// Greedy: a combination starts from a pair that is missing, and each further factor takes the
-/// value that brings in most missing pairs. No factor may be without values.
+/// Greedy: a combination starts from a missing pair, and each further factor takes the value that
+/// adds the most missing pairs. Every factor must have at least one value.
 pub fn pairwise(levels: &[usize]) -> Vec<Vec<usize>> {
     let mut missing = Missing::all(levels);
     let mut combinations = Vec::new();
@@ -15,7 +16,7 @@ pub fn pairwise(levels: &[usize]) -> Vec<Vec<usize>> {
         }
         for factor in 0..levels.len() {
             if chosen[factor].is_none() {
-                // where several are as good they take turns, or some would hardly occur
+                // values that are equally good alternate, otherwise some would hardly occur
                 let turns = (0..levels[factor]).map(|v| (v + combinations.len()) % levels[factor]);
                 chosen[factor] = turns.max_by_key(|&v| missing.brought_in(factor, v, &chosen));
             }
@@ -37,8 +38,8 @@ pub fn product(levels: &[usize]) -> Vec<Vec<usize>> {
     all
 }
 
-/// Pairs of values that no combination has yet; a pair is two of (factor, value), the lower factor
-/// first.
+/// Pairs of values that do not occur in any combination yet; a pair is two of (factor, value), the
+/// lower factor first.
 struct Missing(std::collections::BTreeSet<[(usize, usize); 2]>);
 
 impl Missing {
@@ -54,7 +55,7 @@ impl Missing {
         self.0.first().copied()
     }
 
-    /// Missing pairs that a value has with those chosen so far.
+    /// Number of missing pairs of a value with those chosen so far.
     fn brought_in(&self, factor: usize, value: usize, chosen: &[Option<usize>]) -> usize {
         let others = chosen.iter().enumerate().filter_map(|(k, v)| Some((k, (*v)?)));
         others.filter(|&other| self.0.contains(&ordered(other, (factor, value)))).count()
@@ -103,7 +104,7 @@ mod tests {
             assert!(chosen.iter().all(|c| c.len() == levels.len()));
             assert!(chosen.iter().flat_map(|c| c.iter().zip(levels)).all(|(v, n)| v < n));
         }
-        // no fewer than the 25 pairs of the first two
+        // at least the 25 pairs of the first two factors
         let count = pairwise(LEVELS[0]).len();
         assert!((25..=28).contains(&count), "{count}");
     }

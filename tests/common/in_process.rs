@@ -1,4 +1,4 @@
-//! Runs on any layout within this process: ranks are threads, nothing is written.
+//! Runs on any layout within this process: ranks are threads, and nothing is written.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -10,11 +10,11 @@ use serde_json::Value;
 use super::layouts::Layout;
 use super::scenes::with;
 
-/// What may not depend on the layout: digest of the last state, number of steps, and the sums that
-/// a run prints; or the message that it ends with.
+/// Result that must not depend on the layout: digest of the final state, number of steps, and the
+/// sums that a run prints; or its error message.
 pub type End = Result<String, String>;
 
-/// The end of a scene on a layout. A scene that is refused is refused by all layouts.
+/// Result of a scene on a layout. A scene that is rejected is rejected by all layouts.
 pub fn end_of(scene: &Value, layout: &Layout) -> End {
     let scene = with(scene, &layout.keys());
     let scene = scene::parse(scene.to_string().as_bytes(), "scene.json", &[])
@@ -29,11 +29,11 @@ pub fn end_of(scene: &Value, layout: &Layout) -> End {
     ends.into_iter().next().expect("rank 0").map_err(|error| error.to_string())
 }
 
-/// A rank's part; rank 0 tells of the end. Collective.
+/// Run of one rank; rank 0 returns the digest. Collective.
 fn run(scene: &CheckedScene, comm: &dyn decomp::Comm, threads: usize) -> Result<String, RunError> {
-    // a fault that one rank alone knows of ends all, as it ends the program
+    // an error known to only one rank ends all ranks, as it ends the program
     let alone = |error| match error {
-        RunError::Row(error) => panic!("{error}"),
+        RunError::Exchange(error) => panic!("{error}"),
         error => error,
     };
     let mut simulation = Simulation::<1>::new(scene, comm, threads).map_err(alone)?;

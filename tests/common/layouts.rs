@@ -1,4 +1,4 @@
-//! Layouts: how a scene's work is shared. None of them may change a bit of the results.
+//! Layouts: distributions of the work of a scene. No layout may change a bit of the results.
 
 use std::fmt;
 
@@ -6,24 +6,24 @@ use serde_json::{Value, json};
 
 use super::covering::{pairwise, product};
 
-/// How the work of a run is shared.
+/// Distribution of the work of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layout {
-    /// Ranks.
+    /// Number of ranks.
     pub ranks: usize,
-    /// Patches.
+    /// Number of patches.
     pub patches: usize,
-    /// Threads of each rank.
+    /// Threads per rank.
     pub threads: usize,
-    /// Steps between two looks at the balance of loads.
+    /// Steps between load measurements.
     pub every: u64,
-    /// What counts as a patch's load.
+    /// Measure of a patch's load.
     pub cost: &'static str,
-    /// Whether patches at rest are left out.
-    pub skip_quiet: bool,
-    /// Whether inner patches are computed while messages are on their way.
+    /// Whether quiescent patches are skipped.
+    pub skip_quiescent: bool,
+    /// Whether inner patches are computed while messages are in transit.
     pub overlap: bool,
-    /// How filters get what lies beyond a patch; absent: as the program chooses.
+    /// Ghost data for filters; `None`: chosen by the program.
     pub filter_halo: Option<&'static str>,
 }
 
@@ -33,25 +33,25 @@ const THREADS: [usize; 2] = [1, 2];
 const EVERY: [u64; 2] = [0, 7];
 const SWITCH: [bool; 2] = [false, true];
 
-/// What counts as a load.
+/// Measures of a patch's load.
 pub const COSTS: [&str; 2] = ["time", "particles"];
 
-/// Ways of a filter.
-pub const HALOS: [Option<&str>; 3] = [None, Some("exchange"), Some("deep")];
+/// Choices of ghost data for filters.
+pub const HALOS: [Option<&str>; 3] = [None, Some("exchange"), Some("redundant")];
 
-/// Numbers of values of each factor: ranks, patches, threads, balance, skipping, overlap, cost and
+/// Number of values of each factor: ranks, patches, threads, balance, skipping, overlap, cost and
 /// filter.
 const LEVELS: [usize; 8] = [5, 5, 2, 2, 2, 2, 2, 3];
 
 impl Layout {
-    /// The simplest: what all others are held against.
+    /// The simplest layout, with which all others are compared.
     pub const WHOLE: Layout = Layout {
         ranks: 1,
         patches: 1,
         threads: 1,
         every: 0,
         cost: "time",
-        skip_quiet: false,
+        skip_quiescent: false,
         overlap: false,
         filter_halo: Some("exchange"),
     };
@@ -66,13 +66,13 @@ impl Layout {
             threads: THREADS[threads],
             every: EVERY[every],
             cost: COSTS[cost],
-            skip_quiet: SWITCH[skip],
+            skip_quiescent: SWITCH[skip],
             overlap: SWITCH[overlap],
             filter_halo: HALOS[halo],
         }
     }
 
-    /// Some thirty layouts in which every pair of values of any two factors occurs.
+    /// About thirty layouts in which every pair of values of any two factors occurs.
     pub fn covering() -> Vec<Layout> {
         pairwise(&LEVELS).iter().map(|values| Layout::of(values)).collect()
     }
@@ -87,11 +87,11 @@ impl Layout {
         product(&LEVELS[..6]).iter().map(alternating).collect()
     }
 
-    /// The keys of a scene that set it; ranks and threads are set elsewhere.
+    /// The keys of a scene for this layout; ranks and threads are set elsewhere.
     pub fn keys(&self) -> Value {
         let mut decomposition = json!({
             "balance": {"every": self.every, "cost": self.cost},
-            "skip_quiet": self.skip_quiet,
+            "skip_quiescent": self.skip_quiescent,
             "overlap": self.overlap,
         });
         if let Some(halo) = self.filter_halo {
@@ -108,7 +108,7 @@ impl fmt::Display for Layout {
         if self.every > 0 {
             write!(f, ", balanced every {} by {}", self.every, self.cost)?;
         }
-        for (is, what) in [(self.skip_quiet, "skipping"), (self.overlap, "overlap")] {
+        for (is, what) in [(self.skip_quiescent, "skipping"), (self.overlap, "overlap")] {
             if is {
                 write!(f, ", {what}")?;
             }
@@ -125,9 +125,10 @@ mod tests {
     fn the_covering_has_the_extremes() {
         let covering = Layout::covering();
         assert!(covering.len() <= 28, "{}", covering.len());
-        // ranks that own nothing, and all that moves patches
+        // ranks that own nothing, and every option that moves patches
         assert!(covering.iter().any(|l| l.ranks == 7 && l.patches == 1));
-        let moving = |l: &&Layout| l.every > 0 && l.skip_quiet && l.ranks > 1 && l.patches >= 16;
+        let moving =
+            |l: &&Layout| l.every > 0 && l.skip_quiescent && l.ranks > 1 && l.patches >= 16;
         assert!(covering.iter().any(|l| moving(&l)));
     }
 
@@ -142,7 +143,7 @@ mod tests {
 
     #[test]
     fn a_layout_is_told_in_words() {
-        let text = Layout { every: 7, skip_quiet: true, ..Layout::WHOLE }.to_string();
+        let text = Layout { every: 7, skip_quiescent: true, ..Layout::WHOLE }.to_string();
         let words = "1 ranks x 1 patches x 1 threads, balanced every 7 by time, skipping, ";
         assert_eq!(text, format!("{words}halo exchange"));
     }

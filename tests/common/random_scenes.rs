@@ -1,4 +1,4 @@
-//! Scenes drawn at random: bodies, sides and schemes on a line.
+//! Random scenes in one dimension: bodies, sides and schemes.
 
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -6,22 +6,22 @@ use serde_json::{Value, json};
 
 use super::scenes::SHAPES;
 
-/// Size of a cell [m].
+/// Cell size [m].
 pub const CELL: f64 = 1e-5;
 
-/// A body: free cells before it, its length [cells], velocity [m/s], material, particles a cell.
+/// A body: empty cells before it, its length [cells], velocity [m/s], material, particles per cell.
 type Lump = (f64, f64, f64, &'static str, usize);
 
 fn lump() -> impl Strategy<Value = Lump> {
     let gap = prop_oneof![Just(0.0), 0.0..12.0];
     let length = prop_oneof![Just(6.0), 1.0..30.0];
-    // half of them rest, so that patches sleep
+    // half of the bodies are at rest, so that patches are quiescent
     let velocity = prop_oneof![4 => Just(0.0), 3 => -900.0..900.0, 1 => -3000.0..3000.0];
     let material = select(&["copper", "aluminium", "aluminium", "gas"][..]);
     (gap, length, velocity, material, 1usize..=3)
 }
 
-/// Boxes one after the other, as many as there is room for.
+/// Boxes in a row, as many as fit into the domain.
 fn bodies(cells: usize, lumps: &[Lump]) -> Vec<Value> {
     let (mut bodies, mut at) = (Vec::new(), 0.0);
     for (k, &(gap, length, velocity, material, particles)) in lumps.iter().enumerate() {
@@ -64,7 +64,7 @@ fn transfer() -> impl Strategy<Value = Value> {
     ]
 }
 
-/// A scheme with what its transfer and stepping allow of the options asked for.
+/// A scheme with those of the drawn options that its transfer and stepping support.
 pub fn method() -> impl Strategy<Value = Value> {
     let update = select(&["last", "first", "modified_last"][..]);
     let relaxation = select(&[0u32, 1, 3][..]);
@@ -104,10 +104,10 @@ pub fn viscosity() -> impl Strategy<Value = Value> {
     prop_oneof![1 => Just(json!(null)), 4 => some]
 }
 
-/// A scene; its check may refuse it.
+/// A scene, which the check may reject.
 pub fn scene() -> impl Strategy<Value = Value> {
     let lumps = prop::collection::vec(lump(), 1..=4);
-    // some forty to two hundred steps
+    // about 40 to 200 steps
     let end = 2e-8..8e-8;
     let parts = (20usize..=80, lumps, boundary(), method(), viscosity(), end);
     parts.prop_map(|(cells, lumps, boundary, method, viscosity, end)| {

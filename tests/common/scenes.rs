@@ -1,14 +1,14 @@
-//! Scenes to edit: shipped ones, cut small, with every scheme.
+//! Scenes for tests: shipped ones, reduced in size, with every scheme.
 
 use std::path::Path;
 
 use serde_json::{Value, json};
 
-/// Shape functions, all of them.
+/// All shape functions.
 pub const SHAPES: [&str; 6] =
     ["linear", "gimp", "cpdi", "bspline_quadratic", "bspline_cubic", "cpdi_bspline_quadratic"];
 
-/// A shipped scene, to be edited; without histories.
+/// A shipped scene to be edited, without histories.
 pub fn shipped(name: &str) -> Value {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs").join(name);
     let mut value: Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
@@ -16,8 +16,8 @@ pub fn shipped(name: &str) -> Value {
     value
 }
 
-/// Puts `edit` into `value`: objects key by key, anything else as a whole; null takes a key out.
-/// A choice that is an object of one key, such as a transfer, is replaced as a whole.
+/// Merges `edit` into `value`: objects key by key, other values as a whole; null removes a key. A
+/// choice given as an object with one key, such as a transfer, is replaced as a whole.
 pub fn merge(value: &mut Value, edit: &Value) {
     let Value::Object(edits) = edit else {
         *value = edit.clone();
@@ -45,13 +45,13 @@ pub fn with(value: &Value, edit: &Value) -> Value {
     value
 }
 
-/// Sets the end of a scene [s], with its one profile there.
+/// Sets the end of a scene [s], with a single profile at that time.
 pub fn ending(value: &mut Value, end: f64) {
     value["time"]["end"] = json!(end);
     value["output"]["profiles"]["times"] = json!([end]);
 }
 
-/// A plate of 12 cells on 70 cells of target: within 0.05 us all waves are out.
+/// A plate of 12 cells on a target of 70 cells: all waves have left within 0.05 us.
 pub fn small(name: &str) -> Value {
     let mut value = shipped(name);
     value["domain"]["lower"] = json!([-0.0002]);
@@ -62,7 +62,7 @@ pub fn small(name: &str) -> Value {
     value
 }
 
-/// `small` with mid-point steps and all that this transfer allows.
+/// `small` with mid-point steps and all options that this transfer supports.
 pub fn small_midpoint(shape: &str, transfer: &Value) -> Value {
     let mut value = small("flyer.json");
     let (fmpm, plain) = (transfer.get("fmpm").is_some(), transfer == "apic");

@@ -1,6 +1,6 @@
-//! Valid scenes drawn at random over all that a scene may ask for: line, plane and axis, every
+//! Random valid scenes over all options of a scene: one dimension, plane and axisymmetric; every
 //! shape function, transfer, stepping, energy, frame, contact, side and material model; cold and
-//! hot bodies, bodies that start in tension or under pressure, conduction at rest.
+//! hot bodies, bodies in initial tension or pressure, conduction at rest.
 
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -8,15 +8,15 @@ use serde_json::{Map, Value, json};
 
 use crate::random_scenes;
 
-/// Size of a cell [m].
+/// Cell size [m].
 const CELL: f64 = 1e-4;
 
-/// A material and what a body of it may start with.
+/// A material and the range of initial states of a body of it.
 #[derive(Clone, Debug)]
 struct Choice {
     name: &'static str,
     value: Value,
-    /// Least and greatest pressure of the start [Pa].
+    /// Smallest and largest initial pressure [Pa].
     pressure: [f64; 2],
     /// Whether it has a temperature.
     thermal: bool,
@@ -36,7 +36,7 @@ fn metal(extra: Value) -> Value {
     value
 }
 
-/// Every kind of material that the scene format has.
+/// Every kind of material in the scene format.
 fn materials() -> Vec<Choice> {
     let thermal = json!({"specific_heat": 385.0, "reference_temperature": 300.0});
     let conducting =
@@ -76,7 +76,7 @@ fn materials() -> Vec<Choice> {
         material(
             "stiff_gas",
             [0.0, 1e8],
-            json!({"density": 1000.0, "eos": {"type": "stiffened_gas", "gamma": 4.4, "stiffness": 6e8}}),
+            json!({"density": 1000.0, "eos": {"type": "stiffened_gas", "gamma": 4.4, "p_inf": 6e8}}),
         ),
         material(
             "tait",
@@ -90,6 +90,27 @@ fn materials() -> Vec<Choice> {
                 "type": "tait", "bulk_modulus": 2.2e9, "exponent": 7.15, "tension_cutoff": 1e7,
             }}),
         ),
+        material(
+            "noble_abel",
+            [0.0, 1e8],
+            json!({"density": 1057.0, "eos": {
+                "type": "noble_abel_stiffened_gas", "gamma": 1.19, "p_inf": 7028e5, "covolume": 6.61e-4,
+            }}),
+        ),
+        material(
+            "vinet",
+            [-1e9, 1e9],
+            json!({"density": 8930.0, "eos": {
+                "type": "vinet", "bulk_modulus": 138.6e9, "bulk_modulus_derivative": 4.96, "gamma0": 1.96,
+            }}),
+        ),
+        material(
+            "unreacted",
+            [0.0, 1e8],
+            json!({"density": 1895.0, "eos": {
+                "type": "davis_reactants", "a": 1800.0, "b": 4.6, "c": 0.34, "gamma0": 0.56,
+            }}),
+        ),
         material("products", [0.0, 0.0], json!({"library": "tnt", "eos": {"burn": "complete"}})),
         material(
             "pores",
@@ -99,7 +120,7 @@ fn materials() -> Vec<Choice> {
                 "solid": {"type": "mie_gruneisen", "c0": 3940.0, "s": 1.489, "gamma0": 1.96},
                 "solid_density": 8930.0,
                 "elastic_pressure": 0.1e9,
-                "compaction_pressure": 1.6e9,
+                "full_compaction_pressure": 1.6e9,
             }}),
         ),
         material(
@@ -119,13 +140,13 @@ fn materials() -> Vec<Choice> {
     ]
 }
 
-/// A share in [0, 1] of the way from `range[0]` to `range[1]`.
+/// The value at the fraction `share` in [0, 1] from `range[0]` to `range[1]`.
 fn between(range: [f64; 2], share: f64) -> f64 {
     range[0] + share * (range[1] - range[0])
 }
 
-/// What is drawn for one body: material, gap before it and length [cells], velocity [m/s], shares
-/// for pressure and temperature, whether each is given, particles per cell.
+/// Random choices for one body: material, gap before it and length [cells], velocity [m/s],
+/// fractions for pressure and temperature, whether each is given, particles per cell.
 type Draw = (usize, f64, f64, f64, (f64, f64), (bool, bool), usize);
 
 fn draw(calm: bool) -> impl Strategy<Value = Draw> {
@@ -143,7 +164,7 @@ fn draw(calm: bool) -> impl Strategy<Value = Draw> {
     )
 }
 
-/// Bodies one after the other along x, `across` cells wide.
+/// Bodies in a row along x, `across` cells wide.
 fn bodies(
     draws: &[Draw],
     cells: usize,
@@ -184,7 +205,7 @@ fn bodies(
     (json!(bodies), Value::Object(used))
 }
 
-/// A scheme, in either frame, with and without a limit on domains.
+/// A scheme in either frame, with and without a limit on particle domains.
 fn method() -> impl Strategy<Value = Value> {
     let options = (prop::bool::weighted(0.2), prop::bool::weighted(0.3));
     (random_scenes::method(), options).prop_map(|(mut method, (total, limit))| {
@@ -212,7 +233,7 @@ fn stable_method() -> Value {
     })
 }
 
-/// Sides for bodies that stand apart from them, and for bodies that touch them.
+/// Sides for bodies apart from them (`touch` false) or touching them.
 fn side(plane: bool, touch: bool) -> BoxedStrategy<Value> {
     let mut sides: Vec<Value> =
         ["free", "symmetry", "wall", "outflow", "outflow"].map(|side| json!(side)).to_vec();
@@ -225,7 +246,7 @@ fn side(plane: bool, touch: bool) -> BoxedStrategy<Value> {
     select(sides).boxed()
 }
 
-/// Where a scene takes place.
+/// Geometry of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Place {
     Line,
@@ -272,7 +293,7 @@ fn contact(place: Place) -> BoxedStrategy<Value> {
     select(all).boxed()
 }
 
-/// Leaves out what excludes another choice, or acts on nothing.
+/// Removes options that exclude another choice or have no effect.
 fn reconcile(scene: &mut Value, place: Place) {
     let elastic = |name: &Value| name == "hencky" || name == "rubber";
     let solids =
@@ -345,7 +366,7 @@ fn scene_at(place: Place, calm: bool, touch: bool) -> BoxedStrategy<Value> {
                 if place == Place::Axis {
                     domain["geometry"] = json!("axisymmetric");
                 }
-                // a sound wave of 4 km/s passes some ten to a hundred cells
+                // a sound wave of 4 km/s crosses about ten to a hundred cells
                 let end = end * if plane { 0.4e-6 } else { 1e-6 };
                 let mut scene = json!({
                     "title": "valid",
@@ -355,7 +376,7 @@ fn scene_at(place: Place, calm: bool, touch: bool) -> BoxedStrategy<Value> {
                     "materials": materials,
                     "bodies": bodies,
                     "boundary": boundary,
-                    "watch": {"above_limit": "reduce"},
+                    "monitor": {"on_courant_exceeded": "reduce"},
                 });
                 if !viscosity.is_null() {
                     scene["artificial_viscosity"] = viscosity;
@@ -374,12 +395,12 @@ fn place() -> impl Strategy<Value = Place> {
     prop_oneof![4 => Just(Place::Line), 2 => Just(Place::Plane), 1 => Just(Place::Axis)]
 }
 
-/// A scene; its check may refuse it where options exclude each other.
+/// A scene, which the check may reject if options exclude each other.
 pub fn scene() -> impl Strategy<Value = Value> {
     (place(), any::<bool>()).prop_flat_map(|(place, touch)| scene_at(place, false, touch))
 }
 
-/// A scene of slow bodies with a stable scheme and open sides, which nothing may end.
+/// A scene of slow bodies with a stable scheme and open sides, which no run-time check may end.
 pub fn calm_scene() -> impl Strategy<Value = Value> {
     place().prop_flat_map(|place| scene_at(place, true, false))
 }

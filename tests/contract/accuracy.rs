@@ -1,4 +1,4 @@
-//! Studies, a run's statement of its own errors, and plans.
+//! Studies, error estimates of a run, and plans.
 
 use std::time::SystemTime;
 
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::home::{Home, names};
 use crate::scenes::whole;
 
-/// A study of the small scene: two cell sizes, and a scheme that is refused.
+/// A study of the small scene: two cell sizes, and a scheme that is rejected.
 fn study() -> Value {
     json!({
         "title": "small", "scene": "scene.json", "repeats": 2,
@@ -69,7 +69,7 @@ fn a_study_runs_each_case_once_and_tells_of_those_that_fail() {
         "study.csv",
     ];
     assert_eq!(names(&home.at("out")), left);
-    // nothing is run twice; what is lost, alone, is run again
+    // no run is repeated; only a lost one is run again
     let before = records(&home);
     assert_eq!(before.len(), 2);
     call();
@@ -97,7 +97,7 @@ fn a_study_that_makes_no_sense_is_refused() {
     }
 }
 
-/// The small scene with a statement of errors at one place.
+/// The small scene with an error estimate at one position.
 fn estimating() -> Value {
     let mut scene = whole();
     scene["error_estimate"] = json!({"arrivals": [2e-4]});
@@ -124,7 +124,7 @@ fn a_run_tells_its_errors_and_changes_no_bit() {
     let arrival = &told["arrivals"][0]["time"];
     let [value, width, exact] =
         ["value", "half_width", "exact"].map(|key| arrival[key].as_f64().unwrap());
-    // within a cell's transit, and told as that
+    // within the transit time of a cell, and reported with that width
     assert!((value - exact).abs() < size / 6000.0 && width < 5.0 * size / 6000.0, "{arrival}");
 }
 
@@ -156,7 +156,7 @@ fn a_plan_chooses_and_its_run_tells_foretold_against_actual() {
     let plan = home.results("run").summary["plan"].clone();
     assert_eq!((&plan["wanted"], &plan["is_true"]), (&json!(0.1), &json!(true)));
     assert!(plan["actual"].as_f64().unwrap() < 0.1, "{plan}");
-    // a finer wish takes smaller cells
+    // a smaller target error requires smaller cells
     let cells = |home: &Home| -> f64 {
         let text = std::fs::read_to_string(home.at("p.json")).unwrap();
         let scene: Value = serde_json::from_str(&text).unwrap();

@@ -1,5 +1,5 @@
-//! Files that are none, or no end of them: one line and code 2, at once, for every file that a scene
-//! or the command line may name.
+//! Invalid files, for every file that a scene or the command line may name: a message of one line
+//! and exit code 2, at once.
 
 use std::fs;
 use std::os::unix::net::UnixListener;
@@ -11,7 +11,7 @@ use crate::home::Home;
 use crate::program::signal;
 use crate::scenes::short;
 
-/// What stands in the place of a file, and what is said of it.
+/// Invalid files, and the words of their message.
 const BAD: [(&str, &[&str]); 10] = [
     ("fifo", &["no regular file", "FIFO"]),
     ("/dev/zero", &["no regular file", "device"]),
@@ -25,7 +25,7 @@ const BAD: [(&str, &[&str]); 10] = [
     ("missing", &["No such file"]),
 ];
 
-/// A folder with everything that is no file of the kind that is asked for.
+/// A folder with every kind of invalid file.
 fn home() -> Home {
     let home = Home::with(&short());
     let made = std::process::Command::new("mkfifo").arg(home.at("fifo")).status().unwrap();
@@ -34,14 +34,14 @@ fn home() -> Home {
     drop(UnixListener::bind(home.at("socket")).unwrap());
     fs::File::create(home.at("huge")).unwrap().set_len(1 << 40).unwrap();
     fs::write(home.at("empty"), "").unwrap();
-    // HDF5 is known by its name
+    // HDF5 is recognised by its name
     for name in ["fifo", "huge", "empty"] {
         std::os::unix::fs::symlink(name, home.at(&format!("{name}.h5"))).unwrap();
     }
     home
 }
 
-/// The scene with its key at a pointer set to a file's name.
+/// The scene with the key at a pointer set to a file name.
 fn naming(pointer: &str, name: &str) -> Value {
     let mut scene = short();
     match pointer {
@@ -59,7 +59,7 @@ fn naming(pointer: &str, name: &str) -> Value {
                 "solid": {"type": "tabular", "table": name},
                 "solid_density": 9000.0,
                 "elastic_pressure": 1e8,
-                "compaction_pressure": 1e9,
+                "full_compaction_pressure": 1e9,
             });
         }
         "material" => scene["materials"]["copper"] = json!({"file": name}),
@@ -70,7 +70,7 @@ fn naming(pointer: &str, name: &str) -> Value {
     scene
 }
 
-/// One line, code 2, within a second and some slack for a busy machine.
+/// Asserts one line, exit code 2, within a second and some tolerance for a busy machine.
 #[track_caller]
 fn refused(home: &Home, args: &[&str], words: &[&str]) {
     let since = Instant::now();
@@ -110,16 +110,16 @@ fn files_that_the_command_line_names() {
             &["check", name],
             &["hugoniot", name],
             &["material", name, "copper"],
-            &["predict", name],
-            &["calibrate", name],
+            &["perf", "predict", name],
+            &["perf", "calibrate", name],
             &["plan", name, "--quantity", "l1", "--error", "1%"],
         ] {
             let words = if name == "folder" { &["is a directory"][..] } else { words };
             refused(&home, args, words);
         }
         refused(&home, &["study", name], words);
-        refused(&home, &["predict", "scene.json", "--machine", name], words);
-        // a folder is where checkpoints are
+        refused(&home, &["perf", "predict", "scene.json", "--machine", name], words);
+        // a folder may contain checkpoints
         let words = match name {
             "folder" => &["has no checkpoint"][..],
             "huge" => &["does not begin as a checkpoint"],
@@ -140,13 +140,25 @@ fn files_that_the_command_line_names() {
     for name in ["fifo", "/dev/full", "folder"] {
         let plan = ["plan", "scene.json", "--quantity", "l1", "--error", "1%", "--output", name];
         refused(&home, &plan, &[name, "allowed: a regular file"]);
-        refused(&home, &["calibrate", "--output", name], &[name, "allowed: a regular file"]);
+        refused(
+            &home,
+            &["perf", "calibrate", "--output", name],
+            &[name, "allowed: a regular file"],
+        );
+        let trace = ["scene.json", "--quiet", "--trace", name];
+        refused(&home, &trace, &[name, "allowed: a regular file"]);
     }
-    let below = ["calibrate", "--output", "scene.json/x"];
+    home.write("study.json", &study.to_string().replace("fifo", "scene.json"));
+    for name in ["fifo", "/dev/full"] {
+        refused(&home, &["study", "study.json", "--output", name], &[name]);
+        refused(&home, &["hugoniot", "scene.json", "--output", name], &[name]);
+        refused(&home, &["material", "scene.json", "copper", "--output", name], &[name]);
+    }
+    let below = ["perf", "calibrate", "--output", "scene.json/x"];
     refused(&home, &below, &["scene.json/x: cannot be written", "not a directory"]);
 }
 
-/// A run whose summary or profile is none cannot be compared.
+/// A run whose summary or profile is not a file cannot be compared.
 #[test]
 fn files_of_results() {
     let home = home();
@@ -166,7 +178,7 @@ fn files_of_results() {
     assert!(home.call(["compare", "run", "run"]).end().status.success());
 }
 
-/// A table that claims more than it holds is refused before memory is taken for it.
+/// A table whose declared size exceeds its contents is rejected before memory is allocated for it.
 #[test]
 fn a_table_that_claims_too_much() {
     let home = home();
@@ -185,7 +197,7 @@ fn a_table_that_claims_too_much() {
     }
 }
 
-/// A signal ends a program that reads: here a study whose runs take long.
+/// A signal ends a program that reads files: here a study with long runs.
 #[test]
 fn a_signal_ends_a_study() {
     let home = home();
@@ -206,7 +218,7 @@ fn a_signal_ends_a_study() {
     assert!(since.elapsed() < Duration::from_secs(5));
 }
 
-/// What is named in the wrong place is told what it is.
+/// A file of the wrong kind is identified in the message.
 #[test]
 fn files_of_another_kind() {
     let home = home();
@@ -230,10 +242,10 @@ fn a_mistyped_command_is_told_the_nearest() {
         ("hugonoit", "hugoniot"),
         ("Chekc", "check"),
         ("stduy", "study"),
-        ("predcit", "predict"),
+        ("predcit", "perf predict"),
         ("compar", "compare"),
         ("plna", "plan"),
-        ("calibrat", "calibrate"),
+        ("calibrat", "perf calibrate"),
         ("shema", "schema"),
         ("materials", "material"),
     ] {
@@ -241,7 +253,7 @@ fn a_mistyped_command_is_told_the_nearest() {
         refused(&home, &[typed, "scene.json"], &[&meant]);
         refused(&home, &[typed], &[&meant]);
     }
-    // a file of that name is a scene
+    // an argument with the name of an existing file is a scene
     fs::write(home.at("plna"), short().to_string()).unwrap();
     assert_eq!(home.call(["plna", "--quiet", "--output", "o"]).end().succeeded(), "");
 }

@@ -1,5 +1,5 @@
-//! Scenes that cannot run: one line that names the key, nothing written, an earlier result as it
-//! was; the same on several ranks.
+//! Scenes that cannot run: a message of one line with the key, nothing written, an earlier result
+//! unchanged; the same on several ranks.
 
 use std::fs;
 
@@ -8,15 +8,15 @@ use serde_json::{Value, json};
 use crate::home::Home;
 use crate::scenes::short;
 
-/// What is done to the scene.
+/// An edit of the scene.
 enum Edit {
-    /// A value at a JSON pointer; made if its parent is there.
+    /// Sets a value at a JSON pointer; the key is created if its parent exists.
     Put(&'static str, Value),
-    /// A key taken away.
+    /// Removes a key.
     Remove(&'static str),
-    /// Some text of the file replaced by another.
+    /// Replaces some text of the file.
     Swap(&'static str, &'static str),
-    /// The whole file.
+    /// Replaces the whole file.
     Text(String),
 }
 
@@ -50,7 +50,7 @@ impl Edit {
     }
 }
 
-/// Bad scenes and what is told: the key's path, the value, what is allowed.
+/// Invalid scenes and the words of their message: path of the key, value, what is allowed.
 fn bad() -> Vec<(Edit, &'static [&'static str])> {
     vec![
         (Put("/domain/cel_size", json!(1e-5)), &["domain.cel_size", "did you mean cell_size?"]),
@@ -117,7 +117,7 @@ fn bad() -> Vec<(Edit, &'static [&'static str])> {
     ]
 }
 
-/// A folder with an earlier result where the bad scene would write its own.
+/// A folder with an earlier result where the invalid scene would write its own.
 fn home_with_result() -> Home {
     let home = Home::with(&short());
     home.run("output/scene", &[]);

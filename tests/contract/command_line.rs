@@ -1,4 +1,4 @@
-//! Arguments: overrides, threads, help, and those that are refused.
+//! Arguments: overrides, threads, help, and rejected ones.
 
 use std::process::Command;
 
@@ -38,17 +38,17 @@ fn overrides_reach_every_place() {
     assert_eq!(scene["boundary"]["x_lower"], "outflow");
     assert_eq!(run.count("particles"), 100 + 450);
     assert_eq!(run.summary["title"], "a plate, = and \"all\"");
-    // the file is as it was
+    // the file is unchanged
     assert_eq!(names(home.path()), ["run", "scene.json"]);
 }
 
 #[test]
 fn the_scene_is_checked_after_all_overrides() {
     let home = Home::with(&short());
-    // each alone would be refused
+    // each of them would be rejected by itself
     let sets = ["--set", "time.end=1e-9", "--set", "output.profiles.times=[1e-9]"];
     assert_eq!(home.run("run", &sets).summary["profiles"][0]["time"], 1e-9);
-    // the later one holds
+    // the later one takes precedence
     let sets = ["--set", "time.courant=2", "--set", "time.courant=0.5"];
     assert_eq!(home.run("run", &sets).summary["scene"]["time"]["courant"], 0.5);
 }
@@ -87,21 +87,14 @@ fn help_and_version_are_told() {
     for word in ["mpirun -n 2 flyer-mpm"].into_iter().chain(options) {
         assert!(help.contains(word), "no {word} in: {help}");
     }
-    for word in [
-        "hugoniot",
-        "material",
-        "check",
-        "calibrate",
-        "predict",
-        "schema",
-        "compare",
-        "summary.json",
-    ] {
+    for word in
+        ["hugoniot", "material", "check", "perf", "migrate", "schema", "compare", "summary.json"]
+    {
         assert!(help.contains(word), "no {word} in: {help}");
     }
     let version = home.call(["--version"]).end().succeeded();
     assert_eq!(version.trim(), format!("flyer-mpm {}", env!("CARGO_PKG_VERSION")));
-    for command in ["hugoniot", "material", "check", "calibrate", "predict", "schema", "compare"] {
+    for command in ["hugoniot", "material", "check", "perf", "migrate", "schema", "compare"] {
         home.call([command, "--help"]).end().succeeded();
     }
     assert!(names(home.path()).is_empty());
@@ -139,12 +132,12 @@ fn quiet_says_nothing_and_else_a_table_stands_at_the_end() {
     assert!(!out.stderr.contains("(chosen)"), "{}", out.stderr);
 }
 
-/// A timeline in Chrome's format, of the steps that were asked for.
+/// A timeline in Chrome's format, for the steps requested.
 #[test]
 fn a_timeline_is_written() {
     let home = Home::with(&short());
     let args = ["scene.json", "--quiet", "--trace", "line.json", "--trace-steps", "2..3"];
-    let patches = ["--set", "domain.patches=[4]", "--set", "decomposition.skip_quiet=false"];
+    let patches = ["--set", "domain.patches=[4]", "--set", "decomposition.skip_quiescent=false"];
     home.call(args.into_iter().chain(patches)).end().succeeded();
     let text = std::fs::read_to_string(home.path().join("line.json")).unwrap();
     let trace: serde_json::Value = serde_json::from_str(&text).unwrap();
@@ -160,14 +153,14 @@ fn a_timeline_is_written() {
     assert_eq!(all("step"), [2, 3]);
     assert_eq!(all("tid").last(), Some(&4), "patch 3 has a line");
     let named = |name: &str| events.iter().any(|e| e["name"] == name);
-    assert!(["scatter", "gather", "exchange rows", "process_name"].into_iter().all(named));
+    assert!(["scatter", "gather", "exchange particles", "process_name"].into_iter().all(named));
     for bad in ["0..3", "5..2", "x", "3"] {
         let args = ["scene.json", "--trace", "line.json", "--trace-steps", bad];
         let out = home.call(args).end();
         assert_eq!(out.status.code(), Some(2));
         assert!(out.stderr.contains("1..200"), "{}", out.stderr);
     }
-    // found out before the run, not at its end
+    // detected before the run, not at its end
     let out = home.call(["scene.json", "--quiet", "--trace", "none/line.json"]).end();
     out.failed(&["none/line.json", "cannot write"]);
     assert_eq!(out.status.code(), Some(2));

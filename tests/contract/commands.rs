@@ -1,4 +1,4 @@
-//! The commands beside a run: schema, check, hugoniot, compare.
+//! Other commands: schema, check, hugoniot, compare.
 
 use std::fs;
 
@@ -45,7 +45,7 @@ fn check_tells_what_a_run_takes_and_makes_no_file() {
         assert!(!value(effect).is_empty());
     }
     assert_eq!(home.contents(), before);
-    // a scene that a run would refuse
+    // a scene that a run would reject
     let bad = home.call(["check", "scene.json", "--set", "time.end=0"]).end();
     bad.failed(&["scene.json", "time.end = 0"]);
     let large = "bodies.flyer.particles_per_cell=[1000000000]";
@@ -73,7 +73,7 @@ fn hugoniot_prints_the_chain_and_draws_it() {
     let home = Home::new();
     home.write("flyer.json", FLYER);
     let text = home.call(["hugoniot", "flyer.json", "--output", "chain"]).end().succeeded();
-    // the document's states as far as it prints them, speeds, times and places of its waves
+    // the states as printed by Burghardt (2010); speeds, times and positions of the waves
     for digits in [
         "690.93", "12.144", "381.87", "266.027", "4.254", "150.18", "105.01", "1.616", "6311.16",
         "4400.19", "0.113631", "0.227263",
@@ -85,7 +85,7 @@ fn hugoniot_prints_the_chain_and_draws_it() {
         &["figure_1", "figure_2", "figure_3", "x_t_diagram"],
     );
     assert_eq!(names(home.path()), ["chain", "flyer.json"]);
-    // its default folder is not that of a run
+    // its default folder differs from that of a run
     home.call(["hugoniot", "flyer.json"]).end().succeeded();
     assert!(!home.at("output/flyer").exists());
     let no_impact = ["hugoniot", "flyer.json", "--set", "reference=null"];
@@ -139,7 +139,7 @@ fn fast_impacts_that_part_have_their_chain() {
     }
 }
 
-/// The text of the x-t diagram of a scene, and what the command prints.
+/// The text of the x-t diagram of a scene, and the output of the command.
 fn waves(scene: &Value) -> [String; 2] {
     let home = Home::with(scene);
     let text = home.call(["hugoniot", "scene.json", "--output", "chain"]).end().succeeded();
@@ -153,7 +153,7 @@ fn the_x_t_diagram_goes_on_past_the_targets_rear() {
     assert!(text.contains("reaches the target's rear at 0.733421 us"), "{text}");
     assert!(!text.contains("exact lines end") && !svg.contains("exact lines end"));
     assert!(svg.lines().any(|line| line.trim() == "1.4"), "the axis ends with the scene");
-    // with a third plate behind it the rear is not free
+    // with a third plate behind it the rear is not a free surface
     scene["bodies"].as_array_mut().unwrap().push(json!({
         "name": "third", "material": "a", "box": {"lower": [3e-3], "upper": [4e-3]},
         "velocity": [0.0], "particles_per_cell": [2]

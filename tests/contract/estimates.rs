@@ -1,11 +1,11 @@
-//! A run's estimate of its errors and a plan, without an exact solution.
+//! Error estimate of a run, and a plan, without an exact solution.
 
 use serde_json::{Value, json};
 
 use crate::home::Home;
 use crate::scenes::whole;
 
-/// The small scene without its reference, with an estimate.
+/// The small scene without its reference, with an error estimate.
 fn scene(estimate: Value) -> Value {
     let mut scene = whole();
     scene.as_object_mut().unwrap().remove("reference");
@@ -32,7 +32,7 @@ fn an_estimate_needs_no_reference_and_is_the_same_with_one() {
             assert_eq!(without.pointer(&path), with.pointer(&path), "{path}");
         }
     }
-    // an impact such as the laws were fitted on
+    // an impact within the range for which the error model was fitted
     assert_eq!((&without["body"], &without["basis"]), (&json!("target"), &json!("calibrated")));
     assert_eq!(without["outside"], json!([]));
 }
@@ -56,7 +56,7 @@ fn what_was_not_fitted_is_named_and_makes_a_guess() {
         ("/artificial_viscosity/linear", json!(0.07), "artificial_viscosity"),
         ("/boundary", json!({"x_upper": "wall"}), "boundary.x_upper"),
         ("/error_estimate/arrivals", json!([1e-6]), "error_estimate.arrivals[0]"),
-        // half of the time in which the release comes back to the interface
+        // half of the time in which the release returns to the interface
         ("/title", json!("as it is"), "output.profiles.times[0] over 2.16"),
     ] {
         let mut scene = plain.clone();
@@ -69,7 +69,7 @@ fn what_was_not_fitted_is_named_and_makes_a_guess() {
         let outside = told["outside"].to_string();
         assert!(outside.contains(word), "no {word} in {outside}");
         assert!(text.contains("(guess)") && text.contains(word), "{text}");
-        // the later profile of the last case is one such as were fitted
+        // the later profile of the last case is within the fitted range
         let late = if path == "/title" { "calibrated" } else { "guess" };
         let late = if path == "/error_estimate/arrivals" { "calibrated" } else { late };
         assert_eq!(told["profiles"][1]["basis"], late, "{word}");
@@ -111,7 +111,7 @@ fn nothing_is_estimated_that_is_not_there() {
     let home = Home::with(&gas);
     let text = home.call(["scene.json"]).end().succeeded();
     assert!(text.contains("no plateau") && text.contains("nothing has arrived"), "{text}");
-    // a plate at rest has no pressure to be wrong about
+    // a plate at rest has no pressure and hence no error of it
     let mut plate = scene(json!({"arrivals": [5e-4]}));
     plate["bodies"][0]["velocity"] = json!([0.0]);
     plate["error_estimate"]["body"] = json!("target");
@@ -123,7 +123,7 @@ fn nothing_is_estimated_that_is_not_there() {
 
 #[test]
 fn a_pressure_at_the_start_is_no_arrival() {
-    // a tenth of it arrives on top
+    // the wave adds a tenth of the initial pressure
     let mut scene = scene(json!({"arrivals": [3e-4], "body": "target"}));
     scene["materials"]["gas"] =
         json!({"density": 50.0, "eos": {"type": "ideal_gas", "gamma": 1.4}});
@@ -133,13 +133,13 @@ fn a_pressure_at_the_start_is_no_arrival() {
         scene["bodies"][body]["velocity"] = json!([velocity]);
     }
     scene["time"]["end"] = json!(3.0e-7);
-    // walls hold the gas
+    // walls confine the gas
     scene["domain"]["lower"] = json!([-5e-4]);
     scene["bodies"][1]["box"]["upper"] = json!([2e-3]);
     scene["boundary"] = json!({"x_lower": "wall", "x_upper": "wall"});
     let told = Home::with(&scene).run("run", &[]).summary["error_estimate"].clone();
     let time = told["arrivals"][0]["time"]["value"].as_f64().unwrap();
-    // sound takes 0.18 us
+    // a sound wave takes 0.18 us
     assert!((1.4e-7..2e-7).contains(&time), "{told}");
     let plateau = told["profiles"][0]["plateau_pressure"]["value"].as_f64().unwrap();
     assert!((1.05e8..1.3e8).contains(&plateau), "{told}");
@@ -167,10 +167,10 @@ fn a_plan_needs_no_reference_and_marks_a_guess() {
     assert!(line.contains("(guess)") && line.contains("by its own bound"), "{line}");
 }
 
-/// Companions keep a wall where it is, at either end.
+/// Companion runs keep a wall in its place, at either end.
 #[test]
 fn a_mirrored_scene_has_the_mirrored_estimate() {
-    // cells that neither two nor four divide
+    // a number of cells that neither two nor four divide
     let estimate = |upper: bool| {
         let mut scene = scene(json!({"arrivals": [if upper { 7.3e-4 } else { 3e-4 }]}));
         let aluminium = scene["materials"]["aluminium"].clone();

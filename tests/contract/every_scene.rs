@@ -1,7 +1,8 @@
-//! Every command on every shipped scene: it does its work or is refused in one line.
+//! Every command on every shipped scene: it succeeds or is rejected with a message of one line.
 //!
-//! Commands that measure or time something take seconds, so that a few scenes stand for all;
-//! `EVERY_SCENE=all cargo test --release --test contract every_scene` takes all of them.
+//! Commands that measure or time something take seconds, so they are tested with a few
+//! representative scenes; `EVERY_SCENE=all cargo test --release --test contract every_scene` uses
+//! all of them.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -30,8 +31,8 @@ fn is_plane(scene: &Value) -> bool {
     scene["domain"]["lower"].as_array().unwrap().len() > 1
 }
 
-/// The scenes that stand for all in what takes long: all in a plane, which are refused at once, and
-/// some on a line.
+/// Representative scenes for slow commands: all in a plane, which are rejected at once, and some in
+/// one dimension.
 fn some(on_a_line: &[&str]) -> Vec<PathBuf> {
     let all = std::env::var("EVERY_SCENE").is_ok_and(|v| v == "all");
     let name = |path: &PathBuf| path.file_name().unwrap().to_str().unwrap().to_string();
@@ -39,7 +40,7 @@ fn some(on_a_line: &[&str]) -> Vec<PathBuf> {
     scenes().into_iter().filter(taken).collect()
 }
 
-/// Runs a command; its exit code. Its work is done, or refused in one line.
+/// Runs a command, asserts success or a message of one line, and returns the exit code.
 #[track_caller]
 fn call(home: &Home, args: &[&str]) -> i32 {
     let end = home.call(args.iter().copied()).end();
@@ -75,9 +76,10 @@ fn calibrate_and_predict_of_every_scene() {
     let home = Home::new();
     for path in some(&["sod.json"]) {
         let (file, plane) = (path.to_str().unwrap(), is_plane(&read(&path)));
-        let code = call(&home, &["calibrate", file, "--seconds", "0.01", "--output", "m.json"]);
+        let code =
+            call(&home, &["perf", "calibrate", file, "--seconds", "0.01", "--output", "m.json"]);
         assert_eq!(code == 2, plane, "{file}: calibrate {code}");
-        let code = call(&home, &["predict", file, "--machine", "m.json", "--ranks", "2"]);
+        let code = call(&home, &["perf", "predict", file, "--machine", "m.json", "--ranks", "2"]);
         assert_eq!(code == 2, plane, "{file}: predict {code}");
     }
 }

@@ -1,15 +1,16 @@
-//! The commands `calibrate` and `predict`: tables, files, and what is refused.
+//! The commands `calibrate` and `predict`: tables, files, and rejected input.
 
 use serde_json::{Value, json};
 
 use crate::home::{Home, names};
 use crate::scenes::{FLYER, short};
 
-/// A folder with the shipped scene and the constants of a hurried calibration.
+/// A folder with the shipped scene and the constants of a short calibration.
 fn calibrated() -> Home {
     let home = Home::new();
     home.write("flyer.json", FLYER);
-    let args = ["calibrate", "flyer.json", "--seconds", "0.05", "--output", "m.json", "--samples"];
+    let args =
+        ["perf", "calibrate", "flyer.json", "--seconds", "0.05", "--output", "m.json", "--samples"];
     let text = home.call(args).end().succeeded();
     for word in ["compute row", "exchange ghost row", "latency L (assumed)", "fit of steps"] {
         assert!(text.contains(word), "no {word} in: {text}");
@@ -18,11 +19,11 @@ fn calibrated() -> Home {
     home
 }
 
-/// A study of one configuration, `wall` seconds for 100 steps.
+/// A study of one configuration, which takes `wall` seconds for 100 steps.
 fn study(ranks: usize, wall: f64) -> Value {
-    let row = |skip_quiet| {
+    let row = |skip_quiescent| {
         json!({
-            "ranks": ranks, "threads": 1, "skip_quiet": skip_quiet, "oversubscribed": false,
+            "ranks": ranks, "threads": 1, "skip_quiescent": skip_quiescent, "oversubscribed": false,
             "patches": 7, "particles": 1700, "steps": 100, "wall_seconds": wall,
         })
     };
@@ -40,7 +41,7 @@ fn constants_are_measured_and_a_scene_is_predicted() {
     assert!(constants["coefficients"]["compute"][0].as_f64().unwrap() > 0.0);
 
     let before = home.contents();
-    let predict = ["predict", "flyer.json", "--machine", "m.json"];
+    let predict = ["perf", "predict", "flyer.json", "--machine", "m.json"];
     let told = |more: &[&str]| {
         let all = predict.into_iter().chain(more.to_vec());
         home.call(all).end().succeeded()
@@ -52,14 +53,14 @@ fn constants_are_measured_and_a_scene_is_predicted() {
     let rows: Vec<Vec<&str>> = text.lines().map(|l| l.split_whitespace().collect()).collect();
     let row = |ranks: &str| rows.iter().find(|r| r.first() == Some(&ranks)).unwrap();
     assert_eq!((row("1")[5], row("1")[6]), ("1.00", "100.0"));
-    // ranks that were not measured are marked, and the table goes on
+    // numbers of ranks that were not measured are marked, and the table continues
     assert_eq!((row("*3")[1], row("*100000")[2]), ("1", "62"));
 
     home.write("scaling.json", &study(1, 1.0).to_string());
     let text =
         home.call(predict.into_iter().chain(["--against", "scaling.json"])).end().succeeded();
     let rows: Vec<Vec<&str>> = text.lines().map(|l| l.split_whitespace().collect()).collect();
-    // what was skipped is no part of it
+    // rows with skipped patches are not part of the table
     assert_eq!(rows.len(), 3, "{text}");
     assert_eq!((rows[1][0], rows[1][3], rows[1][6]), ("1700", "7", "10000"));
     assert!(rows[2].starts_with(&["largest", "deviation:"]), "{text}");
@@ -76,12 +77,12 @@ fn what_cannot_be_predicted_is_refused() {
     home.write("other.json", &study(1, 1.0).to_string());
     home.write("text.json", "{\"format\": 1");
     let refused = |args: &[&str], fragments: &[&str]| {
-        let out = home.call(["predict"].into_iter().chain(args.to_vec())).end();
+        let out = home.call(["perf", "predict"].into_iter().chain(args.to_vec())).end();
         out.failed(fragments);
         assert_eq!(out.status.code(), Some(2), "{args:?}");
     };
     let with = |more: &[&'static str]| [&["flyer.json", "--machine", "m.json"], more].concat();
-    refused(&["flyer.json"], &["output/machine.json", "flyer-mpm calibrate"]);
+    refused(&["flyer.json"], &["output/machine.json", "flyer-mpm perf calibrate"]);
     refused(&["flyer.json", "--machine", "text.json"], &["text.json", "no machine file"]);
     refused(&["flyer.json", "--machine", "flyer.json"], &["flyer.json", "no machine file"]);
     refused(&with(&["--set", "method.shape=cpdi"]), &["m.json", "cpdi, fmpm 8", "calibrate"]);
@@ -99,11 +100,11 @@ fn what_cannot_be_predicted_is_refused() {
     let both = ["--against", "other.json", "--ranks", "2"];
     refused(&with(&both), &["--against", "--ranks"]);
 
-    let out = home.call(["calibrate", "nowhere.json"]).end();
+    let out = home.call(["perf", "calibrate", "nowhere.json"]).end();
     out.failed(&["nowhere.json"]);
     assert_eq!(out.status.code(), Some(2));
-    home.call(["calibrate", "flyer.json", "--seconds", "no"]).end().failed(&["--seconds"]);
-    let out = home.call(["calibrate", "flyer.json", "--output", "."]).end();
+    home.call(["perf", "calibrate", "flyer.json", "--seconds", "no"]).end().failed(&["--seconds"]);
+    let out = home.call(["perf", "calibrate", "flyer.json", "--output", "."]).end();
     out.failed(&["a directory"]);
 }
 
@@ -111,12 +112,12 @@ fn what_cannot_be_predicted_is_refused() {
 #[test]
 fn ranks_measure_messages() {
     let home = Home::new();
-    let args = ["calibrate", "--seconds", "0.05", "--output", "m.json"];
+    let args = ["perf", "calibrate", "--seconds", "0.05", "--output", "m.json"];
     let text = home.call(args).ranks(3).end().succeeded();
     assert_eq!(text.matches("constants in m.json").count(), 1);
     let constants: Value =
         serde_json::from_str(&std::fs::read_to_string(home.at("m.json")).unwrap()).unwrap();
     assert_eq!((&constants["ranks"], &constants["network"]["measured"]), (&json!(3), &json!(true)));
     assert!(constants["network"]["reduction_level"].as_f64().unwrap() > 0.0);
-    home.call(["calibrate", "nowhere.json"]).ranks(2).end().failed(&["nowhere.json"]);
+    home.call(["perf", "calibrate", "nowhere.json"]).ranks(2).end().failed(&["nowhere.json"]);
 }

@@ -1,4 +1,4 @@
-//! A temporary folder that the program is started in, and what it leaves there.
+//! A temporary folder in which the program is started, and the files that it leaves there.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -9,7 +9,7 @@ use tempfile::TempDir;
 
 use crate::program::Call;
 
-/// A temporary folder that the program is started in.
+/// A temporary folder in which the program is started.
 pub struct Home(TempDir);
 
 impl Home {
@@ -25,17 +25,17 @@ impl Home {
         home
     }
 
-    /// The folder.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         self.0.path()
     }
 
-    /// A file or folder in it.
+    /// Path of a file or folder in it.
     pub fn at(&self, name: &str) -> PathBuf {
         self.path().join(name)
     }
 
-    /// Writes a file, its parents made.
+    /// Writes a file and creates its parent folders.
     pub fn write(&self, name: &str, text: &str) {
         let path = self.at(name);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -47,7 +47,7 @@ impl Home {
         Call::new(self.path(), args)
     }
 
-    /// Runs `scene.json` with further arguments, without chatter, and returns its results.
+    /// Runs `scene.json` quietly with further arguments, and returns its results.
     #[track_caller]
     pub fn run(&self, output: &str, args: &[&str]) -> Results {
         let args = ["scene.json", "--quiet", "--output", output].into_iter().chain(args.to_vec());
@@ -60,8 +60,8 @@ impl Home {
         Results::read(&self.at(folder))
     }
 
-    /// Every file and folder below with its bytes, by path relative to here. Left out are locks: one
-    /// that a killed run has left holds nobody up.
+    /// Every file and folder below this one with its bytes, by relative path. Lock files are
+    /// omitted: one left by a killed run does not block others.
     pub fn contents(&self) -> Contents {
         let mut found = contents(self.path());
         found.retain(|path, _| path.extension().is_none_or(|end| end != "lock"));
@@ -69,7 +69,7 @@ impl Home {
     }
 }
 
-/// Files with their bytes, folders without.
+/// Files with their bytes, and folders without.
 pub type Contents = BTreeMap<PathBuf, Option<Vec<u8>>>;
 
 /// Every file and folder below `root`.
@@ -97,7 +97,7 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// What a run has left, kept in memory: the folder may go.
+/// Results of a run, kept in memory so that the folder may be deleted.
 pub struct Results {
     pub files: Contents,
     pub summary: Value,
@@ -128,19 +128,19 @@ impl Results {
         std::str::from_utf8(self.bytes(name)).unwrap()
     }
 
-    /// Whole number of the summary.
+    /// A whole number in the summary.
     #[track_caller]
     pub fn count(&self, key: &str) -> u64 {
         self.summary[key].as_u64().unwrap_or_else(|| panic!("{key}: {}", self.summary[key]))
     }
 
-    /// Text of the profile `k`, found by the summary.
+    /// Text of the profile `k`, found through the summary.
     #[track_caller]
     pub fn profile(&self, k: usize) -> &str {
         self.text(self.summary["profiles"][k]["file"].as_str().unwrap())
     }
 
-    /// Digests and texts of all profiles, by which runs are held against each other.
+    /// Digests and texts of all profiles, for the comparison of runs.
     pub fn states(&self) -> Vec<(&str, &str)> {
         let profiles = self.summary["profiles"].as_array().unwrap();
         let digest = |k: usize| profiles[k]["state_sha256"].as_str().unwrap();
@@ -154,7 +154,7 @@ impl Results {
     }
 }
 
-/// A column of numbers by its name; NaN where a field is empty.
+/// A column of numbers by its name; NaN for empty fields.
 pub fn column(csv: &str, name: &str) -> Vec<f64> {
     let (header, rows) = csv.split_once('\n').unwrap();
     let place = header.split(',').position(|n| n == name);

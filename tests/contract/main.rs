@@ -1,5 +1,5 @@
-//! The command line and the files as a contract, checked from outside: the built program is
-//! started in temporary folders, plain and by mpirun, each time under a limit.
+//! External tests of the command line and the files: the built program is started in temporary
+//! folders, directly and by mpirun, each time with a time limit.
 
 mod accuracy;
 mod architecture;
@@ -10,7 +10,10 @@ mod commands;
 mod estimates;
 mod every_scene;
 mod forecasts;
+mod formats;
 mod home;
+mod imports;
+mod monitor;
 mod outputs;
 mod ownership;
 mod pictures;
@@ -18,7 +21,6 @@ mod program;
 mod replacing;
 mod scenes;
 mod steps;
-mod watch;
 
 #[cfg(feature = "mpi")]
 mod ranks;

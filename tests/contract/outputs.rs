@@ -1,4 +1,4 @@
-//! The files of a run: their places, names, columns and types.
+//! The output files of a run: locations, names, columns and types.
 
 use serde_json::{Value, json};
 
@@ -30,7 +30,7 @@ fn an_output_folder_is_made_with_its_parents() {
     assert_eq!(names(home.path()), ["a", "scene.json"]);
 }
 
-/// Asserts that `value` has every key, each of the type that its letter says: `n`umber, `c`ount,
+/// Asserts that `value` has every key, with the type given by its letter: `n`umber, `c`ount,
 /// `t`ext, `o`bject, `a`rray, or `?` for a number or null.
 #[track_caller]
 fn has(value: &Value, keys: &[(&str, char)]) {
@@ -76,7 +76,7 @@ fn the_summary_has_its_fields() {
         assert!(summary["momentum"][key][0].is_number(), "{}", summary["momentum"]);
     }
     assert!(summary["momentum"]["drift"].as_f64().unwrap().abs() < 1e-12);
-    // the scene as it ran: overrides and defaults are in it
+    // the scene as run, with overrides and defaults
     assert_eq!(summary["scene"]["domain"]["patches"], json!([3]));
     assert_eq!(summary["scene"]["method"]["stress_update"], "last");
 }
@@ -88,17 +88,17 @@ fn a_profile_in_the_summary_has_its_fields() {
     let times: Vec<_> = profiles.iter().map(|p| p["time"].as_f64().unwrap()).collect();
     assert_eq!(times, [5e-8, 1e-7], "to the bit what the scene asks for");
     for profile in profiles {
-        has(profile, &[("file", 't'), ("errors", 'o'), ("errors_cell", 'o')]);
+        has(profile, &[("file", 't'), ("errors", 'o'), ("errors_cell_averaged", 'o')]);
         let digest = profile["state_sha256"].as_str().unwrap();
         assert!(digest.len() == 64 && digest.bytes().all(|b| b.is_ascii_hexdigit()), "{digest}");
-        for errors in [&profile["errors"], &profile["errors_cell"]] {
+        for errors in [&profile["errors"], &profile["errors_cell_averaged"]] {
             has(errors, &["l1", "l2", "e1_cells"].map(|key| (key, 'n')));
-            has(errors, &["plateau", "noise", "plateau_4"].map(|key| (key, '?')));
+            has(errors, &["plateau", "noise", "second_plateau"].map(|key| (key, '?')));
             has(errors, &["shock_position_cells", "rise_cells", "overshoot"].map(|k| (k, '?')));
             has(errors, &["density_plateau", "energy_plateau"].map(|key| (key, '?')));
         }
         assert!(profile["errors"]["plateau"].is_number(), "the first plateau stands by then");
-        assert!(profile["errors"]["plateau_4"].is_null(), "the second one is still to come");
+        assert!(profile["errors"]["second_plateau"].is_null(), "the second one is still to come");
     }
     assert_ne!(profiles[0]["file"], profiles[1]["file"]);
     assert_ne!(profiles[0]["state_sha256"], profiles[1]["state_sha256"]);
@@ -110,10 +110,10 @@ fn without_a_reference_there_are_no_errors() {
     scene.as_object_mut().unwrap().remove("reference");
     let run = Home::with(&scene).run("run", &[]);
     assert_eq!(run.summary["profiles"][0]["errors"], Value::Null);
-    assert_eq!(run.summary["profiles"][0]["errors_cell"], Value::Null);
+    assert_eq!(run.summary["profiles"][0]["errors_cell_averaged"], Value::Null);
 }
 
-/// Significant digits of a number's text.
+/// Significant digits of a number in text form.
 fn digits(number: &str) -> String {
     let mantissa = number.split(['e', 'E']).next().unwrap();
     let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
@@ -136,7 +136,7 @@ fn a_profile_is_every_particle_sorted_in_shortest_numbers() {
             assert!(["copper", "aluminium"].contains(&fields[6]), "{row}");
             for field in &fields[..6] {
                 let value: f64 = field.parse().unwrap();
-                // {:e} prints the fewest digits that give the double back
+                // {:e} prints the shortest decimal that reads back as the same double
                 assert_eq!(digits(field), digits(&format!("{value:e}")), "{field}");
             }
         }
@@ -152,7 +152,7 @@ fn pressure_stands_without_artificial_viscosity() {
         ["pressure", "density", "specific_internal_energy", "artificial_viscosity"]
             .map(|name| column(csv, name));
     assert!(viscosity.iter().any(|&q| q > 1e8), "in the shock");
-    // the equation of state at the density and energy beside it, in the target
+    // in the target, the equation of state at the density and energy of the same row
     for (i, row) in csv.lines().skip(1).enumerate().filter(|(_, r)| r.ends_with("aluminium")) {
         let chi: f64 = 1.0 - 2785.0 / density[i];
         let squeezed = chi.max(0.0);
@@ -160,7 +160,7 @@ fn pressure_stands_without_artificial_viscosity() {
         let expected = slope * chi * (1.0 - 1.05 * squeezed) + 2.1 * 2785.0 * energy[i];
         assert!((pressure[i] - expected).abs() < 10.0, "{row}, not {expected}");
     }
-    // none where the scene has none
+    // zero if the scene has no artificial viscosity
     let mut scene = short();
     scene.as_object_mut().unwrap().remove("artificial_viscosity");
     let run = Home::with(&scene).run("run", &[]);
@@ -196,7 +196,8 @@ fn histories_follow_surfaces_and_tracers() {
 }
 
 /// The pressure of a free surface is zero, also while a shock passes its outermost particle, and
-/// its velocity comes to that of the release; a face with something beyond it keeps its particle's.
+/// its velocity approaches that of the release. A face with a body or wall beyond it has the
+/// pressure of its particle.
 #[test]
 fn free_surfaces_have_no_pressure() {
     let library = ["tantalum", "pmma", "steel_304", "titanium"];
@@ -265,7 +266,7 @@ fn hdf5_is_written() {
     assert!(bytes.windows(6).any(|w| w == b"VTKHDF"));
 }
 
-/// No particle bounds the next step once all have left: its field is empty.
+/// When all particles have left, none limits the next time step: the field is empty.
 #[test]
 fn a_run_that_all_have_left_has_no_time_step() {
     let home = Home::with(&json!({

@@ -1,4 +1,5 @@
-//! No command but a run of the same scene replaces a result: the tree of files before and after.
+//! Only a run of the same scene replaces a result: comparison of the files before and after each
+//! command.
 
 use std::fs;
 use std::path::Path;
@@ -9,8 +10,8 @@ use crate::home::Home;
 use crate::program::Ended;
 use crate::scenes::{FLYER, short, whole};
 
-/// A folder with two scenes of one file name, `a/plate.json` and `b/plate.json`, and the result of the
-/// first.
+/// A folder with two scenes of the same file name, `a/plate.json` and `b/plate.json`, and the
+/// result of the first.
 fn home() -> Home {
     let home = Home::new();
     home.write("a/plate.json", &short().to_string());
@@ -21,7 +22,7 @@ fn home() -> Home {
     home
 }
 
-/// One line, exit code 2, nothing changed.
+/// Asserts a message of one line, exit code 2, and no change of files.
 #[track_caller]
 fn refused(home: &Home, args: &[&str], fragments: &[&str]) {
     let before = home.contents();
@@ -31,7 +32,7 @@ fn refused(home: &Home, args: &[&str], fragments: &[&str]) {
     assert!(home.contents() == before, "{args:?} has changed files");
 }
 
-/// Whatever comes of it, what was there is the same.
+/// Asserts that existing files are unchanged, whatever the exit code.
 #[track_caller]
 fn harmless(home: &Home, args: &[&str]) -> Ended {
     let before = home.contents();
@@ -57,7 +58,7 @@ fn two_scenes_of_one_name_do_not_share_a_result() {
 fn an_edited_a_copied_and_a_moved_scene() {
     let home = home();
     let first = home.results("output/plate");
-    // an edit, or another value by --set, is the same scene
+    // an edited scene, or another value by --set, is the same scene
     home.call(["a/plate.json", "--quiet", "--set", "time.end=2e-8"]).end().succeeded();
     let mut edited = short();
     edited["title"] = json!("edited");
@@ -65,7 +66,7 @@ fn an_edited_a_copied_and_a_moved_scene() {
     home.write("a/plate.json", &edited.to_string());
     home.call(["a/plate.json", "--quiet"]).end().succeeded();
     assert_ne!(home.results("output/plate").states(), first.states());
-    // a copy has the same bits
+    // a copy gives the same bits
     fs::copy(home.at("a/plate.json"), home.at("b/plate.json")).unwrap();
     home.call(["b/plate.json", "--quiet"]).end().succeeded();
     // scenes and results moved together
@@ -113,10 +114,10 @@ fn checkpoints_of_another_scene_stay() {
     let args = ["a/plate.json", "--quiet", "--output", "kept", "--set", checkpoints];
     home.call(args).end().succeeded();
     assert!(home.at("kept.checkpoints/checkpoint-000001.hdf5").exists());
-    // a run that was killed has no result, but checkpoints
+    // a killed run leaves no result, but checkpoints
     fs::remove_dir_all(home.at("kept")).unwrap();
     refused(&home, &["b/plate.json", "--output", "kept"], &["kept.checkpoints", "a/plate.json"]);
-    // a restart belongs to the scene that the run began with
+    // a restart belongs to the scene with which the run began
     let restart = ["--restart", "kept.checkpoints", "--quiet"];
     home.call(restart.into_iter().chain(["--output", "output/plate"])).end().succeeded();
     home.call(restart).end().succeeded();
@@ -124,7 +125,7 @@ fn checkpoints_of_another_scene_stay() {
     let other = ["--restart", "kept.checkpoints", "--output", "other"];
     refused(&home, &other, &["other", "b/plate.json", "a/plate.json"]);
     home.call(["a/plate.json", "--quiet", "--output", "kept"]).end().succeeded();
-    // a checkpoint by itself goes where its file name says
+    // the file name of a single checkpoint determines its output folder
     fs::create_dir(home.at("alone")).unwrap();
     let newest = "kept.checkpoints/checkpoint-000002.hdf5";
     for (folder, scene) in [("alone", "a/plate.json"), ("more", "b/plate.json")] {
@@ -161,28 +162,28 @@ fn no_other_command_changes_a_result() {
     harmless(&home, &["material", "a/flyer.json", "copper"]).succeeded();
     harmless(&home, &["compare", "output/plate", "output/flyer"]);
     harmless(&home, &["study", "sweep.json", "--quiet"]).succeeded();
-    let calibrate = ["calibrate", "a/plate.json", "--seconds", "0.01"];
+    let calibrate = ["perf", "calibrate", "a/plate.json", "--seconds", "0.01"];
     harmless(&home, &calibrate).succeeded();
-    harmless(&home, &["predict", "a/plate.json"]).succeeded();
+    harmless(&home, &["perf", "predict", "a/plate.json"]).succeeded();
     let plan = ["plan", "a/plate.json", "--quantity", "l1", "--error", "20%"];
     harmless(&home, &plan).succeeded();
-    // the plan's scene has a folder of its own
+    // the scene of a plan has its own folder
     harmless(&home, &["output/plans/plate.plan.json", "--quiet"]).succeeded();
     assert!(home.at("output/plate.plan/summary.json").exists());
-    // each into the folder of a run
+    // each of them into the folder of a run
     for args in [
         &["hugoniot", "a/flyer.json", "--output", "output/flyer"][..],
         &["material", "a/flyer.json", "copper", "--output", "output/flyer"],
         &["study", "sweep.json", "--output", "output/flyer"],
         &["plan", "a/plate.json", "--quantity", "l1", "--error", "20%", "--output", "b/plate.json"],
-        &["calibrate", "a/plate.json", "--seconds", "0.01", "--output", "b/plate.json"],
-        &["calibrate", "--seconds", "0.01", "--output", "output/plate/machine.json"],
+        &["perf", "calibrate", "a/plate.json", "--seconds", "0.01", "--output", "b/plate.json"],
+        &["perf", "calibrate", "--seconds", "0.01", "--output", "output/plate/machine.json"],
         &["a/plate.json", "--trace", "b/plate.json"],
         &["a/plate.json", "--trace", "output/flyer/line.json"],
     ] {
         refused(&home, args, &["error: "]);
     }
-    // those of other scenes and studies of the same name
+    // results of other scenes and studies with the same name
     let mut other: Value = serde_json::from_str(FLYER).unwrap();
     other["bodies"][0]["velocity"] = json!([700.0]);
     home.write("b/flyer.json", &other.to_string());
@@ -195,7 +196,7 @@ fn no_other_command_changes_a_result() {
     refused(&home, &["study", "b/sweep.json"], &["sweep.json", "b/sweep.json"]);
     let plan = ["plan", "b/plate.json", "--quantity", "l1", "--error", "20%"];
     refused(&home, &plan, &["output/plans/plate.plan.json", "b/plate.json"]);
-    // and the same ones again
+    // the same commands again
     for args in [
         &["hugoniot", "a/flyer.json"][..],
         &["material", "a/flyer.json", "copper"],

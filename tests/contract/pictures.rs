@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use crate::home::{Contents, Home};
 use crate::scenes::whole;
 
-/// Asserts that there are just these pictures, each both PNG and SVG, each with something in
-/// it. A stem stands for the one file that begins with it.
+/// Asserts that exactly these pictures exist, each as PNG and SVG and not empty. A stem stands for
+/// the one file that begins with it.
 #[track_caller]
 pub fn has_pictures(files: &Contents, stems: &[&str]) {
     for kind in ["png", "svg"] {

@@ -1,8 +1,8 @@
-//! Starts the program and waits for its end, never longer than a limit.
+//! Starts the program and waits for its end, at most for a time limit.
 
 use std::ffi::OsString;
 use std::fs::File;
-use std::io::{Read, Seek};
+use std::io::{PipeWriter, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus};
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard};
@@ -10,13 +10,13 @@ use std::time::{Duration, Instant};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_flyer-mpm");
 
-/// Several ranks that wait for each other are slow where cores are short, so they run alone.
+/// Several ranks that wait for each other are slow on few cores, so such calls run alone.
 static CORES: RwLock<()> = RwLock::new(());
 
-// the guards are held for their drop, never read
+// the guards are kept only for their drop
 enum Turn {
-    Shared(#[allow(dead_code)] RwLockReadGuard<'static, ()>),
-    Alone(#[allow(dead_code)] RwLockWriteGuard<'static, ()>),
+    Shared(#[expect(dead_code)] RwLockReadGuard<'static, ()>),
+    Alone(#[expect(dead_code)] RwLockWriteGuard<'static, ()>),
 }
 
 /// A call of the program.
@@ -25,6 +25,7 @@ pub struct Call {
     args: Vec<OsString>,
     ranks: Option<usize>,
     limit: Duration,
+    stderr: Option<PipeWriter>,
 }
 
 /// A call that has ended.
@@ -34,7 +35,7 @@ pub struct Ended {
     pub stderr: String,
 }
 
-/// A call that goes on.
+/// A call that is still running.
 pub struct Started {
     child: Child,
     stdout: File,
@@ -53,12 +54,19 @@ impl Call {
             args: args.into_iter().map(|a| a.as_ref().into()).collect(),
             ranks: None,
             limit: Duration::from_secs(60),
+            stderr: None,
         }
     }
 
-    /// On this many ranks of mpirun.
+    /// Runs the call on this many ranks of mpirun.
     pub fn ranks(self, ranks: usize) -> Call {
         Call { ranks: Some(ranks), limit: Duration::from_secs(120), ..self }
+    }
+
+    /// Redirects stderr to a pipe instead of [`Ended::stderr`].
+    #[allow(dead_code)] // used by other targets
+    pub fn stderr(self, pipe: PipeWriter) -> Call {
+        Call { stderr: Some(pipe), ..self }
     }
 
     fn command(&self) -> Command {
@@ -78,24 +86,28 @@ impl Call {
         mpirun
     }
 
-    /// Starts it.
-    pub fn start(self) -> Started {
+    /// Starts the call.
+    pub fn start(mut self) -> Started {
         let turn = match self.ranks {
             Some(_) => Turn::Alone(CORES.write().unwrap_or_else(|e| e.into_inner())),
             None => Turn::Shared(CORES.read().unwrap_or_else(|e| e.into_inner())),
         };
-        // files rather than pipes: a rank that outlives mpirun cannot hold the test up
+        // files rather than pipes: a rank that outlives mpirun cannot block the test
         let (stdout, stderr) = (tempfile::tempfile().unwrap(), tempfile::tempfile().unwrap());
         let mut command = self.command();
         command.current_dir(&self.folder).stdin(std::process::Stdio::null());
-        command.stdout(stdout.try_clone().unwrap()).stderr(stderr.try_clone().unwrap());
+        command.stdout(stdout.try_clone().unwrap());
+        match self.stderr.take() {
+            Some(pipe) => command.stderr(pipe),
+            None => command.stderr(stderr.try_clone().unwrap()),
+        };
         let since = Instant::now();
         let what = format!("{command:?}");
         let child = command.spawn().unwrap_or_else(|e| panic!("{what}: {e}"));
         Started { child, stdout, stderr, since, limit: self.limit, what, _turn: turn }
     }
 
-    /// Runs it to its end.
+    /// Runs the call to its end.
     #[track_caller]
     pub fn end(self) -> Ended {
         self.start().end()
@@ -103,17 +115,17 @@ impl Call {
 }
 
 impl Started {
-    /// Id of the process: of mpirun where there is one.
+    /// Process id; that of mpirun if it is used.
     pub fn id(&self) -> u32 {
         self.child.id()
     }
 
-    /// Whether it has not ended yet.
+    /// Whether the process is still running.
     pub fn runs(&mut self) -> bool {
         self.child.try_wait().unwrap().is_none()
     }
 
-    /// Waits for its end; beyond the limit it is killed, and the test fails.
+    /// Waits for the end; beyond the limit the process is killed and the test fails.
     #[track_caller]
     pub fn end(mut self) -> Ended {
         let status = loop {
@@ -130,7 +142,7 @@ impl Started {
         Ended { status, stdout: text(&mut self.stdout), stderr: text(&mut self.stderr) }
     }
 
-    /// Ends it; mpirun is given the time to end its ranks.
+    /// Kills the process; mpirun is given time to end its ranks.
     fn kill(&mut self) {
         signal("-TERM", self.id());
         let asked = Instant::now();
@@ -151,7 +163,7 @@ impl Drop for Started {
 }
 
 impl Ended {
-    /// Asserts success, and returns what stood on stdout.
+    /// Asserts success and returns stdout.
     #[track_caller]
     pub fn succeeded(self) -> String {
         assert!(self.status.success(), "{}: {}", self.status, self.stderr);
@@ -160,8 +172,7 @@ impl Ended {
         self.stdout
     }
 
-    /// Asserts that it failed with one line of message, which has all fragments, and said nothing
-    /// on stdout.
+    /// Asserts a failure with one line of message that contains all fragments, and an empty stdout.
     #[track_caller]
     pub fn failed(&self, fragments: &[&str]) {
         assert!(self.status.code().is_some_and(|c| c != 0), "{}: {}", self.status, self.stderr);
@@ -179,7 +190,7 @@ impl Ended {
     }
 }
 
-/// Sends a signal by its name.
+/// Sends a signal, given by name.
 pub fn signal(name: &str, process: u32) {
     let sent = Command::new("kill").args([name, &process.to_string()]).status();
     assert!(sent.is_ok(), "cannot call kill");

@@ -1,4 +1,4 @@
-//! Several ranks: the same bits, and no rank left behind when one fails.
+//! Several ranks: identical bits, and no rank left running when one fails.
 
 use std::fs;
 use std::time::{Duration, Instant};
@@ -50,14 +50,14 @@ fn every_output_is_written_once() {
     assert_eq!(run.names(), alone.names());
     assert_eq!(run.states(), alone.states());
     assert_eq!(run.text("histories.csv"), alone.text("histories.csv"));
-    // errors and totals hold nothing of the layout either
+    // errors and totals do not depend on the layout either
     for key in ["energy", "momentum", "steps", "particles"] {
         assert_eq!(run.summary[key], alone.summary[key], "{key}");
     }
     assert_eq!(run.summary["profiles"], alone.summary["profiles"]);
 }
 
-/// A fault in the patch of one rank alone, once the first and once the second.
+/// A fault in the patch of only one of the two ranks, tested for each rank.
 #[test]
 fn a_fault_of_one_rank_ends_all() {
     for scene in [stray(), mirrored_stray()] {
@@ -93,7 +93,7 @@ fn arguments_are_judged_once() {
     home.call(["compare", "a", "b"]).ranks(2).end().failed(&["a/summary.json"]);
 }
 
-/// The ranks that mpirun has started: processes of our program below it.
+/// Processes of the ranks that mpirun has started.
 pub fn ranks_of(mpirun: u32) -> Vec<u32> {
     let mut found = Vec::new();
     for entry in fs::read_dir("/proc").unwrap().flatten() {
@@ -123,7 +123,7 @@ fn a_rank_that_is_lost_ends_all() {
         while ranks_of(run.id()).len() < 2 && since.elapsed() < Duration::from_secs(20) {
             std::thread::sleep(Duration::from_millis(20));
         }
-        // well into the time loop
+        // well within the time loop
         std::thread::sleep(Duration::from_millis(1500));
         assert!(run.runs(), "the scene is too short for this test");
         let ranks = ranks_of(run.id());

@@ -1,4 +1,4 @@
-//! An earlier result: replaced as a whole or left as it was.
+//! An earlier result is replaced as a whole or left unchanged.
 
 use std::fs;
 
@@ -15,7 +15,7 @@ fn a_rerun_replaces_the_earlier_result_as_a_whole() {
     assert_eq!(second.names(), first.names());
     assert_ne!(second.states(), first.states());
     assert_eq!(names(home.path()), ["run", "scene.json"]);
-    // the same again gives the same bytes
+    // the same run again gives the same bytes
     assert_eq!(home.run("run", &[]).states(), first.states());
 }
 
@@ -51,7 +51,7 @@ fn a_run_that_fails_leaves_the_earlier_result() {
 #[test]
 fn a_fault_names_the_particle_that_has_it() {
     let home = Home::with(&stray());
-    // the last of 100 + 100 particles is the one that leaves
+    // the last of the 100 + 100 particles leaves the domain
     home.call(["scene.json"]).end().failed(&["particle 199 of body `target` at x = 1.99"]);
     let home = Home::with(&mirrored_stray());
     home.call(["scene.json"]).end().failed(&["particle 100 of body `target` at x = -1.99"]);

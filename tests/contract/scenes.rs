@@ -1,11 +1,11 @@
-//! Small scenes, made from the shipped one.
+//! Small scenes derived from the shipped one.
 
 use serde_json::{Value, json};
 
 /// `inputs/flyer.json` as it is shipped.
 pub const FLYER: &str = include_str!("../../inputs/flyer.json");
 
-/// The shipped flyer on a shorter target and to an earlier end, with every output.
+/// The shipped flyer with a shorter target and an earlier end, with every output.
 pub fn whole() -> Value {
     let mut scene: Value = serde_json::from_str(FLYER).unwrap();
     scene["domain"]["upper"] = json!([2e-3]);
@@ -15,7 +15,7 @@ pub fn whole() -> Value {
     scene
 }
 
-/// The same without pictures and HDF5, and to a still earlier end.
+/// The scene of [`whole`] without pictures and HDF5, with a still earlier end.
 pub fn short() -> Value {
     let mut scene = whole();
     scene["output"] = json!({"profiles": {"times": [1e-8]}, "pictures": false, "hdf5": false});
@@ -23,8 +23,8 @@ pub fn short() -> Value {
     scene
 }
 
-/// A copper plate at rest and an aluminium plate that soon leaves the domain by its upper side;
-/// with two patches each has its own.
+/// A copper plate at rest and an aluminium plate that soon leaves the domain through its upper
+/// side; with two patches each plate has its own.
 pub fn stray() -> Value {
     let mut scene = short();
     scene.as_object_mut().unwrap().remove("reference");
@@ -45,13 +45,13 @@ pub fn mirrored_stray() -> Value {
     scene
 }
 
-/// A scheme that is unstable: steps at the Courant limit, no viscosity, FMPM with leapfrog steps,
-/// at 8 km/s.
+/// An unstable scheme: steps at the Courant limit, no viscosity, FMPM with leapfrog steps, at 8
+/// km/s.
 pub fn unstable() -> Value {
     let mut scene = short();
     scene.as_object_mut().unwrap().remove("artificial_viscosity");
     scene["time"]["courant"] = json!(1.0);
-    scene["watch"] = json!({"above_limit": "allow"});
+    scene["monitor"] = json!({"on_courant_exceeded": "allow"});
     scene["method"] = json!({"shape": "cpdi_bspline_quadratic", "transfer": {"fmpm": 6}});
     scene["bodies"][0]["velocity"] = json!([8000.0]);
     scene

@@ -1,11 +1,11 @@
-//! A step that an output shortens leaves no trace in the steps after it.
+//! A time step shortened for an output does not affect the steps after it.
 
 use serde_json::{Value, json};
 
 use crate::home::Home;
 use crate::scenes::short;
 
-/// The short scene with a row of histories every step.
+/// The short scene with a row of histories in every step.
 fn every_step(times: &[f64]) -> Value {
     let mut scene = short();
     scene["output"]["histories"] = json!({"interval": 1e-14});
@@ -20,19 +20,19 @@ fn the_step_after_an_output_is_as_long_as_without() {
     assert_eq!(times.len() as u64, plain.count("steps") + 1);
     let half = times.len() / 2;
     let length = times[half + 1] - times[half];
-    // a tenth of a step after a step's end
+    // a tenth of a step after the end of a step
     let at = times[half] + 0.1 * length;
 
     let cut = Home::with(&every_step(&[at, 1e-8])).run("run", &[]);
     assert_eq!(cut.summary["profiles"][0]["time"], json!(at));
     assert!(cut.count("steps").abs_diff(plain.count("steps")) <= 1);
     let cut_times = cut.history("time");
-    // all the same until the output, then one short step, then one of full length
+    // identical until the output, then one short step, then one of full length
     assert_eq!(cut_times[..=half], times[..=half]);
     assert_eq!(cut_times[half + 1], at);
     let after = cut_times[half + 2] - at;
     assert!((after / length - 1.0).abs() < 0.02, "{after} after, {length} before");
-    // dt tells the step to come
+    // dt is the length of the next step
     let told = cut.history("dt")[half + 1];
     assert!((after / told - 1.0).abs() < 1e-9, "{after}, {told}");
 }
@@ -41,7 +41,7 @@ fn the_step_after_an_output_is_as_long_as_without() {
 fn an_output_at_a_steps_end_adds_no_step() {
     let plain = Home::with(&every_step(&[1e-8])).run("run", &[]);
     let times = plain.history("time");
-    // by rounding beyond the end of a step
+    // beyond the end of a step by a rounding error
     let at = times[times.len() / 2] * (1.0 + 1e-13);
     let cut = Home::with(&every_step(&[at, 1e-8])).run("run", &[]);
     assert_eq!(cut.count("steps"), plain.count("steps"));
@@ -65,7 +65,7 @@ fn outputs_closer_than_a_step_are_all_met() {
         (0..4).map(|k| run.summary["profiles"][k]["file"].to_string()).collect();
     files.dedup();
     assert_eq!(files.len(), 4, "{files:?}");
-    // no output: the end alone
+    // no output times: only the end
     let run = Home::with(&every_step(&[])).run("run", &[]);
     assert_eq!(run.summary["profiles"][0]["time"], json!(1e-8));
     assert_eq!(run.summary["profiles"].as_array().unwrap().len(), 1);

@@ -3,9 +3,9 @@
 
 use decomp::Comm;
 use decomp::comm::local::run_ranks;
+use flyer_mpm::effects::columns;
 use flyer_mpm::scene::CheckedScene;
 use flyer_mpm::simulation::Simulation;
-use flyer_mpm::solver::particles::Columns;
 use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
@@ -157,10 +157,10 @@ fn what_is_not_reached_costs_nothing_and_changes_no_bit() {
     let mut scene = slab(json!({"plastic_strain": 10.0, "volume_ratio": 10.0}));
     let limited = run::<1>(&scene);
     assert_eq!(count(&limited), 0);
-    let columns = Columns::new(&checked(&scene)).specs.len();
+    let count = columns(&checked(&scene)).specs.len();
     scene["materials"]["aluminium"].as_object_mut().unwrap().remove("erosion");
     assert_eq!(run::<1>(&scene).digest, limited.digest);
-    assert_eq!(Columns::new(&checked(&scene)).specs.len(), columns);
+    assert_eq!(columns(&checked(&scene)).specs.len(), count);
 }
 
 fn end_of<const D: usize>(scene: &CheckedScene, comm: &dyn Comm) -> Option<String>
@@ -208,7 +208,7 @@ fn any_layout_has_the_same_bits() {
     }
     // at the front of the wave, where patches at rest wake, with ghosts of either kind
     let layouts = [(json!([2]), 2), (json!([7]), 3), (json!([11]), 1)];
-    for halo in ["exchange", "deep"] {
+    for halo in ["exchange", "redundant"] {
         let mut scene = plates("updated_lagrangian", json!({"plastic_strain": 1e-6}));
         scene["decomposition"] = json!({"filter_halo": halo});
         same::<1>(&scene, &layouts);

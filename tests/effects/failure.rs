@@ -116,3 +116,29 @@ fn ductile_damage_grows_with_plastic_strain_until_the_material_fails() {
         at_most("shear of what has failed", (xx[r] - zz[r]) / 1e9, 1e-9);
     }
 }
+
+/// Without resistance in time a tension above the threshold fails at once, as at a limit of tension;
+/// with some it takes longer, and with much it never does.
+#[test]
+fn damage_by_tuler_and_butcher_takes_time() {
+    let part = |failure: Value| {
+        let mut scene = spall();
+        scene["materials"]["aluminium"]["failure"] = failure;
+        run::<1>(&scene)
+    };
+    let butcher = |impulse: f64| {
+        part(json!({
+            "type": "tuler_butcher", "threshold": 1e9, "exponent": 2.0, "impulse": impulse
+        }))
+    };
+    let limit = part(json!({"type": "tension_limit", "stress": 1e9}));
+    assert_eq!(butcher(1e-30).digest, limit.digest);
+    // (0.5 GPa)^2 for 20 ns
+    let slow = butcher(0.25e18 * 2e-8);
+    let damage = slow.column("damage");
+    assert!(!failed(&slow).is_empty() && failed(&slow).len() < failed(&limit).len() + 20);
+    assert!(damage.iter().any(|&d| d > 0.0 && d < 1.0), "some is under way");
+    assert!(slow.column("pressure").iter().zip(damage).all(|(p, d)| *d < 1.0 || *p >= 0.0));
+    at_most("energy", slow.energy_drift(), 1e-12);
+    assert!(failed(&butcher(1e18)).is_empty());
+}

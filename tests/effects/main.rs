@@ -7,6 +7,7 @@ mod layouts;
 mod metal;
 mod outside;
 mod refused;
+mod shares;
 mod strength;
 mod temperature;
 // each target looks at figures of its own

@@ -2,7 +2,7 @@
 
 use decomp::Serial;
 use flyer_mpm::material::IdealGas;
-use flyer_mpm::material::constitutive::Outside;
+use flyer_mpm::material::constitutive::CustomModel;
 use flyer_mpm::material::strength::VonMises;
 use flyer_mpm::simulation::Simulation;
 use serde_json::json;
@@ -31,7 +31,7 @@ fn a_model_of_the_library_from_outside_changes_no_bit() {
     scene["materials"]["aluminium"]["strength"]["yield_stress"] = json!(1e6);
     let scene = checked(&scene);
     let strength = VonMises { shear_modulus: 28.6e9, yield_stress: 0.26e9, hardening: 0.0 };
-    let models = |_: &str| Some(Outside::strength(strength));
+    let models = |_: &str| Some(CustomModel::strength(strength));
     let mut simulation = Simulation::<1>::with_models(&scene, &Serial, 1, &models).unwrap();
     while simulation.time() < scene.scene.time.end {
         simulation.advance(scene.scene.time.end).unwrap();
@@ -41,7 +41,8 @@ fn a_model_of_the_library_from_outside_changes_no_bit() {
 
 #[test]
 fn what_the_scene_has_no_place_for_is_refused() {
-    let told = |sets: &[(&str, serde_json::Value)], models: &dyn Fn(&str) -> Option<Outside>| {
+    let told = |sets: &[(&str, serde_json::Value)],
+                models: &dyn Fn(&str) -> Option<CustomModel>| {
         let mut scene = shipped("piston_elastic_plastic.json");
         let material = scene["materials"]["aluminium"].as_object_mut().unwrap();
         for (key, value) in sets {
@@ -54,10 +55,10 @@ fn what_the_scene_has_no_place_for_is_refused() {
     let none = ("strength", json!(null));
     let porous = json!({"type": "p_alpha", "solid": {"type": "mie_gruneisen", "c0": 5330.0,
         "s": 1.34, "gamma0": 2.0}, "solid_density": 3100.0, "elastic_pressure": 1e8,
-        "compaction_pressure": 1e9});
-    let gas = |rho0: f64| move |_: &str| Some(Outside::fluid(IdealGas { rho0, gamma: 1.4 }));
+        "full_compaction_pressure": 1e9});
+    let gas = |rho0: f64| move |_: &str| Some(CustomModel::fluid(IdealGas { rho0, gamma: 1.4 }));
     let strength = VonMises { shear_modulus: 1e9, yield_stress: 1e8, hardening: 0.0 };
-    let error = told(std::slice::from_ref(&none), &|_| Some(Outside::strength(strength)));
+    let error = told(std::slice::from_ref(&none), &|_| Some(CustomModel::strength(strength)));
     assert!(error.contains("materials.aluminium: it names no strength"), "{error}");
     let error = told(&[], &gas(1.0));
     assert!(error.contains("density = 2790.0") && error.contains("1.0;"), "{error}");

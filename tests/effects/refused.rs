@@ -36,6 +36,10 @@ fn strength() {
         &[COOK, WARM, "strength.softening.melt_temperature=300"],
         &["melt_temperature = 300", "reference_temperature = 300"],
     );
+    let armstrong = "strength={\"type\": \"zerilli_armstrong\", \"shear_modulus\": 1e9, \
+                     \"c0\": 1e8, \"c3\": 1e-3, \"c4\": 1e-4}";
+    refused(&[armstrong], &["strength.c3", "materials.aluminium.thermal"]);
+    refused(&[armstrong, WARM, "strength.c0=0"], &["strength.c5 = 0", "no yield stress"]);
     let guinan = "strength={\"type\": \"steinberg_guinan\", \"shear_modulus\": 1e9, \
                   \"yield_stress\": 1e8, \"beta\": 1, \"n\": 0.3, \"max_yield_stress\": 1e7}";
     refused(&[guinan], &["max_yield_stress", "below yield_stress"]);

@@ -158,3 +158,39 @@ fn a_bar_that_vibrates_gets_its_work_back_in_leapfrog_steps() {
         assert_eq!(outcome.greatest("plastic_strain"), 0.0);
     }
 }
+
+/// Laws whose parameters leave a constant yield stress are von Mises', bit by bit; others are not.
+#[test]
+fn laws_with_a_constant_yield_stress_are_von_mises() {
+    let digest = |strength: Value| {
+        let mut scene = shipped("piston_elastic_plastic.json");
+        scene["domain"]["cell_size"] = json!(1e-4);
+        let material = &mut scene["materials"]["aluminium"];
+        material["strength"] = strength;
+        material["thermal"] = json!({"specific_heat": 900.0, "reference_temperature": 300.0});
+        run::<1>(&scene).digest
+    };
+    let mises = |yield_stress: f64| {
+        digest(json!({"type": "von_mises", "shear_modulus": 28e9, "yield_stress": yield_stress}))
+    };
+    let armstrong = |c2: f64, c3: f64| {
+        digest(json!({
+            "type": "zerilli_armstrong", "shear_modulus": 28e9, "c1": 0.25e9, "c2": c2, "c3": c3,
+            "c4": 0.0
+        }))
+    };
+    assert_eq!(armstrong(0.0, 0.0), mises(0.25e9));
+    assert_ne!(armstrong(1e9, 0.0), mises(0.25e9));
+    assert_ne!(armstrong(0.0, 1e-3), mises(0.25e9));
+    let preston = |kappa: f64, alpha: f64| {
+        digest(json!({
+            "type": "preston_tonks_wallace", "shear_modulus": 28e9, "alpha": alpha,
+            "melt_temperature": 930.0, "atomic_mass": 4.48e-26, "theta": 0.03, "p": 1.0,
+            "s0": 0.0078125, "s_inf": 0.001, "kappa": kappa, "gamma": 1.0, "y0": 0.0078125,
+            "y_inf": 0.001, "y1": 0.0, "y2": 1.0, "beta": 0.25
+        }))
+    };
+    assert_eq!(preston(0.0, 0.0), mises(2.0 * 28e9 * 0.0078125));
+    assert_ne!(preston(0.1, 0.0), preston(0.0, 0.0));
+    assert_ne!(preston(0.0, 0.2), preston(0.0, 0.0));
+}

@@ -25,7 +25,7 @@ fn any_patches_leave_the_same_bits() {
 fn columns_are_there_for_those_that_ask() {
     let names = |value: &Value| -> Vec<&'static str> {
         let scene = scene::parse(value.to_string().as_bytes(), "test.json", &[]).unwrap();
-        let columns = flyer_mpm::solver::particles::Columns::new(&scene);
+        let columns = flyer_mpm::effects::columns(&scene);
         columns.specs.iter().map(|s| s.name).collect()
     };
     let has = |name: &str, column: &str| names(&shipped(name)).contains(&column);

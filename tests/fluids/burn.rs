@@ -78,7 +78,7 @@ fn what_waits_for_the_front_does_not_sleep() {
     value["domain"]["patches"] = json!([5]);
     value["materials"]["tnt"]["eos"]["burn"]["start"] = json!(1e-6);
     let slept = front(&value);
-    value["decomposition"] = json!({"skip_quiet": false});
+    value["decomposition"] = json!({"skip_quiescent": false});
     assert!(slept > 5e-3 && slept == front(&value), "{slept}");
 }
 

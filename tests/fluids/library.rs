@@ -105,7 +105,7 @@ fn tables_stand_beside_the_scene() {
     read(json!({"density": 1500.0, "eos": eos}), &text).unwrap();
     let pores = json!({
         "type": "p_alpha", "solid": eos, "solid_density": 1500.0, "elastic_pressure": 1e7,
-        "compaction_pressure": 1e8,
+        "full_compaction_pressure": 1e8,
     });
     read(json!({"density": 1400.0, "eos": pores}), &text).unwrap();
     // the same from HDF5, to the bit

@@ -38,8 +38,8 @@ fn keys_change_the_pressure() {
         ("tension_cutoff", json!(1e8)),
     ];
     felt(2785.0, &eos, &keys, &[(0.8, 2e6), (1.02, 0.0)]);
-    let eos = json!({"type": "stiffened_gas", "gamma": 4.4, "stiffness": 6e8});
-    let keys = [("gamma", json!(4.0)), ("stiffness", json!(5e8)), ("tension_cutoff", json!(1e7))];
+    let eos = json!({"type": "stiffened_gas", "gamma": 4.4, "p_inf": 6e8});
+    let keys = [("gamma", json!(4.0)), ("p_inf", json!(5e8)), ("tension_cutoff", json!(1e7))];
     felt(1000.0, &eos, &keys, &[(0.8, 1e5), (1.05, 0.0)]);
     let eos = json!({"type": "tait", "bulk_modulus": 2.1e9, "exponent": 7.0});
     let keys =
@@ -79,13 +79,13 @@ fn keys_change_the_pressure() {
     soft["c0"] = json!(3000.0);
     let eos = json!({
         "type": "p_alpha", "solid": solid, "solid_density": 8930.0, "elastic_pressure": 1e8,
-        "compaction_pressure": 1.6e9,
+        "full_compaction_pressure": 1.6e9,
     });
     let keys = [
         ("solid", soft),
         ("solid_density", json!(9500.0)),
         ("elastic_pressure", json!(3e8)),
-        ("compaction_pressure", json!(1e9)),
+        ("full_compaction_pressure", json!(1e9)),
     ];
     felt(7144.0, &eos, &keys, &[(0.95, 0.0), (0.75, 1e5)]);
     let values = |scale: f64| {

@@ -26,7 +26,7 @@ fn porous(elastic_pressure: f64) -> Value {
         "solid": {"type": "mie_gruneisen", "c0": 3940.0, "s": 1.489, "gamma0": 1.96},
         "solid_density": 8930.0,
         "elastic_pressure": elastic_pressure,
-        "compaction_pressure": 1.6e9,
+        "full_compaction_pressure": 1.6e9,
     })
 }
 
@@ -35,9 +35,27 @@ fn slabs() -> Vec<(f64, Value, f64, f64)> {
     vec![
         (2785.0, aluminium(json!({"s2": 3e-5})), 1000.0, 7000.0),
         (2785.0, aluminium(json!({"gruneisen": "gamma_constant"})), 1500.0, 7500.0),
-        (1000.0, json!({"type": "stiffened_gas", "gamma": 4.4, "stiffness": 6e8}), 500.0, 3500.0),
+        (1000.0, json!({"type": "stiffened_gas", "gamma": 4.4, "p_inf": 6e8}), 500.0, 3500.0),
         (1000.0, json!({"type": "tait", "bulk_modulus": 2.2e9, "exponent": 7.0}), 500.0, 2600.0),
         (2700.0, tillotson(), 2000.0, 9000.0),
+        (
+            1057.0,
+            json!({"type": "noble_abel_stiffened_gas", "gamma": 1.19, "p_inf": 7028e5, "covolume": 6.61e-4}),
+            200.0,
+            3000.0,
+        ),
+        (
+            8930.0,
+            json!({"type": "vinet", "bulk_modulus": 138.6e9, "bulk_modulus_derivative": 4.96, "gamma0": 1.96}),
+            800.0,
+            6000.0,
+        ),
+        (
+            1895.0,
+            json!({"type": "davis_reactants", "a": 1800.0, "b": 4.6, "c": 0.34, "gamma0": 0.56, "z": 0.3}),
+            500.0,
+            4000.0,
+        ),
         (7144.0, porous(0.1e9), 500.0, 3950.0),
         (7144.0, porous(0.0), 300.0, 2500.0),
     ]

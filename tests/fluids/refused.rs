@@ -79,13 +79,13 @@ fn the_exact_impact_needs_a_straight_line() {
 
 #[test]
 fn fluids() {
-    let eos = json!({"type": "stiffened_gas", "gamma": 4.4, "stiffness": 6e8});
+    let eos = json!({"type": "stiffened_gas", "gamma": 4.4, "p_inf": 6e8});
     let bad = [
         ("gamma", json!(1.0), "above 1"),
-        ("stiffness", json!(0.0), "above 0"),
-        ("tension_cutoff", json!(6e8), "below eos.stiffness"),
+        ("p_inf", json!(0.0), "above 0"),
+        ("tension_cutoff", json!(6e8), "below eos.p_inf"),
     ];
-    each_key(1000.0, &eos, &["gamma", "stiffness"], &bad);
+    each_key(1000.0, &eos, &["gamma", "p_inf"], &bad);
     let eos = json!({"type": "tait", "bulk_modulus": 2.1e9, "exponent": 7.0});
     let bad = [
         ("bulk_modulus", json!(0.0), "above 0"),
@@ -174,13 +174,13 @@ fn pores() {
     let solid = json!({"type": "mie_gruneisen", "c0": 3940.0, "s": 1.489, "gamma0": 1.96});
     let eos = json!({
         "type": "p_alpha", "solid": solid, "solid_density": 8930.0, "elastic_pressure": 1e8,
-        "compaction_pressure": 1.6e9,
+        "full_compaction_pressure": 1.6e9,
     });
-    let needed = ["solid", "solid_density", "elastic_pressure", "compaction_pressure"];
+    let needed = ["solid", "solid_density", "elastic_pressure", "full_compaction_pressure"];
     let bad = [
         ("solid_density", json!(7144.0), "above the material's density"),
         ("elastic_pressure", json!(-1.0), "at least 0"),
-        ("compaction_pressure", json!(1e8), "above elastic_pressure"),
+        ("full_compaction_pressure", json!(1e8), "above elastic_pressure"),
     ];
     each_key(7144.0, &eos, &needed, &bad);
     let nested = |solid: Value, words: &[&str]| refused(7144.0, with(&eos, "solid", solid), words);

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use decomp::Serial;
-use flyer_mpm::accuracy::reference::Reference;
+use flyer_mpm::accuracy::reference::ReferenceSolution;
 use flyer_mpm::exact::Errors;
 use flyer_mpm::scene::{self, CheckedScene};
 use flyer_mpm::simulation::ParticleTable;
@@ -80,7 +80,7 @@ pub fn try_run(value: &Value) -> Result<Outcome, String> {
         simulation.advance(end).map_err(|error| error.to_string())?;
     }
     let (last, digest) = simulation.gather().unwrap();
-    let reference = Reference::new(&scene).unwrap();
+    let reference = ReferenceSolution::new(&scene).unwrap();
     let errors = reference.and_then(|r| r.score(&scene, 0, &last)).map(|(errors, _)| errors);
     Ok(Outcome { last, digest, errors, totals: [first, simulation.totals()] })
 }

@@ -1,9 +1,9 @@
-//! Each alarm of the watch, set off; what it says, on any number of ranks; steps that are redone.
+//! Each alarm of the monitor, set off; what it says, on any number of ranks; steps that are redone.
 
 use decomp::Serial;
 use decomp::comm::local::run_ranks;
-use flyer_mpm::material::constitutive::Outside;
-use flyer_mpm::material::{EquationOfState, Linear};
+use flyer_mpm::material::constitutive::CustomModel;
+use flyer_mpm::material::{EquationOfState, LinearPressure};
 use flyer_mpm::simulation::monitor::Alarm;
 use flyer_mpm::simulation::{RunError, Simulation};
 use serde_json::{Value, json};
@@ -47,8 +47,8 @@ fn sets_off(value: &Value, expected: Alarm, words: &[&str]) {
     }
 }
 
-fn watched(watch: Value) -> Value {
-    with(&short(1e-7), &json!({"watch": watch}))
+fn monitored(monitor: Value) -> Value {
+    with(&short(1e-7), &json!({"monitor": monitor}))
 }
 
 /// Two halves of a body that fly apart.
@@ -88,27 +88,31 @@ fn a_particle_that_leaves_the_domain() {
 
 #[test]
 fn a_particle_that_is_too_fast() {
-    sets_off(&watched(json!({"speed": 0.1})), Alarm::Speed, &["faster than any wave"]);
+    sets_off(&monitored(json!({"speed": 0.1})), Alarm::Speed, &["faster than any wave"]);
 }
 
 #[test]
 fn a_step_that_was_too_long() {
-    sets_off(&watched(json!({"courant": 0.401})), Alarm::Courant, &["Courant number of 0.4"]);
+    sets_off(&monitored(json!({"courant": 0.401})), Alarm::Courant, &["Courant number of 0.4"]);
 }
 
 #[test]
 fn a_time_step_that_collapses() {
-    sets_off(&watched(json!({"least_step": 1.0})), Alarm::TimeStep, &["has fallen to"]);
+    sets_off(&monitored(json!({"min_time_step_ratio": 1.0})), Alarm::TimeStep, &["has fallen to"]);
 }
 
 #[test]
 fn cells_that_are_crowded() {
-    sets_off(&watched(json!({"crowding": 1.0})), Alarm::Crowding, &["particles are in its cell"]);
+    sets_off(
+        &monitored(json!({"max_particles_per_cell_ratio": 1.0})),
+        Alarm::Crowding,
+        &["particles are in its cell"],
+    );
 }
 
 #[test]
 fn energy_that_grows() {
-    let mut value = watched(json!({"above_limit": "allow", "energy_growth": 0.02}));
+    let mut value = monitored(json!({"on_courant_exceeded": "allow", "energy_growth": 0.02}));
     value["method"] = json!({
         "shape": "bspline_quadratic", "transfer": "flip", "stepping": "leapfrog",
         "stress_update": "first",
@@ -128,15 +132,15 @@ impl EquationOfState for Endless {
         8930.0
     }
 
-    fn linear(&self, _jacobian: f64) -> Linear {
-        Linear { cold: 1e9, energy_factor: 1.0 }
+    fn linear(&self, _jacobian: f64) -> LinearPressure {
+        LinearPressure { reference_pressure: 1e9, gruneisen_rho: 1.0 }
     }
 
     fn sound_speed_squared(&self, _jacobian: f64, _pressure: f64) -> f64 {
         4000.0 * 4000.0
     }
 
-    fn fault(&self, _jacobian: f64, _pressure: f64) -> Option<&'static str> {
+    fn check_validity(&self, _jacobian: f64, _pressure: f64) -> Option<&'static str> {
         None
     }
 }
@@ -149,7 +153,7 @@ fn energy_that_falls_below_none() {
     bodies.iter_mut().for_each(|body| body["pressure"] = json!(1e9));
     let value = scene_of(160, 2e-7, &metals(), &json!(bodies));
     let scene = checked(&value).unwrap();
-    let models = |_: &str| Some(Outside::fluid(Endless));
+    let models = |_: &str| Some(CustomModel::fluid(Endless));
     let mut simulation = Simulation::<1>::with_models(&scene, &Serial, 1, &models).unwrap();
     let error = loop {
         assert!(simulation.time() < scene.scene.time.end, "it is to end");
@@ -167,7 +171,7 @@ fn energy_that_falls_below_none() {
 #[test]
 fn a_step_is_redone() {
     let bound = json!({"courant": 0.402, "on_alarm": "redo"});
-    let value = watched(bound);
+    let value = monitored(bound);
     let scene = checked(&value).unwrap();
     let mut simulation = Simulation::<1>::new(&scene, &Serial, 1).unwrap();
     while simulation.time() < scene.scene.time.end {
@@ -188,14 +192,14 @@ fn a_step_is_redone() {
 /// Where halves do not help the run ends after all.
 #[test]
 fn redoing_has_an_end() {
-    let value = with(&torn(), &json!({"watch": {"on_alarm": "redo", "most_redos": 3}}));
+    let value = with(&torn(), &json!({"monitor": {"on_alarm": "redo", "max_retries": 3}}));
     sets_off(&value, Alarm::State, &["tension_cutoff"]);
 }
 
 #[test]
 fn a_redo_that_nothing_calls_for_changes_no_bit() {
     let plain = run(&short(1e-7)).unwrap().digest;
-    assert_eq!(run(&watched(json!({"on_alarm": "redo"}))).unwrap().digest, plain);
+    assert_eq!(run(&monitored(json!({"on_alarm": "redo"}))).unwrap().digest, plain);
 }
 
 /// A Courant number above the limit is refused, reduced, or allowed, as the scene says.
@@ -205,15 +209,15 @@ fn a_courant_number_above_the_limit() {
     value["method"] = json!({"shape": "gimp", "transfer": {"fmpm": 6}});
     value["time"]["courant"] = json!(1.0);
     let told = checked(&value).unwrap_err();
-    for word in ["time.courant = 1", "measured to be stable", "watch.above_limit"] {
+    for word in ["time.courant = 1", "measured to be stable", "monitor.on_courant_exceeded"] {
         assert!(told.contains(word), "{told}");
     }
-    value["watch"] = json!({"above_limit": "reduce"});
+    value["monitor"] = json!({"on_courant_exceeded": "reduce"});
     let reduced = checked(&value).unwrap();
     assert_eq!(reduced.scene.time.courant, reduced.courant_limit());
     assert!(reduced.scene.time.courant < 1.0);
     assert!(reduced.warnings.iter().any(|w| w.contains("reduced to")));
-    value["watch"] = json!({"above_limit": "allow"});
+    value["monitor"] = json!({"on_courant_exceeded": "allow"});
     let allowed = checked(&value).unwrap();
     assert_eq!(allowed.scene.time.courant, 1.0);
     assert!(allowed.warnings.iter().any(|w| w.contains("allows it")));

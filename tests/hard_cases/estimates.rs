@@ -177,7 +177,7 @@ fn random_scenes_on_a_line_are_estimated_without_a_reference() {
     }
     println!(
         "{well} ended well ({companions} companions, {plateaus} plateaus, {arrivals} arrivals), \
-         {stopped} were ended by the watch as without the estimate, {refused} refused"
+         {stopped} were ended by the monitor as without the estimate, {refused} refused"
     );
     assert!(wrong.is_empty(), "{} of {well}: {}", wrong.len(), wrong[0]);
     assert!(companions > 0 && arrivals > 0);

@@ -1,4 +1,4 @@
-//! Scenes drawn at random: each is refused, ended by the watch, or ends well; alike on 1 to 4
+//! Scenes drawn at random: each is refused, ended by the monitor, or ends well; alike on 1 to 4
 //! ranks.
 
 use proptest::prelude::*;
@@ -31,7 +31,7 @@ fn hard_scene() -> impl Strategy<Value = Value> {
             scene["contact"] = json!({"type": "frictionless"});
         }
         let alarm = if redo { "redo" } else { "stop" };
-        scene["watch"] = json!({"above_limit": "reduce", "on_alarm": alarm});
+        scene["monitor"] = json!({"on_courant_exceeded": "reduce", "on_alarm": alarm});
         scene
     })
 }

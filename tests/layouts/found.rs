@@ -65,7 +65,7 @@ fn a_limiter_that_looks_into_another_body() {
         "artificial_viscosity": {"linear": 0.1, "quadratic": 1.0, "limiter": "christensen"},
         "contact": {"type": "frictionless"},
         // hat functions fling a particle at a surface
-        "watch": {"courant": 1e3, "speed": 1e3},
+        "monitor": {"courant": 1e3, "speed": 1e3},
     });
     let whole = end_of(&scene, &Layout::WHOLE);
     assert!(whole.is_ok(), "{whole:?}");
@@ -102,7 +102,7 @@ fn a_limiter_that_takes_nothing_away() {
         "bodies": [body("left", [0.0, 6e-5]), body("right", [6e-5, 1.4035534885836116e-4])],
         "boundary": {"x_lower": {"velocity": 400.0}, "x_upper": "outflow"},
         "artificial_viscosity": {"linear": 0.1, "quadratic": 1.0, "limiter": "nodal"},
-        "watch": {"above_limit": "reduce"},
+        "monitor": {"on_courant_exceeded": "reduce"},
     });
     let whole = end_of(&scene, &Layout::WHOLE);
     assert!(whole.is_ok(), "{whole:?}");
@@ -137,7 +137,7 @@ fn two_particles_that_fail_at_once() {
         "bodies": [body],
         "boundary": {"x_lower": "periodic", "x_upper": "periodic"},
         "artificial_viscosity": {"linear": 0.1, "quadratic": 1.0},
-        "watch": {"above_limit": "reduce"},
+        "monitor": {"on_courant_exceeded": "reduce"},
     });
     let whole = end_of(&scene, &Layout::WHOLE);
     let stretched = |message: &String| message.contains("further than its shape function reaches");

@@ -14,13 +14,13 @@ fn layout() -> impl Strategy<Value = Layout> {
     let switches = (any::<bool>(), any::<bool>());
     let parts = (1usize..=5, patches, 1usize..=2, balance, switches, select(&HALOS[..]));
     parts.prop_map(
-        |(ranks, patches, threads, (every, cost), (skip_quiet, overlap), filter_halo)| Layout {
+        |(ranks, patches, threads, (every, cost), (skip_quiescent, overlap), filter_halo)| Layout {
             ranks,
             patches,
             threads,
             every,
             cost,
-            skip_quiet,
+            skip_quiescent,
             overlap,
             filter_halo,
         },

@@ -2,7 +2,7 @@
 
 use decomp::Comm;
 use decomp::comm::local::run_ranks;
-use flyer_mpm::perf_model::{Schedule, Work};
+use flyer_mpm::perf_model::{StepCounts, Work};
 use flyer_mpm::scene::{self, CheckedScene, FilterHalo};
 use flyer_mpm::simulation::Simulation;
 
@@ -24,10 +24,10 @@ struct Seen {
 
 fn parsed(text: &[u8], sets: &[&str], halo: FilterHalo, patches: usize) -> CheckedScene {
     let mut sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
-    let name = if halo == FilterHalo::Deep { "deep" } else { "exchange" };
+    let name = if halo == FilterHalo::Redundant { "redundant" } else { "exchange" };
     sets.push(format!("decomposition.filter_halo={name}"));
     sets.push(format!("domain.patches=[{patches}]"));
-    sets.push("decomposition.skip_quiet=false".into());
+    sets.push("decomposition.skip_quiescent=false".into());
     scene::parse(text, "scene.json", &sets).unwrap()
 }
 
@@ -44,7 +44,7 @@ fn seen(scene: &CheckedScene) -> Vec<Seen> {
         let events = &simulation.clock().events;
         let count = |name: &str| events.iter().filter(|e| e.name == name).count();
         Seen {
-            rows: count("exchange rows"),
+            rows: count("exchange particles"),
             nodes: count("exchange nodes"),
             agreements: count("agree"),
             messages: after.messages - before.messages,
@@ -80,9 +80,9 @@ const METHODS: [(&[u8], &[&str]); 14] = [
 #[test]
 fn exchanges_of_a_step_are_those_of_the_timeline() {
     for (text, sets) in METHODS {
-        for halo in [FilterHalo::Exchange, FilterHalo::Deep] {
+        for halo in [FilterHalo::Exchange, FilterHalo::Redundant] {
             let scene = parsed(text, sets, halo, 4);
-            let schedule = Schedule::of(&scene.scene.method);
+            let schedule = StepCounts::of(&scene.scene.method);
             let steps = STEPS as f64;
             for rank in seen(&scene) {
                 let what = format!("{sets:?} {halo:?}");
@@ -99,7 +99,7 @@ fn exchanges_of_a_step_are_those_of_the_timeline() {
 #[test]
 fn messages_and_bytes_are_those_that_are_sent() {
     for (text, sets) in [METHODS[0], METHODS[8], METHODS[11]] {
-        for halo in [FilterHalo::Exchange, FilterHalo::Deep] {
+        for halo in [FilterHalo::Exchange, FilterHalo::Redundant] {
             for patches in [2, 8] {
                 let scene = parsed(text, sets, halo, patches);
                 let work = Work::new(&scene);

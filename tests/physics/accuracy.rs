@@ -22,7 +22,7 @@ fn the_flyer_holds_its_bounds() {
         holds("L1", e.l1, 0.01);
         holds("plateau", e.plateau, 5e-4);
         holds("noise", e.noise, 1e-3);
-        holds("second plateau", e.plateau_4, 2e-3);
+        holds("second plateau", e.second_plateau, 2e-3);
         holds("shock position", e.shock_position_cells, 0.2);
         holds("rise", e.rise_cells, 2.5);
         holds("overshoot", e.overshoot, 0.02);

@@ -41,7 +41,7 @@ fn filters_from_messages_and_from_deep_ghosts() {
         };
         let whole = digest("exchange", 1);
         for patches in [1, 3, 16, 40] {
-            for halo in ["exchange", "deep"] {
+            for halo in ["exchange", "redundant"] {
                 assert_eq!(digest(halo, patches), whole, "{method}: {halo}, {patches} patches");
             }
         }

@@ -141,7 +141,7 @@ fn a_strong_shock_in_a_cold_gas() {
 fn patches_at_rest_change_nothing() {
     let scene = total(&short("flyer.json", 0.2e-6));
     let of = |skip: bool| {
-        let edit = json!({"domain": {"patches": [16]}, "decomposition": {"skip_quiet": skip}});
+        let edit = json!({"domain": {"patches": [16]}, "decomposition": {"skip_quiescent": skip}});
         run(&with(&scene, &edit)).digest
     };
     assert_eq!(of(true), of(false));

@@ -121,9 +121,9 @@ fn a_gas_that_runs_out() {
 fn the_largest_courant_number() {
     for name in ["flyer.json", "flyer_uintah.json"] {
         for shape in SHAPES {
-            let watch = json!({"above_limit": "allow"});
+            let monitor = json!({"on_courant_exceeded": "allow"});
             let edit = json!({
-                "time": {"courant": 1.0}, "method": {"shape": shape}, "watch": watch,
+                "time": {"courant": 1.0}, "method": {"shape": shape}, "monitor": monitor,
             });
             ends(&format!("courant 1, {shape}, {name}"), &with(&short(name, 0.2e-6), &edit));
         }

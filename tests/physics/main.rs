@@ -4,6 +4,7 @@
 //! Runs are made in process, through the library.
 
 mod accuracy;
+mod ahead;
 mod bits;
 mod conservation;
 mod contact;

@@ -2,7 +2,7 @@
 
 use decomp::Comm;
 use decomp::comm::local::run_ranks;
-use flyer_mpm::simulation::{Simulation, Tally, patch_counts};
+use flyer_mpm::simulation::{Counters, Simulation, patch_counts};
 use flyer_mpm::solver::clock::Event;
 use serde_json::{Value, json};
 
@@ -10,7 +10,7 @@ use crate::tools::{checked, ending, shipped, with};
 
 /// What one rank has seen of a run.
 struct Seen {
-    tally: Tally,
+    tally: Counters,
     digest: Option<String>,
     rank_events: Vec<Event>,
     patch_events: Vec<(usize, Event)>,
@@ -38,7 +38,7 @@ fn on_ranks(value: &Value, decomposition: &Value, ranks: usize) -> Vec<Seen> {
     })
 }
 
-fn total(seen: &[Seen], of: fn(&Tally) -> u64) -> u64 {
+fn total(seen: &[Seen], of: fn(&Counters) -> u64) -> u64 {
     seen.iter().map(|s| of(&s.tally)).sum()
 }
 
@@ -68,7 +68,7 @@ fn flight() -> Value {
 #[test]
 fn patches_follow_the_workers() {
     let counts = |value: &Value, ranks, threads| patch_counts(&checked(value), ranks, threads);
-    let awake = json!({"decomposition": {"skip_quiet": false}});
+    let awake = json!({"decomposition": {"skip_quiescent": false}});
     let plane = with(&shipped("flyer_2d.json"), &awake);
     assert_eq!(plane["domain"]["patches"], Value::Null);
     assert_eq!(counts(&plane, 1, 1), [1, 1]);
@@ -84,8 +84,8 @@ fn patches_follow_the_workers() {
 
 #[test]
 fn quiet_patches_are_left_out() {
-    let off = on_ranks(&plates(16), &json!({"skip_quiet": false}), 1);
-    let on = on_ranks(&plates(16), &json!({"skip_quiet": true}), 1);
+    let off = on_ranks(&plates(16), &json!({"skip_quiescent": false}), 1);
+    let on = on_ranks(&plates(16), &json!({"skip_quiescent": true}), 1);
     assert_eq!(off[0].digest, on[0].digest);
     assert_eq!(off[0].tally.skipped_particle_steps, 0);
     let all = off[0].tally.particle_steps;
@@ -126,9 +126,9 @@ fn measured_cost_moves_patches_too() {
 #[test]
 fn inner_patches_are_computed_while_messages_fly() {
     let within = |overlap: bool| {
-        let keys = json!({"overlap": overlap, "skip_quiet": false, "balance": {"every": 0}});
+        let keys = json!({"overlap": overlap, "skip_quiescent": false, "balance": {"every": 0}});
         let seen = on_ranks(&plates(16), &keys, 2);
-        let exchange = seen[0].rank_events.iter().find(|e| e.name == "exchange rows").unwrap();
+        let exchange = seen[0].rank_events.iter().find(|e| e.name == "exchange particles").unwrap();
         let end = exchange.start + exchange.length;
         let scatter = seen[0].patch_events.iter().filter(|(_, e)| e.name == "scatter");
         let (before, after): (Vec<_>, Vec<_>) =
@@ -143,8 +143,8 @@ fn inner_patches_are_computed_while_messages_fly() {
 
 #[test]
 fn a_timeline_has_the_steps_that_were_asked_for() {
-    for (halo, exchanges) in [("exchange", 17), ("deep", 1)] {
-        let seen = on_ranks(&plates(8), &json!({"filter_halo": halo, "skip_quiet": false}), 2);
+    for (halo, exchanges) in [("exchange", 17), ("redundant", 1)] {
+        let seen = on_ranks(&plates(8), &json!({"filter_halo": halo, "skip_quiescent": false}), 2);
         for rank in &seen {
             assert!(rank.rank_events.iter().all(|e| e.step == 3));
             let count = rank.rank_events.iter().filter(|e| e.name.starts_with("exchange")).count();

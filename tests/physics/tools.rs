@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use decomp::Serial;
-use flyer_mpm::accuracy::reference::Reference;
+use flyer_mpm::accuracy::reference::ReferenceSolution;
 use flyer_mpm::exact::Errors;
 use flyer_mpm::scene::{self, CheckedScene};
-use flyer_mpm::simulation::Left;
 use flyer_mpm::simulation::ParticleTable;
+use flyer_mpm::simulation::Removed;
 use flyer_mpm::simulation::{Simulation, Totals};
 use serde_json::{Value, json};
 
@@ -68,7 +68,7 @@ pub struct Outcome {
     /// Sums at the end.
     pub end: Totals<1>,
     /// What has left by outflows.
-    pub left: Left<1>,
+    pub left: Removed<1>,
 }
 
 impl Outcome {
@@ -124,7 +124,7 @@ pub fn run(value: &Value) -> Outcome {
 pub fn scored(value: &Value) -> (Outcome, Vec<Errors>) {
     let scene = checked(value);
     let outcome = run_scene(&scene, 1).unwrap_or_else(|error| panic!("{error}"));
-    let reference = Reference::new(&scene).unwrap().expect("a scene with a reference");
+    let reference = ReferenceSolution::new(&scene).unwrap().expect("a scene with a reference");
     let tables = outcome.tables.iter().enumerate();
     let errors =
         tables.map(|(k, table)| reference.score(&scene, k, table).expect("an exact profile").0);

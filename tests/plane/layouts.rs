@@ -18,7 +18,7 @@ const LAYOUTS: [[usize; 2]; 5] = [[1, 1], [4, 1], [1, 4], [3, 5], [8, 8]];
 #[track_caller]
 fn same(mut scene: Value, what: &str) {
     scene["domain"]["patches"] = json!([1, 1]);
-    scene["decomposition"] = json!({"skip_quiet": false, "filter_halo": "exchange"});
+    scene["decomposition"] = json!({"skip_quiescent": false, "filter_halo": "exchange"});
     let whole = digest_on(&scene, 1, 1);
     for (k, layout) in LAYOUTS.into_iter().enumerate() {
         for ranks in 1..=4 {
@@ -26,9 +26,9 @@ fn same(mut scene: Value, what: &str) {
             let mut shared = scene.clone();
             shared["domain"]["patches"] = json!(layout);
             shared["decomposition"] = json!({
-                "skip_quiet": (k + ranks) % 2 == 0,
+                "skip_quiescent": (k + ranks) % 2 == 0,
                 "overlap": (k / 2 + ranks) % 2 == 0,
-                "filter_halo": (["exchange", "deep"][(k + ranks / 2) % 2]),
+                "filter_halo": (["exchange", "redundant"][(k + ranks / 2) % 2]),
                 "balance": {"every": 7 * (ranks % 2), "cost": "particles"}
             });
             let threads = 1 + (k + ranks) % 2;

@@ -178,7 +178,8 @@ where
         scene["domain"]["cell_size"] = json!(cell);
         let scene = checked(&scene);
         let table = run::<D>(&serde_json::to_value(&scene.scene).unwrap()).table;
-        let reference = flyer_mpm::accuracy::reference::Reference::new(&scene).unwrap().unwrap();
+        let reference =
+            flyer_mpm::accuracy::reference::ReferenceSolution::new(&scene).unwrap().unwrap();
         let (errors, _) = reference.score(&scene, 0, &table).unwrap();
         errors.l2.unwrap()
     };

@@ -42,7 +42,7 @@ fn sharpen(scene: &mut Value) {
     scene["method"]["edge_mask"] = json!(0.4);
     scene["artificial_viscosity"]["linear"] = json!(0.05);
     scene["artificial_viscosity"]["quadratic"] = json!(0.5);
-    scene["artificial_viscosity"]["growth"] = json!({"rate": 6.0, "most": 2.0});
+    scene["artificial_viscosity"]["growth"] = json!({"rate": 6.0, "max": 2.0});
 }
 
 /// Greatest difference of pressure from that of a target that goes on, up to ten cells from the

@@ -4,7 +4,7 @@ use decomp::comm::local::run_ranks;
 use decomp::{Comm, Serial};
 use flyer_mpm::scene::{self, CheckedScene};
 use flyer_mpm::simulation::ParticleTable;
-use flyer_mpm::simulation::{Given, Left, Simulation, Totals};
+use flyer_mpm::simulation::{BoundaryWork, Removed, Simulation, Totals};
 use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
@@ -23,9 +23,9 @@ pub struct Outcome<const D: usize> {
     /// Sums at the start and at the end.
     pub totals: [Totals<D>; 2],
     /// What has left by open sides.
-    pub left: Left<D>,
+    pub left: Removed<D>,
     /// What the sides have given.
-    pub given: Given<D>,
+    pub given: BoundaryWork<D>,
 }
 
 impl<const D: usize> Outcome<D> {

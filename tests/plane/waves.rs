@@ -1,6 +1,6 @@
 //! Plane waves at an angle to the grid, and edge releases.
 
-use flyer_mpm::accuracy::reference::Reference;
+use flyer_mpm::accuracy::reference::ReferenceSolution;
 use serde_json::{Value, json};
 
 use crate::tools::{checked, impact, run};
@@ -33,7 +33,7 @@ fn a_wave_at_an_angle_is_as_good_as_one_along_an_axis() {
         let outcome = run::<2>(&scene);
         assert!(outcome.energy_drift().abs() < 1e-12, "{:e}", outcome.energy_drift());
         let checked = checked(&scene);
-        let reference = Reference::new(&checked).unwrap().unwrap();
+        let reference = ReferenceSolution::new(&checked).unwrap().unwrap();
         let (raw, cells) = reference.score(&checked, 0, &outcome.table).unwrap();
         (raw.l1.unwrap(), cells.l1.unwrap())
     });
@@ -54,7 +54,7 @@ fn sod(angle: f64) -> f64 {
     let outcome = run::<2>(&scene);
     assert!(outcome.energy_drift().abs() < 1e-12, "{:e}", outcome.energy_drift());
     let checked = checked(&scene);
-    let reference = Reference::new(&checked).unwrap().unwrap();
+    let reference = ReferenceSolution::new(&checked).unwrap().unwrap();
     reference.score(&checked, 0, &outcome.table).unwrap().0.density_l1.unwrap()
 }
 

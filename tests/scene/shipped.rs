@@ -153,7 +153,7 @@ fn what_is_inaccurate_is_warned_of() {
         tells(&checked.warnings[0], &[fragment]);
     };
     warned(&["method.shape=linear"], "method.shape = \"linear\"");
-    let above = ["method.shape=gimp", "time.courant=0.95", "watch.above_limit=allow"];
+    let above = ["method.shape=gimp", "time.courant=0.95", "monitor.on_courant_exceeded=allow"];
     warned(&above, "time.courant = 0.95");
     warned(
         &["materials.spare={\"density\": 1, \"eos\": {\"type\": \"ideal_gas\", \"gamma\": 1.4}}"],

@@ -200,13 +200,13 @@ fn patches_and_sleep_change_no_bit() {
     let digest = |patches: Value, skip: bool, halo: &str| {
         let mut value = mixed();
         value["domain"]["patches"] = patches;
-        value["decomposition"] = json!({"skip_quiet": skip, "filter_halo": halo});
+        value["decomposition"] = json!({"skip_quiescent": skip, "filter_halo": halo});
         run::<2>(&value).digest
     };
     let one = digest(json!([1, 1]), false, "exchange");
     assert_eq!(one, digest(json!([4, 2]), false, "exchange"));
     assert_eq!(one, digest(json!([4, 2]), true, "exchange"));
-    assert_eq!(one, digest(json!([3, 1]), true, "deep"));
+    assert_eq!(one, digest(json!([3, 1]), true, "redundant"));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use decomp::Serial;
 use flyer_mpm::accuracy::reference::PlaneReference;
 use flyer_mpm::scene::{self, CheckedScene};
 use flyer_mpm::simulation::ParticleTable;
-use flyer_mpm::simulation::{Simulation, Totals, Ways};
+use flyer_mpm::simulation::{RemovedByKind, Simulation, Totals};
 use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
@@ -32,7 +32,7 @@ pub struct Outcome<const D: usize> {
     /// Sums at the start and at the end.
     pub totals: [Totals<D>; 2],
     /// What has left.
-    pub ways: Ways<D>,
+    pub ways: RemovedByKind<D>,
     /// Score of the end, where the scene names a solution.
     pub score: Value,
 }

@@ -1,12 +1,13 @@
-//! Signs of life of the ranks of one machine, in files: for the start and the end of a run, when
-//! ranks wait for each other where no message can be sent and none answers. Knows no MPI.
+//! Signs of life of the ranks of one machine, through files. They are used at the start and the end
+//! of a run, when ranks wait for each other but cannot send or answer messages. Independent of MPI.
 //!
-//! A thread of each rank touches the rank's file again and again. While the rank is held up, it
-//! looks at the files of the others: one that is missing, or that nobody has touched for long, is
-//! that of a rank that hangs or was stopped. The lowest rank that lives names it and ends its own
-//! process; the launcher ends the others.
+//! A thread of each rank regularly touches the rank's file. While the rank waits, the thread checks
+//! the files of the other ranks. If a file is missing or has not been touched for long, its rank
+//! hangs or was stopped. The lowest rank that is alive names it and ends its own process; the
+//! launcher then ends the others.
 
 use std::fs::{self, File};
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -15,29 +16,29 @@ use std::time::{Duration, Instant, SystemTime};
 
 use super::watch::{GRACE, hanging};
 
-/// Exit code of a run that a rank has ended because another hangs.
+/// Exit code of a run that a rank has ended because another rank hangs.
 pub(crate) const STALLED: i32 = 7;
 
-/// Which ranks give signs of life, and where.
+/// Location of the files with the signs of life, and the ranks that write them.
 #[derive(Clone, Debug)]
-pub(crate) struct Place {
-    /// A folder that the ranks of this machine share.
+pub(crate) struct HeartbeatFiles {
+    /// A folder that all ranks of this machine can access.
     pub folder: PathBuf,
-    /// What the names of the files begin with: the ranks of no other run have it.
+    /// Part of the file names, unique to this run.
     pub job: String,
-    /// The number of this rank on this machine, from 0, and that of all of them.
+    /// Number of this rank on this machine, from 0, and number of ranks on this machine.
     pub local: [usize; 2],
-    /// The number of this rank in the run, from 0, and that of all of them.
+    /// Number of this rank in the run, from 0, and number of ranks in the run.
     pub rank: [usize; 2],
 }
 
-impl Place {
+impl HeartbeatFiles {
     fn file(&self, local: usize) -> PathBuf {
         self.folder.join(format!("alive-{}-{local}", self.job))
     }
 
-    /// The rank of a number on this machine: its own file says it, and on one machine it is known
-    /// before that.
+    /// Rank in the run of a local rank. Its file states it; if all ranks run on one machine, it is
+    /// known without the file.
     fn name(&self, local: usize) -> Option<usize> {
         let said = fs::read_to_string(self.file(local)).ok();
         let said = said.and_then(|text| text.split(' ').next()?.parse().ok());
@@ -45,17 +46,17 @@ impl Place {
     }
 }
 
-/// What a rank does.
+/// Phase of a rank.
 const STARTS: u8 = 0;
 const RUNS: u8 = 1;
 const ENDS: u8 = 2;
 
-/// What the file of a rank that has come to its end says.
+/// Text in the file of a rank that has ended.
 const ENDED: &str = "ended";
 
-/// The signs of life of this rank; to drop it is to wait until the others have come to their end.
+/// The signs of life of this rank. Dropping it waits until the other ranks have ended.
 pub(crate) struct Life {
-    place: Place,
+    place: HeartbeatFiles,
     timeout: Duration,
     phase: Arc<AtomicU8>,
     over: Option<std::sync::mpsc::Sender<()>>,
@@ -63,14 +64,14 @@ pub(crate) struct Life {
 }
 
 impl Life {
-    /// Begins to give signs of life, and to look at those of the others as long as this rank
-    /// starts; none where the folder cannot be written.
-    pub fn start(place: Place, timeout: Duration) -> Option<Life> {
+    /// Starts to give signs of life, and to check those of the others while this rank starts.
+    /// `None` if the folder is not writable.
+    pub fn start(place: HeartbeatFiles, timeout: Duration) -> Option<Life> {
         fs::write(place.file(place.local[0]), format!("{} ", place.rank[0])).ok()?;
         let mine = File::options().append(true).open(place.file(place.local[0])).ok()?;
         let phase = Arc::new(AtomicU8::new(STARTS));
         let (over, ended) = std::sync::mpsc::channel();
-        let mut look = Look::new(place.clone(), timeout);
+        let mut look = LifeWatch::new(place.clone(), timeout);
         let seen = phase.clone();
         let thread = std::thread::spawn(move || {
             let period = period(timeout);
@@ -85,12 +86,12 @@ impl Life {
         Some(Life { place, timeout, phase, over: Some(over), thread: Some(thread) })
     }
 
-    /// The rank has started: it waits for others where they answer.
+    /// Records that the rank has started: from now on, messages show whether ranks are alive.
     pub fn runs(&self) {
         self.phase.store(RUNS, Ordering::Relaxed);
     }
 
-    /// The rank is about to end: no messages from here on.
+    /// Records that the rank is about to end: no messages from here on.
     pub fn ends(&self) {
         self.phase.store(ENDS, Ordering::Relaxed);
     }
@@ -104,11 +105,11 @@ impl Drop for Life {
         self.ends();
         let ended = |local: usize| match fs::read_to_string(place.file(local)) {
             Ok(text) => text.ends_with(ENDED),
-            // it has seen the end of all others, and has gone
+            // the rank has seen the end of all others and has removed its file
             Err(_) => true,
         };
         let since = Instant::now();
-        // the thread names who does not come
+        // the thread names a rank that does not end
         while !(0..place.local[1]).all(ended) && since.elapsed() < 4 * self.timeout {
             std::thread::sleep(Duration::from_millis(1));
         }
@@ -125,7 +126,8 @@ fn period(timeout: Duration) -> Duration {
     (timeout / 16).clamp(Duration::from_millis(5), Duration::from_secs(1))
 }
 
-/// Ends this process and tells why; nothing else of it may run, for it is held up.
+/// Prints the reason and ends this process at once; no other code may run, because the process is
+/// blocked.
 fn end(why: &str) -> ! {
     if !why.is_empty() {
         eprintln!("error: {why}");
@@ -134,30 +136,30 @@ fn end(why: &str) -> ! {
     unsafe { libc::_exit(STALLED) }
 }
 
-/// What a rank has seen of the others.
-struct Look {
-    place: Place,
+/// State of this rank's checks of the other ranks.
+struct LifeWatch {
+    place: HeartbeatFiles,
     timeout: Duration,
-    /// Time for which the rank has been held up. A jump counts little: the rank itself may have
-    /// been stopped.
+    /// Time for which this rank has waited. A jump of the clock counts little, because this rank
+    /// itself may have been stopped.
     clock: Duration,
     seen: Instant,
-    /// When each file was touched, and when that was seen, by the clock.
+    /// Modification time of each file, and the time by `clock` at which it was seen.
     touched: Vec<(Option<SystemTime>, Duration)>,
-    /// When another rank was left to tell that some are silent, by the clock.
+    /// Time by `clock` at which this rank left the report to another rank.
     left: Option<Duration>,
     phase: u8,
 }
 
-impl Look {
-    fn new(place: Place, timeout: Duration) -> Self {
+impl LifeWatch {
+    fn new(place: HeartbeatFiles, timeout: Duration) -> Self {
         let touched = vec![(None, Duration::ZERO); place.local[1]];
         let (clock, seen) = (Duration::ZERO, Instant::now());
-        Look { place, timeout, clock, seen, touched, left: None, phase: STARTS }
+        LifeWatch { place, timeout, clock, seen, touched, left: None, phase: STARTS }
     }
 
-    /// Looks at all files; why the run has to end, if it has and this rank is the one to tell. The
-    /// text is empty where another rank was left to tell it, and this one ends as well.
+    /// Checks all files. Returns the reason to end the run, if this rank has to report it. The text
+    /// is empty if this rank had left the report to another rank and ends as well.
     fn at(&mut self, phase: u8, now: Instant) -> Option<String> {
         let grace = GRACE.min(self.timeout / 2);
         let elapsed = (now - self.seen).min(grace / 4);
@@ -180,7 +182,7 @@ impl Look {
         if self.clock < self.timeout {
             return None;
         }
-        // the one that was left to tell ends as it does, and is silent from then on
+        // the reporting rank ends and gives no more signs of life
         if let Some(left) = self.left {
             return (self.clock >= left + grace).then(String::new);
         }
@@ -195,14 +197,12 @@ impl Look {
         if silent.is_empty() {
             let elsewhere = self.place.local[1] < ranks && phase == STARTS;
             return elsewhere.then(|| {
-                let seconds = self.timeout.as_secs_f64();
-                format!(
-                    "the run has not started within {seconds} s: a rank on another machine hangs \
-                     or was stopped (rank {rank} waited for it)"
-                )
+                let here = (0..self.place.local[1]).filter_map(|l| self.place.name(l));
+                let others = others(here.chain([rank]).collect(), ranks);
+                not_started(&others, self.timeout, rank)
             });
         }
-        // one speaks for all
+        // only one rank reports
         if (0..self.place.local[1]).find(|l| !silent.contains(l)) != Some(me) {
             self.left = Some(self.clock);
             return None;
@@ -222,6 +222,35 @@ impl Look {
     }
 }
 
+/// The ranks from 0 to `ranks` - 1 that are not in `here`, as ranges such as 2-5.
+fn others(mut here: Vec<usize>, ranks: usize) -> Vec<RangeInclusive<usize>> {
+    here.sort_unstable();
+    here.push(ranks);
+    let starts = std::iter::once(0).chain(here.iter().map(|rank| rank + 1));
+    let gaps = starts.zip(&here).filter(|(start, end)| start < *end);
+    gaps.map(|(start, end)| start..=end - 1).collect()
+}
+
+/// Message for a run whose ranks on this machine have all started, but not the `others`.
+fn not_started(others: &[RangeInclusive<usize>], waited: Duration, waiter: usize) -> String {
+    let seconds = waited.as_secs_f64();
+    let name = |ranks: &RangeInclusive<usize>| match ranks.end() - ranks.start() {
+        0 => ranks.start().to_string(),
+        _ => format!("{}-{}", ranks.start(), ranks.end()),
+    };
+    let who = match others {
+        [one] if one.start() == one.end() => format!("rank {} on another machine", one.start()),
+        _ => {
+            let names: Vec<String> = others.iter().map(name).collect();
+            format!("one of ranks {} on other machines", names.join(", "))
+        }
+    };
+    format!(
+        "the run has not started within {seconds} s: {who} hangs or was stopped (rank {waiter} \
+         waited for it)"
+    )
+}
+
 fn has_ended(file: &Path) -> bool {
     fs::read_to_string(file).is_ok_and(|text| text.ends_with(ENDED))
 }
@@ -230,17 +259,18 @@ fn has_ended(file: &Path) -> bool {
 mod tests {
     use super::*;
 
-    /// A look of rank 0 of three on one machine, and a folder for their files.
-    fn look(name: &str) -> (Look, PathBuf) {
+    /// The checks of rank 0 of three on one machine, and a folder for their files.
+    fn look(name: &str) -> (LifeWatch, PathBuf) {
         let folder = std::env::temp_dir().join(format!("decomp-{name}-{}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
-        let place = Place { folder: folder.clone(), job: "j".into(), local: [0, 3], rank: [0, 3] };
-        (Look::new(place, Duration::from_secs(4)), folder)
+        let place =
+            HeartbeatFiles { folder: folder.clone(), job: "j".into(), local: [0, 3], rank: [0, 3] };
+        (LifeWatch::new(place, Duration::from_secs(4)), folder)
     }
 
-    /// The first verdict within eight simulated seconds and its time [s], with one look each quarter
-    /// of a second; the ranks in `alive` touch their files before each look.
-    fn first_verdict(look: &mut Look, phase: u8, alive: &[usize]) -> Option<(f64, String)> {
+    /// The first verdict within eight simulated seconds and its time [s], with one check each
+    /// quarter of a second. The ranks in `alive` touch their files before each check.
+    fn first_verdict(look: &mut LifeWatch, phase: u8, alive: &[usize]) -> Option<(f64, String)> {
         let start = look.seen;
         (1..=32).find_map(|k| {
             for &local in alive {
@@ -259,9 +289,9 @@ mod tests {
         let (at, why) = first_verdict(&mut one, STARTS, &[0, 1]).unwrap();
         assert!(why.starts_with("rank 2 has made no progress for 4 s: it hangs"), "{why}");
         assert!((4.0..5.0).contains(&at), "{at}");
-        // one that has started and was stopped, by what its file says
+        // a rank that started and was then stopped, named by the text of its file
         fs::write(one.place.file(1), "1 ").unwrap();
-        let mut again = Look::new(one.place.clone(), one.timeout);
+        let mut again = LifeWatch::new(one.place.clone(), one.timeout);
         let (_, why) = first_verdict(&mut again, STARTS, &[0, 2]).unwrap();
         assert!(why.starts_with("rank 1 has made no progress"), "{why}");
         fs::remove_dir_all(folder).unwrap();
@@ -280,12 +310,12 @@ mod tests {
     fn ranks_that_live_are_waited_for() {
         let (mut one, folder) = look("alive");
         assert_eq!(first_verdict(&mut one, STARTS, &[0, 1, 2]), None);
-        // in the time loop nobody looks
+        // no checks in the time loop
         assert_eq!(first_verdict(&mut one, RUNS, &[0]), None);
-        // who has ended is not waited for
+        // a rank that has ended is not waited for
         fs::write(one.place.file(1), "1 ended").unwrap();
         assert_eq!(first_verdict(&mut one, ENDS, &[0, 2]), None);
-        let mut again = Look::new(one.place.clone(), one.timeout);
+        let mut again = LifeWatch::new(one.place.clone(), one.timeout);
         again.phase = ENDS;
         let (_, why) = first_verdict(&mut again, ENDS, &[0]).unwrap();
         assert!(why.starts_with("rank 2 has made no progress"), "{why}");
@@ -297,9 +327,20 @@ mod tests {
         let (mut one, folder) = look("elsewhere");
         one.place.rank = [4, 9];
         let (_, why) = first_verdict(&mut one, STARTS, &[0, 1, 2]).unwrap();
-        assert!(why.contains("a rank on another machine hangs"), "{why}");
+        assert!(why.contains("one of ranks 0-3, 5-8 on other machines hangs"), "{why}");
+        for (local, rank) in [4, 0, 5].into_iter().enumerate() {
+            fs::write(one.place.file(local), format!("{rank} ")).unwrap();
+        }
+        let mut again = LifeWatch::new(one.place.clone(), one.timeout);
+        let (_, why) = first_verdict(&mut again, STARTS, &[0, 1, 2]).unwrap();
+        assert!(why.contains("s: one of ranks 1-3, 6-8 on other machines hangs"), "{why}");
+        again = LifeWatch::new(HeartbeatFiles { rank: [4, 4], ..one.place.clone() }, one.timeout);
+        fs::write(again.place.file(0), "1 ").unwrap();
+        fs::write(again.place.file(2), "3 ").unwrap();
+        let (_, why) = first_verdict(&mut again, STARTS, &[0, 1, 2]).unwrap();
+        assert!(why.contains("s: rank 2 on another machine hangs"), "{why}");
         fs::remove_file(one.place.file(2)).unwrap();
-        let mut again = Look::new(one.place.clone(), one.timeout);
+        let mut again = LifeWatch::new(one.place.clone(), one.timeout);
         let (_, why) = first_verdict(&mut again, STARTS, &[0, 1]).unwrap();
         assert!(why.starts_with("1 ranks of this machine have not started"), "{why}");
         fs::remove_dir_all(folder).unwrap();
@@ -308,7 +349,7 @@ mod tests {
     #[test]
     fn ranks_end_together() {
         let (one, folder) = look("end");
-        let place = |k: usize| Place { local: [k, 3], rank: [k, 3], ..one.place.clone() };
+        let place = |k: usize| HeartbeatFiles { local: [k, 3], rank: [k, 3], ..one.place.clone() };
         std::thread::scope(|scope| {
             for k in 0..3 {
                 let place = place(k);

@@ -1,4 +1,4 @@
-//! Ranks as threads of one process: for tests, and for a program that runs several without MPI.
+//! Ranks as threads of one process: for tests, and for programs that run several ranks without MPI.
 
 use std::any::Any;
 use std::panic::resume_unwind;
@@ -7,14 +7,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::time::Duration;
 
-use super::watch::{Awaited, Control, Watch};
+use super::watch::{Awaited, Control, StallWatch};
 use super::{Comm, Traffic};
 
-/// Runs `body` on `size` ranks, each a thread, and returns what they return, by rank.
+/// Runs `body` on `size` ranks, each a thread, and returns their results by rank.
 ///
 /// # Panics
 ///
-/// If one of them does, or ends while another waits for it: the others end too.
+/// If a rank panics, or ends while another waits for it; the other ranks end too.
 pub fn run_ranks<R: Send>(size: usize, body: impl Fn(&LocalRank) -> R + Sync) -> Vec<R> {
     let body = &body;
     let ends: Vec<_> = std::thread::scope(|scope| {
@@ -29,7 +29,7 @@ pub fn run_ranks<R: Send>(size: usize, body: impl Fn(&LocalRank) -> R + Sync) ->
             Err(fault) => faults.push(fault),
         }
     }
-    // those that ended because of another have nothing to say
+    // ranks that ended because of another rank carry no message
     let first = faults.iter().position(|fault| !fault.is::<EndedByAnother>()).unwrap_or(0);
     if !faults.is_empty() {
         resume_unwind(faults.swap_remove(first));
@@ -40,14 +40,14 @@ pub fn run_ranks<R: Send>(size: usize, body: impl Fn(&LocalRank) -> R + Sync) ->
 /// A rank that is a thread of this process.
 pub struct LocalRank {
     rank: usize,
-    /// To each rank.
+    /// Channel to each rank.
     to: Vec<Sender<Vec<u64>>>,
-    /// From each rank.
+    /// Channel from each rank.
     from: Vec<Receiver<Vec<u64>>>,
-    watch: Watch<Channel>,
+    watch: StallWatch<Channel>,
 }
 
-/// What a thread unwinds with that ends because of another.
+/// Panic payload of a thread that ends because another rank has failed.
 struct EndedByAnother;
 
 impl LocalRank {
@@ -66,7 +66,7 @@ impl LocalRank {
         let ends = to.into_iter().zip(from).zip(asked).enumerate();
         ends.map(|(rank, ((to, from), asked))| {
             let (to_control, failed) = (asks.clone(), failed.clone());
-            let watch = Watch::new(Channel { rank, to: to_control, from: asked, failed });
+            let watch = StallWatch::new(Channel { rank, to: to_control, from: asked, failed });
             LocalRank { rank, to, from, watch }
         })
         .collect()
@@ -99,7 +99,7 @@ impl LocalRank {
         panic!("rank {} needs rank {other}, which has ended", self.rank)
     }
 
-    /// Combines the ranks' values at rank 0, in the order of ranks, and gives them to all.
+    /// Combines the values of all ranks at rank 0, in order of ranks, and sends the result to all.
     fn reduce(&self, values: &mut [u64], combine: impl Fn(u64, u64) -> u64) {
         self.watch.count_reduction();
         self.watch.heartbeat();
@@ -179,7 +179,7 @@ impl Drop for LocalRank {
     }
 }
 
-/// Questions and answers, and whether a rank has failed.
+/// Channels for questions and answers, and a flag for a failed rank.
 struct Channel {
     rank: usize,
     to: Vec<Sender<(usize, Vec<u64>)>>,
@@ -188,7 +188,7 @@ struct Channel {
 }
 
 impl Channel {
-    /// Ends this rank, silently, if another has failed.
+    /// Ends this rank without a message if another rank has failed.
     fn end_with_others(&self) {
         if self.failed.load(Ordering::Acquire) {
             let quiet: Box<dyn Any + Send> = Box::new(EndedByAnother);
@@ -207,7 +207,7 @@ impl Control for Channel {
     }
 
     fn send(&self, to: usize, words: &[u64]) {
-        // one that has ended has no answer, and its end is seen elsewhere
+        // a rank that has ended does not answer; its end is detected elsewhere
         let _ = self.to[to].send((self.rank, words.to_vec()));
     }
 

@@ -1,4 +1,4 @@
-//! Ranks over MPI: the only file that names it.
+//! Ranks over MPI. No other file depends on MPI.
 
 use std::cell::RefCell;
 use std::time::Duration;
@@ -11,31 +11,31 @@ use mpi::topology::{Communicator, SimpleCommunicator};
 use mpi::traits::{CommunicatorCollectives, Equivalence};
 use smallvec::SmallVec;
 
-use super::life::{Life, Place, STALLED};
-use super::watch::{Awaited, Control, Watch};
+use super::life::{HeartbeatFiles, Life, STALLED};
+use super::watch::{Awaited, Control, StallWatch};
 use super::{Comm, STALL_TIMEOUT, Traffic};
 
-/// Messages that an exchange sends without asking for memory.
+/// Number of messages that an exchange sends without a heap allocation.
 const INLINE: usize = 16;
 
 /// The ranks that a launcher such as `mpirun` has started.
 ///
-/// To drop it is collective: all ranks wait for each other, and then end MPI.
+/// Dropping it is collective: all ranks wait for each other and then finalize MPI.
 pub struct Mpi {
     world: SimpleCommunicator,
-    watch: Watch<Channel>,
-    /// This rank's part of a reduction; kept.
+    watch: StallWatch<MpiChannel>,
+    /// Buffers for this rank's part of a reduction.
     floats: RefCell<Vec<f64>>,
     integers: RefCell<Vec<i64>>,
     // finalizes MPI when dropped, after everything above
     _universe: Universe,
-    // dropped last: ranks may be stopped while MPI ends
+    // dropped last, because a rank may be stopped while MPI is finalized
     life: Option<Life>,
 }
 
 impl Mpi {
-    /// Whether a launcher has started this process. Starting MPI without one costs half a second
-    /// and gains nothing.
+    /// Whether a launcher has started this process. Without one, starting MPI would cost half a
+    /// second for no benefit.
     pub fn is_launched() -> bool {
         ["OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "PMI_SIZE"]
             .iter()
@@ -44,14 +44,15 @@ impl Mpi {
 
     /// Starts MPI; `None` if it was started before. Collective.
     ///
-    /// A panic on one rank must not leave the others waiting for ever, as MPI's own finalizing
-    /// would: from here on it ends them all.
+    /// After this call, a panic on one rank ends all ranks. Otherwise MPI's finalization would
+    /// leave the other ranks waiting forever.
     pub fn start() -> Option<Self> {
         Self::start_within(STALL_TIMEOUT)
     }
 
-    /// The same; a rank of this machine that gives no sign of life for `timeout` while MPI starts
-    /// or ends is named, and the run ends. It is the timeout of [`Comm::set_stall_timeout`] too.
+    /// As `start`, with a timeout. If a rank of this machine gives no sign of life for `timeout`
+    /// while MPI starts or ends, it is named and the run ends. The timeout also serves as that of
+    /// [`Comm::set_stall_timeout`].
     pub fn start_within(timeout: Duration) -> Option<Self> {
         let life = place().and_then(|place| Life::start(place, timeout));
         let (mut universe, _) = mpi::initialize_with_threading(mpi::Threading::Funneled)?;
@@ -61,9 +62,9 @@ impl Mpi {
             SimpleCommunicator::world().abort(101)
         }));
         let world = universe.world();
-        // room for a question to every rank and an answer to each of theirs, many times over
+        // room for many questions to and answers from every rank
         universe.set_buffer_size((64 + world.size() as usize) << 10);
-        let watch = Watch::new(Channel(world.duplicate()));
+        let watch = StallWatch::new(MpiChannel(world.duplicate()));
         watch.set_timeout(timeout);
         if let Some(life) = &life {
             life.runs();
@@ -93,7 +94,7 @@ impl Mpi {
         });
     }
 
-    /// Receives one message; a long one may take its time after its beginning has come.
+    /// Receives one message. Its transfer may still take time after the message has been announced.
     fn receive(&self, source: usize, words: &mut Vec<u64>) {
         let process = self.world.process_at_rank(source as i32);
         let mut found = None;
@@ -192,8 +193,8 @@ impl Comm for Mpi {
 
 impl Drop for Mpi {
     fn drop(&mut self) {
-        // MPI's own finalizing would wait for ever for a rank that hangs. Twice: a rank may have
-        // been stopped after it had joined the first one
+        // MPI's finalization would wait forever for a rank that hangs. Two barriers, because a rank
+        // may have been stopped after it joined the first one
         for _ in 0..2 {
             self.wait_request(Awaited::All, self.world.immediate_barrier());
         }
@@ -203,25 +204,30 @@ impl Drop for Mpi {
     }
 }
 
-/// Where the ranks of this machine give signs of life: in the folder that the launcher makes for
-/// the run and takes away after it, or in the system's for temporary files. None where the launcher
-/// does not number the ranks of a machine.
-fn place() -> Option<Place> {
+/// Files for the signs of life of the ranks of this machine. They are in the folder that the
+/// launcher creates for the run and removes after it, or in the system's temporary folder. `None`
+/// if the launcher does not number the ranks of a machine.
+fn place() -> Option<HeartbeatFiles> {
     let text = |name: &str| std::env::var(name).ok();
     let number = |name: &str| text(name)?.parse::<usize>().ok();
     let local = [number("OMPI_COMM_WORLD_LOCAL_RANK")?, number("OMPI_COMM_WORLD_LOCAL_SIZE")?];
     let rank = [number("OMPI_COMM_WORLD_RANK")?, number("OMPI_COMM_WORLD_SIZE")?];
     let job = text("PMIX_NAMESPACE").or_else(|| text("OMPI_MCA_ess_base_jobid"))?;
-    // it becomes a part of a file's name
+    // the job becomes part of a file name
     let job = job.chars().filter(char::is_ascii_alphanumeric).collect();
     let folder = text("PMIX_SERVER_TMPDIR").map_or_else(std::env::temp_dir, Into::into);
-    (local[0] < local[1] && rank[0] < rank[1]).then_some(Place { folder, job, local, rank })
+    (local[0] < local[1] && rank[0] < rank[1]).then_some(HeartbeatFiles {
+        folder,
+        job,
+        local,
+        rank,
+    })
 }
 
-/// Questions and answers, on a communicator of their own.
-struct Channel(SimpleCommunicator);
+/// Questions and answers, on a separate communicator.
+struct MpiChannel(SimpleCommunicator);
 
-impl Control for Channel {
+impl Control for MpiChannel {
     fn rank(&self) -> usize {
         self.0.rank() as usize
     }

@@ -1,14 +1,15 @@
-//! Waiting for other ranks: the one function in which a rank waits, and who is to blame when it
-//! waits in vain. Knows neither MPI nor threads.
+//! Waiting for other ranks: the only function in which a rank waits, and the search for the rank
+//! that hangs if the wait times out. Independent of MPI and threads.
 //!
-//! A rank whose wait nears its limit asks the ranks that it waits for whether they live. A rank
-//! answers while it waits itself and at each exchange, reduction or heartbeat, and tells whom it
-//! waits for; these are asked in turn. One that does not answer hangs, and is named. When all have answered and none of them
-//! computes or has come further since the round of questions before, they wait for each other for
-//! ever. Otherwise the wait goes on with a fresh clock.
+//! A rank whose wait nears its limit asks the ranks that it waits for whether they are alive. A
+//! rank answers while it waits itself and at each exchange, reduction or heartbeat. The answer
+//! names the ranks it waits for; these are asked next. A rank that does not answer hangs, and is
+//! named. If all have answered, and none of them computes or has progressed since the previous
+//! round of questions, they are in a deadlock. Otherwise the wait continues with a new time limit.
 //!
-//! Several ranks come to the same verdict at about the same time, so one speaks for all: the
-//! lowest that does not hang. The others tell it, and speak themselves only if it stays silent.
+//! Several ranks reach the same verdict at about the same time, so only one reports it: the lowest
+//! rank that does not hang. The others send it the verdict, and report it themselves only if it
+//! does not react.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -16,10 +17,10 @@ use std::time::{Duration, Instant};
 
 use super::{STALL_TIMEOUT, Traffic};
 
-/// Looks before a waiting rank gives way to others.
+/// Checks before a waiting rank yields its core.
 const SPIN: u64 = 2000;
 
-/// Looks between two glances at the clock and at the other ranks' questions.
+/// Checks between two reads of the clock and of the other ranks' questions.
 const GLANCE: u64 = 8;
 
 /// Longest time between a question and the verdict.
@@ -29,32 +30,32 @@ const ASK: u64 = 0;
 const ANSWER: u64 = 1;
 const SPEAK: u64 = 2;
 
-/// How questions and answers travel, apart from all other messages.
+/// Transport of questions and answers, separate from all other messages.
 pub(crate) trait Control {
-    /// This rank.
+    /// Number of this rank.
     fn rank(&self) -> usize;
 
     /// Number of ranks.
     fn size(&self) -> usize;
 
-    /// Sends words without ever waiting.
+    /// Sends words without waiting.
     fn send(&self, to: usize, words: &[u64]);
 
-    /// Takes a message into `words` if one is there, and returns its sender.
+    /// Receives a message into `words`, if there is one, and returns its sender.
     fn receive(&self, words: &mut Vec<u64>) -> Option<usize>;
 
-    /// Ends all ranks and tells why.
+    /// Ends all ranks and prints the reason.
     fn end(&self, why: &str) -> !;
 }
 
-/// Whom a rank waits for.
+/// The rank or ranks that a rank waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Awaited {
-    /// It does not wait.
+    /// The rank does not wait.
     Nobody,
     /// One rank.
     Rank(usize),
-    /// Some of the others, it cannot tell whom.
+    /// Any of the other ranks; unknown which.
     All,
 }
 
@@ -76,27 +77,27 @@ impl Awaited {
     }
 }
 
-/// How far a rank has come: finished waits and signs of life, and whom it waits for.
-type State = (u64, Awaited);
+/// Progress of a rank: number of finished waits and signs of life, and the ranks it waits for.
+type WatchState = (u64, Awaited);
 
-/// A rank's waits, what it has sent, and its answers to others.
-pub(crate) struct Watch<C> {
+/// Waits of a rank, its traffic, and its answers to other ranks.
+pub(crate) struct StallWatch<C> {
     control: C,
     timeout: Cell<Duration>,
-    /// When it last looked for questions.
+    /// Time of the last check for questions.
     looked: Cell<Instant>,
     finished: Cell<u64>,
     awaits: Cell<Awaited>,
-    /// Number of the last question, so that late answers are known as such.
+    /// Number of the last question, to recognize late answers.
     questions: Cell<u64>,
     words: RefCell<Vec<u64>>,
     traffic: Cell<Traffic>,
 }
 
-impl<C: Control> Watch<C> {
-    /// No waits and no traffic yet.
+impl<C: Control> StallWatch<C> {
+    /// Starts without waits and traffic.
     pub fn new(control: C) -> Self {
-        Watch {
+        StallWatch {
             control,
             timeout: Cell::new(STALL_TIMEOUT),
             looked: Cell::new(Instant::now()),
@@ -108,22 +109,22 @@ impl<C: Control> Watch<C> {
         }
     }
 
-    /// What carries its questions.
+    /// Transport of questions and answers.
     pub fn control(&self) -> &C {
         &self.control
     }
 
-    /// Sets how long to wait for ranks that give no sign of life.
+    /// Sets the time for which to wait for ranks that give no sign of life.
     pub fn set_timeout(&self, timeout: Duration) {
         self.timeout.set(timeout);
     }
 
-    /// What was counted so far.
+    /// Messages sent and time waited so far.
     pub fn traffic(&self) -> Traffic {
         self.traffic.get()
     }
 
-    /// Counts messages.
+    /// Counts the messages of an exchange.
     pub fn count_sends(&self, sends: &[(usize, &[u64])]) {
         let mut traffic = self.traffic.get();
         traffic.messages += sends.len() as u64;
@@ -137,13 +138,13 @@ impl<C: Control> Watch<C> {
         self.traffic.set(Traffic { reductions: traffic.reductions + 1, ..traffic });
     }
 
-    /// Time that a rank has to answer.
+    /// Time within which a rank has to answer.
     fn grace(&self) -> Duration {
         GRACE.min(self.timeout.get() / 2)
     }
 
-    /// Shows that this rank has come further, and answers questions if it has not looked for any
-    /// for a while: mostly this costs a glance at the clock.
+    /// Records progress of this rank. Answers questions if the last check for them was a while ago;
+    /// mostly this costs one read of the clock.
     pub fn heartbeat(&self) {
         self.finished.set(self.finished.get() + 1);
         let now = Instant::now();
@@ -153,8 +154,8 @@ impl<C: Control> Watch<C> {
         }
     }
 
-    /// Waits for `awaited` until `done`, looking again and again; gives way to others after a
-    /// short while. The clock is read only if the first look is in vain.
+    /// Waits for `awaited`: polls `done` until it is true, and yields the core after a short while.
+    /// The clock is read only if the first poll fails.
     pub fn wait(&self, awaited: Awaited, mut done: impl FnMut() -> bool) {
         if !done() {
             let start = Instant::now();
@@ -183,11 +184,11 @@ impl<C: Control> Watch<C> {
         }
     }
 
-    fn state(&self) -> State {
+    fn state(&self) -> WatchState {
         (self.finished.get(), self.awaits.get())
     }
 
-    /// Answers questions and notes the answers to those of `asked`.
+    /// Answers questions and records the answers of the ranks in `asked`.
     fn answer(&self, asked: &mut BTreeMap<usize, Asked>) {
         let mut words = self.words.borrow_mut();
         while let Some(from) = self.control.receive(&mut words) {
@@ -197,7 +198,7 @@ impl<C: Control> Watch<C> {
                     self.control.send(from, &[ANSWER, question, finished, awaits.word()]);
                 }
                 [ANSWER, question, finished, awaits] => {
-                    // an answer that comes after its wait has ended is of no use
+                    // an answer that arrives after the end of its wait is ignored
                     if let Some(asked) = asked.get_mut(&from).filter(|a| a.question == question) {
                         asked.answer = Some((finished, Awaited::from_word(awaits)));
                     }
@@ -212,26 +213,26 @@ impl<C: Control> Watch<C> {
     }
 }
 
-/// A rank that was asked whether it lives.
+/// A rank that was asked whether it is alive.
 struct Asked {
     question: u64,
-    /// When, by the inquiry's clock.
+    /// Time of the question, by the inquiry's clock.
     at: Duration,
-    answer: Option<State>,
-    /// Whether those that it waits for were asked too.
+    answer: Option<WatchState>,
+    /// Whether the ranks that it waits for were asked too.
     followed: bool,
 }
 
-/// What a rank that waits for long finds out about the others.
+/// Questions and answers of one long wait.
 struct Inquiry {
-    /// Time waited since the last sign of life. A jump counts little: this rank itself may have
-    /// been stopped, or the machine asleep.
+    /// Time waited since the last sign of life. A jump of the clock counts little, because this
+    /// rank may have been stopped or the machine suspended.
     clock: Duration,
     seen: Instant,
     asked: BTreeMap<usize, Asked>,
-    /// The answers of the round before.
+    /// The answers of the previous round.
     before: BTreeMap<usize, Asked>,
-    /// When another rank was told to speak, and what.
+    /// Time and text of a verdict that was sent to another rank for reporting.
     told: Option<(Duration, String)>,
 }
 
@@ -246,7 +247,7 @@ impl Inquiry {
         }
     }
 
-    fn go_on<C: Control>(&mut self, watch: &Watch<C>) {
+    fn go_on<C: Control>(&mut self, watch: &StallWatch<C>) {
         let (timeout, grace) = (watch.timeout.get(), watch.grace());
         let now = Instant::now();
         self.clock += (now - self.seen).min(grace / 4);
@@ -289,8 +290,8 @@ impl Inquiry {
         }
     }
 
-    /// Asks those of `awaited` that were not asked in this round.
-    fn ask<C: Control>(&mut self, watch: &Watch<C>, awaited: Awaited) {
+    /// Asks the ranks of `awaited` that were not asked in this round.
+    fn ask<C: Control>(&mut self, watch: &StallWatch<C>, awaited: Awaited) {
         let size = watch.control.size();
         let ranks = match awaited {
             Awaited::Nobody => return,
@@ -302,7 +303,7 @@ impl Inquiry {
             self.asked.entry(rank).or_insert_with(|| {
                 let question = watch.questions.get() + 1;
                 watch.questions.set(question);
-                // of itself a rank knows without asking
+                // a rank needs no question about itself
                 let answer = (rank == watch.control.rank()).then(|| watch.state());
                 if answer.is_none() {
                     watch.control.send(rank, &[ASK, question]);
@@ -312,8 +313,8 @@ impl Inquiry {
         }
     }
 
-    /// Has the lowest rank that does not hang speak, and end the run.
-    fn tell<C: Control>(&mut self, watch: &Watch<C>, hanging: &[usize], why: String) {
+    /// Lets the lowest rank that does not hang report the verdict and end the run.
+    fn tell<C: Control>(&mut self, watch: &StallWatch<C>, hanging: &[usize], why: String) {
         let me = watch.control.rank();
         let speaker = (0..me).find(|rank| !hanging.contains(rank)).unwrap_or(me);
         if speaker == me {
@@ -325,7 +326,7 @@ impl Inquiry {
     }
 }
 
-/// Whether a rank waits, and has been in the same wait in the round before.
+/// Whether a rank waits, and was in the same wait in the previous round.
 fn stuck(before: Option<&Asked>, now: &Asked) -> bool {
     let waits = now.answer.is_some_and(|(_, awaits)| awaits != Awaited::Nobody);
     waits && before.is_some_and(|before| before.answer == now.answer)

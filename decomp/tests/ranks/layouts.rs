@@ -1,11 +1,11 @@
-//! The same patches, dealt to any number of ranks.
+//! The same patches give the same result on any number of ranks.
 
 use std::collections::BTreeMap;
 
 use decomp::comm::local::run_ranks;
 use decomp::{
-    Block, ColumnSpec, Comm, IndexBox, Layout, Mirror, NodeArrays, NodeExchange, Parity,
-    RowExchange, RowReach, Serial, Side, exact_sums, gather_rows, relocate,
+    Block, ColumnSpec, Comm, GhostExchange, GhostReach, IndexBox, Layout, Mirror, NodeArrays,
+    NodeExchange, Parity, Serial, SideKind, exact_sums, gather_particles, relocate,
 };
 use proptest::prelude::*;
 
@@ -14,60 +14,62 @@ const SPECS: [ColumnSpec; 2] = [
     ColumnSpec { name: "e", unit: "J/kg", ghost: false, state: true, mirror: Mirror::Same },
 ];
 
-const KINDS: [[Side; 2]; 4] = [
-    [Side::Open, Side::Open],
-    [Side::Mirror, Side::Open],
-    [Side::Wrap, Side::Wrap],
-    [Side::Mirror, Side::Mirror],
+const KINDS: [[SideKind; 2]; 4] = [
+    [SideKind::Open, SideKind::Open],
+    [SideKind::Mirror, SideKind::Open],
+    [SideKind::Wrap, SideKind::Wrap],
+    [SideKind::Mirror, SideKind::Mirror],
 ];
 
-/// A row's first cell and its move.
-type Row<const D: usize> = ([i64; D], [i64; D]);
+/// First cell and move of a particle.
+type Particle<const D: usize> = ([i64; D], [i64; D]);
 
-/// What each patch holds, by patch.
+/// Content of each patch, by patch number.
 type Held<T> = BTreeMap<usize, T>;
 
-/// Whether it is stirred, own rows, cells, ids and columns of a block, in its own order.
+/// Stirred flag, number of own particles, cells, ids and columns of a block, in its own order.
 type Table<const D: usize> = (bool, usize, Vec<[i32; D]>, Vec<u64>, Vec<Vec<u64>>);
 
-/// What `body` tells of the patches of each rank, put together.
+/// Merges the results of `body` for the patches of all ranks.
 fn on_ranks<T: Send>(size: usize, body: impl Fn(&dyn Comm) -> Held<T> + Sync) -> Held<T> {
     run_ranks(size, |comm| body(comm)).into_iter().flatten().collect()
 }
 
-/// The same patches on ranks 0 to `size - 1`, dealt at random.
+/// The same patches, assigned to ranks 0 to `size - 1` at random.
 fn deal<const D: usize>(layout: &Layout<D>, size: usize, seed: &[usize]) -> Layout<D> {
     let ranks = (0..layout.patches().len()).map(|p| seed[p % seed.len()] % size).collect();
     layout.clone().with_ranks(ranks)
 }
 
-/// Rows at cells, moved by their moves and exchanged, and what each patch then holds.
-fn rows_held<const D: usize>(
+/// Moves and exchanges particles; returns the particles that each patch then holds.
+fn particles_held<const D: usize>(
     comm: &dyn Comm,
     layout: &Layout<D>,
-    rows: &[Row<D>],
+    particles: &[Particle<D>],
     (depth, notice): (i64, i64),
 ) -> Held<Table<D>> {
     let mine = layout.patches_of(comm.rank());
     let mut blocks: Vec<Block<D>> = mine.iter().map(|_| Block::new(&SPECS)).collect();
-    for (id, (cell, _)) in rows.iter().enumerate() {
+    for (id, (cell, _)) in particles.iter().enumerate() {
         if let Some(k) = mine.iter().position(|&p| p == layout.patch_of(*cell)) {
             blocks[k].push(id as u64, cell.map(|c| c as i32), &[id as f64 + 1.0, 0.5]);
         }
     }
-    let reach = RowReach { depth, travel: 1, notice: Some(notice) };
-    let mut exchange = RowExchange::new(layout, comm.rank(), reach);
+    let reach = GhostReach { depth, travel: 1, notice: Some(notice) };
+    let mut exchange = GhostExchange::new(layout, comm.rank(), reach);
     for round in 0..3 {
         for block in &mut blocks {
             block.drop_ghosts();
-            for row in 0..block.own() {
-                let by = rows[block.ids[row] as usize].1.map(|m| if round == 0 { 0 } else { m });
-                let from = block.cells[row].map(i64::from);
+            for particle in 0..block.own() {
+                let by = particles[block.ids[particle] as usize]
+                    .1
+                    .map(|m| if round == 0 { 0 } else { m });
+                let from = block.cells[particle].map(i64::from);
                 let to = layout.wrap_cell(std::array::from_fn(|a| from[a] + by[a]));
-                block.cells[row] = to.unwrap_or(from).map(|c| c as i32);
+                block.cells[particle] = to.unwrap_or(from).map(|c| c as i32);
             }
         }
-        // patches are active where their first row is
+        // the active cell of a patch is that of its first particle
         for block in &mut blocks {
             block.active = match block.cells.first() {
                 Some(c) => IndexBox::new(c.map(i64::from), c.map(|c| i64::from(c) + 1)),
@@ -82,7 +84,7 @@ fn rows_held<const D: usize>(
                 early = inner.map(|(b, _)| (b.stirred, b.ids.clone())).collect();
             })
             .unwrap();
-        // inner patches are whole while messages fly
+        // inner patches are complete while messages are on their way
         let late = blocks.iter().zip(&inner).filter(|(_, i)| **i);
         let late: Vec<_> = late.map(|(b, _)| (b.stirred, b.ids.clone())).collect();
         assert_eq!(early, late);
@@ -95,12 +97,12 @@ fn rows_held<const D: usize>(
     mine.into_iter().zip(blocks.into_iter().map(table)).collect()
 }
 
-/// Some value of a node.
+/// Test value of a node.
 fn value(node: i64, field: usize) -> f64 {
     (node as f64 + 0.1 * field as f64).sin()
 }
 
-/// Random owners' values, and what each patch then holds of all.
+/// Sets the owners' values and exchanges them; returns all values that each patch then holds.
 fn nodes_held(comm: &dyn Comm, layout: &Layout<1>, depth: i64) -> Held<Vec<Vec<u64>>> {
     let mine = layout.patches_of(comm.rank());
     let mut patches: Vec<_> = mine.iter().map(|&p| NodeArrays::new(layout, p, depth, 2)).collect();
@@ -124,24 +126,24 @@ fn nodes_held(comm: &dyn Comm, layout: &Layout<1>, depth: i64) -> Held<Vec<Vec<u
     mine.into_iter().zip(patches.into_iter().map(bits)).collect()
 }
 
-fn check_rows<const D: usize>(
+fn check_particles<const D: usize>(
     layout: Layout<D>,
-    rows: &[Row<D>],
+    particles: &[Particle<D>],
     reach: (i64, i64),
     size: usize,
     seed: &[usize],
 ) {
-    let alone = rows_held(&Serial, &layout, rows, reach);
+    let alone = particles_held(&Serial, &layout, particles, reach);
     let dealt = deal(&layout, size, seed);
-    assert_eq!(on_ranks(size, |comm| rows_held(comm, &dealt, rows, reach)), alone);
+    assert_eq!(on_ranks(size, |comm| particles_held(comm, &dealt, particles, reach)), alone);
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn ranks_on_a_line_hold_the_rows_of_one(
-        rows in prop::collection::vec((1i64..23, -1i64..=1), 1..30),
+    fn ranks_on_a_line_hold_the_particles_of_one(
+        particles in prop::collection::vec((1i64..23, -1i64..=1), 1..30),
         parts in 1usize..13,
         depth in 1i64..5,
         notice in 0i64..9,
@@ -149,14 +151,14 @@ proptest! {
         size in 1usize..=5,
         seed in prop::collection::vec(0usize..60, 12),
     ) {
-        let rows: Vec<_> = rows.iter().map(|r| ([r.0], [r.1])).collect();
+        let particles: Vec<_> = particles.iter().map(|r| ([r.0], [r.1])).collect();
         let layout = Layout::new(IndexBox::new([0], [24]), [KINDS[kind]], [parts]);
-        check_rows(layout, &rows, (depth, notice), size, &seed);
+        check_particles(layout, &particles, (depth, notice), size, &seed);
     }
 
     #[test]
-    fn ranks_on_a_plane_hold_the_rows_of_one(
-        rows in prop::collection::vec(((1i64..11, 1i64..8), (-1i64..=1, -1i64..=1)), 1..30),
+    fn ranks_on_a_plane_hold_the_particles_of_one(
+        particles in prop::collection::vec(((1i64..11, 1i64..8), (-1i64..=1, -1i64..=1)), 1..30),
         parts in (1usize..6, 1usize..5),
         depth in 1i64..4,
         notice in 0i64..7,
@@ -164,10 +166,10 @@ proptest! {
         size in 1usize..=5,
         seed in prop::collection::vec(0usize..60, 20),
     ) {
-        let rows: Vec<_> = rows.iter().map(|r| ([r.0.0, r.0.1], [r.1.0, r.1.1])).collect();
+        let particles: Vec<_> = particles.iter().map(|r| ([r.0.0, r.0.1], [r.1.0, r.1.1])).collect();
         let sides = [KINDS[kinds.0], KINDS[kinds.1]];
         let layout = Layout::new(IndexBox::new([0, 0], [12, 9]), sides, [parts.0, parts.1]);
-        check_rows(layout, &rows, (depth, notice), size, &seed);
+        check_particles(layout, &particles, (depth, notice), size, &seed);
     }
 
     #[test]
@@ -203,9 +205,9 @@ proptest! {
     }
 }
 
-/// Patches that move from one dealing to another hold what they would had they been dealt so.
+/// After moves between assignments, patches hold the same particles as if assigned so at once.
 #[test]
-fn patches_move_with_all_their_rows() {
+fn patches_move_with_all_their_particles() {
     let layout = Layout::new(IndexBox::new([0], [24]), [KINDS[0]], [7]);
     for size in 1..=5 {
         let deals: Vec<Layout<1>> =
@@ -221,14 +223,14 @@ fn patches_move_with_all_their_rows() {
                     block
                 })
                 .collect();
-            let mut given = 0;
+            let mut migrated = 0;
             for pair in deals.windows(2) {
-                let (moved, told) =
+                let (moved, counts) =
                     relocate(comm, &pair[0], &pair[1], blocks, &SPECS, |_, block| block);
-                (blocks, given) = (moved, given + told.rows);
+                (blocks, migrated) = (moved, migrated + counts.particles);
             }
             let last = deals[3].patches_of(comm.rank());
-            (last.into_iter().zip(blocks).collect::<Vec<_>>(), given)
+            (last.into_iter().zip(blocks).collect::<Vec<_>>(), migrated)
         });
         for (patch, block) in held.iter().flat_map(|h| &h.0) {
             let ids: Vec<u64> =
@@ -243,13 +245,13 @@ fn patches_move_with_all_their_rows() {
 }
 
 #[test]
-fn rows_are_gathered_at_rank_0_by_id() {
+fn particles_are_gathered_at_rank_0_by_id() {
     let gathered = run_ranks(3, |comm| {
         let mut block = Block::<1>::new(&SPECS);
         for id in (0..10).filter(|id| id % 3 == 2 - comm.rank() as u64) {
             block.push(id, [id as i32], &[id as f64, 0.5 * id as f64]);
         }
-        gather_rows(comm, std::iter::once(&block), &[1])
+        gather_particles(comm, std::iter::once(&block), &[1])
     });
     let (ids, columns) = &gathered[0];
     assert_eq!(*ids, (0..10).collect::<Vec<u64>>());

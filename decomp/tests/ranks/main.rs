@@ -1,5 +1,5 @@
-//! Several ranks, as threads of this process: they see what one rank sees, their messages come
-//! as promised, and one that fails or hangs leaves no other waiting.
+//! Several ranks as threads of this process: results equal those of one rank, messages arrive as
+//! documented, and a rank that fails or hangs leaves no other rank waiting.
 
 mod layouts;
 mod messages;

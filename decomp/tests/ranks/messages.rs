@@ -1,4 +1,4 @@
-//! What an exchange promises.
+//! Guarantees of an exchange.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
@@ -35,8 +35,8 @@ fn messages_come_in_order_and_by_their_sender() {
     });
 }
 
-/// Each rank goes on computing only when it has seen that the other's message was sent: the
-/// other may still be in its `meanwhile`.
+/// Rank 0 continues in `meanwhile` only after it has learned that its message has arrived, so
+/// messages must be sent before `meanwhile` ends.
 #[test]
 fn sends_leave_before_the_rank_computes() {
     let (to_0, from_1) = std::sync::mpsc::channel();

@@ -1,4 +1,4 @@
-//! Which rank is taken for hanging, and which is not.
+//! Detection of hanging ranks, without false alarms.
 
 use std::time::{Duration, Instant};
 
@@ -15,7 +15,7 @@ fn send(comm: &LocalRank, to: usize) {
     comm.exchange(&[(to, &[1])], &[], &mut Vec::new(), &mut || {});
 }
 
-/// Gives no sign of life for so long.
+/// Gives no sign of life for this time [s].
 fn hang(seconds: f64) {
     std::thread::sleep(Duration::from_secs_f64(seconds));
 }
@@ -28,7 +28,7 @@ fn the_rank_at_the_end_of_a_chain_is_named() {
         match comm.rank() {
             0 => receive(comm, 1),
             1 => receive(comm, 3),
-            // enters late: it is not to blame
+            // enters late but is not the cause
             2 => receive(comm, 0),
             _ => hang(3.0),
         }
@@ -53,7 +53,8 @@ fn a_rank_missing_in_a_reduction_is_named() {
     }
 }
 
-/// The others wait through several rounds of questions, one of them only for a rank that waits.
+/// The others wait through several rounds of questions; rank 0 waits only for a rank that itself
+/// waits.
 #[test]
 fn a_slow_rank_that_shows_life_is_waited_for() {
     let traffic = run_ranks(3, |comm| {
@@ -80,7 +81,7 @@ fn a_slow_rank_that_shows_life_is_waited_for() {
     assert!(traffic[0].waited > 3.0, "{traffic:?}");
 }
 
-/// Progress between two waits is a sign of life too.
+/// Progress between two waits is also a sign of life.
 #[test]
 fn a_rank_that_works_with_another_is_waited_for() {
     run_ranks(3, |comm| {

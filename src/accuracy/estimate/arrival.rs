@@ -1,7 +1,7 @@
-//! When a wave arrives at places in a body: looked at after every step.
+//! Arrival times of a wave at given positions in a body, recorded after every step.
 //!
-//! A place lies between two particles; what arrives at them is interpolated between their own
-//! places, so that runs on other cells tell of the same place.
+//! A position lies between two particles. Their arrival times are interpolated to it, so that runs
+//! with other cell sizes report the same position.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,30 +9,30 @@ use crate::geometry::Tile;
 use crate::scene::CheckedScene;
 use crate::simulation::Simulation;
 
-/// A particle near a place, and when its pressure has passed the two levels.
+/// A particle near a position, and the times at which its pressure passed the two levels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Passing {
-    /// Time of the last look \[s\].
+    /// Time of the previous check \[s\].
     last_time: f64,
-    /// Pressure then \[Pa\].
+    /// Pressure at the previous check \[Pa\].
     last_pressure: f64,
-    /// When the pressure passed a fifth of the level \[s\].
+    /// Time at which the pressure passed the `toe` level \[s\].
     toe: Option<f64>,
-    /// When it passed the level \[s\].
+    /// Time at which the pressure passed the `half` level \[s\].
     half: Option<f64>,
 }
 
-/// A place between two particles.
+/// A position between two particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Between {
     /// Ids of the particles.
     pub ids: [u64; 2],
-    /// Weights of what they tell, with sum 1.
+    /// Interpolation weights of the particles, with sum 1.
     pub weights: [f64; 2],
 }
 
 impl Between {
-    /// The particles about `at` \[m\] in a body on a line.
+    /// The two particles around the position `at` \[m\] in a body on a line.
     pub fn new(scene: &CheckedScene, body: usize, at: f64) -> Between {
         let first: u64 = scene.bodies[..body].iter().map(|b| b.particles).sum();
         let own = &scene.bodies[body];
@@ -40,7 +40,7 @@ impl Between {
             return Between::of_tiles(tiles, first, at);
         }
         let length = (own.upper[0] - own.lower[0]) / own.particles as f64;
-        // counted in particles from the centre of the first
+        // in particles, from the centre of the first one
         let along = (at - own.lower[0]) / length - 0.5;
         let before = along.floor().clamp(0.0, own.particles.saturating_sub(2) as f64);
         let after = (before + 1.0).min(own.particles as f64 - 1.0);
@@ -51,7 +51,7 @@ impl Between {
         }
     }
 
-    /// The same in a body with positions of its own: the nearest particles below and above `at`.
+    /// The same for given particle positions: the nearest particles below and above `at`.
     fn of_tiles(tiles: &[Tile], first: u64, at: f64) -> Between {
         let place = |k: usize| tiles[k].centre[0];
         let by_place = |a: &usize, b: &usize| place(*a).total_cmp(&place(*b));
@@ -67,35 +67,35 @@ impl Between {
     }
 }
 
-/// Pressures that a wave passes as it arrives at a place \[Pa\].
+/// Pressure levels that mark the arrival of a wave \[Pa\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Levels {
-    /// A tenth of the way from the pressure at the start to the greatest.
+    /// Start pressure plus a tenth of the rise to the largest pressure.
     pub toe: f64,
-    /// Half of that way.
+    /// Start pressure plus half of that rise.
     pub half: f64,
 }
 
 impl Levels {
-    /// The levels between the pressure at the start and the greatest \[Pa\].
+    /// The levels between the start pressure and the largest pressure \[Pa\].
     pub fn new(start: f64, peak: f64) -> Levels {
         let half = 0.5 * (start + peak);
         Levels { toe: start + 0.2 * (half - start), half }
     }
 }
 
-/// What is looked at, and what has come.
+/// Positions to record and the arrivals so far.
 #[derive(Clone, Debug, Default)]
 pub struct Arrivals {
     places: Vec<Between>,
-    /// Levels by the finest companion; none: nothing came there.
+    /// Levels from the finest coarse run; `None`: no wave came to the position.
     levels: Vec<Option<Levels>>,
     wanted: Vec<u64>,
     passings: Vec<[Passing; 2]>,
 }
 
 impl Arrivals {
-    /// Looks at places with these levels.
+    /// Records arrivals at these positions with these levels.
     pub fn new(places: Vec<Between>, levels: Vec<Option<Levels>>) -> Arrivals {
         let mut wanted: Vec<u64> = places.iter().flat_map(|p| p.ids).collect();
         wanted.sort_unstable();
@@ -104,13 +104,13 @@ impl Arrivals {
         Arrivals { places, levels, wanted, passings }
     }
 
-    /// Looks at the particles. Collective.
+    /// Checks the pressures of the particles. Collective.
     pub fn look<const D: usize>(&mut self, simulation: &Simulation<'_, D>) {
         if self.places.is_empty() {
             return;
         }
         let followed = simulation.follow(&self.wanted);
-        // another rank than the first is told nothing
+        // only rank 0 gets the particles
         if followed.is_empty() {
             return;
         }
@@ -128,9 +128,9 @@ impl Arrivals {
         }
     }
 
-    /// When the wave has come to place `k`, and how long it took to rise from a fifth of the level
-    /// to it \[s\]; none where it has not risen for thrice that time since, or where the particles
-    /// about the place felt no wave that passes one after the other.
+    /// Arrival time at position `k`, and rise time from the `toe` to the `half` level \[s\]. `None`
+    /// until the run has continued for three rise times, or if no wave passes from one particle to
+    /// the other.
     pub fn time(&self, k: usize) -> Option<(f64, f64)> {
         let (place, passings) = (self.places.get(k)?, self.passings.get(k)?);
         let mean = |of: fn(&Passing) -> Option<f64>| {
@@ -139,17 +139,17 @@ impl Arrivals {
         };
         let (toe, half) = (mean(|p| p.toe)?, mean(|p| p.half)?);
         let rise = half - toe;
-        // beyond the last particle of a body the time is extrapolated
+        // beyond the last particle of a body, the time is extrapolated
         let is_passing = half >= 0.0 && rise > 0.0;
         (is_passing && passings[0].last_time >= half + 3.0 * rise).then_some((half, rise))
     }
 
-    /// What a checkpoint keeps.
+    /// State for a checkpoint.
     pub fn state(&self) -> Vec<[Passing; 2]> {
         self.passings.clone()
     }
 
-    /// Goes on from it.
+    /// Restores the state of a checkpoint.
     pub fn resume(&mut self, state: Vec<[Passing; 2]>) {
         if state.len() == self.passings.len() {
             self.passings = state;

@@ -1,54 +1,54 @@
-//! The same scene on larger cells, run before it.
+//! Coarse runs (companions): the same scene on larger cells, run before the scene itself.
 
 use decomp::Comm;
 
 use super::arrival::{Arrivals, Between, Levels};
-use super::{Line, least_pressure, line};
-use crate::scene::{self, CellSize, CheckedScene, Side};
+use super::polyline::{Polyline, least_pressure, line};
+use crate::scene::{self, CellSize, CheckedScene};
 use crate::simulation::{RunError, Simulation};
 use crate::solver::clock::user_cpu_seconds;
 
-/// How much larger the companions' cells are.
+/// Cell sizes of the coarse runs over that of the scene.
 pub const FACTORS: [usize; 2] = [4, 2];
 
-/// What a companion has told.
+/// Results of one coarse run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Companion {
-    /// Its cells over the scene's, rounded to a whole number.
+    /// Cell size over that of the scene, rounded to a whole number.
     pub factor: f64,
-    /// Its cells \[m\].
+    /// Cell size \[m\].
     pub cell_size: f64,
-    /// The body's pressures, a line a profile.
-    pub profiles: Vec<Line>,
-    /// When the wave came to the places \[s\].
+    /// Pressures of the body, one line per profile.
+    pub profiles: Vec<Polyline>,
+    /// Arrival times of the wave at the given positions \[s\].
     pub arrivals: Vec<Option<f64>>,
 }
 
-/// All companions.
+/// All coarse runs of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Companions {
-    /// Those that have reached the end; at the first rank.
+    /// Coarse runs that reached their end; on rank 0 only.
     pub done: Vec<Companion>,
-    /// Levels of the waves that the finest of them has felt at the places; none: no wave came.
+    /// Levels of the wave at each position in the finest coarse run; `None`: no wave came.
     pub levels: Vec<Option<Levels>>,
-    /// What they took of this process \[s\].
+    /// User CPU time of this process in the coarse runs \[s\].
     pub cpu_seconds: f64,
-    /// Why one has not reached its end.
+    /// Reasons why a coarse run has no results.
     pub notes: Vec<String>,
 }
 
-/// The scene on cells `factor` times as large, without what costs. The domain grows to a whole number
-/// of them at an end where nothing stands; between two sides that must stay where they are the cells
-/// are as large as fits, at most `factor` times. A body with positions of its own is filled with as
-/// many particles per cell as it has on average. The message where that is no scene.
+/// The scene on cells `factor` times as large, without outputs and other costly options. The domain
+/// is extended to whole cells at a free or outflow side. If both sides are fixed, the cell size is
+/// the largest that fits, at most `factor` times that of the scene. A body with given particle
+/// positions gets its mean number of particles per cell. The error is the message of the scene
+/// check.
 pub fn coarser(scene: &CheckedScene, factor: usize) -> Result<CheckedScene, String> {
     let mut new = scene.scene.clone();
     let cells = scene.cells[0].div_ceil(factor);
     let size = scene.cell_size[0] * factor as f64;
     let (lower, upper) = (new.domain.lower[0], new.domain.upper[0]);
-    // walls, pistons, joined and loaded sides act on the bodies from where they are
-    let [stays] =
-        scene.sides::<1>().map(|ends| ends.map(|s| !matches!(s, Side::Free | Side::Outflow)));
+    // walls, pistons, periodic and loaded sides act at their position, which must not move
+    let [stays] = scene.side_properties::<1>().map(|ends| ends.map(|side| side.acts_on_material()));
     let size = match stays {
         [_, false] => {
             new.domain.upper[0] = lower + cells as f64 * size;
@@ -81,16 +81,16 @@ pub fn coarser(scene: &CheckedScene, factor: usize) -> Result<CheckedScene, Stri
     scene::check(new, &scene.file).map_err(|error| error.to_string())
 }
 
-/// Greatest pressures at places, looked at after every step.
-struct Peaks {
+/// Pressure histories at positions, recorded after every step.
+struct CoarsePeaks {
     places: Vec<Between>,
-    /// Time and the two particles' pressures, a list a place, from the start on.
+    /// Time and pressures of the two particles, one list per position, from the start.
     series: Vec<Vec<(f64, [f64; 2])>>,
-    /// A rise of the pressure by this is rounding and no wave \[Pa\].
+    /// A pressure rise up to this value is rounding, not a wave \[Pa\].
     least: f64,
 }
 
-impl Peaks {
+impl CoarsePeaks {
     fn look(&mut self, simulation: &Simulation<'_, 1>) {
         for (place, series) in self.places.iter().zip(&mut self.series) {
             if let [Some(a), Some(b)] = simulation.follow(&place.ids)[..] {
@@ -99,8 +99,7 @@ impl Peaks {
         }
     }
 
-    /// Levels of the wave at place `k`; none where the pressure rises by no more than `least`
-    /// \[Pa\].
+    /// Levels of the wave at position `k`; `None` if the pressure rise is at most `least` \[Pa\].
     fn levels(&self, k: usize, least: f64) -> Option<Levels> {
         let series = &self.series[k];
         let start = series.first().map_or(0.0, |s| s.1[0].max(s.1[1]));
@@ -108,7 +107,7 @@ impl Peaks {
         (peak - start > least).then(|| Levels::new(start, peak))
     }
 
-    /// When the pressure first passes `level` at place `k` \[s\].
+    /// Time at which the pressure first passes `level` at position `k` \[s\].
     fn passes(&self, k: usize, level: f64) -> Option<f64> {
         let cross = |side: usize| {
             self.series[k].windows(2).find_map(|w| {
@@ -121,7 +120,7 @@ impl Peaks {
     }
 }
 
-/// Runs the companions of a scene on a line. Collective; the first rank has what they told.
+/// Runs the coarse runs of a scene on a line. Collective; rank 0 gets the results.
 pub fn run(
     comm: &dyn Comm,
     scene: &CheckedScene,
@@ -131,7 +130,7 @@ pub fn run(
     let start = user_cpu_seconds();
     let places = scene.scene.error_estimate.as_ref().map_or(Vec::new(), |e| e.arrivals.clone());
     let mut all = Companions::default();
-    let mut told: Vec<(f64, f64, Vec<Line>, Peaks)> = Vec::new();
+    let mut told: Vec<(f64, f64, Vec<Polyline>, CoarsePeaks)> = Vec::new();
     let mut least = 0.0;
     for factor in FACTORS {
         let coarse = match coarser(scene, factor) {
@@ -143,13 +142,13 @@ pub fn run(
         };
         let between = places.iter().map(|&at| Between::new(&coarse, body, at)).collect();
         let mut peaks =
-            Peaks { places: between, series: vec![Vec::new(); places.len()], least: 0.0 };
+            CoarsePeaks { places: between, series: vec![Vec::new(); places.len()], least: 0.0 };
         match one(comm, &coarse, body, threads, &mut peaks) {
             Ok(profiles) => {
                 least = peaks.least;
                 told.push((factor as f64, coarse.cell_size[0], profiles, peaks));
             }
-            // all ranks know of these
+            // all ranks get these errors alike
             Err(
                 error @ (RunError::Particle { .. }
                 | RunError::TimeStep { .. }
@@ -175,14 +174,14 @@ pub fn run(
     Ok(all)
 }
 
-/// One companion: the body's profiles.
+/// Runs one coarse run; returns the profiles of the body.
 fn one(
     comm: &dyn Comm,
     scene: &CheckedScene,
     body: usize,
     threads: usize,
-    peaks: &mut Peaks,
-) -> Result<Vec<Line>, RunError> {
+    peaks: &mut CoarsePeaks,
+) -> Result<Vec<Polyline>, RunError> {
     let mut simulation = Simulation::<1>::new(scene, comm, threads)?;
     let mut profiles = Vec::new();
     let cell_time = simulation.time_step() / scene.scene.time.courant;
@@ -194,7 +193,7 @@ fn one(
             peaks.look(&simulation);
         }
         let table = simulation.gather();
-        profiles.push(table.map_or(Line::new(), |(table, _)| line(&table, body)));
+        profiles.push(table.map_or(Polyline::new(), |(table, _)| line(&table, body)));
     }
     while simulation.time() < scene.scene.time.end {
         simulation.advance(scene.scene.time.end)?;
@@ -203,7 +202,7 @@ fn one(
     Ok(profiles)
 }
 
-/// What the run itself looks at, by the companions' levels, which all ranks need alike.
+/// Recorder of the arrivals in the run itself, with the levels of the coarse runs on all ranks.
 pub fn arrivals(
     comm: &dyn Comm,
     scene: &CheckedScene,

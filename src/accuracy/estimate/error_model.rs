@@ -1,64 +1,64 @@
-//! How errors follow from evidence: laws fitted on random impacts.
+//! Error models: the expected error from indicators, fitted on random impacts.
 //!
-//! The half-width is exp(w0 + sum of w_k ln(evidence_k)) times a factor. The weights are those of a
-//! high quantile of ln|error| (Koenker & Bassett 1978), so that what is risky is given more room;
-//! the factor is a margin for materials that were not fitted on.
-//! `scripts/calibrate_estimates.sh` fits them anew and writes [`DATA`]'s file.
+//! The half-width is exp(w0 + sum of w_k ln(indicator_k)) times a factor. The weights are fitted to
+//! a high quantile of ln|error| (Koenker & Bassett 1978), so that uncertain cases get a wider
+//! interval. The factor is a margin for materials outside of the fit.
+//! `scripts/calibrate_estimates.sh` repeats the fit and writes the file of [`DATA`].
 
 use serde::{Deserialize, Serialize};
 
 use super::indicators::Evidence;
 use super::range::FittedRange;
 
-/// The shipped laws.
+/// The shipped error models.
 pub const DATA: &str = include_str!("laws.json");
 
-/// Evidence below this counts as this: what rounding and sampling leave \[-\].
+/// Lower limit of an indicator: smaller values are rounding and sampling noise \[-\].
 pub const LEAST: f64 = 1e-7;
 
-/// A law for one set of evidence.
+/// Error model for one set of indicators.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Law {
-    /// Names of the evidence that it needs.
+    /// Names of the indicators that it needs.
     pub evidence: Vec<String>,
-    /// w0, and a weight for each.
+    /// w0, and one weight per indicator.
     pub weights: Vec<f64>,
-    /// What the fitted size is multiplied by.
+    /// Safety factor on the fitted error.
     pub factor: f64,
-    /// Runs that it was fitted on.
+    /// Number of runs in the fit.
     pub cases: usize,
 }
 
-/// The laws of a quantity, the one that needs most first.
+/// Error models of one quantity; the one that needs the most indicators comes first.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Quantity(pub Vec<Law>);
+pub struct QuantityLaws(pub Vec<Law>);
 
-/// All laws.
+/// Error models of all quantities.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Laws {
-    /// How they were made.
+    /// Origin of the fit.
     pub source: String,
-    /// The impacts that they were fitted on and compared with.
+    /// The range of impacts used for the fit and its validation.
     pub fitted: FittedRange,
-    /// Of the plateau's pressure, relative.
-    pub plateau_pressure: Quantity,
-    /// Of arrivals, in times that sound takes through a cell.
-    pub arrival_time: Quantity,
-    /// Of the relative L1 of a profile.
-    pub l1: Quantity,
+    /// Plateau pressure: relative error.
+    pub plateau_pressure: QuantityLaws,
+    /// Arrival time: error in sound transit times of a cell.
+    pub arrival_time: QuantityLaws,
+    /// Profile: relative L1.
+    pub l1: QuantityLaws,
 }
 
 impl Laws {
-    /// The shipped laws.
+    /// The shipped error models.
     pub fn shipped() -> Laws {
         serde_json::from_str(DATA).expect("the shipped laws are whole")
     }
 }
 
 impl Law {
-    /// The size of error that the evidence speaks of, without the factor; none where some is
+    /// The error expected from the indicators, without the factor; `None` if an indicator is
     /// missing.
     pub fn size(&self, evidence: &Evidence) -> Option<f64> {
         let mut sum = *self.weights.first()?;
@@ -69,8 +69,8 @@ impl Law {
     }
 }
 
-impl Quantity {
-    /// The half-width by the first law whose evidence is all there.
+impl QuantityLaws {
+    /// Half-width by the first error model whose indicators are all present.
     pub fn half_width(&self, evidence: &Evidence) -> Option<f64> {
         self.0.iter().find_map(|law| Some(law.factor * law.size(evidence)?))
     }
@@ -90,7 +90,7 @@ mod tests {
         };
         let both = law(&["a", "b"], &[0.0, 1.0, 0.5], 2.0);
         let one = law(&["a"], &[0.0, 1.0], 10.0);
-        let quantity = Quantity(vec![both, one]);
+        let quantity = QuantityLaws(vec![both, one]);
         let evidence = |pairs: &[(&str, f64)]| -> Evidence {
             pairs.iter().map(|(n, v)| (n.to_string(), *v)).collect()
         };

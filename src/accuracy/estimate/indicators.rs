@@ -1,22 +1,22 @@
-//! What tells of a run's error: how its answer differs from its companions', and its noise. All
-//! fractions, so that laws hold for any units and sizes.
+//! Indicators of the error of a run: its differences from the coarse runs, and its noise. All are
+//! dimensionless, so that the error models hold for any units and sizes.
 
 use std::collections::BTreeMap;
 
-use super::Line;
 use super::plateau::Plateau;
+use super::polyline::Polyline;
 
-/// Evidence by name.
+/// Indicators by name.
 pub type Evidence = BTreeMap<String, f64>;
 
 fn named(pairs: impl IntoIterator<Item = (String, f64)>) -> Evidence {
     pairs.into_iter().filter(|(_, v)| v.is_finite()).collect()
 }
 
-/// Of the plateau's pressure, as fractions of it: `difference_2`, `difference_4`, from the
-/// companions' mean over the same places, `noise`, its length in `cells`, and how level it is:
-/// `halves`, `wide`.
-pub fn of_plateau(found: &Plateau, others: &[(f64, &Line)], h: f64) -> Evidence {
+/// Indicators of the plateau pressure, relative to it: `difference_2`, `difference_4` from the mean
+/// of the coarse runs over the same positions, `noise`, the length in `cells`, and the deviations
+/// from a level plateau `halves`, `wide`.
+pub fn of_plateau(found: &Plateau, others: &[(f64, &Polyline)], h: f64) -> Evidence {
     let theirs = others.iter().filter_map(|(factor, line)| {
         let reach = found.reach.max(factor * h);
         let within = line.iter().filter(|q| (q.0 - found.centre).abs() <= reach);
@@ -33,13 +33,13 @@ pub fn of_plateau(found: &Plateau, others: &[(f64, &Line)], h: f64) -> Evidence 
     named(own.map(|(name, value)| (name.to_string(), value)).into_iter().chain(theirs))
 }
 
-/// Of a profile: `difference_2`, `difference_4`, the relative L1 distance to the companions'.
-pub fn of_profile(own: &Line, others: &[(f64, &Line)]) -> Evidence {
+/// Indicators of a profile: `difference_2`, `difference_4`, the relative L1 to the coarse runs.
+pub fn of_profile(own: &Polyline, others: &[(f64, &Polyline)]) -> Evidence {
     named(others.iter().map(|(factor, line)| (format!("difference_{factor}"), distance(own, line))))
 }
 
-/// Of an arrival, in times that sound takes through a cell: `difference_2`, `difference_4` from
-/// the companions, and the `rise` from a tenth to half of the level's double.
+/// Indicators of an arrival, in sound transit times of a cell: `difference_2`, `difference_4` from
+/// the coarse runs, and `rise`, the time from a tenth to half of the pressure rise.
 pub fn of_arrival(time: f64, rise: f64, others: &[(f64, f64)], cell_time: f64) -> Evidence {
     let theirs = others
         .iter()
@@ -47,8 +47,8 @@ pub fn of_arrival(time: f64, rise: f64, others: &[(f64, f64)], cell_time: f64) -
     named([("rise".to_string(), rise / cell_time)].into_iter().chain(theirs))
 }
 
-/// int |a - b| dx / int |a| dx over where `a` is, values held beyond the ends.
-pub fn distance(a: &Line, b: &Line) -> f64 {
+/// int |a - b| dx / int |a| dx over the range of `a`; lines are constant beyond their ends.
+pub fn distance(a: &Polyline, b: &Polyline) -> f64 {
     let (Some(first), Some(last)) = (a.first(), a.last()) else { return f64::NAN };
     let mut places: Vec<f64> = a.iter().chain(b).map(|q| q.0).collect();
     places.retain(|x| (first.0..=last.0).contains(x));
@@ -66,8 +66,8 @@ pub fn distance(a: &Line, b: &Line) -> f64 {
     difference / whole
 }
 
-/// Value of a line at x; that of an end beyond it.
-fn at(line: &Line, x: f64) -> Option<f64> {
+/// Linear interpolation of a line at x; constant beyond its ends.
+fn at(line: &Polyline, x: f64) -> Option<f64> {
     let k = line.partition_point(|q| q.0 < x);
     let (Some(after), Some(before)) = (line.get(k), k.checked_sub(1).map(|k| line[k])) else {
         return line.get(k).or(line.last()).map(|q| q.1);
@@ -80,7 +80,7 @@ fn at(line: &Line, x: f64) -> Option<f64> {
     })
 }
 
-/// Mean of |d| on a piece where d goes straight from `a` to `b`.
+/// Mean of |d| on an interval where d is linear from `a` to `b`.
 fn mean_size(a: f64, b: f64) -> f64 {
     match a * b >= 0.0 {
         true => 0.5 * (a + b).abs(),
@@ -94,10 +94,10 @@ mod tests {
 
     #[test]
     fn distances_are_areas() {
-        let a: Line = vec![(0.0, 1.0), (1.0, 1.0), (2.0, 1.0)];
-        let b: Line = vec![(0.0, 1.0), (1.0, 1.5), (2.0, 1.0)];
+        let a: Polyline = vec![(0.0, 1.0), (1.0, 1.0), (2.0, 1.0)];
+        let b: Polyline = vec![(0.0, 1.0), (1.0, 1.5), (2.0, 1.0)];
         assert!((distance(&a, &b) - 0.25).abs() < 1e-12);
         assert_eq!(distance(&a, &a), 0.0);
-        assert!(distance(&Line::new(), &a).is_nan());
+        assert!(distance(&Polyline::new(), &a).is_nan());
     }
 }

@@ -1,37 +1,37 @@
-//! The plateau behind a shock, found in a profile alone.
+//! Finds the plateau behind a shock in a pressure profile.
 
-use super::Line;
+use super::polyline::Polyline;
 
-/// A plateau.
+/// A pressure plateau.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plateau {
-    /// Mean pressure over its middle 40 % \[Pa\].
+    /// Mean pressure over the middle 40 % \[Pa\].
     pub pressure: f64,
-    /// Rms about a straight line there, over the pressure \[-\].
+    /// Rms deviation from a straight line there, over the pressure \[-\].
     pub noise: f64,
-    /// Its length \[cells\].
+    /// Length \[cells\].
     pub cells: f64,
-    /// What the means of the averaged part's two halves differ by, over the pressure \[-\].
+    /// Difference of the means of the two halves of the averaged part, over the pressure \[-\].
     pub halves: f64,
-    /// What the mean over its middle 80 % differs by, over the pressure \[-\].
+    /// Difference of the mean over the middle 80 %, over the pressure \[-\].
     pub wide: f64,
-    /// Middle of it \[m\].
+    /// Middle \[m\].
     pub centre: f64,
-    /// How far the part that is averaged reaches from there \[m\].
+    /// Half of the length of the averaged part \[m\].
     pub reach: f64,
 }
 
-/// A plateau shorter than this is none to tell errors of: there the fan's foot is in it \[cells\].
+/// Shortest plateau with an error estimate \[cells\]; a shorter one contains the foot of the fan.
 const LEAST: usize = 20;
-/// Cells behind the shock's half height that belong to its rise and overshoot.
+/// Cells behind the half height of the shock that belong to its rise and overshoot.
 const BEHIND: usize = 3;
-/// Cells over which the level behind the shock is taken, and compared on the way back.
+/// Cells of the window that gives the level behind the shock, and is then moved away from it.
 const WINDOW: usize = 6;
-/// A window's mean may differ from the level by this fraction, and by twice the level's noise.
+/// Tolerance for the mean of a window: a fraction of the level, plus twice the noise of the level.
 const TOLERANCE: f64 = 0.02;
 
-/// Means of the particles over cells of size `h`: place, pressure.
-fn cells(line: &Line, h: f64) -> Line {
+/// Means of the particles over cells of size `h`: position, pressure.
+fn cells(line: &Polyline, h: f64) -> Polyline {
     let cell = |x: f64| (x / h).floor();
     line.chunk_by(|a, b| cell(a.0) == cell(b.0))
         .map(|group| {
@@ -41,8 +41,8 @@ fn cells(line: &Line, h: f64) -> Line {
         .collect()
 }
 
-/// The pressures seen from the material ahead of the shock: from its steepest fall backwards.
-fn from_ahead(mut cells: Line) -> Line {
+/// The cells from the material ahead of the shock backwards; the shock is the steepest fall.
+fn from_ahead(mut cells: Polyline) -> Polyline {
     let fall = |from: usize, to: usize| cells[from].1 - cells[to].1;
     let steps = || 0..cells.len().saturating_sub(3);
     let right = steps().map(|k| fall(k, k + 3)).fold(0.0, f64::max);
@@ -53,17 +53,17 @@ fn from_ahead(mut cells: Line) -> Line {
     cells
 }
 
-/// The plateau behind the shock of a body's profile on cells of size `h` \[m\]; none where the
+/// The plateau behind the shock in the profile of a body; cells of size `h` \[m\]. `None` if the
 /// pressure is not level over 20 cells.
-pub fn find(line: &Line, h: f64) -> Option<Plateau> {
+pub fn find(line: &Polyline, h: f64) -> Option<Plateau> {
     find_over(line, h, LEAST)
 }
 
-/// The same over at least so many cells.
-pub fn find_over(line: &Line, h: f64, least: usize) -> Option<Plateau> {
+/// The same with a minimum length of `least` cells.
+pub fn find_over(line: &Polyline, h: f64, least: usize) -> Option<Plateau> {
     let ahead = from_ahead(cells(line, h));
     let peak = ahead.iter().map(|c| c.1).fold(0.0, f64::max);
-    // without material ahead that it has not reached there is no shock to see
+    // without undisturbed material ahead, no shock is visible
     let half = ahead.iter().position(|c| c.1 >= 0.5 * peak).filter(|&half| half > 0)?;
     let first = half + BEHIND;
     let mean = |from: usize| -> Option<f64> {
@@ -101,7 +101,7 @@ pub fn find_over(line: &Line, h: f64, least: usize) -> Option<Plateau> {
     Some(found).filter(|p| p.pressure > 0.0)
 }
 
-/// Mean, and rms about the straight line of least squares.
+/// Mean, and rms deviation from the least-squares line.
 fn about_line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     if points.len() < 3 {
         return None;
@@ -118,7 +118,7 @@ fn about_line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
 mod tests {
     use super::*;
 
-    /// A pulse: a fan from 20 to 40, a plateau of 5 to 70, a rise of two cells.
+    /// A pulse: a fan from 20 to 40, a plateau at 5 up to 70, a rise over two cells.
     fn pulse(x: f64) -> f64 {
         match x {
             _ if x < 20.0 => 2.0,
@@ -131,25 +131,26 @@ mod tests {
 
     #[test]
     fn a_plateau_is_found_from_either_side() {
-        let line: Line = (0..200).map(|k| 0.25 + 0.5 * k as f64).map(|x| (x, pulse(x))).collect();
+        let line: Polyline =
+            (0..200).map(|k| 0.25 + 0.5 * k as f64).map(|x| (x, pulse(x))).collect();
         let found = find(&line, 1.0).unwrap();
         assert!((found.pressure - 5.0).abs() < 1e-12 && found.noise < 1e-12, "{found:?}");
         assert!((found.cells - 30.0).abs() < 4.0, "{found:?}");
-        let turned: Line = line.iter().rev().map(|q| (-q.0, q.1)).collect();
+        let turned: Polyline = line.iter().rev().map(|q| (-q.0, q.1)).collect();
         assert!((find(&turned, 1.0).unwrap().pressure - 5.0).abs() < 1e-12);
     }
 
     #[test]
     fn a_spike_has_no_plateau() {
-        let line: Line =
+        let line: Polyline =
             (0..100).map(|k| (k as f64, (5.0 - (k as f64 - 50.0).abs()).max(0.0))).collect();
         assert_eq!(find(&line, 1.0), None);
-        assert_eq!(find(&Line::new(), 1.0), None);
+        assert_eq!(find(&Polyline::new(), 1.0), None);
     }
 
     #[test]
     fn a_level_body_without_a_shock_has_no_plateau() {
-        let level: Line = (0..100).map(|k| (k as f64, 1e5)).collect();
+        let level: Polyline = (0..100).map(|k| (k as f64, 1e5)).collect();
         assert_eq!(find(&level, 1.0), None);
     }
 }

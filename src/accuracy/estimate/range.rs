@@ -1,28 +1,28 @@
-//! The impacts that the laws of errors were fitted on, and the inputs of a scene outside of them.
+//! The range of impacts used to fit the error models, and the inputs of a scene outside of it.
 //!
-//! A law fitted on random impacts is a guess elsewhere. The range is part of `laws.json`, written by
-//! the program that draws the impacts. Every input that the draw varies or holds fixed is looked at.
+//! Outside of this range an estimate is a guess. The range is part of `laws.json`, written by the
+//! program that draws the impacts. All inputs that the draw varies or holds fixed are checked.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use crate::accuracy::plan::{Scheme, schemes};
+use crate::accuracy::plan::{PlannedScheme, schemes};
 use crate::accuracy::reference::impact_of;
-use crate::scene::{CheckedScene, Contact, FlyerImpact, Side};
+use crate::scene::{CheckedScene, FlyerImpact, Side};
 
-/// What an estimate rests on.
+/// Basis of an estimate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Basis {
-    /// The laws were fitted on such inputs.
+    /// The inputs are within the range of the fit.
     Calibrated,
-    /// They were not.
+    /// The inputs are outside of the range of the fit.
     #[default]
     Guess,
 }
 
-/// The impacts that laws were fitted on and compared with: a flyer on a target at rest, both fluids
-/// on a straight Us-up line. Least and greatest values.
+/// The range of impacts of the fit and its validation: a flyer on a target at rest, both fluids
+/// with a straight Us-up line. Smallest and largest values.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FittedRange {
@@ -34,42 +34,42 @@ pub struct FittedRange {
     pub s: [f64; 2],
     /// Grueneisen coefficient \[-\].
     pub gamma0: [f64; 2],
-    /// Speed of the impact \[m/s\].
+    /// Impact speed \[m/s\].
     pub speed: [f64; 2],
     /// Thickness of the flyer \[cells\].
     pub flyer_cells: [f64; 2],
-    /// Time of a profile over the time at which the release from the flyer's rear reaches the
+    /// Time of a profile over the time at which the release from the rear of the flyer reaches the
     /// interface \[-\].
     pub duration: [f64; 2],
-    /// Place of an arrival over the way of the shock to the end of the run \[-\].
+    /// Depth of an arrival position over the distance of the shock at the end of the run \[-\].
     pub place: [f64; 2],
     /// Names of the schemes.
     pub schemes: Vec<String>,
 }
 
-/// Inputs of a scene outside of a range, one line each.
+/// Inputs of a scene outside of the range, one line each.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Outside {
-    /// Of the whole scene.
+pub struct OutOfRange {
+    /// Inputs of the whole scene.
     pub scene: Vec<String>,
-    /// Of each profile.
+    /// One entry per profile.
     pub profiles: Vec<Option<String>>,
-    /// Of each place of an arrival.
+    /// One entry per arrival position.
     pub arrivals: Vec<Option<String>>,
 }
 
-impl Outside {
-    /// The basis of the whole estimate.
+impl OutOfRange {
+    /// Basis of the whole estimate.
     pub fn basis(&self) -> Basis {
         Basis::of(self.lines().is_empty())
     }
 
-    /// The basis of profile number `k`.
+    /// Basis of profile number `k`.
     pub fn of_profile(&self, k: usize) -> Basis {
         Basis::of(self.scene.is_empty() && self.profiles.get(k).is_none_or(Option::is_none))
     }
 
-    /// The basis of the arrival number `k`.
+    /// Basis of arrival number `k`.
     pub fn of_arrival(&self, k: usize) -> Basis {
         Basis::of(self.scene.is_empty() && self.arrivals.get(k).is_none_or(Option::is_none))
     }
@@ -88,11 +88,11 @@ impl Basis {
 }
 
 fn within(value: f64, [least, greatest]: [f64; 2]) -> bool {
-    // sizes in cells are quotients, off by rounding
+    // sizes in cells are quotients with rounding errors
     (least * (1.0 - 1e-9)..=greatest * (1.0 + 1e-9)).contains(&value)
 }
 
-/// A line where `value` is outside of `range`.
+/// A line that names `what` if `value` is outside of `range`.
 fn check(what: impl Into<String>, value: f64, range: [f64; 2]) -> Option<String> {
     let [least, greatest] = range;
     let shown = (value * 1e6).round() / 1e6;
@@ -101,8 +101,8 @@ fn check(what: impl Into<String>, value: f64, range: [f64; 2]) -> Option<String>
 }
 
 impl FittedRange {
-    /// The inputs of a scene on a line outside of the range, for estimates of `body`.
-    pub fn outside(&self, scene: &CheckedScene, body: usize) -> Outside {
+    /// The inputs of a scene on a line that are outside of the range, for estimates of `body`.
+    pub fn outside(&self, scene: &CheckedScene, body: usize) -> OutOfRange {
         let mut found = self.outside_but_cells(scene, body);
         if let [_, _] = scene.bodies[..] {
             let flyer = &scene.bodies[1 - body];
@@ -113,12 +113,12 @@ impl FittedRange {
         found
     }
 
-    /// The same, the size of the cells left out.
-    pub fn outside_but_cells(&self, scene: &CheckedScene, body: usize) -> Outside {
-        let mut found = Outside { scene: self.scheme(scene), ..Outside::default() };
+    /// The same, without the cell size.
+    pub fn outside_but_cells(&self, scene: &CheckedScene, body: usize) -> OutOfRange {
+        let mut found = OutOfRange { scene: self.scheme(scene), ..OutOfRange::default() };
         found.scene.extend(surroundings(scene));
         for line in (0..scene.bodies.len()).flat_map(|b| self.material(scene, b)) {
-            // bodies of one material
+            // both bodies may have the same material
             if !found.scene.contains(&line) {
                 found.scene.push(line);
             }
@@ -132,9 +132,9 @@ impl FittedRange {
         found
     }
 
-    /// Method, viscosity, particles per cell and Courant number are those of one scheme.
+    /// Checks that method, viscosity, Courant number, particles per cell are of one fitted scheme.
     fn scheme(&self, scene: &CheckedScene) -> Vec<String> {
-        let fitted = |s: &Scheme| self.schemes.contains(&s.name) && is_of(scene, s);
+        let fitted = |s: &PlannedScheme| self.schemes.contains(&s.name) && is_of(scene, s);
         if schemes().iter().any(fitted) {
             return Vec::new();
         }
@@ -143,7 +143,7 @@ impl FittedRange {
         vec![line.into()]
     }
 
-    /// A body's material and its state at the start.
+    /// Checks the material of a body and its initial state.
     fn material(&self, scene: &CheckedScene, b: usize) -> Vec<String> {
         let (body, material) = (&scene.scene.bodies[b], scene.material_of(b));
         let name = &body.material;
@@ -182,9 +182,14 @@ impl FittedRange {
         found
     }
 
-    /// Speed, times and places of the impact of the other body on `body`; the line where there is
-    /// none.
-    fn impact(&self, scene: &CheckedScene, body: usize, found: &mut Outside) -> Result<(), String> {
+    /// Checks speed, times and positions of the impact of the other body on `body`. The error is
+    /// the line if there is no such impact.
+    fn impact(
+        &self,
+        scene: &CheckedScene,
+        body: usize,
+        found: &mut OutOfRange,
+    ) -> Result<(), String> {
         let named = |b: usize| scene.scene.bodies[b].name.clone();
         let (flyer, target) = (&scene.bodies[1 - body], &scene.bodies[body]);
         if target.top_speed != 0.0 {
@@ -199,7 +204,7 @@ impl FittedRange {
         if let Some(line) = check(&velocity, speed, self.speed) {
             return Err(line);
         }
-        // outside of such materials there is no exact release to measure times by
+        // for other materials, no exact release time is available
         let both = [0, 1].map(|b| scene.material_of(b));
         if both.iter().any(|m| m.eos.straight(m.density).is_none()) {
             return Ok(());
@@ -228,13 +233,15 @@ impl FittedRange {
     }
 }
 
-/// Sides, forces and contact that the fit has not.
+/// Sides, forces and contact that the fit does not include.
 fn surroundings(scene: &CheckedScene) -> Vec<String> {
     let [[lower, upper]] = scene.sides::<1>();
-    let contact = !matches!(scene.scene.contact, None | Some(Contact::Frictionless { .. }));
+    let contact = scene.scene.contact.is_some_and(|contact| {
+        contact.condition().is_none_or(|condition| condition.coefficient.is_some())
+    });
     let all = [
-        ("boundary.x_lower", lower != Side::Free),
-        ("boundary.x_upper", upper != Side::Free),
+        ("boundary.x_lower", lower != Side::default()),
+        ("boundary.x_upper", upper != Side::default()),
         ("boundary.temperature", scene.holds_temperature()),
         ("body_force", scene.scene.body_force.is_some()),
         ("contact", contact),
@@ -244,13 +251,13 @@ fn surroundings(scene: &CheckedScene) -> Vec<String> {
 }
 
 /// Whether a scene has the method, viscosity, Courant number and particles per cell of a scheme.
-fn is_of(scene: &CheckedScene, scheme: &Scheme) -> bool {
+fn is_of(scene: &CheckedScene, scheme: &PlannedScheme) -> bool {
     let whole = &scene.scene;
     let filled = whole
         .bodies
         .iter()
         .all(|body| body.particles_per_cell.as_deref() == Some(&[scheme.particles_per_cell]));
-    // keys that are left out take the same values as those that are written
+    // compare parsed values, so that a missing key equals its written default
     let mut same = whole.clone();
     let read = |key: &str| scheme.set.get(key).cloned().unwrap_or(Value::Null);
     let method = serde_json::from_value(read("method"));

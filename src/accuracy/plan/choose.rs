@@ -1,103 +1,103 @@
-//! Chooses the cheapest scheme and cell size that reach a wanted error.
+//! Chooses the cheapest scheme and cell size that reach a target error.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::data::{Data, Measured, Size};
+use super::data::{Data, SchemeAccuracy, Size};
 use super::pilot::{self, Pilot};
-use super::schemes::{Scheme, schemes};
+use super::schemes::{PlannedScheme, schemes};
 use crate::accuracy::estimate::{Basis, Laws};
 use crate::scene::{self, CheckedScene, PlannedQuantity};
 
-/// What is wanted.
+/// The target of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wish {
-    /// The quantity.
+pub struct ErrorTarget {
+    /// Quantity.
     pub quantity: PlannedQuantity,
-    /// Its relative error, at most \[-\].
+    /// Largest relative error \[-\].
     pub error: f64,
-    /// Wall time of the time loop, at most \[s\].
+    /// Largest wall time of the time loop \[s\].
     pub budget: f64,
     /// Ranks.
     pub ranks: usize,
-    /// The place whose arrival is asked for \[m\].
+    /// Position of the arrival \[m\].
     pub place: Option<f64>,
 }
 
-/// What is chosen.
+/// The chosen settings, with the expected error and cost.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// Name of the scheme.
     pub scheme: String,
     /// Cell size \[m\].
     pub cell_size: f64,
-    /// Particles a cell.
+    /// Particles per cell.
     pub particles_per_cell: usize,
     /// Courant number.
     pub courant: f64,
-    /// The error to expect \[-\].
+    /// Expected error \[-\].
     pub error: f64,
-    /// The error that 19 of 20 runs stay below \[-\].
+    /// Error that 19 of 20 runs do not exceed \[-\].
     pub error_most: f64,
     /// User CPU time of the time loop \[s\].
     pub cpu_seconds: f64,
-    /// Its wall time \[s\].
+    /// Wall time of the time loop \[s\].
     pub wall_seconds: f64,
-    /// What the pilots have taken \[s\].
+    /// Wall time of the pilot runs \[s\].
     pub pilot_seconds: f64,
-    /// Whether the schemes' errors were measured on such scenes.
+    /// Whether the errors of the schemes were measured on such scenes.
     pub basis: Basis,
-    /// Inputs outside of the range that they were measured on, one line each.
+    /// Inputs outside of the range of these measurements, one line each.
     pub outside: Vec<String>,
     /// The scene to run.
     pub scene: Value,
 }
 
-/// Why there is no plan.
+/// Reasons why there is no plan.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PlanError {
-    /// The scene is none that can be planned.
+    /// The scene cannot be planned.
     #[error("{0}")]
     Scene(String),
-    /// The wish cannot be met; with the best that can be had.
+    /// The target cannot be reached; with the smallest error that can.
     #[error(
         "an error of {} cannot be had within {budget:.3} s of wall time; the best is {}, with {scheme} on cells of {cell_size:.3e} m in {seconds:.3} s",
         percent(*wanted), percent(*best)
     )]
     Impossible {
-        /// The error wanted \[-\].
+        /// Target error \[-\].
         wanted: f64,
-        /// The time allowed \[s\].
+        /// Largest wall time \[s\].
         budget: f64,
-        /// The least error within it \[-\].
+        /// Smallest error within that time \[-\].
         best: f64,
-        /// By which scheme.
+        /// Its scheme.
         scheme: String,
-        /// On which cells \[m\].
+        /// Its cell size \[m\].
         cell_size: f64,
-        /// In what wall time \[s\].
+        /// Its wall time \[s\].
         seconds: f64,
     },
 }
 
-/// A fraction in per cent.
+/// A fraction as text in per cent.
 pub fn percent(fraction: f64) -> String {
     format!("{:.4} %", 100.0 * fraction)
 }
 
-/// Particles of the two pilots of each scheme.
+/// Particles of the two pilot runs of each scheme.
 const PILOTS: [usize; 2] = [300, 600];
 
-/// Particles of the last pilot over those of the run: its time goes with the square.
+/// Particles of the last pilot run over those of the run; its time scales with the square.
 const LAST_PILOT: f64 = 0.35;
 
-/// The last pilot has no more particles than this.
+/// Largest number of particles of the last pilot run.
 const MOST_PILOT: f64 = 4000.0;
 
-/// Particles beyond which nothing is planned: memory and patience end before.
+/// Largest number of particles of a plan, to limit memory and run time.
 const MOST_PARTICLES: f64 = 1e7;
 
-/// Seconds over the cell size: a / h^2 + b / h.
+/// CPU seconds as a function of the cell size h: a / h^2 + b / h.
 #[derive(Clone, Copy, Debug)]
 struct Cost {
     a: f64,
@@ -105,7 +105,7 @@ struct Cost {
 }
 
 impl Cost {
-    /// Through two pilots, both parts at least zero.
+    /// Cost through two pilot runs, with a and b not negative.
     fn through(coarse: (f64, f64), fine: (f64, f64)) -> Cost {
         let ((h0, s0), (h1, s1)) = (coarse, fine);
         // s h = a / h + b
@@ -122,36 +122,36 @@ impl Cost {
         self.a / (h * h) + self.b / h
     }
 
-    /// The cell size at which it is `seconds`.
+    /// Cell size at which the cost is `seconds`.
     fn cells_for(&self, seconds: f64) -> f64 {
         (self.b + (self.b * self.b + 4.0 * self.a * seconds).sqrt()) / (2.0 * seconds)
     }
 }
 
-/// A scheme with what its pilots have shown.
+/// A scheme with the results of its pilot runs.
 struct Candidate {
-    scheme: Scheme,
-    measured: Measured,
+    scheme: PlannedScheme,
+    measured: SchemeAccuracy,
     cost: Cost,
-    /// Wall over CPU time.
+    /// Wall time over CPU time.
     wall: f64,
-    /// Steps times the cell size \[m\].
+    /// Number of steps times the cell size \[m\].
     steps: f64,
 }
 
-/// What the error of a scene is measured by.
-struct Scale {
-    /// Shortest pulse of its profiles \[m\].
+/// Lengths of a scene that scale its errors.
+struct ErrorScale {
+    /// Shortest pulse of the profiles \[m\].
     pulse: f64,
     /// Shortest plateau \[m\].
     plateau: Option<f64>,
-    /// Way of the wave to the place asked for \[m\].
+    /// Distance of the wave to the arrival position \[m\].
     way: Option<f64>,
 }
 
 impl Candidate {
-    /// The error on cells of size `h`.
-    fn error(&self, quantity: PlannedQuantity, scale: &Scale, h: f64) -> Option<Size> {
+    /// Expected error on cells of size `h`.
+    fn error(&self, quantity: PlannedQuantity, scale: &ErrorScale, h: f64) -> Option<Size> {
         let m = &self.measured;
         Some(match quantity {
             PlannedQuantity::L1 => m.e1_cells.times(h / scale.pulse),
@@ -162,13 +162,13 @@ impl Candidate {
         })
     }
 
-    /// The largest cells on which the error is at most `error`, in 19 of 20 runs.
-    fn cells_for(&self, quantity: PlannedQuantity, scale: &Scale, error: f64) -> Option<f64> {
+    /// Largest cell size at which the error is at most `error` in 19 of 20 runs.
+    fn cells_for(&self, quantity: PlannedQuantity, scale: &ErrorScale, error: f64) -> Option<f64> {
         let m = &self.measured;
         Some(match quantity {
             PlannedQuantity::L1 => error * scale.pulse / m.e1_cells.most,
             PlannedQuantity::PlateauPressure => {
-                // over fewer cells there is no plateau to speak of
+                // a plateau of fewer cells cannot be evaluated
                 let plateau = scale.plateau?;
                 let h = plateau * (error / m.plateau.most).powf(1.0 / m.plateau_order);
                 h.min(plateau / LEAST_PLATEAU)
@@ -188,11 +188,16 @@ impl Candidate {
     }
 }
 
-/// Cells that a plateau or a way must have.
+/// Smallest number of cells of a plateau, or of the distance to an arrival position.
 const LEAST_PLATEAU: f64 = 26.0;
 
 /// Plans a scene.
-pub fn plan(scene: &Value, file: &str, wish: &Wish, data: &Data) -> Result<Plan, PlanError> {
+pub fn plan(
+    scene: &Value,
+    file: &str,
+    target: &ErrorTarget,
+    data: &Data,
+) -> Result<Plan, PlanError> {
     let fail = |reason: String| PlanError::Scene(reason);
     let mut scene = scene.clone();
     if scene.get("error_estimate").is_none_or(Value::is_null) {
@@ -201,22 +206,22 @@ pub fn plan(scene: &Value, file: &str, wish: &Wish, data: &Data) -> Result<Plan,
     if scene.pointer("/domain/lower/1").is_some() {
         return Err(fail(format!("{file}: plan: a scene in a plane; allowed: a scene on a line")));
     }
-    if let Some(at) = wish.place {
+    if let Some(at) = target.place {
         scene["error_estimate"]["arrivals"] = json!([at]);
     }
     let checked = scene::parse(scene.to_string().as_bytes(), file, &[])
         .map_err(|error| fail(error.to_string()))?;
     let body = checked.estimated_body().expect("the check has found it");
     let asked = checked.scene.error_estimate.as_ref().and_then(|e| e.arrivals.first().copied());
-    let place = asked.filter(|_| wish.quantity == PlannedQuantity::ArrivalTime);
-    if wish.quantity == PlannedQuantity::ArrivalTime && place.is_none() {
+    let place = asked.filter(|_| target.quantity == PlannedQuantity::ArrivalTime);
+    if target.quantity == PlannedQuantity::ArrivalTime && place.is_none() {
         return Err(fail(format!(
             "{file}: error_estimate.arrivals: missing key; allowed: places, or --at METRES"
         )));
     }
     let start = std::time::Instant::now();
     let length = checked.scene.domain.upper[0] - checked.scene.domain.lower[0];
-    // particles a cell of the domain, by a scheme of one a cell
+    // particles per cell of the domain, for a scheme with one particle per cell
     let filled = filled(&checked) / length;
     let mut candidates = Vec::new();
     let mut scale = None;
@@ -247,7 +252,7 @@ pub fn plan(scene: &Value, file: &str, wish: &Wish, data: &Data) -> Result<Plan,
                 });
             }
             Ok(_) => unreachable!("two pilots"),
-            // a scheme that cannot run the scene is none to choose
+            // a scheme that cannot run the scene cannot be chosen
             Err(reason) => faults.push(format!("{}: {reason}", scheme.name)),
         }
     }
@@ -255,22 +260,22 @@ pub fn plan(scene: &Value, file: &str, wish: &Wish, data: &Data) -> Result<Plan,
         return Err(fail(format!("no scheme can run the scene: {}", faults.join("; "))));
     };
     let extra = data.rank_step_seconds;
-    // the best choice: within the budget the cheapest that is good enough, else the least wrong
+    // the cheapest scheme that reaches the target within the budget, else the smallest error
     let least = filled_cells_limit(filled, length);
     let mut best: Option<(&Candidate, f64, f64)> = None;
     let mut nearest: Option<(&Candidate, f64, f64)> = None;
     for candidate in &candidates {
-        let Some(h) = candidate.cells_for(wish.quantity, &scale, wish.error) else {
+        let Some(h) = candidate.cells_for(target.quantity, &scale, target.error) else {
             return Err(fail(format!("{file}: no plateau in the body that a pilot sees")));
         };
         let floor = least * candidate.scheme.particles_per_cell as f64;
-        let wall = candidate.wall(h, wish.ranks, extra);
-        if h >= floor && wall <= wish.budget && best.is_none_or(|b| wall < b.2) {
+        let wall = candidate.wall(h, target.ranks, extra);
+        if h >= floor && wall <= target.budget && best.is_none_or(|b| wall < b.2) {
             best = Some((candidate, h, wall));
         }
-        let within = candidate.cost.cells_for(wish.budget / candidate.wall * wish.ranks as f64);
+        let within = candidate.cost.cells_for(target.budget / candidate.wall * target.ranks as f64);
         let h = within.max(floor);
-        if let Some(error) = candidate.error(wish.quantity, &scale, h)
+        if let Some(error) = candidate.error(target.quantity, &scale, h)
             && nearest.is_none_or(|n| error.most < n.2)
         {
             nearest = Some((candidate, h, error.most));
@@ -279,12 +284,12 @@ pub fn plan(scene: &Value, file: &str, wish: &Wish, data: &Data) -> Result<Plan,
     let Some((candidate, h, _)) = best else {
         let (candidate, h, error) = nearest.ok_or_else(|| fail("nothing can be had".into()))?;
         return Err(PlanError::Impossible {
-            wanted: wish.error,
-            budget: wish.budget,
+            wanted: target.error,
+            budget: target.budget,
             best: error,
             scheme: candidate.scheme.name.clone(),
             cell_size: h,
-            seconds: candidate.wall(h, wish.ranks, extra),
+            seconds: candidate.wall(h, target.ranks, extra),
         });
     };
     let cells = (length / h).ceil() as usize;
@@ -300,10 +305,10 @@ pub fn plan(scene: &Value, file: &str, wish: &Wish, data: &Data) -> Result<Plan,
         steps,
         ..*candidate
     };
-    let error = candidate.error(wish.quantity, &scale, h).expect("it has been looked at");
-    // the plan chooses the cells by itself
+    let error = candidate.error(target.quantity, &scale, h).expect("it has been looked at");
+    // the plan chooses the cell size itself
     let mut outside = Laws::shipped().fitted.outside_but_cells(&run, body);
-    match wish.quantity {
+    match target.quantity {
         PlannedQuantity::ArrivalTime => outside.profiles.clear(),
         _ => outside.arrivals.clear(),
     }
@@ -315,15 +320,15 @@ pub fn plan(scene: &Value, file: &str, wish: &Wish, data: &Data) -> Result<Plan,
         error: error.median,
         error_most: error.most,
         cpu_seconds: candidate.cost.at(h),
-        wall_seconds: candidate.wall(h, wish.ranks, extra),
+        wall_seconds: candidate.wall(h, target.ranks, extra),
         pilot_seconds: start.elapsed().as_secs_f64(),
         basis: outside.basis(),
         outside: outside.lines(),
         scene: Value::Null,
     };
     chosen["output"]["plan"] = json!({
-        "quantity": wish.quantity,
-        "wanted": wish.error,
+        "quantity": target.quantity,
+        "wanted": target.error,
         "error": plan.error,
         "cpu_seconds": plan.cpu_seconds,
         "wall_seconds": plan.wall_seconds,
@@ -333,23 +338,23 @@ pub fn plan(scene: &Value, file: &str, wish: &Wish, data: &Data) -> Result<Plan,
     Ok(plan)
 }
 
-/// Length of all bodies, over which particles stand \[m\].
+/// Total length of the bodies \[m\].
 fn filled(scene: &CheckedScene) -> f64 {
     scene.bodies.iter().map(|b| b.upper[0] - b.lower[0]).sum()
 }
 
-/// The least cell size of a scheme of one particle a cell \[m\].
+/// Smallest cell size of a scheme with one particle per cell \[m\].
 fn filled_cells_limit(filled: f64, length: f64) -> f64 {
     filled * length / MOST_PARTICLES
 }
 
-/// The scene's lengths, by its finest pilot.
+/// Lengths of the scene, from its finest pilot run.
 fn scale_of(
     pilot: &Pilot,
     scene: &CheckedScene,
     body: usize,
     place: Option<f64>,
-) -> Result<Scale, String> {
+) -> Result<ErrorScale, String> {
     let all = 0..pilot.profiles.len();
     let pulse = all.clone().filter_map(|k| pilot.pulse(k)).fold(f64::INFINITY, f64::min);
     if !pulse.is_finite() {
@@ -366,11 +371,11 @@ fn scale_of(
     if place.is_some() && way.is_none() {
         return Err(format!("{}: nothing arrives there within the run", scene.file));
     }
-    Ok(Scale { pulse, plateau, way })
+    Ok(ErrorScale { pulse, plateau, way })
 }
 
-/// The cost by a pilot not much coarser than the run, beside one of half its cells; wall over CPU
-/// time, and steps times the cell size.
+/// Cost by a pilot run slightly coarser than the run and one with half of its cells; also the wall
+/// time over CPU time, and the number of steps times the cell size.
 fn last_pilot(
     scene: &Value,
     file: &str,
@@ -383,7 +388,7 @@ fn last_pilot(
     let fine = ((cells as f64 * share) as usize).max(cells.min(64));
     let timed = [fine.div_ceil(2), fine].map(|cells| {
         let (_, scene) = pilot::with_cells(scene, file, &candidate.scheme, cells)?;
-        // the faster of two: what else the machine does only slows
+        // use the faster of two runs: other load on the machine only slows a run
         let both = [pilot::run(&scene, body, None)?, pilot::run(&scene, body, None)?];
         let [a, b] = both;
         Ok::<Pilot, String>(if a.cpu_seconds <= b.cpu_seconds { a } else { b })
@@ -407,7 +412,7 @@ mod tests {
         let fitted = Cost::through((0.5, cost.at(0.5)), (0.25, cost.at(0.25)));
         assert!((fitted.a - 2.0).abs() < 1e-12 && (fitted.b - 3.0).abs() < 1e-12, "{fitted:?}");
         assert!((cost.cells_for(cost.at(0.1)) - 0.1).abs() < 1e-12);
-        // cheaper on finer cells: noise, not a law
+        // cheaper on finer cells: noise
         let odd = Cost::through((0.5, 4.0), (0.25, 3.0));
         assert!(odd.a >= 0.0 && odd.b >= 0.0 && (odd.at(0.25) - 3.0).abs() < 1e-12);
     }

@@ -1,53 +1,53 @@
-//! What was measured of the schemes on random impacts, by `scripts/calibrate_estimates.sh`.
+//! Errors of the schemes, measured on random impacts by `scripts/calibrate_estimates.sh`.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-/// The typical size of an error, and one that few runs pass.
+/// Distribution of an error: median and 95 % quantile.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Size {
-    /// Half of the runs have less.
+    /// Half of the runs have a smaller error.
     pub median: f64,
-    /// 19 of 20 runs have less.
+    /// 19 of 20 runs have a smaller error.
     pub most: f64,
 }
 
 impl Size {
-    /// Both times a factor.
+    /// Both values times a factor.
     pub fn times(self, factor: f64) -> Size {
         Size { median: self.median * factor, most: self.most * factor }
     }
 }
 
-/// What was measured of one scheme.
+/// Measured errors of one scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Measured {
+pub struct SchemeAccuracy {
     /// int |p - p_exact| dx / (P2 dx) \[cells\].
     pub e1_cells: Size,
-    /// Relative error of the plateau's pressure, times its length in cells to the power
+    /// Relative error of the plateau pressure, times the plateau length in cells to the power
     /// `plateau_order` \[-\].
     pub plateau: Size,
-    /// How that error falls with the plateau's length in cells \[-\].
+    /// Order at which this error decreases with the plateau length in cells \[-\].
     pub plateau_order: f64,
-    /// Error of an arrival over the time of the shock's way through a cell \[cells\].
+    /// Error of an arrival time over the transit time of the shock through a cell \[cells\].
     pub arrival_cells: Size,
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
 }
 
-/// What was measured, by the schemes' names.
+/// Measured errors of all schemes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Data {
-    /// How it was made.
+    /// Origin of the data.
     pub source: String,
-    /// Wall time that a step takes longer on several ranks than its share of the work \[s\].
+    /// Additional wall time of a step on several ranks, beyond the share of the work \[s\].
     pub rank_step_seconds: f64,
-    /// One entry a scheme.
-    pub schemes: BTreeMap<String, Measured>,
+    /// Measured errors by the name of the scheme.
+    pub schemes: BTreeMap<String, SchemeAccuracy>,
 }
 
 impl Data {

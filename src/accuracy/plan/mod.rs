@@ -1,10 +1,10 @@
-//! A price before the run: the scheme, cell size, particles per cell and Courant number that reach
-//! a wanted error for the least time, and what that time will be.
+//! Plans a run: scheme, cell size, particles per cell and Courant number that reach a target error
+//! in the shortest time, and a prediction of that time.
 //!
-//! How wrong a scheme is was measured on random impacts ([`data`]); what a scene's waves measure
-//! and what its steps cost here is measured by pilots ([`pilot`]): the same scene on few cells,
-//! timed. [`choose`] puts the two together. On a line, for the body of `error_estimate` or of the
-//! reference. Knows no MPI.
+//! The errors of the schemes were measured on random impacts ([`data`]). Pilot runs ([`pilot`]),
+//! the same scene on few cells, measure the wave lengths of the scene and the cost of its steps on
+//! this machine. [`choose`] combines the two. Only for scenes on a line, for the body of
+//! `error_estimate` or of the reference. Does not depend on MPI.
 
 pub mod choose;
 pub mod data;
@@ -12,7 +12,7 @@ pub mod pilot;
 pub mod plan_result;
 pub mod schemes;
 
-pub use choose::{Plan, PlanError, Wish, plan};
+pub use choose::{ErrorTarget, Plan, PlanError, plan};
 pub use data::Data;
 pub use plan_result::{Verdict, verdict};
-pub use schemes::{Scheme, schemes, standard};
+pub use schemes::{PlannedScheme, schemes, standard};

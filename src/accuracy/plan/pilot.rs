@@ -1,40 +1,40 @@
-//! Pilots: a scene on few cells, timed and looked at.
+//! Pilot runs: a scene on few cells, to measure its cost and its wave lengths.
 
 use decomp::Serial;
 use serde_json::{Value, json};
 
-use super::schemes::Scheme;
+use super::schemes::PlannedScheme;
 use crate::accuracy::estimate::arrival::Between;
-use crate::accuracy::estimate::{Line, line, plateau};
+use crate::accuracy::estimate::{Polyline, line, plateau};
 use crate::scene::{self, CheckedScene};
 use crate::simulation::Simulation;
 use crate::solver::clock::user_cpu_seconds;
 
-/// A pilot's plateau has at least so many cells.
+/// Smallest number of cells of a plateau in a pilot run.
 const LEAST: usize = 6;
 
-/// What a pilot has shown.
+/// Results of a pilot run.
 #[derive(Clone, Debug)]
 pub struct Pilot {
-    /// Its cells \[m\].
+    /// Cell size \[m\].
     pub cell_size: f64,
-    /// User CPU time of its steps \[s\].
+    /// User CPU time of the steps \[s\].
     pub cpu_seconds: f64,
-    /// Their wall time \[s\].
+    /// Wall time of the steps \[s\].
     pub wall_seconds: f64,
-    /// Its steps.
+    /// Number of steps.
     pub steps: u64,
-    /// The body's pressures, a line a profile.
-    pub profiles: Vec<Line>,
-    /// When the pressure at the place asked for has passed half of its greatest \[s\].
+    /// Pressures of the body, one line per profile.
+    pub profiles: Vec<Polyline>,
+    /// Time at which the pressure at the arrival position first passes half of its maximum \[s\].
     pub arrival: Option<f64>,
 }
 
-/// The scene with a scheme on `cells` cells; the message where that is no scene.
+/// The scene with a scheme on `cells` cells. The error is the message of the scene check.
 pub fn with_cells(
     scene: &Value,
     file: &str,
-    scheme: &Scheme,
+    scheme: &PlannedScheme,
     cells: usize,
 ) -> Result<(Value, CheckedScene), String> {
     let mut new = scene.clone();
@@ -49,7 +49,7 @@ pub fn with_cells(
     checked.map(|checked| (new, checked)).map_err(|error| error.to_string())
 }
 
-/// Runs a scene without files; the message where it fails.
+/// Runs a scene without output files. The error is the message of the run.
 pub fn run(scene: &CheckedScene, body: usize, place: Option<f64>) -> Result<Pilot, String> {
     let mut simulation =
         Simulation::<1>::new(scene, &Serial, 1).map_err(|error| error.to_string())?;
@@ -86,8 +86,8 @@ pub fn run(scene: &CheckedScene, body: usize, place: Option<f64>) -> Result<Pilo
 }
 
 impl Pilot {
-    /// Length of the pulse of profile `k`: int |p| dx over the plateau's pressure, or where there
-    /// is no plateau over what the greatest tenth of the pressures passes \[m\].
+    /// Pulse length of profile `k` \[m\]: int |p| dx over the plateau pressure or, without a
+    /// plateau, over the pressure that the greatest tenth of the pressures exceeds.
     pub fn pulse(&self, k: usize) -> Option<f64> {
         let line = &self.profiles[k];
         let area: f64 =
@@ -102,7 +102,7 @@ impl Pilot {
         (level > 0.0 && area > 0.0).then_some(area / level)
     }
 
-    /// Length of the plateau of profile `k` \[m\].
+    /// Plateau length of profile `k` \[m\].
     pub fn plateau(&self, k: usize) -> Option<f64> {
         plateau::find_over(&self.profiles[k], self.cell_size, LEAST)
             .map(|p| p.cells * self.cell_size)

@@ -1,43 +1,44 @@
-//! Predicted against actual, once a planned run has ended.
+//! Comparison of a plan with its finished run.
 
 use serde::{Deserialize, Serialize};
 
-use crate::accuracy::estimate::ErrorEstimate;
+use crate::accuracy::estimate::EstimatedErrors;
 use crate::scene::{Planned, PlannedQuantity};
 
-/// What a plan has foretold, and what came.
+/// Predicted and actual error and cost of a planned run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// The quantity.
+    /// Quantity.
     pub quantity: PlannedQuantity,
-    /// Its relative error that was wanted \[-\].
+    /// Target: relative error \[-\].
     pub wanted: f64,
-    /// The error foretold \[-\].
+    /// Predicted error \[-\].
     pub predicted: f64,
-    /// Whether that was a guess, for the schemes were not measured on such scenes.
+    /// Whether the prediction is a guess, because the schemes were not measured on such scenes.
     #[serde(default)]
     pub guess: bool,
-    /// The error that came, the greatest of all profiles \[-\]; by the run's own bound where there
-    /// is no exact solution; none where it is not known.
+    /// Actual error, the largest of all profiles \[-\]. Without an exact solution, the error
+    /// estimate of the run; `None` if neither is known.
     pub actual: Option<f64>,
-    /// Whether that is the true error, and not the run's own bound.
+    /// Whether `actual` is the true error, not the error estimate of the run; true if there is no
+    /// `actual`.
     pub is_true: bool,
-    /// User CPU time of the time loop foretold \[s\].
+    /// Predicted user CPU time of the time loop \[s\].
     pub predicted_cpu_seconds: f64,
-    /// What it was \[s\].
+    /// Actual user CPU time of the time loop \[s\].
     pub cpu_seconds: f64,
-    /// Wall time of the time loop foretold \[s\].
+    /// Predicted wall time of the time loop \[s\].
     pub predicted_wall_seconds: f64,
-    /// What it was \[s\].
+    /// Actual wall time of the time loop \[s\].
     pub wall_seconds: f64,
 }
 
-/// Compares a plan with its run; `exact_l1` has the L1 of each profile against the exact solution
-/// [-], where there is one.
+/// Compares a plan with its run; `exact_l1` is the L1 of each profile against the exact solution
+/// [-], empty if there is none.
 pub fn verdict(
     planned: &Planned,
     exact_l1: &[f64],
-    estimate: Option<&ErrorEstimate>,
+    estimate: Option<&EstimatedErrors>,
     [cpu_seconds, wall_seconds]: [f64; 2],
 ) -> Verdict {
     let relative = |b: &crate::accuracy::estimate::Bounded| match (b.exact, b.half_width) {

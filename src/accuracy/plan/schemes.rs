@@ -1,28 +1,28 @@
-//! The schemes that can be chosen.
+//! The schemes that a plan can choose.
 
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-/// A scheme with particles per cell and Courant number.
+/// A scheme with its particles per cell and Courant number.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Scheme {
-    /// Its name.
+pub struct PlannedScheme {
+    /// Name of the scheme.
     pub name: String,
-    /// Particles a cell.
+    /// Particles per cell.
     pub particles_per_cell: usize,
     /// Courant number.
     pub courant: f64,
-    /// Keys at the top level of a scene that make it; none: those of the standard problem.
+    /// Top-level keys of a scene that define the scheme; if empty, those of the standard problem.
     pub set: BTreeMap<String, Value>,
 }
 
-/// The scene whose scheme is this program's default.
+/// The scene with the default scheme of this program.
 const STANDARD: &str = include_str!("../../../inputs/flyer.json");
 
-/// Keys that make a scheme.
+/// Keys that define a scheme.
 const KEYS: [&str; 2] = ["method", "artificial_viscosity"];
 
 /// The standard problem with the default scheme.
@@ -30,9 +30,9 @@ pub fn standard() -> Value {
     serde_json::from_str(STANDARD).expect("the shipped scene is whole")
 }
 
-/// The schemes that can be chosen; the first is that of the standard problem.
-pub fn schemes() -> Vec<Scheme> {
-    let mut all: Vec<Scheme> =
+/// All schemes that a plan can choose; the first is that of the standard problem.
+pub fn schemes() -> Vec<PlannedScheme> {
+    let mut all: Vec<PlannedScheme> =
         serde_json::from_str(include_str!("schemes.json")).expect("the shipped schemes are whole");
     let standard = standard();
     for scheme in all.iter_mut().filter(|s| s.set.is_empty()) {
@@ -41,8 +41,8 @@ pub fn schemes() -> Vec<Scheme> {
     all
 }
 
-impl Scheme {
-    /// Puts the scheme into a scene.
+impl PlannedScheme {
+    /// Writes the scheme into a scene.
     pub fn apply(&self, scene: &mut Value) {
         for key in KEYS {
             match self.set.get(key) {
@@ -55,7 +55,7 @@ impl Scheme {
         scene["time"]["courant"] = json!(self.courant);
         for body in scene["bodies"].as_array_mut().into_iter().flatten() {
             body["particles_per_cell"] = json!([self.particles_per_cell]);
-            // positions of its own are those of other cells
+            // given particle positions belong to another cell size
             body.as_object_mut().map(|body| body.remove("positions"));
         }
     }

@@ -1,70 +1,69 @@
-//! The exact solution that a scene names, and the scores of profiles against it.
+//! The exact solution named by a scene, and the scores of profiles against it.
 //!
-//! Turns the scene's bodies into the terms of [`crate::exact`]; knows no MPI.
+//! Converts the bodies of the scene to the input of [`crate::exact`]. Does not depend on MPI.
 
+mod bodies;
 mod plane;
 
 pub use plane::{PlaneReference, PlaneSolution};
 
+use self::bodies::body_named;
 use crate::exact::{
-    Accuracy, Chain, Drive, EdgeRelease, Errors, ExactError, GasState, History, Impact, ImpactBody,
-    MaterialState, PlanePoint, PlaneWave, Plate, Point, Profile, Riemann, Sample, SimpleWave,
-    Solution, Tracer, WallImpact, WallMaterial, cell_average, hugoniot, interface_errors, score,
-    score_density,
+    Accuracy, Chain, Drive, EdgeRelease, Errors, ExactError, GasState, History, HugoniotState,
+    Impact, ImpactBody, PlanePoint, PlaneWave, Plate, Profile, ProfilePoint, RiemannSolution,
+    ScoreSample, SimpleWaveSolution, Solution, TracedPoint, WallImpactSolution, WallMaterial,
+    cell_average, hugoniot, interface_errors, score, score_density,
 };
+use crate::material::IdealGasParameters;
 use crate::material::MieGruneisen;
 use crate::material::constitutive;
 use crate::scene::{self, CheckedScene, Eos};
 use crate::simulation::ParticleTable;
 
-/// States of the chain that profiles are drawn from; fewer leave waves out near the interface.
+/// Last state of the chain of wave interactions; with fewer, waves near the interface are missing.
 pub const LAST_STATE: usize = 12;
 
-/// The exact solution of a scene, at its profile times.
-pub enum Reference {
-    /// A plate strikes a target.
+/// Exact solution of a scene at its profile times.
+pub enum ReferenceSolution {
+    /// Impact of a plate on a target.
     Impact(Box<ImpactReference>),
-    /// Two gases side by side.
+    /// Riemann problem of two gases.
     Riemann {
         /// The solution.
-        solution: Riemann,
-        /// Where the diaphragm was [m].
+        solution: RiemannSolution,
+        /// Initial position of the diaphragm [m].
         diaphragm: f64,
     },
-    /// A body runs into a wall.
+    /// Impact of a body on a wall.
     Wall {
         /// The solution.
-        solution: WallImpact,
-        /// The body.
+        solution: WallImpactSolution,
+        /// Index of the body.
         body: usize,
     },
-    /// A piston sends a simple wave into a body.
+    /// Simple wave that a piston sends into a body.
     SimpleWave {
         /// The solution.
-        solution: SimpleWave<scene::Course>,
-        /// The body.
+        solution: SimpleWaveSolution<scene::Course>,
+        /// Index of the body.
         body: usize,
     },
-    /// A solution that follows from a body's first motion.
+    /// Solution that follows from the initial motion of a body.
     Plane(PlaneReference),
 }
 
-/// A plate that strikes a target.
+/// Impact of a plate on a target.
 pub struct ImpactReference {
     /// The two bodies.
     pub impact: Impact,
-    /// The document's chain: rarefactions as shocks.
+    /// The solution of Burghardt (2010), with rarefactions as shocks.
     pub chain: Chain,
-    /// The true solution, a snapshot for each profile time.
+    /// The exact solution, one snapshot per profile time.
     pub solution: Solution,
-    /// The bodies' numbers.
+    /// Index of the flyer.
     pub flyer: usize,
-    /// The bodies' numbers.
+    /// Index of the target.
     pub target: usize,
-}
-
-fn body_named(scene: &CheckedScene, name: &str) -> usize {
-    scene.scene.bodies.iter().position(|b| b.name == name).expect("the check has found the body")
 }
 
 fn solid(scene: &CheckedScene, body: usize) -> MieGruneisen {
@@ -75,21 +74,21 @@ fn solid(scene: &CheckedScene, body: usize) -> MieGruneisen {
 
 fn gas(scene: &CheckedScene, body: usize) -> GasState {
     let material = scene.material_of(body);
-    let Eos::IdealGas { gamma } = material.eos else {
+    let Eos::IdealGas(IdealGasParameters { gamma }) = material.eos else {
         unreachable!("the check has refused other equations of state")
     };
     let (p, u) = (scene.scene.bodies[body].pressure, scene.speed_along(body));
     GasState { rho: material.density, u, p, gamma }
 }
 
-/// The Mie-Grueneisen material of a body without pressure whose shocks are on a straight line.
+/// The Mie-Grueneisen material of a body at zero pressure with a straight Us-up line.
 fn straight_at_rest(scene: &CheckedScene, body: usize) -> Option<MieGruneisen> {
     let material = scene.material_of(body);
     let free = scene.scene.bodies[body].pressure == 0.0;
     material.eos.straight(material.density).filter(|_| free)
 }
 
-/// The fronts that a wall sends into a body of any other material.
+/// The shock fronts that a wall sends into a body of any other material.
 fn fronts(
     scene: &CheckedScene,
     body: usize,
@@ -97,9 +96,10 @@ fn fronts(
 ) -> Result<WallMaterial, ExactError> {
     let eos = constitutive::equation(scene.material_of(body)).ok().flatten();
     let eos = eos.ok_or(ExactError::NoImpact("the body has no equation of state"))?;
-    let rest = MaterialState::at_rest(&*eos, scene.scene.bodies[body].pressure, 0.0);
+    let rest = HugoniotState::at_rest(&*eos, scene.scene.bodies[body].pressure, 0.0);
     let fronts = hugoniot::piston(&*eos, &rest, scene.closing_speed(wall, body))?;
-    let point = |s: &MaterialState| Point { x: 0.0, p: s.p, u: s.u, rho: s.density(&*eos), e: s.e };
+    let point =
+        |s: &HugoniotState| ProfilePoint { x: 0.0, p: s.p, u: s.u, rho: s.density(&*eos), e: s.e };
     let (speed, precursor) = match &fronts[..] {
         [first, last] => (last.speed, Some((point(&first.behind), first.speed))),
         _ => (fronts[0].speed, None),
@@ -107,7 +107,7 @@ fn fronts(
     Ok(WallMaterial::Fronts { ahead: point(&rest), precursor, speed })
 }
 
-/// The bodies of an impact in the terms of the exact solution.
+/// The bodies of an impact as input of the exact solution, and their indices.
 pub fn impact_of(
     scene: &CheckedScene,
     named: &scene::FlyerImpact,
@@ -119,7 +119,7 @@ pub fn impact_of(
         ImpactBody { material: solid(scene, b), lower, upper, velocity }
     });
     let impact = Impact::new(flyer, target)?;
-    // a rear that breaks off is another one
+    // spall would create a new rear surface
     let whole = scene.material_of(numbers[1]).failure.is_none();
     let free_rear = whole && scene.face_is_free(numbers[1], !impact.mirrored);
     Ok((Impact { free_rear, ..impact }, numbers))
@@ -143,15 +143,15 @@ impl Drive for scene::Course {
     }
 }
 
-impl Reference {
-    /// The solution that the scene names, at its profile times and for its tracers.
-    pub fn new(scene: &CheckedScene) -> Result<Option<Reference>, ExactError> {
+impl ReferenceSolution {
+    /// The solution named by the scene, at its profile times and for its tracers.
+    pub fn new(scene: &CheckedScene) -> Result<Option<ReferenceSolution>, ExactError> {
         let Some(named) = &scene.scene.reference else { return Ok(None) };
         Ok(Some(match named {
             scene::Reference::FlyerImpact(named) => {
                 let (impact, [flyer, target]) = impact_of(scene, named)?;
                 let histories = scene.scene.output.histories.iter();
-                let tracers: Vec<Tracer> = histories
+                let tracers: Vec<TracedPoint> = histories
                     .flat_map(|h| &h.tracers)
                     .filter_map(|t| {
                         let body = body_named(scene, &t.body);
@@ -160,7 +160,7 @@ impl Reference {
                             b if b == target => Plate::Target,
                             _ => return None,
                         };
-                        Some(Tracer { plate, x: t.at[0] })
+                        Some(TracedPoint { plate, x: t.at[0] })
                     })
                     .collect();
                 let arrivals = scene.scene.error_estimate.iter().flat_map(|e| &e.arrivals);
@@ -171,20 +171,20 @@ impl Reference {
                 };
                 let arrivals = plate
                     .into_iter()
-                    .flat_map(|plate| arrivals.clone().map(move |&x| Tracer { plate, x }));
-                let tracers: Vec<Tracer> = tracers.into_iter().chain(arrivals).collect();
+                    .flat_map(|plate| arrivals.clone().map(move |&x| TracedPoint { plate, x }));
+                let tracers: Vec<TracedPoint> = tracers.into_iter().chain(arrivals).collect();
                 let mut times = scene.profile_times.clone();
                 times.push(scene.scene.time.end);
                 let solution = impact.solve(&times, &tracers, Accuracy::default())?;
                 let chain = impact.chain(LAST_STATE)?;
                 let all = ImpactReference { impact, chain, solution, flyer, target };
-                Reference::Impact(Box::new(all))
+                ReferenceSolution::Impact(Box::new(all))
             }
             scene::Reference::Riemann(named) => {
                 let (left, right) =
                     (body_named(scene, &named.left), body_named(scene, &named.right));
-                Reference::Riemann {
-                    solution: Riemann::solve(gas(scene, left), gas(scene, right))?,
+                ReferenceSolution::Riemann {
+                    solution: RiemannSolution::solve(gas(scene, left), gas(scene, right))?,
                     diaphragm: scene.span(left).map_or(0.0, |[_, upper]| upper),
                 }
             }
@@ -195,7 +195,7 @@ impl Reference {
                 ))?;
                 let extent = &scene.bodies[body];
                 let material = match scene.material_of(body).eos {
-                    Eos::IdealGas { gamma } => {
+                    Eos::IdealGas(IdealGasParameters { gamma }) => {
                         let state = gas(scene, body);
                         let e = state.p / ((gamma - 1.0) * state.rho);
                         WallMaterial::IdealGas { gamma, rho: state.rho, e }
@@ -205,7 +205,7 @@ impl Reference {
                         None => fronts(scene, body, &wall)?,
                     },
                 };
-                let solution = WallImpact::new(
+                let solution = WallImpactSolution::new(
                     material,
                     extent.lower[0],
                     extent.upper[0],
@@ -213,13 +213,13 @@ impl Reference {
                     !wall.upper,
                     wall.velocity,
                 )?;
-                Reference::Wall { solution, body }
+                ReferenceSolution::Wall { solution, body }
             }
             scene::Reference::SimpleWave(named) => {
                 let body = body_named(scene, &named.body);
                 let piston = scene.piston_at(body).expect("the check has found the piston");
                 let extent = &scene.bodies[body];
-                let solution = SimpleWave::new(
+                let solution = SimpleWaveSolution::new(
                     solid(scene, body),
                     extent.lower[0],
                     extent.upper[0],
@@ -227,33 +227,33 @@ impl Reference {
                     piston.course,
                     scene.scene.time.end,
                 )?;
-                Reference::SimpleWave { solution, body }
+                ReferenceSolution::SimpleWave { solution, body }
             }
-            _ => return Ok(PlaneReference::new(scene).map(Reference::Plane)),
+            _ => return Ok(PlaneReference::new(scene).map(ReferenceSolution::Plane)),
         }))
     }
 
-    /// The exact profile at profile time number `k` of the scene, where there is one.
+    /// Exact profile at profile time number `k` of the scene; `None` if there is none.
     pub fn profile(&self, scene: &CheckedScene, k: usize) -> Option<Profile> {
         let t = scene.profile_times[k];
         match self {
-            Reference::Impact(all) => all.solution.snapshots[k].target.clone(),
-            Reference::Riemann { solution, diaphragm } => {
+            ReferenceSolution::Impact(all) => all.solution.snapshots[k].target.clone(),
+            ReferenceSolution::Riemann { solution, diaphragm } => {
                 let [lower, upper] = scored_range(scene);
                 Some(solution.profile(*diaphragm, t, lower, upper))
             }
-            Reference::Wall { solution, .. } => solution.profile(t),
-            Reference::SimpleWave { solution, .. } => solution.profile(t),
-            Reference::Plane(_) => None,
+            ReferenceSolution::Wall { solution, .. } => solution.profile(t),
+            ReferenceSolution::SimpleWave { solution, .. } => solution.profile(t),
+            ReferenceSolution::Plane(_) => None,
         }
     }
 
-    /// When the pressure at the places of `error_estimate` first passes half of its greatest
-    /// \[s\]; none where that is not known.
+    /// Times at which the pressure at the positions of `error_estimate` first passes half of its
+    /// maximum \[s\]; `None` if unknown.
     pub fn arrivals(&self, scene: &CheckedScene) -> Vec<Option<f64>> {
-        let Reference::Impact(all) = self else { return Vec::new() };
+        let ReferenceSolution::Impact(all) = self else { return Vec::new() };
         let count = scene.scene.error_estimate.as_ref().map_or(0, |e| e.arrivals.len());
-        // they stand after the tracers of the histories
+        // these tracers follow those of the histories
         let all = &all.solution.tracers;
         let arrival = |history: &History| {
             let peak = history.points.iter().map(|q| q.p).fold(0.0, f64::max);
@@ -262,10 +262,9 @@ impl Reference {
         all[all.len().saturating_sub(count)..].iter().map(arrival).collect()
     }
 
-    /// Whether, in a plane, releases from the edges of the plates have reached the strip that is
-    /// scored.
+    /// Whether, in a plane, releases from the plate edges have reached the scored strip.
     fn edge_release_has_come(&self, scene: &CheckedScene, k: usize) -> bool {
-        let Reference::Impact(all) = self else { return false };
+        let ReferenceSolution::Impact(all) = self else { return false };
         if scene.dimension == 1 {
             return false;
         }
@@ -278,28 +277,30 @@ impl Reference {
             .is_ok_and(|release| release.untouched_half_width(scene.profile_times[k]) < scored)
     }
 
-    /// The body that is scored; none: all.
+    /// The scored body; `None`: all bodies.
     fn scored(&self) -> Option<usize> {
         match self {
-            Reference::Impact(all) => Some(all.target),
-            Reference::Wall { body, .. } | Reference::SimpleWave { body, .. } => Some(*body),
-            Reference::Plane(plane) => Some(plane.body),
-            Reference::Riemann { .. } => None,
+            ReferenceSolution::Impact(all) => Some(all.target),
+            ReferenceSolution::Wall { body, .. } | ReferenceSolution::SimpleWave { body, .. } => {
+                Some(*body)
+            }
+            ReferenceSolution::Plane(plane) => Some(plane.body),
+            ReferenceSolution::Riemann { .. } => None,
         }
     }
 
-    /// In a plane, means of the scored particles over `cells` cells along the waves.
+    /// In a plane: means of the scored particles over strips of `cells` cells along the waves.
     pub fn samples_along(
         &self,
         scene: &CheckedScene,
         table: &ParticleTable,
         cells: f64,
-    ) -> Vec<Sample> {
+    ) -> Vec<ScoreSample> {
         plane_samples(scene, table, self.scored(), cells * scene.cell_size[0])
     }
 
-    /// The scores of the particles of profile time number `k`: as they are, and averaged over
-    /// cells; `None` where no exact solution holds.
+    /// Scores of the particles at profile time number `k`: unaveraged, and averaged over cells.
+    /// `None` if no exact solution holds.
     pub fn score(
         &self,
         scene: &CheckedScene,
@@ -318,12 +319,12 @@ impl Reference {
                 let averaged = cell_average(&samples, h, scene.scene.domain.lower[0]);
                 (samples, averaged)
             }
-            // particles of one place along the waves differ by where they are in their cells
+            // particles at the same position along the wave differ by their position in the cell
             _ => [0.5, 1.0].map(|cells| self.samples_along(scene, table, cells)).into(),
         };
         let time = scene.profile_times[k];
-        let judge = |samples: &[Sample]| match self {
-            Reference::Impact(all) => {
+        let judge = |samples: &[ScoreSample]| match self {
+            ReferenceSolution::Impact(all) => {
                 let marks = all.solution.snapshots[k].landmarks.as_ref()?;
                 let mut errors = score(samples, &exact, marks, h);
                 if let Some((density, energy)) = interface_errors(samples, &exact, marks, h) {
@@ -332,14 +333,14 @@ impl Reference {
                 }
                 Some(errors)
             }
-            Reference::Wall { solution, .. } => {
+            ReferenceSolution::Wall { solution, .. } => {
                 Some(score(samples, &exact, &solution.landmarks(time)?, h))
             }
-            Reference::SimpleWave { solution, .. } => {
+            ReferenceSolution::SimpleWave { solution, .. } => {
                 Some(score(samples, &exact, &solution.landmarks(time)?, h))
             }
-            Reference::Plane(_) => None,
-            Reference::Riemann { .. } => {
+            ReferenceSolution::Plane(_) => None,
+            ReferenceSolution::Riemann { .. } => {
                 let [lower, upper] = scored_range(scene);
                 Some(score_density(samples, &exact, lower, upper))
             }
@@ -348,29 +349,29 @@ impl Reference {
     }
 }
 
-/// The places along the waves between which gases are scored [m].
+/// The range along the wave direction in which gases are scored [m].
 fn scored_range(scene: &CheckedScene) -> [f64; 2] {
     let domain = &scene.scene.domain;
     scene.front().and_then(|front| front.range).unwrap_or([domain.lower[0], domain.upper[0]])
 }
 
-/// The line along which waves run in a plane.
+/// The wave direction in a plane.
 fn wave_line(scene: &CheckedScene) -> PlaneWave {
     let (about, angle) = scene.front().map_or(([0.0; 2], 0.0), |front| {
-        // along x places are those of the scene
+        // for waves along x, positions are those of the scene
         let about = [front.about[0], front.about[1]];
         (if front.angle == 0.0 { [0.0, about[1]] } else { about }, front.angle.to_radians())
     });
     PlaneWave::at_angle(about, angle).expect("the scene's numbers are finite")
 }
 
-/// The particles of `body` (or all) in a plane, as means over `width` [m] along the waves.
+/// The particles of `body` (or all) in a plane, as means over `width` [m] along the wave direction.
 fn plane_samples(
     scene: &CheckedScene,
     table: &ParticleTable,
     body: Option<usize>,
     width: f64,
-) -> Vec<Sample> {
+) -> Vec<ScoreSample> {
     let column = |name| table.column(name).expect("the table has its own columns");
     let [x, y] = ["x", "y"].map(column);
     let [vx, vy] = ["velocity_x", "velocity_y"].map(column);
@@ -398,7 +399,7 @@ fn plane_samples(
 }
 
 /// The particles of `body` (or all) as samples.
-fn samples(scene: &CheckedScene, table: &ParticleTable, body: Option<usize>) -> Vec<Sample> {
+fn samples(scene: &CheckedScene, table: &ParticleTable, body: Option<usize>) -> Vec<ScoreSample> {
     let column = |name| table.column(name).expect("the table has its own columns");
     let (x, p) = (column("x"), column("pressure"));
     let (rho, e) = (column("density"), column("specific_internal_energy"));
@@ -406,7 +407,7 @@ fn samples(scene: &CheckedScene, table: &ParticleTable, body: Option<usize>) -> 
     (0..table.len())
         .filter(|&r| body.is_none_or(|b| table.body[r] as usize == b))
         .map(|r| {
-            // a particle's mass is an equal share of its body's
+            // all particles of a body have the same mass
             let b = table.body[r] as usize;
             let body = &scene.bodies[b];
             let length = (body.upper[0] - body.lower[0]) / body.lattice[0] as f64;
@@ -414,7 +415,7 @@ fn samples(scene: &CheckedScene, table: &ParticleTable, body: Option<usize>) -> 
                 Some(volumes) => volumes[r],
                 None => length * scene.material_of(b).density / rho[r],
             };
-            Sample { x: x[r], volume, p: p[r], rho: rho[r], e: e[r] }
+            ScoreSample { x: x[r], volume, p: p[r], rho: rho[r], e: e[r] }
         })
         .collect()
 }

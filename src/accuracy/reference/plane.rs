@@ -1,52 +1,53 @@
-//! Scores against exact solutions that follow from a body's first motion.
+//! Scores against exact solutions that follow from the initial motion of a body.
 
 use serde_json::{Value, json};
 
-use super::body_named;
+use super::bodies::body_named;
 use crate::exact::plane::{
     Displaced, Gresho, MassPoint, Noh, ShearLayer, Symmetry, Vector, Vortex, rotation,
 };
+use crate::material::IdealGasParameters;
 use crate::scene::motion::Motion;
 use crate::scene::{self, CheckedScene, Eos, NohSymmetry};
 use crate::simulation::ParticleTable;
 
-/// An exact solution and the body that is held against it.
+/// An exact solution and the body that is compared with it.
 pub struct PlaneReference {
-    /// Number of the body.
+    /// Index of the body.
     pub body: usize,
     /// The solution.
     pub solution: PlaneSolution,
 }
 
-/// An exact solution that follows from a body's first motion.
+/// An exact solution that follows from the initial motion of a body.
 pub enum PlaneSolution {
-    /// The generalized vortex.
+    /// Generalized vortex.
     Vortex(Vortex),
-    /// A free body that spins.
+    /// Rotating free body.
     Rotation,
-    /// A shear layer.
+    /// Shear layer.
     ShearLayer(ShearLayer),
-    /// Gresho's vortex.
+    /// Gresho vortex.
     Gresho(Gresho),
-    /// Noh's problem about a place [m] or the axis, its density averaged between two distances [m].
+    /// Noh problem about a point [m] or the axis; density averaged between two distances [m].
     Noh(Noh, Option<Vector>, [f64; 2]),
 }
 
-/// What the particles of one body tell.
-struct Particle {
+/// Particle state for a score.
+struct ReferenceParticle {
     x: Vector,
     v: Vector,
-    /// Present volume [m3].
+    /// Current volume [m3].
     volume: f64,
     density: f64,
     p: f64,
     e: f64,
-    /// First place, where it is known.
+    /// Initial position, if known.
     reference: Vector,
 }
 
 impl PlaneReference {
-    /// The solution that a scene names, if it is one of these.
+    /// The solution named by a scene, if it is one of these.
     pub fn new(scene: &CheckedScene) -> Option<PlaneReference> {
         let of = |name: &str| {
             let body = body_named(scene, name);
@@ -76,7 +77,7 @@ impl PlaneReference {
                     _ => (None, scene.speed_to_axis(body)?),
                 };
                 let material = scene.material_of(body);
-                let Eos::IdealGas { gamma } = material.eos else { return None };
+                let Eos::IdealGas(IdealGasParameters { gamma }) = material.eos else { return None };
                 let symmetry = match named.symmetry {
                     NohSymmetry::Planar => Symmetry::Planar,
                     NohSymmetry::Cylindrical => Symmetry::Cylindrical,
@@ -90,13 +91,13 @@ impl PlaneReference {
         Some(PlaneReference { body, solution })
     }
 
-    /// Whether a score needs the particles of the start.
+    /// Whether the score needs the particles at time 0.
     pub fn needs_start(scene: &CheckedScene) -> bool {
         matches!(scene.scene.reference, Some(scene::Reference::Rotation(_)))
     }
 
-    /// The score of a profile, an object of numbers by name; `start` are the particles at time 0
-    /// where they are needed. `None` where no exact solution holds.
+    /// The score of a profile, an object of numbers by name; `start` are the particles at time 0,
+    /// if needed. `None` if no exact solution holds.
     pub fn score(
         &self,
         scene: &CheckedScene,
@@ -107,7 +108,7 @@ impl PlaneReference {
         let all = self.particles(scene, table);
         match &self.solution {
             PlaneSolution::Vortex(vortex) => {
-                let displaced = |q: &Particle| Displaced {
+                let displaced = |q: &ReferenceParticle| Displaced {
                     reference: q.reference,
                     position: q.x,
                     volume: q.volume * q.density / vortex.density,
@@ -116,8 +117,9 @@ impl PlaneReference {
                 Some(json!({"displacement_l2": vortex.l2_error(&points, t)?}))
             }
             PlaneSolution::Rotation => {
-                let kept = |particles: &[Particle]| {
-                    let point = |q: &Particle| MassPoint { mass: q.mass(), x: q.x, v: q.v };
+                let kept = |particles: &[ReferenceParticle]| {
+                    let point =
+                        |q: &ReferenceParticle| MassPoint { mass: q.mass(), x: q.x, v: q.v };
                     let points: Vec<_> = particles.iter().map(point).collect();
                     let centre = rotation::centre_of_mass(&points);
                     let internal: f64 = particles.iter().map(|q| q.mass() * q.e).sum();
@@ -141,18 +143,18 @@ impl PlaneReference {
         }
     }
 
-    fn particles(&self, scene: &CheckedScene, table: &ParticleTable) -> Vec<Particle> {
+    fn particles(&self, scene: &CheckedScene, table: &ParticleTable) -> Vec<ReferenceParticle> {
         let column = |name: &str| table.column(name);
         let value = |name: &str, r: usize| column(name).map_or(0.0, |c| c[r]);
         let velocity = if scene.dimension == 1 { "velocity" } else { "velocity_x" };
-        // on a line a particle's volume is not among its columns, and all have the same mass
+        // on a line, tables have no particle volume, and all particles have the same mass
         let volume = |r: usize| match column("volume") {
             Some(volume) => volume[r],
             None => 1.0 / value("density", r),
         };
         (0..table.len())
             .filter(|&r| table.body[r] as usize == self.body)
-            .map(|r| Particle {
+            .map(|r| ReferenceParticle {
                 x: [value("x", r), value("y", r)],
                 v: [value(velocity, r), value("velocity_y", r)],
                 volume: volume(r),
@@ -165,17 +167,17 @@ impl PlaneReference {
     }
 }
 
-impl Particle {
+impl ReferenceParticle {
     fn mass(&self) -> f64 {
         self.density * self.volume
     }
 }
 
-/// Velocity, pressure, and pressure up to a constant: its level drifts by what the gas is heated.
-fn score_gresho(vortex: &Gresho, all: &[Particle]) -> Option<Value> {
+/// Errors of velocity, pressure, and pressure up to a constant (heating of the gas shifts it).
+fn score_gresho(vortex: &Gresho, all: &[ReferenceParticle]) -> Option<Value> {
     let velocity = vortex.velocity_error(all.iter().map(|q| (q.x, q.v, q.volume)))?;
     let pressure = |off: f64| vortex.pressure_error(all.iter().map(|q| (q.x, q.p - off, q.volume)));
-    let distance = |q: &Particle| {
+    let distance = |q: &ReferenceParticle| {
         let [dx, dy] = [q.x[0] - vortex.centre[0], q.x[1] - vortex.centre[1]];
         dx.hypot(dy)
     };
@@ -191,15 +193,15 @@ fn score_gresho(vortex: &Gresho, all: &[Particle]) -> Option<Value> {
     }))
 }
 
-/// Mean density between two distances, and the L1 error of the density within twice the shock's.
+/// Mean density between two distances, and its L1 error within twice the shock radius.
 fn score_noh(
     noh: &Noh,
     about: Option<Vector>,
     [from, to]: [f64; 2],
-    all: &[Particle],
+    all: &[ReferenceParticle],
     t: f64,
 ) -> Option<Value> {
-    let distance = |q: &Particle| match about {
+    let distance = |q: &ReferenceParticle| match about {
         Some([x, y]) => (q.x[0] - x).hypot(q.x[1] - y),
         None => q.x[0],
     };

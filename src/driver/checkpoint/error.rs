@@ -1,29 +1,30 @@
-//! Faults in writing, finding and reading checkpoints; each is one line that names the path.
+//! Errors in writing, finding and reading checkpoints; each message is one line that names the
+//! path.
 
 use std::path::PathBuf;
 
 use crate::driver::output::OutputError;
 
-/// A fault in writing, finding or reading checkpoints.
+/// An error in writing, finding or reading checkpoints.
 #[derive(Debug, thiserror::Error)]
 pub enum CheckpointError {
-    /// There is none.
+    /// There is no checkpoint.
     #[error("{}: {why}; allowed: a checkpoint, or a folder of them", path.display())]
     None {
-        /// Where it was looked for.
+        /// Path that was searched.
         path: PathBuf,
-        /// What is there instead.
+        /// What was found instead.
         why: String,
     },
-    /// It is not what was written.
+    /// The file has changed since it was written.
     #[error("{}: is damaged: {why}", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What shows it.
+        /// Evidence of the damage.
         why: String,
     },
-    /// It is of another form.
+    /// The checkpoint has another format.
     #[error(
         "{}: is a checkpoint of format {found}, written by version {version}; this program reads \
          format {known}: go on with the version that wrote it",
@@ -32,30 +33,30 @@ pub enum CheckpointError {
     Format {
         /// The file.
         path: PathBuf,
-        /// Its format.
+        /// Format of the file.
         found: String,
-        /// The one that is known.
+        /// Format that this program reads.
         known: u32,
         /// Version of the program that wrote it.
         version: String,
     },
-    /// The scene, changed or not, is not one that it can go on with.
+    /// The scene, changed or not, does not fit the checkpoint.
     #[error("{}: {why}", path.display())]
     Unfit {
         /// The file.
         path: PathBuf,
-        /// Why not.
+        /// The reason.
         why: String,
     },
-    /// It could not be written.
+    /// The checkpoint could not be written.
     #[error("{source}; {last}")]
     Write {
-        /// What went wrong.
+        /// The cause.
         source: Box<CheckpointError>,
-        /// What is left to go on from, and how.
+        /// The last good checkpoint, and how to restart from it.
         last: String,
     },
-    /// The disk would be full.
+    /// The disk has too little space.
     #[error(
         "{}: a checkpoint needs about {needed} bytes, and {left} are left: make room, or choose \
          another --output",
@@ -64,12 +65,12 @@ pub enum CheckpointError {
     Space {
         /// The folder.
         path: PathBuf,
-        /// What is needed [bytes].
+        /// Space needed [bytes].
         needed: u64,
-        /// What is left [bytes].
+        /// Space left [bytes].
         left: u64,
     },
-    /// The system or HDF5 refused.
+    /// Error of the system or of HDF5.
     #[error(transparent)]
     Output(#[from] OutputError),
 }

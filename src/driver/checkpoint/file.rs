@@ -1,12 +1,12 @@
-//! A checkpoint's form on disk: HDF5 behind a sealed head.
+//! Format of a checkpoint on disk: HDF5 data behind a sealed head.
 //!
-//! `rows` holds id, cell and each state column of every particle, `profiles`, `histories` and
-//! `waves` what was recorded, `scene` and `books` are JSON text. Each dataset carries the SHA-256
-//! of its values, taken before HDF5 sees them.
+//! `rows` holds id, cell and each state column of every particle; `profiles`, `histories` and
+//! `waves` hold the records; `scene` and `books` are JSON text. Each dataset carries the SHA-256 of
+//! its values, computed before they are passed to HDF5.
 
 use std::path::Path;
 
-use decomp::{Census, StoredRows};
+use decomp::{Census, StoredParticles};
 use hdf5::types::{FixedAscii, VarLenUnicode};
 use hdf5::{Dataset, File, Group, H5Type};
 use serde::{Deserialize, Serialize};
@@ -16,13 +16,13 @@ use super::seal::{FORMAT, HEAD, hexadecimal, seal, verify};
 use super::{Checkpoint, CheckpointError, Contents, Due, Record, StateColumn};
 use crate::driver::figures::PressureRow;
 use crate::driver::output::OutputError;
-use crate::driver::output::histories::Histories;
+use crate::driver::output::histories::HistoryTable;
 use crate::driver::output::origin::Origin;
 use crate::simulation::Saved;
 use crate::simulation::monitor::Peaks;
 use crate::simulation::{ParticleTable, TableColumn};
 
-/// All single numbers.
+/// All scalar values.
 #[derive(Serialize, Deserialize)]
 struct Books {
     version: String,
@@ -31,13 +31,13 @@ struct Books {
     dimension: usize,
     time: f64,
     step: u64,
-    /// None: no particle is left to bound it.
+    /// `None` if no particle is left to bound the time step.
     stable: Option<f64>,
     longest: f64,
     #[serde(default)]
     redone_steps: u64,
     left: [u64; 2],
-    /// Whole numbers of 128 bits, which JSON's readers seldom have.
+    /// Integers of 128 bits as text, because few JSON readers support them.
     sums: Vec<String>,
     #[serde(default)]
     peaks: Peaks,
@@ -47,7 +47,7 @@ struct Books {
     has_histories: bool,
 }
 
-/// A value that a dataset may hold.
+/// A type of value that a dataset may hold.
 trait Plain: H5Type + Copy {
     fn bytes(self) -> impl AsRef<[u8]>;
 }
@@ -74,12 +74,12 @@ fn digest<T: Plain>(values: &[T]) -> String {
     hexadecimal(digest)
 }
 
-/// Writes a checkpoint at `path`, sealed and flushed to the disk; `alive` is called now and then.
+/// Writes a checkpoint at `path`, sealed and flushed to disk; `alive` is called regularly.
 pub fn write(path: &Path, contents: &Contents, alive: &dyn Fn()) -> Result<(), CheckpointError> {
     write_as(path, contents, alive, FORMAT)
 }
 
-/// The same under any number of format.
+/// As `write`, with any format number.
 pub fn write_as(
     path: &Path,
     contents: &Contents,
@@ -98,7 +98,7 @@ pub fn write_as(
 
 fn refused(path: &Path, error: hdf5::Error) -> CheckpointError {
     let said = error.to_string().replace('\n', "; ");
-    // of all that HDF5 says of a write that failed, what the system says is worth telling
+    // if a write failed, only the system's reason in the text of HDF5 is useful
     let system = said.split_once("error message = '").and_then(|(_, rest)| rest.split_once('\''));
     let message = match system {
         Some((reason, _)) => format!("{reason}: make room, or choose another --output"),
@@ -118,7 +118,7 @@ fn write_root(file: &Group, contents: &Contents, alive: &dyn Fn()) -> hdf5::Resu
         stable: saved.stable.is_finite().then_some(saved.stable),
         longest: saved.longest,
         redone_steps: saved.redone_steps,
-        left: [saved.left.rows, saved.left.marks],
+        left: [saved.left.particles, saved.left.marks],
         sums: saved.sums.iter().map(i128::to_string).collect(),
         peaks: saved.peaks,
         due: contents.due.clone(),
@@ -130,10 +130,10 @@ fn write_root(file: &Group, contents: &Contents, alive: &dyn Fn()) -> hdf5::Resu
     put(file, "scene", contents.scene.as_bytes())?;
     put(file, "books", books.as_bytes())?;
     let rows = file.create_group("rows")?;
-    put(&rows, "id", &saved.rows.ids)?;
-    put(&rows, "cell", &saved.rows.cells)?;
+    put(&rows, "id", &saved.particles.ids)?;
+    put(&rows, "cell", &saved.particles.cells)?;
     let state = rows.create_group("state")?;
-    for (k, (column, values)) in contents.columns.iter().zip(&saved.rows.columns).enumerate() {
+    for (k, (column, values)) in contents.columns.iter().zip(&saved.particles.columns).enumerate() {
         put_column(&state, k, &column.name, &column.unit, values)?;
         alive();
     }
@@ -183,7 +183,7 @@ fn put<T: Plain>(group: &Group, name: &str, values: &[T]) -> hdf5::Result<Datase
     Ok(dataset)
 }
 
-/// A column under its place, by which it is found, with name and unit.
+/// Writes a column with name and unit under its index, by which it is found.
 fn put_column(
     group: &Group,
     place: usize,
@@ -199,7 +199,7 @@ fn put_column(
     Ok(())
 }
 
-/// Reads a checkpoint whose seal is whole.
+/// Reads a checkpoint after verifying its seal.
 pub fn read(path: &Path) -> Result<Checkpoint, CheckpointError> {
     verify(path)?;
     let length = std::fs::metadata(path).map_or(0, |m| m.len());
@@ -236,7 +236,7 @@ fn read_root(file: &Group, length: u64) -> hdf5::Result<Checkpoint> {
         record.waves.push(PressureRow { time, points });
     }
     if books.has_histories {
-        record.histories = Some(Histories::of(get.columns(&file.group("histories")?)?));
+        record.histories = Some(HistoryTable::of(get.columns(&file.group("histories")?)?));
     }
     let scene = String::from_utf8(get.values(file, "scene")?).map_err(|e| e.to_string())?;
     Ok(Checkpoint {
@@ -250,10 +250,10 @@ fn read_root(file: &Group, length: u64) -> hdf5::Result<Checkpoint> {
             stable: books.stable.unwrap_or(f64::INFINITY),
             longest: books.longest,
             redone_steps: books.redone_steps,
-            left: Census { rows: books.left[0], marks: books.left[1] },
+            left: Census { particles: books.left[0], marks: books.left[1] },
             sums: sums.collect::<Result<_, _>>()?,
             peaks: books.peaks,
-            rows: StoredRows {
+            particles: StoredParticles {
                 ids: get.values(&rows, "id")?,
                 cells: get.values(&rows, "cell")?,
                 columns: state.into_iter().map(|c| c.values).collect(),
@@ -265,7 +265,7 @@ fn read_root(file: &Group, length: u64) -> hdf5::Result<Checkpoint> {
     })
 }
 
-/// Reads datasets of a file of so many bytes, which none can exceed.
+/// Reads datasets of a file of `length` bytes, which no dataset can exceed.
 struct Reader {
     length: u64,
 }

@@ -1,28 +1,28 @@
-//! Whether a checkpoint and a scene, which may have been changed since, go together.
+//! Check whether a checkpoint fits a scene that may have been changed since.
 
 use std::path::Path;
 
 use super::{Checkpoint, CheckpointError};
-use crate::driver::output::histories::Histories;
+use crate::driver::output::histories::HistoryTable;
 use crate::driver::probes::Probes;
+use crate::effects;
 use crate::scene::CheckedScene;
 use crate::simulation::saved_sums;
-use crate::solver::particles::Columns;
 
-/// Keys that may change after the start.
-pub const CHANGEABLE: [&str; 5] = ["time", "watch", "output", "domain.patches", "decomposition"];
+/// Keys that may change at a restart.
+pub const CHANGEABLE: [&str; 5] = ["time", "monitor", "output", "domain.patches", "decomposition"];
 
 impl Checkpoint {
-    /// Refuses a scene that a run cannot go on with from here; what it has recorded and the scene
-    /// no longer asks for is left out.
+    /// Refuses a scene with which a run cannot restart from this checkpoint. Drops records that the
+    /// scene no longer asks for.
     pub fn fit(&mut self, scene: &CheckedScene, path: &Path) -> Result<(), CheckpointError> {
         let why = self.check_rows(scene).or_else(|| self.check_record(scene));
         why.map_or(Ok(()), |why| Err(CheckpointError::Unfit { path: path.into(), why }))
     }
 
-    /// What is wrong with the rows.
+    /// An error in the particles, if any.
     fn check_rows(&self, scene: &CheckedScene) -> Option<String> {
-        let (columns, rows) = (Columns::new(scene), &self.saved.rows);
+        let (columns, rows) = (effects::columns(scene), &self.saved.particles);
         let state = columns.state();
         let named = |k: &usize| columns.specs[*k].name;
         if !self.columns.iter().map(|c| c.name.as_str()).eq(state.iter().map(named)) {
@@ -37,7 +37,7 @@ impl Checkpoint {
         let (count, dimension) = (rows.ids.len(), scene.dimension);
         let counts = rows.ids.is_sorted_by(|a, b| a < b)
             && rows.ids.last().is_none_or(|&id| id < scene.particles)
-            && self.saved.left.rows.checked_add(count as u64) == Some(scene.particles)
+            && self.saved.left.particles.checked_add(count as u64) == Some(scene.particles)
             && rows.columns.iter().all(|c| c.len() == count);
         let cells = rows.cells.len() == dimension * count
             && rows.cells.chunks_exact(dimension).all(|cell| {
@@ -59,7 +59,7 @@ impl Checkpoint {
         (!numbers).then(|| "its time or its steps are none".into())
     }
 
-    /// What is wrong with what was recorded; leaves out what is asked for no longer.
+    /// An error in the records, if any; drops records that the scene no longer asks for.
     fn check_record(&mut self, scene: &CheckedScene) -> Option<String> {
         let (time, end) = (self.saved.time, scene.scene.time.end);
         if time > end {
@@ -75,7 +75,8 @@ impl Checkpoint {
             ));
         }
         let wanted = Probes::new(scene).map(Probes::into_histories);
-        let names = |h: &Histories| h.columns().iter().map(|c| c.name.clone()).collect::<Vec<_>>();
+        let names =
+            |h: &HistoryTable| h.columns().iter().map(|c| c.name.clone()).collect::<Vec<_>>();
         match (&wanted, &self.record.histories) {
             (Some(wanted), Some(have)) if names(wanted) != names(have) => Some(
                 "output.histories: other columns than so far; allowed: the same tracers".into(),

@@ -1,7 +1,7 @@
-//! The folder of a run's checkpoints: numbered files, of which the last few stay.
+//! The folder of a run's checkpoints: numbered files, of which the last few are kept.
 //!
-//! A file is written under a hidden name, flushed, and renamed, and the folder is flushed: under its
-//! own name a checkpoint is whole or was damaged later.
+//! A file is written under a hidden name, flushed and renamed, and then the folder is flushed. A
+//! file under its final name is therefore complete, unless it was damaged later.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -11,17 +11,17 @@ use nix::sys::statvfs::statvfs;
 use super::{Checkpoint, CheckpointError, Contents, file};
 use crate::driver::output::OutputError;
 use crate::driver::output::folder::{CHECKPOINTS, checkpoint_folder};
-use crate::driver::output::origin::{Made, Maker};
+use crate::driver::output::origin::{ExistingResult, Maker};
 use crate::scene::input_file;
 
 const BEFORE: &str = "checkpoint-";
 const AFTER: &str = ".hdf5";
 
-/// What the hidden name of a file that is being written begins with.
+/// Prefix of the hidden name of a file during writing.
 const PARTIAL: &str = ".checkpoint-";
 
-/// Writes a checkpoint into `folder`, which is made where it is missing, and leaves the last `keep`;
-/// returns its path. `alive` is called now and then.
+/// Writes a checkpoint into `folder`, which is created if missing, and keeps the last `keep` files;
+/// returns the path of the new one. `alive` is called regularly.
 pub fn write(
     folder: &Path,
     keep: u64,
@@ -51,10 +51,10 @@ fn try_write(
     let entries = list(folder);
     let number = entries.first().map_or(1, |(number, _)| number + 1);
     let partial = folder.join(format!("{PARTIAL}{number:06}"));
-    // one that an earlier process left; HDF5 would refuse to take a file that is open
+    // remove the file of an earlier process, because HDF5 refuses to overwrite an open file
     let _ = fs::remove_file(&partial);
     if let Ok(disk) = statvfs(folder) {
-        // whose types differ from system to system
+        // the types differ between systems
         #[allow(clippy::unnecessary_cast)]
         let left = disk.blocks_available() as u64 * disk.fragment_size() as u64;
         let needed = contents.bytes();
@@ -72,18 +72,18 @@ fn try_write(
         let _ = fs::remove_file(&partial);
         return Err(error);
     }
-    // best effort: one too many does no harm
+    // best effort: one file too many does no harm
     for (_, old) in entries.iter().skip(keep.max(1) as usize - 1) {
         let _ = fs::remove_file(old);
     }
     Ok(path)
 }
 
-/// The checkpoints of a folder with their numbers, the newest first; none where it cannot be read.
+/// The checkpoints of a folder with their numbers, newest first; empty for an unreadable folder.
 pub fn list(folder: &Path) -> Vec<(u64, PathBuf)> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let number = |name: &str| name.strip_prefix(BEFORE)?.strip_suffix(AFTER)?.parse::<u64>().ok();
-    // numbers that we never come to are not ours
+    // this program never reaches larger numbers, so such files are not its own
     let number = |name: &str| number(name).filter(|&n| n < 1 << 53);
     let mut found: Vec<(u64, PathBuf)> =
         entries.filter_map(|e| Some((number(e.file_name().to_str()?)?, e.path()))).collect();
@@ -91,7 +91,7 @@ pub fn list(folder: &Path) -> Vec<(u64, PathBuf)> {
     found
 }
 
-/// Takes all checkpoints out of a folder, and the folder if nothing else is in it. Best effort.
+/// Removes all checkpoints from a folder, and the folder if it is then empty. Best effort.
 pub fn clear(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
@@ -103,8 +103,8 @@ pub fn clear(folder: &Path) {
     let _ = fs::remove_dir(folder);
 }
 
-/// Reads the checkpoint at `path`, or the newest one of the folder `path` (or of the results
-/// `path`) that is whole; returns it with its path and one line for each that is damaged.
+/// Reads the checkpoint at `path`, or the newest undamaged one if `path` is a folder of checkpoints
+/// or of results. Returns it with its path and one line for each damaged file.
 pub fn open(path: &Path) -> Result<(Checkpoint, PathBuf, Vec<String>), CheckpointError> {
     let none = |why: String| CheckpointError::None { path: path.into(), why };
     let kind = fs::metadata(path);
@@ -138,11 +138,11 @@ pub fn open(path: &Path) -> Result<(Checkpoint, PathBuf, Vec<String>), Checkpoin
     Err(none(format!("no checkpoint is whole: {}", notes.join("; "))))
 }
 
-/// Refuses a run whose checkpoints would take the place of those of another scene: those in the
-/// folder of `target`'s checkpoints. Damaged ones are nobody's.
+/// Refuses a run whose checkpoints would replace those of another scene in the checkpoint folder of
+/// `target`. Damaged checkpoints are ignored.
 pub fn check_owner(target: &Path, maker: &Maker) -> Result<(), OutputError> {
     let folder = checkpoint_folder(target)?;
-    if Made::read(&folder).is_some() {
+    if ExistingResult::read(&folder).is_some() {
         let result = folder.clone();
         return Err(OutputError::Inside { path: folder, result });
     }
@@ -156,13 +156,13 @@ pub fn check_owner(target: &Path, maker: &Maker) -> Result<(), OutputError> {
     Err(OutputError::Foreign { path: folder, theirs, ours })
 }
 
-/// Whether a file is a JSON object, as far as its first character tells.
+/// Whether a file looks like a JSON object, judged by its first character.
 fn is_json(path: &Path) -> bool {
     ["{", " {", "\n{", "\r\n{", "\u{feff}{"].iter().any(|head| input_file::begins_with(path, head))
 }
 
-/// Where the results go of which `checkpoint` is one: what its folder stands beside; `None` where
-/// the folder does not say.
+/// Folder of the results that belong to `checkpoint`, beside the checkpoint folder; `None` if the
+/// name of that folder has no suffix of a checkpoint folder.
 pub fn results_of(checkpoint: &Path) -> Option<PathBuf> {
     let folder = std::path::absolute(checkpoint).ok()?.parent()?.to_path_buf();
     let name = folder.file_name()?.to_str()?.strip_suffix(CHECKPOINTS)?;

@@ -1,4 +1,4 @@
-//! When a checkpoint is due, and when a run is to end before its time.
+//! Schedule of checkpoints, and of an early end of a run.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -6,37 +6,38 @@ use std::time::{Duration, Instant};
 
 use crate::scene::CheckedScene;
 
-/// Wall time from one checkpoint to the next where the scene says nothing [s].
+/// Default wall time between checkpoints [s].
 pub const WALL_SECONDS: f64 = 600.0;
 
-/// Checkpoints that nobody has asked for take no more than this share of the time.
+/// Largest share of the run time that default checkpoints may take.
 const SHARE: f64 = 0.02;
 
-/// What a rank asks of all: nothing, a checkpoint, an end by the wall's clock, or an end by the
-/// signal of a number from here on.
+/// Requests of a rank to all ranks: 0 for none, a checkpoint, an end by wall time, or an end by a
+/// signal (its number plus `SIGNAL`).
 const CHECKPOINT: u8 = 1;
 const WALL_LIMIT: u8 = 2;
 const SIGNAL: u8 = 16;
 
-/// Why a run ends before its time.
+/// Reason for an early end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// Its wall time is over.
+    /// The wall time limit is reached.
     WallLimit,
-    /// A signal of this number came.
+    /// A signal of this number was received.
     Signal(u8),
 }
 
-/// When a checkpoint is due.
+/// Times at which checkpoints are due.
 #[derive(Debug)]
-pub struct Schedule {
+pub struct CheckpointSchedule {
     every_seconds: Option<f64>,
     every_steps: Option<u64>,
     at_times: Vec<f64>,
     wall: Option<Duration>,
-    /// How many stay; 0: none are written.
+    /// Number of checkpoints that are kept; 0: none are written.
     pub keep: u64,
-    /// Whether they go once the run has ended well: nobody has asked for them.
+    /// Whether checkpoints are removed after a successful run, because the scene did not ask for
+    /// them.
     pub passing: bool,
     limit: Option<Instant>,
     signal: Arc<AtomicU8>,
@@ -50,15 +51,15 @@ fn interval_after(time: f64, every: f64) -> u64 {
     ((time / every).floor() as u64).saturating_add(1)
 }
 
-impl Schedule {
-    /// The schedule of a run that is at `time` [s], of a program that `started` then; `signal` takes
-    /// the number of a signal that came.
+impl CheckpointSchedule {
+    /// Creates the schedule of a run at `time` [s] whose process started at `started`. `signal`
+    /// holds the number of a received signal.
     pub fn new(
         scene: &CheckedScene,
         time: f64,
         started: Instant,
         signal: Arc<AtomicU8>,
-    ) -> Schedule {
+    ) -> CheckpointSchedule {
         let asked = scene.scene.output.checkpoint.as_ref();
         let options = asked.cloned().unwrap_or_default();
         let timed = options.every_seconds.is_some()
@@ -67,7 +68,7 @@ impl Schedule {
         let wall = options.every_wall_seconds.or((!timed).then_some(WALL_SECONDS));
         let duration = |s: f64| Duration::try_from_secs_f64(s).unwrap_or(Duration::MAX);
         let wall = wall.map(duration).filter(|_| options.keep > 0);
-        Schedule {
+        CheckpointSchedule {
             due: options.every_seconds.map_or(0, |every| interval_after(time, every)),
             next: options.at_times.iter().filter(|&&at| at <= time).count(),
             every_seconds: options.every_seconds,
@@ -82,7 +83,7 @@ impl Schedule {
         }
     }
 
-    /// What this rank asks of all; clocks are those of the first rank alone.
+    /// Request of this rank to all ranks; only rank 0 (`first`) uses its clock.
     pub fn asks(&self, first: bool) -> u8 {
         let past = |at: Option<Instant>| first && at.is_some_and(|at| Instant::now() >= at);
         match self.signal.load(Ordering::Relaxed) {
@@ -93,7 +94,7 @@ impl Schedule {
         }
     }
 
-    /// What all have agreed on: whether the run is to end, and why.
+    /// The reason for an early end in the agreed request `asked`, if any.
     pub fn stops(asked: u8) -> Option<Stop> {
         match asked {
             0 | CHECKPOINT => None,
@@ -102,8 +103,8 @@ impl Schedule {
         }
     }
 
-    /// Whether a checkpoint is due at a step's end, where all have agreed on `asked`: alike on all
-    /// ranks.
+    /// Whether a checkpoint is due at the end of a step, with the agreed request `asked`; the same
+    /// on all ranks.
     pub fn is_due(&mut self, time: f64, step: u64, asked: u8) -> bool {
         let mut due = asked >= CHECKPOINT;
         if let Some(every) = self.every_seconds
@@ -120,7 +121,7 @@ impl Schedule {
         due && self.keep > 0
     }
 
-    /// Takes note of a checkpoint that took so long.
+    /// Records that a checkpoint was written and took this time.
     pub fn written(&mut self, took: Duration) {
         let Some(wall) = self.wall else { return };
         let least = took.div_f64(SHARE);

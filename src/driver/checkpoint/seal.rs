@@ -1,7 +1,7 @@
-//! The seal of a checkpoint: a head of text before the HDF5 data (HDF5's user block, which its own
-//! tools skip) that says what the file is, and ends with the SHA-256 of all other bytes of the
-//! file. It is looked at before anything else is: a file that is short by a byte or has one bit
-//! changed is never read.
+//! The seal of a checkpoint: a text head before the HDF5 data (HDF5's user block, which HDF5's own
+//! tools skip). It identifies the file and ends with the SHA-256 of all other bytes of the file.
+//! The seal is verified before anything is read: a file with a missing byte or a changed bit is
+//! refused.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -14,27 +14,27 @@ use crate::driver::output::OutputError;
 use crate::scene::input_file::CHECKPOINT_START;
 use crate::scene::input_file::{self, InputFault};
 
-/// Version of the form of a checkpoint.
-pub const FORMAT: u32 = 1;
+/// Version of the checkpoint format.
+pub const FORMAT: u32 = 2;
 
-/// Bytes of the head.
+/// Length of the head [bytes].
 pub const HEAD: u64 = 512;
 
-/// Hexadecimal digits of the digest, which a line break ends.
+/// Hexadecimal digits of the digest; a line break follows them.
 const DIGITS: usize = 64;
 
-/// What the head covers by the digest: all but the digest itself.
+/// Length of the part of the head that the digest covers: all but the digest itself [bytes].
 const TEXT: usize = HEAD as usize - DIGITS - 1;
 
-/// Bytes that are read at a time.
+/// Number of bytes read at a time.
 const CHUNK: usize = 1 << 20;
 
-/// A digest in hexadecimal.
+/// A digest as hexadecimal text.
 pub fn hexadecimal(digest: Sha256) -> String {
     digest.finalize().iter().map(|b| format!("{b:02x}")).collect()
 }
 
-/// Writes the head of a file that has room for it, and brings the file to the disk.
+/// Writes the head of a file that has reserved space for it, and flushes the file to disk.
 pub fn seal(path: &Path, step: u64, time: f64, format: u32) -> Result<(), CheckpointError> {
     let write = || -> io::Result<()> {
         let mut file = OpenOptions::new().read(true).write(true).open(path)?;
@@ -52,7 +52,7 @@ pub fn seal(path: &Path, step: u64, time: f64, format: u32) -> Result<(), Checkp
     write().map_err(|e| OutputError::io("write the checkpoint", path)(e).into())
 }
 
-/// The digest of a head's text and of all that follows the head.
+/// The digest of the text of the head and of all bytes after the head.
 fn digest_of(file: &mut File, head: &[u8]) -> io::Result<String> {
     let mut digest = Sha256::new();
     digest.update(head);
@@ -66,7 +66,7 @@ fn digest_of(file: &mut File, head: &[u8]) -> io::Result<String> {
     }
 }
 
-/// Refuses a file that is not as it was sealed, or of another format.
+/// Refuses a file that has changed since it was sealed, or that has another format.
 pub fn verify(path: &Path) -> Result<(), CheckpointError> {
     let damaged = |why: String| CheckpointError::Damaged { path: path.into(), why };
     let fail =

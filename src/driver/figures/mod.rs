@@ -1,4 +1,4 @@
-//! The pictures of a run, made from its tables and the exact solution.
+//! Pictures of a run, drawn from its tables and the exact solution.
 
 mod plane;
 
@@ -6,8 +6,8 @@ pub use plane::{draw_along, draw_fields};
 
 use std::path::Path;
 
-use crate::accuracy::reference::{ImpactReference, Reference};
-use crate::driver::output::histories::Histories;
+use crate::accuracy::reference::{ImpactReference, ReferenceSolution};
+use crate::driver::output::histories::HistoryTable;
 use crate::exact::wave_interactions::{centre_left, centre_right, hugoniot_left, hugoniot_right};
 use crate::exact::{self, Chain, ExactError, History, Impact, PathKind, Plate};
 use crate::plot::{self, Color, PictureError, Points, Stroke};
@@ -23,7 +23,8 @@ pub struct PressureRow {
     pub points: Vec<(f64, f64)>,
 }
 
-/// Figures 1 to 3 of the document in `folder`: the Hugoniots with the states of the chain.
+/// Draws figures 1 to 3 of Burghardt (2010) into `folder`: the Hugoniots with the states of the
+/// chain.
 pub fn draw_hugoniots(
     scene: &CheckedScene,
     bodies: [usize; 2],
@@ -45,12 +46,12 @@ pub fn draw_hugoniots(
         plot::HugoniotCurve { name: name.into(), color, points: Points::new(u, p) }
     };
     let mark = |n: usize| {
-        state(n).map(|s| plot::State { label: n.to_string(), velocity: s.u, pressure: s.p })
+        state(n).map(|s| plot::HugoniotPoint { label: n.to_string(), velocity: s.u, pressure: s.p })
     };
     let top = impact.speed;
     let mut figures = vec![(
         "figure_1_hugoniots",
-        plot::Hugoniot {
+        plot::HugoniotFigure {
             title: format!("Figure 1. Initial impact: {flyer_name} on {target_name}"),
             curves: vec![
                 curve(&flyer_name, flyer_color, 0.0, top, &|u| hugoniot_left(&flyer, top, u)),
@@ -64,7 +65,7 @@ pub fn draw_hugoniots(
         let (from, to) = (three.u.min(0.0), two.u + 0.3 * (two.u - three.u));
         figures.push((
             "figure_2_free_surface",
-            plot::Hugoniot {
+            plot::HugoniotFigure {
                 title: format!("Figure 2. Release at the free surface of the {flyer_name} flyer"),
                 curves: vec![curve(&flyer_name, flyer_color, from, to, &|u| {
                     hugoniot_right(&flyer, centre, u)
@@ -77,7 +78,7 @@ pub fn draw_hugoniots(
             let to = three.u.max(two.u);
             figures.push((
                 "figure_3_second_interface",
-                plot::Hugoniot {
+                plot::HugoniotFigure {
                     title: "Figure 3. Second interaction at the interface".into(),
                     curves: vec![
                         curve(&flyer_name, flyer_color, four.u.min(0.0), centre, &|u| {
@@ -100,10 +101,10 @@ pub fn draw_hugoniots(
     Ok(names)
 }
 
-/// Figure 4 for each profile time: `stem` names the files.
+/// Draws figure 4 for profile time number `k`; `stem` is the file name without its extension.
 pub fn draw_profile(
     scene: &CheckedScene,
-    reference: Option<&Reference>,
+    reference: Option<&ReferenceSolution>,
     k: usize,
     table: &ParticleTable,
     notes: Vec<String>,
@@ -111,7 +112,7 @@ pub fn draw_profile(
 ) -> Result<(), PictureError> {
     let column = |name| table.column(name).expect("the table has its own columns");
     let scored = match reference {
-        Some(Reference::Impact(all)) => Some(all.target),
+        Some(ReferenceSolution::Impact(all)) => Some(all.target),
         _ => None,
     };
     let rows: Vec<usize> =
@@ -126,7 +127,7 @@ pub fn draw_profile(
     };
     let time = scene.profile_times[k];
     let (mut approximation, mut close_up) = (None, None);
-    if let Some(Reference::Impact(all)) = reference {
+    if let Some(ReferenceSolution::Impact(all)) = reference {
         approximation = all.impact.chain_profile(&all.chain, time).map(line);
         close_up = all.solution.snapshots[k].landmarks.as_ref().and_then(|marks| {
             let shock = marks.shock?;
@@ -136,7 +137,7 @@ pub fn draw_profile(
             Some((behind.min(ahead), behind.max(ahead)))
         });
     }
-    let figure = plot::Profile {
+    let figure = plot::ProfileFigure {
         title: scene.scene.title.clone(),
         time,
         approximation,
@@ -149,8 +150,8 @@ pub fn draw_profile(
     Ok(())
 }
 
-/// The part of a line of the x-t diagram up to the time `end` [s], the last piece cut on its
-/// straight line.
+/// The part of a line of the x-t diagram up to the time `end` [s]; the last segment is cut at
+/// `end`.
 fn until(points: &[[f64; 2]], end: f64) -> Vec<[f64; 2]> {
     let inside = points.partition_point(|q| q[0] <= end);
     let mut part = points[..inside].to_vec();
@@ -160,8 +161,8 @@ fn until(points: &[[f64; 2]], end: f64) -> Vec<[f64; 2]> {
     part
 }
 
-/// The x-t diagram: computed pressure under the exact wave paths, up to the last row or to `end`
-/// [s], if that is later. Where the exact lines end before it, the picture says so.
+/// Draws the x-t diagram: computed pressure under the exact wave paths, up to the last row or to
+/// `end` [s], if that is later. If the exact lines end earlier, a note in the picture says so.
 ///
 /// # Errors
 ///
@@ -170,12 +171,12 @@ pub fn draw_waves(
     title: &str,
     rows: &[PressureRow],
     end: Option<f64>,
-    reference: Option<&Reference>,
+    reference: Option<&ReferenceSolution>,
     stem: &Path,
 ) -> Result<(), PictureError> {
     let end = rows.iter().map(|r| r.time).fold(end.unwrap_or(0.0), f64::max);
     let (mut paths, mut notes) = (Vec::new(), Vec::new());
-    if let Some(Reference::Impact(all)) = reference {
+    if let Some(ReferenceSolution::Impact(all)) = reference {
         for path in &all.solution.paths {
             let (name, stroke) = path_style(path.kind);
             let points = until(&path.points, end);
@@ -206,7 +207,7 @@ pub fn draw_waves(
     }
     let rows = rows
         .iter()
-        .map(|row| plot::Row {
+        .map(|row| plot::DiagramRow {
             time: row.time,
             x: row.points.iter().map(|p| p.0).collect(),
             pressure: row.points.iter().map(|p| p.1).collect(),
@@ -227,16 +228,16 @@ fn path_style(kind: PathKind) -> (&'static str, Stroke) {
     }
 }
 
-/// Velocity and pressure of what is followed, against the exact histories.
+/// Draws velocity and pressure of the probes, with the exact histories.
 pub fn draw_histories(
     scene: &CheckedScene,
-    histories: &Histories,
-    reference: Option<&Reference>,
+    histories: &HistoryTable,
+    reference: Option<&ReferenceSolution>,
     stem: &Path,
 ) -> Result<(), PictureError> {
     let Some(time) = histories.column("time") else { return Ok(()) };
     let impact = match reference {
-        Some(Reference::Impact(all)) => Some(all),
+        Some(ReferenceSolution::Impact(all)) => Some(all),
         _ => None,
     };
     let names: Vec<&str> =
@@ -258,7 +259,7 @@ pub fn draw_histories(
                         history.points.iter().map(value).collect::<Vec<f64>>(),
                     )
                 });
-                Some(plot::History {
+                Some(plot::HistoryCurve {
                     name: name.replace('_', " "),
                     computed: Points::new(time.to_vec(), values.to_vec()),
                     exact,
@@ -266,7 +267,7 @@ pub fn draw_histories(
             })
             .collect(),
     };
-    let figure = plot::Histories {
+    let figure = plot::HistoriesFigure {
         title: format!("{}: histories", scene.scene.title),
         panels: vec![panel("velocity", "Velocity", "m/s"), panel("pressure", "Pressure", "Pa")],
     };
@@ -274,7 +275,7 @@ pub fn draw_histories(
     Ok(())
 }
 
-/// The exact history of a probe by its name.
+/// The exact history of the probe `name`.
 fn exact_history<'a>(
     scene: &CheckedScene,
     all: &'a ImpactReference,
@@ -293,7 +294,7 @@ fn exact_history<'a>(
     }
 }
 
-/// Which plate a wave runs in, in a word.
+/// Name of the plate in which a wave runs.
 pub fn plate_name(plate: Plate) -> &'static str {
     match plate {
         Plate::Flyer => "flyer",

@@ -1,16 +1,16 @@
-//! Pictures of a run in a plane: fields of its particles, and pressure along its waves.
+//! Pictures of a run in two dimensions: fields of its particles, and pressure along its waves.
 
 use std::path::Path;
 
-use crate::accuracy::reference::Reference;
+use crate::accuracy::reference::ReferenceSolution;
 use crate::plot::{
-    self, Direction, Field, FieldData, LineOut, LineOutCurve, Look, Mirror, PictureError, Points,
-    Quantity, Shading, Tile,
+    self, Direction, Field, FieldData, FieldQuantity, FieldTile, LineOut, LineOutCurve, LineStyle,
+    PictureError, Points, Shading, SymmetryPlane,
 };
-use crate::scene::{CheckedScene, Side};
+use crate::scene::{CheckedScene, SideProperties};
 use crate::simulation::ParticleTable;
 
-/// A quantity of particles that is drawn, with what its pictures are named.
+/// A particle quantity to draw, with the names in its pictures.
 struct Drawn {
     stem: &'static str,
     label: &'static str,
@@ -19,7 +19,8 @@ struct Drawn {
     values: Vec<f64>,
 }
 
-/// Pressure, density and speed over the plane; `name` is the profile's file without its ending.
+/// Draws pressure, density and speed over the plane; `name` is the profile's file name without its
+/// extension.
 pub fn draw_fields(
     scene: &CheckedScene,
     table: &ParticleTable,
@@ -59,7 +60,7 @@ pub fn draw_fields(
     let axes = if scene.axisymmetric() { ["r", "z"] } else { ["x", "y"] };
     let joined = joined_sides(scene);
     for Drawn { stem, label, unit, shading, values } in drawn {
-        let tile = |(k, value): (usize, f64)| Tile {
+        let tile = |(k, value): (usize, f64)| FieldTile {
             centre: [x[k], y[k]],
             half_edges: compact(table.half_edges[k], &scene.cell_size),
             value,
@@ -67,12 +68,12 @@ pub fn draw_fields(
         };
         let tiles = values.into_iter().enumerate().map(tile);
         let tiles = tiles.flat_map(|tile| in_domain(scene, joined, tile)).collect();
-        let quantity = Quantity::new(label, unit, shading);
+        let quantity = FieldQuantity::new(label, unit, shading);
         let field = Field {
             extent: Some([corner(&domain.lower), corner(&domain.upper)]),
             axes: axes.map(String::from),
-            // what lies about an axis is shown whole
-            mirror: (scene.axisymmetric() && domain.lower[0] == 0.0).then_some(Mirror {
+            // an axisymmetric domain is mirrored at its axis
+            mirror: (scene.axisymmetric() && domain.lower[0] == 0.0).then_some(SymmetryPlane {
                 across: Direction::X,
                 at: 0.0,
                 changes_sign: false,
@@ -92,11 +93,11 @@ pub fn draw_fields(
     Ok(())
 }
 
-/// Longest half diagonal with which a parallelogram is drawn as it is [cells].
+/// Longest half diagonal up to which a parallelogram is drawn in its own shape [cells].
 const LONGEST_DRAWN: f64 = 2.0;
 
-/// The half edges of a parallelogram [m]; of one that has been sheared into a needle, which would
-/// hide others and leave gaps where it is, those of a square of its area.
+/// Half edges of a parallelogram as drawn [m]. A parallelogram that has been sheared into a needle
+/// would hide others and leave gaps, so it is replaced by a square of equal area.
 fn compact([a, b]: [[f64; 2]; 2], cell: &[f64]) -> [[f64; 2]; 2] {
     let diagonal = |sign: f64| {
         let along = |d: usize| (a[d] + sign * b[d]) / cell[d];
@@ -109,14 +110,13 @@ fn compact([a, b]: [[f64; 2]; 2], cell: &[f64]) -> [[f64; 2]; 2] {
     [[half, 0.0], [0.0, half]]
 }
 
-/// Along which directions the domain is joined to itself.
+/// Directions in which the domain is periodic.
 fn joined_sides(scene: &CheckedScene) -> [bool; 2] {
-    scene.sides::<2>().map(|ends| ends.contains(&Side::Periodic))
+    scene.side_properties::<2>().map(|ends| ends.iter().any(SideProperties::is_periodic))
 }
 
-/// The tile where it lies in a domain that is joined to itself along some directions, and once more
-/// at the opposite side where it crosses one.
-fn in_domain(scene: &CheckedScene, joined: [bool; 2], tile: Tile) -> Vec<Tile> {
+/// The tile moved into a periodic domain, with a copy at the opposite side if it crosses a side.
+fn in_domain(scene: &CheckedScene, joined: [bool; 2], tile: FieldTile) -> Vec<FieldTile> {
     let domain = &scene.scene.domain;
     let mut tiles = vec![tile];
     for d in (0..2).filter(|&d| joined[d]) {
@@ -133,7 +133,7 @@ fn in_domain(scene: &CheckedScene, joined: [bool; 2], tile: Tile) -> Vec<Tile> {
                 if crosses {
                     let mut centre = tile.centre;
                     centre[d] = image;
-                    tiles.push(Tile { centre, ..tile });
+                    tiles.push(FieldTile { centre, ..tile });
                 }
             }
         }
@@ -141,10 +141,11 @@ fn in_domain(scene: &CheckedScene, joined: [bool; 2], tile: Tile) -> Vec<Tile> {
     tiles
 }
 
-/// Pressure along the line of the waves of profile time number `k`, against the exact one.
+/// Draws the pressure along the wave direction for profile time number `k`, with the exact
+/// pressure.
 pub fn draw_along(
     scene: &CheckedScene,
-    reference: &Reference,
+    reference: &ReferenceSolution,
     k: usize,
     table: &ParticleTable,
     notes: Vec<String>,
@@ -166,8 +167,8 @@ pub fn draw_along(
         quantity: "Pressure".into(),
         unit: "Pa".into(),
         curves: vec![
-            line("exact", Look::Reference, ex, ep),
-            line("mean over half a cell", Look::Dots, xs, ps),
+            line("exact", LineStyle::Reference, ex, ep),
+            line("mean over half a cell", LineStyle::Dots, xs, ps),
         ],
         notes,
         close_up: None,
@@ -195,7 +196,7 @@ mod tests {
         let scene = include_bytes!("../../../inputs/shear_layer.json");
         let scene = crate::scene::parse(scene, "shear_layer.json", &[]).unwrap();
         let half_edges = [[0.02, 0.0], [0.0, 0.01]];
-        let tile = |x, y| Tile { centre: [x, y], half_edges, value: 1.0, body: 0 };
+        let tile = |x, y| FieldTile { centre: [x, y], half_edges, value: 1.0, body: 0 };
         let centres = |x, y| -> Vec<[f64; 2]> {
             in_domain(&scene, joined_sides(&scene), tile(x, y)).iter().map(|t| t.centre).collect()
         };

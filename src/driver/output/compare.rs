@@ -1,6 +1,6 @@
-//! Two results held against each other, particle by particle: `flyer-mpm compare RUN RUN`.
+//! Comparison of two results, particle by particle: `flyer-mpm compare RUN RUN`.
 //!
-//! Profiles are matched by time. Particles are matched by their place in the order of x.
+//! Profiles are matched by time. Particles are matched by their position in the order of x.
 
 use std::fmt;
 use std::path::Path;
@@ -9,35 +9,35 @@ use super::csv::{CsvTable, CsvValues, read_csv};
 use super::error::OutputError;
 use super::summary::{ProfileSummary, Summary};
 
-/// What [`compare`] found; displayed as a table and a verdict.
+/// Result of [`compare`]; displayed as a table and a verdict.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// Titles of the two runs, if they differ.
     pub titles: Option<(String, String)>,
-    /// Profiles of times that both runs have.
+    /// Profiles at times that both runs have.
     pub profiles: Vec<ProfileComparison>,
-    /// Times \[s\] that only the first run has, then those that only the second has.
+    /// Times \[s\] that only the first run has, then those that only the second run has.
     pub unmatched: [Vec<f64>; 2],
 }
 
-/// Two profiles of one time.
+/// Comparison of two profiles of the same time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileComparison {
     /// Time \[s\].
     pub time: f64,
-    /// Numbers of particles.
+    /// Numbers of particles in the two profiles.
     pub particles: [usize; 2],
     /// Whether the digests of the whole state are equal.
     pub same_state: bool,
-    /// Columns that only the first profile has, then those that only the second has.
+    /// Columns that only the first profile has, then those that only the second profile has.
     pub unmatched: [Vec<String>; 2],
-    /// Columns of numbers that both have; empty where the numbers of particles differ.
+    /// Numeric columns of both profiles; empty if the numbers of particles differ.
     pub columns: Vec<ColumnComparison>,
-    /// The first particle that differs, and its first column that does.
+    /// The first particle that differs, and the first column in which it differs.
     pub first: Option<Difference>,
 }
 
-/// One column of two profiles.
+/// Comparison of one column of two profiles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColumnComparison {
     /// Name of the column.
@@ -46,18 +46,18 @@ pub struct ColumnComparison {
     pub l1: f64,
     /// Root of the sum of (a - b)^2 over the sum of a^2 \[-\].
     pub l2: f64,
-    /// Greatest |a - b| over the greatest |a| \[-\].
+    /// Maximum of |a - b| over the maximum of |a| \[-\].
     pub max: f64,
-    /// Number of particles that differ in any bit.
+    /// Number of particles whose values differ in any bit.
     pub differing: usize,
 }
 
-/// Where two profiles differ first.
+/// First difference of two profiles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// Place in the order of x, from 0.
+    /// Index of the particle in the order of x, from 0.
     pub particle: usize,
-    /// Its x in the first run \[m\].
+    /// Position x of the particle in the first run \[m\].
     pub x: f64,
     /// Name of the column.
     pub column: String,
@@ -66,7 +66,7 @@ pub struct Difference {
 }
 
 impl Comparison {
-    /// Whether the two runs are equal to the bit.
+    /// Whether the two runs are bitwise equal.
     pub fn same_bits(&self) -> bool {
         self.unmatched.iter().all(Vec::is_empty)
             && self.profiles.iter().all(ProfileComparison::same_bits)
@@ -74,7 +74,7 @@ impl Comparison {
 }
 
 impl ProfileComparison {
-    /// Whether the two profiles, and the states behind them, are equal to the bit.
+    /// Whether the two profiles and their whole states are bitwise equal.
     pub fn same_bits(&self) -> bool {
         self.same_state
             && self.particles[0] == self.particles[1]
@@ -141,7 +141,7 @@ fn compare_tables(time: f64, same_state: bool, tables: &[CsvTable; 2]) -> Profil
 }
 
 fn compare_columns(name: &str, a: &[f64], b: &[f64]) -> ColumnComparison {
-    // A field that is empty on both sides is no difference; on one side it is without bound.
+    // a field that is empty in both runs is no difference; in one run, the difference is infinite
     let gap = |(a, b): (&f64, &f64)| match (a.is_nan(), b.is_nan()) {
         (true, true) => 0.0,
         (false, false) if a == b => 0.0,
@@ -160,12 +160,12 @@ fn compare_columns(name: &str, a: &[f64], b: &[f64]) -> ColumnComparison {
     }
 }
 
-/// The bits, all NaN alike: a file holds an empty field for each.
+/// The bits of a value; all NaN are alike, because a file holds an empty field for each of them.
 fn to_bits(value: f64) -> u64 {
     if value.is_nan() { f64::NAN.to_bits() } else { value.to_bits() }
 }
 
-/// A value for a comparison to the bit.
+/// A value in a form for bitwise comparison.
 fn bits(values: &CsvValues, row: usize) -> (Option<u64>, Option<&str>) {
     match values {
         CsvValues::Numbers(values) => (Some(to_bits(values[row])), None),
@@ -281,7 +281,7 @@ mod tests {
         let found = compare(&a, &b).unwrap();
         assert!(found.same_bits());
         assert!(found.to_string().ends_with("the same to the bit\n"));
-        // A state may differ where the columns do not.
+        // the states may differ although the columns are equal
         let mut summary = Summary::read(&b).unwrap();
         summary.profiles[0].state_sha256.push('0');
         summary.profiles[1].time = 2e-6;

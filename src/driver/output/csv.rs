@@ -1,7 +1,7 @@
-//! Profiles as CSV: a header, then one line a particle.
+//! Profiles as CSV: a header, then one line per particle.
 //!
-//! A number is the shortest text that gives the double back, so that files can be compared to the
-//! bit; a missing one (NaN) is an empty field. Text is quoted only where RFC 4180 asks for it.
+//! Numbers are the shortest decimals that read back as the same double, so that files can be
+//! compared bitwise; NaN is an empty field. Text is quoted only where RFC 4180 requires it.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -11,8 +11,8 @@ use super::error::{OutputError, read_text};
 use crate::scene::input_file::LARGEST_RESULT;
 use crate::simulation::ParticleTable;
 
-/// Names of the profile files, one a time \[s\], such as `profile_0.500us.csv`; no two are alike,
-/// and none depends on more than the times.
+/// Names of the profile files, one per time \[s\], such as `profile_0.500us.csv`. They are unique
+/// and depend only on the times.
 pub fn profile_names(times: &[f64]) -> Vec<String> {
     let longest = times.iter().fold(0.0_f64, |a, t| a.max(t.abs()));
     let (unit, scale) = match longest {
@@ -44,7 +44,7 @@ pub fn profile_names(times: &[f64]) -> Vec<String> {
 
 /// Writes every particle of the table, in its order.
 ///
-/// The columns are those of the table; `material`, by name, follows `artificial_viscosity`.
+/// The columns are those of the table; the name of the `material` follows `artificial_viscosity`.
 pub fn write_profile(path: &Path, table: &ParticleTable) -> Result<(), OutputError> {
     let split = table
         .columns
@@ -69,7 +69,7 @@ pub fn write_profile(path: &Path, table: &ParticleTable) -> Result<(), OutputErr
     })
 }
 
-/// Writes a header and `rows` lines; `fill` appends the fields of a line, commas between.
+/// Writes a header and `rows` lines; `fill` appends the fields of a line, separated by commas.
 pub(super) fn write_rows(
     path: &Path,
     header: &[String],
@@ -93,15 +93,15 @@ pub(super) fn write_rows(
     write().map_err(OutputError::io("write the file", path))
 }
 
-/// Text as a field of a line: in quotes only where it must be.
+/// Text as a field of a line, quoted only if necessary.
 pub(super) fn field(text: &str) -> String {
     let plain = !text.contains([',', '"', '\n', '\r']) && text.trim() == text && !text.is_empty();
     if plain { text.to_owned() } else { format!("\"{}\"", text.replace('"', "\"\"")) }
 }
 
-/// Appends the shortest text that gives the double back; nothing for NaN.
+/// Appends the shortest decimal that reads back as the same double; nothing for NaN.
 ///
-/// Whole numbers keep their `.0`, lest a reader take them for integers and lose the sign of zero.
+/// Whole numbers keep their `.0`, so that readers do not parse integers and lose the sign of zero.
 pub fn push_number(text: &mut Vec<u8>, value: f64) {
     if value.is_nan() {
         return;
@@ -140,7 +140,7 @@ fn push_scientific(text: &mut Vec<u8>, fixed: &str) {
     text.extend_from_slice(format!("e{exponent}").as_bytes());
 }
 
-/// A CSV file, read back.
+/// Contents of a CSV file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CsvTable {
     /// The columns in the order of the file.
@@ -152,7 +152,7 @@ pub struct CsvTable {
 pub struct CsvColumn {
     /// Name in the header.
     pub name: String,
-    /// One value a line.
+    /// One value per line.
     pub values: CsvValues,
 }
 
@@ -161,7 +161,7 @@ pub struct CsvColumn {
 pub enum CsvValues {
     /// Every field is a number or empty (NaN).
     Numbers(Vec<f64>),
-    /// Anything else.
+    /// Text of the fields, at least one of which is neither.
     Text(Vec<String>),
 }
 
@@ -174,12 +174,12 @@ impl CsvTable {
         })
     }
 
-    /// Whether there is no line below the header.
+    /// Whether there are no lines below the header.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The column `name`, if it is there and holds numbers.
+    /// The values of the column `name`, if it exists and is numeric.
     pub fn numbers(&self, name: &str) -> Option<&[f64]> {
         match &self.columns.iter().find(|c| c.name == name)?.values {
             CsvValues::Numbers(values) => Some(values),
@@ -188,7 +188,7 @@ impl CsvTable {
     }
 }
 
-/// Reads a file as [`write_profile`] writes it.
+/// Reads a file in the format of [`write_profile`].
 pub fn read_csv(path: &Path) -> Result<CsvTable, OutputError> {
     let text = read_text(path, LARGEST_RESULT)?;
     let fault =
@@ -250,7 +250,7 @@ fn records(text: &str) -> impl Iterator<Item = (usize, Result<Vec<String>, Strin
     })
 }
 
-/// Takes one field; what is left begins with a comma or an end of line, or is empty.
+/// Takes one field; the remaining text starts with a comma or a line end, or is empty.
 fn next_field(text: &str) -> Result<(String, &str), String> {
     if !text.starts_with('"') {
         let end = text.find([',', '\n', '\r']).unwrap_or(text.len());
@@ -310,7 +310,7 @@ mod tests {
         ] {
             assert_eq!(number(value), text);
         }
-        // A walk over all magnitudes, by a fixed linear congruence.
+        // values over all magnitudes, from a fixed linear congruential sequence
         let mut bits = 1_u64;
         for _ in 0..100_000 {
             bits = bits.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);

@@ -1,4 +1,4 @@
-//! What sharing the work over ranks has cost: a part of `summary.json`.
+//! Costs of the distribution over ranks: a part of `summary.json`.
 
 use std::collections::BTreeMap;
 
@@ -6,75 +6,75 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::{BalanceCost, FilterHalo};
 
-/// What sharing the work has cost, over all ranks.
+/// Costs of the distribution over ranks, for all ranks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DecompositionSummary {
-    /// Step from which this run went on by a checkpoint: all that is counted here came after it;
-    /// 0: the start.
+    /// Step at which the run was restarted from a checkpoint; 0: it was not. All counts here are
+    /// from this step on.
     #[serde(default)]
     pub first_step: u64,
-    /// How filters got what lies beyond a patch.
+    /// How filters obtain values beyond a patch.
     pub filter_halo: FilterHalo,
     /// Whether inner patches were computed while messages were on their way.
     pub overlap: bool,
-    /// Whether patches at rest were left out.
-    pub skip_quiet: bool,
-    /// Steps between two looks at the balance of loads; 0: none.
+    /// Whether quiescent patches were skipped.
+    pub skip_quiescent: bool,
+    /// Steps between two checks of the load balance; 0: no balancing.
     pub balance_every: u64,
-    /// What counted as a patch's load.
+    /// Measure of the load of a patch.
     pub balance_cost: BalanceCost,
     /// Particles times steps that were computed.
     pub particle_steps_computed: u64,
-    /// Particles times steps that were left out, at rest.
+    /// Particles times steps that were skipped in quiescent patches.
     pub particle_steps_skipped: u64,
-    /// Sum over steps of the particles that the busiest rank computed.
+    /// Sum over steps of the particles computed by the busiest rank.
     pub busiest_particle_steps: u64,
-    /// The busiest ranks' particle-steps over those of an even split \[-\]; 1 is perfect.
+    /// Particle-steps of the busiest ranks over those of an even distribution \[-\]; 1 is perfect.
     pub imbalance: f64,
-    /// Times that patches moved between ranks.
+    /// Number of times that patches moved between ranks.
     pub balances: u64,
-    /// Patches moved in all.
+    /// Total number of patches moved.
     pub patches_moved: u64,
-    /// Particles that passed from one patch to another, of the same rank or not.
+    /// Particles that moved from one patch to another, on the same rank or not.
     pub particles_migrated: u64,
-    /// Bytes that all ranks together sent in a step \[B\].
+    /// Bytes sent per step by all ranks together \[B\].
     pub bytes_per_step: f64,
-    /// Messages that all ranks together sent in a step.
+    /// Messages sent per step by all ranks together.
     pub messages_per_step: f64,
-    /// Each rank.
+    /// Values of each rank.
     pub ranks: Vec<RankSummary>,
 }
 
-/// One rank.
+/// Work and messages of one rank.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RankSummary {
-    /// Its number.
+    /// Number of the rank.
     pub rank: usize,
-    /// Patches that it had at the end.
+    /// Patches of the rank at the end.
     pub patches: usize,
-    /// Particles that it had at the end.
+    /// Particles of the rank at the end.
     pub particles: u64,
-    /// Particles times steps that it computed.
+    /// Particles times steps that the rank computed.
     pub particle_steps: u64,
-    /// Particles times steps that it left out, at rest.
+    /// Particles times steps that the rank skipped in quiescent patches.
     pub particle_steps_skipped: u64,
-    /// Wall seconds of the time loop by what it did: compute, exchange, wait, migrate, balance,
-    /// output, and the rest \[s\].
+    /// Wall time of the time loop by activity: compute, exchange, wait, migrate, balance, output,
+    /// and the rest \[s\].
     pub seconds: BTreeMap<String, f64>,
     /// User CPU time of the time loop \[s\].
     pub cpu_seconds: f64,
-    /// Bytes that it sent in the time loop \[B\].
+    /// Bytes that the rank sent in the time loop \[B\].
     pub bytes: u64,
-    /// Messages that it sent in the time loop.
+    /// Messages that the rank sent in the time loop.
     pub messages: u64,
-    /// Particles that passed from one of its patches to another patch.
+    /// Particles that moved from a patch of the rank to another patch.
     pub particles_migrated: u64,
-    /// Patches that it gave away.
+    /// Patches that the rank gave away.
     pub patches_moved: u64,
 }
 
 impl DecompositionSummary {
-    /// Sums over the ranks of a run from the start; `steps` is the number of steps.
+    /// Sums over the ranks of a run without restart; `steps` is the number of steps.
     pub fn new(
         filter_halo: FilterHalo,
         options: &crate::scene::Decomposition,
@@ -91,7 +91,7 @@ impl DecompositionSummary {
             first_step: 0,
             filter_halo,
             overlap: options.overlap,
-            skip_quiet: options.skip_quiet,
+            skip_quiescent: options.skip_quiescent,
             balance_every: options.balance.every,
             balance_cost: options.balance.cost,
             particle_steps_computed: computed,
@@ -107,7 +107,7 @@ impl DecompositionSummary {
         }
     }
 
-    /// Seconds by activity, summed over the ranks.
+    /// Wall time by activity, summed over the ranks \[s\].
     pub fn seconds(&self) -> BTreeMap<String, f64> {
         let mut all = BTreeMap::new();
         for (name, seconds) in self.ranks.iter().flat_map(|r| &r.seconds) {

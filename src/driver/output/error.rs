@@ -1,43 +1,53 @@
-//! Faults in reading or writing results.
+//! Errors in reading or writing results.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::summary::SUMMARY_FILE;
+use super::file_names::SUMMARY_FILE;
 use crate::scene::input_file::{self, InputFault};
 
-/// A fault in reading or writing results; each is one line that names the path.
+/// An error in reading or writing results; each message is one line that names the path.
 #[derive(Debug, Error)]
 pub enum OutputError {
-    /// The system refused.
+    /// Error of the operating system.
     #[error("{}: cannot {doing}: {source}", path.display())]
     Io {
-        /// What was tried, such as `create the folder`.
+        /// The action that failed, such as `create the folder`.
         doing: &'static str,
-        /// What it was tried on.
+        /// Path of the action.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: io::Error,
     },
-    /// Something other than a folder stands where the folder should be.
+    /// The path of the folder exists but is not a folder.
     #[error("{}: is not a folder; choose another --output", .0.display())]
     NotAFolder(PathBuf),
-    /// An earlier result is there, and the user wants it kept.
+    /// The summary has another format.
+    #[error("{}: is of format {format}; allowed: {read}, which this program writes and reads", path.display())]
+    Format {
+        /// Path of the summary.
+        path: PathBuf,
+        /// Format of the summary; 1 if it states none.
+        format: u64,
+        /// The format that this program reads.
+        read: u32,
+    },
+    /// There is an earlier result, and the user asked to keep it.
     #[error(
         "{}: exists, and --keep forbids replacing it; remove it or choose another --output",
         .0.display()
     )]
     Exists(PathBuf),
-    /// The folder holds something that no run of ours has written.
+    /// The folder contains files that are not a result of this program.
     #[error(
         "{}: holds files but no {SUMMARY_FILE} of an earlier run, so it is not replaced; \
          choose another --output",
         .0.display()
     )]
     NotOurs(PathBuf),
-    /// A result of another scene or command is there.
+    /// The folder contains a result of another scene or command.
     #[error(
         "{}: holds the result of {theirs}, which is not replaced by {ours}; choose another \
          --output DIR",
@@ -46,23 +56,23 @@ pub enum OutputError {
     Foreign {
         /// The folder.
         path: PathBuf,
-        /// What made the result.
+        /// Origin of the existing result.
         theirs: String,
-        /// What would replace it.
+        /// Origin of the new result.
         ours: String,
     },
-    /// The place is inside of a result.
+    /// The path is inside a result.
     #[error(
         "{}: is inside of the result {}, which a new run replaces as a whole; choose another --output",
         path.display(), result.display()
     )]
     Inside {
-        /// The place.
+        /// The path.
         path: PathBuf,
         /// The result.
         result: PathBuf,
     },
-    /// Another result is inside of the folder.
+    /// The folder contains another result.
     #[error(
         "{}: has another result inside, {}, so it is not replaced; choose another --output DIR",
         path.display(), result.display()
@@ -70,15 +80,15 @@ pub enum OutputError {
     Around {
         /// The folder.
         path: PathBuf,
-        /// The result inside.
+        /// The result inside the folder.
         result: PathBuf,
     },
-    /// A file that a command writes is there, and another command or the user made it.
+    /// The file exists and was made by another command or by the user.
     #[error("{}: exists and is not {kind}; choose another file", path.display())]
     OtherFile {
         /// The file.
         path: PathBuf,
-        /// What it would have to be.
+        /// The kind of file that this command writes.
         kind: String,
     },
     /// The folder cannot be renamed.
@@ -86,10 +96,10 @@ pub enum OutputError {
     Fixed {
         /// The folder.
         path: PathBuf,
-        /// What it is, such as `a mount point`.
+        /// The reason, such as `a mount point`.
         why: &'static str,
     },
-    /// Another run writes there.
+    /// Another run writes into the folder.
     #[error(
         "{}: process {pid} on {host} is writing results there; wait for its end or choose another \
          --output (if it has ended, remove {})",
@@ -98,58 +108,58 @@ pub enum OutputError {
     Locked {
         /// The folder.
         path: PathBuf,
-        /// The other's process.
+        /// Process of the other run.
         pid: u32,
-        /// Its machine.
+        /// Machine of the other run.
         host: String,
-        /// The file that says so.
+        /// The lock file.
         lock: PathBuf,
     },
-    /// It is no file that can be read.
+    /// The input file cannot be read.
     #[error("{}: {fault}", path.display())]
     Input {
         /// The file.
         path: PathBuf,
-        /// What it is.
+        /// The reason.
         fault: InputFault,
     },
-    /// HDF5 refused.
+    /// Error of the HDF5 library.
     #[error("{}: cannot write HDF5: {message}", path.display())]
     Hdf5 {
         /// The file.
         path: PathBuf,
-        /// What the library says, on one line.
+        /// Message of the library, on one line.
         message: String,
     },
-    /// Not the JSON that was expected.
+    /// The file is not the expected JSON.
     #[error("{}: {source}", path.display())]
     Json {
         /// The file.
         path: PathBuf,
-        /// What is wrong, and where.
+        /// The error and its position.
         source: serde_json::Error,
     },
-    /// Not the CSV that was expected.
+    /// The file is not the expected CSV.
     #[error("{}: line {line}: {message}", path.display())]
     Csv {
         /// The file.
         path: PathBuf,
         /// Number of the line, from 1.
         line: usize,
-        /// What is wrong.
+        /// The error.
         message: String,
     },
 }
 
 impl OutputError {
-    /// Puts what was tried, and on which path, before a fault of the system.
+    /// Adds the failed action and its path to an error of the system.
     pub fn io(doing: &'static str, path: &Path) -> impl FnOnce(io::Error) -> OutputError {
         let path = path.to_path_buf();
         move |source| OutputError::Io { doing, path, source }
     }
 }
 
-/// The text of a file of at most `most` bytes that a run has left.
+/// Text of a result file of at most `most` bytes.
 pub(super) fn read_text(path: &Path, most: u64) -> Result<String, OutputError> {
     input_file::read_text(path, most).map_err(|fault| match fault {
         InputFault::Io(source) => OutputError::io("read the file", path)(source),

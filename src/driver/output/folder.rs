@@ -1,43 +1,44 @@
-//! The folder of results: written aside, put in place as a whole.
+//! The folder of results. It is written in a temporary place and put in place as a whole.
 //!
-//! Everything is written into a temporary folder beside the target, on the same file system.
-//! [`OutputFolder::commit`] then renames an earlier result aside, the new one into its place, and
-//! deletes the earlier one. A run that fails before that leaves the earlier result as it was.
-//! Knows no MPI: called on one rank alone.
+//! All files are written into a temporary folder beside the target, on the same file system.
+//! [`OutputFolder::commit`] renames an earlier result, renames the new result to the target, and
+//! deletes the earlier one. A run that fails before that leaves the earlier result unchanged.
+//! Independent of MPI: called on one rank only.
 
 use std::fs;
-use std::io::{self, ErrorKind::AlreadyExists, ErrorKind::NotADirectory, ErrorKind::NotFound};
-use std::path::{Component, Path, PathBuf};
+use std::io::{self, ErrorKind::AlreadyExists, ErrorKind::NotFound};
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::error::OutputError;
-use super::origin::{Made, Maker, Origin, check_outside_results};
+use super::origin::{ExistingResult, Maker, Origin, check_outside_results};
+use super::paths::resolve;
 
-/// The folder of a scene's results where `--output` says nothing: `output/<stem of the scene>`.
+/// Default folder of a scene's results, without `--output`: `output/<stem of the scene>`.
 pub fn default_folder(scene: &Path) -> PathBuf {
     let stem = scene.file_stem().unwrap_or_else(|| "scene".as_ref());
     Path::new("output").join(stem)
 }
 
-/// Finds out, before the run, whether a result can be put at `target`; leaves nothing behind.
-/// With `keep` an earlier result is a fault, and one that `maker` may not replace always is; an empty
-/// folder never is.
+/// Checks, before the run, whether a result can be written at `target`; leaves no files behind. An
+/// empty folder is always accepted. An earlier result is refused if `keep` is set or if `maker` may
+/// not replace it.
 pub fn check_writable(target: &Path, keep: bool, maker: &Maker) -> Result<(), OutputError> {
     OutputFolder::create(target, keep, maker).map(drop)
 }
 
-/// A folder of results that is being written.
+/// A folder of results during writing.
 ///
-/// Dropped without [`OutputFolder::commit`], it leaves no trace.
+/// If dropped without [`OutputFolder::commit`], it is removed.
 #[derive(Debug)]
 pub struct OutputFolder {
-    /// As the user named it.
+    /// Target as named by the user.
     target: PathBuf,
-    /// Where the result will stand: absolute, links followed.
+    /// Absolute path of the target, with links resolved.
     place: PathBuf,
-    /// Where it is written.
+    /// Temporary folder.
     partial: PathBuf,
-    /// Parents that were made for it, outermost first.
+    /// Parent folders that were created for it, outermost first.
     made: Vec<PathBuf>,
     keep: bool,
     maker: Maker,
@@ -45,8 +46,8 @@ pub struct OutputFolder {
 }
 
 impl OutputFolder {
-    /// Makes the temporary folder beside `target`, and the parents that it needs; an earlier result
-    /// there has to be one that `maker` may replace.
+    /// Creates the temporary folder beside `target`, and missing parent folders. An earlier result
+    /// at `target` must be one that `maker` may replace.
     pub fn create(target: &Path, keep: bool, maker: &Maker) -> Result<OutputFolder, OutputError> {
         let absolute = resolve(target)?;
         if let Some(parent) = absolute.parent() {
@@ -71,28 +72,27 @@ impl OutputFolder {
         Ok(folder)
     }
 
-    /// The temporary folder, for files to be written in.
+    /// The temporary folder, in which files are written.
     pub fn path(&self) -> &Path {
         &self.partial
     }
 
-    /// A file of the temporary folder.
+    /// Path of a file in the temporary folder.
     pub fn file(&self, name: &str) -> PathBuf {
         self.partial.join(name)
     }
 
-    /// Where the result will stand, as the user named it.
+    /// The target as named by the user.
     pub fn target(&self) -> &Path {
         &self.target
     }
 
-    /// The origin of the result, to be recorded in it.
+    /// The origin to record in the result.
     pub fn origin(&self) -> Origin {
         self.maker.origin.seen_from(&self.place)
     }
 
-    /// Puts the result in place of an earlier one, as a whole; returns where it stands, as the
-    /// user named it.
+    /// Replaces an earlier result by this one, as a whole; returns the target as named by the user.
     pub fn commit(mut self) -> Result<PathBuf, OutputError> {
         check_replaceable(&self.target, &self.place, self.keep, &self.maker)?;
         let parent = self.place.parent().unwrap_or(Path::new("/"));
@@ -118,7 +118,7 @@ impl OutputFolder {
 }
 
 impl Drop for OutputFolder {
-    /// Best effort: an error that is already on its way is the one worth telling.
+    /// Best effort: an error that is already being returned is more useful.
     fn drop(&mut self) {
         if !self.committed {
             let _ = fs::remove_dir_all(&self.partial);
@@ -129,12 +129,12 @@ impl Drop for OutputFolder {
     }
 }
 
-/// How often what needs a folder is tried where somebody takes it away meanwhile.
+/// Number of attempts if another process removes a folder that is needed.
 const TRIES: usize = 100;
 
-/// What `act` gives, which is `doing` with `path` in `folder`. The folder is made, and the parents
-/// that it needs; those that were not there are added to `made`, outermost first. Where somebody
-/// takes the folder away before `act` is done, both are done again.
+/// Creates `folder` and its missing parents, then calls `act` in it and returns its result. Created
+/// folders are added to `made`, outermost first. If another process removes the folder before `act`
+/// is done, both are repeated. `doing` and `path` describe the action in error messages.
 pub(super) fn within<T>(
     folder: &Path,
     made: &mut Vec<PathBuf>,
@@ -156,14 +156,14 @@ pub(super) fn within<T>(
     unreachable!("the last try returns");
 }
 
-/// Makes `folder` and the parents that it needs; or where that failed, and how.
+/// Creates `folder` and its missing parents; an error comes with the path that failed.
 fn make_parents(folder: &Path, made: &mut Vec<PathBuf>) -> Result<(), (PathBuf, io::Error)> {
     let missing: Vec<&Path> = folder.ancestors().take_while(|p| !p.exists()).collect();
     for path in missing.into_iter().rev() {
         match fs::create_dir(path) {
             Ok(()) if made.iter().any(|p| p == path) => {}
             Ok(()) => made.push(path.to_path_buf()),
-            // made by somebody else, who may have taken it away again
+            // created by another process, which may have removed it again
             Err(e) if e.kind() == AlreadyExists && (path.is_dir() || !path.exists()) => {}
             Err(e) => return Err((path.to_path_buf(), e)),
         }
@@ -175,8 +175,8 @@ fn remove(folder: &Path) -> Result<(), OutputError> {
     fs::remove_dir_all(folder).map_err(OutputError::io("remove the folder", folder))
 }
 
-/// Folder of the checkpoints of results at `target`: beside it, so that it outlives a run that has no
-/// result.
+/// Folder of the checkpoints of results at `target`. It is beside the target, so that it remains if
+/// the run has no result.
 pub fn checkpoint_folder(target: &Path) -> Result<PathBuf, OutputError> {
     let place = resolve(target)?;
     let mut name = place.file_name().unwrap_or_default().to_os_string();
@@ -184,34 +184,10 @@ pub fn checkpoint_folder(target: &Path) -> Result<PathBuf, OutputError> {
     Ok(place.with_file_name(name))
 }
 
-/// What the name of a folder of checkpoints ends with.
+/// Suffix of the name of a checkpoint folder.
 pub const CHECKPOINTS: &str = ".checkpoints";
 
-/// The absolute path, links followed as far as the path exists, `.` and `..` resolved.
-pub(super) fn resolve(target: &Path) -> Result<PathBuf, OutputError> {
-    let absolute = std::path::absolute(target).map_err(OutputError::io("find the path", target))?;
-    let mut path = PathBuf::new();
-    for component in absolute.components() {
-        match component {
-            Component::ParentDir => {
-                path.pop();
-            }
-            Component::CurDir => {}
-            other => path.push(other),
-        }
-        match path.canonicalize() {
-            Ok(real) => path = real,
-            Err(e) if path.is_symlink() => {
-                return Err(OutputError::io("follow the link", &path)(e));
-            }
-            Err(e) if matches!(e.kind(), io::ErrorKind::NotFound | NotADirectory) => {}
-            Err(e) => return Err(OutputError::io("reach the folder", &path)(e)),
-        }
-    }
-    Ok(path)
-}
-
-/// Refuses a target that is not a folder, or that would stand below what is none.
+/// Refuses a target that is not a folder, or whose parent is not a folder.
 pub(super) fn check_folder(named: &Path, target: &Path) -> Result<(), OutputError> {
     match target.ancestors().find(|p| p.exists()).filter(|p| !p.is_dir()) {
         Some(file) => {
@@ -221,8 +197,7 @@ pub(super) fn check_folder(named: &Path, target: &Path) -> Result<(), OutputErro
     }
 }
 
-/// Refuses a target that is not a folder, that is not the maker's to delete, or that cannot be
-/// renamed.
+/// Refuses a target that is not a folder, that `maker` may not replace, or that cannot be renamed.
 fn check_replaceable(
     named: &Path,
     target: &Path,
@@ -246,7 +221,9 @@ fn check_replaceable(
     if keep {
         return Err(OutputError::Exists(named.into()));
     }
-    let Some(made) = Made::read(target) else { return Err(OutputError::NotOurs(named.into())) };
+    let Some(made) = ExistingResult::read(target) else {
+        return Err(OutputError::NotOurs(named.into()));
+    };
     if !maker.may_replace(&made.origin, &made.scene, target) {
         let (theirs, ours) = (made.origin.to_string(), maker.origin.to_string());
         return Err(OutputError::Foreign { path: named.into(), theirs, ours });
@@ -257,45 +234,45 @@ fn check_replaceable(
     }
 }
 
-/// A result in a folder below this one.
+/// A result in a subfolder of this folder.
 fn result_inside(folder: &Path) -> Option<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    // links are removed, not what they lead to
+    // links are removed, not their targets
     let folders = entries.filter(|e| e.file_type().is_ok_and(|kind| kind.is_dir()));
     let mut paths = folders.map(|e| e.path());
-    paths.find_map(|path| match Made::read(&path) {
+    paths.find_map(|path| match ExistingResult::read(&path) {
         Some(_) => Some(path),
         None => result_inside(&path),
     })
 }
 
-/// Whether something is mounted on the folder; false where that cannot be told.
+/// Whether the folder is a mount point; false if unknown.
 fn is_mount_point(folder: &Path) -> bool {
     let mounts = fs::read_to_string("/proc/self/mountinfo").unwrap_or_default();
     mounts.lines().any(|line| line.split(' ').nth(4).map(Path::new) == Some(folder))
 }
 
-/// This machine's name, so that a folder left behind is not taken for that of a process elsewhere.
+/// Name of this machine, to distinguish processes of other machines in names of folders.
 pub(super) fn host() -> String {
     let name = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
     name.trim().chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-').collect()
 }
 
-/// What the names of all folders that we make beside `target` begin with: hidden.
+/// Prefix of the names of all temporary folders beside `target`; it makes them hidden.
 pub(super) fn aside_prefix(target: &Path) -> String {
     format!(".{}.flyer.", target.file_name().unwrap_or_default().to_string_lossy())
 }
 
-/// Name of a folder beside `target` that no other process, nor another value of this one, takes.
+/// A folder name beside `target` that is unique over processes and within this process.
 fn aside_name(target: &Path, role: &str) -> String {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
     format!("{}{role}-{}-{}.{count}", aside_prefix(target), host(), std::process::id())
 }
 
-/// Cleans up beside `target` after processes of this machine that died in the middle: an earlier
-/// result that was set aside goes back where nothing replaced it; what was half-written goes.
-/// Best effort: what it leaves does no harm.
+/// Cleans up beside `target` after processes of this machine that ended early. An earlier result is
+/// put back if no new one is there; incomplete results are removed. Best effort: remaining folders
+/// do no harm.
 fn recover(parent: &Path, target: &Path) {
     let Ok(entries) = fs::read_dir(parent) else { return };
     let (prefix, host) = (aside_prefix(target), format!("{}-", host()));
@@ -318,7 +295,7 @@ fn recover(parent: &Path, target: &Path) {
     }
 }
 
-/// Whether no process of this machine has this number; false where that cannot be told.
+/// Whether this machine has no process with this number; false if unknown.
 pub(super) fn is_dead(process: &str) -> bool {
     let is_number = !process.is_empty() && process.bytes().all(|b| b.is_ascii_digit());
     is_number && Path::new("/proc/self").exists() && !Path::new("/proc").join(process).exists()
@@ -326,7 +303,7 @@ pub(super) fn is_dead(process: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::summary::SUMMARY_FILE;
+    use super::super::file_names::SUMMARY_FILE;
     use super::*;
 
     /// The maker of the results of [`write`].
@@ -385,7 +362,7 @@ mod tests {
         write(&target, "1");
         assert!(matches!(check_writable(&target, true, &maker()), Err(OutputError::Exists(_))));
         check_writable(&target, false, &maker()).unwrap();
-        // A result that came while this one ran is kept as well.
+        // a result written during this run is kept as well
         fs::remove_file(target.join(SUMMARY_FILE)).unwrap();
         let folder = OutputFolder::create(&target, true, &maker()).unwrap();
         write(&target, "2");
@@ -440,6 +417,6 @@ mod tests {
         fs::create_dir(home.path().join(format!(".run.flyer.partial-{dead}"))).unwrap();
         check_writable(&target, false, &maker()).unwrap();
         assert_eq!(names(home.path()), ["run"]);
-        assert!(Made::read(&target).is_some());
+        assert!(ExistingResult::read(&target).is_some());
     }
 }

@@ -1,4 +1,4 @@
-//! Histories: values that are kept at many times, written as `histories.csv`.
+//! Histories: values recorded at many times, written as `histories.csv`.
 
 use std::path::Path;
 
@@ -9,34 +9,34 @@ use crate::simulation::TableColumn;
 /// Name of the file in the folder of results.
 pub const HISTORIES_FILE: &str = "histories.csv";
 
-/// Named columns that grow by a row at a time.
+/// Named columns that grow row by row.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Histories {
+pub struct HistoryTable {
     columns: Vec<TableColumn>,
 }
 
-impl Histories {
-    /// Columns of these names and SI units, without a row.
+impl HistoryTable {
+    /// Empty columns with these names and SI units.
     pub fn new<N: Into<String>, U: Into<String>>(
         columns: impl IntoIterator<Item = (N, U)>,
-    ) -> Histories {
+    ) -> HistoryTable {
         let column = |(name, unit): (N, U)| TableColumn {
             name: name.into(),
             unit: unit.into(),
             values: Vec::new(),
         };
-        Histories { columns: columns.into_iter().map(column).collect() }
+        HistoryTable { columns: columns.into_iter().map(column).collect() }
     }
 
-    /// Columns with their rows.
-    pub fn of(columns: Vec<TableColumn>) -> Histories {
-        Histories { columns }
+    /// A table of the given columns.
+    pub fn of(columns: Vec<TableColumn>) -> HistoryTable {
+        HistoryTable { columns }
     }
 
-    /// Appends one value to each column, in their order; NaN where there is none.
+    /// Appends one value to each column, in order; NaN for a missing value.
     ///
     /// # Panics
-    /// If the row is not as long as there are columns.
+    /// If the number of values differs from the number of columns.
     pub fn push(&mut self, row: &[f64]) {
         assert_eq!(row.len(), self.columns.len(), "one value a column of the histories");
         for (column, &value) in self.columns.iter_mut().zip(row) {
@@ -45,12 +45,12 @@ impl Histories {
     }
 
     /// The first `count` rows.
-    pub fn first(&self, count: usize) -> Histories {
+    pub fn first(&self, count: usize) -> HistoryTable {
         let cut = |c: &TableColumn| TableColumn {
             values: c.values[..count.min(c.values.len())].to_vec(),
             ..c.clone()
         };
-        Histories { columns: self.columns.iter().map(cut).collect() }
+        HistoryTable { columns: self.columns.iter().map(cut).collect() }
     }
 
     /// Number of rows.
@@ -58,7 +58,7 @@ impl Histories {
         self.columns.first().map_or(0, |c| c.values.len())
     }
 
-    /// Whether there is no row.
+    /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -68,12 +68,12 @@ impl Histories {
         &self.columns
     }
 
-    /// Values of the column `name`, if there is one.
+    /// Values of the column `name`, if it exists.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         self.columns.iter().find(|c| c.name == name).map(|c| c.values.as_slice())
     }
 
-    /// Writes the rows in the form of the profiles.
+    /// Writes the rows in the CSV format of the profiles.
     pub fn write(&self, path: &Path) -> Result<(), OutputError> {
         let header: Vec<String> = self.columns.iter().map(|c| field(&c.name)).collect();
         write_rows(path, &header, self.len(), |text, row| {
@@ -94,7 +94,7 @@ mod tests {
 
     #[test]
     fn rows_come_back() {
-        let mut histories = Histories::new([("time", "s"), ("interface_x", "m")]);
+        let mut histories = HistoryTable::new([("time", "s"), ("interface_x", "m")]);
         assert!(histories.is_empty());
         histories.push(&[0.0, f64::NAN]);
         histories.push(&[1e-9, 0.1]);
@@ -109,6 +109,6 @@ mod tests {
     #[test]
     #[should_panic(expected = "one value a column")]
     fn a_short_row_is_refused() {
-        Histories::new([("time", "s"), ("dt", "s")]).push(&[0.0]);
+        HistoryTable::new([("time", "s"), ("dt", "s")]).push(&[0.0]);
     }
 }

@@ -1,8 +1,9 @@
-//! One run at a time into a folder: a hidden file beside it that names who writes.
+//! Lock on a folder of results: a hidden file beside it that names the process that writes.
 //!
-//! The system's lock on the file ends with the process, however it ends, so a file that was left
-//! behind holds nobody up. Where another machine wrote it, whose locks may not be seen from here,
-//! its age decides: a run that lives touches it. Knows no MPI: called on one rank alone.
+//! The system's lock on the file ends with the process, however it ends, so that a remaining file
+//! blocks no later run. If another machine wrote the file, its lock may be invisible here; then the
+//! age of the file decides, because a live run touches the file regularly. Independent of MPI:
+//! called on one rank only.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{Read, Write};
@@ -15,28 +16,29 @@ use std::time::{Duration, SystemTime};
 use serde::{Deserialize, Serialize};
 
 use super::error::OutputError;
-use super::folder::{aside_prefix, check_folder, host, is_dead, resolve, within};
+use super::folder::{aside_prefix, check_folder, host, is_dead, within};
+use super::paths::resolve;
 
 /// Time between two signs of life.
 const TOUCHED: Duration = Duration::from_secs(15);
 
-/// Without a sign of life for so long a run on another machine has ended.
+/// A run on another machine without a sign of life for this time is taken to have ended.
 const STALE: Duration = Duration::from_secs(90);
 
-/// Who writes.
+/// Process that writes.
 #[derive(Debug, Serialize, Deserialize)]
 struct Owner {
     pid: u32,
     host: String,
 }
 
-/// The right to write results at a place, until it is dropped.
+/// Exclusive right to write results at a path, until dropped.
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
-    /// Held for the system's lock on it.
+    /// Open file that holds the system's lock.
     _file: File,
-    /// Parents that were made for it, outermost first.
+    /// Parent folders that were created for it, outermost first.
     made: Vec<PathBuf>,
     /// Ends the signs of life.
     end: Option<Sender<()>>,
@@ -44,8 +46,8 @@ pub struct Lock {
 }
 
 impl Lock {
-    /// Takes the place of the results `target`, making its parents; refused while another process
-    /// has it.
+    /// Locks the path `target` of results and creates its parent folders. Fails if another process
+    /// holds the lock.
     pub fn take(target: &Path) -> Result<Lock, OutputError> {
         let place = resolve(target)?;
         let Some(parent) = place.parent() else {
@@ -63,8 +65,8 @@ impl Lock {
         }
     }
 
-    /// Opens the file at `path` in `parent` for this process alone; parents that it needs are made
-    /// and added to `made`.
+    /// Opens and locks the file at `path` in `parent`. Parent folders that are created are added to
+    /// `made`.
     fn open(
         target: &Path,
         parent: &Path,
@@ -79,7 +81,7 @@ impl Lock {
             let taken = match file.try_lock() {
                 Ok(()) => false,
                 Err(TryLockError::WouldBlock) => true,
-                // a file system without locks: what the file says has to do
+                // on a file system without locks, the text of the file decides
                 Err(TryLockError::Error(_)) => !said_by_dead(&mut file),
             };
             let owner = read_owner(&mut file);
@@ -96,7 +98,7 @@ impl Lock {
                     lock: path.into(),
                 });
             }
-            // one that ended meanwhile may have taken the file away, or somebody the folder
+            // another process may have removed the file or its folder meanwhile
             let same = fs::metadata(path).is_ok_and(|now| {
                 file.metadata().is_ok_and(|mine| (mine.dev(), mine.ino()) == (now.dev(), now.ino()))
             });
@@ -113,7 +115,7 @@ impl Lock {
         }
     }
 
-    /// Holds the file and shows signs of life.
+    /// Keeps the file open and gives signs of life.
     fn keep(path: PathBuf, file: File, made: Vec<PathBuf>) -> Lock {
         let (end, ended) = channel::<()>();
         let touched = file.try_clone().ok();
@@ -129,7 +131,7 @@ impl Lock {
 }
 
 impl Drop for Lock {
-    /// Best effort: a file that stays holds nobody up.
+    /// Best effort: a remaining file blocks no later run.
     fn drop(&mut self) {
         drop(self.end.take());
         if let Some(alive) = self.alive.take() {
@@ -149,7 +151,7 @@ fn read_owner(file: &mut File) -> Option<Owner> {
     serde_json::from_str(&text).ok()
 }
 
-/// Whether the file names no process that may live.
+/// Whether the file names no process that may be alive.
 fn said_by_dead(file: &mut File) -> bool {
     read_owner(file).is_none_or(|o| o.host == host() && is_dead(&o.pid.to_string()))
 }
@@ -180,7 +182,7 @@ mod tests {
         assert_eq!(entries(home.path()), 0);
     }
 
-    /// Somebody cleans up while runs start: none of them is refused for it.
+    /// Folders are removed while runs start: no run is refused because of it.
     #[test]
     fn a_folder_that_is_taken_away_meanwhile_is_made_anew() {
         let home = tempfile::tempdir().unwrap();

@@ -1,17 +1,20 @@
-//! What a run writes: tables, histories, pictures, a summary, in a folder put in place as a
-//! whole. Called on one rank; knows no MPI and no grid.
+//! Output of a run: tables, histories, pictures and a summary, in a folder that is put in place as
+//! a whole. Called on one rank; independent of MPI and of the grid.
 
 pub mod compare;
 pub mod csv;
 pub mod decomposition;
 pub mod error;
+mod file_names;
 pub mod folder;
 pub mod histories;
 pub mod lock;
 pub mod origin;
+mod paths;
 pub mod report;
 pub mod summary;
 pub mod trace;
 pub mod vtkhdf;
 
 pub use error::OutputError;
+pub use file_names::SUMMARY_FILE;

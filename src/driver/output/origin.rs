@@ -1,9 +1,9 @@
-//! The command and the scene that made a result, recorded in it, and who may replace it.
+//! The origin of a result: the command and the scene that made it, and the rule for replacing it.
 //!
-//! A result is replaced by the same command on the same scene alone. A scene is the same if it is the
-//! same file, edited or not, or if it holds the same values: then the new result has the same bits.
-//! A file that is no longer where it was is the same as one at the same place relative to the result,
-//! so that a folder of scenes and results can be moved as a whole.
+//! Only the same command on the same scene replaces a result. A scene is the same if it is the same
+//! file, edited or not, or if it has the same values, because then the new result has the same
+//! bits. If the original file no longer exists, a file at the same path relative to the result
+//! counts as the same. Therefore a folder of scenes and results can be moved as a whole.
 
 use std::fmt;
 use std::fs;
@@ -13,15 +13,15 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::error::OutputError;
-use super::folder::resolve;
-use super::summary::SUMMARY_FILE;
+use super::file_names::SUMMARY_FILE;
+use super::paths::resolve;
 use crate::scene::CheckedScene;
 use crate::scene::input_file::{self, InputFault, LARGEST_JSON, LARGEST_NUMBERS, LARGEST_RESULT};
 
 /// Name of the file that records the origin of a folder without a summary.
 pub const ORIGIN_FILE: &str = "origin.json";
 
-/// The command that makes results of scenes.
+/// The command that runs a scene.
 pub const RUN: &str = "run";
 
 /// The command and the file that made a result.
@@ -29,7 +29,7 @@ pub const RUN: &str = "run";
 pub struct Origin {
     /// The command: `run`, `hugoniot`, `material copper`, `study`.
     pub command: String,
-    /// Absolute path of the scene or study; none where it was no file.
+    /// Absolute path of the scene or study; `None` if it is not a file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// The same path, relative to the folder of the result.
@@ -47,20 +47,19 @@ impl fmt::Display for Origin {
 }
 
 impl Origin {
-    /// The origin of what `command` makes of `file`.
+    /// The origin of a result of `command` on `file`.
     pub fn new(command: &str, file: &Path) -> Origin {
         Origin { command: command.into(), file: absolute(file), relative: None }
     }
 
-    /// The same with the path relative to the folder of the result, absolute.
+    /// The same origin, with the path relative to the absolute folder `place` of the result.
     pub fn seen_from(&self, place: &Path) -> Origin {
         let file = self.file.as_deref().map(Path::new);
         let relative = file.and_then(|file| relative(file, place));
         Origin { relative, ..self.clone() }
     }
 
-    /// Whether this is the same command on the same file as `theirs`, recorded in a result at
-    /// `place`.
+    /// Whether `theirs`, recorded in a result at `place`, is the same command on the same file.
     fn is(&self, theirs: &Origin, place: &Path) -> bool {
         let (Some(mine), Some(file)) = (&self.file, &theirs.file) else { return false };
         let moved = || {
@@ -72,7 +71,7 @@ impl Origin {
     }
 }
 
-/// Who makes a result: its origin, and the scene as run.
+/// Maker of a result: its origin, and the scene as run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Maker {
     /// The command and the file.
@@ -82,18 +81,18 @@ pub struct Maker {
 }
 
 impl Maker {
-    /// The maker of what `command` makes of a scene.
+    /// The maker for `command` on a scene.
     pub fn new(command: &str, scene: &CheckedScene) -> Maker {
         Maker::with(Origin::new(command, Path::new(&scene.file)), scene)
     }
 
-    /// The maker of a run that goes on from a checkpoint, whose origin stands in that.
+    /// The maker for a run with a known origin, such as that in a checkpoint.
     pub fn with(origin: Origin, scene: &CheckedScene) -> Maker {
         let scene = serde_json::to_value(&scene.scene).expect("a scene is plain data");
         Maker { origin, scene }
     }
 
-    /// Whether this maker may replace a result of `theirs`, at `place`, made from `scene`.
+    /// Whether this maker may replace the result at `place` with origin `theirs` and `scene`.
     pub fn may_replace(&self, theirs: &Origin, scene: &Value, place: &Path) -> bool {
         let same = self.origin.command == theirs.command && self.scene == *scene;
         same || self.origin.is(theirs, place)
@@ -102,16 +101,16 @@ impl Maker {
 
 /// A result: a folder with a summary of this program.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Made {
-    /// Its origin; of a result that does not record it the command alone.
+pub struct ExistingResult {
+    /// Origin of the result; if not recorded, only the command.
     pub origin: Origin,
-    /// The scene it was made from.
+    /// Scene of the result.
     pub scene: Value,
 }
 
-impl Made {
-    /// The result in a folder; none where there is none.
-    pub fn read(folder: &Path) -> Option<Made> {
+impl ExistingResult {
+    /// The result in a folder; `None` if there is none.
+    pub fn read(folder: &Path) -> Option<ExistingResult> {
         let text = input_file::read_text(&folder.join(SUMMARY_FILE), LARGEST_NUMBERS).ok()?;
         let mut summary: Value = serde_json::from_str(&text).ok()?;
         if !["version", "scene", "profiles"].iter().all(|key| summary.get(key).is_some()) {
@@ -125,23 +124,23 @@ impl Made {
         let recorded = summary.get("origin").cloned();
         let recorded = recorded.and_then(|value| serde_json::from_value(value).ok());
         let origin = recorded.unwrap_or_else(|| Origin { command: command(), ..Origin::default() });
-        Some(Made { origin, scene: summary["scene"].take() })
+        Some(ExistingResult { origin, scene: summary["scene"].take() })
     }
 }
 
-/// Refuses a place inside of a result: a new run of that would remove what is put there. `named` is
-/// the place as the user named it.
+/// Refuses a path inside a result, because a new run of that result would remove it. `named` is the
+/// path as named by the user.
 pub fn check_outside_results(named: &Path) -> Result<(), OutputError> {
     let place = resolve(named)?;
-    let inside = place.ancestors().skip(1).find(|folder| Made::read(folder).is_some());
+    let inside = place.ancestors().skip(1).find(|folder| ExistingResult::read(folder).is_some());
     match inside {
         Some(result) => Err(OutputError::Inside { path: named.into(), result: result.into() }),
         None => Ok(()),
     }
 }
 
-/// Refuses a file that a command writes where one is that this command has not made, by its text, and
-/// a place inside of a result. An empty file is nobody's; what is no plain file is left alone.
+/// Checks the path of a file that a command writes. Refuses a path inside a result, and a file that
+/// another command has made, by its text. Accepts empty files and anything but regular files.
 pub fn check_target(
     file: &Path,
     kind: &str,
@@ -158,8 +157,8 @@ pub fn check_target(
     }
 }
 
-/// Takes a folder without a summary for `origin`, which is recorded in it: one that is not there, that
-/// is empty, or that the same command on the same file has taken before.
+/// Claims a folder without a summary for `origin` and records it there. The folder must be missing,
+/// empty, or claimed before by the same command on the same file.
 pub fn claim(folder: &Path, origin: &Origin) -> Result<(), OutputError> {
     check_outside_results(folder)?;
     let (place, file) = (resolve(folder)?, folder.join(ORIGIN_FILE));
@@ -174,7 +173,7 @@ pub fn claim(folder: &Path, origin: &Origin) -> Result<(), OutputError> {
             Ok(theirs) => return Err(foreign(theirs.to_string())),
             Err(_) => return Err(foreign("another program".into())),
         }
-    } else if let Some(made) = Made::read(folder) {
+    } else if let Some(made) = ExistingResult::read(folder) {
         return Err(foreign(made.origin.to_string()));
     } else if fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some()) {
         return Err(foreign("another program or of an older version".into()));
@@ -184,14 +183,14 @@ pub fn claim(folder: &Path, origin: &Origin) -> Result<(), OutputError> {
     fs::write(&file, text).map_err(OutputError::io("write the file", &file))
 }
 
-/// The absolute path of a file, links in its folder followed; none where there is no such file.
+/// The absolute path of a file, with links in its folder resolved; `None` if there is no file.
 pub fn absolute(file: &Path) -> Option<String> {
     let name = file.file_name().filter(|_| file.is_file())?;
     let folder = file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     folder.canonicalize().ok()?.join(name).to_str().map(String::from)
 }
 
-/// `file` as a path from `folder`, both absolute.
+/// Path of `file` relative to `folder`; both are absolute.
 fn relative(file: &Path, folder: &Path) -> Option<String> {
     let both = file.components().zip(folder.components());
     let shared = both.take_while(|(a, b)| a == b).count();
@@ -239,7 +238,7 @@ mod tests {
         let theirs = maker(&old.join("a.json"), 1).origin.seen_from(&old.join("output/a"));
         let place = new.join("output/a");
         let other = Value::Null;
-        // a copy: the first is still there
+        // a copy: the original still exists
         fs::create_dir_all(&place).unwrap();
         fs::write(new.join("a.json"), "").unwrap();
         assert!(!maker(&new.join("a.json"), 2).may_replace(&theirs, &other, &place));

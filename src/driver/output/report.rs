@@ -1,16 +1,16 @@
-//! The table that a run ends with.
+//! The table that a run prints at its end.
 
 use std::fmt::Write;
 use std::path::Path;
 
 use super::decomposition::DecompositionSummary;
-use super::summary::{FailureSummary, Outflow, ProfileSummary, Summary};
-use crate::accuracy::estimate::{Basis, Bounded, ErrorEstimate};
+use super::summary::{FailureSummary, OutflowSummary, ProfileSummary, Summary};
+use crate::accuracy::estimate::{Basis, Bounded, EstimatedErrors};
 use crate::accuracy::plan::Verdict;
 use crate::effects::{ledger_lines, ledger_rest};
 use crate::solver::clock::Activity;
 
-/// Errors of a profile by name, with a heading and whether they are shown in per cent.
+/// Errors of a profile: key, heading, and whether they are shown in per cent.
 const ERRORS: [(&str, &str, bool); 22] = [
     ("l1", "L1 %", true),
     ("l2", "L2 %", true),
@@ -20,7 +20,7 @@ const ERRORS: [(&str, &str, bool); 22] = [
     ("shock_position_cells", "shock cells", false),
     ("rise_cells", "rise cells", false),
     ("overshoot", "overshoot %", true),
-    ("plateau_4", "plateau 4 %", true),
+    ("second_plateau", "plateau 4 %", true),
     ("density_plateau", "density %", true),
     ("energy_plateau", "energy %", true),
     ("density_interface", "interface density %", true),
@@ -36,7 +36,8 @@ const ERRORS: [(&str, &str, bool); 22] = [
     ("mean_density_error", "density error %", true),
 ];
 
-/// Each time's errors, energy, momentum, steps, seconds, and where the files are, as aligned text.
+/// Errors per profile time, energy, momentum, steps, seconds and the folder of the files, as
+/// aligned text.
 pub fn report(summary: &Summary, folder: &Path) -> String {
     let mut text = format!("{}\n", summary.title);
     for warning in &summary.warnings {
@@ -54,10 +55,10 @@ pub fn report(summary: &Summary, folder: &Path) -> String {
     text
 }
 
-/// Most ranks that are listed; `summary.json` has all.
+/// Largest number of ranks listed; `summary.json` has all.
 const LISTED: usize = 16;
 
-/// One line a rank: where its time went, and what it sent.
+/// One line per rank: its times by activity, and its messages.
 fn ranks(sharing: &DecompositionSummary) -> Vec<Vec<String>> {
     let activities = || Activity::ALL.iter().map(|a| a.name());
     let mut heading: Vec<String> = vec!["ranks".into(), "patches".into(), "particles".into()];
@@ -78,11 +79,11 @@ fn ranks(sharing: &DecompositionSummary) -> Vec<Vec<String>> {
     lines
 }
 
-/// One line a profile; errors that no profile has are left out.
+/// One line per profile; errors that no profile has are omitted.
 fn errors(profiles: &[ProfileSummary]) -> Vec<Vec<String>> {
     let mut shown: Vec<(String, String, bool)> =
         ERRORS.iter().map(|(key, head, p)| ((*key).into(), (*head).into(), *p)).collect();
-    // What another reference scores by.
+    // error keys of other references
     for (key, _) in profiles.iter().filter_map(|p| p.errors.as_ref()?.as_object()).flatten() {
         if !shown.iter().any(|(name, ..)| name == key) {
             shown.push((key.clone(), key.replace('_', " "), false));
@@ -135,7 +136,7 @@ fn facts(summary: &Summary, folder: &Path) -> Vec<Vec<String>> {
         facts.push(("outflow", format!("{} particles, {:.6e} kg{per}", out.particles, out.mass)));
     }
     if let Some(out) = &summary.erosion {
-        let Outflow { particles, mass, energy, .. } = out;
+        let OutflowSummary { particles, mass, energy, .. } = out;
         let what = format!("{particles} particles, {mass:.6e} kg{per}, {energy:.6e} J{per}");
         facts.push(("erosion", format!("{what} taken out")));
     }
@@ -191,7 +192,7 @@ fn facts(summary: &Summary, folder: &Path) -> Vec<Vec<String>> {
     facts.into_iter().map(|(name, text)| vec![name.to_owned(), text]).collect()
 }
 
-/// What a plan has foretold beside what came.
+/// Predicted and actual values of a plan.
 fn plan_fact(plan: &Verdict) -> String {
     let percent = |v: f64| format!("{} %", significant(100.0 * v));
     let actual = match (plan.actual, plan.is_true) {
@@ -212,8 +213,8 @@ fn plan_fact(plan: &Verdict) -> String {
     )
 }
 
-/// What a run tells of its own errors, a line a profile and a place.
-fn estimate_facts(told: &ErrorEstimate) -> Vec<(&'static str, String)> {
+/// Estimated errors of a run, one line per profile and per arrival.
+fn estimate_facts(told: &EstimatedErrors) -> Vec<(&'static str, String)> {
     let within = |b: &Bounded, scale: f64, unit: &str| match b.half_width {
         Some(width) => {
             let exact = b.exact.map_or(String::new(), |e| {
@@ -261,13 +262,13 @@ fn estimate_facts(told: &ErrorEstimate) -> Vec<(&'static str, String)> {
     facts
 }
 
-/// A value with as many digits as its width asks for.
+/// A value with as many digits as its half width justifies.
 fn significant_to((value, width): (f64, f64)) -> String {
     let digits = (1 - width.abs().max(1e-12).log10().floor() as i32).clamp(0, 12) as usize;
     format!("{value:.digits$}")
 }
 
-/// Lines of cells as columns: the first to the left, the others to the right.
+/// Cells as aligned columns: the first column left-aligned, the others right-aligned.
 fn table(lines: &[Vec<String>]) -> String {
     let columns = lines.iter().map(Vec::len).max().unwrap_or(0);
     let length = |s: &String| s.chars().count();
@@ -277,7 +278,7 @@ fn table(lines: &[Vec<String>]) -> String {
     for line in lines {
         let mut row = String::new();
         for (i, (cell, &width)) in line.iter().zip(&widths).enumerate() {
-            // Two columns are a list of names and sentences, more are numbers.
+            // a table of two columns holds names and sentences, a wider one numbers
             let _ = match i {
                 0 => write!(row, "  {cell:width$}"),
                 _ if columns == 2 => write!(row, "  {cell}"),
@@ -290,7 +291,7 @@ fn table(lines: &[Vec<String>]) -> String {
     text
 }
 
-/// A number with three digits that count.
+/// A number with three significant digits.
 fn significant(value: f64) -> String {
     let size = value.abs();
     match size {
@@ -300,7 +301,7 @@ fn significant(value: f64) -> String {
     }
 }
 
-/// A time with its unit.
+/// A time with a suitable unit.
 fn seconds(time: f64) -> String {
     let (unit, scale) = match time {
         t if t >= 0.1 => ("s", 1.0),
@@ -330,8 +331,8 @@ warning: linear shape functions ring across cells
   ranks   patches  particles  compute s  exchange s  wait s  migrate s  balance s  output s  messages     bytes  migrated
   rank 0        2        850      0.600       0.000   0.100      0.000      0.000     0.000      5224  26120000         7
   rank 1        2        850      0.600       0.000   0.100      0.000      0.000     0.000      5224  26120000         7
-  effect    bytes a particle  bytes a ghost  share of step
-  strength                 8              0         12.5 %
+  effect    bytes per particle  bytes per ghost  share of step
+  strength                   8                0         12.5 %
   off, 0 bytes and 0 % of the step: contact
   energy    start 1.000000e1  end 1.100000e1 J/m2  boundaries 5.00e-1  drift 5.0e-2
   momentum  start 8.000000e0  end 8.000000e0 kg m/s/m2  boundaries 0.000000e0  drift 0.0e0
@@ -354,7 +355,7 @@ warning: linear shape functions ring across cells
     fn what_was_eroded_is_told() {
         let mut summary = example();
         let momentum = vec![0.25];
-        summary.erosion = Some(Outflow { particles: 7, mass: 0.5, momentum, energy: 2.0 });
+        summary.erosion = Some(OutflowSummary { particles: 7, mass: 0.5, momentum, energy: 2.0 });
         let line = "  erosion   7 particles, 5.000000e-1 kg/m2, 2.000000e0 J/m2 taken out\n";
         assert!(report(&summary, Path::new("out")).contains(line));
     }

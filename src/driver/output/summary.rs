@@ -1,4 +1,4 @@
-//! `summary.json`: what a run was, what it cost, what it kept and how far it is from exact.
+//! `summary.json`: settings, costs, conserved quantities and errors of a run.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -9,79 +9,82 @@ use serde_json::Value;
 
 use super::decomposition::DecompositionSummary;
 use super::error::{OutputError, read_text};
+use super::file_names::SUMMARY_FILE;
 use super::origin::Origin;
-use crate::accuracy::estimate::ErrorEstimate;
+use crate::accuracy::estimate::EstimatedErrors;
 use crate::accuracy::plan::Verdict;
 use crate::effects::EffectUse;
 use crate::scene::input_file::LARGEST_NUMBERS;
 
-/// Name of the file in the folder of results.
-pub const SUMMARY_FILE: &str = "summary.json";
+/// Format of `summary.json`, increased by one whenever a key is renamed.
+pub const SUMMARY_FORMAT: u32 = 2;
 
-/// The whole of `summary.json`.
+/// Contents of `summary.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
+    /// Format of this file.
+    pub format: u32,
     /// Title of the scene.
     pub title: String,
     /// Version of the program.
     pub version: String,
-    /// The command and the scene's file that made the result.
+    /// The command and the scene file that made the result.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub origin: Option<Origin>,
-    /// The scene as run: after `--set`, defaults filled in.
+    /// The scene as run, with `--set` and defaults applied.
     pub scene: Value,
-    /// Ranks.
+    /// Number of ranks.
     pub ranks: usize,
-    /// Threads of each rank.
+    /// Threads per rank.
     pub threads: usize,
-    /// Patches in each direction.
+    /// Number of patches in each direction.
     pub patches: Vec<usize>,
-    /// Particles at the start.
+    /// Number of particles at the start.
     pub particles: u64,
-    /// Cells of the domain.
+    /// Number of cells of the domain.
     pub cells: u64,
-    /// Steps of the time loop.
+    /// Number of steps of the time loop.
     pub steps: u64,
     /// Wall time of the whole process up to the writing of this file \[s\].
     pub wall_seconds: f64,
     /// Wall time of the time loop \[s\].
     pub loop_wall_seconds: f64,
-    /// User CPU time of the time loop, all ranks \[s\].
+    /// User CPU time of the time loop, sum over all ranks \[s\].
     #[serde(default)]
     pub loop_cpu_seconds: f64,
-    /// User CPU time of all ranks \[s\].
+    /// User CPU time, sum over all ranks \[s\].
     pub cpu_seconds: f64,
-    /// Particles times steps, those left out at rest among them, over the CPU time of the time
-    /// loop, all ranks \[1/s\].
+    /// Particles times steps, quiescent ones included, over the CPU time of the time loop of all
+    /// ranks \[1/s\].
     pub particle_steps_per_cpu_second: f64,
-    /// Wall time of the time loop by what the ranks did, summed over them \[s\].
+    /// Wall time of the time loop by activity, summed over the ranks \[s\].
     pub phase_seconds: BTreeMap<String, f64>,
-    /// What sharing the work has cost.
+    /// Costs of the distribution over ranks.
     pub decomposition: DecompositionSummary,
-    /// The ledger of effects: what the scene calls for, and what each takes.
+    /// The ledger of effects: the effects that the scene uses, and the costs of each.
     pub effects: Vec<EffectUse>,
     /// Energy.
     pub energy: Energy,
     /// Momentum.
     pub momentum: Momentum,
-    /// What has left the domain; absent where nothing can.
+    /// Particles that have left the domain; absent if none can leave.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub outflow: Option<Outflow>,
-    /// What was eroded; absent where nothing can be.
+    pub outflow: Option<OutflowSummary>,
+    /// Eroded particles; absent without erosion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub erosion: Option<Outflow>,
-    /// What has failed; absent where nothing can.
+    pub erosion: Option<OutflowSummary>,
+    /// Failed particles; absent without failure.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failure: Option<FailureSummary>,
-    /// One entry a profile, in the order of their times.
+    /// One entry per profile, in order of time.
     pub profiles: Vec<ProfileSummary>,
-    /// The run's own statement of its errors; absent unless the scene asks for it.
+    /// The run's own estimate of its errors; absent unless the scene asks for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub error_estimate: Option<ErrorEstimate>,
-    /// What a plan has foretold, and what came; absent without a plan.
+    pub error_estimate: Option<EstimatedErrors>,
+    /// Predicted and actual values of a plan; absent without a plan.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plan: Option<Verdict>,
-    /// What the user should know, one line each.
+    /// Warnings to the user, one line each.
     pub warnings: Vec<String>,
 }
 
@@ -92,27 +95,27 @@ pub struct Energy {
     pub kinetic_start: f64,
     /// Internal energy at the start.
     pub internal_start: f64,
-    /// Sum of the two.
+    /// Sum of both at the start.
     pub total_start: f64,
     /// Kinetic energy at the end.
     pub kinetic_end: f64,
     /// Internal energy at the end.
     pub internal_end: f64,
-    /// Sum of the two.
+    /// Sum of both at the end.
     pub total_end: f64,
-    /// Work that the boundaries did on the particles, less what left with particles.
+    /// Work of the boundaries on the particles, minus the energy of removed particles.
     pub boundary_work: f64,
     /// Work of a body force; absent without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body_force_work: Option<f64>,
-    /// (total_end - total_start - all work) / total_start \[-\]; where that is 0, over
-    /// total_end; null where both are.
+    /// (total_end - total_start - all work) / total_start \[-\]; if total_start is 0, relative to
+    /// total_end; null if both are 0.
     pub drift: Option<f64>,
 }
 
 impl Energy {
-    /// Totals and drift from kinetic and internal energy at \[start, end\]; no drift where there
-    /// is no more energy than `rounding` may make.
+    /// Totals and drift from kinetic and internal energy at \[start, end\]. There is no drift if
+    /// the energy does not exceed the rounding error `rounding`.
     pub fn new(kinetic: [f64; 2], internal: [f64; 2], boundary_work: f64, rounding: f64) -> Energy {
         let [total_start, total_end] = [kinetic[0] + internal[0], kinetic[1] + internal[1]];
         let scale = if total_start == 0.0 { total_end } else { total_start }.abs();
@@ -144,23 +147,24 @@ impl Energy {
 /// Momentum of all particles \[kg m/s\]; in one dimension \[kg/(m s)\], in two \[kg/s\].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Momentum {
-    /// At the start, D numbers.
+    /// At the start, D components.
     pub start: Vec<f64>,
-    /// At the end, D numbers.
+    /// At the end, D components.
     pub end: Vec<f64>,
-    /// Impulse of the boundaries on the particles, less what left with particles, D numbers.
+    /// Impulse of the boundaries on the particles, minus the momentum of removed particles, D
+    /// components.
     pub boundary_impulse: Vec<f64>,
-    /// Impulse of a body force, D numbers; absent without one.
+    /// Impulse of a body force, D components; absent without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body_force_impulse: Option<Vec<f64>>,
-    /// |end - start - all impulses| over the sum of m|v| at the start \[-\]; with its sign in
-    /// one dimension; null where that sum is 0.
+    /// |end - start - all impulses| over the sum of m|v| at the start \[-\]; signed in one
+    /// dimension; null if that sum is 0.
     pub drift: Option<f64>,
 }
 
 impl Momentum {
-    /// Drift from momentum at start and end, the impulse of the boundaries and the sum of m|v| at
-    /// the start.
+    /// Drift from the momentum at start and end, the impulse of the boundaries and the sum `scale`
+    /// of m|v| at the start.
     pub fn new(start: &[f64], end: &[f64], boundary_impulse: &[f64], scale: f64) -> Momentum {
         let left = |i: usize| end[i] - start[i] - boundary_impulse[i];
         let left = match start.len() {
@@ -184,47 +188,47 @@ impl Momentum {
     }
 }
 
-/// What has left the domain through open sides, or was eroded.
+/// Particles that have left the domain through open sides, or were eroded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Outflow {
+pub struct OutflowSummary {
     /// Number of particles.
     pub particles: u64,
-    /// Their mass \[kg\]; in one dimension \[kg/m2\], in two \[kg/m\].
+    /// Mass of these particles \[kg\]; in one dimension \[kg/m2\], in two \[kg/m\].
     pub mass: f64,
-    /// Their momentum, D numbers, in the unit of [`Momentum`].
+    /// Momentum of these particles, D components, in the unit of [`Momentum`].
     pub momentum: Vec<f64>,
-    /// Their kinetic and internal energy, in the unit of [`Energy`].
+    /// Kinetic and internal energy of these particles, in the unit of [`Energy`].
     pub energy: f64,
 }
 
-/// What has failed by the end.
+/// Failed particles at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FailureSummary {
-    /// Number of particles that are there and bear neither tension nor shear any more.
+    /// Number of particles that are present and carry neither tension nor shear any more.
     pub particles: u64,
-    /// Elastic energy that they have kept as heat, in the unit of [`Energy`].
+    /// Elastic energy that was converted to heat in these particles, in the unit of [`Energy`].
     pub released_energy: f64,
 }
 
-/// One profile.
+/// Entry of one profile.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProfileSummary {
     /// Time \[s\].
     pub time: f64,
     /// File of the profile, relative to the folder of results.
     pub file: String,
-    /// SHA-256 over the whole state of the particles, in the order of their ids, in hexadecimal.
+    /// SHA-256 of the whole state of the particles in order of their ids, in hexadecimal.
     pub state_sha256: String,
-    /// Errors of the raw profile, fractions; absent without a reference.
+    /// Errors of the raw profile, as fractions; absent without a reference.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub errors: Option<Value>,
-    /// Errors after averaging over cells, fractions; absent without a reference.
+    /// Errors after averaging over cells, as fractions; absent without a reference.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub errors_cell: Option<Value>,
+    pub errors_cell_averaged: Option<Value>,
 }
 
 impl ProfileSummary {
-    /// The error `name` of the raw profile; none where it is undefined.
+    /// The error `name` of the raw profile; `None` if undefined.
     pub fn error(&self, name: &str) -> Option<f64> {
         self.errors.as_ref()?.get(name)?.as_f64()
     }
@@ -241,15 +245,24 @@ impl Summary {
     }
 
     /// Reads `summary.json` of `folder`.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is not a summary, or has another format than [`SUMMARY_FORMAT`].
     pub fn read(folder: &Path) -> Result<Summary, OutputError> {
         let path = folder.join(SUMMARY_FILE);
-        // it holds the scene, with the positions and tables that were read for it
+        // the file contains the scene with the positions and tables that were read for it
         let text = read_text(&path, LARGEST_NUMBERS)?;
-        serde_json::from_str(&text).map_err(|source| OutputError::Json { path, source })
+        let json = |source| OutputError::Json { path: path.clone(), source };
+        let value: Value = serde_json::from_str(&text).map_err(json)?;
+        let format = value.get("format").and_then(Value::as_u64).unwrap_or(1);
+        if format != u64::from(SUMMARY_FORMAT) {
+            return Err(OutputError::Format { path, format, read: SUMMARY_FORMAT });
+        }
+        serde_json::from_value(value).map_err(json)
     }
 }
 
-/// a/b, none where b is 0.
+/// a/b; `None` if b is 0.
 fn ratio(a: f64, b: f64) -> Option<f64> {
     (b != 0.0).then(|| a / b)
 }
@@ -262,7 +275,7 @@ pub(super) mod tests {
     use crate::driver::output::decomposition::RankSummary;
     use crate::scene::FilterHalo;
 
-    /// Two ranks.
+    /// A decomposition of two ranks.
     fn decomposition() -> DecompositionSummary {
         let rank = |rank, particle_steps| RankSummary {
             rank,
@@ -279,7 +292,7 @@ pub(super) mod tests {
         };
         let options = crate::scene::Decomposition::default();
         let ranks = vec![rank(0, 2000), rank(1, 1000)];
-        DecompositionSummary::new(FilterHalo::Deep, &options, 2612, 1800, 1, ranks)
+        DecompositionSummary::new(FilterHalo::Redundant, &options, 2612, 1800, 1, ranks)
     }
 
     #[test]
@@ -291,17 +304,18 @@ pub(super) mod tests {
         assert_eq!(all.seconds()["compute"], 1.2);
     }
 
-    /// A summary with two profiles, the first of them scored.
+    /// A summary with two profiles; only the first has errors.
     pub(in super::super) fn example() -> Summary {
         let profile = |time: f64, errors: Option<Value>| ProfileSummary {
             time,
             file: format!("profile_{:.3}us.csv", time * 1e6),
             state_sha256: "00ff".into(),
             errors: errors.clone(),
-            errors_cell: errors,
+            errors_cell_averaged: errors,
         };
         Summary {
             title: "flyer".into(),
+            format: SUMMARY_FORMAT,
             version: "0.1.0".into(),
             origin: None,
             scene: json!({"domain": {"lower": [0.0]}}),
@@ -321,7 +335,7 @@ pub(super) mod tests {
             effects: vec![
                 EffectUse {
                     effect: "strength".into(),
-                    on: true,
+                    active: true,
                     columns: vec!["plastic_strain".into()],
                     bytes_per_particle: 8,
                     bytes_per_ghost: 0,
@@ -329,7 +343,7 @@ pub(super) mod tests {
                 },
                 EffectUse {
                     effect: "contact".into(),
-                    on: false,
+                    active: false,
                     columns: Vec::new(),
                     bytes_per_particle: 0,
                     bytes_per_ghost: 0,

@@ -1,7 +1,7 @@
 //! A timeline of the ranks and patches in Chrome's trace format, which Perfetto opens.
 //!
-//! The format: Google, "Trace Event Format"; complete events ("X") with times in microseconds.
-//! A process is a rank; its thread 0 is what the rank does between phases, thread k + 1 is its
+//! The format: Google, "Trace Event Format"; complete events ("X") with times in microseconds. A
+//! process is a rank. Its thread 0 shows the work of the rank between phases; thread k + 1 shows
 //! patch k of the whole domain.
 
 use std::path::Path;
@@ -10,13 +10,13 @@ use serde::{Deserialize, Serialize};
 
 use super::error::OutputError;
 
-/// What the file of a timeline begins with.
+/// Start of the text of a timeline file.
 pub const TRACE_START: &str = r#"{"displayTimeUnit":"#;
 
-/// One stretch of one line of the timeline.
+/// One interval on one line of the timeline.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TraceEvent {
-    /// What was done.
+    /// Name of the activity.
     pub name: String,
     /// Rank.
     pub pid: usize,
@@ -24,9 +24,9 @@ pub struct TraceEvent {
     pub tid: usize,
     /// Number of the step.
     pub step: u64,
-    /// Start \[us\].
+    /// Start time \[us\].
     pub ts: f64,
-    /// Length \[us\].
+    /// Duration \[us\].
     pub dur: f64,
 }
 

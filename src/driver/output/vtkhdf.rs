@@ -2,8 +2,8 @@
 //!
 //! The layout is VTKHDF 2.0 (VTK file formats, "VTKHDF File Format"): PolyData with time steps, a
 //! vertex for each particle, and the columns of the CSV as point data under the same names, with
-//! `particle_id`, `material` and `body` as indices. Each step is one part of the file-long
-//! arrays. Nothing in the file depends on the time or place of writing.
+//! `particle_id`, `material` and `body` as indices. The arrays span the whole file; each step is
+//! one part of them. The contents do not depend on the time or place of writing.
 
 use std::path::Path;
 
@@ -17,20 +17,20 @@ use crate::simulation::ParticleTable;
 /// Name of the file in the folder of results.
 pub const RESULTS_FILE: &str = "results.hdf5";
 
-/// What the file says of the run as a whole.
+/// Data of the whole run in the file.
 #[derive(Clone, Copy, Debug)]
 pub struct RunInfo<'a> {
     /// Title of the scene.
     pub title: &'a str,
     /// The scene as run.
     pub scene: &'a Value,
-    /// Names of the bodies; `body` counts in them.
+    /// Names of the bodies; the column `body` holds indices into them.
     pub bodies: &'a [String],
 }
 
-/// Writes the tables, one time step each, in their order.
+/// Writes the tables in their order, one time step each.
 ///
-/// A column that a table lacks is NaN there.
+/// Values of a column that a table lacks are NaN.
 pub fn write_vtkhdf(
     path: &Path,
     tables: &[ParticleTable],
@@ -74,7 +74,7 @@ fn write_root(root: &Group, tables: &[ParticleTable], info: &RunInfo) -> hdf5::R
     vector(&steps, "PartOffsets", &parts)?;
     vector(&steps, "NumberOfParts", &vec![1_i64; parts.len()])?;
     vector(&steps, "PointOffsets", &starts)?;
-    // One column a kind of cell: vertices, lines, polygons, strips.
+    // one column per kind of cell: vertices, lines, polygons, strips
     let vertices: Vec<i64> = starts.iter().flat_map(|&start| [start, 0, 0, 0]).collect();
     matrix(&steps, "CellOffsets", &vertices, 4)?;
     matrix(&steps, "ConnectivityIdOffsets", &vertices, 4)?;
@@ -87,7 +87,7 @@ fn write_root(root: &Group, tables: &[ParticleTable], info: &RunInfo) -> hdf5::R
     Ok(())
 }
 
-/// A vertex for each point; no other cells.
+/// Writes one vertex per point, and no other cells.
 fn write_topology(root: &Group, counts: &[i64]) -> hdf5::Result<()> {
     let none = vec![0_i64; counts.len()];
     for kind in ["Vertices", "Lines", "Polygons", "Strips"] {
@@ -136,14 +136,14 @@ fn write_point_data(data: &Group, tables: &[ParticleTable]) -> hdf5::Result<Vec<
     Ok(names.map(str::to_owned).collect())
 }
 
-/// Coordinates of every particle, filled up with zeros to three.
+/// Coordinates of every particle, padded with zeros to three.
 fn points(table: &ParticleTable) -> impl Iterator<Item = f64> {
     let axes = &table.columns[..table.dimension];
     (0..table.len())
         .flat_map(move |row| (0..3).map(move |axis| axes.get(axis).map_or(0.0, |c| c.values[row])))
 }
 
-/// Where each step begins in the file-long arrays.
+/// Offset of each step in the arrays of the file.
 fn starts(counts: &[i64]) -> Vec<i64> {
     let mut start = 0;
     let next = |n: &i64| {
@@ -172,7 +172,7 @@ fn matrix<T: H5Type>(
     Ok(dataset)
 }
 
-/// Text of any length; HDF5 ends it at a NUL, which therefore is replaced.
+/// Writes text of any length. A NUL is replaced, because HDF5 ends text at it.
 fn text_attribute(location: &Location, name: &str, text: &str) -> hdf5::Result<()> {
     let text: VarLenUnicode =
         text.replace('\0', "\u{fffd}").parse().map_err(|_| format!("text of {name}"))?;
@@ -212,7 +212,7 @@ mod tests {
     fn every_step_is_found_by_its_offsets() {
         let home = tempfile::tempdir().unwrap();
         let path = home.path().join(RESULTS_FILE);
-        // More than the 64 KiB that an attribute can hold in place.
+        // more than the 64 KiB that an attribute can store inline
         let scene = json!({ "description": "x".repeat(100_000) });
         let info = RunInfo { title: "nul \0", scene: &scene, bodies: &["flyer".into()] };
         let tables = [table(0.0, 5, false), table(1.0, 3, true), table(2.0, 0, true)];
@@ -247,7 +247,7 @@ mod tests {
             std::fs::read(path).unwrap()
         };
         let first = bytes("a");
-        // HDF5's times are whole seconds.
+        // HDF5 stores times in whole seconds
         std::thread::sleep(std::time::Duration::from_millis(1100));
         assert!(first == bytes("b"));
     }

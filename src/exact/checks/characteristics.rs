@@ -1,14 +1,14 @@
-//! The method of characteristics: the flyer behind its shock is homentropic, the target behind
-//! its own a simple wave, so both Riemann invariants u +- I, I = int C dchi, are constant along
-//! their characteristics. The net is made of the fan's characteristics and of those that they
-//! send back from the interface. Valid until a wave in the flyer steepens into a shock, or the
-//! fan catches the target's shock. Where the pressure on the interface would fall below 0 the
-//! plates part, and the flyer's face is free from then on.
+//! The method of characteristics. The flyer behind its shock is homentropic, and the target behind
+//! its shock is a simple wave. Both Riemann invariants u +- I, I = int C dchi, are therefore
+//! constant along their characteristics. The net consists of the fan's characteristics and of their
+//! reflections from the interface. It is valid until a wave in the flyer steepens into a shock, or
+//! the fan catches the target's shock. When the pressure on the interface would fall below 0, the
+//! plates separate, and the flyer's face is free from then on.
 
-use crate::exact::{Impact, Point, Profile};
+use crate::exact::{Impact, Profile, ProfilePoint};
 use crate::material::{EquationOfState, MieGruneisen};
 
-/// An isentrope as a table over equal steps of compression, rising.
+/// An isentrope, tabulated at equal steps of compression, in ascending order.
 pub(super) struct Isentrope {
     pub chi: Vec<f64>,
     pub p: Vec<f64>,
@@ -21,7 +21,8 @@ pub(super) struct Isentrope {
 const ENTRIES: usize = 20_000;
 
 impl Isentrope {
-    /// From the state behind a shock of velocity jump `up` down to a tension of chi = -0.08.
+    /// The isentrope from the state behind a shock of velocity jump `up` [m/s] to a tension of
+    /// chi = -0.08.
     pub fn new(m: &MieGruneisen, up: f64) -> Isentrope {
         let us = m.c0 + m.s * up;
         let (top, e_top) = (up / us, 0.5 * up * up);
@@ -54,7 +55,7 @@ impl Isentrope {
         out
     }
 
-    /// Reads `wanted` where `key` is `at`.
+    /// Interpolates the column `wanted` at the value `at` of the column `key`.
     pub fn read(key: &[f64], wanted: &[f64], at: f64) -> f64 {
         let k = key.partition_point(|&v| v < at).clamp(1, key.len() - 1);
         let w = (at - key[k - 1]) / (key[k] - key[k - 1]);
@@ -66,7 +67,7 @@ impl Isentrope {
     }
 }
 
-/// A point of the net: time, Lagrangian place, Lagrangian sound speed.
+/// A point of the net: time, Lagrangian position, Lagrangian sound speed.
 #[derive(Clone, Copy)]
 struct Node {
     t: f64,
@@ -74,12 +75,12 @@ struct Node {
     c: f64,
 }
 
-/// What the fan has made of the interface when one of its characteristics arrives there.
+/// State of the interface when one of the fan's characteristics arrives there.
 #[derive(Clone, Copy)]
 pub struct Arrival {
     /// Time [s].
     pub t: f64,
-    /// Pressure that touching plates would have [Pa]; 0 once they are apart.
+    /// Pressure [Pa]; negative at the arrival that separates the plates, 0 afterwards.
     pub p: f64,
     /// I in the target [m/s]: its face moves at u2 + I.
     pub in_target: f64,
@@ -87,7 +88,7 @@ pub struct Arrival {
     pub flyer_face: f64,
 }
 
-/// The interface until `last`, from `n` characteristics in the fan.
+/// The interface until the time `last`, from `n` characteristics in the fan.
 pub fn interface(impact: &Impact, last: f64, n: usize) -> Vec<Arrival> {
     let release = impact.release(4).unwrap();
     let flyer = impact.flyer.material;
@@ -109,7 +110,7 @@ pub fn interface(impact: &Impact, last: f64, n: usize) -> Vec<Arrival> {
             let r = s0 + 2.0 * free * j as f64 / n as f64;
             (r, corner(r), 0)
         } else {
-            // a left-going characteristic has come back to the free rear
+            // a left-going characteristic has returned to the free rear
             let i = first as usize;
             let (r, before) = (s[i] + 2.0 * free, row[i]);
             let c = in_flyer.c(free);
@@ -164,7 +165,7 @@ pub fn target(impact: &Impact, times: &[f64], n: usize) -> Vec<Profile> {
     let (u2, rho0) = (release.states[0].u, impact.target.material.rho0);
     let in_target = Isentrope::new(&impact.target.material, u2);
     let profile = |&time: &f64| {
-        // Lagrangian place and I in the target, from the shock back
+        // Lagrangian position and I in the target, backwards from the shock
         let mut points = vec![(release.target_shock * time, 0.0)];
         for pair in sent.windows(2) {
             let ((t, i), (t_next, i_next)) = (pair[0], pair[1]);
@@ -177,10 +178,10 @@ pub fn target(impact: &Impact, times: &[f64], n: usize) -> Vec<Profile> {
             }
         }
         let mut x = points[0].0;
-        let mut out: Vec<Point> = vec![];
+        let mut out: Vec<ProfilePoint> = vec![];
         let end = impact.target.upper;
         for at in [end, x] {
-            out.push(Point { x: at, rho: rho0, ..Point::default() });
+            out.push(ProfilePoint { x: at, rho: rho0, ..ProfilePoint::default() });
         }
         let mut before: Option<(f64, f64)> = None;
         for (place, i) in points {
@@ -191,7 +192,7 @@ pub fn target(impact: &Impact, times: &[f64], n: usize) -> Vec<Profile> {
             }
             before = Some((place, chi));
             let (p, e) = (read(&in_target.p), read(&in_target.e));
-            out.push(Point { x, p, u: u2 + i, rho: rho0 / (1.0 - chi), e });
+            out.push(ProfilePoint { x, p, u: u2 + i, rho: rho0 / (1.0 - chi), e });
         }
         out.reverse();
         Profile { points: out }

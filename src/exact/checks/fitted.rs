@@ -1,11 +1,11 @@
 //! A finite-volume scheme in Lagrangian coordinates: linear reconstruction, acoustic Riemann
-//! solver, Heun's rule in time. The flyer's cells are fixed to the material; the target's move
-//! so that the last face is the shock itself, which is never smeared. Second order where the
-//! solution is smooth. Starts from the centred fan in the flyer, shortly before its head comes to
-//! the interface.
+//! solver, Heun's method in time. The flyer's cells are fixed to the material. The target's cells
+//! move so that the last face is the shock itself, which is never smeared. The scheme is of second
+//! order where the solution is smooth. It starts from the centred fan in the flyer, shortly before
+//! the head of the fan reaches the interface.
 
 use super::characteristics::Isentrope;
-use crate::exact::{Impact, Point, Profile};
+use crate::exact::{Impact, Profile, ProfilePoint};
 use crate::material::{EquationOfState, MieGruneisen};
 
 /// Volume ratio J, velocity, total energy.
@@ -13,26 +13,26 @@ type Conserved = [f64; 3];
 
 /// Reconstructed state at a face: pressure, velocity, J, impedance rho0 C.
 #[derive(Clone, Copy)]
-struct Side {
+struct FittedSide {
     p: f64,
     u: f64,
     j: f64,
     z: f64,
 }
 
-/// Cells of one plate: J, u, E of each.
-struct Plate {
+/// Cells of one plate, each with J, u, E.
+struct FittedPlate {
     m: MieGruneisen,
     cells: Vec<Conserved>,
 }
 
-impl Plate {
+impl FittedPlate {
     fn pressure(&self, c: &Conserved) -> f64 {
         self.m.pressure(c[0], c[2] - 0.5 * c[1] * c[1])
     }
 
     /// The states at both faces of each cell, by van Leer's slopes of p, u and J.
-    fn faces(&self) -> Vec<[Side; 2]> {
+    fn faces(&self) -> Vec<[FittedSide; 2]> {
         let values: Vec<[f64; 3]> =
             self.cells.iter().map(|c| [self.pressure(c), c[1], c[0]]).collect();
         let n = values.len();
@@ -58,34 +58,34 @@ impl Plate {
                 [-1.0, 1.0].map(|s| {
                     let [p, u, j]: [f64; 3] = std::array::from_fn(|q| values[k][q] + s * half[q]);
                     let z = self.m.rho0 * self.m.sound_speed_squared(j, p).sqrt() / j;
-                    Side { p, u, j, z }
+                    FittedSide { p, u, j, z }
                 })
             })
             .collect()
     }
 }
 
-/// Pressure and velocity between two sides, acoustically.
-fn star(l: &Side, r: &Side) -> (f64, f64) {
+/// Pressure and velocity between two sides, by the acoustic Riemann solver.
+fn star(l: &FittedSide, r: &FittedSide) -> (f64, f64) {
     let sum = l.z + r.z;
     let p = (r.z * l.p + l.z * r.p + l.z * r.z * (l.u - r.u)) / sum;
     (p, (l.z * l.u + r.z * r.u + l.p - r.p) / sum)
 }
 
-/// Flux through a face at pressure p and velocity u that is fixed to the material.
+/// Flux through a face that is fixed to the material, at pressure p and velocity u.
 fn flux(rho0: f64, p: f64, u: f64) -> Conserved {
     [-u, p / rho0, p * u / rho0]
 }
 
-struct Scheme {
-    flyer: Plate,
-    target: Plate,
+struct Discretisation {
+    flyer: FittedPlate,
+    target: FittedPlate,
     thickness: f64,
     shock: f64,
 }
 
-impl Scheme {
-    /// Rates of (cell content) = (cells x width), and the shock's speed.
+impl Discretisation {
+    /// Rates of the cell contents, and the speed of the shock.
     fn rates(&self) -> (Vec<Conserved>, Vec<Conserved>, f64) {
         let (f, t) = (self.flyer.faces(), self.target.faces());
         let (mf, mt) = (&self.flyer.m, &self.target.m);
@@ -108,7 +108,7 @@ impl Scheme {
         for (k, pair) in t.windows(2).enumerate() {
             let r = &pair[1][0];
             let (p, u) = star(&pair[0][1], r);
-            // the face overtakes the material: it meets what is right of the contact
+            // the face overtakes the material: its state is that to the right of the contact
             let w = speed * (k + 1) as f64 / n as f64;
             let j = r.j - (p - r.p) * mt.rho0 / (r.z * r.z);
             let e = mt.energy_at(r.j, r.p) + 0.5 * (p + r.p) * (r.j - j) / mt.rho0;
@@ -124,7 +124,7 @@ impl Scheme {
     }
 
     fn step(&mut self, dt: f64) {
-        let width = |scheme: &Scheme| {
+        let width = |scheme: &Discretisation| {
             [
                 scheme.thickness / scheme.flyer.cells.len() as f64,
                 scheme.shock / scheme.target.cells.len() as f64,
@@ -157,23 +157,23 @@ impl Scheme {
         let width = self.shock / self.target.cells.len() as f64;
         let compressed: f64 = self.target.cells.iter().map(|c| c[0] * width).sum();
         let mut x = self.shock - compressed;
-        let mut points: Vec<Point> = Vec::new();
+        let mut points: Vec<ProfilePoint> = Vec::new();
         for (cell, faces) in self.target.cells.iter().zip(self.target.faces()) {
             for (side, x) in faces.iter().zip([x, x + cell[0] * width]) {
                 let e = m.energy_at(side.j, side.p);
-                points.push(Point { x, p: side.p, u: side.u, rho: m.rho0 / side.j, e });
+                points.push(ProfilePoint { x, p: side.p, u: side.u, rho: m.rho0 / side.j, e });
             }
             x += cell[0] * width;
         }
         for x in [self.shock, end] {
-            points.push(Point { x, rho: m.rho0, ..Point::default() });
+            points.push(ProfilePoint { x, rho: m.rho0, ..ProfilePoint::default() });
         }
         Profile { points }
     }
 }
 
-/// The target's profiles at `times` (rising), with `n` cells in the flyer, four times as many in
-/// the target.
+/// The target's profiles at `times` (ascending), with `n` cells in the flyer and four times as many
+/// in the target.
 pub fn target(impact: &Impact, times: &[f64], n: usize) -> Vec<Profile> {
     let release = impact.release(4).unwrap();
     let two = &release.states[0];
@@ -199,16 +199,17 @@ pub fn target(impact: &Impact, times: &[f64], n: usize) -> Vec<Profile> {
         }
         sum
     };
-    let mut scheme = Scheme {
-        flyer: Plate { m: flyer, cells: (0..n).map(mean).collect() },
-        target: Plate { m: target, cells: vec![in_target; 4 * n] },
+    let mut scheme = Discretisation {
+        flyer: FittedPlate { m: flyer, cells: (0..n).map(mean).collect() },
+        target: FittedPlate { m: target, cells: vec![in_target; 4 * n] },
         thickness: l,
         shock: release.target_shock * t,
     };
     let mut out = Vec::new();
     for &time in times {
         while t < time {
-            // the target's cells grow with its shocked part; a face's speed adds to the sound's
+            // the target's cells grow with its shocked part; the speed of a face adds to the sound
+            // speed
             let in_flyer = scheme.thickness / n as f64 / release.flyer_head;
             let in_target = scheme.shock / (4 * n) as f64 / (2.0 * release.target_head);
             let dt = (0.45 * in_flyer.min(in_target)).min(time - t);

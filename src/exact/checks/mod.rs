@@ -1,5 +1,5 @@
-//! The true solution by other methods, held against front tracking: characteristics while there
-//! is no shock but the first two, a shock-fitted finite-volume scheme at any time.
+//! The true solution by other methods, compared with front tracking: characteristics as long as the
+//! first two shocks are the only ones, a shock-fitted finite-volume scheme at any time.
 
 mod characteristics;
 mod fitted;
@@ -67,14 +67,14 @@ fn tracking_agrees_with_a_shock_fitted_scheme_after_the_catch_up() {
     let (coarse, fine) = (errors(60), errors(120));
     println!("{coarse:?} {fine:?}");
     for k in 0..2 {
-        // kinks are what the scheme's L1 norm is slow in; the shock is not
+        // the scheme's L1 error converges slowly at kinks, but not at the shock
         assert!(fine[k][0] < 2.5e-3 && coarse[k][0] / fine[k][0] > 2.3, "{coarse:?} {fine:?}");
         assert!(fine[k][1] < 5e-9 && fine[k][2] < 1e-5, "{fine:?}");
     }
 }
 
-/// An aluminium flyer on copper, and what its interface does until a wave steepens in the flyer,
-/// by characteristics.
+/// An aluminium flyer on copper, and the states of its interface by characteristics, until a wave
+/// steepens in the flyer.
 fn parting(n: usize) -> (Impact, Vec<characteristics::Arrival>) {
     let impact = impact(ALUMINIUM, COPPER, 1500.0, 0.5e-3);
     let arrivals = characteristics::interface(&impact, 0.318e-6, n);
@@ -110,8 +110,8 @@ fn faces_move_as_the_characteristics_say_before_and_after_parting() {
             let opening = |q: &characteristics::Arrival| u2 + q.in_target - q.flyer_face;
             gap += 0.5 * (opening(q) + opening(&before)) * (q.t - before.t);
         }
-        // one front of the fan is 1/240 of P2: at parting and at the fan's edges the line bends
-        // between two of them, elsewhere the error is of second order
+        // one front of the fan is 1/240 of P2. At separation and at the edges of the fan the line
+        // bends between two fronts; elsewhere the error is of second order
         let bends = [arrivals[0].t, want, arrivals[800].t];
         let bend = bends.iter().any(|t| (q.t - t).abs() < 1e-9);
         let (by_p, by_u) = if bend { (1.5e-3, 12.0) } else { (2e-5, 3e-2) };

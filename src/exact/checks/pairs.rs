@@ -1,13 +1,13 @@
-//! Impacts of random pairs of materials, held to an integration and a bisection of their own.
+//! Impacts of random pairs of materials, compared with an independent integration and bisection.
 //!
-//! `IMPACT_CASES` sets the number of library pairs (3000 where it is not set).
+//! `IMPACT_CASES` sets the number of library pairs (default 3000).
 
 use std::path::Path;
 
 use super::super::{Impact, ImpactBody, Release};
 use crate::material::MieGruneisen;
 
-/// Random numbers of 0 to 1 (xorshift).
+/// Random numbers between 0 and 1 (xorshift).
 struct Random(u64);
 
 impl Random {
@@ -18,7 +18,7 @@ impl Random {
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Evenly distributed by its logarithm.
+    /// A random number whose logarithm is uniformly distributed.
     fn log(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(self.next())
     }
@@ -26,13 +26,13 @@ impl Random {
 
 /// The state on an isentrope: chi, specific internal energy, velocity.
 #[derive(Clone, Copy)]
-struct Own {
+struct OwnEos {
     chi: f64,
     e: f64,
     u: f64,
 }
 
-/// Pressure, and its slope along the isentrope, from the definition of the equation of state.
+/// Pressure and its derivative along the isentrope, from the definition of the equation of state.
 fn pressure(m: &MieGruneisen, chi: f64, e: f64) -> (f64, f64) {
     let k = m.rho0 * m.c0 * m.c0;
     let (f, slope) = if chi > 0.0 {
@@ -47,22 +47,22 @@ fn pressure(m: &MieGruneisen, chi: f64, e: f64) -> (f64, f64) {
 }
 
 /// One step of the midpoint rule by `h` in chi.
-fn step(m: &MieGruneisen, side: f64, s: Own, h: f64) -> Option<Own> {
+fn step(m: &MieGruneisen, side: f64, s: OwnEos, h: f64) -> Option<OwnEos> {
     let rate = |chi: f64, e: f64| {
         let (p, slope) = pressure(m, chi, e);
         (slope > 0.0).then(|| (p / m.rho0, side * (slope / m.rho0).sqrt()))
     };
     let (de, _) = rate(s.chi, s.e)?;
     let (de, du) = rate(s.chi + 0.5 * h, s.e + 0.5 * h * de)?;
-    Some(Own { chi: s.chi + h, e: s.e + h * de, u: s.u + h * du })
+    Some(OwnEos { chi: s.chi + h, e: s.e + h * de, u: s.u + h * du })
 }
 
-/// Along the isentrope to the pressure `p` by small steps, the last one by bisection. `None` where
-/// the sound speed becomes imaginary on the way, or no state has this pressure.
-fn follow(m: &MieGruneisen, side: f64, mut s: Own, p: f64) -> Option<Own> {
+/// Follows the isentrope to the pressure `p` by small steps, the last one by bisection. `None` if
+/// the sound speed becomes imaginary on the way, or if no state has this pressure.
+fn follow(m: &MieGruneisen, side: f64, mut s: OwnEos, p: f64) -> Option<OwnEos> {
     let up = pressure(m, s.chi, s.e).0 < p;
     let h = if up { 1e-4 } else { -1e-4 };
-    let past = |s: &Own| (pressure(m, s.chi, s.e).0 >= p) == up;
+    let past = |s: &OwnEos| (pressure(m, s.chi, s.e).0 >= p) == up;
     for _ in 0..400_000 {
         let next = step(m, side, s, h)?;
         if past(&next) {
@@ -78,8 +78,8 @@ fn follow(m: &MieGruneisen, side: f64, mut s: Own, p: f64) -> Option<Own> {
     None
 }
 
-/// The velocity that the two Hugoniots share, by bisection, and the states there.
-fn impedance_match(flyer: &MieGruneisen, target: &MieGruneisen, speed: f64) -> [Own; 2] {
+/// The velocity at which the two Hugoniots meet, by bisection, and the states there.
+fn impedance_match(flyer: &MieGruneisen, target: &MieGruneisen, speed: f64) -> [OwnEos; 2] {
     let p = |m: &MieGruneisen, w: f64| m.rho0 * (m.c0 + m.s * w) * w;
     let (mut low, mut high) = (0.0, speed);
     for _ in 0..200 {
@@ -87,33 +87,34 @@ fn impedance_match(flyer: &MieGruneisen, target: &MieGruneisen, speed: f64) -> [
         if p(target, u) < p(flyer, speed - u) { low = u } else { high = u }
     }
     let state =
-        |m: &MieGruneisen, w: f64| Own { chi: w / (m.c0 + m.s * w), e: 0.5 * w * w, u: low };
+        |m: &MieGruneisen, w: f64| OwnEos { chi: w / (m.c0 + m.s * w), e: 0.5 * w * w, u: low };
     [state(flyer, speed - low), state(target, low)]
 }
 
-/// What an impact must give.
-enum Expected {
-    /// Past the limit density, or an imaginary sound speed.
+/// Expected result of an impact.
+enum ExpectedRelease {
+    /// Compression beyond the limit density, or an imaginary sound speed.
     Refused,
-    /// The flyer released, and the target released, to P = 0.
-    Solved { two: [Own; 2], free: Own, unloaded: Own },
+    /// State 2 of both plates, and the flyer and the target released to P = 0.
+    Solved { two: [OwnEos; 2], free: OwnEos, unloaded: OwnEos },
 }
 
-fn expect(flyer: &MieGruneisen, target: &MieGruneisen, speed: f64) -> Expected {
+fn expect(flyer: &MieGruneisen, target: &MieGruneisen, speed: f64) -> ExpectedRelease {
     let two = impedance_match(flyer, target, speed);
     let limit = |m: &MieGruneisen| 0.95f64.min(0.95 / m.s);
     if two[0].chi >= limit(flyer) || two[1].chi >= limit(target) {
-        return Expected::Refused;
+        return ExpectedRelease::Refused;
     }
     let free = follow(flyer, 1.0, two[0], 0.0);
     let unloaded = follow(target, 1.0, two[1], 0.0);
     match free.zip(unloaded) {
-        Some((free, unloaded)) => Expected::Solved { two, free, unloaded },
-        None => Expected::Refused,
+        Some((free, unloaded)) => ExpectedRelease::Solved { two, free, unloaded },
+        None => ExpectedRelease::Refused,
     }
 }
 
-/// Holds one impact to what it must give; whether it is solved and whether the plates part.
+/// Checks one impact against the expected result; returns whether it is solved and whether the
+/// plates separate.
 fn check(flyer: MieGruneisen, target: MieGruneisen, speed: f64, thickness: [f64; 2]) -> [bool; 2] {
     let what = format!("{flyer:?} on {target:?} at {speed} m/s, {thickness:?} m");
     let body = |material, lower, upper, velocity| ImpactBody { material, lower, upper, velocity };
@@ -121,11 +122,11 @@ fn check(flyer: MieGruneisen, target: MieGruneisen, speed: f64, thickness: [f64;
         Impact::new(body(flyer, -thickness[0], 0.0, speed), body(target, 0.0, thickness[1], 0.0))
             .and_then(|impact| Ok((impact.chain(12)?, impact.release(6)?)));
     let (two, free, unloaded) = match expect(&flyer, &target, speed) {
-        Expected::Refused => {
+        ExpectedRelease::Refused => {
             assert!(found.is_err(), "{what}: solved, though it has no solution");
             return [false; 2];
         }
-        Expected::Solved { two, free, unloaded } => (two, free, unloaded),
+        ExpectedRelease::Solved { two, free, unloaded } => (two, free, unloaded),
     };
     let (chain, release): (_, Release) = found.unwrap_or_else(|e| panic!("{what}: {e}"));
     let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-5 * speed, "{what}: {a} {b}");
@@ -135,12 +136,12 @@ fn check(flyer: MieGruneisen, target: MieGruneisen, speed: f64, thickness: [f64;
     assert!(release.states.iter().all(|s| s.u.is_finite() && s.p.is_finite()), "{what}");
     let four = &release.states[2];
     let gap = free.u - unloaded.u;
-    // equal plates come to rest: neither apart nor pressed
+    // equal plates come to rest: neither separated nor under pressure
     if gap < -1e-5 * speed {
         assert!(release.separates && four.p == 0.0, "{what}");
         near(four.u, unloaded.u);
     } else if gap > 1e-5 * speed {
-        // they may still part at state 6
+        // they may still separate at state 6
         assert!(four.rho_flyer.is_some() && four.p > 0.0, "{what}");
         // the velocities of the two isentropes cross at the pressure of state 4
         let at = |p: f64| {
@@ -156,7 +157,7 @@ fn check(flyer: MieGruneisen, target: MieGruneisen, speed: f64, thickness: [f64;
     [true, release.separates]
 }
 
-/// The materials of the library that have a straight Hugoniot.
+/// The materials of the library with a straight Hugoniot.
 fn library() -> Vec<MieGruneisen> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/materials");
     let mut files: Vec<_> =
@@ -208,7 +209,7 @@ fn made_up_materials_have_their_chain_where_there_is_one() {
             gamma0: 3.2 * random.next(),
         };
         let (mut flyer, mut target) = (one(), one());
-        // the softer plate strikes: both rarefactions part the plates
+        // the softer plate strikes: both rarefactions separate the plates
         if flyer.rho0 * flyer.c0 > target.rho0 * target.c0 {
             (flyer, target) = (target, flyer);
         }

@@ -11,22 +11,22 @@ fn solve(impact: &Impact, times: &[f64]) -> Solution {
     impact.solve(times, &[], Accuracy::default()).unwrap()
 }
 
-/// Largest fault in the integrals of mass, momentum and energy, each over its whole.
+/// Largest relative error in the integrals of mass, momentum and energy.
 fn conservation(impact: &Impact, snapshot: &Snapshot) -> f64 {
     let all = &snapshot.profile.as_ref().unwrap().points;
     let target = &snapshot.target.as_ref().unwrap().points;
     // the flyer's points come first, or last if it comes from the right
     let rest = all.len() - target.len();
     let flyer = if impact.mirrored { &all[target.len()..] } else { &all[..rest] };
-    let integral = |f: &dyn Fn(&Point) -> f64, points: &[Point]| -> f64 {
+    let integral = |f: &dyn Fn(&ProfilePoint) -> f64, points: &[ProfilePoint]| -> f64 {
         points.windows(2).map(|w| 0.5 * (f(&w[0]) + f(&w[1])) * (w[1].x - w[0].x)).sum()
     };
-    let both = |f: &dyn Fn(&Point) -> f64| integral(f, flyer) + integral(f, target);
+    let both = |f: &dyn Fn(&ProfilePoint) -> f64| integral(f, flyer) + integral(f, target);
     let (l, u) = (impact.thickness(), impact.speed);
     let t = impact.target.upper - impact.target.lower;
     let (rf, rt) = (impact.flyer.material.rho0, impact.target.material.rho0);
     let v = impact.target.velocity;
-    let energy = |q: &Point| q.rho * (q.e + 0.5 * (q.u - v) * (q.u - v));
+    let energy = |q: &ProfilePoint| q.rho * (q.e + 0.5 * (q.u - v) * (q.u - v));
     println!(
         "{:.3} {:.1e} {:.1e} {:.1e} {:.1e}",
         snapshot.time * 1e6,
@@ -84,10 +84,10 @@ fn the_standard_problem_has_its_waves_and_is_cheap() {
     let near_face = solution.interface.at(0.3e-6).unwrap();
     assert!((near_face.p / states[2].p - 1.0).abs() < 1e-5);
     assert!((near_face.u / states[2].u - 1.0).abs() < 1e-5);
-    // no fan yet: the plateau begins at the interface
+    // no fan yet: the plateau starts at the interface
     let early = solution.snapshots[0].landmarks.unwrap();
     assert_eq!(early.plateau, Some([early.interface, early.shock.unwrap()]));
-    assert!(early.plateau_4.is_none() && marks.plateau_4.is_some());
+    assert!(early.second_plateau.is_none() && marks.second_plateau.is_some());
 }
 
 #[test]
@@ -100,11 +100,13 @@ fn any_frame_gives_the_same() {
     let there = Impact::new(flyer, target).unwrap();
     assert!(there.mirrored && (there.contact_time - 0.1037e-6).abs() < 1e-15);
     let tracers = [
-        Tracer { plate: Plate::Target, x: 2e-3 },
-        Tracer { plate: Plate::Flyer, x: 3.25e-3 + gap },
+        TracedPoint { plate: Plate::Target, x: 2e-3 },
+        TracedPoint { plate: Plate::Flyer, x: 3.25e-3 + gap },
     ];
-    let moved =
-        [Tracer { plate: Plate::Target, x: 1e-3 }, Tracer { plate: Plate::Flyer, x: -0.25e-3 }];
+    let moved = [
+        TracedPoint { plate: Plate::Target, x: 1e-3 },
+        TracedPoint { plate: Plate::Flyer, x: -0.25e-3 },
+    ];
     let (t, later) = (0.5e-6, 0.5e-6 + there.contact_time);
     let a = here.solve(&[t], &moved, Accuracy { wavelets: 60 }).unwrap();
     let b = there.solve(&[later, 0.05e-6], &tracers, Accuracy { wavelets: 60 }).unwrap();
@@ -124,7 +126,7 @@ fn any_frame_gives_the_same() {
             assert!((x - a.x - b.x).abs() < 1e-13);
         }
     }
-    // before contact nothing has happened
+    // before contact all pressures are 0
     let before = &b.snapshots[1];
     assert!(before.landmarks.is_none());
     assert!(before.profile.as_ref().unwrap().points.iter().all(|q| q.p == 0.0));
@@ -145,8 +147,10 @@ fn a_softer_flyer_parts_on_time() {
 #[test]
 fn tracers_follow_the_profile() {
     let impact = plates(COPPER, ALUMINIUM, 1000.0);
-    let tracers =
-        [Tracer { plate: Plate::Target, x: 1e-3 }, Tracer { plate: Plate::Flyer, x: -2e-4 }];
+    let tracers = [
+        TracedPoint { plate: Plate::Target, x: 1e-3 },
+        TracedPoint { plate: Plate::Flyer, x: -2e-4 },
+    ];
     let times = [0.1e-6, 0.24e-6, 0.4e-6, 0.6e-6];
     let solution = impact.solve(&times, &tracers, Accuracy::default()).unwrap();
     for snapshot in &solution.snapshots {
@@ -187,20 +191,20 @@ fn refuses_what_cannot_be() {
         assert!(Impact::new(flyer, target).is_err(), "{flyer:?}");
     }
     let impact = plates(COPPER, ALUMINIUM, 100.0);
-    let far = Tracer { plate: Plate::Target, x: 1.0 };
+    let far = TracedPoint { plate: Plate::Target, x: 1.0 };
     assert!(impact.solve(&[1e-7], &[far], Accuracy::default()).is_err());
     assert!(impact.solve(&[f64::NAN], &[], Accuracy::default()).is_err());
     assert!(impact.solve(&[1e-7], &[], Accuracy { wavelets: 1 }).is_err());
 }
 
-/// The number of points that are the flyer's, whose mass is `mass` [kg/m2].
-fn flyer_points(points: &[Point], mass: f64) -> usize {
+/// Number of points of the flyer, whose mass is `mass` [kg/m2].
+fn flyer_points(points: &[ProfilePoint], mass: f64) -> usize {
     let mut sum = 0.0;
     let full = points.windows(2).position(|w| {
         sum += 0.5 * (w[0].rho + w[1].rho) * (w[1].x - w[0].x);
         sum > (1.0 - 1e-4) * mass && w[1].x > w[0].x
     });
-    // the flyer's face is doubled by the target's
+    // flyer and target each have a point at the contact face
     let mut k = full.unwrap() + 1;
     while sum < (1.0 - 1e-9) * mass && points[k + 1].x - points[k].x < 1e-3 * mass / points[k].rho {
         sum += 0.5 * (points[k].rho + points[k + 1].rho) * (points[k + 1].x - points[k].x);
@@ -225,7 +229,7 @@ fn the_rear_of_the_target_releases_the_shock() {
         let times: Vec<f64> = (1..8).map(|k| arrival * (0.9 + 0.2 * f64::from(k))).collect();
         let solution = solve(&impact, &times);
         assert!(solution.stopped.is_none());
-        let sum = |f: &dyn Fn(&Point) -> f64, points: &[Point]| -> f64 {
+        let sum = |f: &dyn Fn(&ProfilePoint) -> f64, points: &[ProfilePoint]| -> f64 {
             points.windows(2).map(|w| 0.5 * (f(&w[0]) + f(&w[1])) * (w[1].x - w[0].x)).sum()
         };
         let mass = [flyer.rho0 * 0.5e-3, target.rho0 * thickness];
@@ -233,7 +237,7 @@ fn the_rear_of_the_target_releases_the_shock() {
             assert_eq!(snapshot.profile.is_some(), snapshot.time < arrival);
             let points = &snapshot.whole.as_ref().unwrap().points;
             let (a, b) = points.split_at(flyer_points(points, mass[0]));
-            let both = |f: &dyn Fn(&Point) -> f64| sum(f, a) + sum(f, b);
+            let both = |f: &dyn Fn(&ProfilePoint) -> f64| sum(f, a) + sum(f, b);
             let close = |a: f64, b: f64| {
                 assert!((a / b - 1.0).abs() < 1e-4, "{speed} {} {a} {b}", snapshot.time)
             };
@@ -244,7 +248,7 @@ fn the_rear_of_the_target_releases_the_shock() {
             let rear = solution.target_rear.at(snapshot.time).unwrap();
             assert!((points.last().unwrap().x - rear.x).abs() < 1e-9 && rear.p == 0.0);
         }
-        // directly after its arrival the shock has been released along the isentrope
+        // directly after the arrival the rear state is released along the isentrope
         let two = super::super::wave::shocked(&target, solution.release.states[0].u);
         let free = super::super::isentrope::to_pressure(&target, two, -1.0, 0.0).unwrap();
         let rear = solution.target_rear.at(1.001 * arrival).unwrap();
@@ -252,8 +256,8 @@ fn the_rear_of_the_target_releases_the_shock() {
     }
 }
 
-/// Every line of the x-t diagram goes on to the last time, or ends where it meets another line, or
-/// at the time from which the waves are not followed, for which the solution has a reason.
+/// Every path of the x-t diagram continues to the last time, or ends where it meets another path or
+/// at the time from which the waves are no longer followed; then the solution states the reason.
 #[test]
 fn lines_reach_the_end_or_have_a_reason() {
     let tungsten = MieGruneisen { rho0: 19224.0, c0: 4029.0, s: 1.237, gamma0: 1.54 };

@@ -1,19 +1,20 @@
-//! Until when a flyer of finite width strikes as an infinitely wide one.
+//! The time until which a flyer of finite width strikes like an infinitely wide one.
 //!
-//! At contact the edge of the flyer begins to release what the shock has compressed. In material
-//! that has only moved along the axis, the head of this release is a circle that grows at the
-//! sound speed c2 of state 2 about the edge on the interface, so that with a the half width
+//! At contact the edge of the flyer starts to release the material that the shock has compressed.
+//! In material that has moved only along the axis, the head of this release is a circle around the
+//! edge on the interface. It grows at the sound speed c2 of state 2. With a the half width:
 //!
 //! ```text
 //! centre line:   t = a/c2                          first reached on the interface
 //! shock front:   t = a/sqrt(c2^2 - (Us - u2)^2)    its centre, in a target
 //! ```
 //!
-//! Source of the second: Al'tshuler, Kormer, Brazhnik, Vladimirov, Speranskaya & Funtikov
-//! (1960), Sov. Phys. JETP 11, 766. Release lowers the sound speed, so none is greater than c2:
-//! before a/c2, with the larger c2 of the two bodies, the centre line is exactly
-//! one-dimensional, whatever the release from the flyer's rear does meanwhile. Holds for plane strain and for a disk of
-//! radius a. No strength: with it the head runs at the longitudinal elastic speed.
+//! Source of the second: Al'tshuler, Kormer, Brazhnik, Vladimirov, Speranskaya & Funtikov (1960),
+//! Sov. Phys. JETP 11, 766. Release lowers the sound speed, so no sound speed exceeds c2. Before
+//! a/c2, with the larger c2 of the two bodies, the centre line is therefore exactly
+//! one-dimensional, independent of the release from the flyer's rear. This holds for plane strain
+//! and for a disk of radius a. It neglects strength, with which the head runs at the longitudinal
+//! elastic speed.
 
 use crate::exact::{ExactError, Impact, Plate, positive};
 use crate::material::{EquationOfState, MieGruneisen};
@@ -23,24 +24,24 @@ use crate::material::{EquationOfState, MieGruneisen};
 pub struct EdgeRelease {
     /// Half width, or radius, of the flyer [m].
     pub half_width: f64,
-    /// When the bodies touch [s].
+    /// Time of contact [s].
     pub contact_time: f64,
     /// Sound speed of state 2 in the flyer [m/s].
     pub flyer_sound_speed: f64,
     /// Sound speed of state 2 in the target [m/s].
     pub target_sound_speed: f64,
-    /// Speed Us - u2 of the target's shock relative to what is behind it [m/s].
+    /// Speed Us - u2 of the target's shock relative to the material behind it [m/s].
     pub shock_gain: f64,
 }
 
-/// Sound speed in space behind a shock: of `material` at density `rho` [kg/m3] and pressure `p`
-/// [Pa] [m/s].
+/// Eulerian sound speed [m/s] of `material` behind a shock, at density `rho` [kg/m3] and pressure
+/// `p` [Pa].
 pub fn sound_speed_behind(material: &MieGruneisen, rho: f64, p: f64) -> f64 {
     material.sound_speed_squared(material.rho0 / rho, p).sqrt()
 }
 
 impl EdgeRelease {
-    /// For a flyer of `half_width` that strikes a target at least as wide.
+    /// The edge release of a flyer of `half_width` [m] that strikes a target at least as wide.
     pub fn new(impact: &Impact, half_width: f64) -> Result<EdgeRelease, ExactError> {
         positive("the flyer's half width", half_width)?;
         let release = impact.release(4)?;
@@ -64,13 +65,13 @@ impl EdgeRelease {
         self.flyer_sound_speed.max(self.target_sound_speed)
     }
 
-    /// When the release reaches the centre line, on the interface [s]: until then the whole
-    /// centre line is as in one dimension.
+    /// Time at which the release reaches the centre line, on the interface [s]; until then the
+    /// whole centre line is as in one dimension.
     pub fn centre_time(&self) -> f64 {
         self.contact_time + self.half_width / self.fastest()
     }
 
-    /// When the release that runs in the target reaches the centre of its shock front [s].
+    /// Time at which the release in the target reaches the centre of the shock front [s].
     pub fn shock_centre_time(&self) -> f64 {
         self.contact_time + self.half_width / self.along_front()
     }
@@ -131,13 +132,13 @@ mod tests {
 
     #[test]
     fn the_circle_meets_the_front_when_it_says() {
-        // in the frame of the shocked target the front is at (Us - u2) t, and the circle's
-        // point on it a - along_front t off the axis
+        // in the frame of the shocked target the front is at (Us - u2) t, and the intersection of
+        // the circle with it is a - along_front t off the axis
         let edge = EdgeRelease::new(&standard(0.0), 2e-3).unwrap();
         let t = edge.shock_centre_time();
         let radius = (edge.shock_gain * t).hypot(edge.half_width);
         close(radius, edge.target_sound_speed * t, 1e-12);
-        // the front's centre is reached later than the interface's
+        // the release reaches the front's centre later than the interface's
         assert!(t > edge.centre_time());
     }
 

@@ -1,11 +1,11 @@
-//! Two plates with a gap between them: nothing may happen before it has closed.
+//! Two plates with a gap between them: nothing happens before the gap has closed.
 //!
 //! ```text
 //! g(t) = g0 - V t,   closed at t_c = g0/V
 //! ```
 //!
-//! and from then on the impact at V, shifted by t_c. Bodies that meet through the grid, before
-//! their faces touch, show as a contact that comes too early: [`Gap::lead_cells`] says by how
+//! After t_c the solution is the impact at V, shifted by t_c. If bodies interact through the grid
+//! before their faces touch, the computed contact is too early; [`Gap::lead_cells`] gives by how
 //! many cells.
 
 use crate::exact::{ExactError, Impact, ImpactBody, positive};
@@ -20,7 +20,7 @@ pub struct Gap {
 }
 
 impl Gap {
-    /// A gap that closes.
+    /// A gap of `width` [m] that closes at `speed` [m/s].
     pub fn new(width: f64, speed: f64) -> Result<Gap, ExactError> {
         positive("the width of the gap", width)?;
         positive("the closing speed", speed)?;
@@ -34,24 +34,24 @@ impl Gap {
         Ok((width > 0.0).then_some(Gap { width, speed: impact.speed }))
     }
 
-    /// When it is closed [s].
+    /// Time at which the gap is closed [s].
     pub fn closing_time(&self) -> f64 {
         self.width / self.speed
     }
 
-    /// Its width at `t`, 0 from closing on [m].
+    /// Width of the gap at `t` [m]; 0 after closing.
     pub fn at(&self, t: f64) -> f64 {
         (self.width - self.speed * t).max(0.0)
     }
 
-    /// Distance that the faces still had at a computed time of contact, in cells of size `h` [m]:
-    /// positive if contact came too early [-].
+    /// Distance between the faces at a computed time of contact, in cells of size `h` [m]; positive
+    /// if the contact is too early [-].
     pub fn lead_cells(&self, computed: f64, h: f64) -> f64 {
         (self.closing_time() - computed) * self.speed / h
     }
 
-    /// The impact of a flyer made to start this far from the face that it strikes, at this speed
-    /// relative to the target, from the side of -x.
+    /// The impact of a flyer that comes from the side of -x, starts at this gap from the face that
+    /// it strikes, and moves at this speed relative to the target.
     pub fn impact(
         &self,
         flyer: crate::material::MieGruneisen,
@@ -71,7 +71,7 @@ impl Gap {
 mod tests {
     use super::*;
     use crate::exact::samples::{ALUMINIUM, COPPER};
-    use crate::exact::{Accuracy, Point};
+    use crate::exact::{Accuracy, ProfilePoint};
 
     fn close(a: f64, b: f64, by: f64) {
         assert!((a - b).abs() <= by, "{a} {b}");
@@ -83,7 +83,8 @@ mod tests {
         close(gap.closing_time(), 0.1037e-6, 1e-20);
         close(gap.at(0.05e-6), 0.0537e-3, 1e-18);
         assert_eq!(gap.at(0.2e-6), 0.0);
-        // by velocity alone contact was seen at 0.0747 us: 2.9 cells of 10 um early
+        // with a criterion on velocity alone, contact was detected at 0.0747 us: 2.9 cells of 10 um
+        // early
         close(gap.lead_cells(0.0747e-6, 10e-6), 2.9, 1e-9);
         assert!(Gap::new(0.0, 1.0).is_err() && Gap::new(1.0, -1.0).is_err());
     }
@@ -107,7 +108,7 @@ mod tests {
             close(p.x, q.x, 1e-14);
             close(p.p, q.p, 1e-2);
         }
-        let quiet = |q: &Point| q.p == 0.0;
+        let quiet = |q: &ProfilePoint| q.p == 0.0;
         assert!(points(&b.snapshots[1]).iter().all(quiet));
     }
 }

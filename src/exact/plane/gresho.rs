@@ -1,4 +1,4 @@
-//! Gresho's vortex: a gas that turns on circles, held by its own pressure, and stands still.
+//! Gresho's vortex: a gas that rotates on circles in a steady state, held by its own pressure.
 //!
 //! With a the radius of the greatest velocity V and xi = r/a:
 //!
@@ -8,11 +8,11 @@
 //! else:   u = 0,           p = p0 + rho V^2 (4 ln 2 - 2)
 //! ```
 //!
-//! so that dp/dr = rho u^2/r. Sources: Gresho & Chan (1990), Int. J. Numer. Meth. Fluids 11,
+//! These satisfy dp/dr = rho u^2/r. Sources: Gresho & Chan (1990), Int. J. Numer. Meth. Fluids 11,
 //! 621; as a test of gas codes Liska & Wendroff (2003), SIAM J. Sci. Comput. 25, 995, with
-//! a = 0.2 m, V = 1 m/s, rho = 1 kg/m3, p0 = 5 Pa, gamma = 1.4. The pressure's level is free;
-//! Miczek (2013, thesis, Munich) sets it by a reference Mach number, p0 = rho V^2/(gamma Ma^2):
-//! [`Gresho::with_mach`].
+//! a = 0.2 m, V = 1 m/s, rho = 1 kg/m3, p0 = 5 Pa, gamma = 1.4. The pressure level is a free
+//! parameter. Miczek (2013, thesis, Munich) sets it by a reference Mach number,
+//! p0 = rho V^2/(gamma Ma^2): [`Gresho::with_mach`].
 
 use std::f64::consts::{LN_2, TAU};
 
@@ -22,15 +22,15 @@ use crate::exact::{ExactError, finite, positive};
 /// Gresho's vortex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gresho {
-    /// Place of the centre [m].
+    /// Position of the centre [m].
     pub centre: Vector,
-    /// Radius a of the greatest velocity; the gas is at rest beyond 2 a [m].
+    /// Radius a of the greatest velocity [m]; the gas is at rest beyond 2 a.
     pub radius: f64,
     /// Greatest velocity V, counter-clockwise [m/s].
     pub speed: f64,
-    /// Density, the same everywhere [kg/m3].
+    /// Uniform density [kg/m3].
     pub density: f64,
-    /// Pressure p0 in the centre [Pa].
+    /// Pressure p0 at the centre [Pa].
     pub centre_pressure: f64,
     /// Ratio of specific heats [-].
     pub gamma: f64,
@@ -51,7 +51,7 @@ impl Default for Gresho {
 }
 
 impl Gresho {
-    /// Refuses what is no gas or no vortex.
+    /// Refuses constants that do not describe a gas or a vortex.
     pub fn check(&self) -> Result<(), ExactError> {
         finite("the vortex's centre", self.centre[0])?;
         finite("the vortex's centre", self.centre[1])?;
@@ -66,8 +66,8 @@ impl Gresho {
         }
     }
 
-    /// The same vortex with the pressure's level such that V over the sound speed in the centre
-    /// is `mach`.
+    /// The same vortex with its pressure level set so that V over the sound speed at the centre is
+    /// `mach`.
     pub fn with_mach(self, mach: f64) -> Result<Gresho, ExactError> {
         positive("the Mach number", mach)?;
         let centre_pressure = self.density * self.speed * self.speed / (self.gamma * mach * mach);
@@ -76,7 +76,7 @@ impl Gresho {
         Ok(vortex)
     }
 
-    /// Reference Mach number, V over the sound speed in the centre [-].
+    /// Reference Mach number: V over the sound speed at the centre [-].
     pub fn mach(&self) -> f64 {
         self.speed / (self.gamma * self.centre_pressure / self.density).sqrt()
     }
@@ -105,33 +105,33 @@ impl Gresho {
         self.pressure(r) / ((self.gamma - 1.0) * self.density)
     }
 
-    /// Velocity at the place `x` [m/s].
+    /// Velocity at the position `x` [m/s].
     pub fn velocity(&self, x: Vector) -> Vector {
         let [rx, ry] = difference(x, self.centre);
         let omega = self.turn_rate(length([rx, ry]));
         [-omega * ry, omega * rx]
     }
 
-    /// Place at `t` of the material point that began at `reference` [m].
+    /// Position at `t` of the material point that started at `reference` [m].
     pub fn position(&self, reference: Vector, t: f64) -> Vector {
         let from = difference(reference, self.centre);
         let [rx, ry] = super::turn(from, self.turn_rate(length(from)) * t);
         [self.centre[0] + rx, self.centre[1] + ry]
     }
 
-    /// u/r [rad/s].
+    /// Angular velocity u/r at the distance `r` [rad/s].
     fn turn_rate(&self, r: f64) -> f64 {
-        // the core turns as a rigid body, also in its centre
+        // the core rotates as a rigid body, also at its centre
         if r < self.radius { self.speed / self.radius } else { self.hoop_velocity(r) / r }
     }
 
-    /// Time of one turn of the core, 2 pi a/V [s].
+    /// Time of one revolution of the core, 2 pi a/V [s].
     pub fn turn_time(&self) -> f64 {
         TAU * self.radius / self.speed
     }
 
-    /// Rms error of the velocity over particles (place [m], velocity [m/s], volume) within 2 a
-    /// of the centre, over V [-]; `None` without particles.
+    /// Rms error of the velocity over V [-], from particles (position [m], velocity [m/s], volume)
+    /// within 2 a of the centre; `None` if there are none.
     pub fn velocity_error(
         &self,
         particles: impl IntoIterator<Item = (Vector, Vector, f64)>,
@@ -140,9 +140,9 @@ impl Gresho {
             .map(|rms| rms / self.speed)
     }
 
-    /// Rms error of the pressure over particles (place [m], pressure [Pa], volume) within 2 a of
-    /// the centre, over rho V^2/2, the rise from the centre to r = a [-]; `None` without
-    /// particles. Give it pressures whose level has been set right if only the form counts.
+    /// Rms error of the pressure over rho V^2/2, its rise from the centre to r = a [-], from
+    /// particles (position [m], pressure [Pa], volume) within 2 a of the centre; `None` if there
+    /// are none. To compare only the shape, correct the pressure level first.
     pub fn pressure_error(
         &self,
         particles: impl IntoIterator<Item = (Vector, f64, f64)>,
@@ -237,7 +237,7 @@ mod tests {
             }
             close(length(difference(at(0.7), g.centre)), length(difference(x, g.centre)), 1e-14);
         }
-        // the core is back after one turn
+        // the core returns after one revolution
         let back = g.position([0.5, 0.1], g.turn_time());
         close(back[0], 0.5, 1e-14);
     }

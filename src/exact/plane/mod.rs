@@ -1,14 +1,16 @@
 //! Exact references for scenes in two dimensions.
 //!
-//! - [`vortex`]: the generalized vortex, a solid held on its course by a body force;
-//! - [`rotation`]: what a spinning body keeps;
-//! - [`noh`]: a cold gas that implodes; [`gresho`]: a vortex in a gas that stands still;
-//!   [`shear_layer`]: layers that slide past each other;
-//! - [`oblique`]: a solution in one dimension as plane waves across the grid;
-//! - [`edge`]: until when a plate of finite width looks infinitely wide;
-//! - [`gap`] and [`separation`]: plates that meet, and plates that let go of each other.
+//! - [`vortex`]: the generalized vortex, a solid driven by a manufactured body force;
+//! - [`rotation`]: quantities that a spinning body conserves;
+//! - [`noh`]: a cold gas that implodes;
+//! - [`gresho`]: a stationary vortex in a gas;
+//! - [`shear_layer`]: layers that slide past each other;
+//! - [`oblique`]: a one-dimensional solution as plane waves at an angle to the grid;
+//! - [`edge`]: the time until which a plate of finite width behaves as an infinitely wide one;
+//! - [`gap`] and [`separation`]: plates that come into contact, and plates that separate.
 //!
-//! Knows no particles, grid, scene or files. SI units; places and velocities are pairs [x, y].
+//! These modules know no particles, grid, scene or files. SI units; positions and velocities are
+//! pairs [x, y].
 
 pub mod edge;
 pub mod gap;
@@ -30,14 +32,14 @@ pub use separation::Separation;
 pub use shear_layer::{ShearLayer, ShearProfile};
 pub use vortex::{Displaced, Vortex};
 
-/// A place [m], velocity [m/s] or the like in the plane.
+/// A position [m], velocity [m/s] or other vector in the plane.
 pub type Vector = [f64; 2];
 
 fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-/// The component of a x b across the plane.
+/// The component of a x b normal to the plane.
 fn cross(a: Vector, b: Vector) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
@@ -54,7 +56,7 @@ fn length([x, y]: Vector) -> f64 {
     x.hypot(y)
 }
 
-/// `v` turned by `angle` [rad], counter-clockwise.
+/// `v` rotated counter-clockwise by `angle` [rad].
 fn turn([x, y]: Vector, angle: f64) -> Vector {
     let (sin, cos) = angle.sin_cos();
     [cos * x - sin * y, sin * x + cos * y]

@@ -1,6 +1,6 @@
-//! Noh's problem: a cold gas runs into a plane, an axis or a point, and a shock runs out of it.
+//! Noh's problem: a cold gas flows towards a plane, an axis or a point, and a shock runs outward.
 //!
-//! With n = 1, 2, 3 dimensions that close in, gas at rho0 and e = 0 that runs inward at v:
+//! With n = 1, 2, 3 converging dimensions, and gas at rho0 and e = 0 that flows inward at v:
 //!
 //! ```text
 //! shock:   r_s = D t,  D = (gamma - 1) v/2
@@ -8,14 +8,14 @@
 //! r > r_s: rho = rho0 (1 + v t/r)^(n-1),           u = -v, e = 0, p = 0
 //! ```
 //!
-//! Source: Noh (1987), J. Comput. Phys. 72, 78. Velocities are radial, positive outward; r is
-//! the distance from where the gas meets. A run in a finite domain follows it until the outer
-//! boundary's signal arrives, or with the state ahead set there.
+//! Source: Noh (1987), J. Comput. Phys. 72, 78. Velocities are radial, positive outward; r is the
+//! distance from the centre. A run in a finite domain follows the solution until the signal from
+//! the outer boundary arrives, or throughout if that boundary prescribes the state ahead.
 
 use super::{Vector, length};
-use crate::exact::{ExactError, Point, Profile, positive};
+use crate::exact::{ExactError, Profile, ProfilePoint, positive};
 
-/// What the gas closes in on.
+/// Geometry of the implosion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symmetry {
     /// A plane: one dimension.
@@ -27,7 +27,7 @@ pub enum Symmetry {
 }
 
 impl Symmetry {
-    /// The number n of dimensions that close in.
+    /// The number n of converging dimensions.
     pub fn dimensions(self) -> i32 {
         match self {
             Symmetry::Planar => 1,
@@ -40,7 +40,7 @@ impl Symmetry {
 /// Noh's problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noh {
-    /// What the gas closes in on.
+    /// Geometry of the implosion.
     pub symmetry: Symmetry,
     /// Ratio of specific heats [-].
     pub gamma: f64,
@@ -50,11 +50,11 @@ pub struct Noh {
     pub speed: f64,
 }
 
-/// Straight pieces in which the density ahead of the shock is given.
+/// Number of straight pieces that represent the density ahead of the shock.
 const PIECES: usize = 512;
 
 impl Noh {
-    /// Refuses constants that make no gas.
+    /// Noh's problem; refuses constants that do not describe a gas.
     pub fn new(
         symmetry: Symmetry,
         gamma: f64,
@@ -90,14 +90,14 @@ impl Noh {
         0.5 * (self.gamma - 1.0) * self.density_behind() * self.speed * self.speed
     }
 
-    /// The gas at distance `r` >= 0 and time `t` >= 0; `x` of the point is r, `u` the radial
-    /// velocity. On the shock itself the state behind.
-    pub fn at(&self, r: f64, t: f64) -> Point {
+    /// The gas at the distance `r` >= 0 and time `t` >= 0; `x` of the point is r, `u` the radial
+    /// velocity. At the shock itself the state is the one behind it.
+    pub fn at(&self, r: f64, t: f64) -> ProfilePoint {
         if t > 0.0 && r <= self.shock_position(t) { self.behind(r) } else { self.ahead(r, t) }
     }
 
-    fn behind(&self, r: f64) -> Point {
-        Point {
+    fn behind(&self, r: f64) -> ProfilePoint {
+        ProfilePoint {
             x: r,
             p: self.pressure_behind(),
             u: 0.0,
@@ -106,41 +106,41 @@ impl Noh {
         }
     }
 
-    fn ahead(&self, r: f64, t: f64) -> Point {
-        // at the centre the gas has only begun to gather: there is none ahead for t > 0
+    fn ahead(&self, r: f64, t: f64) -> ProfilePoint {
+        // the shock leaves the centre at once, so there is no gas ahead at r = 0 for t > 0
         let gathered = if t > 0.0 { self.speed * t / r } else { 0.0 };
         let rho = self.density * (1.0 + gathered).powi(self.symmetry.dimensions() - 1);
-        Point { x: r, p: 0.0, u: -self.speed, rho, e: 0.0 }
+        ProfilePoint { x: r, p: 0.0, u: -self.speed, rho, e: 0.0 }
     }
 
-    /// Velocity at `place` from the centre, in the plane: an axis across it [m/s].
+    /// Velocity at `place`, relative to the centre, in the plane normal to the axis [m/s].
     pub fn velocity(&self, place: Vector, t: f64) -> Vector {
         let r = length(place);
         if r > 0.0 { place.map(|c| self.at(r, t).u * c / r) } else { [0.0, 0.0] }
     }
 
-    /// Mass within the distance `r` at time `t`, divided by 1, 2 pi, 4 pi in a plane (per area
-    /// of one side), cylinder (per length) and sphere [kg/m2, kg/m, kg].
+    /// Mass within the distance `r` at time `t`, divided by 1, 2 pi or 4 pi: plane (per area of one
+    /// side) [kg/m2], cylinder (per length) [kg/m], sphere [kg].
     pub fn mass_within(&self, r: f64, t: f64) -> f64 {
         let n = self.symmetry.dimensions();
         let scale = 1.0 / f64::from(n);
         if r <= self.shock_position(t) {
             self.density_behind() * r.powi(n) * scale
         } else {
-            // what is within r now was within r + v t at first
+            // the gas within r was within r + v t at t = 0
             self.density * (r + self.speed * t).powi(n) * scale
         }
     }
 
-    /// Mean density by volume between the distances `from` < `to` [kg/m3].
+    /// Volume-averaged density between the distances `from` < `to` [kg/m3].
     pub fn mean_density(&self, from: f64, to: f64, t: f64) -> f64 {
         let n = self.symmetry.dimensions();
         let volume = (to.powi(n) - from.powi(n)) / f64::from(n);
         (self.mass_within(to, t) - self.mass_within(from, t)) / volume
     }
 
-    /// The gas from the centre to `outer` at `t` > 0, straight lines between points that lie
-    /// closer towards the shock.
+    /// The gas from the centre to `outer` at `t` > 0; straight lines between points that are closer
+    /// together near the shock.
     pub fn profile(&self, t: f64, outer: f64) -> Profile {
         let shock = self.shock_position(t);
         if !(shock > 0.0 && shock < outer) {
@@ -157,7 +157,7 @@ impl Noh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::{WallImpact, WallMaterial};
+    use crate::exact::{WallImpactSolution, WallMaterial};
 
     const ALL: [Symmetry; 3] = [Symmetry::Planar, Symmetry::Cylindrical, Symmetry::Spherical];
 
@@ -185,7 +185,7 @@ mod tests {
     fn planar_is_the_wall() {
         let gas = Noh::new(Symmetry::Planar, 1.4, 2.0, 3.0).unwrap();
         let material = WallMaterial::IdealGas { gamma: 1.4, rho: 2.0, e: 0.0 };
-        let wall = WallImpact::new(material, 0.0, 1.0, -3.0, true, 0.0).unwrap();
+        let wall = WallImpactSolution::new(material, 0.0, 1.0, -3.0, true, 0.0).unwrap();
         close(gas.pressure_behind(), wall.p, 1e-12 * wall.p);
         close(gas.density_behind(), wall.rho, 1e-12 * wall.rho);
         close(gas.shock_speed(), wall.shock_speed - 3.0, 1e-14);
@@ -198,8 +198,8 @@ mod tests {
             let (t, d) = (0.7, gas.shock_speed());
             let r = gas.shock_position(t);
             let (behind, ahead) = (gas.at(r, t), gas.at(r * (1.0 + 1e-14), t));
-            let total = |q: &Point| q.rho * (q.e + 0.5 * q.u * q.u);
-            let fluxes = |q: &Point| {
+            let total = |q: &ProfilePoint| q.rho * (q.e + 0.5 * q.u * q.u);
+            let fluxes = |q: &ProfilePoint| {
                 let w = q.u - d;
                 [q.rho * w, q.rho * q.u * w + q.p, total(q) * w + q.p * q.u]
             };
@@ -244,7 +244,7 @@ mod tests {
                 close(profile.at(r).unwrap().rho, gas.at(r, t).rho, 1e-4);
             }
         }
-        // at a time before any shock the density is the first
+        // before any shock the density is the initial one
         close(noh(Symmetry::Spherical).mean_density(0.0, 0.5, 0.0), 1.0, 1e-14);
     }
 

@@ -1,36 +1,37 @@
-//! A solution in one dimension as plane waves that cross the grid at an angle.
+//! A one-dimensional solution as plane waves at an angle to the grid.
 //!
-//! With o a point that the line's x = 0 falls on, n the unit normal of the waves, t = (-n_y, n_x):
+//! With o the point that corresponds to x = 0 of the solution, n the unit normal of the waves, and
+//! t = (-n_y, n_x):
 //!
 //! ```text
 //! s = (x - o) . n,   p(x) = p_1D(s),   v(x) = u_1D(s) n,   v . t = 0
 //! ```
 //!
-//! (The equations keep their form in turned axes.) Holds on the part of a body that no edge has
-//! been felt on: see [`super::edge`]. In a frame that also moves along the front, add that
-//! velocity to v. [`PlaneWave::samples`] lays the particles of a strip along s, so that
-//! [`fn@crate::exact::score`] can hold them against the 1-D profile.
+//! (The equations are invariant under rotation.) The solution holds in the part of a body that no
+//! signal from an edge has reached: see [`super::edge`]. In a frame that also moves along the
+//! front, add that velocity to v. [`PlaneWave::samples`] projects the particles of a strip onto s,
+//! so that [`fn@crate::exact::score`] can compare them with the 1-D profile.
 
 use super::{Vector, cross, difference, dot, length};
-use crate::exact::{ExactError, Point, Profile, Sample, cell_average, finite};
+use crate::exact::{ExactError, Profile, ProfilePoint, ScoreSample, cell_average, finite};
 
-/// The line that a 1-D solution is laid along.
+/// The line along which a 1-D solution is placed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneWave {
-    /// Where the solution's x = 0 is [m].
+    /// Position of the solution's x = 0 [m].
     origin: Vector,
-    /// Unit vector along which its x grows.
+    /// Unit vector in the direction of the solution's x.
     normal: Vector,
 }
 
 /// A particle in the plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlanePoint {
-    /// Place [m].
+    /// Position [m].
     pub x: Vector,
     /// Velocity [m/s].
     pub v: Vector,
-    /// Current volume, in the plane an area [m2]; only ratios matter.
+    /// Current volume; in the plane an area [m2]. Only ratios matter.
     pub volume: f64,
     /// Pressure [Pa].
     pub p: f64,
@@ -41,7 +42,7 @@ pub struct PlanePoint {
 }
 
 impl PlaneWave {
-    /// The line through `origin` along `normal`, which need not be of length 1.
+    /// The line through `origin` along `normal`, which need not have unit length.
     pub fn new(origin: Vector, normal: Vector) -> Result<PlaneWave, ExactError> {
         for value in [origin[0], origin[1], normal[0], normal[1]] {
             finite("a coordinate of the plane wave", value)?;
@@ -75,20 +76,20 @@ impl PlaneWave {
         cross(self.normal, difference(x, self.origin))
     }
 
-    /// The place with the coordinates `along` and `across` [m].
+    /// The position with the coordinates `along` and `across` [m].
     pub fn place(&self, along: f64, across: f64) -> Vector {
         let ([ox, oy], [nx, ny]) = (self.origin, self.normal);
         [ox + along * nx - across * ny, oy + along * ny + across * nx]
     }
 
-    /// Velocity vector of what has `u` along the line [m/s].
+    /// Velocity vector [m/s] of a velocity `u` along the line.
     pub fn velocity(&self, u: f64) -> Vector {
         self.normal.map(|n| u * n)
     }
 
-    /// State of the 1-D `profile` at the place `x`, and its velocity vector [m/s]; `None` beyond
-    /// the profile's ends.
-    pub fn state(&self, profile: &Profile, x: Vector) -> Option<(Point, Vector)> {
+    /// State of the 1-D `profile` at the position `x`, and its velocity vector [m/s]; `None` beyond
+    /// the ends of the profile.
+    pub fn state(&self, profile: &Profile, x: Vector) -> Option<(ProfilePoint, Vector)> {
         let point = profile.at(self.along(x))?;
         Some((point, self.velocity(point.u)))
     }
@@ -102,29 +103,30 @@ impl PlaneWave {
         points.iter().filter(move |q| line.across(q.x).abs() < half_width)
     }
 
-    /// The particles less than `half_width` off the line, sorted along it; their `x` is s.
-    pub fn samples(&self, points: &[PlanePoint], half_width: f64) -> Vec<Sample> {
-        let sample = |q: &PlanePoint| Sample {
+    /// The particles at a distance of less than `half_width` from the line, sorted along it; their
+    /// `x` is s.
+    pub fn samples(&self, points: &[PlanePoint], half_width: f64) -> Vec<ScoreSample> {
+        let sample = |q: &PlanePoint| ScoreSample {
             x: self.along(q.x),
             volume: q.volume,
             p: q.p,
             rho: q.rho,
             e: q.e,
         };
-        let mut samples: Vec<Sample> = self.strip(points, half_width).map(sample).collect();
+        let mut samples: Vec<ScoreSample> = self.strip(points, half_width).map(sample).collect();
         samples.sort_by(|a, b| a.x.total_cmp(&b.x));
         samples
     }
 
-    /// Means of these particles, weighted by volume, over bins of `width` along the line with
-    /// one edge at s = 0: what to score, as particles of one s differ by where they are in
-    /// their cells.
-    pub fn binned(&self, points: &[PlanePoint], half_width: f64, width: f64) -> Vec<Sample> {
+    /// Volume-weighted means of these particles over bins of `width` [m] along the line, with one
+    /// edge at s = 0. Score these: particles of the same s differ by their position within their
+    /// cells.
+    pub fn binned(&self, points: &[PlanePoint], half_width: f64, width: f64) -> Vec<ScoreSample> {
         cell_average(&self.samples(points, half_width), width, 0.0)
     }
 
-    /// Rms velocity along the fronts, weighted by volume, which is 0 in the exact solution, over
-    /// `speed`, say the state behind the shock's [-]; `None` without particles.
+    /// Volume-weighted rms velocity along the fronts over `speed` [-], for example the velocity
+    /// behind the shock. It is 0 in the exact solution. `None` without particles.
     pub fn tangential_velocity(
         &self,
         points: &[PlanePoint],
@@ -165,7 +167,7 @@ mod tests {
         (snapshot.target.clone().unwrap(), snapshot.landmarks.unwrap())
     }
 
-    /// The exact solution at the places of a square lattice, in any order.
+    /// The exact solution at the points of a square lattice, in any order.
     fn lattice(line: &PlaneWave, profile: &Profile, h: f64) -> Vec<PlanePoint> {
         let mut points = Vec::new();
         for i in -2000..2000 {
@@ -223,7 +225,7 @@ mod tests {
         let cut = line.samples(&points, HALF_WIDTH);
         close(cut.len() as f64 / all as f64, 0.5, 0.02);
         assert!(cut.windows(2).all(|w| w[0].x <= w[1].x));
-        // a pressure that is 2 % high, and a velocity along the fronts
+        // a pressure that is 2 % too high, and a velocity along the fronts
         for q in &mut points {
             q.p *= 1.02;
             let [nx, ny] = line.normal();
@@ -246,7 +248,7 @@ mod tests {
         let total = |f: &dyn Fn(&PlanePoint) -> f64| -> f64 {
             in_strip.iter().map(|q| q.volume * f(q)).sum::<f64>() / (2.0 * HALF_WIDTH)
         };
-        let on_line = |f: &dyn Fn(&Point) -> f64| -> f64 {
+        let on_line = |f: &dyn Fn(&ProfilePoint) -> f64| -> f64 {
             let pairs = profile.points.windows(2);
             pairs.map(|w| 0.5 * (f(&w[0]) + f(&w[1])) * (w[1].x - w[0].x)).sum()
         };

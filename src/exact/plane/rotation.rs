@@ -1,16 +1,17 @@
-//! A spinning body that nothing acts on: what it keeps, and by how much it has turned.
+//! A spinning body without external forces: its conserved quantities and its angle of rotation.
 //!
 //! ```text
 //! L = sum m (x - c) x v,   E_k = sum m v^2/2,   both kept by a rigid body at omega = L/I
 //! ```
 //!
-//! Any free body keeps its angular momentum L exactly. A deformable one exchanges kinetic energy
-//! with strain energy, as its rim pulls outward: of it only the sum of the two is kept, so give
-//! [`loss`] that sum. The loss of the exact solution is 0 in each.
+//! Any free body conserves its angular momentum L exactly. A deformable body exchanges kinetic
+//! energy with strain energy, as its rim pulls outward. It conserves only the sum of the two, so
+//! pass that sum to [`loss`]. Each loss of the exact solution is 0.
 //!
 //! The mean angle is that of the rotation Q closest to the motion, the minimum of
 //! sum m |x - c - Q (X - C)|^2 over Q: tan angle = sum m (X - C) x (x - c)/sum m (X - C).(x - c)
-//! (Kabsch, 1976, Acta Cryst. A 32, 922, in two dimensions), c and C the centres of mass.
+//! (Kabsch, 1976, Acta Cryst. A 32, 922, in two dimensions), with c and C the current and the
+//! initial centre of mass.
 
 use std::f64::consts::TAU;
 
@@ -19,22 +20,22 @@ use super::{Vector, cross, difference, dot, square};
 /// A particle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MassPoint {
-    /// Mass, in plane strain per depth [kg].
+    /// Mass; in plane strain per depth [kg].
     pub mass: f64,
-    /// Place [m].
+    /// Position [m].
     pub x: Vector,
     /// Velocity [m/s].
     pub v: Vector,
 }
 
-/// A particle's first and present place.
+/// Initial and current position of a particle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Turned {
     /// Mass [kg].
     pub mass: f64,
-    /// Place at first [m].
+    /// Initial position [m].
     pub reference: Vector,
-    /// Place now [m].
+    /// Current position [m].
     pub position: Vector,
 }
 
@@ -44,13 +45,14 @@ pub fn rigid_velocity(x: Vector, centre: Vector, omega: f64) -> Vector {
     [-omega * ry, omega * rx]
 }
 
-/// Place at time `t` of what was at `x`, in a rigid body that spins about `centre` [m].
+/// Position at time `t` [m] of the point that was at `x`, in a rigid body that spins about
+/// `centre`.
 pub fn rigid_position(x: Vector, centre: Vector, omega: f64, t: f64) -> Vector {
     let [rx, ry] = super::turn(difference(x, centre), omega * t);
     [centre[0] + rx, centre[1] + ry]
 }
 
-/// Centre of mass [m]; not a number without mass.
+/// Centre of mass [m]; NaN without mass.
 pub fn centre_of_mass(points: &[MassPoint]) -> Vector {
     mean(points.iter().map(|q| (q.mass, q.x)))
 }
@@ -70,14 +72,14 @@ pub fn kinetic_energy(points: &[MassPoint]) -> f64 {
     points.iter().map(|q| 0.5 * q.mass * square(q.v)).sum()
 }
 
-/// Kinetic energy of the rigid rotation that has this angular momentum, L^2/(2 I) [J]: the rest
-/// is in motion that is no rotation.
+/// Kinetic energy of the rigid rotation with the same angular momentum, L^2/(2 I) [J]; the
+/// remaining kinetic energy is motion without rotation.
 pub fn rotational_energy(points: &[MassPoint], centre: Vector) -> f64 {
     let momentum = angular_momentum(points, centre);
     0.5 * momentum * momentum / moment_of_inertia(points, centre)
 }
 
-/// The part of a kept quantity that is lost, 1 - now/start [-]; negative for a gain.
+/// Lost fraction of a conserved quantity, 1 - now/start [-]; negative for a gain.
 pub fn loss(start: f64, now: f64) -> f64 {
     1.0 - now / start
 }
@@ -95,7 +97,7 @@ pub fn mean_angle(points: &[Turned]) -> f64 {
     if sine == 0.0 && cosine == 0.0 { 0.0 } else { sine.atan2(cosine) }
 }
 
-/// `angle` plus the whole turns that bring it closest to `expected`, both [rad].
+/// `angle` plus the number of full revolutions that brings it closest to `expected`, both [rad].
 pub fn unwrap_angle(angle: f64, expected: f64) -> f64 {
     angle + TAU * ((expected - angle) / TAU).round()
 }
@@ -161,7 +163,7 @@ mod tests {
         let momentum = |p: &[MassPoint]| angular_momentum(p, CENTRE);
         close(loss(momentum(&start), momentum(&now)), 0.0, 1e-13);
         close(loss(kinetic_energy(&start), kinetic_energy(&now)), 0.0, 1e-13);
-        // the velocity is the rate of the position
+        // the velocity is the time derivative of the position
         let (q, h) = (start[3], 1e-5);
         let at = |t| rigid_position(q.x, CENTRE, omega, t);
         for k in 0..2 {
@@ -177,7 +179,7 @@ mod tests {
         let momentum = |p: &[MassPoint]| angular_momentum(p, CENTRE);
         close(loss(momentum(&start), momentum(&now)), 0.1, 1e-13);
         close(loss(kinetic_energy(&start), kinetic_energy(&now)), 0.19, 1e-13);
-        // breathing is energy that is no rotation: it leaves the momentum alone
+        // breathing is kinetic energy without rotation: it does not change the angular momentum
         let breathe = |q: &MassPoint| {
             let [rx, ry] = difference(q.x, CENTRE);
             MassPoint { v: [q.v[0] + 0.5 * rx, q.v[1] + 0.5 * ry], ..*q }
@@ -192,7 +194,7 @@ mod tests {
     fn the_angle_of_a_stretched_and_shifted_body() {
         for angle in [0.0, 1.0, -2.5, 3.1] {
             let turned = |q: &MassPoint| {
-                // stretched along the first axes, then turned, then shifted
+                // stretched along the initial axes, then rotated, then shifted
                 let stretched = [CENTRE[0] + 1.2 * (q.x[0] - CENTRE[0]), q.x[1]];
                 let [x, y] = rigid_position(stretched, CENTRE, angle, 1.0);
                 Turned { mass: q.mass, reference: q.x, position: [x + 7.0, y - 3.0] }

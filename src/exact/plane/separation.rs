@@ -1,31 +1,31 @@
-//! Plates that let go of each other: a flyer of lower impedance than its target.
+//! Plates that separate: a flyer of lower impedance than its target.
 //!
-//! The fan from the flyer's rear lowers the pressure on the interface, and as the flyer's free
-//! state has u < 0, below the target's, the pressure reaches 0 within the fan. Plates that do
-//! not stick part there; the rest of the fan then runs into the flyer's face, now free, and the
-//! target's face moves on at the velocity of its own release to P = 0. The waves left in the
-//! flyer steepen and come to its face again and again, so the gap does not grow on a straight
-//! line. Holds until the plates meet again, if they ever do.
+//! The fan from the flyer's rear lowers the pressure on the interface. The flyer's free state has
+//! u < 0, below the target's, so the pressure reaches 0 within the fan. Plates that do not stick
+//! separate at that time. The rest of the fan then runs into the flyer's face, which is now free,
+//! and the target's face moves at the velocity of its own release to P = 0. The waves left in the
+//! flyer steepen and return to its face repeatedly, so the gap does not grow linearly. The solution
+//! holds until the plates meet again, if they ever do.
 //!
-//! Source of the states: the release isentropes of [`crate::exact::release`]; everything is read
-//! from front tracking ([`Impact::solve`]), whose snapshots also hold the profiles after parting.
-//! Against the method of characteristics the time of parting is good to 2e-6 and the pressure
-//! and velocity of the interface to 2e-5 (at the fan's head and at parting itself to 1e-3, a
-//! quarter of a front) at the default accuracy; both fall as the square of the number of fronts.
-//! The gap at 0.5 us of aluminium at 1500 m/s on copper (0.5 mm) is good to 1 nm.
+//! Source of the states: the release isentropes of [`crate::exact::release`]. All other values are
+//! read from front tracking ([`Impact::solve`]), whose snapshots also contain the profiles after
+//! separation. Errors against the method of characteristics at the default accuracy: 2e-6 in the
+//! time of separation, 2e-5 in the pressure and velocity of the interface (at the fan's head and at
+//! separation itself 1e-3, a quarter of a front). Both decrease as the square of the number of
+//! fronts. The gap at 0.5 us of aluminium at 1500 m/s on copper (0.5 mm) is accurate to 1 nm.
 
 use crate::exact::{Accuracy, ExactError, History, Impact, Solution};
 
-/// What happens between two plates that part.
+/// Motion of the faces of two plates that separate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Separation {
-    /// When they touch [s].
+    /// Time of contact [s].
     pub contact_time: f64,
     /// Pressure P2 after contact [Pa].
     pub peak_pressure: f64,
-    /// When the fan's head comes back to the interface [s].
+    /// Time at which the head of the fan returns to the interface [s].
     pub head_time: f64,
-    /// When the pressure on the interface reaches 0 and the plates part [s].
+    /// Time at which the pressure on the interface reaches 0 and the plates separate [s].
     pub separation_time: f64,
     /// The flyer's face.
     pub flyer_face: History,
@@ -36,7 +36,7 @@ pub struct Separation {
 }
 
 impl Separation {
-    /// Follows `impact` to the time `until` [s]; `None` if the plates do not part before.
+    /// Follows `impact` to the time `until` [s]; `None` if the plates do not separate before.
     pub fn new(
         impact: &Impact,
         until: f64,
@@ -45,7 +45,7 @@ impl Separation {
         Ok(Separation::from_solution(impact, &impact.solve(&[until], &[], accuracy)?))
     }
 
-    /// The same from a solution at hand, as far as it goes.
+    /// The same from an existing solution, up to the end of that solution.
     pub fn from_solution(impact: &Impact, solution: &Solution) -> Option<Separation> {
         Some(Separation {
             contact_time: impact.contact_time,
@@ -58,15 +58,15 @@ impl Separation {
         })
     }
 
-    /// Pressure between the plates at `t`: 0 before contact and after parting [Pa]. `None`
-    /// after the end of the solution.
+    /// Pressure between the plates at `t` [Pa]; 0 before contact and after separation. `None` after
+    /// the end of the solution.
     pub fn interface_pressure(&self, t: f64) -> Option<f64> {
         let p = self.target_face.at(t)?.p;
         Some(if t < self.contact_time || t >= self.separation_time { 0.0 } else { p })
     }
 
-    /// When the pressure between the plates has fallen to `share` of P2, 0 <= share <= 1 [s]: a
-    /// run that calls contact what exceeds 1 % of P2 must be held against `falls_to(0.01)`.
+    /// Time at which the pressure between the plates has fallen to `share` of P2, 0 <= share <= 1
+    /// [s]. Compare a run that defines contact as more than 1 % of P2 with `falls_to(0.01)`.
     pub fn falls_to(&self, share: f64) -> f64 {
         let level = share * self.peak_pressure;
         let corners = &self.target_face.points;
@@ -78,7 +78,7 @@ impl Separation {
         t.min(self.separation_time)
     }
 
-    /// Width of the gap between the faces at `t`, also before contact; 0 in contact [m]. `None`
+    /// Width of the gap between the faces at `t` [m], also before contact; 0 in contact. `None`
     /// after the end of the solution.
     pub fn gap(&self, t: f64) -> Option<f64> {
         let touch = (self.contact_time..=self.separation_time).contains(&t);
@@ -91,14 +91,14 @@ impl Separation {
         Some([self.flyer_face.at(t)?.u, self.target_face.at(t)?.u])
     }
 
-    /// Fault of a computed time of parting, relative to the time since contact [-], signed;
-    /// `share` of P2 is what the run called contact.
+    /// Error of a computed time of separation, relative to the time since contact [-], signed;
+    /// `share` of P2 is the pressure that the run takes as the limit of contact.
     pub fn time_error(&self, computed: f64, share: f64) -> f64 {
         let exact = self.falls_to(share);
         (computed - exact) / (exact - self.contact_time)
     }
 
-    /// Fault of a gap computed at `t`, relative to the exact one [-], signed; `None` while the
+    /// Error of a gap computed at `t`, relative to the exact gap [-], signed; `None` while the
     /// plates touch.
     pub fn gap_error(&self, computed: f64, t: f64) -> Option<f64> {
         let exact = self.gap(t)?;
@@ -134,7 +134,7 @@ mod tests {
         println!("{:e} {:e} {:e}", s.falls_to(0.01), fine.falls_to(0.01), s.separation_time);
         println!("{:e} {:e}", s.gap(0.5e-6).unwrap(), fine.gap(0.5e-6).unwrap());
         close(s.separation_time, 0.156599e-6, 1e-12);
-        // 1 % of P2 is left just before, and time runs on as the pressure falls
+        // 1 % of P2 is left shortly before separation; the time increases as the level decreases
         assert!(s.falls_to(0.01) < s.separation_time && s.falls_to(0.02) < s.falls_to(0.01));
         close(s.falls_to(0.01), fine.falls_to(0.01), 5e-12);
         assert_eq!(s.falls_to(0.0), s.separation_time);

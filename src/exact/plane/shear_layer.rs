@@ -1,23 +1,23 @@
-//! A shear layer: straight streamlines that slide past each other, steady without viscosity.
+//! A shear layer: straight streamlines that slide past each other, steady in an inviscid fluid.
 //!
 //! ```text
 //! v = (f(y), 0),  p constant;   x = X + f(Y) t,  y = Y;   F = I + f'(Y) t e_x (x) e_y
 //! sine: f = U sin(2 pi (y - y0)/H)     tanh: f = U tanh((y - y0)/H)
 //! ```
 //!
-//! Any f(y) solves the equations of an inviscid fluid: div v = 0, v . grad v = 0, so no pressure
-//! gradient arises. The sine has the period H in y and suits a box that is periodic both ways;
-//! the tanh suits a strip between slip walls. Both are periodic in x, with any length. Smooth
-//! over the cells, they have a strain of f'(y) t without limit: 8 at the centre after
-//! [`ShearLayer::time_to_strain`]. (Linear theory has the layer unstable to long waves along x:
-//! a perfectly even start keeps it from them.)
+//! Any f(y) solves the equations of an inviscid fluid: div v = 0 and v . grad v = 0, so there is no
+//! pressure gradient. The sine has the period H in y and suits a box that is periodic in both
+//! directions; the tanh suits a strip between slip walls. Both are periodic in x, with any length.
+//! Both profiles are smooth over the cells, and their strain f'(y) t grows without limit: 8 at the
+//! centre after [`ShearLayer::time_to_strain`]. (By linear theory the layer is unstable to long
+//! waves along x; a perfectly uniform start does not excite them.)
 
 use std::f64::consts::TAU;
 
 use super::Vector;
 use crate::exact::{ExactError, finite, positive};
 
-/// The form of the profile of velocity.
+/// Shape of the velocity profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShearProfile {
     /// U sin(2 pi (y - y0)/H).
@@ -29,18 +29,18 @@ pub enum ShearProfile {
 /// A shear layer along x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShearLayer {
-    /// The form of the profile.
+    /// Shape of the profile.
     pub profile: ShearProfile,
     /// Greatest velocity U [m/s].
     pub speed: f64,
     /// Period (sine) or half thickness (tanh) H [m].
     pub height: f64,
-    /// y0, where the velocity is 0 and the shear greatest [m].
+    /// y0, where the velocity is 0 and the shear is greatest [m].
     pub centre: f64,
 }
 
 impl ShearLayer {
-    /// Refuses what has no speed or height.
+    /// A shear layer; refuses a speed or height that is not positive.
     pub fn new(
         profile: ShearProfile,
         speed: f64,
@@ -53,7 +53,7 @@ impl ShearLayer {
         Ok(ShearLayer { profile, speed, height, centre })
     }
 
-    /// Velocity along x at `y` [m/s]; none along y.
+    /// Velocity along x at `y` [m/s]; the velocity along y is 0.
     pub fn velocity(&self, y: f64) -> f64 {
         let eta = (y - self.centre) / self.height;
         self.speed
@@ -73,7 +73,7 @@ impl ShearLayer {
         self.speed / self.height * slope
     }
 
-    /// Place at `t` of the material point `reference` [m]; x is not wrapped into the period.
+    /// Position at `t` of the material point `reference` [m]; x is not wrapped into the period.
     pub fn position(&self, reference: Vector, t: f64) -> Vector {
         [reference[0] + self.velocity(reference[1]) * t, reference[1]]
     }
@@ -83,14 +83,14 @@ impl ShearLayer {
         [[1.0, self.shear_rate(reference[1]) * t], [0.0, 1.0]]
     }
 
-    /// When the shear strain at the centre is `strain` [s].
+    /// Time at which the shear strain at the centre is `strain` [s].
     pub fn time_to_strain(&self, strain: f64) -> f64 {
         strain / self.shear_rate(self.centre)
     }
 
-    /// Rms error of the velocity over particles (y [m], velocity [m/s], volume), both components
-    /// together, over U [-]. y is the particle's place now, or at first: the exact solution does
-    /// not tell them apart. `None` without particles.
+    /// Rms error of the velocity over U [-], both components together, from particles (y [m],
+    /// velocity [m/s], volume). y is the current or the initial position of the particle: they are
+    /// equal in the exact solution. `None` without particles.
     pub fn velocity_error(
         &self,
         particles: impl IntoIterator<Item = (f64, Vector, f64)>,
@@ -150,7 +150,7 @@ mod tests {
             let greatest = (-1000..1000).map(strain).fold(0.0, f64::max);
             close(greatest, 8.0, 1e-9);
         }
-        // the sine is periodic and carries no momentum
+        // the sine is periodic and has no net momentum
         close(sine.velocity(0.33), sine.velocity(0.83), 1e-14);
         close(sine.velocity(0.33), -sine.velocity(-0.13), 1e-14);
         close(tanh.velocity(100.0), 3.0, 0.0);

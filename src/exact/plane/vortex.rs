@@ -1,5 +1,5 @@
-//! The generalized vortex: a ring of neo-Hookean solid that turns back and forth, each radius by
-//! its own angle, held on its course by a manufactured body force. Plane strain.
+//! The generalized vortex: a ring of neo-Hookean solid in plane strain that rotates back and forth.
+//! Each radius rotates by its own angle; a manufactured body force drives the motion.
 //!
 //! With R the distance from the centre, xi = (2 R - inner - outer)/(outer - inner):
 //!
@@ -19,16 +19,16 @@
 //! b_theta = R d2alpha/dt2 - mu (3 alpha' + R alpha'')/rho0
 //! ```
 //!
-//! in the basis at the present place. Both rims keep alpha = alpha' = 0: neither displacement
-//! nor traction. lambda does not enter the exact solution. A point off the ring, as rounding may
-//! put one, is taken to be at rest.
+//! in the basis at the current position. Both rims have alpha = alpha' = 0: neither displacement
+//! nor traction. lambda does not enter the exact solution. A point that is off the ring by rounding
+//! is treated as at rest.
 
 use std::f64::consts::PI;
 
 use super::{Vector, difference, length, square, turn};
 use crate::exact::{ExactError, finite, positive};
 
-/// A 2x2 tensor by rows.
+/// A 2x2 tensor, stored by rows.
 pub type Tensor = [[f64; 2]; 2];
 
 /// The generalized vortex about the origin.
@@ -40,7 +40,7 @@ pub struct Vortex {
     pub outer: f64,
     /// Greatest angle A, at mid-radius and half period [rad].
     pub amplitude: f64,
-    /// T: the ring is back where it began after this time [s].
+    /// Time T after which the ring returns to its initial position [s].
     pub period: f64,
     /// Young's modulus E [Pa].
     pub youngs_modulus: f64,
@@ -68,11 +68,11 @@ impl Default for Vortex {
 /// A material point of a run, for [`Vortex::l2_error`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Displaced {
-    /// Reference place X [m].
+    /// Reference position X [m].
     pub reference: Vector,
-    /// Computed place x [m].
+    /// Computed position x [m].
     pub position: Vector,
-    /// Reference volume, in the plane an area [m2]; only ratios matter.
+    /// Reference volume; in the plane an area [m2]. Only ratios matter.
     pub volume: f64,
 }
 
@@ -89,7 +89,7 @@ struct Angle {
 }
 
 impl Vortex {
-    /// Refuses constants that make no ring or no solid.
+    /// Refuses constants that do not describe a ring or a solid.
     pub fn check(&self) -> Result<(), ExactError> {
         positive("the ring's inner radius", self.inner)?;
         positive("the ring's width", self.outer - self.inner)?;
@@ -137,12 +137,12 @@ impl Vortex {
         }
     }
 
-    /// Angle alpha(R, t) by which the ring's radius `radius` is turned [rad].
+    /// Angle alpha(R, t) by which the ring is rotated at `radius` [rad].
     pub fn rotation(&self, radius: f64, t: f64) -> f64 {
         self.angle(radius, t).alpha
     }
 
-    /// Present place x of the material point `reference` [m].
+    /// Current position x of the material point `reference` [m].
     pub fn position(&self, reference: Vector, t: f64) -> Vector {
         turn(reference, self.angle(length(reference), t).alpha)
     }
@@ -174,8 +174,8 @@ impl Vortex {
         [[cos - k * y * big_x, -sin - k * y * big_y], [sin + k * x * big_x, cos + k * x * big_y]]
     }
 
-    /// Cauchy stress of the neo-Hookean solid under the deformation gradient `f` (in the plane;
-    /// none across it), tension positive [Pa].
+    /// Cauchy stress of the neo-Hookean solid for the in-plane deformation gradient `f` (no strain
+    /// normal to the plane), tension positive [Pa].
     pub fn cauchy_stress(&self, f: Tensor) -> Tensor {
         let j = f[0][0] * f[1][1] - f[0][1] * f[1][0];
         let (mu, pressure) = (self.shear_modulus() / j, self.lame_lambda() * j.ln() / j);
@@ -185,7 +185,8 @@ impl Vortex {
         [[diagonal(0), shear], [shear, diagonal(1)]]
     }
 
-    /// Body force per unit mass that keeps the material point `reference` on its course [m/s2].
+    /// Body force per unit mass that drives the material point `reference` along the exact motion
+    /// [m/s2].
     pub fn body_force(&self, reference: Vector, t: f64) -> Vector {
         let radius = length(reference);
         let angle = self.angle(radius, t);
@@ -196,9 +197,8 @@ impl Vortex {
         in_plane(reference, angle.alpha, radial, hoop)
     }
 
-    /// Relative L2 error of the displacement,
-    /// sqrt(sum V |x - x_exact|^2/sum V |x_exact - X|^2) [-]; `None` where the exact
-    /// displacement vanishes to rounding (t = 0, T, ...) and without points.
+    /// Relative L2 error of the displacement, sqrt(sum V |x - x_exact|^2/sum V |x_exact - X|^2)
+    /// [-]; `None` without points, and if the exact displacement is 0 to rounding (t = 0, T, ...).
     pub fn l2_error(&self, points: &[Displaced], t: f64) -> Option<f64> {
         let (mut error, mut exact, mut size) = (0.0, 0.0, 0.0);
         for q in points {
@@ -211,7 +211,7 @@ impl Vortex {
     }
 }
 
-/// The vector with polar components `radial` and `hoop` at the present place of `reference`.
+/// The vector with the polar components `radial` and `hoop` at the current position of `reference`.
 fn in_plane(reference: Vector, alpha: f64, radial: f64, hoop: f64) -> Vector {
     let radius = length(reference).max(f64::MIN_POSITIVE);
     let [c, s] = turn(reference, alpha).map(|v| v / radius);

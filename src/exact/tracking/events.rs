@@ -1,23 +1,23 @@
-//! What happens where two fronts meet, and what the row of fronts becomes.
+//! Interactions of fronts: collisions, reflections, contact and separation of the plates.
 
 use super::super::ExactError;
-use super::super::wave::{State, jump};
+use super::super::wave::{WaveState, jump};
 use super::super::wave_collision::{Outgoing, collide, set_free};
 use super::wave_emission::{Leaving, Trail};
 use super::{
-    END_RECORD, FLYER_FACE_RECORD, Front, INTERFACE_RECORD, Kind, NONE, REAR_RECORD, Record,
-    Tracker,
+    END_RECORD, FLYER_FACE_RECORD, FrontKind, INTERFACE_RECORD, NONE, REAR_RECORD, TrackedFront,
+    Tracker, WaveRecord,
 };
 use crate::material::MieGruneisen;
 
-/// Two small fronts merge if together they are below this many quanta.
+/// Two small fronts merge if their sum is below this many quanta.
 const MERGED_QUANTA: f64 = 0.75;
 
 impl Tracker {
-    /// Fronts `a` and `b`, neighbours, meet now.
+    /// Processes the collision of the neighbouring fronts `a` and `b` at the current time.
     pub(super) fn collision(&mut self, a: usize, b: usize) -> Result<(), ExactError> {
         let (ka, kb) = (self.fronts[a].kind, self.fronts[b].kind);
-        if kb == Kind::End {
+        if kb == FrontKind::End {
             if self.reached_end.is_none() {
                 self.reached_end = Some((self.time, self.events));
             }
@@ -27,7 +27,7 @@ impl Tracker {
             }
             return self.reflect_at_end(a, b);
         }
-        if ka == Kind::Rear {
+        if ka == FrontKind::Rear {
             return self.reflect_at_rear(a, b);
         }
         if a == self.interface {
@@ -38,7 +38,7 @@ impl Tracker {
         }
         let before = self.fronts[a].prev;
         let after = self.fronts[b].next;
-        if matches!(ka, Kind::Edge(_)) || matches!(kb, Kind::Edge(_)) {
+        if matches!(ka, FrontKind::Edge(_)) || matches!(kb, FrontKind::Edge(_)) {
             self.pass_edge(a, b);
         } else {
             self.cross(a, b)?;
@@ -59,7 +59,7 @@ impl Tracker {
         ExactError::NoConvergence { time: self.time, place }
     }
 
-    /// Where the front is now on its path, if it draws one.
+    /// Appends the front's current position to its path, if it draws one.
     fn trail(&mut self, k: usize) -> Trail {
         let front = &self.fronts[k];
         let path = front.path?;
@@ -68,26 +68,26 @@ impl Tracker {
         Some((path, place))
     }
 
-    fn record(&mut self, number: usize, family: usize, incoming: Kind, after: &State) {
-        self.records[number].push(Record {
+    fn record(&mut self, number: usize, family: usize, incoming: FrontKind, after: &WaveState) {
+        self.records[number].push(WaveRecord {
             t: self.time,
             family,
-            strong: incoming == Kind::Strong,
-            edge: matches!(incoming, Kind::Edge(_)),
+            strong: incoming == FrontKind::Strong,
+            edge: matches!(incoming, FrontKind::Edge(_)),
             after: [after.p, after.u],
         });
     }
 
-    /// The edge of a fan meets anything that is not a boundary: it goes through, or is lost in
+    /// The edge of a fan meets a front that is not a boundary: it passes through, or disappears in
     /// a wave of its own family.
     fn pass_edge(&mut self, a: usize, b: usize) {
         let (fa, fb) = (self.fronts[a], self.fronts[b]);
-        let a_is_edge = matches!(fa.kind, Kind::Edge(_));
+        let a_is_edge = matches!(fa.kind, FrontKind::Edge(_));
         if fa.family == fb.family {
             let (lost, other) = if a_is_edge { (a, b) } else { (b, a) };
             let trail = self.trail(lost);
-            // no line goes on from here
-            if let (Some((path, _)), Kind::Weak) = (trail, self.fronts[other].kind) {
+            // the path ends here
+            if let (Some((path, _)), FrontKind::Weak) = (trail, self.fronts[other].kind) {
                 self.steepened.push(path);
             }
             self.remove(lost);
@@ -98,7 +98,7 @@ impl Tracker {
         let front = self.fronts[edge];
         let x =
             if self.fronts[other].family == 0 { self.fronts[other].x } else { fa.at(self.time) };
-        if let Kind::Probe(number) = self.fronts[other].kind {
+        if let FrontKind::Probe(number) = self.fronts[other].kind {
             let after = self.fronts[other].right;
             self.record(number, if a_is_edge { 2 } else { 0 }, front.kind, &after);
         }
@@ -111,12 +111,12 @@ impl Tracker {
         self.insert_after(if a_is_edge { other } else { before }, passed);
     }
 
-    /// The material that a front (not the interface) is in.
+    /// Material that contains a front (not the interface).
     fn material_of(&self, front: usize) -> &MieGruneisen {
         if self.fronts[front].flyer { &self.setup.flyer } else { &self.setup.target }
     }
 
-    /// Two waves, or a wave and a contact, of one material.
+    /// Collision of two waves, or of a wave and a contact, in one material.
     fn cross(&mut self, a: usize, b: usize) -> Result<(), ExactError> {
         let (fa, fb) = (self.fronts[a], self.fronts[b]);
         let x = if fa.family == 0 {
@@ -139,7 +139,7 @@ impl Tracker {
                 incoming[1] = true;
             }
         }
-        let split = fa.kind == Kind::Strong || fb.kind == Kind::Strong;
+        let split = fa.kind == FrontKind::Strong || fb.kind == FrontKind::Strong;
         let quantum = if split { self.quantum } else { f64::INFINITY };
         let out = collide((&m, &left), (&m, &right), guess, quantum, self.tolerance)
             .ok_or_else(|| self.no_convergence(x))?;
@@ -152,8 +152,8 @@ impl Tracker {
             } else if f.path.is_some() {
                 let side = usize::from(f.family > 0);
                 let trail = self.trail(k);
-                // a shock's path goes on rather than another's
-                if trails[side].is_none() || f.kind == Kind::Strong {
+                // a shock's path has priority over another path
+                if trails[side].is_none() || f.kind == FrontKind::Strong {
                     trails[side] = trail;
                 }
             }
@@ -167,11 +167,11 @@ impl Tracker {
         }
         let jump_kept = 1e-5 * self.quantum / (m.rho0 * m.c0 * m.c0);
         if marker.is_none() && (left_star.chi - right_star.chi).abs() > jump_kept {
-            marker = Some(Kind::Contact);
+            marker = Some(FrontKind::Contact);
         }
         if marker.is_none() {
-            let mean = |f: fn(&State) -> f64| 0.5 * (f(&left_star) + f(&right_star));
-            let both = State {
+            let mean = |f: fn(&WaveState) -> f64| 0.5 * (f(&left_star) + f(&right_star));
+            let both = WaveState {
                 chi: mean(|s| s.chi),
                 p: mean(|s| s.p),
                 u: mean(|s| s.u),
@@ -183,7 +183,7 @@ impl Tracker {
                 left_star = right;
             }
         }
-        if let Some(Kind::Probe(number)) = marker {
+        if let Some(FrontKind::Probe(number)) = marker {
             let came = if fa.family > 0 { (2, fa.kind) } else { (0, fb.kind) };
             self.record(number, came.0, came.1, &right_star);
         }
@@ -197,7 +197,7 @@ impl Tracker {
             last = self.send_left(last, &m, &left, x, wave);
         }
         if let Some(kind) = marker {
-            let fixed = Front { t: self.time, ..Front::fixed(kind, x, right_star) };
+            let fixed = TrackedFront { t: self.time, ..TrackedFront::fixed(kind, x, right_star) };
             last = self.insert_after(last, fixed);
         }
         if goes_right {
@@ -220,13 +220,13 @@ impl Tracker {
         let m = self.setup.flyer;
         self.trail(b);
         self.remove(b);
-        if let Kind::Edge(kind) = front.kind {
+        if let FrontKind::Edge(kind) = front.kind {
             let path = Some(self.new_path(x, kind, place, true));
             let edge = self.edge(front.kind, 1, x, &m, front.right);
-            self.insert_after(rear, Front { path, place, ..edge });
+            self.insert_after(rear, TrackedFront { path, place, ..edge });
             self.fronts[rear].right = front.right;
         } else {
-            let split = front.kind == Kind::Strong;
+            let split = front.kind == FrontKind::Strong;
             let quantum = if split { self.quantum } else { f64::INFINITY };
             let (strength, steps, star) = set_free(&m, &front.right, 1.0, quantum, self.tolerance)
                 .ok_or_else(|| self.no_convergence(x))?;
@@ -251,12 +251,12 @@ impl Tracker {
         self.remove(a);
         let place = self.eulerian(before, x);
         let mut star = behind;
-        if let Kind::Edge(kind) = front.kind {
+        if let FrontKind::Edge(kind) = front.kind {
             let path = Some(self.new_path(x, kind, place, false));
             let edge = self.edge(front.kind, -1, x, &m, behind);
-            self.insert_after(before, Front { path, place, ..edge });
+            self.insert_after(before, TrackedFront { path, place, ..edge });
         } else {
-            let split = front.kind == Kind::Strong;
+            let split = front.kind == FrontKind::Strong;
             let quantum = if split { self.quantum } else { f64::INFINITY };
             let (strength, steps, free) = set_free(&m, &behind, -1.0, quantum, self.tolerance)
                 .ok_or_else(|| self.no_convergence(x))?;
@@ -270,8 +270,8 @@ impl Tracker {
         Ok(())
     }
 
-    /// Fronts reach the interface from the flyer (`a`), from the target (`b`), or neither (the
-    /// plates meet).
+    /// Handles fronts that reach the interface from the flyer (`a`) or from the target (`b`); if
+    /// neither is given, the plates come into contact.
     pub(super) fn meet_at_interface(
         &mut self,
         a: Option<usize>,
@@ -282,7 +282,7 @@ impl Tracker {
         self.faces.t = self.time;
         self.fronts[i].t = self.time;
         let (flyer, target) = (self.setup.flyer, self.setup.target);
-        let came = a.or(b).map_or(Kind::Strong, |k| self.fronts[k].kind);
+        let came = a.or(b).map_or(FrontKind::Strong, |k| self.fronts[k].kind);
         let family = if a.is_some() {
             2
         } else if b.is_some() {
@@ -307,19 +307,19 @@ impl Tracker {
         let before = self.fronts[i].prev;
         let mut parted = false;
         let [place_l, place_r] = self.faces.x;
-        if let Kind::Edge(kind) = came {
+        if let FrontKind::Edge(kind) = came {
             if a.is_some() || !self.faces.open {
                 let path = Some(self.new_path(0.0, kind, place_l, true));
                 let edge = self.edge(came, -1, 0.0, &flyer, left);
-                self.insert_after(before, Front { path, place: place_l, ..edge });
+                self.insert_after(before, TrackedFront { path, place: place_l, ..edge });
             }
             if b.is_some() || !self.faces.open {
                 let path = Some(self.new_path(0.0, kind, place_r, false));
                 let edge = self.edge(came, 1, 0.0, &target, right);
-                self.insert_after(i, Front { path, place: place_r, ..edge });
+                self.insert_after(i, TrackedFront { path, place: place_r, ..edge });
             }
         } else {
-            let split = came == Kind::Strong;
+            let split = came == FrontKind::Strong;
             let quantum = if split { self.quantum } else { f64::INFINITY };
             let failed = self.no_convergence(0.0);
             let mut waves = None;
@@ -339,7 +339,8 @@ impl Tracker {
                             Some((out.right, out.right_star)),
                         ));
                     }
-                    // without a state between them, the plates part if their free faces do
+                    // if no state between them exists, the plates separate only if their free faces
+                    // do
                     None if !self.free_faces_part(&left, &right, quantum) => return Err(failed),
                     _ => {
                         self.faces.open = true;
@@ -391,16 +392,16 @@ impl Tracker {
         Ok(())
     }
 
-    /// Whether the faces of the plates, each released to P = 0 from its state, move apart.
-    fn free_faces_part(&self, left: &State, right: &State, quantum: f64) -> bool {
+    /// Whether the faces of the plates move apart if each is released to P = 0 from its state.
+    fn free_faces_part(&self, left: &WaveState, right: &WaveState, quantum: f64) -> bool {
         let free = |m, state, side| set_free(m, state, side, quantum, self.tolerance);
         let l = free(&self.setup.flyer, left, -1.0);
         let r = free(&self.setup.target, right, 1.0);
         l.zip(r).is_some_and(|(l, r)| l.2.u < r.2.u)
     }
 
-    /// When the pressure on the interface reached 0, given that the front that comes now would
-    /// bring it from `before` to `after` < 0. The true pressure is half-way at each front.
+    /// Time at which the pressure on the interface reached 0 [s], if the current front would change
+    /// it from `before` to `after` < 0. The true pressure is half-way at each front.
     fn parting_time(&self, before: f64, after: f64) -> f64 {
         let now = 0.5 * (before + after);
         let earlier = &self.records[INTERFACE_RECORD];
@@ -410,7 +411,7 @@ impl Tracker {
         if smooth { last.t + (self.time - last.t) * then / (then - now) } else { self.time }
     }
 
-    /// When the plates, apart now, will meet again.
+    /// Queues the time at which the separated plates meet again.
     fn foresee_closing(&mut self) {
         self.faces.version = self.faces.version.wrapping_add(1);
         if !self.faces.open {
@@ -428,7 +429,7 @@ impl Tracker {
         }
     }
 
-    /// The plates meet again.
+    /// Closes the gap between the plates.
     pub(super) fn close(&mut self) -> Result<(), ExactError> {
         let x = self.faces();
         self.faces.x = [0.5 * (x[0] + x[1]); 2];
@@ -438,7 +439,7 @@ impl Tracker {
     }
 
     /// Merges neighbours of one family that are small even together, so that waves weakened by
-    /// reflections hold fewer fronts.
+    /// reflections consist of fewer fronts.
     pub(super) fn merge_small(&mut self) {
         let reach = 0.02 * self.setup.thickness;
         let mut a = self.fronts[self.rear].next;
@@ -448,7 +449,7 @@ impl Tracker {
                 break;
             }
             let (fa, fb) = (self.fronts[a], self.fronts[b]);
-            let small = |f: &Front| f.kind == Kind::Weak && f.path.is_none();
+            let small = |f: &TrackedFront| f.kind == FrontKind::Weak && f.path.is_none();
             let left = self.fronts[fa.prev].right;
             let (da, db) = (fa.right.p - left.p, fb.right.p - fa.right.p);
             let (xa, xb) = (fa.at(self.time), fb.at(self.time));
@@ -470,8 +471,8 @@ impl Tracker {
             let before = fa.prev;
             self.remove(a);
             self.remove(b);
-            let merged = Front { x, t: self.time, speed, ..fb };
-            let k = self.insert_after(before, Front { path: None, ..merged });
+            let merged = TrackedFront { x, t: self.time, speed, ..fb };
+            let k = self.insert_after(before, TrackedFront { path: None, ..merged });
             self.foresee(before);
             self.foresee(k);
             a = self.fronts[k].next;

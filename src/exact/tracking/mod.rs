@@ -1,23 +1,24 @@
 //! Front tracking of a plate impact in Lagrangian coordinates: the true solution, with fans.
 //!
-//! The solution is a row of fronts with constant states between them. Fans are split into small
-//! fronts, each a jump that keeps mass, momentum and energy; where two fronts meet, the Riemann
-//! problem between the outer states says what leaves. Nothing moves on a grid and nothing is
-//! smeared: shocks, their attenuation by a fan, waves that steepen into shocks, reflections at
-//! free surfaces and the interface, parting and meeting again of the plates all follow from the
-//! one rule. With n fronts a fan, the error falls as 1/n^2 once the staircase is read as in
-//! [`super::smoothing`]; the cost grows as n^2. Sources: Dafermos (1972), J. Math. Anal. Appl.
-//! 38, 33; Holden & Risebro (2015), Front Tracking for Hyperbolic Conservation Laws, ch. 6.
+//! The solution is a sequence of fronts with constant states between them. Fans are split into
+//! small fronts, each a jump that conserves mass, momentum and energy. Where two fronts meet, the
+//! Riemann problem between the outer states gives the outgoing waves. There is no grid and no
+//! smearing. This one rule covers shocks, their attenuation by a fan, waves that steepen into
+//! shocks, reflections at free surfaces and at the interface, and separation and renewed contact of
+//! the plates. With n fronts per fan the error decreases as 1/n^2, once the staircase is read as in
+//! [`super::smoothing`]; the cost grows as n^2. Sources: Dafermos (1972), J. Math. Anal. Appl. 38,
+//! 33; Holden & Risebro (2015), Front Tracking for Hyperbolic Conservation Laws, ch. 6.
 //!
-//! Frame: flyer [-L, 0] at +U, target [0, T] at rest, contact at t = 0; X is the place before
+//! Frame: flyer [-L, 0] at +U, target [0, T] at rest, contact at t = 0; X is the position before
 //! the impact.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::profile::PathKind;
-use super::wave::{State, at_rest};
-use super::wave_interactions::{Plate, check, impedance_match};
+use super::profile::Plate;
+use super::wave::{WaveState, at_rest};
+use super::wave_interactions::{check, impedance_match};
 use super::{ExactError, positive};
 use crate::material::MieGruneisen;
 
@@ -25,29 +26,29 @@ mod events;
 mod read;
 mod wave_emission;
 
-/// Interactions after which tracking gives up.
+/// Greatest number of interactions before the tracking gives up.
 const MOST_EVENTS: usize = 20_000_000;
 
-/// Interactions that are followed after a front has reached the target's rear. Profiles are no
+/// Greatest number of interactions after a front has reached the target's rear. Profiles are no
 /// longer scored then; the waves are only drawn.
 const MOST_EVENTS_FROM_REAR: usize = 500_000;
 
-/// What a front is.
+/// Kind of a front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum FrontKind {
     /// A small part of a smooth wave.
     Weak,
-    /// The edge of a fan: no strength, runs at the sound speed.
+    /// The edge of a fan: it has no strength and runs at the sound speed.
     Edge(PathKind),
     /// A shock.
     Strong,
-    /// A jump of density and energy alone.
+    /// A jump of density and energy only.
     Contact,
-    /// A material point whose history is recorded, by its number.
+    /// A material point whose history is recorded, with its number.
     Probe(usize),
     /// The flyer's free rear.
     Rear,
-    /// Where the plates touch.
+    /// The contact face of the plates.
     Interface,
     /// The target's free rear.
     End,
@@ -55,30 +56,30 @@ pub(super) enum Kind {
 
 /// One front, and the state to its right.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Front {
-    pub kind: Kind,
+pub(super) struct TrackedFront {
+    pub kind: FrontKind,
     /// -1 left-going, 0 fixed to the material, 1 right-going.
     pub family: i8,
-    /// Lagrangian place [m] at the time `t` [s].
+    /// Lagrangian position [m] at the time `t` [s].
     pub x: f64,
     pub t: f64,
     /// Lagrangian speed, signed [m/s].
     pub speed: f64,
-    /// The state to its right.
-    pub right: State,
-    /// Number of the path that it draws, and its Eulerian place at the time `t` [m].
+    /// State to the right of the front.
+    pub right: WaveState,
+    /// Number of the path that the front draws, and its Eulerian position at the time `t` [m].
     pub path: Option<usize>,
     pub place: f64,
-    /// Whether it is in the flyer.
+    /// Whether the front is in the flyer.
     flyer: bool,
     prev: usize,
     next: usize,
     stamp: u32,
 }
 
-impl Front {
-    fn fixed(kind: Kind, x: f64, right: State) -> Front {
-        Front {
+impl TrackedFront {
+    fn fixed(kind: FrontKind, x: f64, right: WaveState) -> TrackedFront {
+        TrackedFront {
             kind,
             family: 0,
             x,
@@ -94,12 +95,12 @@ impl Front {
         }
     }
 
-    /// Lagrangian place at `t` [m].
+    /// Lagrangian position at `t` [m].
     pub(super) fn at(&self, t: f64) -> f64 {
         self.x + self.speed * (t - self.t)
     }
 
-    /// Eulerian place at `t`, if the front draws a path [m].
+    /// Eulerian position at `t` [m], if the front draws a path.
     pub(super) fn place_at(&self, t: f64) -> f64 {
         self.place + (self.right.u + (1.0 - self.right.chi) * self.speed) * (t - self.t)
     }
@@ -107,7 +108,7 @@ impl Front {
 
 const NONE: usize = usize::MAX;
 
-/// Two neighbours that will meet; the soonest is the greatest.
+/// Two neighbours that will meet; the soonest meeting compares as the greatest.
 #[derive(Clone, Copy, Debug)]
 struct Meeting {
     t: f64,
@@ -137,29 +138,29 @@ impl Ord for Meeting {
 
 /// One change of the state of a recorded material point.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Record {
+pub(super) struct WaveRecord {
     pub t: f64,
-    /// Family of the front that came: 0 from the right, 2 from the left, 1 neither.
+    /// Family of the arriving front: 0 from the right, 2 from the left, 1 neither.
     pub family: usize,
     pub strong: bool,
     pub edge: bool,
-    /// Pressure [Pa] and velocity [m/s] after it.
+    /// Pressure [Pa] and velocity [m/s] after the front.
     pub after: [f64; 2],
 }
 
-/// The faces where the plates touch, or would.
+/// The contact faces of the plates, whether they touch or not.
 #[derive(Clone, Copy, Debug)]
 struct Faces {
     t: f64,
-    /// Eulerian place of the flyer's face and of the target's [m].
+    /// Eulerian positions of the flyer's face and of the target's [m].
     x: [f64; 2],
     open: bool,
     version: u32,
 }
 
-/// What drives the tracking.
+/// Parameters of the tracking.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Setup {
+pub(super) struct TrackingSetup {
     pub flyer: MieGruneisen,
     pub target: MieGruneisen,
     /// Closing speed U [m/s].
@@ -168,48 +169,49 @@ pub(super) struct Setup {
     pub thickness: f64,
     /// Thickness T of the target [m].
     pub target_thickness: f64,
-    /// Fronts of a fan that falls from P2 to 0.
+    /// Number of fronts of a fan that falls from P2 to 0.
     pub wavelets: usize,
     /// Whether the target's rear is a free surface.
     pub free_rear: bool,
 }
 
-/// The row of fronts at one time.
+/// The sequence of fronts at one time.
 #[derive(Clone, Debug)]
 pub(super) struct Tracker {
-    pub setup: Setup,
-    fronts: Vec<Front>,
+    pub setup: TrackingSetup,
+    fronts: Vec<TrackedFront>,
     free: Vec<usize>,
     heap: BinaryHeap<Meeting>,
-    /// Now [s].
+    /// Current time [s].
     pub time: f64,
     rear: usize,
     interface: usize,
     faces: Faces,
     /// Pressure of one front of a fan [Pa].
     quantum: f64,
-    /// Waves below this are not sent out; what they would carry stays where it is [Pa].
+    /// Weaker waves than this are not emitted; their jump stays where it is [Pa].
     least: f64,
     tolerance: f64,
-    /// Interactions so far.
+    /// Number of interactions so far.
     pub events: usize,
     next_merge: usize,
     /// Records of the interface (target's side), of the flyer's rear, of the interface (flyer's
-    /// side), and of the probes.
-    pub records: Vec<Vec<Record>>,
-    /// Paths: plate, kind, corners of time and Eulerian place.
+    /// side), of the target's rear, and of the probes.
+    pub records: Vec<Vec<WaveRecord>>,
+    /// Paths: plate, kind, corner points of time [s] and Eulerian position [m].
     pub paths: Vec<(Plate, PathKind, Vec<[f64; 2]>)>,
     /// Numbers of the paths that end within a smooth wave of their own family.
     pub steepened: Vec<usize>,
-    /// When the plates first parted, between the fronts that the fan is split into [s].
+    /// Time of the first separation of the plates [s], interpolated between the fronts of the fan.
     pub separation_time: Option<f64>,
-    /// When a front first reached the target's rear [s], and the interactions by then.
+    /// Time at which a front first reached the target's rear [s], and the number of interactions by
+    /// then.
     pub reached_end: Option<(f64, usize)>,
-    /// Why the waves are not followed beyond the time reached.
+    /// Reason why the waves are not followed beyond the time reached.
     pub stopped: Option<ExactError>,
 }
 
-/// Numbers of the records that are always kept.
+/// Index of the record of the interface; this and the next three records are always kept.
 pub(super) const INTERFACE_RECORD: usize = 0;
 /// See [`INTERFACE_RECORD`].
 pub(super) const REAR_RECORD: usize = 1;
@@ -217,13 +219,16 @@ pub(super) const REAR_RECORD: usize = 1;
 pub(super) const FLYER_FACE_RECORD: usize = 2;
 /// Record of the target's rear.
 pub(super) const END_RECORD: usize = 3;
-/// Number of the first probe's record.
+/// Index of the first probe's record.
 pub(super) const FIRST_PROBE: usize = 4;
 
 impl Tracker {
-    /// The moment of contact; `probes` are Lagrangian places in the plates.
-    pub(super) fn new(setup: Setup, probes: &[(Plate, f64)]) -> Result<Tracker, ExactError> {
-        let Setup { flyer, target, speed, thickness, .. } = setup;
+    /// The state at the moment of contact; `probes` are Lagrangian positions in the plates [m].
+    pub(super) fn new(
+        setup: TrackingSetup,
+        probes: &[(Plate, f64)],
+    ) -> Result<Tracker, ExactError> {
+        let TrackingSetup { flyer, target, speed, thickness, .. } = setup;
         check(&flyer, &target, speed, thickness)?;
         positive("the target's thickness", setup.target_thickness)?;
         if !(8..=20_000).contains(&setup.wavelets) {
@@ -255,10 +260,10 @@ impl Tracker {
             stopped: None,
         };
         let (moving, still) = (at_rest(speed), at_rest(0.0));
-        let mut fixed: Vec<Front> = vec![
-            Front::fixed(Kind::Rear, -thickness, moving),
-            Front::fixed(Kind::Interface, 0.0, still),
-            Front::fixed(Kind::End, setup.target_thickness, still),
+        let mut fixed: Vec<TrackedFront> = vec![
+            TrackedFront::fixed(FrontKind::Rear, -thickness, moving),
+            TrackedFront::fixed(FrontKind::Interface, 0.0, still),
+            TrackedFront::fixed(FrontKind::End, setup.target_thickness, still),
         ];
         let least = 1e-9 * thickness.min(setup.target_thickness);
         for (number, &(plate, x)) in probes.iter().enumerate() {
@@ -273,15 +278,15 @@ impl Tracker {
                     allowed: "in its plate",
                 });
             }
-            // a little off the ends, so that the order in the row is beyond doubt
+            // slightly inside of the ends, so that the order of the fronts is unambiguous
             let x = x.clamp(range.start() + least, range.end() - least);
-            fixed.push(Front::fixed(Kind::Probe(FIRST_PROBE + number), x, state));
+            fixed.push(TrackedFront::fixed(FrontKind::Probe(FIRST_PROBE + number), x, state));
         }
         fixed.sort_by(|a, b| a.x.total_cmp(&b.x));
         for front in fixed {
             let last = tracker.fronts.len().checked_sub(1).unwrap_or(NONE);
             let k = tracker.insert_after(last, front);
-            if front.kind == Kind::Interface {
+            if front.kind == FrontKind::Interface {
                 tracker.interface = k;
             }
         }
@@ -289,7 +294,7 @@ impl Tracker {
         Ok(tracker)
     }
 
-    /// Moves on to the time `t`, or to where the waves cannot be followed any further: see
+    /// Advances to the time `t`, or to the time from which the waves cannot be followed; see
     /// [`Tracker::stopped`].
     pub(super) fn advance(&mut self, t: f64) {
         if self.stopped.is_some() {
@@ -301,7 +306,7 @@ impl Tracker {
         }
     }
 
-    /// Greatest number of interactions by now.
+    /// Greatest number of interactions allowed at this time.
     fn most_events(&self) -> usize {
         let from_rear = self.reached_end.map(|(_, before)| before + MOST_EVENTS_FROM_REAR);
         from_rear.map_or(MOST_EVENTS, |most| most.min(MOST_EVENTS))
@@ -343,8 +348,8 @@ impl Tracker {
         Ok(())
     }
 
-    /// The fronts from the flyer's rear to the target's end.
-    pub(super) fn row(&self) -> impl Iterator<Item = &Front> {
+    /// The fronts from the flyer's rear to the target's rear.
+    pub(super) fn row(&self) -> impl Iterator<Item = &TrackedFront> {
         let mut k = self.rear;
         std::iter::from_fn(move || {
             let front = self.fronts.get(k)?;
@@ -353,7 +358,7 @@ impl Tracker {
         })
     }
 
-    /// Eulerian places of the flyer's face and the target's now [m].
+    /// Current Eulerian positions of the flyer's face and of the target's [m].
     pub(super) fn faces(&self) -> [f64; 2] {
         let [l, r] = self.facing();
         let dt = self.time - self.faces.t;
@@ -361,17 +366,17 @@ impl Tracker {
     }
 
     /// The states on both sides of the interface.
-    fn facing(&self) -> [State; 2] {
+    fn facing(&self) -> [WaveState; 2] {
         let i = &self.fronts[self.interface];
         [self.fronts[i.prev].right, i.right]
     }
 
-    fn insert_after(&mut self, prev: usize, front: Front) -> usize {
+    fn insert_after(&mut self, prev: usize, front: TrackedFront) -> usize {
         let next = if prev == NONE { NONE } else { self.fronts[prev].next };
         let k = match self.free.pop() {
             Some(k) => {
                 let stamp = self.fronts[k].stamp;
-                self.fronts[k] = Front { stamp, ..front };
+                self.fronts[k] = TrackedFront { stamp, ..front };
                 k
             }
             None => {
@@ -382,7 +387,7 @@ impl Tracker {
         self.fronts[k].prev = prev;
         self.fronts[k].next = next;
         self.fronts[k].flyer =
-            prev == NONE || (self.fronts[prev].flyer && front.kind != Kind::Interface);
+            prev == NONE || (self.fronts[prev].flyer && front.kind != FrontKind::Interface);
         if prev != NONE {
             self.fronts[prev].next = k;
         }
@@ -393,7 +398,7 @@ impl Tracker {
     }
 
     fn remove(&mut self, k: usize) {
-        let Front { prev, next, .. } = self.fronts[k];
+        let TrackedFront { prev, next, .. } = self.fronts[k];
         if prev != NONE {
             self.fronts[prev].next = next;
         }
@@ -404,7 +409,7 @@ impl Tracker {
         self.free.push(k);
     }
 
-    /// Looks up when front `a` meets the one after it.
+    /// Computes when front `a` meets its right neighbour, and queues the meeting.
     fn foresee(&mut self, a: usize) {
         let b = self.fronts[a].next;
         if b == NONE {

@@ -1,23 +1,23 @@
-//! Putting waves into the row of fronts.
+//! Insertion of waves into the sequence of fronts.
 
 use super::super::profile::PathKind;
-use super::super::wave::{State, jump, sound_speed};
-use super::super::wave_interactions::Plate;
-use super::{Front, Kind, NONE, Tracker};
+use super::super::profile::Plate;
+use super::super::wave::{WaveState, jump, sound_speed};
+use super::{FrontKind, NONE, TrackedFront, Tracker};
 use crate::material::MieGruneisen;
 
-/// Fronts of compression above this many quanta are shocks.
+/// A front whose compression exceeds this many quanta is a shock.
 const SHOCK_QUANTA: f64 = 3.0;
-/// A path that goes on: its number and the Eulerian place where it is now [m].
+/// A path that continues: its number and its current Eulerian position [m].
 pub(super) type Trail = Option<(usize, f64)>;
 
-/// The wave to be put into the row.
+/// A wave to be inserted.
 pub(super) struct Leaving {
     pub strength: f64,
     pub steps: usize,
-    pub star: State,
+    pub star: WaveState,
     pub trail: Trail,
-    /// Eulerian place, for paths that start here [m].
+    /// Eulerian position, for paths that start here [m].
     pub place: f64,
 }
 
@@ -31,26 +31,26 @@ impl Tracker {
 
     pub(super) fn edge(
         &self,
-        kind: Kind,
+        kind: FrontKind,
         family: i8,
         x: f64,
         m: &MieGruneisen,
-        right: State,
-    ) -> Front {
+        right: WaveState,
+    ) -> TrackedFront {
         let speed = f64::from(family) * sound_speed(m, &right);
-        Front { family, t: self.time, speed, ..Front::fixed(kind, x, right) }
+        TrackedFront { family, t: self.time, speed, ..TrackedFront::fixed(kind, x, right) }
     }
 
-    /// The kind of a single front, and its path: shocks start one.
+    /// Kind of a single front, its path and its position; a shock starts a path.
     pub(super) fn kind_and_path(
         &mut self,
         x: f64,
         dp: f64,
         wave: &Leaving,
         last: usize,
-    ) -> (Kind, Option<usize>, f64) {
+    ) -> (FrontKind, Option<usize>, f64) {
         let strong = dp > SHOCK_QUANTA * self.quantum;
-        let kind = if strong { Kind::Strong } else { Kind::Weak };
+        let kind = if strong { FrontKind::Strong } else { FrontKind::Weak };
         match wave.trail {
             Some((path, place)) => (kind, Some(path), place),
             None if strong => {
@@ -62,7 +62,7 @@ impl Tracker {
         }
     }
 
-    /// Eulerian place of X = `x`, which lies in the state after front `last` [m].
+    /// Eulerian position of X = `x` [m], which lies in the state after front `last`.
     pub(super) fn eulerian(&self, last: usize, x: f64) -> f64 {
         let faces = self.faces();
         let at = |k: usize| self.fronts[k].at(self.time);
@@ -84,20 +84,24 @@ impl Tracker {
         }
     }
 
-    /// Puts a left-going wave into the row after `last`; the last front put.
+    /// Inserts a left-going wave after the front `last`; returns the last front inserted.
     pub(super) fn send_left(
         &mut self,
         last: usize,
         m: &MieGruneisen,
-        ahead: &State,
+        ahead: &WaveState,
         x: f64,
         wave: Leaving,
     ) -> usize {
-        let front = Front { family: -1, t: self.time, ..Front::fixed(Kind::Weak, x, wave.star) };
+        let front = TrackedFront {
+            family: -1,
+            t: self.time,
+            ..TrackedFront::fixed(FrontKind::Weak, x, wave.star)
+        };
         if wave.steps == 1 {
             let (kind, path, place) = self.kind_and_path(x, wave.star.p - ahead.p, &wave, last);
             let speed = -jump(m, ahead, wave.strength, -1.0).speed;
-            return self.insert_after(last, Front { kind, speed, path, place, ..front });
+            return self.insert_after(last, TrackedFront { kind, speed, path, place, ..front });
         }
         let flyer = self.fronts[last].flyer;
         let place = if wave.place.is_nan() { self.eulerian(last, x) } else { wave.place };
@@ -105,50 +109,55 @@ impl Tracker {
         let mut state = *ahead;
         for end in [PathKind::FanHead, PathKind::FanTail] {
             let path = Some(self.new_path(x, end, place, flyer));
-            let edge = self.edge(Kind::Edge(end), -1, x, m, state);
-            last = self.insert_after(last, Front { path, place, ..edge });
+            let edge = self.edge(FrontKind::Edge(end), -1, x, m, state);
+            last = self.insert_after(last, TrackedFront { path, place, ..edge });
             if end == PathKind::FanTail {
                 break;
             }
             for k in 1..=wave.steps {
                 let step = jump(m, &state, wave.strength / wave.steps as f64, -1.0);
                 state = if k == wave.steps { wave.star } else { step.behind };
-                last = self.insert_after(last, Front { speed: -step.speed, right: state, ..front });
+                last = self
+                    .insert_after(last, TrackedFront { speed: -step.speed, right: state, ..front });
             }
         }
         last
     }
 
-    /// Puts a right-going wave into the row after `last`, whose state becomes the wave's.
+    /// Inserts a right-going wave after the front `last`, whose state becomes that of the wave.
     pub(super) fn send_right(
         &mut self,
         last: usize,
         m: &MieGruneisen,
-        ahead: &State,
+        ahead: &WaveState,
         x: f64,
         wave: Leaving,
     ) {
-        let front = Front { family: 1, t: self.time, ..Front::fixed(Kind::Weak, x, *ahead) };
+        let front = TrackedFront {
+            family: 1,
+            t: self.time,
+            ..TrackedFront::fixed(FrontKind::Weak, x, *ahead)
+        };
         if wave.steps == 1 {
             let (kind, path, place) = self.kind_and_path(x, wave.star.p - ahead.p, &wave, last);
             let speed = jump(m, ahead, wave.strength, 1.0).speed;
-            self.insert_after(last, Front { kind, speed, path, place, ..front });
+            self.insert_after(last, TrackedFront { kind, speed, path, place, ..front });
             return;
         }
         let flyer = self.fronts[last].flyer;
         let place = if wave.place.is_nan() { self.eulerian(last, x) } else { wave.place };
         let mut state = *ahead;
-        // from the head back: each is put in directly after `last`
+        // from the head backwards: each front is inserted directly after `last`
         for end in [PathKind::FanHead, PathKind::FanTail] {
             let path = Some(self.new_path(x, end, place, flyer));
-            let edge = self.edge(Kind::Edge(end), 1, x, m, state);
-            self.insert_after(last, Front { path, place, ..edge });
+            let edge = self.edge(FrontKind::Edge(end), 1, x, m, state);
+            self.insert_after(last, TrackedFront { path, place, ..edge });
             if end == PathKind::FanTail {
                 break;
             }
             for k in 1..=wave.steps {
                 let step = jump(m, &state, wave.strength / wave.steps as f64, 1.0);
-                self.insert_after(last, Front { speed: step.speed, right: state, ..front });
+                self.insert_after(last, TrackedFront { speed: step.speed, right: state, ..front });
                 state = if k == wave.steps { wave.star } else { step.behind };
             }
         }

@@ -50,13 +50,13 @@ fn the_black_line_conserves_mass_and_momentum() {
     let chain = standard();
     for t in [0.2e-6, 0.5e-6, 0.9e-6] {
         let points = chain.shock_profile(t).unwrap().points;
-        let area = |f: fn(&Point) -> f64| -> f64 {
+        let area = |f: fn(&ProfilePoint) -> f64| -> f64 {
             points.windows(2).map(|w| f(&w[0]) * (w[1].x - w[0].x)).sum()
         };
         let ahead = points.last().unwrap().x;
         assert!((area(|q| q.rho) / (ALUMINIUM.rho0 * ahead) - 1.0).abs() < 1e-12);
         let impulse: f64 = {
-            // pressure on the interface: state 2, 4, 6 in turn
+            // pressure on the interface: states 2, 4 and 6 in turn
             let t2 = 0.22726294e-6f64.min(t);
             let wave = chain.target_waves().nth(2).unwrap().start[0];
             let t4 = (t.min(wave) - t2).max(0.0);

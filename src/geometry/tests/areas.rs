@@ -1,4 +1,4 @@
-//! Areas and centroids against closed forms, whole and in boxes.
+//! Areas and centroids, of whole regions and in boxes, against closed forms.
 
 use std::f64::consts::PI;
 
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::super::Moments;
 use super::{close, shape};
 
-/// Each with its area and centroid.
+/// Regions with their area and centroid.
 fn known() -> Vec<(&'static str, Value, f64, [f64; 2])> {
     let disk = |x: f64, y: f64, r: f64| json!({"disk": {"centre": [x, y], "radius": r}});
     let lens = 2.0 * PI / 3.0 - 0.75_f64.sqrt();
@@ -143,7 +143,7 @@ fn a_box_on_the_border_holds_what_closed_forms_say() {
     let under = |x: f64| 0.5 * (x * (1.0 - x * x).sqrt() + x.asin());
     let found = disk.moments_within([0.2, 0.5], [0.4, 2.0]).area;
     close(found, under(0.4) - under(0.2) - 0.1, 1e-14, 0.1);
-    // a cap of a thousandth of the radius, without differences of near numbers
+    // a cap of a thousandth of the radius, without differences of nearly equal numbers
     let height = 1.0_f64 - 0.999;
     let chord = (height * 1.999).sqrt();
     let cap = chord.atan2(0.999) - 0.999 * chord;
@@ -155,22 +155,22 @@ fn a_box_on_the_border_holds_what_closed_forms_say() {
 
 #[test]
 fn a_small_box_of_a_large_body_is_as_exact() {
-    // 1e-4 of the radius, about a point of the border at 40 degrees
+    // 1e-4 of the radius, at a point of the border at 40 degrees
     let disk = shape(json!({"disk": {"centre": [0.0, 0.0], "radius": 1.0}}));
     let (y, x) = 40.0_f64.to_radians().sin_cos();
     let (x, y, size) = (x - 3e-5, y - 2e-5, 1e-4);
     let found = disk.moments_within([x, y], [x + size, y + size]).area / (size * size);
-    // the same by the midpoint rule, whose error is the curvature's
+    // the same by the midpoint rule, whose error comes from the curvature
     let steps = 100_000;
     let height = |k: usize| {
         let dx = size * (k as f64 + 0.5) / steps as f64;
-        // sqrt(1 - (x + dx)^2) - y without the difference of large numbers
+        // sqrt(1 - (x + dx)^2) - y without a difference of large numbers
         let top = 1.0 - x * x - y * y - dx * (2.0 * x + dx);
         (top / ((1.0 - (x + dx) * (x + dx)).sqrt() + y)).clamp(0.0, size)
     };
     let exact = (0..steps).map(height).sum::<f64>() / (steps as f64 * size);
     close(found, exact, 1e-9, 1.0);
-    // and quarters of it add up to it
+    // its four quarters add up to it
     let half = 0.5 * size;
     let quarter = |i: f64, j: f64| {
         let corner = [x + i * half, y + j * half];

@@ -1,12 +1,12 @@
-//! What is no region, and where it is said to be wrong.
+//! Invalid regions, and the key that each fault names.
 
 use serde_json::{Value, json};
 
-use super::super::{RegionFault, Shape};
+use super::super::{BoundedRegion, RegionFault};
 use super::region;
 
 fn fault(json: Value) -> RegionFault {
-    Shape::new(&region(json)).expect_err("a fault")
+    BoundedRegion::new(&region(json)).expect_err("a fault")
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn numbers_that_are_none_are_told() {
         if let crate::scene::Region::Disk(disk) = &mut disk {
             disk.radius = value;
         }
-        let fault = Shape::new(&disk).expect_err("a fault");
+        let fault = BoundedRegion::new(&disk).expect_err("a fault");
         assert_eq!(fault.path, "disk.radius");
         assert!(fault.reason.starts_with("out of range; allowed: finite"), "{fault}");
     }

@@ -1,15 +1,15 @@
-//! Random regions: against a count of points, and areas of sets against each other.
+//! Random regions: areas against a count of points, and areas of combinations against each other.
 
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-use super::super::{Shape, fill};
+use super::super::{BoundedRegion, fill};
 use super::{close, region, sum};
 use crate::scene::Region;
 
-/// Boxes, disks, ellipses and triangles about the origin, turned.
+/// Boxes, disks, ellipses and triangles near the origin, rotated.
 fn part() -> impl Strategy<Value = Value> {
-    // multiples of 1/8 let borders fall on each other
+    // multiples of 1/8 make borders coincide
     let place = || prop_oneof![(-8..=8).prop_map(|k| f64::from(k) / 8.0), -1.0..1.0];
     let radius = || prop_oneof![(1..=8).prop_map(|k| f64::from(k) / 8.0), 0.05..1.0];
     let angle = prop_oneof![Just(0.0), Just(90.0), Just(45.0), -180.0..180.0];
@@ -25,7 +25,7 @@ fn part() -> impl Strategy<Value = Value> {
 }
 
 fn area(json: &Value) -> f64 {
-    match Shape::new(&region(json.clone())) {
+    match BoundedRegion::new(&region(json.clone())) {
         Ok(shape) => shape.area(),
         Err(fault) => {
             assert!(fault.reason.starts_with("nothing is left"), "{fault}");
@@ -34,7 +34,7 @@ fn area(json: &Value) -> f64 {
     }
 }
 
-/// Whether a point lies in a region, from the definitions alone.
+/// Whether a point is in a region, from the definitions alone.
 fn inside(region: &Region, [x, y]: [f64; 2]) -> bool {
     let circle = |centre: &[f64], a: f64, b: f64| {
         ((x - centre[0]) / a).powi(2) + ((y - centre[1]) / b).powi(2) <= 1.0
@@ -108,13 +108,13 @@ proptest! {
     fn areas_are_those_of_counted_points(a in part(), b in part(), c in part()) {
         let json = json!({"difference": [{"union": [a, b]}, c]});
         let region = region(json);
-        // all that the parts can reach
-        // beside the borders at multiples of 1/8, on which either would be right
+        // the range covers all parts; the points avoid the borders at multiples of 1/8, where
+        // either answer would be right
         const LOWER: f64 = -4.0007;
         const UPPER: f64 = 4.0;
         const N: u32 = 500;
         let at = |k: u32| LOWER + (UPPER - LOWER) * (f64::from(k) + 0.5) / f64::from(N);
-        let shape = Shape::new(&region).ok();
+        let shape = BoundedRegion::new(&region).ok();
         let points = (0..N).flat_map(|i| (0..N).map(move |j| [at(i), at(j)]));
         let (mut counted, mut different) = (0, 0);
         for point in points {
@@ -135,7 +135,7 @@ proptest! {
         a in part(), b in part(), c in part(), size in 0.05..0.4, x in -0.5..0.5, y in -0.5..0.5
     ) {
         let json = json!({"difference": [{"union": [a, b]}, c]});
-        let Ok(shape) = Shape::new(&region(json)) else { return Ok(()) };
+        let Ok(shape) = BoundedRegion::new(&region(json)) else { return Ok(()) };
         let tiles = fill(&shape, [x, y], [size, 0.7 * size], [2, 1]);
         let (sum, exact) = (sum(&tiles), shape.area());
         close(sum.area, exact, 1e-10, exact);

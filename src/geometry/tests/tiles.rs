@@ -1,10 +1,10 @@
-//! Tiles of lattices: sums, counts, places, slivers.
+//! Tiles of lattices: sums, counts, positions, slivers.
 
 use std::f64::consts::PI;
 
 use serde_json::{Value, json};
 
-use super::super::{Shape, Tile, fill};
+use super::super::{BoundedRegion, Tile, fill};
 use super::{close, shape, sum};
 
 /// Shapes with all kinds of borders, about 4 m wide.
@@ -46,7 +46,7 @@ const GRIDS: [([f64; 2], [f64; 2], [usize; 2]); 4] = [
     ([100.3, 50.1], [0.2, 0.1], [1, 1]),
 ];
 
-fn check(shape: &Shape, tiles: &[Tile], cell: [f64; 2], per_cell: [usize; 2]) {
+fn check(shape: &BoundedRegion, tiles: &[Tile], cell: [f64; 2], per_cell: [usize; 2]) {
     let (sum, area) = (sum(tiles), shape.area());
     close(sum.area, area, 1e-11, area);
     for d in 0..2 {
@@ -87,7 +87,7 @@ fn whole_tiles_are_those_of_the_lattice() {
     let shape = shape(json!({"disk": {"centre": [0.0, 0.0], "radius": 1.0}}));
     let tiles = fill(&shape, [-2.0, -2.0], [0.1, 0.1], [2, 2]);
     let whole = tiles.iter().filter(|t| t.area == 0.05 * 0.05).count();
-    // those whose four corners lie within, counted
+    // count of the tiles whose four corners are inside
     let inside = |i: i32, j: i32| (i * i + j * j) <= 400;
     let all = |i, j| [(0, 0), (0, 1), (1, 0), (1, 1)].iter().all(|(a, b)| inside(i + a, j + b));
     let count = (-20..20).flat_map(|i| (-20..20).map(move |j| (i, j))).filter(|p| all(p.0, p.1));
@@ -101,7 +101,7 @@ fn whole_tiles_are_those_of_the_lattice() {
 
 #[test]
 fn a_shape_on_the_lattice_has_whole_tiles_alone() {
-    // a union, so that the lattice is the grid's
+    // a union, so that the lattice is that of the grid
     let shape = shape(json!({"union": [
         {"box": {"lower": [0.1, 0.2], "upper": [0.4, 0.7]}},
         {"box": {"lower": [0.4, 0.2], "upper": [0.6, 0.3]}}]}));
@@ -145,7 +145,8 @@ fn a_sliver_goes_to_the_neighbour_that_it_shares_most_with() {
 
 #[test]
 fn a_sliver_goes_by_its_edges_before_its_distance() {
-    // 1 % of a tile, 0.2 of an edge above a whole tile, 0.05 of an edge beside a near part of one
+    // a sliver of 1 % of a tile: 0.2 of an edge above a whole tile, 0.05 of an edge beside a nearer
+    // part
     let body = |lower: [f64; 2], upper: [f64; 2]| json!({"box": {"lower": lower, "upper": upper}});
     let shape = shape(json!({"union": [
         body([1.0, 0.0], [2.0, 1.0]),
@@ -169,7 +170,7 @@ fn a_sliver_at_a_corner_goes_across_it() {
 
 #[test]
 fn a_body_all_of_slivers_is_merged_within_itself() {
-    // a strip of 0.7 % of a tile over nine tiles: three come to 2.1 %
+    // a strip of 0.7 % of a tile over nine tiles: three add up to 2.1 %
     let strip = json!({"polygon": {"vertices": [[0, 0], [9, 0], [9, 0.007], [0, 0.007]]}});
     let strip = shape(strip);
     let tiles = fill(&strip, [0.0, 0.0], [1.0, 1.0], [1, 1]);
@@ -183,7 +184,7 @@ fn a_body_all_of_slivers_is_merged_within_itself() {
 
 #[test]
 fn the_borders_of_neighbours_leave_no_gap() {
-    // two bodies on one tilted line: what one lacks of a tile the other has
+    // two bodies on the two sides of one tilted line: together they fill each tile
     let side = |sign: f64| {
         shape(json!({"intersection": [
             {"box": {"lower": [-1.0, -1.0], "upper": [1.0, 1.0]}},
@@ -194,7 +195,7 @@ fn the_borders_of_neighbours_leave_no_gap() {
         for j in -10..10 {
             let lower = [f64::from(i) * 0.1, f64::from(j) * 0.1];
             let upper = [f64::from(i + 1) * 0.1, f64::from(j + 1) * 0.1];
-            let area = |s: &Shape| s.moments_within(lower, upper).area;
+            let area = |s: &BoundedRegion| s.moments_within(lower, upper).area;
             close(area(&left) + area(&right), 0.01, 1e-12, 0.01);
         }
     }

@@ -1,18 +1,18 @@
-//! Tiles about given points.
+//! Tiles around given points.
 
 use proptest::prelude::*;
 use serde_json::json;
 
-use super::super::{Shape, fill, voronoi, voronoi_line};
+use super::super::{BoundedRegion, fill, voronoi, voronoi_line};
 use super::{close, shape, sum};
 
-fn ring() -> Shape {
+fn ring() -> BoundedRegion {
     shape(json!({"difference": [
         {"annulus": {"centre": [0.0, 0.0], "inner": 0.4, "outer": 1.0}},
         {"polygon": {"vertices": [[0.0, 0.0], [2.0, -0.3], [2.0, 0.3]]}}]}))
 }
 
-fn check(shape: &Shape, points: &[[f64; 2]]) {
+fn check(shape: &BoundedRegion, points: &[[f64; 2]]) {
     let tiles = voronoi(shape, points).unwrap();
     assert_eq!(tiles.len(), points.len());
     let (sum, area) = (sum(&tiles), shape.area());
@@ -46,7 +46,7 @@ fn few_points_and_points_on_a_line_have_cells_too() {
     check(&disk, &[[0.0, 0.1], [0.0, 0.9], [0.0, -0.4], [0.0, 0.5]]);
     check(&disk, &[[0.1, 0.1], [0.3, 0.3], [-0.2, -0.2]]);
     assert_eq!(voronoi(&disk, &[]), Ok(Vec::new()));
-    // halves of a disk stand at 4 r/(3 pi)
+    // centroids of half disks are at 4 r/(3 pi)
     let halves = voronoi(&disk, &[[0.1, 0.0], [-0.1, 0.0]]).unwrap();
     close(halves[0].centre[0], 4.0 / (3.0 * std::f64::consts::PI), 1e-14, 1.0);
     close(halves[0].area, 0.5 * std::f64::consts::PI, 1e-14, 1.0);
@@ -62,7 +62,7 @@ fn points_outside_or_doubled_are_named() {
     assert_eq!(fault(&[a, b, [0.0, -0.6], a]), text);
     assert_eq!(fault(&[a, b, [0.0, -0.6], [-0.5, -0.0]]), text.replace("0.0]", "-0.0]"));
     assert!(fault(&[a, b, [-0.5, 1e-9], [0.0, -0.6]]).starts_with("point 3 at"));
-    // so near that the triangulation leaves one of them out
+    // so close that the triangulation omits one of them
     let near = fault(&[a, b, [-0.5, 1e-17], [0.0, -0.6]]);
     assert!(near.contains("cannot be told from others; allowed: "), "{near}");
     assert!(fault(&[a, [f64::NAN, 0.0]]).starts_with("point 2"));
@@ -111,7 +111,7 @@ proptest! {
         let points: Vec<_> = shifts.iter().enumerate().map(place).collect();
         check(&body, &points);
         let tiles = voronoi(&body, &points).unwrap();
-        // each cell holds what is within half the least distance of two points, 0.2
+        // each cell contains all points within 0.2, half the least distance between two points
         prop_assert!(tiles.iter().all(|t| t.area > 0.04 && t.area < 4.0));
     }
 }

@@ -1,59 +1,66 @@
-//! Models that stand outside of this library.
+//! Constitutive models defined outside of this library.
 
-use super::deviatoric_update::Shearing;
-use super::general::Implicit;
-use super::{Flow, Matter, Point};
+use super::deviatoric_update::StrengthKernel;
+use super::general::NonlinearEosKernel;
+use super::{ConstitutiveModel, LinearEosKernel, StrengthModel};
 use crate::material::definition::Material;
-use crate::material::strength::Strength;
+use crate::material::strength::StrengthLaw;
 use crate::material::{EquationOfState, GeneralEos};
 
-/// Models of a program's own, in place of those that a scene names for a material; see the
+/// Models that a program supplies in place of those that a scene names for a material; see the
 /// [module](super).
 #[derive(Default)]
-pub struct Outside {
-    /// The material without its strength, and its density [kg/m3].
-    matter: Option<(Matter, f64)>,
-    flow: Option<Box<dyn Flow>>,
+pub struct CustomModel {
+    /// Model without its strength, and its reference density [kg/m3].
+    matter: Option<(ConstitutiveModel, f64)>,
+    strength: Option<Box<dyn StrengthModel>>,
 }
 
-impl Outside {
-    /// With this equation of state, linear in the energy.
+impl CustomModel {
+    /// Custom equation of state, linear in the energy.
     pub fn fluid(eos: impl EquationOfState) -> Self {
         let density = eos.reference_density();
-        Outside { matter: Some((Matter::Fluid(Box::new(Point(eos))), density)), flow: None }
+        CustomModel {
+            matter: Some((ConstitutiveModel::Fluid(Box::new(LinearEosKernel(eos))), density)),
+            strength: None,
+        }
     }
 
-    /// With this equation of state, of any form.
+    /// Custom equation of state of any form.
     pub fn general(eos: impl GeneralEos) -> Self {
         let density = eos.reference_density();
-        Outside { matter: Some((Matter::Fluid(Box::new(Implicit(eos))), density)), flow: None }
+        CustomModel {
+            matter: Some((ConstitutiveModel::Fluid(Box::new(NonlinearEosKernel(eos))), density)),
+            strength: None,
+        }
     }
 
-    /// With the scene's equation of state and this strength.
-    pub fn strength(strength: impl Strength) -> Self {
-        Outside::default().with_strength(strength)
+    /// Custom strength, with the equation of state of the scene.
+    pub fn strength(strength: impl StrengthLaw) -> Self {
+        CustomModel::default().with_strength(strength)
     }
 
-    /// With this strength too.
-    pub fn with_strength(self, strength: impl Strength) -> Self {
-        Outside { flow: Some(Box::new(Shearing(strength))), ..self }
+    /// Adds a custom strength.
+    pub fn with_strength(self, strength: impl StrengthLaw) -> Self {
+        CustomModel { strength: Some(Box::new(StrengthKernel(strength))), ..self }
     }
 
-    /// Puts the models in the place of `matter` and `flow`, those of a scene's `material`.
+    /// Replaces `matter` and `strength`, built from the `material` of a scene, by the custom
+    /// models.
     ///
     /// # Errors
     ///
-    /// Why the scene has no place for them.
+    /// The reason why the material cannot take them.
     pub(crate) fn replace(
         self,
         material: &Material,
-        matter: &mut Matter,
-        flow: &mut Option<Box<dyn Flow>>,
+        matter: &mut ConstitutiveModel,
+        strength: &mut Option<Box<dyn StrengthModel>>,
     ) -> Result<(), String> {
         if let Some((own, density)) = self.matter {
             let plain = match &*matter {
-                Matter::Fluid(model) => model.first_history().is_none(),
-                Matter::Solid(_) => false,
+                ConstitutiveModel::Fluid(model) => model.first_history().is_none(),
+                ConstitutiveModel::Solid(_) => false,
             };
             if !plain {
                 return Err("its eos bears shear or has a history, so no equation of state from \
@@ -70,15 +77,15 @@ impl Outside {
             }
             *matter = own;
         }
-        if let Some(own) = self.flow {
-            if flow.is_none() {
+        if let Some(own) = self.strength {
+            if strength.is_none() {
                 return Err(
                     "it names no strength, so a run has no columns for that from outside; \
                             allowed: any strength, whose place that one takes"
                         .into(),
                 );
             }
-            *flow = Some(own);
+            *strength = Some(own);
         }
         Ok(())
     }

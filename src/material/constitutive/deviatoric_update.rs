@@ -1,28 +1,29 @@
-//! What the strength of a material does to rows of particles.
+//! Update of the deviatoric stress of particles by the strength of their material.
 
-use super::TensorRows;
+use super::TensorColumns;
 use crate::material::Symmetric;
-use crate::material::strength::{self, Condition, Rate, Strength};
+use crate::material::strength::{self, MaterialState, Rate, StrengthLaw};
 
-/// Gradient of the velocity of rows.
+/// Velocity gradients of particles.
 #[derive(Clone, Copy)]
-pub enum RateRows<'a> {
-    /// On a line: its one component [1/s].
+pub enum VelocityGradients<'a> {
+    /// One dimension: the only component [1/s].
     Line(&'a [f64]),
-    /// In a plane: by rows [1/s].
+    /// Plane strain: components by rows [1/s].
     Plane([&'a [f64]; 4]),
-    /// About an axis: in its plane, and its divergence, which has the strain about the axis in it.
+    /// Axisymmetry: components in the plane, and the divergence, which includes the hoop strain
+    /// rate.
     Axis([&'a [f64]; 4], &'a [f64]),
 }
 
-impl RateRows<'_> {
-    /// That of row `r`.
+impl VelocityGradients<'_> {
+    /// Velocity gradient of particle `r`.
     #[inline(always)]
     pub fn at(&self, r: usize) -> Rate {
         match self {
-            RateRows::Line(l) => Rate { plane: [l[r], 0.0, 0.0, 0.0], across: 0.0 },
-            RateRows::Plane(l) => Rate { plane: l.map(|l| l[r]), across: 0.0 },
-            RateRows::Axis(l, divergence) => {
+            VelocityGradients::Line(l) => Rate { plane: [l[r], 0.0, 0.0, 0.0], across: 0.0 },
+            VelocityGradients::Plane(l) => Rate { plane: l.map(|l| l[r]), across: 0.0 },
+            VelocityGradients::Axis(l, divergence) => {
                 let plane = l.map(|l| l[r]);
                 Rate { plane, across: divergence[r] - (plane[0] + plane[3]) }
             }
@@ -30,18 +31,18 @@ impl RateRows<'_> {
     }
 }
 
-/// Columns of a deviator: xx, and in a plane yy and xy; what they lack of a trace is across. On a
-/// line the other two are alike.
+/// Columns of a deviator: xx, and in a plane also yy and xy. The zz component follows from the zero
+/// trace; in one dimension yy and zz are equal.
 #[derive(Clone, Copy)]
-pub struct DeviatorRows<'a> {
+pub struct Deviators<'a> {
     /// Components xx [Pa].
     pub xx: &'a [f64],
-    /// Components yy and xy [Pa], in a plane.
+    /// Components yy and xy [Pa]; `None` in one dimension.
     pub plane: Option<[&'a [f64]; 2]>,
 }
 
-impl DeviatorRows<'_> {
-    /// The deviator of row `r`.
+impl Deviators<'_> {
+    /// The deviator of particle `r`.
     #[inline(always)]
     pub fn at(&self, r: usize) -> Symmetric {
         let xx = self.xx[r];
@@ -52,67 +53,68 @@ impl DeviatorRows<'_> {
     }
 }
 
-/// Rows that shear; see [`Flow::advance`].
-pub struct FlowRows<'a> {
-    /// Time [s].
+/// Arguments of [`StrengthModel::advance`]; arrays have one entry per particle.
+pub struct StrengthUpdate<'a> {
+    /// Time step [s].
     pub dt: f64,
-    /// Gradient of the velocity.
-    pub rate: RateRows<'a>,
-    /// J.
+    /// Velocity gradient.
+    pub rate: VelocityGradients<'a>,
+    /// Volume ratio J.
     pub jacobian: &'a [f64],
     /// Pressure [Pa].
     pub pressure: &'a [f64],
-    /// Temperature [K], where a scene has one.
+    /// Temperature [K], if the scene has one.
     pub temperature: Option<&'a [f64]>,
-    /// Deviator of the stress before.
-    pub deviator: DeviatorRows<'a>,
-    /// Equivalent plastic strain before [-].
+    /// Deviator of the stress before the update.
+    pub deviator: Deviators<'a>,
+    /// Equivalent plastic strain before the update [-].
     pub plastic_strain: &'a [f64],
-    /// Set to the deviator after [Pa].
-    pub deviator_after: TensorRows<'a>,
-    /// Set to the equivalent plastic strain after [-].
+    /// Output: deviator after the update [Pa].
+    pub deviator_after: TensorColumns<'a>,
+    /// Output: equivalent plastic strain after the update [-].
     pub plastic_strain_after: &'a mut [f64],
-    /// Set to the plastic work per volume [J/m3].
+    /// Output: plastic work per volume [J/m3].
     pub plastic_work: &'a mut [f64],
 }
 
-/// The strength of a material, as the step sees it.
-pub trait Flow: Send + Sync {
-    /// Shears rows.
-    fn advance(&self, rows: FlowRows<'_>);
+/// Strength of a material, as called by the step.
+pub trait StrengthModel: Send + Sync {
+    /// Updates deviator and plastic strain, and sets the plastic work.
+    fn advance(&self, particles: StrengthUpdate<'_>);
 
-    /// Shear modulus of a row [Pa].
-    fn shear_modulus(&self, at: &Condition) -> f64;
+    /// Shear modulus at the state `at` [Pa].
+    fn shear_modulus(&self, at: &MaterialState) -> f64;
 
-    /// Yield stress of a row at rest [Pa].
-    fn yield_stress(&self, strain: f64, at: &Condition) -> f64;
+    /// Yield stress at zero strain rate [Pa].
+    fn yield_stress(&self, strain: f64, at: &MaterialState) -> f64;
 }
 
-/// The loops over a model of strength.
-pub(super) struct Shearing<S>(pub S);
+/// Particle loop over one strength law.
+pub(super) struct StrengthKernel<L>(pub L);
 
-impl<S: Strength> Flow for Shearing<S> {
-    fn advance(&self, rows: FlowRows<'_>) {
-        let mut out = rows.deviator_after;
-        for r in 0..rows.plastic_strain_after.len() {
-            let at = Condition {
-                compression: 1.0 / rows.jacobian[r],
-                pressure: rows.pressure[r],
-                temperature: rows.temperature.map_or(f64::NAN, |t| t[r]),
+impl<L: StrengthLaw> StrengthModel for StrengthKernel<L> {
+    fn advance(&self, particles: StrengthUpdate<'_>) {
+        let mut out = particles.deviator_after;
+        for r in 0..particles.plastic_strain_after.len() {
+            let at = MaterialState {
+                compression: 1.0 / particles.jacobian[r],
+                pressure: particles.pressure[r],
+                temperature: particles.temperature.map_or(f64::NAN, |t| t[r]),
             };
-            let (s, strain) = (rows.deviator.at(r), rows.plastic_strain[r]);
-            let after = strength::advance(&self.0, &s, strain, &rows.rate.at(r), rows.dt, &at);
+            let (s, strain) = (particles.deviator.at(r), particles.plastic_strain[r]);
+            let after =
+                strength::advance(&self.0, &s, strain, &particles.rate.at(r), particles.dt, &at);
             out.set(r, &after.deviator, 1.0);
-            rows.plastic_strain_after[r] = after.plastic_strain;
-            rows.plastic_work[r] = after.plastic_work;
+            particles.plastic_strain_after[r] = after.plastic_strain;
+            particles.plastic_work[r] = after.plastic_work;
         }
     }
 
-    fn shear_modulus(&self, at: &Condition) -> f64 {
+    fn shear_modulus(&self, at: &MaterialState) -> f64 {
         self.0.shear_modulus(at)
     }
 
-    fn yield_stress(&self, strain: f64, at: &Condition) -> f64 {
+    fn yield_stress(&self, strain: f64, at: &MaterialState) -> f64 {
         self.0.yield_stress(strain, 0.0, at)
     }
 }

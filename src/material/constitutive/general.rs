@@ -1,52 +1,52 @@
-//! The loops over an equation of state that is not linear in e, or has a history.
+//! Particle loops over an equation of state that is not linear in e, or has a history.
 //!
-//! What [`Model`] asks for is solved to rounding, row by row, with
+//! The equations of [`FluidModel`] are solved to rounding per particle with
 //! [`energy_of_work`](crate::material::energy_of_work).
 
-use super::{MidStep, Model, VolumeChange};
+use super::{FluidModel, MidStep, VolumeChange};
 use crate::material::{HistoryEos, energy_of_work};
 
-/// The loops over an equation of state of any form.
-pub(super) struct Implicit<E>(pub E);
+/// Particle loops over an equation of state of any form.
+pub(super) struct NonlinearEosKernel<E>(pub E);
 
-/// The history of row `r`; that of a material without one says nothing.
+/// History variable of particle `r`; 0 for a material without one, which ignores it.
 #[inline(always)]
 fn of(history: &Option<&[f64]>, r: usize) -> f64 {
     history.map_or(0.0, |h| h[r])
 }
 
-impl<E: HistoryEos> Model for Implicit<E> {
-    fn mid_step(&self, mut rows: MidStep<'_>) {
-        for r in 0..rows.mass.len() {
-            let (j, q) = (rows.jacobian_mid[r], rows.q.map_or(0.0, |q| q[r]));
-            let dv = (j - rows.jacobian[r]) * rows.volume0[r] / rows.mass[r];
-            let history = of(&rows.history, r);
+impl<E: HistoryEos> FluidModel for NonlinearEosKernel<E> {
+    fn mid_step(&self, mut particles: MidStep<'_>) {
+        for r in 0..particles.mass.len() {
+            let (j, q) = (particles.jacobian_mid[r], particles.q.map_or(0.0, |q| q[r]));
+            let dv = (j - particles.jacobian[r]) * particles.volume0[r] / particles.mass[r];
+            let history = of(&particles.history, r);
             let at = |e: f64| self.0.at(j, e, history);
-            let start = rows.energy[r];
+            let start = particles.energy[r];
             let (_, point, _) = energy_of_work(at, start - q * dv, dv, start);
-            let volume = rows.volume0[r] * j;
-            rows.stress_volume[r] = (point.pressure + q) * volume;
-            if let Some((pressure, compliance)) = &mut rows.compliance {
+            let volume = particles.volume0[r] * j;
+            particles.stress_volume[r] = (point.pressure + q) * volume;
+            if let Some((pressure, compliance)) = &mut particles.compliance {
                 let c2 = point.sound_speed_squared;
-                let jump = rows.edge * rows.gradient[r];
-                let stiffness = rows.mass[r] * (c2 + jump * jump) + rows.floor * volume;
+                let jump = particles.edge * particles.gradient[r];
+                let stiffness = particles.mass[r] * (c2 + jump * jump) + particles.floor * volume;
                 pressure[r] = point.pressure;
                 compliance[r] = if c2 > 0.0 { volume * volume / stiffness } else { 0.0 };
             }
         }
     }
 
-    fn change_volume(&self, rows: VolumeChange<'_>) {
-        for r in 0..rows.mass.len() {
-            let (j, q) = (rows.after[r], rows.q.map_or(0.0, |q| q[r]));
-            let dv = (j - rows.before[r]) * rows.volume0[r] / rows.mass[r];
-            let history = of(&rows.history, r);
+    fn change_volume(&self, particles: VolumeChange<'_>) {
+        for r in 0..particles.mass.len() {
+            let (j, q) = (particles.after[r], particles.q.map_or(0.0, |q| q[r]));
+            let dv = (j - particles.before[r]) * particles.volume0[r] / particles.mass[r];
+            let history = of(&particles.history, r);
             let at = |e: f64| self.0.at(j, e, history);
-            let start = rows.energy[r];
-            let known = start - (0.5 * rows.pressure[r] + q) * dv;
+            let start = particles.energy[r];
+            let known = start - (0.5 * particles.pressure[r] + q) * dv;
             let (energy, point, _) = energy_of_work(at, known, 0.5 * dv, start);
-            rows.energy[r] = energy;
-            rows.pressure[r] = point.pressure;
+            particles.energy[r] = energy;
+            particles.pressure[r] = point.pressure;
         }
     }
 
@@ -69,7 +69,9 @@ impl<E: HistoryEos> Model for Implicit<E> {
                 history[r] = now;
             }
             if found.is_none() {
-                found = self.fault(j, e, now, point.pressure, sound_speed[r]).map(|why| (r, why));
+                found = self
+                    .check_validity(j, e, now, point.pressure, sound_speed[r])
+                    .map(|why| (r, why));
             }
         }
         found
@@ -90,14 +92,21 @@ impl<E: HistoryEos> Model for Implicit<E> {
     }
 }
 
-impl<E: HistoryEos> Implicit<E> {
-    /// Why a state lies outside of the model, if it does.
-    fn fault(&self, j: f64, e: f64, history: f64, p: f64, sound_speed: f64) -> Option<String> {
+impl<E: HistoryEos> NonlinearEosKernel<E> {
+    /// Reason why a state is outside the range of the model, if it is.
+    fn check_validity(
+        &self,
+        j: f64,
+        e: f64,
+        history: f64,
+        p: f64,
+        sound_speed: f64,
+    ) -> Option<String> {
         let why = if !(j.is_finite() && p.is_finite() && e.is_finite()) {
             "its state is not a number".into()
         } else if j <= 0.0 {
             format!("its volume is negative (J = {j:.6e})")
-        } else if let Some(fault) = self.0.fault(j, e, history, p) {
+        } else if let Some(fault) = self.0.check_validity(j, e, history, p) {
             format!("it is {fault}")
         } else if sound_speed.is_nan() {
             "its sound speed is imaginary".into()
@@ -112,12 +121,12 @@ impl<E: HistoryEos> Implicit<E> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::constitutive::Point;
+    use crate::material::constitutive::LinearEosKernel;
     use crate::material::{IdealGas, MieGruneisen, Porous, Tillotson};
 
     const GAS: IdealGas = IdealGas { rho0: 2.0, gamma: 1.4 };
 
-    fn mid_step(model: &dyn Model) -> [f64; 3] {
+    fn mid_step(model: &dyn FluidModel) -> [f64; 3] {
         let (mut stress, mut p, mut w) = ([0.0], [0.0], [0.0]);
         model.mid_step(MidStep {
             mass: &[0.02],
@@ -137,7 +146,7 @@ mod tests {
     }
 
     fn change(
-        model: &dyn Model,
+        model: &dyn FluidModel,
         history: Option<&[f64]>,
         from: f64,
         to: f64,
@@ -147,7 +156,7 @@ mod tests {
     }
 
     fn change_against(
-        model: &dyn Model,
+        model: &dyn FluidModel,
         q: Option<&[f64]>,
         history: Option<&[f64]>,
         [from, to]: [f64; 2],
@@ -169,25 +178,27 @@ mod tests {
 
     #[test]
     fn a_linear_equation_gives_the_same_either_way() {
-        for (a, b) in mid_step(&Implicit(GAS)).into_iter().zip(mid_step(&Point(GAS))) {
+        for (a, b) in
+            mid_step(&NonlinearEosKernel(GAS)).into_iter().zip(mid_step(&LinearEosKernel(GAS)))
+        {
             assert!((a / b - 1.0).abs() < 1e-14, "{a} {b}");
         }
         let start = [0.4 * 2.0 * 3.0, 3.0];
         let both = [
-            change(&Implicit(GAS), None, 1.0, 0.9, start),
-            change(&Point(GAS), None, 1.0, 0.9, start),
+            change(&NonlinearEosKernel(GAS), None, 1.0, 0.9, start),
+            change(&LinearEosKernel(GAS), None, 1.0, 0.9, start),
         ];
         for (a, b) in both[0].into_iter().zip(both[1]) {
             assert!((a / b - 1.0).abs() < 1e-14, "{a} {b}");
         }
-        let viscous: [&dyn Model; 2] = [&Implicit(GAS), &Point(GAS)];
+        let viscous: [&dyn FluidModel; 2] = [&NonlinearEosKernel(GAS), &LinearEosKernel(GAS)];
         let [a, b] =
             viscous.map(|model| change_against(model, Some(&[300.0]), None, [1.0, 0.9], start)[1]);
         assert!((a / b - 1.0).abs() < 1e-14 && a > both[0][1], "{a} {b}");
     }
 
-    /// Of a smooth path in n steps: pressure and energy at its end.
-    fn driven(model: &dyn Model, n: usize, to: f64) -> [f64; 2] {
+    /// Pressure and energy at the end of a smooth path in n steps.
+    fn driven(model: &dyn FluidModel, n: usize, to: f64) -> [f64; 2] {
         let mut state = [0.0, 0.0];
         for k in 0..n {
             let at = |k: usize| 1.0 + (to - 1.0) * k as f64 / n as f64;
@@ -210,7 +221,7 @@ mod tests {
             e_iv: 3e6,
             e_cv: 13.9e6,
         };
-        let model = Implicit(eos);
+        let model = NonlinearEosKernel(eos);
         let [exact, _] = driven(&model, 4000, 0.6);
         let error = |n| (driven(&model, n, 0.6)[0] / exact - 1.0).abs();
         let order = (error(20) / error(40)).log2();
@@ -220,13 +231,13 @@ mod tests {
     #[test]
     fn the_distension_is_brought_to_its_end() {
         let solid = MieGruneisen { rho0: 8930.0, c0: 3940.0, s: 1.489, gamma0: 1.96 };
-        let model = Implicit(Porous {
+        let model = NonlinearEosKernel(Porous {
             solid,
             distension: 1.25,
             elastic_pressure: 0.1e9,
-            compaction_pressure: 1.6e9,
+            full_compaction_pressure: 1.6e9,
         });
-        let first = Model::first_history(&model).unwrap();
+        let first = FluidModel::first_history(&model).unwrap();
         let (mut alpha, mut p, mut c) = ([first], [0.0], [0.0]);
         assert_eq!(model.refresh(&[0.88], &[1e3], Some(&mut alpha), &mut p, &mut c), None);
         assert!(alpha[0] < 1.25 && alpha[0] > 1.0 && p[0] > 0.1e9);
@@ -235,18 +246,19 @@ mod tests {
         assert!(alpha[0] == crushed && p[0] < 0.1e9, "pores stay closed");
         let (_, told) = model.refresh(&[0.2], &[0.0], Some(&mut alpha), &mut p, &mut c).unwrap();
         assert!(told.contains("limit 1/s"), "{told}");
-        // the work of a step goes by the pressure at its end
+        // the work of a step uses the pressure at its end
         let [p, e] = change(&model, Some(&[first]), 1.0, 0.88, [0.0, 0.0]);
         assert!((e / (0.5 * p * 0.12 * 1e-3 / 2.0) - 1.0).abs() < 1e-12);
     }
 
     #[test]
     fn a_state_outside_of_the_model_is_named() {
-        let model = Implicit(GAS);
+        let model = NonlinearEosKernel(GAS);
         for (j, e, word) in [(-0.1, 1.0, "negative"), (0.9, f64::NAN, "not a number")] {
             let (mut p, mut c) = ([0.0; 2], [0.0; 2]);
-            let (row, what) = model.refresh(&[0.9, j], &[1.0, e], None, &mut p, &mut c).unwrap();
-            assert!(row == 1 && what.contains(word), "{what}");
+            let (particle, what) =
+                model.refresh(&[0.9, j], &[1.0, e], None, &mut p, &mut c).unwrap();
+            assert!(particle == 1 && what.contains(word), "{what}");
         }
     }
 }

@@ -4,37 +4,37 @@
 //! T = Ts(J) + (e - es(J) - s:s/(4 G rho) - stored)/cv
 //! ```
 //!
-//! about the isentrope through the state at rest, of temperature Ts and energy es:
+//! Ts and es are the temperature and the energy on the isentrope through the state at rest:
 //! des/dJ = -p/rho0 and d(ln Ts)/dJ = -(dp/de)/rho0, which is the Grueneisen coefficient over -J
-//! (Davison 2008, eqs. 5.127 and 5.135). s:s/(4 G rho) is the elastic energy of the shear, and
-//! `stored` the part of the plastic work that does not heat (Taylor & Quinney 1934).
+//! (Davison 2008, eqs. 5.127 and 5.135). s:s/(4 G rho) is the elastic energy of shear. `stored` is
+//! the part of the plastic work that does not heat (Taylor & Quinney 1934).
 
-use super::Model;
+use super::FluidModel;
 
-/// Points of the isentrope, each way from rest.
+/// Number of points of the isentrope on each side of rest.
 const POINTS: usize = 2000;
 
-/// The least and the greatest J of the isentrope.
+/// Smallest and greatest J of the isentrope.
 const RANGE: [f64; 2] = [0.25, 1.5];
 
-/// The isentrope through the state at rest, by cubics between points.
+/// Isentrope through the state at rest, interpolated by cubics between points.
 #[derive(Clone, Debug)]
-pub struct Isentrope {
+pub struct TemperatureIsentrope {
     lower: f64,
     spacing: f64,
-    /// es [J/kg] and its slope by J, ln(Ts/T0) and its slope by J.
+    /// es [J/kg] and its derivative by J, ln(Ts/T0) and its derivative by J.
     points: Vec<[f64; 4]>,
 }
 
-impl Isentrope {
-    /// That of `model` of density `rho0` [kg/m3] at rest, as far as the model holds.
-    pub fn new(model: &dyn Model, rho0: f64) -> Self {
+impl TemperatureIsentrope {
+    /// Isentrope of `model` with density `rho0` [kg/m3] at rest, as far as the model is valid.
+    pub fn new(model: &dyn FluidModel, rho0: f64) -> Self {
         let state = |j: f64, e: f64| -> Option<[f64; 2]> {
             let at = |e: f64| {
                 let (mut p, mut c) = ([0.0], [0.0]);
                 model.refresh(&[j], &[e], None, &mut p, &mut c).is_none().then_some(p[0])
             };
-            // dp/de is constant in each model that is linear in the energy
+            // dp/de does not depend on e in a model that is linear in the energy
             let step = 1e-3 * model.sound_speed_at(0.0).powi(2).max(f64::MIN_POSITIVE);
             Some([at(e)?, (at(e + step)? - at(e - step)?) / (2.0 * step)])
         };
@@ -47,7 +47,7 @@ impl Isentrope {
                 let j = 1.0 + h * k as f64;
                 let Some(first) = slope(j, e) else { break };
                 all.push([e, first[0], log, first[1]]);
-                // Runge & Kutta's fourth order
+                // fourth-order Runge-Kutta method
                 let mut sum = first;
                 let mut last = first;
                 let mut whole = true;
@@ -67,7 +67,7 @@ impl Isentrope {
             }
             (all, h)
         };
-        // the same spacing both ways, so that one division finds the place
+        // equal spacing on both sides, so that one division finds the interval
         let (below, spacing) = walk(RANGE[0]);
         let (above, _) = walk(2.0 - RANGE[0]);
         let upper = ((RANGE[1] - 1.0) / -spacing).ceil() as usize;
@@ -76,13 +76,13 @@ impl Isentrope {
         let mut points: Vec<_> =
             below.into_iter().rev().chain(above.iter().skip(1).copied()).collect();
         if points.is_empty() {
-            // a model that does not hold at rest is told so by its first state
+            // a model that is invalid at rest is reported with its first state
             points.push([0.0; 4]);
         }
-        Isentrope { lower, spacing: -spacing, points }
+        TemperatureIsentrope { lower, spacing: -spacing, points }
     }
 
-    /// es [J/kg] and Ts/T0 at `jacobian`; along the tangents beyond the ends.
+    /// es [J/kg] and Ts/T0 at `jacobian`; extrapolated along the tangents beyond the ends.
     pub fn at(&self, jacobian: f64) -> [f64; 2] {
         let place = (jacobian - self.lower) / self.spacing;
         let last = self.points.len() - 1;
@@ -105,30 +105,30 @@ impl Isentrope {
     }
 }
 
-/// How a material's temperature follows.
+/// Temperature model of a material.
 #[derive(Clone, Debug)]
-pub struct Thermal {
+pub struct ThermalModel {
     /// Specific heat cv [J/(kg K)].
     pub specific_heat: f64,
     /// Temperature at rest T0 [K].
     pub rest: f64,
-    /// Share of the plastic work that heats [-].
+    /// Fraction of the plastic work that becomes heat [-].
     pub taylor_quinney: f64,
-    /// Conductivity [W/(m K)]; none where it is left out.
+    /// Thermal conductivity [W/(m K)]; `None` if the scene leaves it out.
     pub conductivity: Option<f64>,
-    /// The isentrope through the state at rest; none where plastic work alone heats.
-    pub isentrope: Option<Isentrope>,
+    /// Isentrope through the state at rest; `None` if only plastic work heats.
+    pub isentrope: Option<TemperatureIsentrope>,
 }
 
-impl Thermal {
-    /// Temperature [K] at `jacobian` with the specific internal energy `energy` less what of it is
-    /// elastic shear or stored [J/kg], `None` where the plastic work alone heats.
+impl ThermalModel {
+    /// Temperature [K] at `jacobian`, where `energy` is the specific internal energy without its
+    /// elastic shear and stored parts [J/kg]. `None` if only plastic work heats.
     pub fn temperature(&self, jacobian: f64, energy: f64) -> Option<f64> {
-        let [cold, ratio] = self.isentrope.as_ref()?.at(jacobian);
-        Some(self.rest * ratio + (energy - cold) / self.specific_heat)
+        let [reference_pressure, ratio] = self.isentrope.as_ref()?.at(jacobian);
+        Some(self.rest * ratio + (energy - reference_pressure) / self.specific_heat)
     }
 
-    /// Specific internal energy of the material at its density and `temperature` [J/kg].
+    /// Specific internal energy at rest density and `temperature` [J/kg].
     pub fn energy_at(&self, temperature: f64) -> f64 {
         self.specific_heat * (temperature - self.rest)
     }
@@ -136,7 +136,7 @@ impl Thermal {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Point;
+    use super::super::LinearEosKernel;
     use super::*;
     use crate::material::{EquationOfState, MieGruneisen};
 
@@ -144,11 +144,11 @@ mod tests {
 
     #[test]
     fn the_isentrope_is_that_of_the_equation_of_state() {
-        let isentrope = Isentrope::new(&Point(COPPER), 8930.0);
+        let isentrope = TemperatureIsentrope::new(&LinearEosKernel(COPPER), 8930.0);
         for (j, ratio) in [(0.8f64, (1.96f64 * 0.2).exp()), (1.0, 1.0), (1.05, (-0.098f64).exp())] {
             let [e, t] = isentrope.at(j);
             assert!((t / ratio - 1.0).abs() < 1e-9, "{j}: {t} {ratio}");
-            // by the mid-point rule in 20000 steps
+            // mid-point rule in 20000 steps
             let (mut by_hand, h) = (0.0, (j - 1.0) / 20000.0);
             for k in 0..20000 {
                 let at = 1.0 + h * k as f64;
@@ -157,14 +157,14 @@ mod tests {
             }
             assert!((e - by_hand).abs() <= 1e-6 * by_hand.abs() + 1e-12, "{j}: {e} {by_hand}");
         }
-        // past the limit of the Hugoniot there is no isentrope; its end goes on straight
+        // beyond the limit of the Hugoniot there is no isentrope; it continues along its tangent
         assert!(isentrope.at(0.2)[0].is_finite() && isentrope.at(3.0)[1] > 0.0);
     }
 
     #[test]
     fn temperature_is_that_at_rest_and_grows_by_the_heat() {
-        let isentrope = Some(Isentrope::new(&Point(COPPER), 8930.0));
-        let copper = Thermal {
+        let isentrope = Some(TemperatureIsentrope::new(&LinearEosKernel(COPPER), 8930.0));
+        let copper = ThermalModel {
             specific_heat: 385.0,
             rest: 293.0,
             taylor_quinney: 1.0,

@@ -1,35 +1,38 @@
-//! The least specific internal energy that adiabatic flow can bring a material to.
+//! Smallest specific internal energy that a material can reach in adiabatic flow.
 
-use super::{Matter, Model};
+use super::{ConstitutiveModel, FluidModel};
 
-/// Longest step of ln J along the isentrope.
+/// Largest step of ln J along the isentrope.
 const STEP: f64 = 0.01;
 
-/// Share of the way to zero pressure, by the stiffness at hand, that a step takes.
+/// Fraction of the distance to zero pressure, estimated from the current stiffness, that one step
+/// covers.
 const SHARE: f64 = 0.1;
 
-/// Pressure over the stiffness rho c^2 at which the elastic energy is spent: what is left of it is
-/// half of the square of this, over c^2, which is rounding. In a gas the ratio stays at 1/gamma.
+/// Ratio of pressure to stiffness rho c^2 at which the elastic energy counts as spent: the
+/// remaining energy over c^2 is half the square of this ratio, which is rounding. In a gas the
+/// ratio stays at 1/gamma.
 const SPENT: f64 = 1e-6;
 
 /// Greatest |ln J| of the search: a gas has spent nearly all of its energy there.
 const RANGE: f64 = 9.0;
 
-/// The least specific internal energy [J/kg] that a material of density `rho0` [kg/m3] can reach
-/// from `start` [J/kg] at J = 1 without losing heat: the energy at zero pressure on the isentrope
-/// through the start, since de = -p dv. At most `start`.
+/// Smallest specific internal energy [J/kg] that a material of density `rho0` [kg/m3] can reach
+/// from `start` [J/kg] at J = 1 without losing heat. Since de = -p dv, it is the energy at zero
+/// pressure on the isentrope through the start. At most `start`.
 ///
-/// A material with a history (pores, a detonation) has no single isentrope; the lesser of `start`
-/// and 0 stands for it. An elastic solid starts without stress, so `start` is its least energy.
-pub fn least_energy(matter: &Matter, rho0: f64, start: f64) -> f64 {
+/// A material with a history (pores, a detonation) has no single isentrope; the result is then the
+/// smaller of `start` and 0. An elastic solid starts without stress, so `start` is its smallest
+/// energy.
+pub fn least_energy(matter: &ConstitutiveModel, rho0: f64, start: f64) -> f64 {
     match matter {
-        Matter::Solid(_) => start,
-        Matter::Fluid(model) if model.first_history().is_some() => start.min(0.0),
-        Matter::Fluid(model) => along_isentrope(model.as_ref(), rho0, start),
+        ConstitutiveModel::Solid(_) => start,
+        ConstitutiveModel::Fluid(model) if model.first_history().is_some() => start.min(0.0),
+        ConstitutiveModel::Fluid(model) => along_isentrope(model.as_ref(), rho0, start),
     }
 }
 
-fn along_isentrope(model: &dyn Model, rho0: f64, start: f64) -> f64 {
+fn along_isentrope(model: &dyn FluidModel, rho0: f64, start: f64) -> f64 {
     // pressure and sound speed
     let state = |log: f64, e: f64| -> Option<[f64; 2]> {
         let (mut p, mut c) = ([0.0], [0.0]);
@@ -38,15 +41,15 @@ fn along_isentrope(model: &dyn Model, rho0: f64, start: f64) -> f64 {
     let slope = |log: f64, p: f64| -p * log.exp() / rho0;
     let Some([first, mut c]) = state(0.0, start) else { return start };
     let (mut log, mut e, mut p) = (0.0f64, start, first);
-    // material in compression expands to zero pressure, material in tension contracts
+    // compressed material expands to zero pressure, material in tension contracts
     loop {
         let strain = p * log.exp() / (rho0 * c * c);
-        // NaN, of no pressure without stiffness, ends it too
+        // NaN, from zero pressure without stiffness, also ends the loop
         if !(strain.abs() > SPENT && (p > 0.0) == (first > 0.0)) {
             break;
         }
         if log.abs() >= RANGE {
-            // a gas: it comes to zero pressure only as its energy comes to zero
+            // a gas: its pressure reaches zero only as its energy reaches zero
             return start.min(0.0);
         }
         let step = (SHARE * strain).clamp(-STEP, STEP);
@@ -62,14 +65,14 @@ fn along_isentrope(model: &dyn Model, rho0: f64, start: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Point, general::Implicit};
+    use super::super::{LinearEosKernel, general::NonlinearEosKernel};
     use super::*;
     use crate::material::{IdealGas, MieGruneisen, Porous};
 
     const COPPER: MieGruneisen = MieGruneisen { rho0: 8930.0, c0: 3940.0, s: 1.489, gamma0: 1.96 };
 
     fn of_copper(start: f64) -> f64 {
-        least_energy(&Matter::Fluid(Box::new(Point(COPPER))), 8930.0, start)
+        least_energy(&ConstitutiveModel::Fluid(Box::new(LinearEosKernel(COPPER))), 8930.0, start)
     }
 
     #[test]
@@ -91,7 +94,10 @@ mod tests {
     #[test]
     fn a_gas_can_spend_all_of_its_energy() {
         let gas = IdealGas { rho0: 2.0, gamma: 1.4 };
-        assert_eq!(least_energy(&Matter::Fluid(Box::new(Point(gas))), 2.0, 3.0), 0.0);
+        assert_eq!(
+            least_energy(&ConstitutiveModel::Fluid(Box::new(LinearEosKernel(gas))), 2.0, 3.0),
+            0.0
+        );
     }
 
     #[test]
@@ -100,9 +106,9 @@ mod tests {
             solid: COPPER,
             distension: 1.2,
             elastic_pressure: 0.1e9,
-            compaction_pressure: 1.6e9,
+            full_compaction_pressure: 1.6e9,
         };
-        let matter = Matter::Fluid(Box::new(Implicit(pores)));
+        let matter = ConstitutiveModel::Fluid(Box::new(NonlinearEosKernel(pores)));
         assert_eq!(least_energy(&matter, 8930.0 / 1.2, 1e3), 0.0);
         assert_eq!(least_energy(&matter, 8930.0 / 1.2, -1e3), -1e3);
     }

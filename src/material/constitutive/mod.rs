@@ -1,88 +1,89 @@
-//! What a material does to rows of particles: called once a run of rows of one body, the loop
-//! inside knows its equation of state.
+//! Constitutive update of particles. The step calls a model once per run of particles of one body;
+//! the particle loop inside is compiled for the equation of state.
 //!
-//! Knows no grid, no messages, no dimension.
+//! Independent of grid, communication and dimension.
 //!
 //! # Adding a model from outside
 //!
-//! A program that uses this library may bring models of its own, without a change to it: an
+//! A program that uses this library can supply its own models without changing the library: an
 //! [`EquationOfState`] (linear in the energy) or [`GeneralEos`](crate::material::GeneralEos), and a
-//! [`Strength`](crate::material::strength::Strength). [`Outside`] makes them ready, and
-//! [`Simulation::with_models`](crate::simulation::Simulation::with_models) takes them in place of
+//! [`StrengthLaw`]. [`CustomModel`] wraps them, and
+//! [`Simulation::with_models`](crate::simulation::Simulation::with_models) uses them in place of
 //! those that the scene names for a material:
 //!
 //! ```ignore
 //! let models = |material: &str| {
-//!     (material == "metal").then(|| Outside::fluid(MY_EOS).with_strength(MY_STRENGTH))
+//!     (material == "metal").then(|| CustomModel::fluid(MY_EOS).with_strength(MY_STRENGTH))
 //! };
 //! let simulation = Simulation::<1>::with_models(&scene, &Serial, 1, &models)?;
 //! ```
 //!
-//! The scene goes on to say what a run has columns for, so a material with a strength from outside
-//! names one there, and one whose equation of state is from outside names a fluid without a history.
-//! The loops over rows are compiled for the model, as they are for those of the library. What is
-//! written to files, scored or drawn by `flyer-mpm SCENE.json` knows the scene alone.
-//! `examples/custom_material.rs` is a whole program.
+//! The scene still determines the columns of a run. A material with a custom strength must
+//! therefore name some strength in the scene, and a material with a custom equation of state must
+//! name a fluid without a history. The particle loops are compiled for the custom model, as for the
+//! models of the library. Files, scores and plots of `flyer-mpm SCENE.json` depend on the scene
+//! only. `examples/custom_material.rs` is a complete program.
 
 mod custom_model;
+mod damage_update;
 mod deviatoric_update;
 mod erosion;
-mod failure;
 mod general;
 mod heat;
 mod least_energy;
 mod registry;
 mod solid;
 
-pub use custom_model::Outside;
-pub use deviatoric_update::{DeviatorRows, Flow, FlowRows, RateRows};
-pub use erosion::Erosion;
-pub use failure::{Criterion, Ductile, Loaded};
-pub use heat::{Isentrope, Thermal};
+pub use custom_model::CustomModel;
+pub use damage_update::{DamageUpdate, FailureModel};
+pub use deviatoric_update::{Deviators, StrengthModel, StrengthUpdate, VelocityGradients};
+pub use erosion::ErosionCriterion;
+pub use heat::{TemperatureIsentrope, ThermalModel};
 pub use least_energy::least_energy;
-pub use registry::{build, equation, products};
-pub use solid::{PlaneStrain, Solid, Strain, TensorRows};
+pub use registry::{build, equation};
+pub use solid::{PlaneStrain, SolidModel, Strain, TensorColumns};
 
-use crate::material::definition::{self, Failure, HeatSource, Material, TensionMeasure};
-use crate::material::strength::{JohnsonCook, Softening, SteinbergGuinan, VonMises};
-use crate::material::{EquationOfState, Linear};
+use crate::material::definition::{HeatSource, Material};
+use crate::material::failure::{FailureLaw, FailureVisitor, StrengthBeside};
+use crate::material::strength::{StrengthLaw, StrengthVisitor};
+use crate::material::{EquationOfState, LinearPressure};
 
-/// What a body is made of, as the step sees it.
-pub enum Matter {
-    /// Bears pressure alone.
-    Fluid(Box<dyn Model>),
-    /// Bears shear too.
-    Solid(Box<dyn Solid>),
+/// Model of the material of a body, as called by the step.
+pub enum ConstitutiveModel {
+    /// Equation of state that carries pressure only.
+    Fluid(Box<dyn FluidModel>),
+    /// Elastic solid, which carries shear too.
+    Solid(Box<dyn SolidModel>),
 }
 
-impl Matter {
-    /// Sound speed of the material at its density and `pressure` [m/s].
+impl ConstitutiveModel {
+    /// Sound speed of the material at rest density and `pressure` [m/s].
     pub fn sound_speed_at(&self, pressure: f64) -> f64 {
         match self {
-            Matter::Fluid(model) => model.sound_speed_at(pressure),
-            Matter::Solid(solid) => solid.sound_speed_at_rest(),
+            ConstitutiveModel::Fluid(model) => model.sound_speed_at(pressure),
+            ConstitutiveModel::Solid(solid) => solid.sound_speed_at_rest(),
         }
     }
 
-    /// Speed of a shear wave in the material at rest [m/s]; none in a fluid.
+    /// Shear wave speed in the material at rest [m/s]; 0 for a fluid.
     pub fn shear_speed(&self) -> f64 {
         match self {
-            Matter::Fluid(_) => 0.0,
-            Matter::Solid(solid) => solid.shear_speed_at_rest(),
+            ConstitutiveModel::Fluid(_) => 0.0,
+            ConstitutiveModel::Solid(solid) => solid.shear_speed_at_rest(),
         }
     }
 
-    /// The specific internal energy at which the material at rest is at `pressure` [J/kg]; none
-    /// in a solid, which starts without stress.
+    /// Specific internal energy at which the material at rest has `pressure` [J/kg]; 0 for a solid,
+    /// which starts without stress.
     pub fn energy_at(&self, pressure: f64) -> f64 {
         match self {
-            Matter::Fluid(model) => model.energy_at(pressure),
-            Matter::Solid(_) => 0.0,
+            ConstitutiveModel::Fluid(model) => model.energy_at(pressure),
+            ConstitutiveModel::Solid(_) => 0.0,
         }
     }
 }
 
-/// Rows at the middle of a step; see [`Model::mid_step`].
+/// Arguments of [`FluidModel::mid_step`]; arrays have one entry per particle.
 pub struct MidStep<'a> {
     /// Mass [kg].
     pub mass: &'a [f64],
@@ -96,56 +97,56 @@ pub struct MidStep<'a> {
     pub energy: &'a [f64],
     /// Divergence D of the velocity [1/s].
     pub gradient: &'a [f64],
-    /// Edge h of a cell [m].
+    /// Edge length h of a cell [m].
     pub edge: f64,
-    /// Stiffness S above what rounding leaves in a cold gas [Pa].
+    /// Stiffness S, greater than rounding leaves in a cold gas [Pa].
     pub floor: f64,
-    /// Artificial viscosity [Pa], if there is any.
+    /// Artificial viscosity [Pa], if active.
     pub q: Option<&'a [f64]>,
-    /// History at the start of the step, of a material with one.
+    /// History variable at the start of the step, if the material has one.
     pub history: Option<&'a [f64]>,
-    /// Set to (p + q) V [J].
+    /// Output: (p + q) V [J].
     pub stress_volume: &'a mut [f64],
-    /// Set to p [Pa] and to V^2/(m (c^2 + (h D)^2) + S V) [m3/Pa], if wanted: -dV/dp along the
-    /// isentrope, bounded where a gas has next to no pressure, so that what a cell's jump of
-    /// velocity may raise it by stands for it. 0 without any.
+    /// Output, if requested: p [Pa], and V^2/(m (c^2 + (h D)^2) + S V) [m3/Pa], which is -dV/dp
+    /// along the isentrope. Where a gas has nearly no pressure, the pressure that the velocity jump
+    /// over a cell can generate replaces it and bounds the value. 0 without stiffness.
     pub compliance: Option<(&'a mut [f64], &'a mut [f64])>,
 }
 
-/// Rows after a change of volume; see [`Model::change_volume`].
+/// Arguments of [`FluidModel::change_volume`]; arrays have one entry per particle.
 pub struct VolumeChange<'a> {
     /// Mass [kg].
     pub mass: &'a [f64],
     /// Volume at J = 1 [m3].
     pub volume0: &'a [f64],
-    /// J before.
+    /// J before the change.
     pub before: &'a [f64],
-    /// J after.
+    /// J after the change.
     pub after: &'a [f64],
-    /// Artificial viscosity during the change [Pa], if there is any.
+    /// Artificial viscosity during the change [Pa], if active.
     pub q: Option<&'a [f64]>,
-    /// Pressure before, set to that after [Pa].
+    /// Pressure [Pa], updated in place.
     pub pressure: &'a mut [f64],
-    /// Specific internal energy before, set to that after [J/kg].
+    /// Specific internal energy [J/kg], updated in place.
     pub energy: &'a mut [f64],
-    /// History before, of a material with one.
+    /// History variable before the change, if the material has one.
     pub history: Option<&'a [f64]>,
 }
 
-/// A fluid, as the step sees it.
-pub trait Model: Send + Sync {
-    /// Stress at the middle of the step, with the energy that the half-step's work gives:
-    /// p = (f + g (e - q dv))/(1 + g dv) from e_mid = e - (p + q) dv, dv the change of specific
-    /// volume so far.
-    fn mid_step(&self, rows: MidStep<'_>);
+/// Equation of state of a fluid, as called by the step.
+pub trait FluidModel: Send + Sync {
+    /// Sets the stress at the middle of the step, with the energy after the work of the half-step:
+    /// p = (f + g (e - q dv))/(1 + g dv) from e_mid = e - (p + q) dv, where dv is the change of
+    /// specific volume since the start of the step.
+    fn mid_step(&self, particles: MidStep<'_>);
 
-    /// Energy and pressure after a change of volume by the mid-point rule,
+    /// Updates energy and pressure after a change of volume by the trapezoidal rule,
     /// e' = e - ((p + p')/2 + q) dv, solved together with p' = f + g e'.
-    fn change_volume(&self, rows: VolumeChange<'_>);
+    fn change_volume(&self, particles: VolumeChange<'_>);
 
-    /// Sets pressure [Pa] and sound speed [m/s] of rows from J and e, and brings the history of a
-    /// material with one to its end. Tells the first row whose state lies outside of the model,
-    /// and why.
+    /// Sets pressure [Pa] and sound speed [m/s] from J and e, and updates the history variable, if
+    /// the material has one, to the end of the step. Returns the first particle whose state is
+    /// outside the range of the model, and the reason.
     fn refresh(
         &self,
         jacobian: &[f64],
@@ -155,106 +156,64 @@ pub trait Model: Send + Sync {
         sound_speed: &mut [f64],
     ) -> Option<(usize, String)>;
 
-    /// The specific internal energy at which the material at rest is at `pressure` [J/kg].
+    /// Specific internal energy at which the material at rest has `pressure` [J/kg].
     fn energy_at(&self, pressure: f64) -> f64;
 
-    /// Sound speed of the material at its density and `pressure` [m/s].
+    /// Sound speed of the material at rest density and `pressure` [m/s].
     fn sound_speed_at(&self, pressure: f64) -> f64;
 
-    /// The history that the material starts with; none of most materials, which have no such
-    /// column.
+    /// Initial history variable; `None` for most materials, which have no such column.
     fn first_history(&self) -> Option<f64> {
         None
     }
 }
 
-/// What a fluid's material bears of shear, if its scene says so.
-pub fn flow_of(material: &Material) -> Option<Box<dyn Flow>> {
-    use deviatoric_update::Shearing;
-    Some(match material.strength? {
-        definition::Strength::VonMises { shear_modulus, yield_stress, hardening } => {
-            Box::new(Shearing(VonMises { shear_modulus, yield_stress, hardening }))
+/// Strength model of a fluid material, if the scene names one.
+pub fn strength_model(material: &Material) -> Option<Box<dyn StrengthModel>> {
+    struct Build(f64);
+    impl StrengthVisitor for Build {
+        type Output = Box<dyn StrengthModel>;
+
+        fn visit<L: StrengthLaw>(self, law: L) -> Self::Output {
+            Box::new(deviatoric_update::StrengthKernel(law.with_density(self.0)))
         }
-        definition::Strength::JohnsonCook {
-            shear_modulus,
-            a,
-            b,
-            n,
-            c,
-            reference_rate,
-            softening,
-        } => {
-            let softening = softening.map(|s| Softening {
-                m: s.m,
-                room: s.reference_temperature,
-                melt: s.melt_temperature,
-            });
-            let model = JohnsonCook { shear_modulus, a, b, n, c, reference_rate, softening };
-            Box::new(Shearing(model))
-        }
-        definition::Strength::SteinbergGuinan {
-            shear_modulus,
-            yield_stress,
-            beta,
-            n,
-            initial_strain,
-            max_yield_stress,
-            pressure_hardening,
-            temperature_softening,
-        } => Box::new(Shearing(SteinbergGuinan {
-            shear_modulus,
-            yield_stress,
-            beta,
-            n,
-            initial_strain,
-            most: max_yield_stress,
-            by_pressure: pressure_hardening,
-            by_temperature: temperature_softening,
-        })),
-    })
+    }
+    material.strength.map(|strength| strength.visit(Build(material.density)))
 }
 
-/// When a material fails, if its scene says so.
-pub fn criterion_of(material: &Material) -> Option<Criterion> {
-    Some(match material.failure? {
-        Failure::TensionLimit { stress, measure: TensionMeasure::PrincipalStress } => {
-            Criterion::PrincipalStress(stress)
+/// Failure model of a material, if the scene names one.
+pub fn failure_model(material: &Material) -> Option<Box<dyn FailureModel>> {
+    struct Build(StrengthBeside);
+    impl FailureVisitor for Build {
+        type Output = Box<dyn FailureModel>;
+
+        fn visit<L: FailureLaw>(self, law: L) -> Self::Output {
+            Box::new(damage_update::FailureKernel { law, strength: self.0 })
         }
-        Failure::TensionLimit { stress, measure: TensionMeasure::MeanStress } => {
-            Criterion::MeanTension(stress)
-        }
-        Failure::JohnsonCook { d1, d2, d3, d4, d5, reference_rate } => {
-            let temperatures = match material.strength {
-                Some(definition::Strength::JohnsonCook { softening, .. }) => {
-                    softening.map(|s| [s.reference_temperature, s.melt_temperature])
-                }
-                _ => None,
-            };
-            Criterion::Ductile(Ductile { d: [d1, d2, d3, d4, d5], reference_rate, temperatures })
-        }
-    })
+    }
+    material.failure.map(|failure| failure.visit(Build(material.strength_beside())))
 }
 
-/// When a material's particles are taken out, if its scene says so.
-pub fn erosion_of(material: &Material) -> Option<Erosion> {
+/// Erosion limits of a material, if the scene gives any.
+pub fn erosion_of(material: &Material) -> Option<ErosionCriterion> {
     let named = material.erosion?;
     let limit = |named: Option<f64>| named.unwrap_or(f64::INFINITY);
-    Some(Erosion {
+    Some(ErosionCriterion {
         plastic_strain: limit(named.plastic_strain),
         volume_ratio: limit(named.volume_ratio),
     })
 }
 
-/// How a material's temperature follows, if its scene says so; `matter` is its model.
-pub fn thermal_of(material: &Material, matter: &Matter) -> Option<Thermal> {
+/// Temperature model of a material, if the scene gives one; `matter` is its constitutive model.
+pub fn thermal_of(material: &Material, matter: &ConstitutiveModel) -> Option<ThermalModel> {
     let named = material.thermal?;
     let isentrope = match (named.source, matter) {
-        (HeatSource::Energy, Matter::Fluid(model)) => {
-            Some(Isentrope::new(model.as_ref(), material.density))
+        (HeatSource::Energy, ConstitutiveModel::Fluid(model)) => {
+            Some(TemperatureIsentrope::new(model.as_ref(), material.density))
         }
         _ => None,
     };
-    Some(Thermal {
+    Some(ThermalModel {
         specific_heat: named.specific_heat,
         rest: named.reference_temperature,
         taylor_quinney: named.taylor_quinney,
@@ -263,38 +222,42 @@ pub fn thermal_of(material: &Material, matter: &Matter) -> Option<Thermal> {
     })
 }
 
-/// The loops over an equation of state.
-struct Point<E>(E);
+/// Particle loops over an equation of state that is linear in the energy.
+struct LinearEosKernel<E>(E);
 
-impl<E: EquationOfState> Model for Point<E> {
-    fn mid_step(&self, rows: MidStep<'_>) {
-        let n = rows.mass.len();
-        let (mass, volume0, j, j_mid) =
-            (rows.mass, &rows.volume0[..n], &rows.jacobian[..n], &rows.jacobian_mid[..n]);
-        let (energy, out) = (&rows.energy[..n], &mut rows.stress_volume[..n]);
-        let gradient = &rows.gradient[..n];
+impl<E: EquationOfState> FluidModel for LinearEosKernel<E> {
+    fn mid_step(&self, particles: MidStep<'_>) {
+        let n = particles.mass.len();
+        let (mass, volume0, j, j_mid) = (
+            particles.mass,
+            &particles.volume0[..n],
+            &particles.jacobian[..n],
+            &particles.jacobian_mid[..n],
+        );
+        let (energy, out) = (&particles.energy[..n], &mut particles.stress_volume[..n]);
+        let gradient = &particles.gradient[..n];
         let pressure_at = |r: usize, q: f64| {
             let dv = (j_mid[r] - j[r]) * volume0[r] / mass[r];
-            let Linear { cold, energy_factor } = self.0.linear(j_mid[r]);
-            let linear = cold + energy_factor * (energy[r] - q * dv);
-            self.0.borne(linear / (1.0 + energy_factor * dv))
+            let LinearPressure { reference_pressure, gruneisen_rho } = self.0.linear(j_mid[r]);
+            let linear = reference_pressure + gruneisen_rho * (energy[r] - q * dv);
+            self.0.clamp_tension(linear / (1.0 + gruneisen_rho * dv))
         };
-        // one pressure for both, where both are wanted
-        if let Some((pressure, compliance)) = rows.compliance {
+        // compute the pressure once if both outputs are requested
+        if let Some((pressure, compliance)) = particles.compliance {
             let (pressure, compliance) = (&mut pressure[..n], &mut compliance[..n]);
             for r in 0..n {
-                let p = pressure_at(r, rows.q.map_or(0.0, |q| q[r]));
-                out[r] = rows.q.map_or(p, |q| p + q[r]) * volume0[r] * j_mid[r];
+                let p = pressure_at(r, particles.q.map_or(0.0, |q| q[r]));
+                out[r] = particles.q.map_or(p, |q| p + q[r]) * volume0[r] * j_mid[r];
                 let volume = volume0[r] * j_mid[r];
                 let c2 = self.0.sound_speed_squared(j_mid[r], p);
-                let jump = rows.edge * gradient[r];
-                let stiffness = mass[r] * (c2 + jump * jump) + rows.floor * volume;
+                let jump = particles.edge * gradient[r];
+                let stiffness = mass[r] * (c2 + jump * jump) + particles.floor * volume;
                 pressure[r] = p;
                 compliance[r] = if c2 > 0.0 { volume * volume / stiffness } else { 0.0 };
             }
             return;
         }
-        match rows.q {
+        match particles.q {
             Some(q) => {
                 for r in 0..n {
                     out[r] = (pressure_at(r, q[r]) + q[r]) * volume0[r] * j_mid[r];
@@ -308,18 +271,21 @@ impl<E: EquationOfState> Model for Point<E> {
         }
     }
 
-    fn change_volume(&self, rows: VolumeChange<'_>) {
-        for r in 0..rows.mass.len() {
-            let dv = (rows.after[r] - rows.before[r]) * rows.volume0[r] / rows.mass[r];
-            let q = rows.q.map_or(0.0, |q| q[r]);
-            let Linear { cold, energy_factor } = self.0.linear(rows.after[r]);
-            let energy = (rows.energy[r] - (0.5 * (rows.pressure[r] + cold) + q) * dv)
-                / (1.0 + 0.5 * energy_factor * dv);
-            let pressure = cold + energy_factor * energy;
-            let borne = self.0.borne(pressure);
-            // what the material does not bear does no work
-            rows.energy[r] = energy + 0.5 * (pressure - borne) * dv;
-            rows.pressure[r] = borne;
+    fn change_volume(&self, particles: VolumeChange<'_>) {
+        for r in 0..particles.mass.len() {
+            let dv = (particles.after[r] - particles.before[r]) * particles.volume0[r]
+                / particles.mass[r];
+            let q = particles.q.map_or(0.0, |q| q[r]);
+            let LinearPressure { reference_pressure, gruneisen_rho } =
+                self.0.linear(particles.after[r]);
+            let energy = (particles.energy[r]
+                - (0.5 * (particles.pressure[r] + reference_pressure) + q) * dv)
+                / (1.0 + 0.5 * gruneisen_rho * dv);
+            let pressure = reference_pressure + gruneisen_rho * energy;
+            let clamped = self.0.clamp_tension(pressure);
+            // tension that the material does not carry does no work
+            particles.energy[r] = energy + 0.5 * (pressure - clamped) * dv;
+            particles.pressure[r] = clamped;
         }
     }
 
@@ -342,7 +308,7 @@ impl<E: EquationOfState> Model for Point<E> {
             sound_speed[r] = c2.sqrt();
             // a comparison with NaN is false
             sound &= jacobian[r] > 0.0 && c2 >= 0.0 && p.abs() < f64::INFINITY;
-            sound &= self.0.fault(jacobian[r], p).is_none();
+            sound &= self.0.check_validity(jacobian[r], p).is_none();
         }
         if sound {
             return None;
@@ -355,7 +321,7 @@ impl<E: EquationOfState> Model for Point<E> {
                 Some((r, format!("its state is not a number ({state})")))
             } else if j <= 0.0 {
                 Some((r, format!("its volume is negative (J = {j:.6e})")))
-            } else if let Some(fault) = self.0.fault(j, p) {
+            } else if let Some(fault) = self.0.check_validity(j, p) {
                 Some((r, format!("it is {fault} ({state})")))
             } else if sound_speed[r].is_nan() {
                 Some((r, format!("its sound speed is imaginary ({state})")))
@@ -379,7 +345,7 @@ mod tests {
     use super::*;
     use crate::material::{IdealGas, MieGruneisen};
 
-    const GAS: Point<IdealGas> = Point(IdealGas { rho0: 2.0, gamma: 1.4 });
+    const GAS: LinearEosKernel<IdealGas> = LinearEosKernel(IdealGas { rho0: 2.0, gamma: 1.4 });
 
     #[test]
     fn mid_step_pressure_has_the_energy_of_its_own_work() {
@@ -451,7 +417,7 @@ mod tests {
             compliance: None,
         });
         assert_eq!(stress, [0.5 * 0.01 * 1.2], "viscosity alone");
-        // it takes no work to expand, and all the work of viscosity is kept
+        // expansion takes no work, and all work of the viscosity is kept
         let (mut p, mut e) = ([0.0], [-1e-3]);
         GAS.change_volume(VolumeChange {
             mass: &[0.02],
@@ -469,7 +435,8 @@ mod tests {
 
     #[test]
     fn a_state_outside_of_the_model_is_named() {
-        let copper = Point(MieGruneisen { rho0: 8930.0, c0: 3940.0, s: 1.489, gamma0: 1.96 });
+        let copper =
+            LinearEosKernel(MieGruneisen { rho0: 8930.0, c0: 3940.0, s: 1.489, gamma0: 1.96 });
         let told = |j: f64, e: f64| {
             let (mut p, mut c) = ([0.0; 2], [0.0; 2]);
             copper.refresh(&[0.9, j], &[0.0, e], None, &mut p, &mut c)
@@ -481,8 +448,8 @@ mod tests {
             (-0.1, 0.0, "negative"),
             (0.9, f64::NAN, "not a number"),
         ] {
-            let (row, what) = told(j, e).unwrap();
-            assert_eq!(row, 1);
+            let (particle, what) = told(j, e).unwrap();
+            assert_eq!(particle, 1);
             assert!(what.contains(word), "{what}");
         }
     }

@@ -1,26 +1,26 @@
-//! What an elastic solid does to rows of particles.
+//! Stress and work of particles of an elastic solid.
 
 use crate::material::{Deformation, ElasticSolid, Symmetric};
 
-/// Where the deformation of rows stands.
+/// Deformation of particles.
 #[derive(Clone, Copy)]
 pub enum Strain<'a> {
-    /// On a line: J.
+    /// One dimension: J.
     Line(&'a [f64]),
-    /// In a plane.
+    /// Plane strain.
     Plane(PlaneStrain<'a>),
-    /// About an axis: in its plane, and J, which has the stretch about the axis in it.
+    /// Axisymmetry: F in the plane, and J, which includes the hoop stretch.
     Axis(PlaneStrain<'a>, &'a [f64]),
 }
 
-/// F in a plane, `ahead` of its columns in time: (1 + ahead L) F.
+/// F in a plane, extrapolated from its columns by the time `ahead`: (1 + ahead L) F.
 #[derive(Clone, Copy)]
 pub struct PlaneStrain<'a> {
     /// F by rows.
     pub deformation: [&'a [f64]; 4],
-    /// Gradient L of the velocity by rows [1/s].
+    /// Velocity gradient L by rows [1/s].
     pub gradient: [&'a [f64]; 4],
-    /// Time [s].
+    /// Time of the extrapolation [s].
     pub ahead: f64,
 }
 
@@ -37,7 +37,7 @@ impl PlaneStrain<'_> {
 }
 
 impl Strain<'_> {
-    /// F of row `r`.
+    /// F of particle `r`.
     #[inline(always)]
     fn at(&self, r: usize) -> Deformation {
         match self {
@@ -51,18 +51,18 @@ impl Strain<'_> {
     }
 }
 
-/// Columns of a symmetric tensor, as many as a scene needs.
-pub struct TensorRows<'a> {
-    /// Components xx.
+/// Columns of a symmetric tensor, only those that a scene needs.
+pub struct TensorColumns<'a> {
+    /// Component xx.
     pub xx: &'a mut [f64],
-    /// Components yy and xy, in a plane.
+    /// Components yy and xy; `None` in one dimension.
     pub plane: Option<[&'a mut [f64]; 2]>,
-    /// Components across the plane, about an axis.
+    /// Component zz, across the plane, in axisymmetry.
     pub across: Option<&'a mut [f64]>,
 }
 
-impl TensorRows<'_> {
-    /// Sets row `r` to `scale` times `tensor`.
+impl TensorColumns<'_> {
+    /// Sets particle `r` to `scale` times `tensor`.
     #[inline(always)]
     pub fn set(&mut self, r: usize, tensor: &Symmetric, scale: f64) {
         self.xx[r] = scale * tensor.xx;
@@ -76,22 +76,22 @@ impl TensorRows<'_> {
     }
 }
 
-/// An elastic solid, as the step sees it.
-pub trait Solid: Send + Sync {
-    /// Sets minus Cauchy stress times volume [J], which is positive in compression as (p + q) V
-    /// of a fluid is; `volume0` is the volume at F = 1 [m3].
-    fn stress_volume(&self, strain: Strain<'_>, volume0: &[f64], out: TensorRows<'_>);
+/// Elastic solid, as called by the step.
+pub trait SolidModel: Send + Sync {
+    /// Sets minus the Cauchy stress times the volume [J], positive in compression like (p + q) V of
+    /// a fluid; `volume0` is the volume at F = 1 [m3].
+    fn stress_volume(&self, strain: Strain<'_>, volume0: &[f64], out: TensorColumns<'_>);
 
-    /// Sets the work of the stress along the straight way from one strain to another [J], by the
+    /// Sets the work of the stress along the straight path from one strain to another [J], by the
     /// mid-point rule: V0 tau_h : (F' - F) F_h^-1 with F_h = (F + F')/2.
     fn work(&self, before: Strain<'_>, after: Strain<'_>, volume0: &[f64], work: &mut [f64]);
 
-    /// Sets Cauchy stress [Pa], pressure -tr(sigma)/3 [Pa] and sound speed [m/s]. Tells the
-    /// first row whose state lies outside of the model, and why.
+    /// Sets Cauchy stress [Pa], pressure -tr(sigma)/3 [Pa] and sound speed [m/s]. Returns the first
+    /// particle whose state is outside the range of the model, and the reason.
     fn refresh(
         &self,
         strain: Strain<'_>,
-        stress: TensorRows<'_>,
+        stress: TensorColumns<'_>,
         pressure: &mut [f64],
         sound_speed: &mut [f64],
     ) -> Option<(usize, String)>;
@@ -99,15 +99,15 @@ pub trait Solid: Send + Sync {
     /// Speed of the fastest wave in the solid at rest [m/s].
     fn sound_speed_at_rest(&self) -> f64;
 
-    /// Speed of a shear wave in the solid at rest [m/s].
+    /// Shear wave speed in the solid at rest [m/s].
     fn shear_speed_at_rest(&self) -> f64;
 }
 
-/// The loops over a solid.
-pub(super) struct Loops<S>(pub S);
+/// Particle loops over one elastic solid.
+pub(super) struct SolidKernel<S>(pub S);
 
-impl<S: ElasticSolid> Solid for Loops<S> {
-    fn stress_volume(&self, strain: Strain<'_>, volume0: &[f64], mut out: TensorRows<'_>) {
+impl<S: ElasticSolid> SolidModel for SolidKernel<S> {
+    fn stress_volume(&self, strain: Strain<'_>, volume0: &[f64], mut out: TensorColumns<'_>) {
         for (r, volume0) in volume0.iter().enumerate() {
             out.set(r, &self.0.kirchhoff_stress(&strain.at(r)), -volume0);
         }
@@ -118,14 +118,14 @@ impl<S: ElasticSolid> Solid for Loops<S> {
             let (from, to) = (before.at(r), after.at(r));
             let middle = from.middle(&to);
             let tau = self.0.kirchhoff_stress(&middle);
-            *work = volume0[r] * tau.along(&from.strain_to(&to, &middle));
+            *work = volume0[r] * tau.double_dot(&from.strain_to(&to, &middle));
         }
     }
 
     fn refresh(
         &self,
         strain: Strain<'_>,
-        mut stress: TensorRows<'_>,
+        mut stress: TensorColumns<'_>,
         pressure: &mut [f64],
         sound_speed: &mut [f64],
     ) -> Option<(usize, String)> {
@@ -139,7 +139,7 @@ impl<S: ElasticSolid> Solid for Loops<S> {
             sound_speed[r] = c2.sqrt();
             // a comparison with NaN is false
             sound &= j > 0.0 && c2 >= 0.0 && pressure[r].abs() < f64::INFINITY;
-            sound &= self.0.fault(&f).is_none();
+            sound &= self.0.check_validity(&f).is_none();
         }
         if sound {
             return None;
@@ -153,7 +153,7 @@ impl<S: ElasticSolid> Solid for Loops<S> {
                 Some((r, format!("its deformation is not a number ({state})")))
             } else if j <= 0.0 || f.area_ratio() <= 0.0 {
                 Some((r, format!("it is turned inside out (J = {j:.6e})")))
-            } else if let Some(fault) = self.0.fault(&f) {
+            } else if let Some(fault) = self.0.check_validity(&f) {
                 Some((r, format!("it is {fault} ({state})")))
             } else if !p.is_finite() {
                 Some((r, format!("its stress is not a number ({state})")))
@@ -179,20 +179,20 @@ mod tests {
     use super::*;
     use crate::material::{Hencky, Lame};
 
-    const STEEL: Loops<Hencky> =
-        Loops(Hencky { rho0: 7800.0, lame: Lame { lambda: 115e9, mu: 77e9 } });
+    const STEEL: SolidKernel<Hencky> =
+        SolidKernel(Hencky { rho0: 7800.0, lame: Lame { lambda: 115e9, mu: 77e9 } });
 
     #[test]
     fn a_state_outside_of_the_model_is_named() {
         let told = |j: f64| {
             let (mut s, mut p, mut c) = ([0.0; 2], [0.0; 2], [0.0; 2]);
-            let stress = TensorRows { xx: &mut s, plane: None, across: None };
+            let stress = TensorColumns { xx: &mut s, plane: None, across: None };
             STEEL.refresh(Strain::Line(&[0.9, j]), stress, &mut p, &mut c)
         };
         assert_eq!(told(1.01), None);
         for (j, word) in [(2.9, "no stiffness"), (-0.1, "inside out"), (f64::NAN, "not a number")] {
-            let (row, what) = told(j).unwrap();
-            assert_eq!(row, 1);
+            let (particle, what) = told(j).unwrap();
+            assert_eq!(particle, 1);
             assert!(what.contains(word), "{what}");
         }
     }
@@ -205,7 +205,7 @@ mod tests {
         let deformation = [&f[0][..], &f[1], &f[2], &f[3]];
         let plane = PlaneStrain { deformation, gradient: [&[0.0]; 4], ahead: 0.0 };
         let stress =
-            TensorRows { xx: &mut xx, plane: Some([&mut yy, &mut xy]), across: Some(&mut zz) };
+            TensorColumns { xx: &mut xx, plane: Some([&mut yy, &mut xy]), across: Some(&mut zz) };
         let jacobian = [1.2 * (1.1 * 0.8 + 0.2 * 0.1)];
         assert_eq!(STEEL.refresh(Strain::Axis(plane, &jacobian), stress, &mut p, &mut c), None);
         assert!(zz[0] > 0.0 && (p[0] + (xx[0] + yy[0] + zz[0]) / 3.0).abs() < 1e-3);

@@ -9,56 +9,99 @@
 //! strains, high strain rates and high temperatures, eqs. 1 and 2. Below the reference rate, where
 //! the logarithm would be negative, the rate has no influence.
 
-use super::{Condition, Strength};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-/// Johnson & Cook's model.
-#[derive(Clone, Copy, Debug, PartialEq)]
+use super::{MaterialState, StrengthLaw, one};
+use crate::material::ParameterError;
+
+/// Johnson & Cook (1983), Y = (a + b ep^n)(1 + c ln max(1, rate/reference_rate))(1 - T*^m).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct JohnsonCook {
-    /// Shear modulus G [Pa].
+    /// Shear modulus [Pa].
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub shear_modulus: f64,
-    /// Yield stress A at no plastic strain [Pa].
+    /// Yield stress at zero plastic strain [Pa].
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub a: f64,
-    /// Hardening B [Pa].
+    /// Hardening coefficient [Pa].
+    #[schemars(range(min = 0.0))]
     pub b: f64,
-    /// Exponent n of the plastic strain [-].
+    /// Exponent of the plastic strain [-].
+    #[schemars(range(max = 5.0), extend("exclusiveMinimum" = 0.0))]
     pub n: f64,
-    /// Coefficient C of the rate's logarithm [-].
+    /// Coefficient of the logarithm of the strain rate [-].
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
     pub c: f64,
-    /// Rate from which on it counts [1/s].
+    /// Strain rate below which the rate has no influence [1/s].
+    #[serde(default = "one")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub reference_rate: f64,
-    /// Softening by temperature, if there is any.
+    /// Thermal softening, which needs `thermal`; absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub softening: Option<Softening>,
 }
 
-/// Softening by temperature.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Thermal softening, 1 - T*^m with T* = (T - reference)/(melt - reference).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Softening {
-    /// Exponent m [-].
+    /// Exponent [-].
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub m: f64,
-    /// Temperature T0 below which there is none [K].
-    pub room: f64,
-    /// Melting temperature Tm [K].
-    pub melt: f64,
+    /// Temperature below which there is no softening [K].
+    #[schemars(range(min = 0.0))]
+    pub reference_temperature: f64,
+    /// Melting temperature [K].
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub melt_temperature: f64,
 }
 
-impl Strength for JohnsonCook {
+impl Softening {
+    /// 1 - T*^m at a temperature [K].
     #[inline(always)]
-    fn shear_modulus(&self, _: &Condition) -> f64 {
+    fn factor(&self, temperature: f64) -> f64 {
+        let range = self.melt_temperature - self.reference_temperature;
+        let warm = ((temperature - self.reference_temperature) / range).clamp(0.0, 1.0);
+        1.0 - if warm > 0.0 { warm.powf(self.m) } else { 0.0 }
+    }
+}
+
+impl StrengthLaw for JohnsonCook {
+    fn check(&self) -> Result<(), ParameterError> {
+        let Some(softening) = self.softening else { return Ok(()) };
+        if softening.melt_temperature <= softening.reference_temperature {
+            let reason = format!(
+                "not above reference_temperature = {}; allowed: a higher temperature",
+                softening.reference_temperature
+            );
+            let key = "softening.melt_temperature";
+            return Err(ParameterError::new(key, softening.melt_temperature, reason));
+        }
+        Ok(())
+    }
+
+    fn needs_temperature(&self) -> Option<&'static str> {
+        self.softening.map(|_| "softening")
+    }
+
+    fn softening_range(&self) -> Option<[f64; 2]> {
+        self.softening.map(|s| [s.reference_temperature, s.melt_temperature])
+    }
+
+    #[inline(always)]
+    fn shear_modulus(&self, _: &MaterialState) -> f64 {
         self.shear_modulus
     }
 
     #[inline(always)]
-    fn yield_stress(&self, strain: f64, rate: f64, at: &Condition) -> f64 {
+    fn yield_stress(&self, strain: f64, rate: f64, at: &MaterialState) -> f64 {
         let hardened = if strain > 0.0 { self.b * strain.powf(self.n) } else { 0.0 };
         let fast = (rate / self.reference_rate).max(1.0).ln();
-        let cold = match self.softening {
-            None => 1.0,
-            Some(Softening { m, room, melt }) => {
-                let warm = ((at.temperature - room) / (melt - room)).clamp(0.0, 1.0);
-                1.0 - if warm > 0.0 { warm.powf(m) } else { 0.0 }
-            }
-        };
-        (self.a + hardened) * (1.0 + self.c * fast) * cold
+        let softened = self.softening.map_or(1.0, |s| s.factor(at.temperature));
+        (self.a + hardened) * (1.0 + self.c * fast) * softened
     }
 }
 
@@ -75,9 +118,13 @@ mod tests {
             n: 0.31,
             c: 0.025,
             reference_rate: 1.0,
-            softening: Some(Softening { m: 1.09, room: 294.0, melt: 1356.0 }),
+            softening: Some(Softening {
+                m: 1.09,
+                reference_temperature: 294.0,
+                melt_temperature: 1356.0,
+            }),
         };
-        let at = |temperature: f64| Condition { compression: 1.0, pressure: 0.0, temperature };
+        let at = |temperature: f64| MaterialState { compression: 1.0, pressure: 0.0, temperature };
         let y = |strain, rate, t| model.yield_stress(strain, rate, &at(t));
         assert_eq!(y(0.0, 0.0, 294.0), 90e6);
         assert!((y(0.3, 1.0, 294.0) - (90e6 + 292e6 * 0.3f64.powf(0.31))).abs() < 1e-3);

@@ -1,8 +1,8 @@
-//! Strength: what a material bears of shear, beside the pressure of its equation of state. One
-//! file a model.
+//! Strength: the shear stress of a material, in addition to the pressure of its equation of state.
+//! One file per model.
 //!
-//! Hypoelastic and isotropic, with the deviator s of the Cauchy stress (Wilkins 1964), turned
-//! with the material as Hughes & Winget (1980) do and returned to the yield surface along its
+//! Hypoelastic and isotropic in the deviator s of the Cauchy stress (Wilkins 1964). s is rotated
+//! with the material as in Hughes & Winget (1980) and returned to the yield surface along its
 //! normal:
 //!
 //! ```text
@@ -11,66 +11,129 @@
 //! |s*| - 3 G d = Y(ep + d, d/dt)      d: plastic strain of the step
 //! ```
 //!
-//! D and W are the symmetric part and the spin of the velocity's gradient at the middle of the
-//! step. Pressures are positive in compression, the deviator in tension.
+//! D and W are the symmetric part and the spin of the velocity gradient at the middle of the step.
+//! Pressures are positive in compression, the deviator in tension.
 //!
-//! Knows neither particles, grid nor dimension.
+//! Independent of particles, grid and dimension.
 
-mod johnson_cook;
-mod steinberg_guinan;
-mod von_mises;
+pub use johnson_cook::Softening;
 
-pub use johnson_cook::{JohnsonCook, Softening};
-pub use steinberg_guinan::SteinbergGuinan;
-pub use von_mises::VonMises;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use crate::material::Symmetric;
+use crate::material::{ParameterError, Symmetric};
 
-/// What the strength of a material depends on beside its plastic strain.
+macro_rules! strength_laws {
+    ($($module:ident::$law:ident),* $(,)?) => {
+        $(mod $module;)*
+        $(pub use $module::$law;)*
+
+        /// Models of strength by type; each is documented by its parameters.
+        #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(tag = "type", rename_all = "snake_case")]
+        pub enum Strength {
+            // each is documented by its parameters
+            $(#[expect(missing_docs)] $law($law),)*
+        }
+
+        impl Strength {
+            /// Calls a visitor with the law itself, so that the compiler knows its type.
+            pub fn visit<V: StrengthVisitor>(&self, visitor: V) -> V::Output {
+                match *self {
+                    $(Strength::$law(law) => visitor.visit(law),)*
+                }
+            }
+        }
+    };
+}
+
+strength_laws! {
+    von_mises::VonMises,
+    johnson_cook::JohnsonCook,
+    steinberg_guinan::SteinbergGuinan,
+    zerilli_armstrong::ZerilliArmstrong,
+    preston_tonks_wallace::PrestonTonksWallace,
+}
+
+/// Visitor of a strength law of any type; see [`Strength::visit`].
+pub trait StrengthVisitor {
+    /// Result of the visit.
+    type Output;
+
+    /// Visits a strength law.
+    fn visit<L: StrengthLaw>(self, law: L) -> Self::Output;
+}
+
+/// State on which the strength of a material depends, apart from its plastic strain.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Condition {
-    /// rho/rho0 [-].
+pub struct MaterialState {
+    /// Compression rho/rho0 [-].
     pub compression: f64,
     /// Pressure [Pa].
     pub pressure: f64,
-    /// Temperature [K]; not a number where a scene has none.
+    /// Temperature [K]; NaN if the scene has none.
     pub temperature: f64,
 }
 
-/// A model of strength.
-pub trait Strength: Copy + Send + Sync + 'static {
-    /// Shear modulus G [Pa].
-    fn shear_modulus(&self, at: &Condition) -> f64;
+/// Strength law at one material point.
+pub trait StrengthLaw: Copy + Send + Sync + 'static {
+    /// Checks the parameters against each other.
+    ///
+    /// # Errors
+    ///
+    /// The first parameter that does not fit.
+    fn check(&self) -> Result<(), ParameterError> {
+        Ok(())
+    }
 
-    /// Yield stress Y [Pa] at equivalent plastic strain `strain` [-] and its rate `rate` [1/s];
-    /// does not fall with the rate.
-    fn yield_stress(&self, strain: f64, rate: f64, at: &Condition) -> f64;
+    /// Name of the first parameter that needs the temperature of the material, if one does.
+    fn needs_temperature(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// Temperatures between which the material softens and melts [K], if the law has them.
+    fn softening_range(&self) -> Option<[f64; 2]> {
+        None
+    }
+
+    /// The same law for a material of density `density` at rest [kg/m3].
+    fn with_density(self, density: f64) -> Self {
+        let _ = density;
+        self
+    }
+
+    /// Shear modulus G [Pa].
+    fn shear_modulus(&self, at: &MaterialState) -> f64;
+
+    /// Yield stress Y [Pa] at the equivalent plastic strain `strain` [-] and its rate `rate` [1/s].
+    /// It does not decrease with the rate.
+    fn yield_stress(&self, strain: f64, rate: f64, at: &MaterialState) -> f64;
 }
 
-/// Gradient L of the velocity by rows in the plane, and the rate of strain across it [1/s].
+/// Velocity gradient L in the plane, and strain rate across it [1/s].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rate {
-    /// L in the plane: xx, xy, yx, yy.
+    /// L in the plane by rows: xx, xy, yx, yy.
     pub plane: [f64; 4],
-    /// Across it: 0 in plane strain, v_x/x about an axis.
+    /// Strain rate across the plane: 0 in plane strain, v_x/x in axisymmetry.
     pub across: f64,
 }
 
-/// The deviator after a step, and what the step has done.
+/// Deviator and plastic strain after a step, and plastic work of the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Yielded {
+pub struct ReturnMapping {
     /// Deviator of the Cauchy stress [Pa].
     pub deviator: Symmetric,
     /// Equivalent plastic strain [-].
     pub plastic_strain: f64,
-    /// Plastic work per present volume [J/m3].
+    /// Plastic work per current volume [J/m3].
     pub plastic_work: f64,
 }
 
 /// Equivalent stress (3/2 s : s)^(1/2) of a deviator [Pa].
 #[inline(always)]
 pub fn equivalent(s: &Symmetric) -> f64 {
-    (1.5 * s.along(s)).sqrt()
+    (1.5 * s.double_dot(s)).sqrt()
 }
 
 /// `scale` times s.
@@ -79,9 +142,9 @@ fn scaled(s: &Symmetric, scale: f64) -> Symmetric {
     Symmetric { xx: scale * s.xx, yy: scale * s.yy, xy: scale * s.xy, zz: scale * s.zz }
 }
 
-/// R s R^T, R the turn by Cayley's form of `half` = dt/2 times the spin W_yx.
+/// R s R^T with Cayley's rotation R; `half` is dt/2 times the spin W_yx.
 #[inline(always)]
-fn turned(s: &Symmetric, half: f64) -> Symmetric {
+fn rotated(s: &Symmetric, half: f64) -> Symmetric {
     let inverse = 1.0 / (1.0 + half * half);
     let (cos, sin) = ((1.0 - half * half) * inverse, 2.0 * half * inverse);
     let (cc, ss, cs) = (cos * cos, sin * sin, cos * sin);
@@ -93,21 +156,22 @@ fn turned(s: &Symmetric, half: f64) -> Symmetric {
     }
 }
 
-/// The deviator `s` with the plastic strain `strain` after `dt` at `rate`.
+/// Advances the deviator `s` and the plastic strain `strain` by `dt` at the velocity gradient
+/// `rate`.
 #[inline(always)]
 pub fn advance(
-    model: &impl Strength,
+    model: &impl StrengthLaw,
     s: &Symmetric,
     strain: f64,
     rate: &Rate,
     dt: f64,
-    at: &Condition,
-) -> Yielded {
+    at: &MaterialState,
+) -> ReturnMapping {
     let [xx, xy, yx, yy] = rate.plane;
     let shear = model.shear_modulus(at);
     let mean = (xx + yy + rate.across) / 3.0;
     let step = 2.0 * shear * dt;
-    let before = turned(s, 0.25 * dt * (yx - xy));
+    let before = rotated(s, 0.25 * dt * (yx - xy));
     let elastic = Symmetric {
         xx: step * (xx - mean),
         yy: step * (yy - mean),
@@ -122,34 +186,34 @@ pub fn advance(
     };
     let size = equivalent(&trial);
     let still = model.yield_stress(strain, 0.0, at);
-    // what is not a number is told by the pressure or the velocity that made it so
+    // NaN is reported by the pressure or the velocity that caused it
     let yields = size > still && dt > 0.0;
     if !yields {
-        return Yielded { deviator: trial, plastic_strain: strain, plastic_work: 0.0 };
+        return ReturnMapping { deviator: trial, plastic_strain: strain, plastic_work: 0.0 };
     }
     if shear == 0.0 {
-        // molten: what it bore as a solid is gone, and no strain answers to that
+        // molten: the shear stress of the solid is lost, without a plastic strain
         let deviator = scaled(&trial, still / size);
-        return Yielded { deviator, plastic_strain: strain, plastic_work: 0.0 };
+        return ReturnMapping { deviator, plastic_strain: strain, plastic_work: 0.0 };
     }
     let yields = |d: f64| model.yield_stress(strain + d, d / dt, at);
-    // what flows mostly flows on: then all strain of a step is plastic
+    // material that flows mostly keeps flowing: then the whole strain of a step is plastic
     let guess = equivalent(&elastic) / (3.0 * shear);
     let (increment, stress) = plastic_increment(size, still, 3.0 * shear, guess, yields);
-    Yielded {
+    ReturnMapping {
         deviator: scaled(&trial, (stress / size).min(1.0)),
         plastic_strain: strain + increment,
         plastic_work: stress * increment,
     }
 }
 
-/// The d at which `trial` - `stiffness` d = `yields`(d), and `yields` there; `still` is what it
-/// starts from. By secants from `guess`, the first along `stiffness`, with false position
-/// where they leave the bracket and halvings in between: found at once where there is no hardening,
-/// and mostly after six yield stresses.
+/// Solves `trial` - `stiffness` d = `yields`(d) for d, and returns d and `yields`(d); `still` is
+/// the yield stress at d = 0. Secant method from `guess`, its first step along `stiffness`. False
+/// position replaces a step that leaves the bracket, and every eighth step is a bisection. Without
+/// hardening the first step finds d; otherwise it mostly takes six yield stresses.
 ///
-/// A rate that counts makes the left side steep at 0, where nothing flows: a bracket that keeps its
-/// lower end there closes slowly, so that the two last points have to lead.
+/// Rate dependence makes the residual steep at d = 0, where nothing flows. A bracket whose lower
+/// end stays there closes slowly, so the last two points must lead.
 #[inline(always)]
 fn plastic_increment(
     trial: f64,
@@ -159,7 +223,7 @@ fn plastic_increment(
     yields: impl Fn(f64) -> f64,
 ) -> (f64, f64) {
     let enough = 4.0 * f64::EPSILON * trial;
-    // no stress falls below zero; what is left at the upper end is not looked at, its sign is sure
+    // no stress falls below zero; the residual at the upper end is not evaluated, its sign is known
     let (mut low, mut over) = (0.0, trial - still);
     let (mut high, mut under) = (trial / stiffness, -still);
     let mut d = guess.min(over / stiffness);
@@ -167,7 +231,7 @@ fn plastic_increment(
     let mut left = trial - stiffness * d - stress;
     let mut slope = -stiffness;
     for k in 1..200 {
-        // Illinois: the end that stays counts half
+        // Illinois method: the end that stays counts half
         if left > 0.0 {
             (low, over) = (d, left);
             under *= 0.5;
@@ -194,11 +258,61 @@ fn plastic_increment(
     (d, stress)
 }
 
+impl Strength {
+    /// See [`StrengthLaw::check`].
+    ///
+    /// # Errors
+    ///
+    /// The first parameter that does not fit.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        struct Check;
+        impl StrengthVisitor for Check {
+            type Output = Result<(), ParameterError>;
+
+            fn visit<L: StrengthLaw>(self, law: L) -> Self::Output {
+                law.check()
+            }
+        }
+        self.visit(Check)
+    }
+
+    /// See [`StrengthLaw::needs_temperature`].
+    pub fn needs_temperature(&self) -> Option<&'static str> {
+        struct Needs;
+        impl StrengthVisitor for Needs {
+            type Output = Option<&'static str>;
+
+            fn visit<L: StrengthLaw>(self, law: L) -> Self::Output {
+                law.needs_temperature()
+            }
+        }
+        self.visit(Needs)
+    }
+
+    /// Temperatures between which the material softens and melts [K], if the law has them.
+    pub fn softening_range(&self) -> Option<[f64; 2]> {
+        struct Range;
+        impl StrengthVisitor for Range {
+            type Output = Option<[f64; 2]>;
+
+            fn visit<L: StrengthLaw>(self, law: L) -> Self::Output {
+                law.softening_range()
+            }
+        }
+        self.visit(Range)
+    }
+}
+
+fn one() -> f64 {
+    1.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const REST: Condition = Condition { compression: 1.0, pressure: 0.0, temperature: 300.0 };
+    const REST: MaterialState =
+        MaterialState { compression: 1.0, pressure: 0.0, temperature: 300.0 };
     const SOFT: VonMises = VonMises { shear_modulus: 28e9, yield_stress: 0.3e9, hardening: 1e9 };
     const STEEL: JohnsonCook = JohnsonCook {
         shear_modulus: 80e9,
@@ -213,7 +327,7 @@ mod tests {
     #[test]
     fn a_turn_of_any_size_only_turns_the_deviator() {
         let s = Symmetric { xx: 2.0, yy: -3.0, xy: 0.7, zz: 1.0 };
-        // a body that turns by `angle` in one step has the mid-point gradient 2 tan(angle/2)/dt
+        // a body that rotates by `angle` in one step has the mid-point gradient 2 tan(angle/2)/dt
         for angle in [1e-3f64, 0.4, 2.0] {
             let w = 2.0 * (0.5 * angle).tan() / 0.1;
             let rate = Rate { plane: [0.0, -w, w, 0.0], across: 0.0 };
@@ -229,7 +343,7 @@ mod tests {
     #[test]
     fn yield_is_never_exceeded_and_plastic_strain_is_what_the_trial_lacks() {
         let rate = Rate { plane: [-2e5, 4e4, -1e4, 1e5], across: 3e4 };
-        let run = |model: &dyn Fn(&Symmetric, f64) -> (Yielded, f64, f64)| {
+        let run = |model: &dyn Fn(&Symmetric, f64) -> (ReturnMapping, f64, f64)| {
             let (mut s, mut strain) = (Symmetric::default(), 0.0);
             for _ in 0..100 {
                 let (after, limit, trial) = model(&s, strain);
@@ -281,21 +395,25 @@ mod tests {
     #[test]
     fn a_melt_bears_no_shear() {
         let melting = JohnsonCook {
-            softening: Some(Softening { m: 1.0, room: 300.0, melt: 1000.0 }),
+            softening: Some(Softening {
+                m: 1.0,
+                reference_temperature: 300.0,
+                melt_temperature: 1000.0,
+            }),
             ..STEEL
         };
-        let at = Condition { temperature: 1200.0, ..REST };
+        let at = MaterialState { temperature: 1200.0, ..REST };
         let rate = Rate { plane: [-1e6, 0.0, 0.0, 0.0], across: 0.0 };
         let after = advance(&melting, &Symmetric::default(), 0.0, &rate, 1e-9, &at);
         assert_eq!(equivalent(&after.deviator), 0.0);
         assert!(after.plastic_work == 0.0 && after.plastic_strain > 0.0);
     }
 
-    /// Steinberg and Guinan's moduli fall to nothing together.
+    /// In Steinberg & Guinan's model, shear modulus and yield stress fall to zero together.
     #[test]
     fn what_melts_loses_the_shear_that_it_bore() {
         let model = steinberg_guinan::COPPER;
-        let hot = Condition { temperature: 9000.0, ..REST };
+        let hot = MaterialState { temperature: 9000.0, ..REST };
         let borne = Symmetric { xx: 1e8, yy: -4e7, xy: 3e7, zz: -6e7 };
         let rate = Rate { plane: [-1e6, 0.0, 2e5, 0.0], across: 0.0 };
         let after = advance(&model, &borne, 0.2, &rate, 1e-9, &hot);
@@ -305,7 +423,7 @@ mod tests {
 
     #[test]
     fn plastic_increments_are_found_to_rounding() {
-        // a steep start and a long reach, from guesses far off
+        // a steep start and a long range, from distant guesses
         for (trial, n) in [(1.0001e9, 0.02), (5e9, 0.168), (1.2e9, 0.9), (8e11, 0.3)] {
             for guess in [0.0, 1e-9, 1e-4, 1e9] {
                 let yields = |d: f64| 1e9 + 6e8 * d.powf(n);
@@ -315,7 +433,7 @@ mod tests {
                 assert!(left.abs() <= 1e-12 * trial, "{trial:e} {n} {guess:e}: {left:e}");
             }
         }
-        // a stress that falls faster than the material unloads
+        // a yield stress that falls faster than the material unloads
         let yields = |d: f64| 1e9 * (1.0 - 1e4 * d).max(0.1);
         let (d, stress) = plastic_increment(1.1e9, 1e9, 240e9, 1e-6, yields);
         assert!((1.1e9 - 240e9 * d - stress).abs() <= 1e-3 && stress == yields(d));

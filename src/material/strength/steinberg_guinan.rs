@@ -1,4 +1,4 @@
-//! Steinberg & Guinan's strength at high rates, where the rate has no influence any more.
+//! Steinberg & Guinan's strength at high rates, where the rate no longer has an influence.
 //!
 //! ```text
 //! g = 1 + A p/eta^(1/3) - B (T - 300),  eta = rho/rho0
@@ -6,52 +6,83 @@
 //! Y = min(Y0 (1 + beta (ep + ei))^n, Ymax) g
 //! ```
 //!
-//! and neither below 0. Source: Steinberg, Cochran & Guinan (1980), A constitutive model for metals
-//! applicable at high strain rate, eqs. 1 to 3; A = G'p/G0, B = -G'T/G0, the ratio Y'p/Y0 = A as
-//! there.
+//! Neither G nor Y falls below 0. Source: Steinberg, Cochran & Guinan (1980), A constitutive model
+//! for metals applicable at high strain rate, eqs. 1 to 3; A = G'p/G0, B = -G'T/G0, and the ratio
+//! Y'p/Y0 = A as in the source.
 
-use super::{Condition, Strength};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-/// Steinberg & Guinan's model.
-#[derive(Clone, Copy, Debug, PartialEq)]
+use super::{MaterialState, StrengthLaw};
+use crate::material::ParameterError;
+
+/// Steinberg, Cochran & Guinan (1980), for high rates.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct SteinbergGuinan {
-    /// Shear modulus G0 at rest [Pa].
+    /// Shear modulus at rest [Pa].
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub shear_modulus: f64,
-    /// Yield stress Y0 at rest [Pa].
+    /// Yield stress at rest [Pa].
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub yield_stress: f64,
-    /// Hardening beta [-].
+    /// Hardening coefficient [-].
+    #[schemars(range(min = 0.0))]
     pub beta: f64,
-    /// Its exponent n [-].
+    /// Exponent of the hardening [-].
+    #[schemars(range(min = 0.0, max = 5.0))]
     pub n: f64,
-    /// Plastic strain at the start ei [-].
+    /// Initial plastic strain [-].
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
     pub initial_strain: f64,
-    /// Most that hardening reaches, Ymax [Pa].
-    pub most: f64,
-    /// Growth A with pressure [1/Pa].
-    pub by_pressure: f64,
-    /// Fall B with temperature [1/K]; none without a temperature.
-    pub by_temperature: Option<f64>,
+    /// Greatest yield stress that hardening reaches [Pa].
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub max_yield_stress: f64,
+    /// Growth of shear modulus and yield stress with pressure, A = G'p/G0 [1/Pa].
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub pressure_hardening: f64,
+    /// Decrease of shear modulus and yield stress with temperature above 300 K, B = -G'T/G0 [1/K],
+    /// which needs `thermal`; absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub temperature_softening: Option<f64>,
 }
 
 impl SteinbergGuinan {
     #[inline(always)]
-    fn growth(&self, at: &Condition) -> f64 {
-        let pressed = self.by_pressure * at.pressure / at.compression.cbrt();
-        let warm = self.by_temperature.map_or(0.0, |b| b * (at.temperature - 300.0));
+    fn growth(&self, at: &MaterialState) -> f64 {
+        let pressed = self.pressure_hardening * at.pressure / at.compression.cbrt();
+        let warm = self.temperature_softening.map_or(0.0, |b| b * (at.temperature - 300.0));
         (1.0 + pressed - warm).max(0.0)
     }
 }
 
-impl Strength for SteinbergGuinan {
+impl StrengthLaw for SteinbergGuinan {
+    fn needs_temperature(&self) -> Option<&'static str> {
+        self.temperature_softening.map(|_| "temperature_softening")
+    }
+
+    fn check(&self) -> Result<(), ParameterError> {
+        if self.max_yield_stress < self.yield_stress {
+            let reason =
+                format!("below yield_stress = {}; allowed: at least as much", self.yield_stress);
+            let key = "max_yield_stress";
+            return Err(ParameterError::new(key, self.max_yield_stress, reason));
+        }
+        Ok(())
+    }
+
     #[inline(always)]
-    fn shear_modulus(&self, at: &Condition) -> f64 {
+    fn shear_modulus(&self, at: &MaterialState) -> f64 {
         self.shear_modulus * self.growth(at)
     }
 
     #[inline(always)]
-    fn yield_stress(&self, strain: f64, _: f64, at: &Condition) -> f64 {
+    fn yield_stress(&self, strain: f64, _: f64, at: &MaterialState) -> f64 {
         let hardened = (1.0 + self.beta * (strain + self.initial_strain)).powf(self.n);
-        (self.yield_stress * hardened).min(self.most) * self.growth(at)
+        (self.yield_stress * hardened).min(self.max_yield_stress) * self.growth(at)
     }
 }
 
@@ -63,9 +94,9 @@ pub(super) const COPPER: SteinbergGuinan = SteinbergGuinan {
     beta: 36.0,
     n: 0.45,
     initial_strain: 0.0,
-    most: 0.64e9,
-    by_pressure: 28.3e-12,
-    by_temperature: Some(0.377e-3),
+    max_yield_stress: 0.64e9,
+    pressure_hardening: 28.3e-12,
+    temperature_softening: Some(0.377e-3),
 };
 
 #[cfg(test)]
@@ -75,13 +106,13 @@ mod tests {
     #[test]
     fn both_moduli_follow_the_paper() {
         let model = COPPER;
-        let at = Condition { compression: 1.331, pressure: 30e9, temperature: 700.0 };
+        let at = MaterialState { compression: 1.331, pressure: 30e9, temperature: 700.0 };
         let growth = 1.0 + 28.3e-12 * 30e9 / 1.1 - 0.377e-3 * 400.0;
         assert!((model.shear_modulus(&at) / (47.7e9 * growth) - 1.0).abs() < 1e-14);
         let y = |strain| model.yield_stress(strain, 0.0, &at);
         assert!((y(0.1) / (0.12e9 * 4.6f64.powf(0.45) * growth) - 1.0).abs() < 1e-14);
         assert!((y(9.0) / (0.64e9 * growth) - 1.0).abs() < 1e-14, "the most");
-        let hot = Condition { temperature: 9000.0, ..at };
+        let hot = MaterialState { temperature: 9000.0, ..at };
         assert_eq!((model.shear_modulus(&hot), model.yield_stress(0.1, 0.0, &hot)), (0.0, 0.0));
     }
 }

@@ -1,4 +1,4 @@
-//! A yield stress that grows with the plastic strain along a line, or not at all.
+//! Yield stress that grows linearly with the plastic strain, or is constant.
 //!
 //! ```text
 //! Y = Y0 + H ep
@@ -6,27 +6,35 @@
 //!
 //! Source: von Mises (1913).
 
-use super::{Condition, Strength};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-/// Von Mises' yield surface with linear isotropic hardening.
-#[derive(Clone, Copy, Debug, PartialEq)]
+use super::{MaterialState, StrengthLaw};
+
+/// Von Mises' yield surface, Y = yield_stress + hardening ep.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct VonMises {
-    /// Shear modulus G [Pa].
+    /// Shear modulus [Pa].
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub shear_modulus: f64,
-    /// Yield stress Y0 at no plastic strain [Pa].
+    /// Yield stress at zero plastic strain [Pa].
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub yield_stress: f64,
-    /// Hardening H [Pa].
+    /// Growth of the yield stress with the plastic strain [Pa].
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
     pub hardening: f64,
 }
 
-impl Strength for VonMises {
+impl StrengthLaw for VonMises {
     #[inline(always)]
-    fn shear_modulus(&self, _: &Condition) -> f64 {
+    fn shear_modulus(&self, _: &MaterialState) -> f64 {
         self.shear_modulus
     }
 
     #[inline(always)]
-    fn yield_stress(&self, strain: f64, _: f64, _: &Condition) -> f64 {
+    fn yield_stress(&self, strain: f64, _: f64, _: &MaterialState) -> f64 {
         self.yield_stress + self.hardening * strain
     }
 }

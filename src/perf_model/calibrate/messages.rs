@@ -1,4 +1,4 @@
-//! What messages cost, sent as a run sends them: through [`Comm::exchange`] and [`Comm::min`].
+//! Measures the cost of messages, sent as in a run: by [`Comm::exchange`] and [`Comm::min`].
 
 use std::time::Instant;
 
@@ -10,15 +10,15 @@ use crate::perf_model::fit::{Sample, dot, fit};
 /// Lengths of the messages \[words of 8 bytes\].
 const WORDS: [usize; 6] = [1, 16, 64, 256, 1024, 2048];
 
-/// Exchanges of a batch, and batches of a length.
+/// Exchanges per batch, and batches per message length.
 const BATCH: usize = 20;
 const BATCHES: usize = 200;
 
-/// Computing that hides a message on its way \[s\].
+/// Computing time that hides a message in flight \[s\].
 const HIDING: f64 = 40e-6;
 
-/// Latency, time of a byte, overhead and the level of a reduction between ranks 0 and 1 and over
-/// all; at rank 0, `None` with a single rank. Collective.
+/// Measures latency, time per byte and overhead between ranks 0 and 1, and the level of a reduction
+/// over all ranks. Result at rank 0; `None` with a single rank. Collective.
 pub fn measure(comm: &dyn Comm) -> Option<Network> {
     if comm.size() < 2 {
         return None;
@@ -57,8 +57,8 @@ pub fn measure(comm: &dyn Comm) -> Option<Network> {
     })
 }
 
-/// Time of an exchange of messages of so many words between ranks 0 and 1 that compute for
-/// `meanwhile` seconds while it lasts \[s\]. Collective.
+/// Time of an exchange of messages of `words` words between ranks 0 and 1, which compute for
+/// `meanwhile` \[s\] during it \[s\]. Collective.
 fn exchange(comm: &dyn Comm, words: usize, meanwhile: f64) -> f64 {
     let message = vec![1u64; words];
     let (other, mut received) = (1 - comm.rank().min(1), Vec::new());
@@ -70,7 +70,7 @@ fn exchange(comm: &dyn Comm, words: usize, meanwhile: f64) -> f64 {
     })
 }
 
-/// Computes for so long.
+/// Computes for this time.
 fn spin(seconds: f64) {
     let start = Instant::now();
     while seconds > 0.0 && start.elapsed().as_secs_f64() < seconds {
@@ -78,7 +78,7 @@ fn spin(seconds: f64) {
     }
 }
 
-/// The time of one call in a fast batch, one of twenty \[s\]: other programs can only add to it.
+/// Time of one call: the 5 % quantile over batches, because other programs only add time \[s\].
 /// Collective.
 fn fast(comm: &dyn Comm, mut call: impl FnMut()) -> f64 {
     let mut times = Vec::with_capacity(BATCHES);

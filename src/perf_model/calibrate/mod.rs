@@ -1,7 +1,7 @@
-//! Measures the constants of [`crate::perf_model`]: runs a scene's method in process on several sizes
-//! and patch counts, and sends messages between ranks.
+//! Measures the constants of [`crate::perf_model`]: runs the method of a scene in process with
+//! several sizes and patch counts, and sends messages between ranks.
 //!
-//! Fits what it has measured; knows neither files nor tables.
+//! Measures and fits only; reads and writes no files or tables.
 
 mod messages;
 mod samples;
@@ -11,24 +11,26 @@ use std::time::{Duration, Instant};
 use decomp::Comm;
 
 use crate::perf_model::fit::{Fit, Sample, dot, fit};
-use crate::perf_model::{Busy, COMPUTE, Coefficients, Machine, Network, Quality, SERIAL, Scheme};
+use crate::perf_model::{
+    Busy, COMPUTE, Coefficients, Machine, Network, Quality, SERIAL, SchemeCosts,
+};
 use crate::scene::CheckedScene;
 
-use samples::{Measured, Variant};
+use samples::{MeasuredVariant, Variant};
 
-/// Time that the whole of it takes unless it is told otherwise, about \[s\].
+/// Default total time of a calibration, approximate \[s\].
 pub const SECONDS: f64 = 16.0;
 
-/// Shares of that: steps on one thread, on two, on all cores at once.
+/// Fractions of this time: steps on one thread, on two threads, on all cores at once.
 const SHARES: [f64; 3] = [0.6, 0.2, 0.1];
 
-/// Sizes of caches that are tried \[B\]: the two with which the fit is best are taken.
+/// Cache sizes to try \[B\]; the pair with the best fit is used.
 const CACHES: [f64; 9] = [0.25e6, 0.5e6, 1e6, 2e6, 4e6, 8e6, 16e6, 32e6, 64e6];
 
-/// Why there are no constants.
+/// Reasons why there are no constants.
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrateError {
-    /// No variant of the scene runs.
+    /// No variant of the scene can run.
     #[error("{0}: no size of this scene runs a few steps; allowed: a scene that `flyer-mpm` runs")]
     NothingRuns(String),
     /// The scene is in a plane.
@@ -36,7 +38,7 @@ pub enum CalibrateError {
     Plane(String),
 }
 
-/// A sample of the fit, for a table.
+/// One sample of the fit, for a table.
 #[derive(Clone, Debug)]
 pub struct Residual {
     /// Particles.
@@ -45,15 +47,15 @@ pub struct Residual {
     pub patches: usize,
     /// Threads.
     pub threads: usize,
-    /// How filters got what lies beyond a patch.
+    /// How filters got values outside of a patch.
     pub halo: crate::scene::FilterHalo,
-    /// Time of a step, measured \[s\].
+    /// Measured time of a step \[s\].
     pub measured: f64,
-    /// The same by the fit \[s\].
+    /// Fitted time of a step \[s\].
     pub fitted: f64,
 }
 
-/// Measures everything in about `seconds`; the constants and the fit's residuals at rank 0.
+/// Measures everything in about `seconds`. Rank 0 gets the constants and the residuals of the fit.
 /// Collective.
 pub fn calibrate(
     comm: &dyn Comm,
@@ -63,18 +65,18 @@ pub fn calibrate(
     if scene.dimension != 1 {
         return Err(CalibrateError::Plane(scene.file.clone()));
     }
-    // the others must not take the memory or the cores while rank 0 computes alone
+    // the other ranks must not use memory or cores while rank 0 computes alone
     let mut told = Vec::new();
     if comm.rank() != 0 {
         let pause = Duration::from_secs_f64(seconds * SHARES.iter().sum::<f64>());
-        comm.exchange(&[], &[0], &mut told, &mut || std::thread::sleep(pause));
+        comm.exchange(&[], &[0], &mut told, &mut || sleep(comm, pause));
         if told[0] == [0] {
             return Ok(None);
         }
         messages::measure(comm);
         return Ok(None);
     }
-    let computed = compute(scene, seconds);
+    let computed = compute(scene, seconds, &|| comm.heartbeat());
     let word = [u64::from(computed.is_ok())];
     let sends: Vec<(usize, &[u64])> = (1..comm.size()).map(|r| (r, &word[..])).collect();
     comm.exchange(&sends, &[], &mut told, &mut || {});
@@ -86,21 +88,38 @@ pub fn calibrate(
     Ok(Some((machine, residuals)))
 }
 
-/// What one process finds by itself.
-fn compute(scene: &CheckedScene, seconds: f64) -> Result<(Machine, Vec<Residual>), CalibrateError> {
+/// Interval between two heartbeats of a sleeping rank.
+const NAP: Duration = Duration::from_millis(10);
+
+/// Sleeps, and sends heartbeats meanwhile.
+fn sleep(comm: &dyn Comm, pause: Duration) {
+    let end = Instant::now() + pause;
+    while Instant::now() < end {
+        std::thread::sleep(NAP.min(end.saturating_duration_since(Instant::now())));
+        comm.heartbeat();
+    }
+}
+
+/// Constants that one process measures alone; `alive` is called from time to time.
+fn compute(
+    scene: &CheckedScene,
+    seconds: f64,
+    alive: &dyn Fn(),
+) -> Result<(Machine, Vec<Residual>), CalibrateError> {
     let cores = cores();
     let variants = samples::variants(scene, 1);
-    let alone = take(&variants, SHARES[0] * seconds);
+    let alone = take(&variants, SHARES[0] * seconds, alive);
     if alone.len() < 2 {
         return Err(CalibrateError::NothingRuns(scene.file.clone()));
     }
     let (coefficients, compute_quality) = best_cache(&alone);
-    let busy = samples::busy(&variants, cores.min(64), SHARES[2] * seconds, coefficients.cache[0]);
+    let cache = coefficients.cache[0];
+    let busy = samples::busy(&variants, cores.min(64), SHARES[2] * seconds, cache, alive);
     let mut machine = Machine {
         format: crate::perf_model::FORMAT,
         processor: processor(),
         cores,
-        scheme: Scheme::of(scene),
+        scheme: SchemeCosts::of(scene),
         coefficients,
         busy: busy.unwrap_or(Busy { cores: 1, warm: 1.0, cold: 1.0 }),
         fork_join: 5e-6,
@@ -116,7 +135,7 @@ fn compute(scene: &CheckedScene, seconds: f64) -> Result<(Machine, Vec<Residual>
     machine.quality = quality(&residuals);
     if cores > 1 {
         let variants = samples::variants(scene, 2);
-        let two = take(&variants, SHARES[1] * seconds);
+        let two = take(&variants, SHARES[1] * seconds, alive);
         let forks = fit(&two.iter().map(|m| fork_sample(&machine, m)).collect::<Vec<_>>());
         [machine.fork_join, machine.fork_patch] = forks.coefficients;
         machine.fork_measured = !two.is_empty();
@@ -127,11 +146,11 @@ fn compute(scene: &CheckedScene, seconds: f64) -> Result<(Machine, Vec<Residual>
     Ok((machine, residuals))
 }
 
-/// Measures all variants within about `seconds`, in two rounds, so that a disturbance that lasts
-/// spoils neither of them whole; those that fail are left out.
-fn take(variants: &[Variant], seconds: f64) -> Vec<Measured<'_>> {
+/// Measures all variants within about `seconds`, in two rounds, so that a long disturbance does not
+/// affect both measurements of a variant. Variants that fail are omitted.
+fn take<'a>(variants: &'a [Variant], seconds: f64, alive: &dyn Fn()) -> Vec<MeasuredVariant<'a>> {
     let end = Instant::now() + Duration::from_secs_f64(seconds);
-    let mut found: Vec<Option<Measured>> = vec![None; variants.len()];
+    let mut found: Vec<Option<MeasuredVariant>> = vec![None; variants.len()];
     for round in 0..2 {
         for (k, variant) in variants.iter().enumerate() {
             let left = end.saturating_duration_since(Instant::now()).as_secs_f64();
@@ -139,6 +158,7 @@ fn take(variants: &[Variant], seconds: f64) -> Vec<Measured<'_>> {
             if round == 1 && left == 0.0 {
                 break;
             }
+            alive();
             if let Some(new) = samples::measure(variant, each) {
                 match &mut found[k] {
                     Some(old) => old.take_faster(&new),
@@ -150,8 +170,8 @@ fn take(variants: &[Variant], seconds: f64) -> Vec<Measured<'_>> {
     found.into_iter().flatten().collect()
 }
 
-/// The coefficients with that size of the cache with which whole steps are met best.
-fn best_cache(samples: &[Measured]) -> (Coefficients, Quality) {
+/// Coefficients for the cache sizes with the best fit.
+fn best_cache(samples: &[MeasuredVariant]) -> (Coefficients, Quality) {
     let pairs = CACHES.iter().flat_map(|&rows| CACHES.map(|patches| [rows, patches]));
     let tried = pairs.map(|cache| {
         let compute: Fit<{ COMPUTE.len() }> = fit(&samples
@@ -175,8 +195,8 @@ fn best_cache(samples: &[Measured]) -> (Coefficients, Quality) {
     tried.min_by(|a, b| a.1.rms.total_cmp(&b.1.rms)).expect("some sizes are tried")
 }
 
-/// What a step on several threads took beyond its computing, by how often threads part.
-fn fork_sample(machine: &Machine, m: &Measured) -> Sample<2> {
+/// Time of a step on several threads beyond its computing, against the number of forks.
+fn fork_sample(machine: &Machine, m: &MeasuredVariant) -> Sample<2> {
     let work = m.work(machine.coefficients.cache);
     let slowing = machine.slowing(m.share.threads, work.cold);
     let c = &machine.coefficients;
@@ -186,7 +206,7 @@ fn fork_sample(machine: &Machine, m: &Measured) -> Sample<2> {
     Sample { features, value: m.total - known, whole: m.total }
 }
 
-fn residual(machine: &Machine, m: &Measured) -> Residual {
+fn residual(machine: &Machine, m: &MeasuredVariant) -> Residual {
     let none = Network { reduction_level: 0.0, ..Network::assumed() };
     let predicted = crate::perf_model::predict_with(machine, &none, &m.variant.work, &m.share);
     Residual {
@@ -209,12 +229,12 @@ fn quality(residuals: &[Residual]) -> Quality {
     }
 }
 
-/// Cores that this process may use.
+/// Number of cores that this process may use.
 pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
-/// The processor's name, as Linux tells it.
+/// Name of the processor, as given by Linux.
 fn processor() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));

@@ -1,4 +1,4 @@
-//! Times of steps: variants of a scene, run for a moment each.
+//! Times of steps: short runs of variants of a scene.
 
 use std::sync::Barrier;
 use std::time::Instant;
@@ -10,51 +10,51 @@ use crate::scene::{self, CellSize, CheckedScene, FilterHalo};
 use crate::simulation::{LEAST_CELLS, Simulation};
 use crate::solver::clock::Activity;
 
-/// Particles of the variants, about.
+/// Approximate numbers of particles of the variants.
 const SIZES: [f64; 5] = [300.0, 1700.0, 7000.0, 28_000.0, 110_000.0];
 
-/// Patches of the variants.
+/// Numbers of patches of the variants.
 const PATCHES: [usize; 4] = [1, 4, 16, 61];
 
-/// Steps before the clock counts.
+/// Steps before the measurement.
 const WARM_UP: u64 = 3;
 
-/// Steps of a batch take at least this long together \[s\], so that reading clocks is free.
+/// Smallest time of a batch \[s\], so that the cost of reading the clock is negligible.
 const BATCH: f64 = 0.5e-3;
 
-/// Batches of a variant at least, whatever time they take.
+/// Smallest number of batches per variant.
 const LEAST_BATCHES: usize = 4;
 
-/// A scene of some size on some patches, every particle computed.
+/// A scene with a given size and number of patches; no patch is skipped as quiescent.
 pub struct Variant {
     scene: CheckedScene,
-    /// Its work.
+    /// Work of the variant.
     pub work: Work,
     patches: usize,
     threads: usize,
     halo: FilterHalo,
 }
 
-/// A variant, measured.
+/// Measured times of a variant.
 #[derive(Clone)]
-pub struct Measured<'a> {
+pub struct MeasuredVariant<'a> {
     /// The variant.
     pub variant: &'a Variant,
-    /// Its patches.
+    /// Distribution over patches.
     pub share: Share,
     /// Time of a step \[s\].
     pub total: f64,
-    /// In phases over patches \[s\].
+    /// Time of a step in phases over patches \[s\].
     pub compute: f64,
 }
 
-impl Measured<'_> {
-    /// What its one rank does.
+impl MeasuredVariant<'_> {
+    /// Work of the single rank.
     pub fn work(&self, cache: [f64; 2]) -> RankWork {
         self.variant.work.rank_works(&self.share, cache)[0]
     }
 
-    /// The faster of two measurements of the same.
+    /// Keeps the faster of two measurements of the same variant.
     pub fn take_faster(&mut self, other: &Self) {
         if other.total < self.total {
             (self.total, self.compute) = (other.total, other.compute);
@@ -62,8 +62,8 @@ impl Measured<'_> {
     }
 }
 
-/// `scene` with cells of a `finer`th of the size, or for negative numbers as many times as large;
-/// `denser` times the particles in a cell; `None` if there is no such scene.
+/// `scene` with `finer` times smaller cells, or with -`finer` times larger cells if negative, and
+/// with `denser` times the particles per cell; `None` if there is no such scene.
 fn sized(scene: &CheckedScene, finer: i64, denser: usize) -> Option<CheckedScene> {
     let mut new = scene.scene.clone();
     let size = match finer {
@@ -75,11 +75,11 @@ fn sized(scene: &CheckedScene, finer: i64, denser: usize) -> Option<CheckedScene
     for body in &mut new.bodies {
         body.particles_per_cell.iter_mut().flatten().for_each(|n| *n *= denser);
     }
-    new.decomposition.skip_quiet = false;
+    new.decomposition.skip_quiescent = false;
     scene::check(new, &scene.file).ok()
 }
 
-/// Variants of several sizes, patch counts and both ways of halos, for so many threads.
+/// Variants with several sizes, patch counts and both halo methods, for this number of threads.
 pub fn variants(scene: &CheckedScene, threads: usize) -> Vec<Variant> {
     let now = scene.particles.max(1) as f64;
     let finer = |target: f64| match target / now {
@@ -92,7 +92,7 @@ pub fn variants(scene: &CheckedScene, threads: usize) -> Vec<Variant> {
     };
     let mut sizes: Vec<(i64, usize)> = SIZES.map(|target| (finer(target), 1)).to_vec();
     sizes.iter_mut().filter(|s| s.0 == -1).for_each(|s| s.0 = 1);
-    // particles and nodes are told apart by another number of particles a cell
+    // other particles per cell separate the costs of particles and nodes
     sizes.push((finer(3500.0).max(1), 2));
     sizes.dedup();
     let mut all = Vec::new();
@@ -107,9 +107,9 @@ pub fn variants(scene: &CheckedScene, threads: usize) -> Vec<Variant> {
         let mut counts = PATCHES.map(|p| p.min(most)).to_vec();
         counts.dedup();
         for patches in counts.into_iter().filter(|&p| p >= threads) {
-            for halo in [FilterHalo::Exchange, FilterHalo::Deep] {
-                // one patch has nobody to exchange with
-                if patches == 1 && halo == FilterHalo::Deep {
+            for halo in [FilterHalo::Exchange, FilterHalo::Redundant] {
+                // a single patch has no neighbour for exchanges
+                if patches == 1 && halo == FilterHalo::Redundant {
                     continue;
                 }
                 let mut own = sized.clone();
@@ -122,14 +122,14 @@ pub fn variants(scene: &CheckedScene, threads: usize) -> Vec<Variant> {
     all
 }
 
-/// Steps of a variant in batches, each with its seconds a step in all and in phases.
-struct Runner<'a> {
+/// Runs the steps of a variant in batches; gives total and compute time of a step \[s\].
+struct SampleRunner<'a> {
     simulation: Simulation<'a, 1>,
     end: f64,
     batch: u64,
 }
 
-impl<'a> Runner<'a> {
+impl<'a> SampleRunner<'a> {
     fn new(variant: &'a Variant) -> Option<Self> {
         let mut simulation = Simulation::new(&variant.scene, &Serial, variant.threads).ok()?;
         let end = variant.scene.scene.time.end;
@@ -140,10 +140,10 @@ impl<'a> Runner<'a> {
         let step = start.elapsed().as_secs_f64() / WARM_UP as f64;
         let every = variant.scene.scene.method.pressure_relaxation.map_or(1, |r| r.interval.max(1));
         let batch = ((BATCH / step).ceil() as u64).clamp(1, 1000).next_multiple_of(every.into());
-        Some(Runner { simulation, end, batch })
+        Some(SampleRunner { simulation, end, batch })
     }
 
-    /// One batch; `None` at the end of the run or where it fails.
+    /// Runs one batch; `None` at the end of the run or if the run fails.
     fn batch(&mut self) -> Option<(f64, f64)> {
         let computed = |s: &mut Simulation<'_, 1>| s.clock().seconds[Activity::Compute as usize];
         let before = computed(&mut self.simulation);
@@ -161,10 +161,10 @@ impl<'a> Runner<'a> {
     }
 }
 
-/// The fastest batch of a variant within about `seconds`; `None` if it does not run.
-pub fn measure(variant: &Variant, seconds: f64) -> Option<Measured<'_>> {
+/// Times of the fastest batch of a variant within about `seconds`; `None` if it does not run.
+pub fn measure(variant: &Variant, seconds: f64) -> Option<MeasuredVariant<'_>> {
     let start = Instant::now();
-    let mut runner = Runner::new(variant)?;
+    let mut runner = SampleRunner::new(variant)?;
     let mut best: Option<(f64, f64)> = None;
     for count in 0.. {
         if count >= LEAST_BATCHES && start.elapsed().as_secs_f64() >= seconds {
@@ -176,12 +176,19 @@ pub fn measure(variant: &Variant, seconds: f64) -> Option<Measured<'_>> {
     let (total, compute) = best?;
     let Variant { work, patches, threads, halo, .. } = variant;
     let share = work.share(*patches, 1, *threads, *halo);
-    Some(Measured { variant, share, total, compute })
+    Some(MeasuredVariant { variant, share, total, compute })
 }
 
-/// How much slower a step is while `cores` cores compute than on one alone: once with rows that
-/// stay in a cache of `cache` bytes, once with rows that do not. `None` for one core.
-pub fn busy(variants: &[Variant], cores: usize, seconds: f64, cache: f64) -> Option<Busy> {
+/// Slowdown of a step while `cores` cores compute, relative to one alone: for particles that stay
+/// in a cache of `cache` bytes, and for particles that do not. `None` for one core. `alive` is
+/// called from time to time.
+pub fn busy(
+    variants: &[Variant],
+    cores: usize,
+    seconds: f64,
+    cache: f64,
+    alive: &dyn Fn(),
+) -> Option<Busy> {
     if cores < 2 {
         return None;
     }
@@ -189,7 +196,11 @@ pub fn busy(variants: &[Variant], cores: usize, seconds: f64, cache: f64) -> Opt
     let small = single().min_by_key(|v| (v.work.terrain.particles - 1700.0).abs() as u64)?;
     let large = single().max_by_key(|v| v.work.terrain.particles as u64)?;
     let each = seconds / 4.0;
-    let ratio = |variant: &Variant| Some(crowd(variant, cores, each)? / crowd(variant, 1, each)?);
+    let crowd = |variant: &Variant, count: usize| {
+        alive();
+        crowd(variant, count, each)
+    };
+    let ratio = |variant: &Variant| Some(crowd(variant, cores)? / crowd(variant, 1)?);
     let cold = |v: &Variant| {
         crate::perf_model::cold_share(v.work.terrain.particles * v.work.row_bytes, cache)
     };
@@ -202,16 +213,16 @@ pub fn busy(variants: &[Variant], cores: usize, seconds: f64, cache: f64) -> Opt
     Some(Busy { cores, warm, cold })
 }
 
-/// The lower quartile of the time of a step while `count` threads run a variant each \[s\].
+/// Lower quartile of the time of a step while `count` threads each run a variant \[s\].
 fn crowd(variant: &Variant, count: usize, seconds: f64) -> Option<f64> {
     let barrier = Barrier::new(count);
     let run = || {
-        let runner = Runner::new(variant);
+        let runner = SampleRunner::new(variant);
         barrier.wait();
         let (mut runner, start) = (runner?, Instant::now());
         let mut times = Vec::new();
         while times.len() < LEAST_BATCHES || start.elapsed().as_secs_f64() < seconds {
-            // all come to the end of the run at about the same time
+            // all threads reach the end of the run at about the same time
             let Some((total, _)) = runner.batch() else { break };
             times.push(total);
         }

@@ -1,4 +1,4 @@
-//! Materials and bodies: names, places, and how many particles fill them.
+//! Checks of materials and bodies: names, positions, and number of particles.
 
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -7,43 +7,43 @@ use serde_json::json;
 
 use crate::scene::motion::Motion;
 
-use super::super::errors::{Fault, suggest};
+use super::super::errors::{SceneFault, suggest};
 use super::super::model::{Body, BoxShape, Positions, Region, Scene};
 use super::super::validate::join;
 use super::domain::MOST;
 use super::{check_box, check_length, check_printable, materials, motion};
-use crate::geometry::{PointFault, Shape, Tile, fill, voronoi, voronoi_line};
+use crate::geometry::{BoundedRegion, PointFault, Tile, fill, voronoi, voronoi_line};
 
-/// Bodies nearer than this touch, and may overlap by it [cells].
+/// Largest gap between touching bodies; they may also overlap by this length [cells].
 pub(super) const TOUCHING: f64 = 1e-9;
 
-/// What follows for a body from its scene.
+/// Properties of a body that follow from its scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CheckedBody {
-    /// Its material, as an index into the scene's materials in their order by name.
+    /// Index of its material in the scene's materials, in order of their names.
     pub material: usize,
-    /// Velocity at the start [m/s], D numbers; zeros where it differs from place to place.
+    /// Initial velocity [m/s], D numbers; zeros if it varies in space.
     pub velocity: Vec<f64>,
-    /// Velocity at the start where it differs from place to place.
+    /// Initial velocity that varies in space, if any.
     pub motion: Option<Motion>,
-    /// No particle is faster at the start [m/s].
+    /// Upper bound of the initial particle speed [m/s].
     pub top_speed: f64,
-    /// Lower and upper corner of the smallest box about it [m], D numbers each.
+    /// Lower corner of the bounding box [m], D numbers.
     pub lower: Vec<f64>,
-    /// The upper corner.
+    /// Upper corner of the bounding box [m], D numbers.
     pub upper: Vec<f64>,
-    /// Of a body that is a box, particles in each direction: length over cell size times particles
-    /// a cell, rounded. They tile the body: each is as long as the body over this number. One of
-    /// other bodies.
+    /// Number of particles in each direction of a box: length over cell size times particles per
+    /// cell, rounded. The particles tile the body: each has the length of the body over this
+    /// number. 1 for other bodies.
     pub lattice: Vec<usize>,
-    /// The tiles that a body that is no box, or has positions of its own, is filled with.
+    /// Tiles of the particles of a body that is not a box or has its own `positions`.
     pub tiles: Option<Arc<Vec<Tile>>>,
-    /// Particles in all.
+    /// Total number of particles.
     pub particles: u64,
 }
 
 impl CheckedBody {
-    /// Number of the particle in whose tile a place [m] lies, or that is nearest to it.
+    /// Number of the particle whose tile contains `at` [m], or else is nearest to it.
     pub fn nearest(&self, at: &[f64]) -> u64 {
         if let Some(tiles) = &self.tiles {
             let apart = |tile: &Tile| -> f64 {
@@ -66,7 +66,7 @@ pub(super) fn check(
     scene: &Scene,
     cell_size: &[f64],
     warnings: &mut Vec<String>,
-) -> Result<Vec<CheckedBody>, Fault> {
+) -> Result<Vec<CheckedBody>, SceneFault> {
     materials::check(scene, warnings)?;
     let materials: Vec<_> = scene.materials.keys().map(String::as_str).collect();
     let index: HashMap<_, _> = materials.iter().enumerate().map(|(i, &name)| (name, i)).collect();
@@ -77,13 +77,13 @@ pub(super) fn check(
         check_printable(&path, &body.name)?;
         if !names.insert(body.name.as_str()) {
             let reason = "another body has this name; allowed: a name of its own";
-            return Err(Fault::new(path, &body.name, reason));
+            return Err(SceneFault::new(path, &body.name, reason));
         }
         let path = join("bodies", &body.name);
         let Some(&material) = index.get(body.material.as_str()) else {
             let reason =
                 format!("no such material{}", suggest(&body.material, materials.iter().copied()));
-            return Err(Fault::new(join(&path, "material"), &body.material, reason));
+            return Err(SceneFault::new(join(&path, "material"), &body.material, reason));
         };
         checked.push(check_body(scene, body, &path, material, cell_size)?);
     }
@@ -103,7 +103,7 @@ fn check_body(
     path: &str,
     material: usize,
     cell_size: &[f64],
-) -> Result<CheckedBody, Fault> {
+) -> Result<CheckedBody, SceneFault> {
     let dimension = cell_size.len();
     let below = |key: &str| format!("{path}.{key}");
     let velocity = body.velocity.clone().unwrap_or_else(|| vec![0.0; dimension]);
@@ -112,10 +112,12 @@ fn check_body(
     let (Some((key, region)), 1) = (regions.pop(), keys.len()) else {
         let allowed = if dimension == 1 { "\"box\"" } else { KEYS };
         return Err(match keys.get(1) {
-            None => Fault::missing(below("box"), format!("missing key; allowed: one of {allowed}")),
+            None => {
+                SceneFault::missing(below("box"), format!("missing key; allowed: one of {allowed}"))
+            }
             Some(other) => {
                 let reason = format!("beside {}; allowed: one region a body", below(keys[0]));
-                Fault::new(below(other), true, reason)
+                SceneFault::new(below(other), true, reason)
             }
         });
     };
@@ -147,11 +149,11 @@ fn check_body(
     })
 }
 
-/// Keys of regions, in words.
+/// Keys of regions, for messages.
 const KEYS: &str = "\"box\", \"disk\", \"ellipse\", \"polygon\", \"annulus\", \"half_plane\", \
                     \"union\", \"difference\", \"intersection\" and \"rotation\"";
 
-/// What is known of a body once it is filled; see [`CheckedBody`].
+/// Results of filling a body with particles; see [`CheckedBody`].
 struct Filled {
     lower: Vec<f64>,
     upper: Vec<f64>,
@@ -159,12 +161,12 @@ struct Filled {
     tiles: Option<Arc<Vec<Tile>>>,
 }
 
-/// A body that is about to be filled.
+/// Input for filling a body with particles.
 struct Fill<'a> {
     scene: &'a Scene,
     body: &'a Body,
     path: &'a str,
-    /// The key of its region.
+    /// Key of its region.
     key: &'static str,
     region: &'a Region,
     cell_size: &'a [f64],
@@ -175,8 +177,8 @@ impl Fill<'_> {
         format!("{}.{key}", self.path)
     }
 
-    /// Particles a cell; they must be given where there are no positions, and only there.
-    fn per_cell(&self) -> Result<Option<&[usize]>, Fault> {
+    /// Particles per cell; required without `positions`, not allowed with them.
+    fn per_cell(&self) -> Result<Option<&[usize]>, SceneFault> {
         let path = self.below("particles_per_cell");
         let dimension = self.cell_size.len();
         match (&self.body.particles_per_cell, &self.body.positions) {
@@ -187,24 +189,24 @@ impl Fill<'_> {
             (None, Some(_)) => Ok(None),
             (None, None) => {
                 let reason = "missing key; allowed: an array of whole numbers, or positions";
-                Err(Fault::missing(path, reason))
+                Err(SceneFault::missing(path, reason))
             }
             (Some(counts), Some(_)) => {
                 let reason = format!("beside {}; allowed: one of them", self.below("positions"));
-                Err(Fault::new(path, counts, reason))
+                Err(SceneFault::new(path, counts, reason))
             }
         }
     }
 
-    /// The positions that the scene gives.
-    fn points<const D: usize>(&self) -> Result<Vec<[f64; D]>, Fault> {
+    /// Positions given in the scene.
+    fn points<const D: usize>(&self) -> Result<Vec<[f64; D]>, SceneFault> {
         let path = self.below("positions");
         let points = match &self.body.positions {
             Some(Positions::Points(points)) => points,
             Some(Positions::File(name)) => {
                 let reason = "a file is read with the scene alone; allowed: positions in the scene's \
                               own text, or an array of points";
-                return Err(Fault::new(path, name, reason));
+                return Err(SceneFault::new(path, name, reason));
             }
             None => return Ok(Vec::new()),
         };
@@ -215,17 +217,17 @@ impl Fill<'_> {
         points.iter().enumerate().map(point).collect()
     }
 
-    fn faulty(&self, fault: PointFault) -> Fault {
+    fn faulty(&self, fault: PointFault) -> SceneFault {
         let path = format!("{}[{}]", self.below("positions"), fault.number);
-        Fault::new(path, fault.place, fault.reason)
+        SceneFault::new(path, fault.place, fault.reason)
     }
 
-    /// On a line.
-    fn line(&self) -> Result<Filled, Fault> {
+    /// Fills a body in one dimension.
+    fn line(&self) -> Result<Filled, SceneFault> {
         let Region::Box(extent) = self.region else {
             let reason = "a region of the plane, but domain.lower has 1 number, which is the \
                           dimension of the scene; allowed: \"box\"";
-            return Err(Fault::new(self.below(self.key), true, reason));
+            return Err(SceneFault::new(self.below(self.key), true, reason));
         };
         let (lower, upper) = (extent.lower.clone(), extent.upper.clone());
         check_length(&self.below("box.lower"), &lower, 1)?;
@@ -246,8 +248,8 @@ impl Fill<'_> {
         Ok(Filled { lower, upper, lattice, tiles: None })
     }
 
-    /// In a plane.
-    fn plane(&self) -> Result<Filled, Fault> {
+    /// Fills a body in a plane.
+    fn plane(&self) -> Result<Filled, SceneFault> {
         if let Region::Box(extent) = self.region {
             check_length(&self.below("box.lower"), &extent.lower, 2)?;
             check_length(&self.below("box.upper"), &extent.upper, 2)?;
@@ -258,8 +260,8 @@ impl Fill<'_> {
                 return Ok(Filled { lower, upper, lattice, tiles: None });
             }
         }
-        let shape = Shape::new(self.region)
-            .map_err(|fault| Fault::new(self.below(&fault.path), fault.value, fault.reason))?;
+        let shape = BoundedRegion::new(self.region)
+            .map_err(|fault| SceneFault::new(self.below(&fault.path), fault.value, fault.reason))?;
         let [lower, upper] = shape.bounds().map(|corner| corner.to_vec());
         let cell = [self.cell_size[0], self.cell_size[1]];
         let tiles = match self.per_cell()? {
@@ -272,7 +274,7 @@ impl Fill<'_> {
                         shape.area() / whole
                     );
                     let path = self.below("particles_per_cell");
-                    return Err(Fault::new(path, per_cell, reason));
+                    return Err(SceneFault::new(path, per_cell, reason));
                 }
                 let origin = [self.scene.domain.lower[0], self.scene.domain.lower[1]];
                 fill(&shape, origin, cell, counts)
@@ -283,17 +285,17 @@ impl Fill<'_> {
     }
 }
 
-/// Most particles of a body whose tiles have to be made one by one.
+/// Maximum number of particles of a body whose tiles are generated one by one.
 const MOST_TILES: f64 = 1e9;
 
-/// A body lies within the domain.
+/// Checks that a body lies within the domain.
 fn check_inside(
     scene: &Scene,
     path: &str,
     key: &str,
     filled: &Filled,
     cell_size: &[f64],
-) -> Result<(), Fault> {
+) -> Result<(), SceneFault> {
     let domain = &scene.domain;
     for (d, size) in cell_size.iter().enumerate() {
         let tolerance = TOUCHING * size;
@@ -309,7 +311,7 @@ fn check_inside(
             "outside of the domain; allowed: {lower} to {upper} (domain.lower, domain.upper)"
         );
         let key = if key == "box" { format!("box.{corner}") } else { key.to_string() };
-        return Err(Fault::new(format!("{path}.{key}"), value, reason));
+        return Err(SceneFault::new(format!("{path}.{key}"), value, reason));
     }
     Ok(())
 }
@@ -322,13 +324,13 @@ fn norm(v: &[f64]) -> f64 {
     }
 }
 
-/// Particles in each direction of a box.
+/// Number of particles in each direction of a box.
 fn lattice(
     extent: &BoxShape,
     per_cell: &[usize],
     path: &str,
     cell_size: &[f64],
-) -> Result<Vec<usize>, Fault> {
+) -> Result<Vec<usize>, SceneFault> {
     let mut total = 1.0;
     let mut lattice = Vec::with_capacity(cell_size.len());
     for (d, size) in cell_size.iter().enumerate() {
@@ -339,7 +341,7 @@ fn lattice(
                 "no particle: the body is {cells:?} cells long, less than half a particle's size; \
                  allowed: a longer box, a smaller domain.cell_size or more particles_per_cell"
             );
-            return Err(Fault::new(format!("{path}.box"), extent, reason));
+            return Err(SceneFault::new(format!("{path}.box"), extent, reason));
         }
         total *= count;
         if total > MOST {
@@ -348,16 +350,20 @@ fn lattice(
                  memory holds"
             );
             let path = format!("{path}.particles_per_cell");
-            return Err(Fault::new(path, per_cell, reason));
+            return Err(SceneFault::new(path, per_cell, reason));
         }
         lattice.push(count as usize);
     }
     Ok(lattice)
 }
 
-/// Bodies may touch, but not overlap: in order of x, each is held against those that begin
-/// before it ends.
-fn check_overlap(scene: &Scene, checked: &[CheckedBody], cell_size: &[f64]) -> Result<(), Fault> {
+/// Checks that bodies may touch but do not overlap: in order of x, each is compared with those that
+/// begin before it ends.
+fn check_overlap(
+    scene: &Scene,
+    checked: &[CheckedBody],
+    cell_size: &[f64],
+) -> Result<(), SceneFault> {
     let mut order: Vec<usize> = (0..checked.len()).collect();
     order.sort_by(|&a, &b| checked[a].lower[0].total_cmp(&checked[b].lower[0]));
     let cell: f64 = cell_size.iter().product();
@@ -370,7 +376,7 @@ fn check_overlap(scene: &Scene, checked: &[CheckedBody], cell_size: &[f64]) -> R
         match (boxes, region(a), region(b)) {
             (false, ..) | (_, None, _) | (.., None) => false,
             (_, Some(Region::Box(_)), Some(Region::Box(_))) => true,
-            (_, Some(a), Some(b)) => Shape::new(&Region::Intersection(vec![a, b]))
+            (_, Some(a), Some(b)) => BoundedRegion::new(&Region::Intersection(vec![a, b]))
                 .is_ok_and(|shape| shape.area() > TOUCHING * cell),
         }
     };
@@ -387,7 +393,7 @@ fn check_overlap(scene: &Scene, checked: &[CheckedBody], cell_size: &[f64]) -> R
                     value(body),
                     if scene.domain.lower.len() == 1 { "boxes" } else { "bodies" }
                 );
-                return Err(Fault::new(path(other), value(other), reason));
+                return Err(SceneFault::new(path(other), value(other), reason));
             }
         }
     }

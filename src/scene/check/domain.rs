@@ -1,26 +1,27 @@
-//! The domain: a whole number of cells, cut into no more patches than there are cells.
+//! Checks of the domain: a whole number of cells, and no more patches than cells.
 
-use super::super::errors::Fault;
+use super::super::errors::SceneFault;
 use super::super::model::{CellSize, Domain, Geometry};
 use super::{check_box, check_length};
 
-/// How far the domain may be from a whole number of cells [cells].
+/// Allowed deviation of the domain from a whole number of cells [cells].
 const WHOLE: f64 = 1e-6;
 
-/// A cell size that differs by less from the domain's over its cells is taken as it stands [-].
+/// Relative deviation up to which the given cell size is used, rather than the domain's edge over
+/// its number of cells [-].
 const ROUNDING: f64 = 1e-12;
 
-/// Cells or particles beyond this are refused wherever the scene is read.
+/// Maximum number of cells or of particles of any scene.
 pub(super) const MOST: f64 = 1e15;
 
-/// The grid that a domain asks for.
+/// Grid of a domain.
 pub(super) struct Grid {
     pub dimension: usize,
     pub cell_size: Vec<f64>,
     pub cells: Vec<usize>,
 }
 
-pub(super) fn check(domain: &Domain) -> Result<Grid, Fault> {
+pub(super) fn check(domain: &Domain) -> Result<Grid, SceneFault> {
     let dimension = domain.lower.len();
     check_length("domain.upper", &domain.upper, dimension)?;
     let asked = match &domain.cell_size {
@@ -35,18 +36,18 @@ pub(super) fn check(domain: &Domain) -> Result<Grid, Fault> {
     }
     if dimension > 2 {
         let reason = "more than two dimensions; allowed: one number or two";
-        return Err(Fault::new("domain.lower", &domain.lower, reason));
+        return Err(SceneFault::new("domain.lower", &domain.lower, reason));
     }
     check_box("domain", &domain.lower, &domain.upper)?;
     if domain.geometry == Geometry::Axisymmetric {
         if dimension != 2 {
             let reason = "needs a radius and an axis; allowed: \"plane_strain\", or two dimensions";
-            return Err(Fault::new("domain.geometry", domain.geometry, reason));
+            return Err(SceneFault::new("domain.geometry", domain.geometry, reason));
         }
         if domain.lower[0] < 0.0 {
             let reason = "crosses the axis at radius 0, which domain.geometry = \"axisymmetric\" \
                           has along x; allowed: domain.lower[0] at least 0";
-            return Err(Fault::new("domain.lower", &domain.lower, reason));
+            return Err(SceneFault::new("domain.lower", &domain.lower, reason));
         }
     }
     let mut grid = Grid { dimension, cell_size: Vec::new(), cells: Vec::new() };
@@ -66,14 +67,14 @@ pub(super) fn check(domain: &Domain) -> Result<Grid, Fault> {
         for (&count, &cells) in patches.iter().zip(&grid.cells) {
             if count > cells {
                 let reason = format!("more patches than cells; allowed: 1 to {cells}");
-                return Err(Fault::new("domain.patches", patches, reason));
+                return Err(SceneFault::new("domain.patches", patches, reason));
             }
         }
     }
     Ok(grid)
 }
 
-fn whole_cells(domain: &Domain, lower: f64, upper: f64, size: f64) -> Result<f64, Fault> {
+fn whole_cells(domain: &Domain, lower: f64, upper: f64, size: f64) -> Result<f64, SceneFault> {
     let length = upper - lower;
     let cells = length / size;
     if cells.is_nan() || cells > MOST {
@@ -87,29 +88,29 @@ fn whole_cells(domain: &Domain, lower: f64, upper: f64, size: f64) -> Result<f64
             tidy(cells),
             tidy(length / whole)
         );
-        return Err(Fault::new("domain.cell_size", &domain.cell_size, reason));
+        return Err(SceneFault::new("domain.cell_size", &domain.cell_size, reason));
     }
-    // positions must tell a millionth of a cell
+    // positions must resolve a millionth of a cell
     let least = lower.abs().max(upper.abs()) * f64::EPSILON / WHOLE;
     if size < least {
         let reason = format!(
             "too small for doubles at coordinates up to {}; allowed: at least {least}",
             lower.abs().max(upper.abs())
         );
-        return Err(Fault::new("domain.cell_size", &domain.cell_size, reason));
+        return Err(SceneFault::new("domain.cell_size", &domain.cell_size, reason));
     }
     Ok(whole)
 }
 
-/// A number for people: 15 digits, which hides what rounding left.
+/// A number rounded to 15 digits for messages, which hides rounding errors.
 fn tidy(number: f64) -> f64 {
     format!("{number:.14e}").parse().unwrap_or(number)
 }
 
-fn too_many(domain: &Domain, cells: f64) -> Fault {
+fn too_many(domain: &Domain, cells: f64) -> SceneFault {
     let reason = format!(
         "divides the domain into {cells:e} cells; allowed: at most {MOST:e}, and what the \
          machine's memory holds"
     );
-    Fault::new("domain.cell_size", &domain.cell_size, reason)
+    SceneFault::new("domain.cell_size", &domain.cell_size, reason)
 }

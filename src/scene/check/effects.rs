@@ -1,10 +1,12 @@
-//! Strength, failure and temperature of the materials: what each needs of the others.
+//! Checks of strength, failure and temperature of the materials, and their requirements on each
+//! other.
 
-use super::super::errors::Fault;
-use super::super::model::{Eos, Failure, HeatSource, Material, Scene, Strength};
+use super::super::errors::SceneFault;
+use super::super::model::{HeatSource, Material, Scene};
 use super::super::validate::join;
+use crate::material::ParameterError;
 
-pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
+pub(super) fn check(scene: &Scene) -> Result<(), SceneFault> {
     check_sides(scene)?;
     check_bodies(scene)?;
     for (name, material) in &scene.materials {
@@ -17,8 +19,8 @@ pub(super) fn check(scene: &Scene) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Temperatures of sides need heat that is conducted, and a side that has images.
-fn check_sides(scene: &Scene) -> Result<(), Fault> {
+/// Checks that side temperatures have a material with heat conduction and a rigid side.
+fn check_sides(scene: &Scene) -> Result<(), SceneFault> {
     let Some(boundary) = &scene.boundary else { return Ok(()) };
     let Some(held) = boundary.temperature else { return Ok(()) };
     let conducts = |m: &Material| m.thermal.is_some_and(|t| t.conductivity.is_some());
@@ -33,20 +35,20 @@ fn check_sides(scene: &Scene) -> Result<(), Fault> {
         if !scene.materials.values().any(conducts) {
             let reason = "no material conducts heat; allowed: to leave it out, or \
                           thermal.conductivity of a material";
-            return Err(Fault::new(path, temperature, reason));
+            return Err(SceneFault::new(path, temperature, reason));
         }
-        if side.and_then(|side| side.rigid_velocity()).is_none() {
+        if !side.is_some_and(|side| side.properties().is_rigid()) {
             let reason = format!(
                 "needs a rigid side; allowed: to leave it out, or boundary.{key} \"wall\" or \
                  another rigid one"
             );
-            return Err(Fault::new(path, temperature, reason));
+            return Err(SceneFault::new(path, temperature, reason));
         }
     }
     Ok(())
 }
 
-fn check_bodies(scene: &Scene) -> Result<(), Fault> {
+fn check_bodies(scene: &Scene) -> Result<(), SceneFault> {
     for body in &scene.bodies {
         let Some(temperature) = body.temperature else { continue };
         let path = format!("{}.temperature", join("bodies", &body.name));
@@ -55,98 +57,55 @@ fn check_bodies(scene: &Scene) -> Result<(), Fault> {
             let key = join("materials", &body.material);
             let reason =
                 format!("{key} has no thermal; allowed: to leave it out, or {key}.thermal");
-            return Err(Fault::new(path, temperature, reason));
+            return Err(SceneFault::new(path, temperature, reason));
         };
         if thermal.source == HeatSource::Energy && body.pressure != 0.0 {
             let reason = format!(
                 "beside pressure = {}, which sets the energy too; allowed: one of the two",
                 body.pressure
             );
-            return Err(Fault::new(path, temperature, reason));
+            return Err(SceneFault::new(path, temperature, reason));
         }
     }
     Ok(())
 }
 
-fn check_strength(path: &str, material: &Material) -> Result<(), Fault> {
+fn check_strength(path: &str, material: &Material) -> Result<(), SceneFault> {
     let Some(strength) = material.strength else { return Ok(()) };
-    let below = |key: &str| format!("{path}.strength.{key}");
     if material.eos.is_solid() {
         let reason = "beside an eos that bears shear by itself; allowed: to leave it out, or the \
                       eos of a fluid, such as \"mie_gruneisen\"";
-        return Err(Fault::new(format!("{path}.strength"), strength, reason));
+        return Err(SceneFault::new(format!("{path}.strength"), strength, reason));
     }
-    let needs_thermal = |key: &str| {
+    let of_strength = |error| SceneFault::of_parameter(error, &format!("{path}.strength"));
+    if let (Some(key), None) = (strength.needs_temperature(), material.thermal) {
         let reason =
             format!("needs a temperature; allowed: to leave it out, or {path}.thermal beside it");
-        Fault::new(below(key), true, reason)
-    };
-    match strength {
-        Strength::VonMises { .. } => {}
-        Strength::JohnsonCook { softening: Some(softening), .. } => {
-            if material.thermal.is_none() {
-                return Err(needs_thermal("softening"));
-            }
-            if softening.melt_temperature <= softening.reference_temperature {
-                let reason = format!(
-                    "not above reference_temperature = {}; allowed: a higher temperature",
-                    softening.reference_temperature
-                );
-                let key = below("softening.melt_temperature");
-                return Err(Fault::new(key, softening.melt_temperature, reason));
-            }
-        }
-        Strength::JohnsonCook { softening: None, .. } => {}
-        Strength::SteinbergGuinan {
-            temperature_softening, yield_stress, max_yield_stress, ..
-        } => {
-            if temperature_softening.is_some() && material.thermal.is_none() {
-                return Err(needs_thermal("temperature_softening"));
-            }
-            if max_yield_stress < yield_stress {
-                let reason =
-                    format!("below yield_stress = {yield_stress}; allowed: at least as much");
-                return Err(Fault::new(below("max_yield_stress"), max_yield_stress, reason));
-            }
-        }
+        return Err(of_strength(ParameterError::new(key, true, reason)));
     }
-    Ok(())
+    strength.check().map_err(of_strength)
 }
 
-fn check_failure(path: &str, material: &Material) -> Result<(), Fault> {
+fn check_failure(path: &str, material: &Material) -> Result<(), SceneFault> {
     let Some(failure) = material.failure else { return Ok(()) };
     let path = format!("{path}.failure");
     if material.eos.is_solid() {
         let reason = "an elastic solid does not fail; allowed: to leave it out, or the eos of a \
                       fluid, such as \"mie_gruneisen\", with strength";
-        return Err(Fault::new(path, failure, reason));
+        return Err(SceneFault::new(path, failure, reason));
     }
-    let Failure::JohnsonCook { d1, d2, d5, .. } = failure else { return Ok(()) };
-    if material.strength.is_none() {
-        let reason = "needs plastic strain; allowed: \"tension_limit\", or strength beside it";
-        return Err(Fault::new(format!("{path}.type"), "johnson_cook", reason));
-    }
-    if d1 + d2.max(0.0) <= 0.0 {
-        let reason = format!(
-            "with d2 = {d2} the material breaks at no strain at all; allowed: d1 + d2 above 0"
-        );
-        return Err(Fault::new(format!("{path}.d1"), d1, reason));
-    }
-    let softens =
-        matches!(material.strength, Some(Strength::JohnsonCook { softening: Some(_), .. }));
-    if d5 != 0.0 && !softens {
-        let reason = "needs the temperatures of strength.softening of \"johnson_cook\"; allowed: \
-                      0, or those";
-        return Err(Fault::new(format!("{path}.d5"), d5, reason));
-    }
-    Ok(())
+    failure.check(&material.strength_beside()).map_err(|e| SceneFault::of_parameter(e, &path))
 }
 
-fn check_erosion(path: &str, material: &Material, scene: &Scene) -> Result<(), Fault> {
+fn check_erosion(path: &str, material: &Material, scene: &Scene) -> Result<(), SceneFault> {
     let Some(erosion) = material.erosion else { return Ok(()) };
     let path = format!("{path}.erosion");
     let refuse = |why: &str, allowed: &str| {
-        Err(Fault::new(&path, erosion, format!("{why}; allowed: to leave it out, or {allowed}")))
+        Err(SceneFault::new(
+            &path,
+            erosion,
+            format!("{why}; allowed: to leave it out, or {allowed}"),
+        ))
     };
     if material.eos.is_solid() {
         let allowed = "the eos of a fluid, such as \"mie_gruneisen\", with strength";
@@ -157,7 +116,7 @@ fn check_erosion(path: &str, material: &Material, scene: &Scene) -> Result<(), F
     }
     if let (Some(limit), None) = (erosion.plastic_strain, material.strength) {
         let reason = "needs plastic strain; allowed: volume_ratio, or strength beside it";
-        return Err(Fault::new(format!("{path}.plastic_strain"), limit, reason));
+        return Err(SceneFault::new(format!("{path}.plastic_strain"), limit, reason));
     }
     if scene.body_force.is_some() {
         return refuse("the work of a body force on what goes is not booked", "no body_force");
@@ -169,30 +128,28 @@ fn check_erosion(path: &str, material: &Material, scene: &Scene) -> Result<(), F
     Ok(())
 }
 
-fn check_thermal(path: &str, material: &Material) -> Result<(), Fault> {
+fn check_thermal(path: &str, material: &Material) -> Result<(), SceneFault> {
     let Some(thermal) = material.thermal else { return Ok(()) };
     let path = format!("{path}.thermal");
     if material.eos.is_solid() {
         let reason = "an elastic solid has no thermal part; allowed: to leave it out, or the eos \
                       of a fluid with strength";
-        return Err(Fault::new(path, thermal, reason));
+        return Err(SceneFault::new(path, thermal, reason));
     }
-    let has_history = matches!(material.eos, Eos::PAlpha { .. })
-        || material.eos.burn().is_some_and(|burn| burn.front().is_some());
-    if has_history && thermal.source == HeatSource::Energy {
+    if material.eos.has_history() && thermal.source == HeatSource::Energy {
         let reason = "pores and burning explosives have no one isentrope; allowed: to leave it \
                       out, or thermal.source \"plastic_work\" with strength";
-        return Err(Fault::new(path, thermal, reason));
+        return Err(SceneFault::new(path, thermal, reason));
     }
     if material.strength.is_none() {
         if thermal.source == HeatSource::PlasticWork {
             let reason = "without strength there is none; allowed: \"energy\", or strength";
-            return Err(Fault::new(format!("{path}.source"), thermal.source, reason));
+            return Err(SceneFault::new(format!("{path}.source"), thermal.source, reason));
         }
         if thermal.taylor_quinney != 1.0 {
             let reason =
                 "says nothing without strength; allowed: to leave it out, or strength beside it";
-            return Err(Fault::new(
+            return Err(SceneFault::new(
                 format!("{path}.taylor_quinney"),
                 thermal.taylor_quinney,
                 reason,

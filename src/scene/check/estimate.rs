@@ -1,12 +1,13 @@
-//! The body and the places of `error_estimate`: on a line, with or without a reference.
+//! Checks of the body and the positions of `error_estimate`: one dimension, with or without a
+//! reference.
 
-use super::super::errors::{Fault, suggest};
+use super::super::errors::{SceneFault, suggest};
 use super::super::model::Reference;
 use super::CheckedScene;
 
 impl CheckedScene {
-    /// The body of `error_estimate`, by number: the one that it names, or the default of
-    /// [`Self::default_estimated_body`]; none without the key.
+    /// Index of the body of `error_estimate`: the named one, or the default of
+    /// [`Self::default_estimated_body`]; `None` without the key.
     pub fn estimated_body(&self) -> Option<usize> {
         let asked = self.scene.error_estimate.as_ref()?;
         match &asked.body {
@@ -15,8 +16,9 @@ impl CheckedScene {
         }
     }
 
-    /// The body whose errors are estimated where `error_estimate.body` is absent: the one that the
-    /// reference scores, else the only body, else the only one at rest, which the others strike.
+    /// Index of the body whose errors are estimated if `error_estimate.body` is absent: the body
+    /// that the reference scores, else the only body, else the only body at rest, which the others
+    /// strike.
     pub fn default_estimated_body(&self) -> Option<usize> {
         let scored = match &self.scene.reference {
             Some(Reference::FlyerImpact(named)) => Some(&named.target),
@@ -40,20 +42,20 @@ impl CheckedScene {
     }
 }
 
-/// Refuses an estimate of a scene in a plane, of no body, and at places outside of its body.
-pub(super) fn check(checked: &CheckedScene) -> Result<(), Fault> {
+/// Rejects an estimate in a plane, without a body, or at positions outside its body.
+pub(super) fn check(checked: &CheckedScene) -> Result<(), SceneFault> {
     let Some(asked) = &checked.scene.error_estimate else { return Ok(()) };
     let names = || checked.scene.bodies.iter().map(|b| b.name.as_str());
     if checked.dimension != 1 {
-        return Err(Fault::missing("error_estimate", "in a plane; allowed: scenes on a line"));
+        return Err(SceneFault::missing("error_estimate", "in a plane; allowed: scenes on a line"));
     }
     let Some(body) = checked.estimated_body() else {
         return Err(match &asked.body {
             Some(name) => {
                 let reason = format!("no such body{}", suggest(name, names()));
-                Fault::new("error_estimate.body", name, reason)
+                SceneFault::new("error_estimate.body", name, reason)
             }
-            None => Fault::missing(
+            None => SceneFault::missing(
                 "error_estimate.body",
                 format!(
                     "missing key, for no reference scores one body and not just one is at rest; \
@@ -68,7 +70,7 @@ pub(super) fn check(checked: &CheckedScene) -> Result<(), Fault> {
         if !(bounds.lower[0]..=bounds.upper[0]).contains(&at) {
             let reason =
                 format!("outside of its body; allowed: {} to {}", bounds.lower[0], bounds.upper[0]);
-            return Err(Fault::new(format!("error_estimate.arrivals[{k}]"), at, reason));
+            return Err(SceneFault::new(format!("error_estimate.arrivals[{k}]"), at, reason));
         }
     }
     Ok(())

@@ -1,13 +1,13 @@
-//! What the total-Lagrangian frame cannot do, refused with the way out.
+//! Options that the total-Lagrangian frame does not support, each rejected with an alternative.
 
-use super::super::errors::Fault;
-use super::super::model::{FrameKind, Side};
+use super::super::errors::SceneFault;
+use super::super::model::{FrameKind, SideProperties};
 use super::CheckedScene;
 
-/// The way out of most.
+/// The alternative for most of them.
 const UPDATED: &str = "method.frame \"updated_lagrangian\"";
 
-pub(super) fn check(checked: &CheckedScene) -> Result<(), Fault> {
+pub(super) fn check(checked: &CheckedScene) -> Result<(), SceneFault> {
     let method = &checked.scene.method;
     if method.frame != FrameKind::TotalLagrangian {
         return Ok(());
@@ -16,7 +16,7 @@ pub(super) fn check(checked: &CheckedScene) -> Result<(), Fault> {
         let reason = format!(
             "cannot go with method.frame = \"total_lagrangian\", {why}; allowed: {allowed}{UPDATED}"
         );
-        Err(Fault::new(path, value, reason))
+        Err(SceneFault::new(path, value, reason))
     };
     let leave_out = "to leave it out, or ";
     if let Some(rate) = method.volume_relaxation {
@@ -35,7 +35,8 @@ pub(super) fn check(checked: &CheckedScene) -> Result<(), Fault> {
     }
     let names = ["boundary.x_lower", "boundary.x_upper", "boundary.y_lower", "boundary.y_upper"];
     for (path, side) in names.into_iter().zip(checked.sides::<2>().as_flattened()) {
-        if *side == Side::Outflow {
+        let SideProperties { lets_out, absorbs_waves, .. } = side.properties();
+        if lets_out && !absorbs_waves {
             let why = "in which nothing leaves";
             return refuse(path, serde_json::json!(side), why, "\"free\", \"transmitting\", or ");
         }
@@ -43,8 +44,8 @@ pub(super) fn check(checked: &CheckedScene) -> Result<(), Fault> {
     check_apart(checked)
 }
 
-/// Bodies that are apart at the start would never meet: each must touch another.
-fn check_apart(checked: &CheckedScene) -> Result<(), Fault> {
+/// Checks that each body touches another one: bodies apart at the start would never meet.
+fn check_apart(checked: &CheckedScene) -> Result<(), SceneFault> {
     let count = checked.bodies.len();
     let touches = |i: usize, k: usize| {
         let (one, other) = (&checked.bodies[i], &checked.bodies[k]);
@@ -53,7 +54,7 @@ fn check_apart(checked: &CheckedScene) -> Result<(), Fault> {
                 <= checked.tolerance(a)
         })
     };
-    // those that hang together with the first
+    // bodies that are connected to the first one
     let mut joined = vec![false; count];
     let mut next = vec![0];
     while let Some(i) = next.pop() {
@@ -69,7 +70,7 @@ fn check_apart(checked: &CheckedScene) -> Result<(), Fault> {
                  {UPDATED}",
                 checked.scene.bodies[0].name
             );
-            Err(Fault::new(format!("bodies[{i}]"), &checked.scene.bodies[i].name, reason))
+            Err(SceneFault::new(format!("bodies[{i}]"), &checked.scene.bodies[i].name, reason))
         }
     }
 }

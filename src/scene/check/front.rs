@@ -1,16 +1,16 @@
-//! Plane waves at an angle: bodies and velocities along the line that they run on.
+//! Plane waves at an angle: positions and velocities of bodies along the direction of the waves.
 
 use serde_json::json;
 
-use super::super::errors::Fault;
-use super::super::model::{Front, Reference, Region, Rotation, Side};
+use super::super::errors::SceneFault;
+use super::super::model::{Front, Reference, Region, Rotation};
 use super::{CheckedScene, check_length};
 
-/// How far the angles of a body and of a front may be apart [degrees].
+/// Allowed difference between the angles of a body and of a front [degrees].
 const SAME_ANGLE: f64 = 1e-9;
 
 impl CheckedScene {
-    /// How the waves of the scene's exact solution lie, if it says so.
+    /// Direction of the waves of the scene's exact solution, if given.
     pub fn front(&self) -> Option<&Front> {
         match self.scene.reference.as_ref()? {
             Reference::FlyerImpact(impact) => impact.front.as_ref(),
@@ -19,14 +19,15 @@ impl CheckedScene {
         }
     }
 
-    /// Unit vector along which the waves run.
+    /// Unit vector of the direction of the waves.
     fn direction(&self) -> [f64; 2] {
         let angle = self.front().map_or(0.0, |front| front.angle.to_radians());
         [angle.cos(), angle.sin()]
     }
 
-    /// Where body `i` begins and ends along the line of the waves [m]: along x, or from the point
-    /// of a front at an angle. `None` for a body that has no ends along it.
+    /// Start and end of body `i` along the direction of the waves [m]: x coordinates, or distances
+    /// from the point `about` of a front at an angle. `None` for a body without defined ends along
+    /// it.
     pub fn span(&self, i: usize) -> Option<[f64; 2]> {
         let body = &self.bodies[i];
         let Some(front) = self.front().filter(|front| front.angle != 0.0) else {
@@ -45,10 +46,10 @@ impl CheckedScene {
         }
     }
 
-    /// How far the line of the waves is from the nearest edge of body `i` across it [m]; infinite
-    /// where both ends across it stand at sides of the domain that reflect or are joined.
+    /// Distance from the line of the waves to the nearest lateral edge of body `i` [m]; infinite if
+    /// both lateral ends are at reflecting or periodic sides of the domain.
     pub fn edge_distance(&self, i: usize) -> f64 {
-        let [_, ends] = self.sides::<2>();
+        let [_, ends] = self.side_properties::<2>();
         let y = self.front().map_or(self.scene.domain.lower[1], |front| front.about[1]);
         let turned = self.front().is_some_and(|front| front.angle != 0.0);
         let regions = self.scene.bodies[i].regions();
@@ -62,10 +63,9 @@ impl CheckedScene {
         };
         let domain = &self.scene.domain;
         let closed = |end: usize, at: f64| {
-            let side = [domain.lower[1], domain.upper[1]][end];
-            !turned
-                && matches!(ends[end], Side::Symmetry | Side::Wall | Side::Periodic)
-                && (at - side).abs() <= self.tolerance(1)
+            let (side, place) = (&ends[end], [domain.lower[1], domain.upper[1]][end]);
+            let reflects = side.is_rigid() && !side.moves_grid && !side.resists_sliding();
+            !turned && (reflects || side.is_periodic()) && (at - place).abs() <= self.tolerance(1)
         };
         let distance = |end: usize, at: f64| {
             if closed(end, at) { f64::INFINITY } else { (at - y).abs() }
@@ -73,7 +73,7 @@ impl CheckedScene {
         distance(0, extent.lower[1]).min(distance(1, extent.upper[1]))
     }
 
-    /// Velocity of body `i` at the start along the line of the waves [m/s].
+    /// Initial velocity of body `i` along the direction of the waves [m/s].
     pub fn speed_along(&self, i: usize) -> f64 {
         let velocity = &self.bodies[i].velocity;
         match self.front().filter(|front| front.angle != 0.0) {
@@ -83,20 +83,20 @@ impl CheckedScene {
     }
 }
 
-/// A front has a line in the plane of its scene.
-pub(super) fn check(checked: &CheckedScene, path: &str) -> Result<(), Fault> {
+/// Checks that a front has a line in the plane of its scene.
+pub(super) fn check(checked: &CheckedScene, path: &str) -> Result<(), SceneFault> {
     let Some(front) = checked.front() else { return Ok(()) };
     let path = format!("{path}.front");
     if checked.dimension == 1 {
         let reason = "a line in a plane, but domain.lower has 1 number; allowed: to leave it out";
-        return Err(Fault::new(path, json!(front), reason));
+        return Err(SceneFault::new(path, json!(front), reason));
     }
     check_length(&format!("{path}.about"), &front.about, checked.dimension)?;
     if let Some([from, to]) = front.range
         && from >= to
     {
         let reason = "ends before it begins; allowed: two numbers that ascend";
-        return Err(Fault::new(format!("{path}.range"), [from, to], reason));
+        return Err(SceneFault::new(format!("{path}.range"), [from, to], reason));
     }
     Ok(())
 }

@@ -1,28 +1,28 @@
-//! Impacts that compress a material past what its Hugoniot holds.
+//! Impacts that compress a material beyond the limit of its Hugoniot.
 //!
-//! Behind a shock that gives the particle velocity up to material at rest,
-//! 1 - rho0/rho = up/(c0 + s up), which never passes 1/s (Meyers 1994, eq. 4.9 with
-//! Us = c0 + s up). The common pressure of two bodies is that at which their particle velocities
-//! add up to the speed of impact. Initial pressures and reflected waves are left out of account;
-//! an ideal gas has no such limit, and a body that strikes one is not examined.
+//! Behind a shock with the particle velocity up into material at rest, 1 - rho0/rho = up/(c0 + s
+//! up), which is always below 1/s (Meyers 1994, eq. 4.9 with Us = c0 + s up). The common pressure
+//! of two bodies is that at which their particle velocities add up to the impact speed. Initial
+//! pressures and reflected waves are neglected. An ideal gas has no such limit, and a body that
+//! strikes one is not checked.
 
-use super::super::errors::Fault;
-use super::super::model::{Eos, Side};
+use super::super::errors::SceneFault;
+use super::super::model::Eos;
 use super::super::validate::join;
 use super::CheckedScene;
 
-/// Compression that no impact may pass, alone and over s [-].
+/// Maximum compression of an impact, both by itself and over s [-].
 const MOST_COMPRESSION: f64 = 0.95;
 
-/// P = rho0 (c0 + s up) up.
+/// Linear Hugoniot P = rho0 (c0 + s up) up.
 #[derive(Clone, Copy)]
-struct Hugoniot {
+struct LinearHugoniot {
     rho0: f64,
     c0: f64,
     s: f64,
 }
 
-impl Hugoniot {
+impl LinearHugoniot {
     fn pressure(&self, up: f64) -> f64 {
         self.rho0 * (self.c0 + self.s * up) * up
     }
@@ -36,29 +36,28 @@ impl Hugoniot {
         MOST_COMPRESSION.min(MOST_COMPRESSION / self.s)
     }
 
-    /// The particle velocity that reaches the limit [m/s].
+    /// Particle velocity at the limit [m/s].
     fn most_particle_velocity(&self) -> f64 {
         let chi = self.most_compression();
         chi * self.c0 / (1.0 - self.s * chi)
     }
 }
 
-/// What a body runs into.
-struct Impact<'a> {
+/// Impact of a body on another body or a wall.
+struct ScoredImpact<'a> {
     body: usize,
-    /// The other body; none: a rigid wall.
+    /// Index of the other body; `None`: a rigid wall.
     other: Option<usize>,
     name: &'a str,
     speed: f64,
     gap: f64,
 }
 
-/// Every impact that happens before the end is held against the limit; bodies with a gap
-/// between them are warned of.
-pub(super) fn check(checked: &mut CheckedScene) -> Result<(), Fault> {
+/// Checks every impact before the end of the run against the limit; warns of gaps between bodies.
+pub(super) fn check(checked: &mut CheckedScene) -> Result<(), SceneFault> {
     let mut warnings = Vec::new();
     for impact in impacts(checked) {
-        let &Impact { body, other, speed, gap, .. } = &impact;
+        let &ScoredImpact { body, other, speed, gap, .. } = &impact;
         if speed <= 0.0 || gap.max(0.0) / speed > checked.scene.time.end {
             continue;
         }
@@ -78,13 +77,13 @@ pub(super) fn check(checked: &mut CheckedScene) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Neighbours along x, and the walls beside the outer ones; only one dimension is built.
-fn impacts(checked: &CheckedScene) -> Vec<Impact<'_>> {
+/// Impacts of neighbours along x, and of the outer bodies on walls; one dimension only.
+fn impacts(checked: &CheckedScene) -> Vec<ScoredImpact<'_>> {
     let scene = &checked.scene;
     let bodies = &scene.bodies;
     let mut order: Vec<usize> = (0..bodies.len()).collect();
     order.sort_by(|&a, &b| checked.bodies[a].lower[0].total_cmp(&checked.bodies[b].lower[0]));
-    let pair = |a: usize, b: usize, shift: f64| Impact {
+    let pair = |a: usize, b: usize, shift: f64| ScoredImpact {
         body: a,
         other: Some(b),
         name: &bodies[b].name,
@@ -93,12 +92,12 @@ fn impacts(checked: &CheckedScene) -> Vec<Impact<'_>> {
     };
     let mut impacts: Vec<_> = order.windows(2).map(|w| pair(w[0], w[1], 0.0)).collect();
     let (first, last) = (order[0], order[order.len() - 1]);
-    if scene.boundary.as_ref().is_some_and(|b| b.x_lower == Side::Periodic) {
+    if scene.boundary.as_ref().is_some_and(|b| b.x_lower.properties().is_periodic()) {
         impacts.push(pair(last, first, scene.domain.upper[0] - scene.domain.lower[0]));
     }
     for wall in checked.walls() {
         let body = if wall.upper { last } else { first };
-        impacts.push(Impact {
+        impacts.push(ScoredImpact {
             body,
             other: None,
             name: wall.path(),
@@ -109,11 +108,12 @@ fn impacts(checked: &CheckedScene) -> Vec<Impact<'_>> {
     impacts
 }
 
-fn check_impact(checked: &CheckedScene, impact: &Impact) -> Result<(), Fault> {
-    // a curved Hugoniot has a limit of its own, which its fault tells of
-    let hugoniot = |i: usize| match checked.material_of(i).eos {
-        Eos::MieGruneisen { c0, s, s2: 0.0, .. } => {
-            Some(Hugoniot { rho0: checked.material_of(i).density, c0, s })
+fn check_impact(checked: &CheckedScene, impact: &ScoredImpact) -> Result<(), SceneFault> {
+    // a curved Hugoniot has its own limit, reported by its own fault
+    let hugoniot = |i: usize| match &checked.material_of(i).eos {
+        Eos::MieGruneisen(solid) if solid.s2 == 0.0 => {
+            let rho0 = checked.material_of(i).density;
+            Some(LinearHugoniot { rho0, c0: solid.c0, s: solid.s })
         }
         _ => None,
     };
@@ -125,8 +125,8 @@ fn check_impact(checked: &CheckedScene, impact: &Impact) -> Result<(), Fault> {
             None => return Ok(()),
         },
     };
-    // the one that reaches its limit at the lesser pressure sets the speed
-    let limit = |h: Hugoniot| h.pressure(h.most_particle_velocity());
+    // the material that reaches its limit at the lower pressure determines the speed
+    let limit = |h: LinearHugoniot| h.pressure(h.most_particle_velocity());
     let (weaker, chi, most) = match other {
         None => (impact.body, own.most_compression(), own.most_particle_velocity()),
         Some((i, other)) => {
@@ -139,7 +139,7 @@ fn check_impact(checked: &CheckedScene, impact: &Impact) -> Result<(), Fault> {
     if impact.speed <= most {
         return Ok(());
     }
-    // a body that no velocity was given to is struck by one that has one
+    // report the velocity of the moving body: a body at rest is struck by the other one
     let moving = match impact.other {
         Some(other) if checked.bodies[impact.body].velocity[0] == 0.0 => other,
         _ => impact.body,
@@ -149,7 +149,7 @@ fn check_impact(checked: &CheckedScene, impact: &Impact) -> Result<(), Fault> {
     } else {
         checked.scene.bodies[impact.body].name.as_str()
     };
-    // a number of hundreds of digits is no help
+    // hundreds of digits are not helpful
     let speed = match impact.speed {
         speed if speed < 1e9 => format!("{speed}"),
         speed => format!("{speed:e}"),
@@ -160,14 +160,14 @@ fn check_impact(checked: &CheckedScene, impact: &Impact) -> Result<(), Fault> {
         checked.scene.bodies[weaker].material
     );
     let path = join(&join("bodies", &checked.scene.bodies[moving].name), "velocity");
-    Err(Fault::new(path, &checked.bodies[moving].velocity, reason))
+    Err(SceneFault::new(path, &checked.bodies[moving].velocity, reason))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const ALUMINIUM: Hugoniot = Hugoniot { rho0: 2785.0, c0: 5386.0, s: 1.339 };
+    const ALUMINIUM: LinearHugoniot = LinearHugoniot { rho0: 2785.0, c0: 5386.0, s: 1.339 };
 
     #[test]
     fn particle_velocity_is_the_inverse_of_pressure() {
@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn the_limit_is_reached_at_its_particle_velocity() {
         for s in [0.5, 1.0, 1.339] {
-            let h = Hugoniot { s, ..ALUMINIUM };
+            let h = LinearHugoniot { s, ..ALUMINIUM };
             let up = h.most_particle_velocity();
             assert!((up / (h.c0 + s * up) / h.most_compression() - 1.0).abs() < 1e-13);
         }

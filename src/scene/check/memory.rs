@@ -1,42 +1,42 @@
-//! What a run needs of the machine's memory, told before it is taken.
+//! Memory estimate of a run, checked before memory is allocated.
 
-use super::super::errors::{Fault, SceneError, one_line};
+use super::super::errors::{SceneError, SceneFault, one_line};
 use super::super::model::{CellSize, Region, Scene};
 use super::CheckedScene;
 use super::domain::MOST;
-use crate::geometry::Shape;
+use crate::geometry::BoundedRegion;
 
-/// Memory that a run takes for one particle, outputs and the last good state included [bytes].
+/// Memory per particle, including outputs and the last good state [bytes].
 pub const BYTES_PER_PARTICLE: u64 = 800;
 
-/// Memory that a run takes for one cell [bytes].
+/// Memory per cell [bytes].
 pub const BYTES_PER_CELL: u64 = 400;
 
-/// Memory that a run takes at most for one patch that is narrower than its ghosts are deep, beyond
-/// that for its cells, on a line and in a plane [bytes].
+/// Maximum memory per patch that is narrower than its ghost layers, in addition to that of its
+/// cells, in one dimension and in a plane [bytes].
 pub const BYTES_PER_PATCH: [u64; 2] = [40 << 10, 1 << 20];
 
 impl CheckedScene {
-    /// Cells of the domain.
+    /// Number of cells of the domain.
     pub fn cell_count(&self) -> u64 {
         self.cells.iter().map(|&n| n as u64).product()
     }
 
-    /// Estimate of the memory that the run takes on all ranks together [bytes].
+    /// Estimated memory of the run on all ranks together [bytes].
     pub fn memory(&self) -> u64 {
         let particles = self.particles.saturating_mul(BYTES_PER_PARTICLE);
         let nodes = self.cell_count().saturating_mul(self.velocity_fields() as u64);
-        // those that the program chooses are wide and few
+        // patches chosen by the program are wide and few
         let patches = self.scene.domain.patches.as_deref().unwrap_or(&[]);
         let patches = patches.iter().fold(1, |all: u64, &n| all.saturating_mul(n as u64));
         let patches = patches.saturating_mul(BYTES_PER_PATCH[self.dimension.clamp(1, 2) - 1]);
         particles.saturating_add(nodes.saturating_mul(BYTES_PER_CELL)).saturating_add(patches)
     }
 
-    /// Refuses a run that needs more than `available` bytes; `None` is taken as enough.
+    /// Rejects a run that needs more than `available` bytes; `None`: unknown, the run is accepted.
     ///
-    /// Apart from the rest of the check, since what is available differs from rank to rank and
-    /// from moment to moment: one rank asks, and tells the others.
+    /// Separate from the other checks because the available memory differs between ranks and over
+    /// time: one rank determines it and informs the others.
     pub fn check_memory(&self, available: Option<u64>) -> Result<(), SceneError> {
         match available {
             Some(available) if self.memory() > available => Err(SceneError::Memory {
@@ -51,8 +51,8 @@ impl CheckedScene {
     }
 }
 
-/// Particles of the bodies of a scene in a plane that are made one by one as the scene is checked,
-/// counted by areas; faults are told elsewhere.
+/// Number of particles that are generated one by one during the check of a scene in a plane,
+/// estimated from areas; faults are reported elsewhere.
 pub(in super::super) fn tiles(scene: &Scene) -> u64 {
     let cell = match &scene.domain.cell_size {
         CellSize::Uniform(size) => [*size; 2],
@@ -67,22 +67,22 @@ pub(in super::super) fn tiles(scene: &Scene) -> u64 {
             return None;
         }
         let whole = cell[0] * cell[1] / (counts[0] * counts[1]) as f64;
-        Some(Shape::new(&region).ok()?.area() / whole)
+        Some(BoundedRegion::new(&region).ok()?.area() / whole)
     };
     scene.bodies.iter().filter_map(of_body).sum::<f64>() as u64
 }
 
-/// Counts that no machine holds are refused wherever the scene is read.
-pub(super) fn check_counts(checked: &CheckedScene) -> Result<(), Fault> {
+/// Rejects numbers of cells or particles that exceed any machine.
+pub(super) fn check_counts(checked: &CheckedScene) -> Result<(), SceneFault> {
     if checked.particles as f64 > MOST {
         let reason = format!("{} particles in all; allowed: at most {MOST:e}", checked.particles);
-        return Err(Fault::missing("bodies", reason));
+        return Err(SceneFault::missing("bodies", reason));
     }
     Ok(())
 }
 
-/// Memory that this machine can still give [bytes]: what the kernel calls available, or what the
-/// control group leaves if that is less; `None` where neither is told.
+/// Memory available on this machine [bytes]: the value of the kernel, or the rest of the control
+/// group's limit if that is less; `None` if neither is known.
 pub fn available_memory() -> Option<u64> {
     let read = |path: &str| std::fs::read_to_string(path).ok();
     let kernel = read("/proc/meminfo").and_then(|text| mem_available(&text));

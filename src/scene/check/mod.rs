@@ -1,6 +1,6 @@
-//! What the keys of a scene say of each other, checked whole before anything is built.
+//! Checks of the relations between keys, all done before anything is built.
 //!
-//! The bounds of single numbers stand in the model and were checked on reading.
+//! The bounds of single numbers are part of the model and are checked on reading.
 
 mod bodies;
 mod boundary;
@@ -22,8 +22,9 @@ mod reference;
 
 use serde::Serialize;
 
-use super::errors::{Fault, one_line};
-use super::model::{Contact, Eos, Geometry, Material, Scene, Side};
+use super::errors::{SceneFault, one_line};
+use super::model::{Course, Eos, Geometry, Material, Scene, Side, SideProperties};
+use crate::material::parameter_error::wrong_length;
 use crate::scene::moving_frame::Frame;
 
 pub use bodies::CheckedBody;
@@ -31,34 +32,34 @@ pub use boundary::{Piston, Wall};
 pub(super) use memory::tiles;
 pub use memory::{BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, available_memory};
 
-/// A scene that passed every check, and the numbers that follow from it.
+/// A scene that passed every check, with the quantities that follow from it.
 #[derive(Clone, Debug)]
 pub struct CheckedScene {
-    /// The scene as it stands in the file, overrides put in.
+    /// The scene as in its file, with overrides applied.
     pub scene: Scene,
-    /// Name of the scene's file in messages.
+    /// Name of the scene's file, for messages.
     pub file: String,
     /// Dimension D.
     pub dimension: usize,
-    /// Edges of a cell [m], in each direction: as the scene has them, or the domain's edge over its
-    /// cells where that is more than rounding away.
+    /// Edges of a cell in each direction [m]: as given in the scene, or the domain's edge over its
+    /// number of cells if the difference is more than rounding.
     pub cell_size: Vec<f64>,
-    /// Cells in each direction.
+    /// Number of cells in each direction.
     pub cells: Vec<usize>,
-    /// Particles of all bodies.
+    /// Number of particles of all bodies.
     pub particles: u64,
-    /// What follows for each body, in the order of the scene's.
+    /// Quantities that follow for each body, in the order of the scene.
     pub bodies: Vec<CheckedBody>,
     /// Times of the profiles [s], at least one.
     pub profile_times: Vec<f64>,
-    /// Time from one row of the histories to the next [s]; none: no histories.
+    /// Time between rows of the histories [s]; `None`: no histories.
     pub history_interval: Option<f64>,
-    /// What will run but is known to be inaccurate, one line each.
+    /// Warnings about settings that run but are known to be inaccurate, one line each.
     pub warnings: Vec<String>,
 }
 
 impl CheckedScene {
-    pub(super) fn new(scene: Scene, file: &str) -> Result<Self, Fault> {
+    pub(super) fn new(scene: Scene, file: &str) -> Result<Self, SceneFault> {
         let mut warnings = Vec::new();
         check_printable("title", &scene.title)?;
         let domain::Grid { dimension, cell_size, cells } = domain::check(&scene.domain)?;
@@ -99,7 +100,7 @@ impl CheckedScene {
         Ok(checked)
     }
 
-    /// What stands at the sides, along each of `D` directions.
+    /// Conditions at the two sides of each of the `D` directions.
     pub fn sides<const D: usize>(&self) -> [[Side; 2]; D] {
         let boundary = self.scene.boundary.clone().unwrap_or_default();
         let y = [boundary.y_lower, boundary.y_upper].map(Option::unwrap_or_default);
@@ -107,29 +108,35 @@ impl CheckedScene {
         std::array::from_fn(|a| all[a].clone())
     }
 
-    /// The frame of the grid, which travels with a piston.
+    /// Properties of the two sides of each of the `D` directions.
+    pub fn side_properties<const D: usize>(&self) -> [[SideProperties; 2]; D] {
+        self.sides().map(|ends| ends.map(|side| side.properties()))
+    }
+
+    /// Whether any side satisfies `such`.
+    pub fn has_side(&self, such: impl Fn(&SideProperties) -> bool) -> bool {
+        self.side_properties::<2>()[..self.dimension].as_flattened().iter().any(such)
+    }
+
+    /// Frame of the grid, which moves with a piston.
     pub fn frame<const D: usize>(&self) -> Frame<D> {
         Frame::new(self)
     }
 
-    /// The velocity at which the grid travels with a piston at the start [m/s], in the scene's
-    /// directions.
+    /// Initial velocity of the grid, which moves with a piston [m/s], in the scene's coordinates.
     pub fn grid_velocity<const D: usize>(&self) -> [f64; D] {
         self.frame().velocity(0.0)
     }
 
-    /// Whether a piston's velocity changes, and the grid's with it.
+    /// Whether the velocity of a piston, and hence of the grid, changes.
     pub fn accelerates(&self) -> bool {
-        self.sides::<2>()[..self.dimension]
-            .as_flattened()
-            .iter()
-            .any(|side| matches!(side, Side::Velocity(course) if course.changes()))
+        self.has_side(|side| side.rigid_velocity.as_ref().is_some_and(Course::changes))
     }
 
-    /// The greatest speed with which bodies, as they start, and pistons can meet [m/s].
+    /// Largest possible relative speed between bodies, with their initial velocities, and pistons
+    /// [m/s].
     pub fn impact_speed<const D: usize>(&self) -> f64 {
-        let pistons = self.sides::<D>();
-        let moving = pistons.iter().flatten().any(|s| matches!(s, Side::Velocity(_)));
+        let moving = self.has_side(|side| side.moves_grid);
         let piston = moving.then(|| self.frame::<D>().extremes()).into_iter().flatten();
         let bodies = self.bodies.iter().map(|b| std::array::from_fn(|a| b.velocity[a]));
         let all: Vec<[f64; D]> = bodies.chain(piston).collect();
@@ -141,58 +148,53 @@ impl CheckedScene {
         pairs.chain(moved).fold(0.0, f64::max)
     }
 
-    /// Whether waves pass one of the sides.
+    /// Whether any side is transmitting.
     pub fn transmits(&self) -> bool {
-        self.sides::<2>()[..self.dimension].as_flattened().contains(&Side::Transmitting)
+        self.has_side(|side| side.absorbs_waves)
     }
 
-    /// Whether a pressure loads one of the sides.
+    /// Whether any side applies a pressure.
     pub fn is_loaded(&self) -> bool {
-        let sides = self.sides::<2>();
-        let mut all = sides[..self.dimension].as_flattened().iter();
-        all.any(|side| matches!(side, Side::Pressure(_)))
+        self.has_side(|side| side.pressure.is_some())
     }
 
-    /// Whether particles of a body may be taken out of the run.
+    /// Whether particles of a body may be eroded.
     pub fn erodes(&self) -> bool {
         (0..self.bodies.len()).any(|i| self.material_of(i).erosion.is_some())
     }
 
-    /// Whether nothing gives the particles energy or lets them out but rigid sides.
+    /// Whether only rigid sides without friction exchange energy with the particles, and none can
+    /// leave.
     pub fn keeps_all(&self) -> bool {
-        let sides = self.sides::<2>();
-        let mut all = sides[..self.dimension].as_flattened().iter();
-        let gives = |s: &Side| s.lets_out() || matches!(s, Side::Pressure(_) | Side::Friction(_));
-        !self.accelerates() && !self.erodes() && !all.any(gives)
+        let gives = |s: &SideProperties| s.lets_out || s.pressure.is_some() || s.friction.is_some();
+        !self.accelerates() && !self.erodes() && !self.has_side(gives)
     }
 
-    /// Whether one of the sides rubs.
+    /// Whether any side has friction.
     pub fn has_frictional_wall(&self) -> bool {
-        let sides = self.sides::<2>();
-        let mut all = sides[..self.dimension].as_flattened().iter();
-        all.any(|side| matches!(side, Side::Friction(_)))
+        self.has_side(|side| side.friction.is_some())
     }
 
-    /// Whether x is a radius.
+    /// Whether the domain is axisymmetric, with x as the radius.
     pub fn axisymmetric(&self) -> bool {
         self.scene.domain.geometry == Geometry::Axisymmetric
     }
 
-    /// Whether a body bears shear, so that stress is a tensor.
+    /// Whether any body has shear strength, so that stress is a tensor.
     pub fn has_solids(&self) -> bool {
         (0..self.bodies.len()).any(|i| self.material_of(i).bears_shear())
     }
 
-    /// Whether a body's equation of state is such.
+    /// Whether the equation of state of any body satisfies `such`.
     pub fn has_eos(&self, such: impl Fn(&Eos) -> bool) -> bool {
         (0..self.bodies.len()).any(|i| such(&self.material_of(i).eos))
     }
 
-    /// Whether patches at rest may be left out: where heat flows nothing is at rest, what a side
-    /// is going to press on does not stay so, and seen from a grid that accelerates all falls.
+    /// Whether quiescent patches may be skipped. Not with heat conduction, with a side that applies
+    /// a pressure, or on an accelerating grid, where nothing stays at rest.
     pub fn skips_quiet(&self) -> bool {
         let quiet = !self.conducts() && !self.is_loaded() && !self.accelerates();
-        self.scene.decomposition.skip_quiet && quiet
+        self.scene.decomposition.skip_quiescent && quiet
     }
 
     /// Whether a body conducts heat.
@@ -201,25 +203,23 @@ impl CheckedScene {
         (0..self.bodies.len()).any(conducts)
     }
 
-    /// Temperatures that the sides are held at [K], along each of `D` directions.
+    /// Fixed temperatures of the two sides [K] of each of the `D` directions.
     pub fn held_temperatures<const D: usize>(&self) -> [[Option<f64>; 2]; D] {
         let held = self.scene.boundary.as_ref().and_then(|b| b.temperature).unwrap_or_default();
         let all = [[held.x_lower, held.x_upper], [held.y_lower, held.y_upper]];
         std::array::from_fn(|a| all[a])
     }
 
-    /// Whether a side is held at a temperature.
+    /// Whether any side has a fixed temperature.
     pub fn holds_temperature(&self) -> bool {
         self.held_temperatures::<2>().as_flattened().iter().any(Option::is_some)
     }
 
-    /// Velocity fields: one for all bodies, or with contact one a body.
+    /// Number of velocity fields: one for all bodies, or with contact one per body.
     pub fn velocity_fields(&self) -> usize {
-        match self.scene.contact {
-            None | Some(Contact::Stick {}) => 1,
-            Some(Contact::Frictionless { .. } | Contact::Friction { .. }) => {
-                self.scene.bodies.len()
-            }
+        match self.scene.contact.and_then(|contact| contact.condition()) {
+            None => 1,
+            Some(_) => self.scene.bodies.len(),
         }
     }
 
@@ -228,51 +228,53 @@ impl CheckedScene {
         &self.scene.materials[&self.scene.bodies[i].material]
     }
 
-    /// Lengths below this are none [m], in each direction.
+    /// Length below which a distance counts as zero [m], per direction.
     fn tolerance(&self, direction: usize) -> f64 {
         bodies::TOUCHING * self.cell_size[direction]
     }
 }
 
-/// Characters of a name or title.
+/// Maximum number of characters of a name or title.
 const LONGEST_NAME: usize = 200;
 
-/// A name or title that is told in one line.
-fn check_printable(path: &str, text: &str) -> Result<(), Fault> {
+/// Checks that a name or title is one printable line.
+fn check_printable(path: &str, text: &str) -> Result<(), SceneFault> {
     if text.trim().is_empty() {
-        return Err(Fault::new(path, text, "is empty; allowed: at least one printable character"));
+        return Err(SceneFault::new(
+            path,
+            text,
+            "is empty; allowed: at least one printable character",
+        ));
     }
     if text.chars().count() > LONGEST_NAME {
         let reason = format!("is too long; allowed: at most {LONGEST_NAME} characters");
-        return Err(Fault::new(path, text, reason));
+        return Err(SceneFault::new(path, text, reason));
     }
     if text != one_line(text) {
         let reason = "has a control character; allowed: one line of printable characters";
-        return Err(Fault::new(path, text, reason));
+        return Err(SceneFault::new(path, text, reason));
     }
     Ok(())
 }
 
-/// One entry a direction.
-fn check_length<T: Serialize>(path: &str, values: &[T], dimension: usize) -> Result<(), Fault> {
+/// Checks that there is one entry per direction.
+fn check_length<T: Serialize>(
+    path: &str,
+    values: &[T],
+    dimension: usize,
+) -> Result<(), SceneFault> {
     if values.len() == dimension {
         return Ok(());
     }
-    let plural = if dimension == 1 { "" } else { "s" };
-    let reason = format!(
-        "{} numbers, but domain.lower has {dimension}, which is the dimension of the scene; \
-         allowed: {dimension} number{plural}",
-        values.len()
-    );
-    Err(Fault::new(path, values, reason))
+    Err(SceneFault::new(path, values, wrong_length(values.len(), dimension)))
 }
 
-/// The lower corner below the upper one.
-fn check_box(path: &str, lower: &[f64], upper: &[f64]) -> Result<(), Fault> {
+/// Checks that the lower corner is below the upper one.
+fn check_box(path: &str, lower: &[f64], upper: &[f64]) -> Result<(), SceneFault> {
     if lower.iter().zip(upper).all(|(l, u)| l < u) {
         return Ok(());
     }
     let lower = serde_json::json!(lower);
     let reason = format!("not above {path}.lower = {lower}; allowed: lower < upper");
-    Err(Fault::new(format!("{path}.upper"), upper, reason))
+    Err(SceneFault::new(format!("{path}.upper"), upper, reason))
 }

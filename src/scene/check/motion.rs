@@ -1,21 +1,21 @@
-//! Velocities that differ from place to place, and body forces: whether a body can have them.
+//! Checks of velocities that vary in space and of body forces: whether a body can have them.
 
-use super::super::errors::Fault;
+use super::super::errors::SceneFault;
 use super::super::model::{Body, BodyForce, Geometry, Scene, VelocityField};
 use super::super::validate::join;
 use super::{CheckedScene, check_length};
 use crate::scene::motion::{Motion, vortex_of};
 
-/// The motion that a body names, if it does.
+/// Motion of the body's `velocity_field`, if given.
 pub(super) fn check_field(
     scene: &Scene,
     body: &Body,
     path: &str,
     dimension: usize,
-) -> Result<Option<Motion>, Fault> {
+) -> Result<Option<Motion>, SceneFault> {
     let Some(field) = &body.velocity_field else { return Ok(None) };
     let path = join(path, "velocity_field");
-    let fault = |reason: String| Err(Fault::new(&path, field, reason));
+    let fault = |reason: String| Err(SceneFault::new(&path, field, reason));
     if body.velocity.is_some() {
         return fault("velocity stands there too; allowed: one of the two".into());
     }
@@ -30,7 +30,7 @@ pub(super) fn check_field(
     let anywhere = matches!(field, VelocityField::Radial(_));
     let plane = dimension == 2 && scene.domain.geometry == Geometry::PlaneStrain;
     if !plane && !anywhere {
-        return Err(Fault::new(
+        return Err(SceneFault::new(
             path,
             field,
             "needs two dimensions in plane strain; allowed: radial",
@@ -55,18 +55,22 @@ pub(super) fn check_field(
     };
     if body.pressure != 0.0 && matches!(field, VelocityField::Gresho(_)) {
         let reason = "velocity_field.gresho has a pressure of its own; allowed: to leave it out";
-        return Err(Fault::new(path.replace("velocity_field", "pressure"), body.pressure, reason));
+        return Err(SceneFault::new(
+            path.replace("velocity_field", "pressure"),
+            body.pressure,
+            reason,
+        ));
     }
     Ok(Some(motion))
 }
 
-/// The body force that a scene names.
-pub(super) fn check_body_force(checked: &CheckedScene) -> Result<(), Fault> {
+/// Checks the body force of a scene.
+pub(super) fn check_body_force(checked: &CheckedScene) -> Result<(), SceneFault> {
     let Some(force) = &checked.scene.body_force else { return Ok(()) };
-    let fault = |reason: String| Err(Fault::new("body_force", force, reason));
+    let fault = |reason: String| Err(SceneFault::new("body_force", force, reason));
     let sides = checked.sides::<2>();
     let mut all = sides[..checked.dimension].as_flattened().iter();
-    if let Some(side) = all.find(|side| side.lets_out()) {
+    if let Some(side) = all.find(|side| side.properties().lets_out) {
         let side = serde_json::json!(side);
         return fault(format!(
             "its work on what leaves by a side {side} is not booked; allowed: any other side"

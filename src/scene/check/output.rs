@@ -1,30 +1,30 @@
-//! Times of profiles and histories, and the particles that are followed.
+//! Checks of times of profiles and histories, and of tracers.
 
 use std::collections::{HashMap, HashSet};
 
-use super::super::errors::{Fault, suggest};
+use super::super::errors::{SceneFault, suggest};
 use super::super::model::Scene;
 use super::super::validate::join;
 use super::{CheckedScene, check_length};
 
-/// Rows of the histories where the scene says no interval.
+/// Number of rows of the histories if the scene gives no interval.
 const ROWS: f64 = 200.0;
 
-/// Times of the profiles, strictly increasing, none beyond the end.
-pub(super) fn profile_times(scene: &Scene) -> Result<Vec<f64>, Fault> {
+/// Times of the profiles, checked to be strictly increasing and not beyond the end.
+pub(super) fn profile_times(scene: &Scene) -> Result<Vec<f64>, SceneFault> {
     let times = &scene.output.profiles.times;
     let end = scene.time.end;
     check_times("output.profiles.times", times, end)?;
     Ok(if times.is_empty() { vec![end] } else { times.clone() })
 }
 
-/// Times strictly increasing, none beyond the end.
-fn check_times(path: &str, times: &[f64], end: f64) -> Result<(), Fault> {
+/// Checks that times are strictly increasing and not beyond the end.
+fn check_times(path: &str, times: &[f64], end: f64) -> Result<(), SceneFault> {
     for (i, &time) in times.iter().enumerate() {
         let path = || format!("{path}[{i}]");
         if time > end {
             let reason = format!("beyond time.end = {end:e}; allowed: above 0 and at most {end:e}");
-            return Err(Fault::new(path(), time, reason));
+            return Err(SceneFault::new(path(), time, reason));
         }
         if i > 0 && time <= times[i - 1] {
             let before = times[i - 1];
@@ -32,14 +32,14 @@ fn check_times(path: &str, times: &[f64], end: f64) -> Result<(), Fault> {
                 "not above the time before it, {before:e}; allowed: increasing times, above 0 and \
                  at most time.end = {end:e}"
             );
-            return Err(Fault::new(path(), time, reason));
+            return Err(SceneFault::new(path(), time, reason));
         }
     }
     Ok(())
 }
 
-/// Times of checkpoints are met before the end.
-pub(super) fn check_checkpoints(scene: &Scene) -> Result<(), Fault> {
+/// Checks that times of checkpoints are increasing and not beyond the end.
+pub(super) fn check_checkpoints(scene: &Scene) -> Result<(), SceneFault> {
     let Some(checkpoints) = &scene.output.checkpoint else { return Ok(()) };
     check_times("output.checkpoint.at_times", &checkpoints.at_times, scene.time.end)
 }
@@ -49,7 +49,7 @@ pub(super) fn history_interval(scene: &Scene) -> Option<f64> {
     Some(histories.interval.unwrap_or(scene.time.end / ROWS))
 }
 
-pub(super) fn check_tracers(checked: &CheckedScene) -> Result<(), Fault> {
+pub(super) fn check_tracers(checked: &CheckedScene) -> Result<(), SceneFault> {
     let Some(histories) = &checked.scene.output.histories else { return Ok(()) };
     let names = checked.scene.bodies.iter().map(|body| body.name.as_str());
     let bodies: HashMap<_, _> = names.zip(0..).collect();
@@ -59,17 +59,17 @@ pub(super) fn check_tracers(checked: &CheckedScene) -> Result<(), Fault> {
         let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         if tracer.name.is_empty() || !tracer.name.chars().all(plain) {
             let reason = "no name of a column; allowed: letters, digits, _ and -";
-            return Err(Fault::new(path, &tracer.name, reason));
+            return Err(SceneFault::new(path, &tracer.name, reason));
         }
         if !names.insert(tracer.name.as_str()) {
             let reason = "another tracer has this name; allowed: a name of its own";
-            return Err(Fault::new(path, &tracer.name, reason));
+            return Err(SceneFault::new(path, &tracer.name, reason));
         }
         let path = join("output.histories.tracers", &tracer.name);
         let Some(&number) = bodies.get(tracer.body.as_str()) else {
             let known = checked.scene.bodies.iter().map(|body| body.name.as_str());
             let reason = format!("no such body{}", suggest(&tracer.body, known));
-            return Err(Fault::new(join(&path, "body"), &tracer.body, reason));
+            return Err(SceneFault::new(join(&path, "body"), &tracer.body, reason));
         };
         let path = join(&path, "at");
         check_length(&path, &tracer.at, checked.dimension)?;
@@ -82,7 +82,7 @@ pub(super) fn check_tracers(checked: &CheckedScene) -> Result<(), Fault> {
                     "outside of its body; allowed: {lower} to {upper} ({})",
                     join("bodies", &tracer.body)
                 );
-                return Err(Fault::new(path, &tracer.at, reason));
+                return Err(SceneFault::new(path, &tracer.at, reason));
             }
         }
     }

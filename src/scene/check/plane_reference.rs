@@ -1,37 +1,37 @@
-//! Exact solutions that follow from a body's first motion: whether the body has that motion.
+//! Checks of exact solutions that require a certain initial motion of a body.
 
 use serde::Serialize;
 
-use super::super::errors::Fault;
-use super::super::model::{BodyForce, Eos, NamedBody, NamedNoh, NohSymmetry};
+use super::super::errors::SceneFault;
+use super::super::model::{BodyForce, NamedBody, NamedNoh, NohSymmetry};
 use super::super::validate::join;
 use super::CheckedScene;
 use super::reference::find_body;
 use crate::scene::motion::Motion;
 
-/// A fault of the reference of this name.
-fn fault(name: &str, value: impl Serialize, reason: String) -> Result<(), Fault> {
-    Err(Fault::new(join("reference", name), value, reason))
+/// Fault of the reference `name`.
+fn fault(name: &str, value: impl Serialize, reason: String) -> Result<(), SceneFault> {
+    Err(SceneFault::new(join("reference", name), value, reason))
 }
 
-/// The body's number and its first motion.
+/// Index of the body, and its initial motion.
 fn motion_of<'a>(
     checked: &'a CheckedScene,
     name: &str,
     body: &str,
-) -> Result<(usize, Option<&'a Motion>), Fault> {
+) -> Result<(usize, Option<&'a Motion>), SceneFault> {
     let i = find_body(checked, &format!("reference.{name}.body"), body)?;
     Ok((i, checked.bodies[i].motion.as_ref()))
 }
 
-/// What must stand at the body for the reference `name`.
-fn needs(checked: &CheckedScene, name: &str, body: usize, what: &str) -> Result<(), Fault> {
+/// Fault of the reference `name` if the body lacks `what`, which the exact solution requires.
+fn needs(checked: &CheckedScene, name: &str, body: usize, what: &str) -> Result<(), SceneFault> {
     let body = &checked.scene.bodies[body].name;
     let path = join("bodies", body);
     fault(name, body, format!("{path} has no {what}, which the exact solution begins with"))
 }
 
-pub(super) fn check_vortex(checked: &CheckedScene, named: &NamedBody) -> Result<(), Fault> {
+pub(super) fn check_vortex(checked: &CheckedScene, named: &NamedBody) -> Result<(), SceneFault> {
     const NAME: &str = "vortex";
     let (body, motion) = motion_of(checked, NAME, &named.body)?;
     let Some(Motion::Vortex(vortex)) = motion else {
@@ -47,12 +47,12 @@ pub(super) fn check_vortex(checked: &CheckedScene, named: &NamedBody) -> Result<
         other => {
             let reason = "does not hold the body on its course; allowed: body_force.vortex with \
                           the numbers of its velocity_field.vortex";
-            Err(Fault::new("body_force", other, reason))
+            Err(SceneFault::new("body_force", other, reason))
         }
     }
 }
 
-pub(super) fn check_rotation(checked: &CheckedScene, named: &NamedBody) -> Result<(), Fault> {
+pub(super) fn check_rotation(checked: &CheckedScene, named: &NamedBody) -> Result<(), SceneFault> {
     const NAME: &str = "rotation";
     let (body, motion) = motion_of(checked, NAME, &named.body)?;
     match motion {
@@ -61,7 +61,10 @@ pub(super) fn check_rotation(checked: &CheckedScene, named: &NamedBody) -> Resul
     }
 }
 
-pub(super) fn check_shear_layer(checked: &CheckedScene, named: &NamedBody) -> Result<(), Fault> {
+pub(super) fn check_shear_layer(
+    checked: &CheckedScene,
+    named: &NamedBody,
+) -> Result<(), SceneFault> {
     const NAME: &str = "shear_layer";
     let (body, motion) = motion_of(checked, NAME, &named.body)?;
     match motion {
@@ -70,7 +73,7 @@ pub(super) fn check_shear_layer(checked: &CheckedScene, named: &NamedBody) -> Re
     }
 }
 
-pub(super) fn check_gresho(checked: &CheckedScene, named: &NamedBody) -> Result<(), Fault> {
+pub(super) fn check_gresho(checked: &CheckedScene, named: &NamedBody) -> Result<(), SceneFault> {
     const NAME: &str = "gresho";
     let (body, motion) = motion_of(checked, NAME, &named.body)?;
     match motion {
@@ -79,7 +82,7 @@ pub(super) fn check_gresho(checked: &CheckedScene, named: &NamedBody) -> Result<
     }
 }
 
-pub(super) fn check_noh(checked: &CheckedScene, named: &NamedNoh) -> Result<(), Fault> {
+pub(super) fn check_noh(checked: &CheckedScene, named: &NamedNoh) -> Result<(), SceneFault> {
     const NAME: &str = "noh";
     let (body, motion) = motion_of(checked, NAME, &named.body)?;
     let axisymmetric = checked.axisymmetric();
@@ -103,10 +106,9 @@ pub(super) fn check_noh(checked: &CheckedScene, named: &NamedNoh) -> Result<(), 
     if named.symmetry != fits {
         let allowed = serde_json::json!(fits);
         let reason = format!("is not what this domain has; allowed: {allowed}");
-        return Err(Fault::new("reference.noh.symmetry", named.symmetry, reason));
+        return Err(SceneFault::new("reference.noh.symmetry", named.symmetry, reason));
     }
-    let cold = matches!(checked.material_of(body).eos, Eos::IdealGas { .. })
-        && checked.scene.bodies[body].pressure == 0.0;
+    let cold = checked.material_of(body).eos.is_gas() && checked.scene.bodies[body].pressure == 0.0;
     if !cold {
         let reason =
             "is of no cold gas; allowed: a body without pressure whose eos is \"ideal_gas\"";
@@ -119,11 +121,11 @@ pub(super) fn check_noh(checked: &CheckedScene, named: &NamedNoh) -> Result<(), 
         return Ok(());
     }
     let reason = "no distances; allowed: two numbers of at least 0, the first below the second";
-    Err(Fault::new("reference.noh.between", &named.between, reason))
+    Err(SceneFault::new("reference.noh.between", &named.between, reason))
 }
 
 impl CheckedScene {
-    /// Speed at which body `i` closes in on the axis of an axisymmetric scene all along it [m/s].
+    /// Speed towards the axis, uniform along it, of body `i` in an axisymmetric scene [m/s].
     pub fn speed_to_axis(&self, i: usize) -> Option<f64> {
         let body = &self.bodies[i];
         match (self.axisymmetric(), &body.motion, &body.velocity[..]) {

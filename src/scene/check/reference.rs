@@ -1,11 +1,12 @@
-//! Whether the exact solution that a scene names holds for its bodies.
+//! Checks whether the exact solution of a scene is valid for its bodies.
 
-use super::super::errors::{Fault, suggest};
+use super::super::errors::{SceneFault, suggest};
 use super::super::model::{Burn, Eos, FlyerImpact, Reference, Riemann, Side, WallImpact};
 use super::super::validate::join;
 use super::{CheckedScene, plane_reference};
+use crate::material::{IdealGasParameters, MieGruneisenParameters};
 
-pub(super) fn check(checked: &mut CheckedScene) -> Result<(), Fault> {
+pub(super) fn check(checked: &mut CheckedScene) -> Result<(), SceneFault> {
     match checked.scene.reference.clone() {
         None => Ok(()),
         Some(Reference::FlyerImpact(impact)) => check_flyer_impact(checked, &impact),
@@ -20,7 +21,7 @@ pub(super) fn check(checked: &mut CheckedScene) -> Result<(), Fault> {
     }
 }
 
-fn check_flyer_impact(checked: &mut CheckedScene, impact: &FlyerImpact) -> Result<(), Fault> {
+fn check_flyer_impact(checked: &mut CheckedScene, impact: &FlyerImpact) -> Result<(), SceneFault> {
     const FLYER: &str = "reference.flyer_impact.flyer";
     const TARGET: &str = "reference.flyer_impact.target";
     super::front::check(checked, "reference.flyer_impact")?;
@@ -45,16 +46,16 @@ fn check_flyer_impact(checked: &mut CheckedScene, impact: &FlyerImpact) -> Resul
              velocity",
             impact.target
         );
-        return Err(Fault::new(key, &checked.bodies[flyer].velocity, reason));
+        return Err(SceneFault::new(key, &checked.bodies[flyer].velocity, reason));
     }
     warn_of_flyer(checked, flyer, target, from_below);
     Ok(())
 }
 
-/// What keeps the run from its exact solution, though it may run.
+/// Warns of settings with which the run deviates from its exact solution.
 fn warn_of_flyer(checked: &mut CheckedScene, flyer: usize, target: usize, from_below: bool) {
     let impedance = |i: usize| match checked.material_of(i).eos {
-        Eos::MieGruneisen { c0, .. } => checked.material_of(i).density * c0,
+        Eos::MieGruneisen(MieGruneisenParameters { c0, .. }) => checked.material_of(i).density * c0,
         _ => 0.0,
     };
     let mut warnings = Vec::new();
@@ -75,14 +76,13 @@ fn warn_of_flyer(checked: &mut CheckedScene, flyer: usize, target: usize, from_b
     let at_wall = |i: usize| {
         let domain = &checked.scene.domain;
         let end = if from_below { domain.lower[0] } else { domain.upper[0] };
-        let side = checked.scene.boundary.as_ref().map_or(Side::Free, |boundary| {
-            if from_below { boundary.x_lower.clone() } else { boundary.x_upper.clone() }
-        });
+        let [[lower, upper], _] = checked.sides::<2>();
+        let side = if from_below { lower } else { upper };
         let beside = checked.bodies.iter().enumerate().any(|(j, body)| {
             let near = if from_below { body.upper[0] } else { body.lower[0] };
             j != i && (near - rear_at).abs() <= tolerance
         });
-        beside || ((rear_at - end).abs() <= tolerance && side != Side::Free)
+        beside || ((rear_at - end).abs() <= tolerance && side != Side::default())
     };
     if at_wall(flyer) {
         warnings.push(
@@ -94,7 +94,7 @@ fn warn_of_flyer(checked: &mut CheckedScene, flyer: usize, target: usize, from_b
     checked.warnings.extend(warnings);
 }
 
-fn check_riemann(checked: &CheckedScene, riemann: &Riemann) -> Result<(), Fault> {
+fn check_riemann(checked: &CheckedScene, riemann: &Riemann) -> Result<(), SceneFault> {
     const LEFT: &str = "reference.riemann.left";
     const RIGHT: &str = "reference.riemann.right";
     super::front::check(checked, "reference.riemann")?;
@@ -108,17 +108,17 @@ fn check_riemann(checked: &CheckedScene, riemann: &Riemann) -> Result<(), Fault>
         if body.pressure <= 0.0 {
             let key = join(&join("bodies", &body.name), "pressure");
             let reason = format!("the exact solution of {path} needs pressure; allowed: above 0");
-            return Err(Fault::new(key, body.pressure, reason));
+            return Err(SceneFault::new(key, body.pressure, reason));
         }
-        if let Eos::IdealGas { gamma } = material.eos {
+        if let Eos::IdealGas(IdealGasParameters { gamma }) = material.eos {
             escape += 2.0 * (gamma * body.pressure / material.density).sqrt() / (gamma - 1.0);
         }
     }
-    // at an angle the diaphragm is where the front says
+    // at an angle the front gives the position of the diaphragm
     let slanted = riemann.front.as_ref().is_some_and(|front| front.angle != 0.0);
     if !slanted && !check_touch(checked, [LEFT, RIGHT], [left, right], false)? {
         let reason = format!("lies above {RIGHT} = \"{}\"; allowed: the body below", riemann.right);
-        return Err(Fault::new(LEFT, &riemann.left, reason));
+        return Err(SceneFault::new(LEFT, &riemann.left, reason));
     }
     let apart = checked.speed_along(right) - checked.speed_along(left);
     if apart >= escape {
@@ -127,24 +127,24 @@ fn check_riemann(checked: &CheckedScene, riemann: &Riemann) -> Result<(), Fault>
             "leaves {LEFT} at {apart} m/s, so that a vacuum opens, which the exact solution does \
              not have; allowed: less than {escape} m/s apart"
         );
-        return Err(Fault::new(key, &checked.bodies[right].velocity, reason));
+        return Err(SceneFault::new(key, &checked.bodies[right].velocity, reason));
     }
     Ok(())
 }
 
-fn check_wall_impact(checked: &CheckedScene, impact: &WallImpact) -> Result<(), Fault> {
+fn check_wall_impact(checked: &CheckedScene, impact: &WallImpact) -> Result<(), SceneFault> {
     const BODY: &str = "reference.wall_impact.body";
     let body = find_even_body(checked, BODY, &impact.body)?;
     check_no_strength(checked, BODY, body)?;
     if checked.material_of(body).eos.is_solid() {
         let reason = "an elastic body; allowed: one with an equation of state of a fluid, such as \
              \"mie_gruneisen\" or \"ideal_gas\"";
-        return Err(Fault::new(BODY, &impact.body, reason));
+        return Err(SceneFault::new(BODY, &impact.body, reason));
     }
     if matches!(checked.material_of(body).eos.burn(), Some(Burn::Front(_))) {
         let reason = "an explosive that burns, which has no steady shock; allowed: another body, or \
                       eos.burn \"complete\"";
-        return Err(Fault::new(BODY, &impact.body, reason));
+        return Err(SceneFault::new(BODY, &impact.body, reason));
     }
     if checked.wall_struck_by(body).is_some() {
         return check_steady(checked, BODY, body);
@@ -155,27 +155,27 @@ fn check_wall_impact(checked: &CheckedScene, impact: &WallImpact) -> Result<(), 
          boundary.x_lower or boundary.x_upper \"wall\", \"symmetry\" or {{\"velocity\": v}}, and \
          moving towards it"
     );
-    Err(Fault::new(BODY, &impact.body, reason))
+    Err(SceneFault::new(BODY, &impact.body, reason))
 }
 
-/// A steady shock has a piston of one velocity behind it.
-fn check_steady(checked: &CheckedScene, path: &str, body: usize) -> Result<(), Fault> {
+/// Checks that the piston behind a steady shock has a constant velocity.
+fn check_steady(checked: &CheckedScene, path: &str, body: usize) -> Result<(), SceneFault> {
     match checked.piston_at(body) {
         Some(piston) if piston.course.changes() => {
             let reason = "is driven by a piston whose velocity changes; allowed: one number for \
                           its velocity, or \"simple_wave\"";
-            Err(Fault::new(path, &checked.scene.bodies[body].name, reason))
+            Err(SceneFault::new(path, &checked.scene.bodies[body].name, reason))
         }
         _ => Ok(()),
     }
 }
 
-fn check_simple_wave(checked: &CheckedScene, name: &str) -> Result<(), Fault> {
+fn check_simple_wave(checked: &CheckedScene, name: &str) -> Result<(), SceneFault> {
     const BODY: &str = "reference.simple_wave.body";
     let body = find_even_body(checked, BODY, name)?;
     check_eos(checked, BODY, body, "mie_gruneisen")?;
     check_straight(checked, BODY, body)?;
-    let fault = |reason: &str| Err(Fault::new(BODY, name, reason));
+    let fault = |reason: &str| Err(SceneFault::new(BODY, name, reason));
     if checked.dimension > 1 {
         return fault("stands in a plane; allowed: a scene of one dimension");
     }
@@ -191,13 +191,13 @@ fn check_simple_wave(checked: &CheckedScene, name: &str) -> Result<(), Fault> {
         let reason = format!(
             "the piston beside it starts at {start} m/s, which is a shock; allowed: the same"
         );
-        return Err(Fault::new(key, own, reason));
+        return Err(SceneFault::new(key, own, reason));
     }
     Ok(())
 }
 
-/// The Hugoniot of a body is a straight line, and it starts without pressure.
-fn check_straight(checked: &CheckedScene, path: &str, i: usize) -> Result<(), Fault> {
+/// Checks that the Hugoniot of a body is a straight line and its initial pressure zero.
+fn check_straight(checked: &CheckedScene, path: &str, i: usize) -> Result<(), SceneFault> {
     let body = &checked.scene.bodies[i];
     let material = checked.material_of(i);
     if material.eos.straight(material.density).is_none() {
@@ -206,44 +206,48 @@ fn check_straight(checked: &CheckedScene, path: &str, i: usize) -> Result<(), Fa
             "{key}.eos has s2, gruneisen \"gamma_constant\" or a tension_cutoff, which the exact \
              solution does not have; allowed: to leave them out, or the reference"
         );
-        return Err(Fault::new(path, &body.name, reason));
+        return Err(SceneFault::new(path, &body.name, reason));
     }
     if body.pressure != 0.0 {
         let key = join(&join("bodies", &body.name), "pressure");
         let reason = format!("the exact solution of {path} starts without pressure; allowed: 0");
-        return Err(Fault::new(key, body.pressure, reason));
+        return Err(SceneFault::new(key, body.pressure, reason));
     }
     Ok(())
 }
 
-/// The body of this name.
-pub(super) fn find_body(checked: &CheckedScene, path: &str, name: &str) -> Result<usize, Fault> {
+/// Index of the body with this name.
+pub(super) fn find_body(
+    checked: &CheckedScene,
+    path: &str,
+    name: &str,
+) -> Result<usize, SceneFault> {
     let names: Vec<_> = checked.scene.bodies.iter().map(|body| body.name.as_str()).collect();
     names.iter().position(|&known| known == name).ok_or_else(|| {
-        Fault::new(path, name, format!("no such body{}", suggest(name, names.iter().copied())))
+        SceneFault::new(path, name, format!("no such body{}", suggest(name, names.iter().copied())))
     })
 }
 
-/// The body of this name, which must have one velocity.
-fn find_even_body(checked: &CheckedScene, path: &str, name: &str) -> Result<usize, Fault> {
+/// Index of the body with this name, which must have a uniform velocity.
+fn find_even_body(checked: &CheckedScene, path: &str, name: &str) -> Result<usize, SceneFault> {
     let body = find_body(checked, path, name)?;
     if checked.bodies[body].motion.is_none() {
         return Ok(body);
     }
     let key = join(&join("bodies", name), "velocity_field");
     let reason = format!("starts with {key}; allowed: a body with one velocity");
-    Err(Fault::new(path, name, reason))
+    Err(SceneFault::new(path, name, reason))
 }
 
-fn check_unlike(path: &str, name: &str, other: &str, same: bool) -> Result<(), Fault> {
+fn check_unlike(path: &str, name: &str, other: &str, same: bool) -> Result<(), SceneFault> {
     if !same {
         return Ok(());
     }
-    Err(Fault::new(path, name, format!("the same body as {other}; allowed: two bodies")))
+    Err(SceneFault::new(path, name, format!("the same body as {other}; allowed: two bodies")))
 }
 
-/// The exact solutions of fluids know no shear.
-fn check_no_strength(checked: &CheckedScene, path: &str, i: usize) -> Result<(), Fault> {
+/// Checks that a body has no strength, which the exact solutions of fluids exclude.
+fn check_no_strength(checked: &CheckedScene, path: &str, i: usize) -> Result<(), SceneFault> {
     let body = &checked.scene.bodies[i];
     if checked.material_of(i).strength.is_none() {
         return Ok(());
@@ -252,10 +256,10 @@ fn check_no_strength(checked: &CheckedScene, path: &str, i: usize) -> Result<(),
     let reason = format!(
         "{key} is not in this exact solution, which is that of fluids; allowed: a body without it"
     );
-    Err(Fault::new(path, &body.name, reason))
+    Err(SceneFault::new(path, &body.name, reason))
 }
 
-fn check_eos(checked: &CheckedScene, path: &str, i: usize, wanted: &str) -> Result<(), Fault> {
+fn check_eos(checked: &CheckedScene, path: &str, i: usize, wanted: &str) -> Result<(), SceneFault> {
     check_no_strength(checked, path, i)?;
     let eos = serde_json::json!(checked.material_of(i).eos);
     let body = &checked.scene.bodies[i];
@@ -265,22 +269,21 @@ fn check_eos(checked: &CheckedScene, path: &str, i: usize, wanted: &str) -> Resu
     let key = join("materials", &body.material);
     let reason =
         format!("{key}.eos.type = {}; allowed: a body whose eos is \"{wanted}\"", eos["type"]);
-    Err(Fault::new(path, &body.name, reason))
+    Err(SceneFault::new(path, &body.name, reason))
 }
 
-/// Whether the first body lies below the second; they must touch along x, unless they may be
-/// `apart`.
+/// Whether the first body is below the second; they must touch along x, unless they may be `apart`.
 fn check_touch(
     checked: &CheckedScene,
     [path, other_path]: [&str; 2],
     [a, b]: [usize; 2],
     apart: bool,
-) -> Result<bool, Fault> {
+) -> Result<bool, SceneFault> {
     let spans = [(path, a), (other_path, b)].map(|(path, i)| {
         checked.span(i).ok_or_else(|| {
             let reason = "no box turned by the angle of this reference's front about its point; \
                           allowed: \"rotation\" of a \"box\" by that angle about that point";
-            Fault::new(path, &checked.scene.bodies[i].name, reason)
+            SceneFault::new(path, &checked.scene.bodies[i].name, reason)
         })
     });
     let [first, second] = spans;
@@ -301,5 +304,5 @@ fn check_touch(
         above.max(below),
         names[1]
     );
-    Err(Fault::new(path, names[0], reason))
+    Err(SceneFault::new(path, names[0], reason))
 }

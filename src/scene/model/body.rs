@@ -8,17 +8,17 @@ use crate::geometry::region::{
     Annulus, BoxShape, Disk, Ellipse, HalfPlane, Polygon, Region, Rotation,
 };
 
-/// A body: a region of one material, filled with particles. Its region is one of the keys `box`,
-/// `disk`, `ellipse`, `polygon`, `annulus`, `half_plane`, `union`, `difference`, `intersection`
-/// and `rotation`; on a line it is a `box`.
+/// A body: a region of one material, filled with particles. Exactly one of the keys `box`, `disk`,
+/// `ellipse`, `polygon`, `annulus`, `half_plane`, `union`, `difference`, `intersection` and
+/// `rotation` gives the region; in one dimension it must be `box`.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Body {
-    /// Name, unlike that of any other body.
+    /// Name of the body; no other body may have it.
     pub name: String,
-    /// Name of its material.
+    /// Name of the body's material, a key of `materials`.
     pub material: String,
-    /// A box along the axes, where it lies at the start.
+    /// An axis-aligned box, at its initial position.
     #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
     pub extent: Option<BoxShape>,
     /// A disk.
@@ -30,46 +30,51 @@ pub struct Body {
     /// A polygon.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub polygon: Option<Polygon>,
-    /// What lies between two circles about one centre.
+    /// The region between two concentric circles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub annulus: Option<Annulus>,
-    /// One side of a straight line; alone it has no end.
+    /// One side of a straight line. It is unbounded, so it is usable only together with regions
+    /// that bound it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub half_plane: Option<HalfPlane>,
-    /// What lies in any of several regions.
+    /// The union of several regions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1))]
     pub union: Option<Vec<Region>>,
-    /// What lies in the first of several regions and in none of the others.
+    /// The first of several regions without all the others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1))]
     pub difference: Option<Vec<Region>>,
-    /// What lies in each of several regions.
+    /// The intersection of several regions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1))]
     pub intersection: Option<Vec<Region>>,
-    /// A region turned about a point.
+    /// A region rotated about a point.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotation: Option<Rotation>,
-    /// Velocity at the start [m/s]; absent: at rest.
+    /// Initial velocity [m/s], one number per direction; absent: at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity: Option<Vec<f64>>,
-    /// Velocity at the start as a function of place, instead of `velocity`.
+    /// Initial velocity as a function of position, instead of `velocity`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity_field: Option<VelocityField>,
-    /// Pressure at the start [Pa], reached at the material's density by its internal energy.
+    /// Initial pressure [Pa], default 0. The density is that of the material; the internal energy
+    /// is set to give this pressure.
     #[serde(default)]
     pub pressure: f64,
-    /// Temperature at the start [K], of a material that has one; absent: that at rest.
+    /// Initial temperature [K], for a material with `thermal`; absent: the reference temperature of
+    /// the material.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub temperature: Option<f64>,
-    /// Particles a cell in each direction; absent only where `positions` are given.
+    /// Number of particles per cell in each direction; required without `positions`, not allowed
+    /// with them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1)))]
     pub particles_per_cell: Option<Vec<usize>>,
-    /// Where the particles are at the start, instead of a lattice: each gets what of the body is
-    /// nearest to it (its Voronoi cell), and stands at that cell's centroid.
+    /// Initial particle positions, instead of a lattice. Each particle gets the part of the body
+    /// that is nearest to its position (its Voronoi cell) and is placed at the centroid of that
+    /// cell.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub positions: Option<Positions>,
 }
@@ -78,14 +83,15 @@ pub struct Body {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Positions {
-    /// A CSV file of columns x and y, beside the scene's file.
+    /// Name of a CSV file with the columns x and, in a plane, y, relative to the folder of the
+    /// scene file.
     File(String),
-    /// The positions themselves [m].
+    /// The coordinates of each particle [m].
     Points(Vec<Vec<f64>>),
 }
 
 impl Body {
-    /// The body's regions, each with its key; a body that is sound has one.
+    /// The body's regions, each with its key; a valid body has exactly one.
     pub fn regions(&self) -> Vec<(&'static str, Region)> {
         let all = [
             ("box", self.extent.clone().map(Region::Box)),

@@ -1,16 +1,14 @@
-//! The scene as it stands in the JSON file: plain structs and the bounds of single numbers.
+//! The scene as stored in the JSON file: plain structs with the bounds of single numbers.
 //!
-//! The bounds are attributes of the fields: the JSON schema shows them, and reading a scene
-//! checks them against that same schema. What two keys say of each other is not known here.
+//! The bounds are attributes of the fields. The JSON schema shows them, and every scene is checked
+//! against that schema when it is read. Conditions between two keys are checked elsewhere.
 
 mod body;
-mod contact;
 mod estimate;
 mod method;
+mod monitor;
 mod motion;
 mod output;
-mod time_function;
-mod watch;
 
 use std::collections::BTreeMap;
 
@@ -18,93 +16,109 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use body::*;
-pub use contact::*;
 pub use estimate::*;
 pub use method::*;
+pub use monitor::*;
 pub use motion::*;
 pub use output::*;
-pub use time_function::*;
-pub use watch::*;
 
+pub use crate::contact::{Contact, Normals};
 pub use crate::geometry::region::*;
 pub use crate::material::definition::*;
+pub use crate::shape::ShapeKind;
+pub use crate::side::{Course, Ramp, Side, SideProperties};
+pub use crate::transfer::Transfer;
 
-/// A scene: everything that a run is told.
+/// Scene format that this program reads; incremented whenever a key is renamed.
+pub const FORMAT: u32 = 2;
+
+/// A scene: the complete input of a run.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
-    /// One line that names the run in tables and pictures.
+    /// Format of the scene; absent: the current format, the only one that is accepted.
+    #[serde(default = "present_format")]
+    #[schemars(range(min = 1))]
+    pub format: u32,
+    /// Title of the run in tables and pictures, one line.
     pub title: String,
-    /// What the scene is, and the sources of its constants.
+    /// Description of the scene, with the sources of its constants.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
-    /// The grid.
+    /// The computational domain and its grid.
     pub domain: Domain,
-    /// When to end, and the length of steps.
+    /// End time and time step control.
     pub time: Time,
-    /// The scheme.
+    /// Numerical method.
     pub method: Method,
-    /// How the work is shared; it changes no bit of the results.
+    /// Distribution of the work over ranks and threads; it changes no bit of the results.
     #[serde(default)]
     pub decomposition: Decomposition,
-    /// Materials by name; each whole, or by `library` or `file` with keys beside it that override.
+    /// Materials by name: each given in full, or by `library` or `file` together with keys that
+    /// override single values.
     #[schemars(with = "BTreeMap<String, MaterialSource>")]
     pub materials: BTreeMap<String, Material>,
-    /// Bodies; their order numbers the particles.
+    /// Bodies; particles are numbered in this order.
     #[schemars(length(min = 1))]
     pub bodies: Vec<Body>,
     /// Artificial viscosity; absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub artificial_viscosity: Option<ArtificialViscosity>,
-    /// A force per mass on every particle; absent: none.
+    /// Body force per unit mass on every particle; absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body_force: Option<BodyForce>,
-    /// What bodies do to each other where they touch; absent: one velocity field for all of them,
-    /// so that they meet through the grid and stick together.
+    /// Contact law between bodies; absent: one velocity field for all bodies, so that they interact
+    /// through the grid and stick together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact: Option<Contact>,
-    /// What stands at the sides of the domain; absent: free on every side.
+    /// Conditions at the sides of the domain; absent: every side is free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub boundary: Option<Boundary>,
-    /// The watch over the run; absent: with the bounds that hold for every scene.
-    #[serde(default, skip_serializing_if = "Watch::is_default")]
-    pub watch: Watch,
-    /// What is written.
+    /// Run-time checks; absent: the default bounds, which hold for every scene.
+    #[serde(default, skip_serializing_if = "Monitor::is_default")]
+    pub monitor: Monitor,
+    /// Output files.
     #[serde(default)]
     pub output: Output,
-    /// The exact solution that the run is held against.
+    /// Exact solution with which the results are compared; absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reference: Option<Reference>,
-    /// A statement of the run's own errors; absent: none.
+    /// Estimate of the run's own errors; absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_estimate: Option<ErrorEstimate>,
 }
 
-/// The domain, a box of cells cut into patches.
+fn present_format() -> u32 {
+    FORMAT
+}
+
+/// The computational domain: a box of cells, divided into patches.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Domain {
-    /// Lower corner [m]; its length is the dimension of the scene.
+    /// Lower corner [m]; the number of coordinates is the dimension of the scene.
     #[schemars(length(min = 1))]
     pub lower: Vec<f64>,
     /// Upper corner [m].
     pub upper: Vec<f64>,
-    /// Edge of a cell [m], one number or one a direction; the domain is a whole number of cells.
+    /// Edge of a cell [m], one number or one per direction; the domain must be a whole number of
+    /// cells.
     pub cell_size: CellSize,
-    /// What the two directions of a plane stand for.
+    /// Coordinate system of a plane; default `plane_strain`.
     #[serde(default, skip_serializing_if = "Geometry::is_plane_strain")]
     pub geometry: Geometry,
-    /// Patches in each direction; absent: chosen from ranks and threads, and printed.
+    /// Number of patches in each direction; absent: chosen from the number of ranks and threads,
+    /// and printed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1)))]
     pub patches: Option<Vec<usize>>,
 }
 
-/// What the two directions of a plane stand for.
+/// Coordinate system of a plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Geometry {
-    /// Cartesian x and y, nothing strains across them; on a line the only one.
+    /// Cartesian x and y, no strain out of the plane; the only choice in one dimension.
     #[default]
     PlaneStrain,
     /// x is the radius and y the axis; masses and energies are per radian.
@@ -117,21 +131,22 @@ impl Geometry {
     }
 }
 
-/// How the work is shared.
+/// Distribution of the work over ranks and threads.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Decomposition {
-    /// Moving patches between ranks so that none waits for the busiest.
+    /// Load balancing: migration of patches between ranks.
     pub balance: Balance,
-    /// Compute the inner patches of a rank while messages to its outer ones are on their way.
+    /// Compute the inner patches of a rank while messages for its outer patches are in transit;
+    /// default true.
     pub overlap: bool,
-    /// Leave out patches at rest that no wave has reached.
-    pub skip_quiet: bool,
-    /// Threads a rank; `--threads` wins.
+    /// Skip quiescent patches, which no wave has reached; default true.
+    pub skip_quiescent: bool,
+    /// Threads per rank, default 1; the option `--threads` takes precedence.
     #[schemars(range(min = 1, max = 1024))]
     pub threads: usize,
-    /// How filters that reach over several cells get what lies beyond a patch; absent: the
-    /// cheaper for the patches at hand.
+    /// Ghost data for filters that extend over several cells; absent: the cheaper choice for the
+    /// given patches.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub filter_halo: Option<FilterHalo>,
 }
@@ -141,20 +156,20 @@ impl Default for Decomposition {
         Decomposition {
             balance: Balance::default(),
             overlap: true,
-            skip_quiet: true,
+            skip_quiescent: true,
             threads: 1,
             filter_halo: None,
         }
     }
 }
 
-/// When patches move between ranks.
+/// Load balancing: when patches migrate between ranks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Balance {
-    /// Steps between two looks at the ranks' loads; 0: patches stay where they start.
+    /// Steps between load measurements, default 50; 0: patches do not migrate.
     pub every: u64,
-    /// What counts as a patch's load.
+    /// Measure of a patch's load; default `time`.
     pub cost: BalanceCost,
 }
 
@@ -164,34 +179,34 @@ impl Default for Balance {
     }
 }
 
-/// What counts as a patch's load.
+/// Measure of a patch's load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BalanceCost {
-    /// The time that its phases take, measured and smoothed.
+    /// Measured and smoothed computing time of the patch.
     Time,
-    /// The particles that it computes: where patches go is then the same in every run.
+    /// Number of particles that the patch computes; the migration is then the same in every run.
     Particles,
 }
 
-/// How a filter that reaches over several cells gets what lies beyond a patch. The bits are the
-/// same; the cost is not.
+/// Ghost data for a filter that extends over several cells. Both choices give the same bits at
+/// different cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FilterHalo {
-    /// The owners send finished nodal values after each product.
+    /// The owners send the final nodal values after each product.
     Exchange,
-    /// Ghosts come from so far that each patch computes them for itself.
-    Deep,
+    /// Ghosts extend so far that each patch computes these values itself.
+    Redundant,
 }
 
 /// Edge of a cell [m].
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum CellSize {
-    /// The same in each direction.
+    /// The same edge in each direction.
     Uniform(#[schemars(extend("exclusiveMinimum" = 0.0, "minimum" = 0.0))] f64),
-    /// One a direction.
+    /// One edge per direction.
     PerDirection(
         #[schemars(extend(
             "items" = {"type": "number", "exclusiveMinimum": 0.0, "minimum": 0.0}
@@ -200,19 +215,19 @@ pub enum CellSize {
     ),
 }
 
-/// Time.
+/// End time and time step control.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Time {
-    /// End of the run [s].
+    /// End time of the run [s].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub end: f64,
-    /// Courant number, in (0, 1] [-].
+    /// Courant number, in (0, 1] [-]; default 0.4.
     #[serde(default = "default_courant")]
     #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0.0))]
     pub courant: f64,
-    /// Wall time from the program's start after which the run writes a checkpoint and ends, to be
-    /// gone on with [s]; absent: none.
+    /// Wall time since the program's start after which the run writes a checkpoint and ends, to be
+    /// restarted later [s]; absent: no limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub wall_limit: Option<f64>,
@@ -222,7 +237,7 @@ fn default_courant() -> f64 {
     0.4
 }
 
-/// The sides of the domain; one left out is free.
+/// Conditions at the sides of the domain; an omitted side is free.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Boundary {
@@ -236,13 +251,13 @@ pub struct Boundary {
     /// Side at the upper end of y, in a plane.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub y_upper: Option<Side>,
-    /// Temperatures that rigid sides are held at, where heat is conducted; the others are
+    /// Fixed temperatures of rigid sides, for scenes with heat conduction; the other sides are
     /// insulated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub temperature: Option<SideTemperatures>,
 }
 
-/// Temperatures of sides [K].
+/// Fixed temperatures of the sides [K].
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SideTemperatures {
@@ -262,65 +277,4 @@ pub struct SideTemperatures {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub y_upper: Option<f64>,
-}
-
-/// What stands at one side of the domain.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Side {
-    /// Nothing: a particle that passes it ends the run.
-    #[default]
-    Free,
-    /// A plane of symmetry.
-    Symmetry,
-    /// A rigid wall along which material slides freely: the same as symmetry.
-    Wall,
-    /// A rigid wall that material sticks to, in a plane.
-    NoSlip,
-    /// A rigid wall that material slides along against Coulomb's friction of this coefficient
-    /// [-], in a plane: it sticks while that takes no more than the coefficient times what it
-    /// presses with.
-    Friction(#[schemars(range(min = 0.0))] f64),
-    /// Joined to the opposite side.
-    Periodic,
-    /// Open: a particle that passes it leaves the run, and is booked.
-    Outflow,
-    /// Open, as if the same material went on beyond it: waves pass it and do not come back, and a
-    /// particle that passes it leaves the run, and is booked.
-    Transmitting,
-    /// A rigid piston with this velocity across the side [m/s]; the grid travels with it. A
-    /// number, pairs of time [s] and velocity, a ramp, or the name of a CSV file of columns time
-    /// and velocity.
-    Velocity(Course),
-    /// A pressure [Pa] on the surface of the bodies that touch this side at the start, wherever it
-    /// moves: a number, pairs of time [s] and pressure, a ramp, or the name of a CSV file of
-    /// columns time and pressure. Free otherwise.
-    Pressure(Course),
-}
-
-impl Side {
-    /// Velocity of a side that lets nothing through, at the start [m/s].
-    pub fn rigid_velocity(&self) -> Option<f64> {
-        self.rigid_course().map(|course| course.at(0.0))
-    }
-
-    /// Velocity of a side that lets nothing through, over time [m/s].
-    pub fn rigid_course(&self) -> Option<Course> {
-        match self {
-            Side::Symmetry | Side::Wall | Side::NoSlip | Side::Friction(_) => {
-                Some(Course::Constant(0.0))
-            }
-            Side::Velocity(course) => Some(course.clone()),
-            Side::Free
-            | Side::Periodic
-            | Side::Outflow
-            | Side::Transmitting
-            | Side::Pressure(_) => None,
-        }
-    }
-
-    /// Whether particles that pass it leave the run.
-    pub fn lets_out(&self) -> bool {
-        matches!(self, Side::Outflow | Side::Transmitting)
-    }
 }

@@ -1,19 +1,19 @@
-//! Velocities that differ from place to place at the start, and body forces.
+//! Initial velocities that vary in space, and body forces.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Velocity of a body at the start as a function of place: an object of one key.
+/// Initial velocity of a body as a function of position: an object with one key.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum VelocityField {
     /// A rigid rotation.
     Rotation(Rotating),
-    /// Straight streamlines along x that slide past each other.
+    /// A shear layer: straight streamlines along x with a velocity that depends on y.
     ShearLayer(Shearing),
-    /// Gresho's vortex (Gresho & Chan 1990), with its pressure.
+    /// The Gresho vortex (Gresho & Chan 1990), with its pressure.
     Gresho(GreshoVortex),
-    /// Away from a point at the same speed everywhere (Noh 1987 towards it).
+    /// Uniform speed away from a point, or towards it (Noh 1987).
     Radial(Radial),
     /// The generalized vortex (Kamojjala et al. 2015) at time 0.
     Vortex(RingVortex),
@@ -23,9 +23,9 @@ pub enum VelocityField {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rotating {
-    /// Its centre [m].
+    /// Centre of the rotation [m].
     pub about: Vec<f64>,
-    /// Counter-clockwise rate [rad/s].
+    /// Angular velocity, counter-clockwise [rad/s].
     pub rate: f64,
 }
 
@@ -33,19 +33,19 @@ pub struct Rotating {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Shearing {
-    /// The form of the profile.
+    /// Shape of the velocity profile.
     pub profile: ShearForm,
-    /// Greatest velocity [m/s].
+    /// Largest velocity [m/s].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub speed: f64,
     /// Period of the sine, or half thickness of the tanh [m].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub height: f64,
-    /// Where along y the velocity is 0 and the shear greatest [m].
+    /// Position along y at which the velocity is 0 and the shear is largest [m].
     pub centre: f64,
 }
 
-/// Profiles of a shear layer.
+/// Velocity profile of a shear layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ShearForm {
@@ -55,41 +55,41 @@ pub enum ShearForm {
     Tanh,
 }
 
-/// Gresho's vortex.
+/// The Gresho vortex.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GreshoVortex {
-    /// Its centre [m].
+    /// Centre of the vortex [m].
     pub centre: Vec<f64>,
-    /// Radius of the greatest velocity; the gas is at rest beyond twice that [m].
+    /// Radius of the largest velocity; beyond twice this radius the gas is at rest [m].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub radius: f64,
-    /// Greatest velocity [m/s].
+    /// Largest velocity [m/s].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub speed: f64,
-    /// Pressure in the centre [Pa].
+    /// Pressure at the centre [Pa].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub centre_pressure: f64,
 }
 
-/// The same speed away from a point.
+/// Uniform speed away from a point.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Radial {
-    /// The point [m]; on a line one number.
+    /// The point [m]; in one dimension one number.
     pub about: Vec<f64>,
-    /// Speed away from it; below 0 towards it [m/s].
+    /// Speed away from the point; negative: towards it [m/s].
     pub speed: f64,
 }
 
-/// The generalized vortex about the origin: the ring turns by
-/// amplitude sin(pi t/period) (1 - xi^2)^2, xi from -1 at its inner to 1 at its outer radius.
+/// The generalized vortex about the origin: the ring rotates by the angle amplitude sin(pi
+/// t/period) (1 - xi^2)^2, where xi is -1 at its inner and 1 at its outer radius.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RingVortex {
-    /// Greatest angle [rad].
+    /// Largest angle [rad].
     pub amplitude: f64,
-    /// Twice the time to the greatest angle [s].
+    /// Twice the time of the largest angle [s].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub period: f64,
     /// Inner radius of the ring [m].
@@ -100,13 +100,13 @@ pub struct RingVortex {
     pub outer: f64,
 }
 
-/// A force per mass on every particle: an object of one key.
+/// Body force per unit mass on every particle: an object with one key.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum BodyForce {
-    /// The same everywhere and always [m/s2].
+    /// Acceleration, constant in space and time [m/s2].
     Gravity(Vec<f64>),
-    /// What holds a neo-Hookean solid on the course of the generalized vortex (Kamojjala et al.
-    /// 2015), at each particle's first place.
+    /// Body force that keeps a neo-Hookean solid in the motion of the generalized vortex (Kamojjala
+    /// et al. 2015), evaluated at each particle's initial position.
     Vortex(RingVortex),
 }

@@ -1,66 +1,67 @@
-//! What is written, and the exact solution that a run is held against.
+//! Output files, and the exact solution with which a run is compared.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What is written.
+/// Output files of a run.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Output {
-    /// Profiles: every particle at given times.
+    /// Profiles: the state of every particle at given times.
     pub profiles: Profiles,
-    /// Histories; absent: none.
+    /// Histories of faces, tracers, energies and momentum; absent: none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub histories: Option<Histories>,
-    /// Checkpoints, from which a run can go on; absent: one every ten minutes of wall time, the last
-    /// two kept until the run has ended well.
+    /// Checkpoints, from which a run can be restarted; absent: one every ten minutes of wall time,
+    /// of which the last two are kept and deleted after a successful run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub checkpoint: Option<Checkpoints>,
-    /// Write `results.hdf5`.
+    /// Write `results.hdf5`; default true.
     pub hdf5: bool,
-    /// Draw the pictures.
+    /// Draw the pictures; default true.
     pub pictures: bool,
-    /// What `flyer-mpm plan` has foretold, which the run is held against at its end; absent:
-    /// nothing.
+    /// Prediction of `flyer-mpm plan`, with which the run is compared at its end; absent: none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plan: Option<Planned>,
 }
 
-/// What has been foretold of a run.
+/// Predicted error and cost of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Planned {
-    /// File of the scene that was planned; a plan of another scene does not replace this one.
+    /// File of the scene that was planned; a plan of another scene does not replace this planned
+    /// scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub of: Option<String>,
-    /// The quantity.
+    /// Quantity whose error is planned.
     pub quantity: PlannedQuantity,
-    /// Its relative error that was wanted [-].
+    /// Target for the relative error [-].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub wanted: f64,
-    /// The error to expect [-].
+    /// Predicted relative error [-].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub error: f64,
-    /// User CPU time of the time loop [s].
+    /// Predicted user CPU time of the time loop [s].
     #[schemars(range(min = 0.0))]
     pub cpu_seconds: f64,
-    /// Its wall time [s].
+    /// Predicted wall time of the time loop [s].
     #[schemars(range(min = 0.0))]
     pub wall_seconds: f64,
-    /// Whether the error is a guess, for the schemes were not measured on such scenes.
+    /// Whether the predicted error is a guess because the schemes were not measured on such scenes;
+    /// default false.
     #[serde(default)]
     pub guess: bool,
 }
 
-/// What a plan is about.
+/// Quantity whose error is planned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PlannedQuantity {
-    /// Pressure of the plateau behind the shock.
+    /// Pressure on the plateau behind the shock.
     PlateauPressure,
-    /// Relative L1 of each profile's pressure.
+    /// Relative L1 error of the pressure in each profile.
     L1,
-    /// Time of arrival at a place.
+    /// Arrival time at a position.
     ArrivalTime,
 }
 
@@ -77,29 +78,30 @@ impl Default for Output {
     }
 }
 
-/// When checkpoints are written, each at the first step's end past its time, in
-/// `<folder of the results>.checkpoints`. Without a time: every ten minutes of wall time. They change
-/// no bit of the results.
+/// Checkpoint schedule. A checkpoint is written at the end of the first step past its time, to
+/// `<folder of the results>.checkpoints`. If no key gives a time: every ten minutes of wall time.
+/// Checkpoints change no bit of the results.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Checkpoints {
-    /// Simulated time from one to the next [s].
+    /// Simulated time between checkpoints [s].
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub every_seconds: Option<f64>,
-    /// Steps from one to the next.
+    /// Number of steps between checkpoints.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1))]
     pub every_steps: Option<u64>,
-    /// Times [s], increasing.
+    /// Simulated times of checkpoints [s], increasing.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0.0}))]
     pub at_times: Vec<f64>,
-    /// Wall time from one to the next [s].
+    /// Wall time between checkpoints [s].
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub every_wall_seconds: Option<f64>,
-    /// The last so many stay, after the end too; 0: none are written.
+    /// Number of most recent checkpoints to keep, also after the end of the run; default 2; 0: none
+    /// are written.
     pub keep: u64,
 }
 
@@ -115,142 +117,145 @@ impl Default for Checkpoints {
     }
 }
 
-/// Profiles.
+/// Times of the profiles.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Profiles {
-    /// Times [s], increasing, each met exactly; empty: the end alone.
+    /// Times [s], increasing; time steps end exactly at them. Empty (default): only the end of the
+    /// run.
     #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0.0}))]
     pub times: Vec<f64>,
 }
 
-/// Histories of faces, tracers, energies and momentum. The pressure of a face that is a free surface
-/// is that of the surface: 0, or the deviator's xx component where the material has strength.
+/// Histories of faces, tracers, energies and momentum. The pressure of a face that is a free
+/// surface is the pressure of the surface: 0, or the xx component of the deviator if the material
+/// has strength.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Histories {
-    /// Time from one row to the next [s]; a row is taken at the first step's end past it.
-    /// Absent: a two hundredth of the end.
+    /// Time between rows [s]; a row is written at the end of the first step past its time. Absent:
+    /// 1/200 of `time.end`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub interval: Option<f64>,
-    /// Particles that are followed.
+    /// Particles whose history is recorded; default: none.
     #[serde(default)]
     pub tracers: Vec<Tracer>,
 }
 
-/// A particle that is followed.
+/// A particle whose history is recorded.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Tracer {
-    /// Name of its columns.
+    /// Name used for its columns.
     pub name: String,
-    /// Body it belongs to.
+    /// Name of the body to which it belongs.
     pub body: String,
-    /// The particle that starts nearest to this place is taken [m].
+    /// Initial position [m]; the particle whose initial position is nearest is recorded.
     pub at: Vec<f64>,
 }
 
-/// The exact solution that a run is held against.
+/// Exact solution with which a run is compared.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Reference {
-    /// A plate strikes a target (Burghardt 2010).
+    /// A flyer plate strikes a target (Burghardt 2010).
     FlyerImpact(FlyerImpact),
-    /// Two ideal gases, the diaphragm removed at the start (Sod 1978).
+    /// Two ideal gases, separated by a diaphragm that is removed at the start (Sod 1978).
     Riemann(Riemann),
-    /// A body runs into a rigid wall or is driven by a piston: one steady shock.
+    /// One steady shock: a body runs into a rigid wall or is driven by a piston.
     WallImpact(WallImpact),
-    /// A piston whose velocity changes smoothly drives a body (Courant & Friedrichs 1948).
+    /// A simple wave: a body driven by a piston whose velocity changes smoothly (Courant &
+    /// Friedrichs 1948).
     SimpleWave(SimpleWave),
-    /// The generalized vortex (Kamojjala et al. 2015): `displacement_l2`.
+    /// The generalized vortex (Kamojjala et al. 2015); reports `displacement_l2`.
     Vortex(NamedBody),
-    /// A free body that spins: `angular_momentum_loss`, `energy_loss`, `kinetic_energy_loss`.
+    /// A free rotating body; reports `angular_momentum_loss`, `energy_loss`, `kinetic_energy_loss`.
     Rotation(NamedBody),
-    /// A shear layer: `velocity_rms`.
+    /// A shear layer; reports `velocity_rms`.
     ShearLayer(NamedBody),
-    /// Gresho's vortex: `velocity_rms`, `pressure_rms`, `pressure_form_rms`.
+    /// The Gresho vortex; reports `velocity_rms`, `pressure_rms`, `pressure_form_rms`.
     Gresho(NamedBody),
-    /// Noh's problem: `mean_density`, `mean_density_error`, `density_l1`.
+    /// Noh's problem; reports `mean_density`, `mean_density_error`, `density_l1`.
     Noh(NamedNoh),
 }
 
-/// A body, whose first motion and material give the constants of the exact solution.
+/// The body whose initial motion and material give the constants of the exact solution.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NamedBody {
-    /// The body; profiles are scored in it.
+    /// Name of the body; its profiles are scored.
     pub body: String,
 }
 
-/// Noh's problem in a body that starts with a `radial` velocity, or about an axis with a velocity
-/// towards it.
+/// Noh's problem in a body with an initial `radial` velocity, or with an initial velocity towards
+/// the axis of an axisymmetric domain.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NamedNoh {
-    /// The body.
+    /// Name of the body.
     pub body: String,
-    /// What the gas closes in on.
+    /// Symmetry of the implosion.
     pub symmetry: NohSymmetry,
-    /// Least and greatest distance from there between which the density is averaged [m].
+    /// Smallest and largest distance from the centre between which the density is averaged [m].
     #[schemars(length(min = 2))]
     pub between: Vec<f64>,
 }
 
-/// What a gas closes in on.
+/// Symmetry of the implosion of Noh's problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NohSymmetry {
-    /// A plane, on a line.
+    /// Towards a plane, in one dimension.
     Planar,
-    /// An axis: a point in plane strain, or the axis itself in axisymmetry.
+    /// Towards an axis: a point in plane strain, or the axis of an axisymmetric domain.
     Cylindrical,
-    /// A point on the axis, in axisymmetry.
+    /// Towards a point on the axis of an axisymmetric domain.
     Spherical,
 }
 
-/// Two names of bodies; all else comes from them.
+/// Flyer and target of an impact; all constants of the exact solution follow from these bodies.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FlyerImpact {
-    /// The plate that strikes.
+    /// Name of the body that strikes.
     pub flyer: String,
-    /// The plate that is struck; profiles are scored in it.
+    /// Name of the body that is struck; its profiles are scored.
     pub target: String,
-    /// How the waves lie in a plane; absent: along x.
+    /// Direction of the waves in a plane; absent: along x.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub front: Option<Front>,
 }
 
-/// Plane waves in a plane, and what of the material is scored against them.
+/// Direction of plane waves in a plane, and the region whose particles are scored.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Front {
-    /// Angle from the x axis to the direction along which the waves run [degrees].
+    /// Angle from the x axis to the direction of wave propagation [degrees]; default 0.
     #[serde(default)]
     pub angle: f64,
-    /// A point on the line along which they are followed [m]; at an angle the interface passes
-    /// through it.
+    /// A point on the line along which the waves are followed [m]; at an angle other than 0 the
+    /// interface passes through it.
     pub about: Vec<f64>,
-    /// Particles nearer to that line than this are scored [m]; absent: all.
+    /// Only particles nearer to this line are scored [m]; absent: all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub half_width: Option<f64>,
-    /// Two places along the line, counted from `about`, between which they are scored [m];
-    /// absent: everywhere.
+    /// Two positions along the line, measured from `about`; only particles between them are scored
+    /// [m]. Absent: everywhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub range: Option<[f64; 2]>,
 }
 
-/// Two names of bodies that touch.
+/// The two bodies of a Riemann problem, which touch at the start.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Riemann {
-    /// The body on the lower side.
+    /// Name of the body on the lower side.
     pub left: String,
-    /// The body on the upper side.
+    /// Name of the body on the upper side.
     pub right: String,
-    /// How the waves lie in a plane; absent: along x.
+    /// Direction of the waves in a plane; absent: along x.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub front: Option<Front>,
 }
@@ -259,7 +264,7 @@ pub struct Riemann {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SimpleWave {
-    /// The body.
+    /// Name of the body.
     pub body: String,
 }
 
@@ -267,6 +272,6 @@ pub struct SimpleWave {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WallImpact {
-    /// The body.
+    /// Name of the body.
     pub body: String,
 }

@@ -1,9 +1,10 @@
-//! What is most likely behind an alarm, in words: a guess from the scene, and told as one.
+//! Most likely cause of an alarm, as text: a guess from the scene, and worded as a guess.
 
 use super::Alarm;
-use crate::scene::{CheckedScene, Eos, Limiter, ShapeKind, Transfer};
+use crate::scene::{CheckedScene, Eos, Limiter};
+use crate::shape::{Basis, DomainExtent};
 
-/// The likely cause of `alarm`, and what to try. `what` is what the particle tells of its state.
+/// Likely cause of `alarm` and a remedy; `what` describes the state of the particle.
 pub fn likely_cause(scene: &CheckedScene, alarm: Alarm, what: &str) -> String {
     let all = &scene.scene;
     if what.contains("leaves the domain") {
@@ -33,14 +34,14 @@ pub fn likely_cause(scene: &CheckedScene, alarm: Alarm, what: &str) -> String {
         .bodies
         .iter()
         .any(|b| b.tiles.is_none() && cells_of(scene, b) > b.particles as f64 * 0.75);
-    let hats = matches!(all.method.shape, ShapeKind::Linear | ShapeKind::Gimp | ShapeKind::Cpdi);
-    let long = matches!(all.method.transfer, Transfer::Fmpm(m) if m > 2);
+    let hats = all.method.shape.basis() == Basis::Hat;
+    let long = all.method.transfer.plan().is_sharp();
     if few && hats && long {
         return "one particle a cell leaves modes of a long filter on hat functions undamped; \
                 two or more a cell, or quadratic B-splines"
             .into();
     }
-    if matches!(all.method.shape, ShapeKind::Gimp) && long {
+    if all.method.shape.extent() == DomainExtent::Undeformed && long {
         return "a long filter on particles of undeformed size; fewer particles a cell, \
                 method.edge_mask, or cpdi_bspline_quadratic"
             .into();
@@ -66,7 +67,7 @@ pub fn likely_cause(scene: &CheckedScene, alarm: Alarm, what: &str) -> String {
     }
 }
 
-/// Why a particle is longer than the stencil of its shape function, and what to try.
+/// Reason why a particle is longer than the stencil of its shape function, and a remedy.
 fn expansion(scene: &CheckedScene) -> String {
     let limit = match (scene.scene.method.domain_limit, scene.dimension) {
         (Some(_), _) => "a smaller method.domain_limit",
@@ -80,14 +81,15 @@ fn expansion(scene: &CheckedScene) -> String {
     )
 }
 
-/// Whether a fluid without a limit is in tension.
+/// Whether a fluid without a tension limit is in tension.
 fn pulled(scene: &CheckedScene, what: &str) -> bool {
-    let unlimited = |eos: &Eos| matches!(eos, Eos::MieGruneisen { tension_cutoff: None, .. });
+    let unlimited =
+        |eos: &Eos| matches!(eos, Eos::MieGruneisen(solid) if solid.tension_cutoff.is_none());
     let any = (0..scene.bodies.len()).any(|i| unlimited(&scene.material_of(i).eos));
     any && (what.contains("pressure -") || what.contains("tension"))
 }
 
-/// Cells that a body fills.
+/// Number of cells that a body fills.
 fn cells_of(scene: &CheckedScene, body: &crate::scene::CheckedBody) -> f64 {
     let along = |a: usize| (body.upper[a] - body.lower[a]) / scene.cell_size[a];
     (0..scene.dimension).map(along).product()

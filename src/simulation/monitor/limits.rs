@@ -1,102 +1,102 @@
-//! The bounds of a scene.
+//! Bounds of the monitor for a scene.
 
 use crate::scene::{
-    Body, BodyForce, Burn, CheckedScene, EnergyUpdate, Eos, Scene, ShapeKind, Side, Stepping,
-    Transfer,
+    Body, BodyForce, Burn, CheckedScene, EnergyUpdate, Scene, SideProperties, Stepping,
 };
 
-/// Growth of energy that ends a run of a scheme that keeps it to rounding [-].
+/// Relative growth of energy that stops a run, for a scheme that conserves energy to rounding [-].
 const EXACT_GROWTH: f64 = 1e-3;
 
-/// The same of a scheme that does not: stress first gains up to 0.15 and stays bounded, what is
-/// unstable passes any bound soon.
+/// The same for a scheme that does not conserve energy: the stress first adds up to 0.15 and stays
+/// bounded; an unstable run soon exceeds any bound.
 const LOSSY_GROWTH: f64 = 0.5;
 
-/// The same of hat functions at the particle's centre, which kick every particle that passes into
-/// another cell: up to 3 was seen, bounded.
+/// The same for hat functions at the particle centre, which disturb every particle that crosses
+/// into another cell: up to 3 was observed, bounded.
 const KICKED_GROWTH: f64 = 10.0;
 
-/// Loss of energy that ends a run of such a scheme: filters and explicit stress may take all the
-/// energy that there is, but not more.
+/// Relative loss of energy that stops a run of such a scheme [-]: filters and explicit stress may
+/// dissipate all the energy, but not more.
 const LOSSY_LOSS: f64 = 1.02;
 
-/// Least share of energy below the least admissible one that counts [-]: elastic energy of tension
-/// and rounding.
+/// Smallest energy deficit below the admissible minimum that counts [-]: elastic energy of tension
+/// and rounding stay below it.
 const COLD: f64 = 0.02;
 
-/// Least share of all energy that counts as what a common motion leaves [-].
+/// Smallest fraction of the total energy that counts as the energy beside the common motion [-].
 const REST_OF_MOTION: f64 = 1e-6;
 
 /// Energy that rounding may create in a run, over m c^2 and, with conduction, over the heat above
-/// absolute zero [-]: the least scale of energy, also where nothing moves.
+/// absolute zero [-]: the smallest scale of energy, also if nothing moves.
 const ROUNDING: f64 = 1e-12;
 
-/// Sums over a run's particles that the monitor checks.
+/// Sums over all particles that the monitor checks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energies {
     /// Kinetic energy [J].
     pub kinetic: f64,
     /// Internal energy [J].
     pub internal: f64,
-    /// Kinetic energy of the common motion [J].
+    /// Kinetic energy of the common motion (of the centre of mass) [J].
     pub common: f64,
-    /// Internal energy that adiabatic flow can turn into motion, or the internal energy where that
-    /// is more [J].
+    /// Internal energy that adiabatic flow can convert into motion, or the internal energy if that
+    /// is greater [J].
     pub available: f64,
-    /// Internal energy above the least admissible one of each particle [J].
+    /// Internal energy above the admissible minimum of each particle [J].
     pub above_least: f64,
-    /// Thermal energy that particles below absolute zero lack [J].
+    /// Thermal energy deficit of particles below absolute zero [J].
     pub below_zero_kelvin: f64,
 }
 
 impl Energies {
-    /// Kinetic and internal energy [J].
+    /// Sum of kinetic and internal energy [J].
     pub fn total(&self) -> f64 {
         self.kinetic + self.internal
     }
 }
 
-/// What a run of a scene is held to.
+/// Bounds of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Greatest speed of a particle [m/s].
     pub speed: f64,
-    /// Greatest Courant number of a step, by the state at its end [-].
+    /// Greatest Courant number of a step, from the state at its end [-].
     pub courant: f64,
     /// Shortest time step that is stable at a Courant number of 1 [s].
-    pub least_step: f64,
-    /// Most particles in a cell.
+    pub min_time_step: f64,
+    /// Largest number of particles in a cell.
     pub crowd: usize,
     /// Greatest growth of energy, over the energy at the start [-].
     pub energy_growth: f64,
-    /// Greatest loss of energy, over the same [-].
+    /// Greatest loss of energy, over the energy at the start [-].
     pub energy_loss: f64,
-    /// Greatest lack of internal energy below the least admissible one, over the same [-].
+    /// Greatest deficit of internal energy below the admissible minimum, over the energy at the
+    /// start [-].
     pub energy_lack: f64,
-    /// Energy per unit mass that rounding may create [J/kg]: the least scale of energy.
+    /// Energy per unit mass that rounding may create [J/kg]: the smallest scale of energy.
     pub rounding: f64,
-    /// Whether nothing holds the bodies, so that their common motion drives nothing.
+    /// Whether no side holds the bodies, so that their common motion drives nothing.
     pub free: bool,
 }
 
 impl Limits {
-    /// The bounds of `scene`, of which `fastest` is the greatest speed of the start, of bodies or
-    /// sound [m/s], and `cell` the shortest edge of a cell [m].
+    /// Bounds of `scene`; `fastest` is the greatest initial speed of bodies or sound [m/s], `cell`
+    /// the shortest edge of a cell [m].
     pub fn new(scene: &CheckedScene, fastest: f64, cell: f64) -> Limits {
-        let watch = &scene.scene.watch;
+        let monitor = &scene.scene.monitor;
         let reference = fastest.max(driven_speed(scene, fastest));
         let most = scene.bodies.iter().map(|b| most_in_a_cell(scene, b)).fold(1.0, f64::max);
         let exact = keeps_energy(&scene.scene);
-        let energy_growth = watch.energy_growth.unwrap_or(match exact {
+        let energy_growth = monitor.energy_growth.unwrap_or(match exact {
             true => EXACT_GROWTH,
-            false if scene.scene.method.shape == ShapeKind::Linear => KICKED_GROWTH,
+            false if scene.scene.method.shape.has_jumps() => KICKED_GROWTH,
             false => LOSSY_GROWTH,
         });
         Limits {
-            speed: watch.speed * reference,
-            courant: watch.courant,
-            least_step: watch.least_step * cell / reference,
-            crowd: (watch.crowding * most).min(1e15) as usize,
+            speed: monitor.speed * reference,
+            courant: monitor.courant,
+            min_time_step: monitor.min_time_step_ratio * cell / reference,
+            crowd: (monitor.max_particles_per_cell_ratio * most).min(1e15) as usize,
             energy_growth,
             energy_loss: if exact { energy_growth } else { LOSSY_LOSS },
             energy_lack: energy_growth.max(COLD),
@@ -105,17 +105,17 @@ impl Limits {
         }
     }
 
-    /// Change of the energy since the `start`, less the `work` that came from outside, over the
-    /// energy that bodies of total `mass` [kg] bring beside their common motion, and the work [-].
+    /// Change of the energy since the `start`, minus the external `work`, over the energy of bodies
+    /// of total `mass` [kg] without their common motion, plus the work [-].
     pub fn change(&self, start: &Energies, now: &Energies, work: f64, mass: f64) -> f64 {
         (now.total() - start.total() - work) / self.scale(start, work, mass)
     }
 
-    /// Internal energy below the least admissible one, further than at the `start`, over the same
-    /// [-].
+    /// Deficit of internal energy below the admissible minimum, minus that at the `start`, over the
+    /// same energy [-].
     pub fn lack(&self, start: &Energies, now: &Energies, work: f64, mass: f64) -> f64 {
         let lack = |e: &Energies| (-e.above_least).max(e.below_zero_kelvin).max(0.0);
-        // max() passes over NaN
+        // max() ignores NaN
         if now.above_least.is_nan() || now.below_zero_kelvin.is_nan() {
             return f64::NAN;
         }
@@ -132,35 +132,33 @@ impl Limits {
 /// Whether the scheme keeps kinetic and internal energy to rounding.
 pub fn keeps_energy(scene: &Scene) -> bool {
     let method = &scene.method;
-    let filters = !matches!(method.transfer, Transfer::Flip);
+    let filters = method.transfer.plan().filters;
     method.stepping == Stepping::Midpoint
         && method.energy == EnergyUpdate::Compatible
         && (method.filter_heat || !filters)
 }
 
-/// The speed that what drives a scene may bring a body to [m/s]: an ideal gas that runs out into
-/// the void, the loads on sides, gravity over the whole run.
+/// Speed that a body may reach by the driving forces of a scene [m/s]: expansion of an ideal gas
+/// into vacuum, loads on sides, gravity over the whole run.
 fn driven_speed(scene: &CheckedScene, fastest: f64) -> f64 {
-    // a piston's speed, which may come only later
+    // the speed of a piston, which may start to move later
     let [least, greatest] = scene.frame::<2>().extremes();
     let mut most = least.iter().chain(&greatest).fold(0.0, |most: f64, v| most.max(v.abs()));
     for body in &scene.scene.bodies {
         let material = &scene.scene.materials[&body.material];
-        if let Eos::IdealGas { gamma } | Eos::StiffenedGas { gamma, .. } = material.eos {
-            // 2 c/(gamma - 1), the escape speed, of the hottest gas that a first shock makes
+        if let Some(gamma) = material.eos.gas_gamma() {
+            // 2 c/(gamma - 1), the escape speed, of the hottest gas behind a first shock
             most = most.max(2.0 * fastest / (gamma - 1.0));
         }
-        // a detonation's products leave at about the speed of its front
+        // detonation products leave at about the speed of the front
         if let Some(Burn::Front(front)) = material.eos.burn() {
             most = most.max(2.0 * front.detonation_velocity);
         }
-        let loads = scene.sides::<2>();
-        for side in loads[..scene.dimension].as_flattened() {
-            if let Side::Pressure(load) = side {
-                // twice p/(rho c) at a free surface, and with c at least that of the bodies' own
-                // motion for a load beyond the stiffness, sqrt(p/rho)
-                most = most.max(2.0 * (load.range()[1].max(0.0) / material.density).sqrt());
-            }
+        let sides = scene.side_properties::<2>();
+        for load in sides.as_flattened().iter().filter_map(|side| side.pressure.as_ref()) {
+            // twice p/(rho c) at a free surface, and with c at least that of the bodies' own
+            // motion for a load beyond the stiffness, sqrt(p/rho)
+            most = most.max(2.0 * (load.range()[1].max(0.0) / material.density).sqrt());
         }
     }
     if let Some(force) = &scene.scene.body_force {
@@ -168,7 +166,7 @@ fn driven_speed(scene: &CheckedScene, fastest: f64) -> f64 {
             BodyForce::Gravity(g) => {
                 g.iter().map(|g| g * g).sum::<f64>().sqrt() * scene.scene.time.end
             }
-            // the ring turns by the amplitude and back within the period
+            // the ring turns by the amplitude and back within one period
             BodyForce::Vortex(ring) => {
                 std::f64::consts::PI * ring.amplitude.abs() * ring.outer / ring.period
             }
@@ -177,20 +175,20 @@ fn driven_speed(scene: &CheckedScene, fastest: f64) -> f64 {
     most
 }
 
-/// Particles of a body that a cell holds at the start, at most.
+/// Largest initial number of particles of a body in a cell.
 fn most_in_a_cell(scene: &CheckedScene, body: &crate::scene::CheckedBody) -> f64 {
     let cells: f64 = (0..scene.dimension)
         .map(|a| ((body.upper[a] - body.lower[a]) / scene.cell_size[a]).max(1.0))
         .product();
     match &body.tiles {
-        // they are uneven: a cell may have several times the mean
+        // tilings are uneven: a cell may hold several times the mean
         Some(tiles) => 4.0 * (tiles.len() as f64 / cells).max(1.0),
         None => (body.particles as f64 / cells).max(1.0),
     }
 }
 
-/// Heat of the bodies that conduct above absolute zero, the most of all [J/kg]; conduction rounds
-/// differences of it. Zero without conduction.
+/// Heat of the conducting bodies above absolute zero, maximum over bodies [J/kg], as conduction
+/// rounds differences of it. Zero without conduction.
 fn heat_of_conductors(scene: &CheckedScene) -> f64 {
     let held = scene.held_temperatures::<2>();
     let held = held.as_flattened().iter().flatten().copied().fold(0.0, f64::max);
@@ -205,9 +203,8 @@ fn heat_of_conductors(scene: &CheckedScene) -> f64 {
 
 /// Whether no side holds or drives a body.
 fn is_free(scene: &CheckedScene) -> bool {
-    let sides = scene.sides::<2>();
-    let open = |s: &Side| matches!(s, Side::Free | Side::Outflow | Side::Periodic);
-    sides[..scene.dimension].as_flattened().iter().all(open) && scene.scene.body_force.is_none()
+    let drives = |side: &SideProperties| side.acts_on_material() && !side.is_periodic();
+    !scene.has_side(drives) && scene.scene.body_force.is_none()
 }
 
 #[cfg(test)]
@@ -217,7 +214,7 @@ mod tests {
     const LIMITS: Limits = Limits {
         speed: 1.0,
         courant: 1.0,
-        least_step: 1.0,
+        min_time_step: 1.0,
         crowd: 1,
         energy_growth: 0.1,
         energy_loss: 0.1,
@@ -237,7 +234,7 @@ mod tests {
         let now = energies(100.0, 0.5, 99.0);
         assert_eq!(LIMITS.change(&start, &now, 0.0, 1.0), 0.5);
         assert_eq!(Limits { free: false, ..LIMITS }.change(&start, &now, 0.0, 1.0), 0.005);
-        // work of the sides is no growth
+        // work of the sides does not count as growth
         assert_eq!(LIMITS.change(&start, &now, 0.5, 1.0), 0.0);
         assert_eq!(LIMITS.change(&start, &now, 1.0, 1.0), -0.25);
         let cold = Energies { internal: -0.2, above_least: -0.2, ..now };

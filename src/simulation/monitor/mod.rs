@@ -1,12 +1,12 @@
-//! The watch that every run is under: what it holds a run to, and what it takes for the cause.
+//! Run-time checks (monitor): bounds of a run, and likely causes of alarms.
 //!
-//! What each step tells anyway, the longest stable time step, the longest particle and the rows
-//! whose state is outside of their model, is held against bounds at every step and costs nothing.
-//! What needs a sum over all particles, energy and crowding, is looked at every
-//! [`interval`](crate::scene::Watch::interval) steps and at the end, so that the answer of a run
-//! that ends well is one that has passed. All bounds are relative to the scene.
+//! Quantities that a step computes anyway are checked in every step at no cost: the longest stable
+//! time step, the longest particle, and particles whose state is outside the range of their model.
+//! Checks that need a sum over all particles, of energy and of particles per cell, run every
+//! [`interval`](crate::scene::Monitor::interval) steps and at the end, so that the final state of a
+//! successful run has passed them. All bounds are relative to the scene.
 //!
-//! Knows no patches and no ranks: those are in [`simulation`](crate::simulation).
+//! This module does not depend on patches or ranks; [`simulation`](crate::simulation) does.
 
 mod cause;
 mod limits;
@@ -16,21 +16,22 @@ pub use cause::likely_cause;
 pub use limits::{Energies, Limits, keeps_energy};
 pub use peaks::Peaks;
 
-/// What the watch has found, beside what particles tell of their own state.
+/// Kind of a failed check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alarm {
-    /// A particle's state is outside of its model, or it has left the domain.
+    /// The state of a particle is outside the range of its model, or the particle has left the
+    /// domain.
     State,
     /// A particle is faster than any wave could make it.
     Speed,
-    /// The step was longer than a wave of the state at its end needs for a cell.
+    /// The step was longer than a wave in the final state needs to cross a cell.
     Courant,
     /// The stable time step has collapsed.
     TimeStep,
-    /// Total energy has grown, or fallen further than the scheme explains.
+    /// Total energy has grown, or has fallen further than the scheme explains.
     Energy,
-    /// Internal energy has fallen below the least that the materials admit.
+    /// Internal energy has fallen below the admissible minimum of the materials.
     Cold,
-    /// A cell holds more particles than compression could bring there.
+    /// A cell holds more particles than compression can explain.
     Crowding,
 }

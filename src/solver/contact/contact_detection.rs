@@ -1,58 +1,60 @@
-//! Whether two bodies touch at a node: their gap, what they press with, and for how long they have
-//! been pressed.
+//! Contact detection: whether two bodies touch at a node, from their gap, their contact pressure
+//! and their contact impulse.
 
-use crate::effects::contact::{Member, Touch};
+use crate::solver::clock::timed;
+use crate::solver::contact::{Member, Touch};
+use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 use crate::solver::{Stepper, norm};
 
-/// Bodies without stress touch if their edges are nearer than this [cells].
+/// Bodies without stress touch if the gap between their edges is smaller than this [cells].
 const CLOSED: f64 = 0.01;
 
-/// Bodies that press on each other stay in contact over a gap as wide as their compression of a
-/// cell, up to this [cells]: as a wave passes, the outermost particles' lengths and places are a
-/// little out of step.
+/// Bodies under compression stay in contact over a gap as wide as the compression of a cell, up to
+/// this [cells]: while a wave passes, the lengths and positions of the outermost particles are
+/// slightly inconsistent.
 const HELD: f64 = 0.1;
 
-/// Share of rho h u, with u the speed of the scene's impacts and h a cell's edge, that bodies which
-/// were pressed together may pull on each other with before they part: what runs ahead of a shock
-/// swings, and an interface that opened at each swing would send some of it back. They never give
-/// back more than they were pressed with, or start with, so no pull lasts.
+/// Greatest adhesion impulse of bodies that were pressed together, as a fraction of rho h u [-],
+/// with the impact speed u of the scene and the cell edge h: oscillations run ahead of a shock, and
+/// an interface that opened at each of them would reflect a part of the shock. Bodies never return
+/// more impulse than their contact impulse, initial value included, so adhesion does not last.
 pub(in crate::solver) const PULL: f64 = 0.02;
 
-/// Share of that below which bodies do not hold: well above what rounding presses with.
+/// Fraction of the greatest adhesion impulse below which bodies do not adhere: well above the
+/// impulse of rounding errors.
 const HOLDS: f64 = 1e-3;
 
-/// Share of the most with which bodies start, though nothing has pressed them yet: what runs ahead
-/// of the first shock may swing to the pulling side first, and at a cut of a body into two it would
-/// open the cut.
+/// Initial contact impulse as a fraction of the greatest one, before any pressure: an oscillation
+/// ahead of the first shock may start with tension, and would open the interface between two parts
+/// of a cut body.
 const AT_START: f64 = 0.1;
 
-/// Share of u at which bodies part that have no more than what they started with: a swing opens an
-/// interface slowly, and bodies that truly recede part at once.
+/// Fraction of u at which bodies with only their initial contact impulse separate: an oscillation
+/// opens an interface slowly, while bodies that really separate do so at once.
 const PARTS: f64 = 0.05;
 
-/// The outermost part of a body at a meeting.
+/// Edge of a body at a node with several bodies.
 #[derive(Clone, Copy)]
-struct Edge {
-    /// How far it reaches along the normal, seen from the node [m].
+struct BodyEdge {
+    /// Position of the edge along the normal, relative to the node [m].
     reach: f64,
-    /// p + q there [Pa].
+    /// p + q at the edge [Pa].
     stress: f64,
-    /// The impulse that it may give back [Pa s].
-    pressed: f64,
+    /// Impulse that it may return as adhesion [Pa s].
+    contact_impulse: f64,
 }
 
 impl<const D: usize> Stepper<D> {
-    /// Whether two bodies touch at a node: the gap between the edges of their particles is closed,
-    /// and apart from each other they would overlap by the end of a step of `dt`, with m the
-    /// reduced mass, u the speed at which they approach, A the area and s the mean p + q of their
-    /// edges,
+    /// Whether two bodies touch at a node. They do if the gap between the edges of their particles
+    /// is closed, and without contact they would overlap by the end of a step of `dt`, with m the
+    /// reduced mass, u the closing speed, A the area and s the mean p + q of their edges,
     ///
     /// ```text
     /// m u + A s dt > 0,
     /// ```
     ///
-    /// or they have been pressed together and hold: see [`PULL`].
+    /// or if they were pressed together and adhere: see [`PULL`].
     pub(super) fn touch(
         &self,
         patch: &Patch<D>,
@@ -70,8 +72,8 @@ impl<const D: usize> Stepper<D> {
         let Some((first, second)) = edges(normal) else { return false };
         let cell = self.cell.iter().copied().fold(f64::INFINITY, f64::min);
         let mut gap = -(first.reach + second.reach) / cell;
-        // near a corner the normal is between those of two faces, and along it the bodies seem to
-        // overlap; a gap along any direction is one
+        // near a corner the normal lies between the normals of two faces, and along it the bodies
+        // seem to overlap; a gap along any of these directions counts
         if D > 1 {
             let faces = [a.gradient, b.gradient.map(|g| -g)];
             let axes = (0..D).map(|k| {
@@ -94,25 +96,27 @@ impl<const D: usize> Stepper<D> {
             return false;
         }
         let closing = (0..D).map(|k| (a.velocity[k] - b.velocity[k]) * normal[k]).sum::<f64>();
-        // the force on both is the same: noise has taken from one what the other still has
-        let pressed = first.pressed.max(second.pressed);
-        let least = HOLDS * self.most_pull[a.layer].min(self.most_pull[b.layer]);
-        // rounding presses, too
+        // both carry the same force: noise may have reduced the impulse of one of them
+        let contact_impulse = first.contact_impulse.max(second.contact_impulse);
+        let least =
+            HOLDS * self.max_adhesion_impulse[a.layer].min(self.max_adhesion_impulse[b.layer]);
+        // twice, as rounding errors also add to the impulse
         let start = 2.0 * self.starting_pull(a.layer).max(self.starting_pull(b.layer));
         let slow = -PARTS * self.impact;
         let mass = a.mass * b.mass / (a.mass + b.mass);
         mass * closing + self.area(index, [a, b]) * dt * stress > 0.0
-            || (pressed > least
-                && pressed + dt * stress > 0.0
-                && (pressed > start || closing > slow))
+            || (contact_impulse > least
+                && contact_impulse + dt * stress > 0.0
+                && (contact_impulse > start || closing > slow))
     }
 
-    /// The impulse that a body may give back before anything has pressed it [Pa s].
+    /// Initial contact impulse of a body, before any pressure [Pa s].
     pub(in crate::solver) fn starting_pull(&self, body: usize) -> f64 {
-        AT_START * self.most_pull[body]
+        AT_START * self.max_adhesion_impulse[body]
     }
 
-    /// The node's share of the area between two bodies [m2], from the gradients of their volumes.
+    /// The node's share of the contact area of two bodies [m2], from the gradients of their
+    /// volumes.
     fn area(&self, index: [i64; D], [a, b]: [&Member<D>; 2]) -> f64 {
         let cell: f64 = self.cell.iter().product();
         let around = match self.axisymmetric {
@@ -122,14 +126,30 @@ impl<const D: usize> Stepper<D> {
         0.5 * (norm(&a.gradient) + norm(&b.gradient)) * cell * around
     }
 
-    /// What the own rows have been pressed with, less what they have been pulled with: the time
-    /// integral of the mean p + q over a step of `dt`, between 0 and the most that an interface may
-    /// give back.
-    pub(in crate::solver) fn find_pressed(&self, patch: &mut Patch<D>, jacobian: usize, dt: f64) {
-        let Some(pressed) = self.columns.pressed else { return };
+    /// Updates the contact impulse of the own particles: the time integral of the mean p + q over a
+    /// step of `dt`, limited to the range from 0 to the greatest adhesion impulse.
+    pub(in crate::solver) fn find_contact_impulse(
+        &self,
+        patch: &mut Patch<D>,
+        jacobian: usize,
+        dt: f64,
+    ) {
+        let Some(column) = self.columns.contact_impulse else { return };
+        timed(StepPart::Contact as usize, patch, |patch| {
+            self.add_contact_impulse(patch, column, jacobian, dt);
+        });
+    }
+
+    fn add_contact_impulse(
+        &self,
+        patch: &mut Patch<D>,
+        contact_impulse: usize,
+        jacobian: usize,
+        dt: f64,
+    ) {
         let c = &self.columns;
         let n = patch.block.own();
-        let mut impulse = std::mem::take(&mut patch.block.columns[pressed]);
+        let mut impulse = std::mem::take(&mut patch.block.columns[contact_impulse]);
         impulse.truncate(n);
         let column = |k: usize| &patch.block.columns[k][..n];
         let (volume0, j, body) = (column(c.volume0), column(jacobian), column(c.body));
@@ -137,13 +157,13 @@ impl<const D: usize> Stepper<D> {
         let yy = column(c.stress_volume + usize::from(self.tensor_stress()));
         for r in 0..n {
             let stress = 0.5 * (xx[r] + yy[r]) / (volume0[r] * j[r]);
-            let most = self.most_pull[body[r] as usize];
+            let most = self.max_adhesion_impulse[body[r] as usize];
             impulse[r] = (impulse[r] + dt * stress).clamp(0.0, most);
         }
-        patch.block.columns[pressed] = impulse;
+        patch.block.columns[contact_impulse] = impulse;
     }
 
-    /// The edge of the body in `layer` along `normal`, among the rows that touch a node.
+    /// Edge of the body in `layer` along `normal`, among the particles that touch a node.
     fn edge(
         &self,
         patch: &Patch<D>,
@@ -151,14 +171,14 @@ impl<const D: usize> Stepper<D> {
         touches: &[Touch],
         layer: usize,
         normal: &[f64; D],
-    ) -> Option<Edge> {
+    ) -> Option<BodyEdge> {
         let c = &self.columns;
         let column = |k: usize| &patch.block.columns[k];
-        let filled = column(c.room.expect("contact has the column"));
-        let pressed = column(c.pressed.expect("contact has the column"));
-        let mut edge: Option<Edge> = None;
-        let rows = touches.iter().map(|t| t.row as usize);
-        for r in rows.filter(|&r| self.layer_of(patch, r) == layer) {
+        let filled = column(c.current_volume.expect("contact has the column"));
+        let contact_impulse = column(c.contact_impulse.expect("contact has the column"));
+        let mut edge: Option<BodyEdge> = None;
+        let particles = touches.iter().map(|t| t.particle as usize);
+        for r in particles.filter(|&r| self.layer_of(patch, r) == layer) {
             let along = |v: [f64; D]| (0..D).map(|a| v[a] * self.cell[a] * normal[a]).sum::<f64>();
             let centre = along(self.place(patch, r, index));
             let half = match c.half_edges {
@@ -175,7 +195,7 @@ impl<const D: usize> Stepper<D> {
                 let around = if self.axisymmetric { self.radius(patch, r).abs() } else { 1.0 };
                 let volume = filled[r] * self.cell.iter().product::<f64>() * around;
                 let stress = self.pressing(patch, r, normal) / volume;
-                edge = Some(Edge { reach, stress, pressed: pressed[r] });
+                edge = Some(BodyEdge { reach, stress, contact_impulse: contact_impulse[r] });
             }
         }
         edge

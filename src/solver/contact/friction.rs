@@ -1,19 +1,20 @@
-//! Friction along the plane of contact: Coulomb's law, its force, and its heat.
+//! Friction in the contact plane: Coulomb's law, friction force and heat.
 
 use decomp::Parity;
 
-use crate::effects::contact::{ContactNodes, Member};
+use crate::shape::with_width;
+use crate::solver::contact::{ContactNodes, Member};
 use crate::solver::patch::Patch;
-use crate::solver::{MOST_NODES, Nodal, Stepper, norm, with_width};
+use crate::solver::{Nodal, Stepper, norm};
 
 impl<const D: usize> Stepper<D> {
-    /// Whether two bodies stick in a step of `dt`, and if not the force with which the second rubs
+    /// Whether two bodies stick in a step of `dt`, and if not the friction force of the second on
     /// the first [N].
     ///
-    /// With the velocities that they would have apart at the end of the step, N is the impulse that
-    /// makes one of their normal parts, T that which makes one of the others. Coulomb's law: they
-    /// stick if T <= coefficient N, else an impulse of coefficient N opposes the slip (Bardenhagen,
-    /// Brackbill & Sulsky 2000).
+    /// For the velocities at the end of a step without contact, N is the impulse that makes their
+    /// normal components equal, and T the impulse that makes their tangential components equal.
+    /// Coulomb's law: the bodies stick if T <= coefficient N, otherwise an impulse of coefficient N
+    /// opposes the slip (Bardenhagen, Brackbill & Sulsky 2000).
     pub(super) fn friction(
         &self,
         [a, b]: [&Member<D>; 2],
@@ -37,13 +38,13 @@ impl<const D: usize> Stepper<D> {
         if sticks && moved == 1.0 {
             return (true, [0.0; D]);
         }
-        // a blend keeps particles' velocities: what holds them must be a force
+        // a blend keeps a part of the particle velocities: sticking then needs a force
         let impulse = if sticks { mass * speed } else { most };
         let scale = if speed > 0.0 { -impulse / (dt * speed) } else { 0.0 };
         (false, slip.map(|s| scale * s))
     }
 
-    /// Adds friction to the nodal force.
+    /// Adds the friction forces to the nodal forces.
     pub(super) fn rub(&self, patch: &mut Patch<D>, nodes: &ContactNodes<D>) {
         for (joint, a) in nodes.joints.iter().flat_map(|j| (0..D).map(move |a| (j, a))) {
             let force = &mut patch.nodes.fields[self.fields.acceleration + a];
@@ -52,9 +53,9 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    /// The work that friction has taken from the motion in a step of `dt`, as heat of the two
-    /// bodies, half each [J/kg]: -f.(w_a - w_b) dt, with the velocity whose gradient does the work.
-    /// A wall takes none: what rubs on it has all of -f.w dt.
+    /// Work of friction in a step of `dt` as heat of the two bodies, half each [J/kg]:
+    /// -f.(w_a - w_b) dt, with the velocity whose gradient does the work. A wall takes no heat: a
+    /// body that slides on it gets the whole -f.w dt.
     fn find_friction_heat(&self, patch: &mut Patch<D>, dt: f64) {
         let f = &self.fields;
         let Some(field) = f.heat else { return };
@@ -72,30 +73,33 @@ impl<const D: usize> Stepper<D> {
             heat[i] += 0.5 * dt * power / joint.mass[0];
             heat[j] += 0.5 * dt * power / joint.mass[1];
         }
-        for pushed in patch.side_forces.iter().filter(|p| p.rubs) {
+        for pushed in patch.side_forces.iter().filter(|p| p.has_friction) {
             let power: f64 = (0..D).map(|a| -pushed.force[a] * velocity(a, pushed.at)).sum();
             heat[pushed.at] += dt * power / fields[f.mass][pushed.at];
         }
         patch.nodes.fields[field] = heat;
     }
 
-    /// Brings the heat of friction to all who see its nodes. Collective between neighbours.
+    /// Computes the heat of friction and exchanges it between the patches of a node. Collective
+    /// between neighbours.
     pub(in crate::solver) fn solve_friction_heat(&self, nodal: &mut Nodal<'_, D>, dt: f64) {
         if let Some(heat) = self.fields.heat {
+            nodal.count_as(Some(self.friction_part));
             nodal.each("friction heat", |patch| self.find_friction_heat(patch, dt));
+            nodal.count_as(None);
             nodal.refresh(&[(heat, Parity::Even)]);
         }
     }
 
-    /// Gives the own rows the heat of friction.
+    /// Transfers the heat of friction to the own particles.
     pub(super) fn gather_friction_heat(&self, patch: &mut Patch<D>) {
         fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
             let Some(field) = s.fields.heat else { return };
             let n = patch.block.own();
             let energy = &mut patch.block.columns[s.columns.energy][..n];
             for (r, e) in energy.iter_mut().enumerate() {
-                let row = patch.stencils.row::<K, D>(r);
-                *e += row.dot(row.values, &patch.nodes.fields[field]);
+                let weights = patch.stencils.particle::<K, D>(r);
+                *e += weights.dot(weights.values, &patch.nodes.fields[field]);
             }
         }
         with_width!(patch.stencils.width, go(patch, self));

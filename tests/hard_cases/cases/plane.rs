@@ -11,7 +11,7 @@ use super::{Figure, figure};
 
 /// A scene in a plane of so many cells, with the scheme of the standard problem.
 fn plane(cells: [usize; 2], end: f64, bodies: Value) -> Value {
-    // what is shipped for a plane: with the viscosity of flyer.json corners jet, and the watch ends
+    // what is shipped for a plane: with the viscosity of flyer.json corners jet, and the monitor ends
     // the run
     let flyer = shipped("flyer_2d.json");
     let upper: Vec<f64> = cells.iter().map(|&n| n as f64 * CELL).collect();

@@ -19,7 +19,7 @@ const MOST_STEPS: u64 = 100_000;
 pub enum Verdict {
     /// Its check refuses it.
     Refused(String),
-    /// The watch ends it.
+    /// The monitor ends it.
     Alarm(String),
     /// It ends well: digest of the state.
     Well(String),

@@ -64,7 +64,7 @@ pub fn cold() -> Vec<Figure> {
     for (what, patches) in [("one patch", 1), ("seven patches", 7)] {
         let mut value = scene_of(90, 2e-7, &metals(), &bodies);
         value["domain"]["patches"] = json!([patches]);
-        value["decomposition"] = json!({"skip_quiet": false});
+        value["decomposition"] = json!({"skip_quiescent": false});
         match run(&until(&value, &[1e-10, 2e-7])) {
             Ok(ended) => {
                 let moved = |name: &str| greatest(ended.column(name));

@@ -1,7 +1,7 @@
 //! Runs in memory and what is taken from them.
 
 use decomp::{Comm, Serial};
-use flyer_mpm::accuracy::reference::Reference;
+use flyer_mpm::accuracy::reference::ReferenceSolution;
 use flyer_mpm::exact::Errors;
 use flyer_mpm::scene::{self, CheckedScene};
 use flyer_mpm::simulation::ParticleTable;
@@ -81,7 +81,7 @@ pub fn run(value: &Value) -> Result<Ended<1>, String> {
 pub fn scored(value: &Value) -> Result<(Ended<1>, Vec<Errors>), String> {
     let scene = checked(value)?;
     let ended = run(value)?;
-    let reference = Reference::new(&scene).map_err(|e| e.to_string())?;
+    let reference = ReferenceSolution::new(&scene).map_err(|e| e.to_string())?;
     let reference = reference.ok_or("a scene without a reference")?;
     let score = |(k, table)| reference.score(&scene, k, table).map(|(raw, _)| raw);
     let errors: Option<Vec<Errors>> =

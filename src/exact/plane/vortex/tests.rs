@@ -1,6 +1,6 @@
 use super::*;
 
-/// Derivative of `f` at 0 by the central rule of sixth order.
+/// Derivative of `f` at 0 by the central difference of sixth order.
 fn derivative<const N: usize>(h: f64, f: impl Fn(f64) -> [f64; N]) -> [f64; N] {
     let mut out = [0.0; N];
     for (k, w) in [(1.0, 45.0), (2.0, -9.0), (3.0, 1.0)] {
@@ -16,7 +16,7 @@ fn flat(f: Tensor) -> [f64; 4] {
     [f[0][0], f[0][1], f[1][0], f[1][1]]
 }
 
-/// F by differences of the position.
+/// F by finite differences of the position.
 fn numerical_gradient(v: &Vortex, [x, y]: Vector, t: f64) -> Tensor {
     let by_x = derivative(1e-3, |d| v.position([x + d, y], t));
     let by_y = derivative(1e-3, |d| v.position([x, y + d], t));
@@ -32,7 +32,7 @@ fn piola(v: &Vortex, f: Tensor) -> Tensor {
     [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]]
 }
 
-/// Points of the ring that keep the differences inside of it.
+/// Points of the ring, far enough from the rims that the differences stay inside the ring.
 fn inside(v: &Vortex) -> Vec<Vector> {
     let width = v.outer - v.inner;
     (0..40)
@@ -87,8 +87,8 @@ fn gradient_velocity_and_acceleration_are_derivatives_of_the_position() {
 
 #[test]
 fn body_force_balances_momentum() {
-    // rho0 u_tt = Div P + rho0 b, everything but b by differences of the position alone; the
-    // constants make inertia and stress about equally strong
+    // rho0 u_tt = Div P + rho0 b, with all terms except b from differences of the position alone;
+    // with these constants inertia and stress are about equally large
     let base = Vortex::default();
     let stiff = Vortex { youngs_modulus: 4e4, poissons_ratio: 0.2, amplitude: 0.4, ..base };
     for v in [base, stiff] {
@@ -141,7 +141,7 @@ fn a_point_off_the_ring_rests() {
 
 #[test]
 fn error_of_a_known_fault() {
-    // every displacement too large by one part in fifty
+    // every displacement is 2 % too large
     let v = Vortex::default();
     let off = |x: Vector| {
         let exact = v.position(x, 0.15);

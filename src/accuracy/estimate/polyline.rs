@@ -1,0 +1,24 @@
+//! Pressure over position in one body.
+
+use crate::scene::CheckedScene;
+use crate::simulation::ParticleTable;
+
+/// Pressures \[Pa\] over positions \[m\] in one body.
+pub type Polyline = Vec<(f64, f64)>;
+
+/// Pressure over position of the particles of one body.
+pub fn line(table: &ParticleTable, body: usize) -> Polyline {
+    let column = |name| table.column(name).expect("the table has its own columns");
+    let (x, p) = (column("x"), column("pressure"));
+    let own = (0..table.len()).filter(|&r| table.body[r] as usize == body);
+    own.map(|r| (x[r], p[r])).collect()
+}
+
+/// Pressures up to this fraction of rho c^2 are rounding, not a wave \[-\].
+const ROUNDING: f64 = 1e-9;
+
+/// Pressure of `body` up to which a change is rounding, not a wave \[Pa\]; `cell_time` \[s\] is the
+/// sound transit time of a cell.
+pub(crate) fn least_pressure(scene: &CheckedScene, body: usize, cell_time: f64) -> f64 {
+    ROUNDING * scene.material_of(body).density * (scene.cell_size[0] / cell_time).powi(2)
+}

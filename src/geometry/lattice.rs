@@ -1,0 +1,58 @@
+//! The lattice of tiles over a shape, and the part of the shape in one tile.
+
+use super::Point;
+use super::moments::Moments;
+use super::piece::Trapezium;
+
+/// A lattice of tiles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lattice {
+    /// A corner of the lattice [m].
+    pub lower: Point,
+    /// Edges of a grid cell [m].
+    pub cell: [f64; 2],
+    /// Number of tiles per cell in each direction.
+    pub per_cell: [usize; 2],
+}
+
+/// The part of a shape in one tile of the lattice, including parts merged into it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cut {
+    /// Index in the lattice: y, then x.
+    pub index: [i64; 2],
+    /// Area and moments about the tile's centre.
+    pub moments: Moments,
+}
+
+impl Lattice {
+    /// Edges of a tile [m].
+    pub fn size(&self) -> [f64; 2] {
+        [0, 1].map(|d| self.cell[d] / self.per_cell[d] as f64)
+    }
+
+    /// Position of the lower side of tile `i` in direction `d` [m].
+    pub fn side(&self, d: usize, i: i64) -> f64 {
+        self.lower[d] + i as f64 * self.cell[d] / self.per_cell[d] as f64
+    }
+
+    /// Centre of a tile [m].
+    pub fn centre(&self, [row, column]: [i64; 2]) -> Point {
+        [0, 1].map(|d| {
+            let i = [column, row][d];
+            self.lower[d] + (2 * i + 1) as f64 * self.cell[d] / (2 * self.per_cell[d]) as f64
+        })
+    }
+
+    /// The box of a tile.
+    pub fn trapezium(&self, [row, column]: [i64; 2]) -> Trapezium {
+        let corner = |k| [self.side(0, column + k), self.side(1, row + k)];
+        Trapezium::upright(corner(0), corner(1))
+    }
+
+    /// Index of the first tile that overlaps `range` [m], and of the first beyond it, in direction
+    /// `d`.
+    pub fn reach(&self, d: usize, range: [f64; 2]) -> [i64; 2] {
+        let [from, to] = range.map(|x| (x - self.lower[d]) / self.size()[d]);
+        [from.floor() as i64, to.ceil() as i64]
+    }
+}

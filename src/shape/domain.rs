@@ -1,0 +1,113 @@
+//! The domain of a particle: the length, or the parallelogram in a plane, that it covers.
+
+use super::knots::ON_KNOT;
+
+/// Length of the particle, or its domain in a plane, on which a shape function depends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DomainExtent {
+    /// None.
+    Point,
+    /// Undeformed length or domain.
+    Undeformed,
+    /// Current length or domain.
+    Current,
+}
+
+impl DomainExtent {
+    /// Number of columns of a particle's domain in a plane: none, the edges of its box, or the two
+    /// half edges of its parallelogram.
+    pub const fn plane_columns(self) -> usize {
+        match self {
+            DomainExtent::Point => 0,
+            DomainExtent::Undeformed => 2,
+            DomainExtent::Current => 4,
+        }
+    }
+}
+
+/// Parallelogram of a particle, given by its half edges r1 and r2 [cells]: its corners are at +-r1
+/// +-r2 from its centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParticleDomain {
+    /// Half edges r1 and r2 [cells].
+    pub half_edges: [[f64; 2]; 2],
+}
+
+impl ParticleDomain {
+    /// Domain of `particle` from the columns of `extent`: see [`DomainExtent::plane_columns`].
+    #[inline(always)]
+    pub fn from_columns(extent: DomainExtent, columns: &[&[f64]; 4], particle: usize) -> Self {
+        let half_edges = match extent {
+            DomainExtent::Point => [[0.0; 2]; 2],
+            DomainExtent::Undeformed => {
+                [[0.5 * columns[0][particle], 0.0], [0.0, 0.5 * columns[1][particle]]]
+            }
+            DomainExtent::Current => [
+                [columns[0][particle], columns[1][particle]],
+                [columns[2][particle], columns[3][particle]],
+            ],
+        };
+        ParticleDomain { half_edges }
+    }
+
+    /// Whether it is a box aligned with the grid, to rounding.
+    #[inline(always)]
+    pub fn is_box(&self) -> bool {
+        let [r1, r2] = self.half_edges;
+        r1[1].abs() < ON_KNOT && r2[0].abs() < ON_KNOT
+    }
+
+    /// Its extent along each direction [cells].
+    #[inline(always)]
+    pub fn extent(&self) -> [f64; 2] {
+        let [r1, r2] = self.half_edges;
+        [2.0 * (r1[0].abs() + r2[0].abs()), 2.0 * (r1[1].abs() + r2[1].abs())]
+    }
+
+    /// Domain shortened along its longest half diagonal to `most` [cells], if it is longer: F +
+    /// (most/s - 1) n n^T F, with s the length of that half diagonal and n its direction. Particles
+    /// that stretch over several cells overlap others and no longer tile the body.
+    pub fn limited(mut self, most: f64) -> Self {
+        let [r1, r2] = self.half_edges;
+        let plus = [r1[0] + r2[0], r1[1] + r2[1]];
+        let minus = [r1[0] - r2[0], r1[1] - r2[1]];
+        let square = |v: [f64; 2]| v[0] * v[0] + v[1] * v[1];
+        let longest = if square(plus) >= square(minus) { plus } else { minus };
+        let s2 = square(longest);
+        if s2 <= most * most {
+            return self;
+        }
+        let change = (most / s2.sqrt() - 1.0) / s2;
+        for r in &mut self.half_edges {
+            let along = change * (r[0] * longest[0] + r[1] * longest[1]);
+            *r = [r[0] + along * longest[0], r[1] + along * longest[1]];
+        }
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_limit_shortens_the_longest_diagonal_alone() {
+        let long = ParticleDomain { half_edges: [[3.0, 1.0], [0.2, 0.4]] };
+        let limited = long.limited(2.0);
+        let [r1, r2] = limited.half_edges;
+        assert!((f64::hypot(r1[0] + r2[0], r1[1] + r2[1]) - 2.0).abs() < 1e-14);
+        let across = |d: &ParticleDomain| {
+            let [r1, r2] = d.half_edges;
+            // the extent normal to the diagonal does not change
+            [r1, r2].map(|r| (r[0] * 1.4 - r[1] * 3.2).abs())
+        };
+        for (a, b) in across(&long).iter().zip(across(&limited)) {
+            assert!((a - b).abs() < 1e-13);
+        }
+        let short = ParticleDomain { half_edges: [[0.4, 0.1], [-0.15, 0.3]] };
+        assert_eq!(short.limited(1.0), short);
+        // with one edge reversed it is the same domain, with its diagonals exchanged
+        let turned = ParticleDomain { half_edges: [[3.0, 1.0], [-0.2, -0.4]] };
+        assert_eq!(turned.limited(2.0).half_edges, [r1, r2.map(|x| -x)]);
+    }
+}

@@ -1,0 +1,124 @@
+//! What makes a shape function: its basis, its weights along one direction and in a plane.
+
+use super::domain::{DomainExtent, ParticleDomain};
+use super::plane::Plane;
+
+/// Nodal basis functions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Basis {
+    /// Piecewise linear functions.
+    Hat,
+    /// Quadratic B-splines.
+    Quadratic,
+    /// Cubic B-splines.
+    Cubic,
+}
+
+/// Courant numbers up to which schemes were measured to be stable [-], one per transfer: FLIP, PIC,
+/// APIC, XPIC(2), XPIC(5), FMPM(2), FMPM(4), FMPM(6), FMPM(8).
+///
+/// The numbers are data: `cargo run --release --example courant_limits` measures them again. It
+/// runs a shortened standard problem at Courant numbers from 0.1 to 1 in steps of 0.1, with the
+/// options of `inputs/flyer.json` (mid-point; with its viscosity and with one that does not grow)
+/// and `inputs/flyer_defaults.json` (leapfrog) that the transfer allows. A number is stable if, at
+/// this and at every smaller number, the run passes the monitor and its pressures stay below twice
+/// the impact pressure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CourantLimits {
+    /// Leapfrog stepping.
+    pub leapfrog: [f64; 9],
+    /// Mid-point stepping.
+    pub midpoint: [f64; 9],
+}
+
+/// Weights of one particle on a line of `K` nodes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weights<const K: usize> {
+    /// First node, relative to the lower node of the particle's cell.
+    pub first: i32,
+    /// Values of the nodes' functions; they sum to 1.
+    pub values: [f64; K],
+    /// Gradients of the nodes' functions [1/cell]; they sum to 0.
+    pub gradients: [f64; K],
+}
+
+impl<const K: usize> Weights<K> {
+    /// No weight, on nodes from `first` on.
+    pub(super) fn none(first: i32) -> Self {
+        Weights { first, values: [0.0; K], gradients: [0.0; K] }
+    }
+}
+
+/// A shape function along one direction.
+pub trait Shape: Copy + Send + Sync + 'static {
+    /// Dependence on the length of the particle: none, undeformed or current.
+    const EXTENT: DomainExtent;
+
+    /// Nodal basis functions from which the shape function is built.
+    const BASIS: Basis;
+
+    /// Measured limits of the Courant number.
+    const COURANT: CourantLimits;
+
+    /// Greatest number of nodes in the support of a particle of up to `length` [cells].
+    fn nodes(length: f64) -> usize;
+
+    /// Weights of a particle at `fraction` of its cell. `K` is at least `nodes(length)`.
+    fn weights<const K: usize>(fraction: f64, length: f64) -> Weights<K>;
+
+    /// Writes the weights in a plane of a particle at `fraction` of its cell to `out`; returns the
+    /// first node, relative to the lower node of the cell. `K` is at least `nodes` of the domain's
+    /// extent along either direction. By default the product of the weights along each direction.
+    #[inline(always)]
+    fn plane<const K: usize>(
+        fraction: [f64; 2],
+        domain: &ParticleDomain,
+        out: &mut Plane<'_, K>,
+    ) -> [i32; 2] {
+        product::<Self, K>(fraction, domain, out)
+    }
+}
+
+/// Weights of a box: products of the weights along each direction.
+#[inline(always)]
+pub(super) fn product<S: Shape, const K: usize>(
+    fraction: [f64; 2],
+    domain: &ParticleDomain,
+    out: &mut Plane<'_, K>,
+) -> [i32; 2] {
+    let extent = domain.extent();
+    let x: Weights<K> = S::weights(fraction[0], extent[0]);
+    let y: Weights<K> = S::weights(fraction[1], extent[1]);
+    let [gx, gy] = &mut out.gradients;
+    for l in 0..K {
+        for k in 0..K {
+            out.values[l][k] = x.values[k] * y.values[l];
+            gx[l][k] = x.gradients[k] * y.values[l];
+            gy[l][k] = x.values[k] * y.gradients[l];
+        }
+    }
+    [x.first, y.first]
+}
+
+impl<const K: usize> Plane<'_, K> {
+    /// Like [`Shape::plane`], for a particle with nonzero weights only at the first `M` nodes along
+    /// each direction: only these are computed.
+    #[inline(always)]
+    pub fn fill_first<S: Shape, const M: usize>(
+        &mut self,
+        fraction: [f64; 2],
+        domain: &ParticleDomain,
+    ) -> [i32; 2] {
+        let [mut values, mut gx, mut gy] = [[[0.0; M]; M]; 3];
+        let mut out = Plane { values: &mut values, gradients: [&mut gx, &mut gy] };
+        let first = S::plane(fraction, domain, &mut out);
+        let [to_x, to_y] = &mut self.gradients;
+        for (to, from) in [(&mut *self.values, &values), (to_x, &gx), (to_y, &gy)] {
+            to.fill([0.0; K]);
+            for (to, from) in to.iter_mut().zip(from) {
+                to[..M].copy_from_slice(from);
+            }
+        }
+        first
+    }
+}

@@ -1,0 +1,55 @@
+//! Exchanges of particles and of nodal values between patches.
+
+use decomp::{GhostExchange, GhostReach, Layout, NodeExchange};
+
+use crate::scene::{CheckedScene, FilterHalo};
+use crate::solver::{StencilRadius, Stepper};
+
+/// Plan of all exchanges, for one stencil radius and one distribution of patches.
+pub(super) struct ExchangePlan<const D: usize> {
+    pub(super) particles: GhostExchange<D>,
+    pub(super) nodes: NodeExchange<D>,
+    pub(super) inner_particles: Vec<bool>,
+    pub(super) inner_nodes: Vec<bool>,
+    pub(super) filter: FilterHalo,
+    /// Depth of the ghost layer around a patch [cells].
+    pub(super) ghosts: i64,
+    /// Layers that a patch computes beyond its own nodes.
+    pub(super) deeper: i64,
+}
+
+impl<const D: usize> ExchangePlan<D> {
+    pub(super) fn new(
+        scene: &CheckedScene,
+        stepper: &Stepper<D>,
+        layout: &Layout<D>,
+        reach: StencilRadius,
+        rank: usize,
+        workers: usize,
+    ) -> Self {
+        let options = &scene.scene.decomposition;
+        let extents = layout.patches().iter().flat_map(|p| (0..D).map(|a| p.extent(a)));
+        let narrowest = extents.min().unwrap_or(0);
+        let choose = || FilterHalo::choose(reach, narrowest, workers);
+        let filter = options.filter_halo.unwrap_or_else(choose);
+        let deeper = match filter {
+            FilterHalo::Exchange => 0,
+            FilterHalo::Redundant => reach.deeper(),
+        };
+        let ghosts = reach.cells() + deeper;
+        let notice = scene.skips_quiet().then(|| stepper.influence_radius(reach));
+        let particles =
+            GhostExchange::new(layout, rank, GhostReach { depth: ghosts, travel: 1, notice });
+        let nodes =
+            NodeExchange::layered(layout, rank, reach.halo(), reach.depth(ghosts), stepper.layers);
+        ExchangePlan {
+            inner_particles: particles.inner().to_vec(),
+            inner_nodes: nodes.inner().to_vec(),
+            particles,
+            nodes,
+            filter,
+            ghosts,
+            deeper,
+        }
+    }
+}

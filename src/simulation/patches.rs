@@ -1,0 +1,116 @@
+//! Choice of the patches: how many in each direction, and where the domain is cut.
+
+use decomp::{IndexBox, Layout, choose_cuts, even_cuts};
+
+use crate::geometry::Tile;
+use crate::scene::{CheckedBody, CheckedScene};
+use crate::solver::particles;
+
+/// Narrowest useful patch [cells].
+pub(crate) const LEAST_CELLS: usize = 16;
+
+/// Patch width at which one worker loses little at the edges of quiescent patches [cells]: on a
+/// line and in a plane.
+const SLEEPING_CELLS: [usize; 2] = [64, 32];
+
+/// Patches per worker, if several workers have patches that become quiescent or move, ...
+const PATCHES_A_WORKER: usize = 8;
+
+/// ... as long as patches are at least this wide [cells]: narrower ones cost more at their edges.
+const SHARED_CELLS: [usize; 2] = [256, 64];
+
+/// Number of patches for a scene on the given ranks and threads: as given in the scene; otherwise
+/// at least one for each thread of each rank unless they would be too narrow, and several per
+/// thread if patches may be quiescent or if threads share a plane.
+pub fn patch_counts(scene: &CheckedScene, ranks: usize, threads: usize) -> Vec<usize> {
+    match scene.dimension {
+        1 => patch_parts::<1>(scene, ranks, threads).to_vec(),
+        _ => patch_parts::<2>(scene, ranks, threads).to_vec(),
+    }
+}
+
+pub(super) fn patch_parts<const D: usize>(
+    scene: &CheckedScene,
+    ranks: usize,
+    threads: usize,
+) -> [usize; D] {
+    if let Some(patches) = &scene.scene.domain.patches {
+        return std::array::from_fn(|a| patches[a]);
+    }
+    let cells: [usize; D] = std::array::from_fn(|a| scene.cells[a]);
+    let workers = ranks * threads;
+    let of_edge = |edge: [usize; 2]| cells.iter().map(|n| (n / edge[D - 1]).max(1)).product();
+    let parts = |wanted: usize| choose_cuts(cells, wanted, LEAST_CELLS);
+    match workers {
+        1 if may_sleep::<D>(scene) => parts(of_edge(SLEEPING_CELLS)),
+        _ if may_sleep::<D>(scene) => {
+            let several: usize = of_edge(SHARED_CELLS);
+            parts(several.clamp(workers, PATCHES_A_WORKER * workers))
+        }
+        1 => [1; D],
+        _ => {
+            // in a plane four per worker: a long particle then widens the windows of fewer others,
+            // and patch interiors are computed while messages travel
+            let parts = parts(workers);
+            let halves = D > 1 && (0..D).all(|a| cells[a] / parts[a] >= 2 * SHARED_CELLS[D - 1]);
+            if halves { parts.map(|n| 2 * n) } else { parts }
+        }
+    }
+}
+
+/// Whether a body is at rest and free of stress, so that patches can be quiescent.
+pub(super) fn may_sleep<const D: usize>(scene: &CheckedScene) -> bool {
+    let mut bodies = scene.scene.bodies.iter().zip(&scene.bodies);
+    let velocity = scene.grid_velocity::<D>();
+    scene.skips_quiet()
+        && scene.scene.body_force.is_none()
+        && bodies.any(|(b, c)| c.motion.is_none() && c.velocity == velocity && b.pressure == 0.0)
+}
+
+/// Number of particles in the cells of `cells`, counted without creating them.
+pub(super) fn count_particles<const D: usize>(scene: &CheckedScene, cells: &IndexBox<D>) -> u64 {
+    let x = |a: usize, cell: i64| scene.scene.domain.lower[a] + cell as f64 * scene.cell_size[a];
+    let inside = |tile: &Tile| {
+        let at = (0..D).map(|a| (x(a, cells.lower[a]), tile.centre[a], x(a, cells.upper[a])));
+        at.into_iter().all(|(lower, at, upper)| lower <= at && at < upper)
+    };
+    let count = |body: &CheckedBody| match &body.tiles {
+        Some(tiles) => tiles.iter().filter(|tile| inside(tile)).count() as f64,
+        None => (0..D)
+            .map(|a| {
+                let (lower, upper) = (body.lower[a], body.upper[a]);
+                let inside = upper.min(x(a, cells.upper[a])) - lower.max(x(a, cells.lower[a]));
+                inside.max(0.0) / (upper - lower) * body.lattice[a] as f64
+            })
+            .product::<f64>()
+            .round(),
+    };
+    scene.bodies.iter().map(|body| count(body) as u64).sum()
+}
+
+/// Weight of a particle relative to that of an empty cell when the domain is cut.
+const PARTICLE_WEIGHT: u64 = 4;
+
+/// Domain cut into patches: of equal width if the scene gives their number, otherwise with about
+/// the same initial number of particles in each row and column of patches.
+pub(super) fn cut_domain<const D: usize>(
+    scene: &CheckedScene,
+    ranks: usize,
+    threads: usize,
+) -> Layout<D> {
+    let parts = patch_parts::<D>(scene, ranks, threads);
+    let domain = IndexBox::new([0; D], std::array::from_fn(|a| scene.cells[a] as i64));
+    let sides = scene.side_properties::<D>().map(|ends| ends.map(|side| side.ghosts));
+    if scene.scene.domain.patches.is_some() || parts == [1; D] {
+        return Layout::new(domain, sides, parts);
+    }
+    let cuts = std::array::from_fn(|a| {
+        let across = domain.count() as u64 / scene.cells[a] as u64;
+        let weights: Vec<u64> = particles::slices(scene, a)
+            .into_iter()
+            .map(|particles| across + PARTICLE_WEIGHT * particles)
+            .collect();
+        even_cuts(&weights, parts[a], LEAST_CELLS)
+    });
+    Layout::with_cuts(domain, sides, cuts)
+}

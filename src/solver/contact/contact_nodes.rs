@@ -1,0 +1,173 @@
+//! Meetings: nodes with particles of several bodies, and those particles.
+
+use std::ops::Range;
+
+use decomp::IndexBox;
+use smallvec::SmallVec;
+
+use crate::solver::particle_weights::lines;
+use crate::solver::shape_weights::Stencils;
+
+/// Particle that touches a meeting.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Touch {
+    /// Index of the particle.
+    pub particle: u32,
+    /// Index of the node in the particle's window, line by line.
+    pub at: u32,
+}
+
+/// Body at a meeting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Member<const D: usize> {
+    /// Layer of the body.
+    pub layer: usize,
+    /// Lumped mass [kg].
+    pub mass: f64,
+    /// Lumped velocity [m/s].
+    pub velocity: [f64; D],
+    /// Lumped acceleration without contact [m/s2].
+    pub acceleration: [f64; D],
+    /// Filled volume at the node, sum V N [cells].
+    pub volume: f64,
+    /// Gradient of the filled volume, sum V G [cells/m]; it points out of the body.
+    pub gradient: [f64; D],
+}
+
+/// Meetings of a patch, each with the particles that touch it in canonical order.
+#[derive(Clone, Debug, Default)]
+pub struct Meetings<const D: usize> {
+    /// Indices of the nodes in a layer.
+    nodes: Vec<u32>,
+    /// 1 + index of the meeting at each node of a layer; 0: none.
+    number: Vec<u32>,
+    /// Whether a window that starts at each node contains a meeting.
+    near: Vec<bool>,
+    starts: Vec<u32>,
+    touches: Vec<Touch>,
+}
+
+impl<const D: usize> Meetings<D> {
+    /// Finds the nodes in `nodes` at which more than one layer has more than `least` of `mass`,
+    /// among the nodes that each layer computes, and the particles that touch them (with windows
+    /// `K` wide), in the order of `runs`.
+    pub fn find<const K: usize>(
+        &mut self,
+        mass: &[f64],
+        least: f64,
+        nodes: &IndexBox<D>,
+        active: &[IndexBox<D>],
+        stencils: &Stencils,
+        runs: &[Range<usize>],
+    ) {
+        let (count, stride) = (nodes.count(), stencils.stride);
+        self.number.clear();
+        self.number.resize(count, 0);
+        self.near.clear();
+        self.near.resize(count, false);
+        self.nodes.clear();
+        for a in 0..active.len() {
+            for b in a + 1..active.len() {
+                let both = active[a].intersect(&active[b]);
+                if both.is_empty() {
+                    continue;
+                }
+                for node in both.lines_in(nodes).flatten() {
+                    let holds = |layer: usize| mass[layer * count + node] > least;
+                    if self.number[node] == 0 && holds(a) && holds(b) {
+                        self.nodes.push(node as u32);
+                        self.number[node] = self.nodes.len() as u32;
+                    }
+                }
+            }
+        }
+        let window = || (0..lines(K, D)).flat_map(move |l| (0..K).map(move |k| (l, k)));
+        for &node in &self.nodes {
+            for (line, k) in window() {
+                if let Some(first) = (node as usize).checked_sub(line * stride + k) {
+                    self.near[first] = true;
+                }
+            }
+        }
+        self.starts.clear();
+        self.starts.resize(self.nodes.len() + 1, 0);
+        if self.nodes.is_empty() {
+            return;
+        }
+        // first counted, then filled: each list keeps the order of the particles
+        for fills in [false, true] {
+            for particle in runs.iter().cloned().flatten() {
+                let first = stencils.first[particle] as usize % count;
+                if !self.near[first] {
+                    continue;
+                }
+                let values = stencils.particle::<K, D>(particle).values;
+                for (line, k) in window() {
+                    let meeting = self.number[first + line * stride + k] as usize;
+                    if meeting == 0 || values[line][k] <= 0.0 {
+                        continue;
+                    }
+                    let start = &mut self.starts[meeting - usize::from(fills)];
+                    if fills {
+                        let at = (line * K + k) as u32;
+                        self.touches[*start as usize] = Touch { particle: particle as u32, at };
+                    }
+                    *start += 1;
+                }
+            }
+            if fills {
+                // filling has moved each start to the next one
+                self.starts.rotate_right(1);
+                self.starts[0] = 0;
+            } else {
+                let mut sum = 0;
+                self.starts.iter_mut().for_each(|s| {
+                    sum += *s;
+                    *s = sum;
+                });
+                self.touches.resize(sum as usize, Touch::default());
+            }
+        }
+    }
+
+    /// Number of meetings.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Whether there are no meetings.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// Index of the node of a meeting in a layer.
+    pub fn node(&self, meeting: usize) -> usize {
+        self.nodes[meeting] as usize
+    }
+
+    /// Particles that touch a meeting, in canonical order.
+    pub fn touches(&self, meeting: usize) -> &[Touch] {
+        &self.touches[self.starts[meeting] as usize..self.starts[meeting + 1] as usize]
+    }
+
+    /// Bodies at a meeting with more than `least` of `mass`; `sums` are the components of momentum
+    /// and force.
+    pub fn members(
+        &self,
+        meeting: usize,
+        least: f64,
+        layers: usize,
+        mass: &[f64],
+        [momentum, force]: [[&[f64]; D]; 2],
+    ) -> SmallVec<[Member<D>; 3]> {
+        let count = self.number.len();
+        let at = |layer: usize| layer * count + self.node(meeting);
+        let member = |layer: usize| {
+            let i = at(layer);
+            let [velocity, acceleration] =
+                [momentum, force].map(|sums| std::array::from_fn(|a| sums[a][i] / mass[i]));
+            Member { layer, mass: mass[i], velocity, acceleration, volume: 0.0, gradient: [0.0; D] }
+        };
+        (0..layers).filter(|&l| mass[at(l)] > least).map(member).collect()
+    }
+}

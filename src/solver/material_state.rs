@@ -1,0 +1,74 @@
+//! Material state of a particle: deviator, temperature and the input of the strength model.
+
+use std::ops::Range;
+
+use super::Stepper;
+use crate::material::constitutive::Deviators;
+use crate::material::strength::MaterialState;
+use crate::solver::patch::Patch;
+
+impl<const D: usize> Stepper<D> {
+    /// Columns of the deviator, from `first` on.
+    pub(crate) fn deviator<'a>(
+        &self,
+        patch: &'a Patch<D>,
+        first: usize,
+        particles: Range<usize>,
+    ) -> Deviators<'a> {
+        let column = |k: usize| &patch.block.columns[first + k][particles.clone()];
+        Deviators { xx: column(0), plane: (D > 1).then(|| [column(1), column(2)]) }
+    }
+
+    /// Input of the strength model for a particle, at the volume ratio `jacobian` and `pressure`
+    /// [Pa].
+    pub(crate) fn condition(
+        &self,
+        patch: &Patch<D>,
+        r: usize,
+        jacobian: f64,
+        pressure: f64,
+    ) -> MaterialState {
+        let temperature = self.columns.temperature.map_or(f64::NAN, |t| patch.block.columns[t][r]);
+        MaterialState { compression: 1.0 / jacobian, pressure, temperature }
+    }
+
+    /// Heat that own particle `r` lacks to reach absolute zero, per unit mass [J/kg]: cv max(0,
+    /// -T); `None` without a temperature.
+    pub fn heat_below_zero_kelvin(&self, block: &decomp::Block<D>, r: usize) -> Option<f64> {
+        let temperature = block.columns[self.columns.temperature?][r];
+        let thermal = self.thermals[block.columns[self.columns.body][r] as usize].as_ref()?;
+        // max() would ignore NaN
+        Some(if temperature >= 0.0 { 0.0 } else { -thermal.specific_heat * temperature })
+    }
+
+    /// Temperature of a particle from its energy [K]; `None` if it does not follow from the energy.
+    /// `before` is the temperature for the strength model [K].
+    pub(crate) fn temperature(
+        &self,
+        patch: &Patch<D>,
+        body: usize,
+        r: usize,
+        pressure: f64,
+        before: f64,
+    ) -> Option<f64> {
+        let c = &self.columns;
+        let of = self.thermals[body].as_ref()?;
+        of.isentrope.as_ref()?;
+        let column = |k: usize| patch.block.columns[k][r];
+        let j = column(c.jacobian);
+        let mut energy = column(c.energy);
+        if let (Some(first), Some(strength)) = (c.deviator, &self.strengths[body]) {
+            let s = self.deviator(patch, first, r..r + 1).at(0);
+            let at = MaterialState { compression: 1.0 / j, pressure, temperature: before };
+            let modulus = strength.shear_modulus(&at);
+            if modulus > 0.0 {
+                energy -=
+                    s.double_dot(&s) * column(c.volume0) * j / (4.0 * modulus * column(c.mass));
+            }
+        }
+        energy -= c.stored_work.map_or(0.0, column);
+        // failed material that has separated is not stretched beyond its initial volume
+        let failed = c.tension_free[body].is_some_and(|damage| column(damage) >= 1.0);
+        of.temperature(if failed { j.min(1.0) } else { j }, energy)
+    }
+}
