@@ -2,7 +2,8 @@
 
 use std::ffi::OsString;
 use std::fs::File;
-use std::io::{PipeWriter, Read, Seek};
+use std::io::PipeWriter;
+use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus};
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard};
@@ -12,6 +13,10 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_flyer-mpm");
 
 /// Several ranks that wait for each other are slow on few cores, so such calls run alone.
 static CORES: RwLock<()> = RwLock::new(());
+
+/// Time for mpirun to end itself after it has reported the exit code of its ranks. Open MPI 4.1
+/// sometimes hangs or crashes there, in `PMIx_server_finalize`.
+const LAUNCHER_END: Duration = Duration::from_secs(10);
 
 // the guards are kept only for their drop
 enum Turn {
@@ -128,18 +133,26 @@ impl Started {
     /// Waits for the end; beyond the limit the process is killed and the test fails.
     #[track_caller]
     pub fn end(mut self) -> Ended {
+        let mut reported: Option<Instant> = None;
         let status = loop {
             if let Some(status) = self.child.try_wait().unwrap() {
                 break status;
             }
+            if reported.is_none() && reported_code(&text(&self.stderr)).is_some() {
+                reported = Some(Instant::now());
+            }
+            if reported.is_some_and(|at| at.elapsed() > LAUNCHER_END) {
+                self.kill();
+                break self.child.wait().unwrap();
+            }
             if self.since.elapsed() > self.limit {
                 self.kill();
-                let said = text(&mut self.stderr);
+                let said = text(&self.stderr);
                 panic!("{} ran for more than {:?}; it said: {said}", self.what, self.limit);
             }
             std::thread::sleep(Duration::from_millis(5));
         };
-        Ended { status, stdout: text(&mut self.stdout), stderr: text(&mut self.stderr) }
+        Ended { status, stdout: text(&self.stdout), stderr: text(&self.stderr) }
     }
 
     /// Kills the process; mpirun is given time to end its ranks.
@@ -163,6 +176,12 @@ impl Drop for Started {
 }
 
 impl Ended {
+    /// Exit code of the program. That of its ranks if mpirun itself ended by a signal after it had
+    /// reported the code.
+    pub fn code(&self) -> Option<i32> {
+        self.status.code().or_else(|| reported_code(&self.stderr))
+    }
+
     /// Asserts success and returns stdout.
     #[track_caller]
     pub fn succeeded(self) -> String {
@@ -175,7 +194,7 @@ impl Ended {
     /// Asserts a failure with one line of message that contains all fragments, and an empty stdout.
     #[track_caller]
     pub fn failed(&self, fragments: &[&str]) {
-        assert!(self.status.code().is_some_and(|c| c != 0), "{}: {}", self.status, self.stderr);
+        assert!(self.code().is_some_and(|c| c != 0), "{}: {}", self.status, self.stderr);
         assert!(!self.stderr.contains("panicked"), "{}", self.stderr);
         assert_eq!(self.stdout, "");
         let errors = self.errors();
@@ -190,15 +209,21 @@ impl Ended {
     }
 }
 
+/// Exit code of the ranks that mpirun has reported. It does so when all its ranks have ended.
+fn reported_code(stderr: &str) -> Option<i32> {
+    stderr.lines().find_map(|line| line.trim().strip_prefix("Exit code:"))?.trim().parse().ok()
+}
+
 /// Sends a signal, given by name.
 pub fn signal(name: &str, process: u32) {
     let sent = Command::new("kill").args([name, &process.to_string()]).status();
     assert!(sent.is_ok(), "cannot call kill");
 }
 
-fn text(file: &mut File) -> String {
-    let mut bytes = Vec::new();
-    file.rewind().unwrap();
-    file.read_to_end(&mut bytes).unwrap();
-    String::from_utf8_lossy(&bytes).into_owned()
+/// Content of a file to which a process may still write. The file position, which that process
+/// shares, does not move.
+fn text(file: &File) -> String {
+    let mut bytes = vec![0; file.metadata().unwrap().len() as usize];
+    let read = file.read_at(&mut bytes, 0).unwrap();
+    String::from_utf8_lossy(&bytes[..read]).into_owned()
 }
