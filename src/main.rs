@@ -334,6 +334,9 @@ fn announce(comm: &dyn Comm, scene: &CheckedScene, threads: usize) {
         scene.cell_count(),
         comm.size(),
     );
+    if let Some(choice) = &scene.method_choice {
+        eprintln!("method {choice}");
+    }
 }
 
 fn side_command(command: Command) -> Outcome<()> {

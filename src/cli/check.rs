@@ -49,6 +49,10 @@ where
     line("held by the monitor", format!("{} bytes a particle", columns.state_bytes(D)));
     let limit = scene.courant_limit();
     line("courant", format!("{}, this method's limit {limit}", scene.scene.time.courant));
+    if let Some(choice) = &scene.method_choice {
+        line("method", format!("preset {}", choice.preset.name()));
+        choice.reasons.iter().for_each(|reason| line("", reason.clone()));
+    }
     for warning in &scene.warnings {
         line("warning", warning.clone());
     }

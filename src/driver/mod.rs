@@ -442,6 +442,7 @@ where
         version: env!("CARGO_PKG_VERSION").into(),
         origin: Some(folder.origin()),
         scene: as_run,
+        method_choice: scene.method_choice.clone(),
         ranks: comm.size(),
         threads: options.threads,
         patches: layout.parts().to_vec(),

@@ -14,7 +14,7 @@ use super::errors::{LONGEST_VALUE, SceneError, SceneFault, one_line, shorten};
 use super::library::{inline_courses, inline_files, resolve};
 use super::migrate::check_format;
 use super::overrides::{apply, check_allowed};
-use super::{BYTES_PER_PARTICLE, CheckedScene, Scene, validate::conform};
+use super::{BYTES_PER_PARTICLE, CheckedScene, Scene, preset, validate::conform};
 use crate::geometry::read_points;
 use crate::scene::input_file::{self, InputFault};
 
@@ -97,6 +97,8 @@ pub fn check_size(
     let read = || -> Option<Scene> {
         let mut value = parse_json(bytes, file).ok()?;
         sets.iter().try_for_each(|set| apply(&mut value, set)).ok()?;
+        resolve(&mut value).ok()?;
+        preset::expand(&mut value).ok()?;
         conform(&value).ok()?;
         serde_json::from_value(value).ok()
     };
@@ -133,11 +135,14 @@ pub fn check(scene: Scene, file: &str) -> Result<CheckedScene, SceneError> {
 fn from_value(mut value: Value, file: &str) -> Result<CheckedScene, SceneError> {
     resolve(&mut value).map_err(|fault| fault.within(file))?;
     check_format(&value).map_err(|fault| fault.within(file))?;
+    let choice = preset::expand(&mut value).map_err(|fault| fault.within(file))?;
     conform(&value).map_err(|fault| fault.within(file))?;
     let scene = serde_path_to_error::deserialize(value).map_err(|e| {
         SceneFault::missing(e.path().to_string(), e.inner().to_string()).within(file)
     })?;
-    CheckedScene::new(scene, file).map_err(|fault| fault.within(file))
+    let mut checked = CheckedScene::new(scene, file).map_err(|fault| fault.within(file))?;
+    checked.method_choice = choice;
+    Ok(checked)
 }
 
 /// Parses JSON text; a duplicate key is an error.

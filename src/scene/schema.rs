@@ -3,6 +3,8 @@
 use schemars::{Schema, generate::SchemaSettings, transform::RecursiveTransform};
 use serde_json::{Value, json};
 
+use super::{Preset, Scene};
+
 /// Largest magnitude of any number in a scene. Products of four such numbers, for example an energy
 /// of a body, stay finite.
 pub(super) const GREATEST: f64 = 1e75;
@@ -14,8 +16,38 @@ pub(super) const LEAST: f64 = 1e-150;
 /// The JSON schema of a scene (draft 2020-12); units are in the descriptions. A number without
 /// bounds of its own has the general bounds.
 pub fn schema() -> Value {
+    let mut schema = full_schema();
+    let generator = SchemaSettings::draft2020_12().into_generator();
+    let mut names = generator.into_root_schema_for::<Preset>().to_value();
+    let names_text = names["description"].take();
+    let mut over = schema["$defs"]["Method"].clone();
+    over["required"] = json!(["preset"]);
+    over["description"] = json!("A preset, and keys that override those of its method.");
+    over["properties"]["preset"] = json!({"$ref": "#/$defs/Preset"});
+    for key in ["$schema", "title"] {
+        names.as_object_mut().and_then(|names| names.remove(key));
+    }
+    names["description"] = names_text;
+    schema["$defs"]["Preset"] = names;
+    schema["$defs"]["MethodOverPreset"] = over;
+    let options =
+        ["Preset", "Method", "MethodOverPreset"].map(|of| json!({"$ref": format!("#/$defs/{of}")}));
+    schema["properties"]["method"] = json!({
+        "description": "Numerical method: the name of a preset, a method in full, or a preset with \
+                        keys over it; absent: `default`.",
+        "anyOf": options,
+    });
+    if let Some(required) = schema["required"].as_array_mut() {
+        required.retain(|key| key != "method");
+    }
+    schema
+}
+
+/// The JSON schema of a scene whose method is given in full, as every scene is once its preset is
+/// expanded.
+pub(super) fn full_schema() -> Value {
     let settings = SchemaSettings::draft2020_12().with_transform(RecursiveTransform(bound));
-    settings.into_generator().into_root_schema_for::<super::Scene>().to_value()
+    settings.into_generator().into_root_schema_for::<Scene>().to_value()
 }
 
 /// Adds the general bounds to those of one number.

@@ -2,7 +2,7 @@
 //!
 //! Errors of type, name and bounds are found here rather than by serde, whose messages lose the
 //! path inside tagged enums. The schema in an editor, the output of `schema` and the input that a
-//! run accepts can therefore not differ. Only those JSON schema keywords are supported that the
+//! run accepts can therefore not differ. A preset of the method is expanded before. Only those JSON schema keywords are supported that the
 //! structs of the scene produce.
 
 use std::cell::RefCell;
@@ -34,7 +34,7 @@ fn entry_key(entries: &[Value], i: usize) -> String {
 
 /// Validates `scene` against the schema; returns the first fault.
 pub(super) fn conform(scene: &Value) -> Result<(), SceneFault> {
-    let root = super::schema();
+    let root = super::schema::full_schema();
     let empty = Map::new();
     let definitions = root.get("$defs").and_then(Value::as_object).unwrap_or(&empty);
     Conform { definitions, open: RefCell::default() }.check(&root, scene)

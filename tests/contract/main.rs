@@ -7,6 +7,7 @@ mod bad_files;
 mod bad_input;
 mod command_line;
 mod commands;
+mod default_method;
 mod estimates;
 mod every_scene;
 mod forecasts;

@@ -130,6 +130,12 @@ impl Started {
         self.child.try_wait().unwrap().is_none()
     }
 
+    /// Text on stderr so far.
+    #[allow(dead_code)] // used by other targets
+    pub fn said(&self) -> String {
+        text(&self.stderr)
+    }
+
     /// Waits for the end; beyond the limit the process is killed and the test fails.
     #[track_caller]
     pub fn end(mut self) -> Ended {
@@ -138,7 +144,7 @@ impl Started {
             if let Some(status) = self.child.try_wait().unwrap() {
                 break status;
             }
-            if reported.is_none() && reported_code(&text(&self.stderr)).is_some() {
+            if reported.is_none() && reported_code(&self.said()).is_some() {
                 reported = Some(Instant::now());
             }
             if reported.is_some_and(|at| at.elapsed() > LAUNCHER_END) {

@@ -9,6 +9,8 @@ mod alarms;
 mod cases;
 mod estimates;
 mod found;
+#[path = "../common/impact_scenes.rs"]
+mod impact_scenes;
 #[path = "../common/random_scenes.rs"]
 mod random_scenes;
 mod search;

@@ -8,6 +8,7 @@ use proptest::test_runner::{Config, TestRunner};
 use serde_json::Value;
 
 use crate::cases::random::{Verdict, verdict};
+use crate::impact_scenes;
 use crate::valid_scenes::{calm_scene, scene};
 
 /// Scenes of one search, unless `VALID_SCENES` gives their number.
@@ -74,4 +75,12 @@ fn slow_bodies_are_never_ended() {
     let number = cases(2);
     let count = search(calm_scene(), number, false);
     assert!(count.well as u32 > number / 2, "{count:?}");
+}
+
+/// Impacts without a method get the default one, which no run-time check ends.
+#[test]
+fn impacts_with_the_default_method_are_never_ended() {
+    let number = cases(15);
+    let count = search(impact_scenes::scene(), number, false);
+    assert!(count.refused == 0, "{count:?}");
 }

@@ -14,6 +14,7 @@ use super::origin::Origin;
 use crate::accuracy::estimate::EstimatedErrors;
 use crate::accuracy::plan::Verdict;
 use crate::effects::EffectUse;
+use crate::scene::MethodChoice;
 use crate::scene::input_file::LARGEST_NUMBERS;
 
 /// Format of `summary.json`, increased by one whenever a key is renamed.
@@ -33,6 +34,9 @@ pub struct Summary {
     pub origin: Option<Origin>,
     /// The scene as run, with `--set` and defaults applied.
     pub scene: Value,
+    /// Choice of the method; absent if the scene gives it in full.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub method_choice: Option<MethodChoice>,
     /// Number of ranks.
     pub ranks: usize,
     /// Threads per rank.
@@ -319,6 +323,7 @@ pub(super) mod tests {
             version: "0.1.0".into(),
             origin: None,
             scene: json!({"domain": {"lower": [0.0]}}),
+            method_choice: None,
             ranks: 2,
             threads: 1,
             patches: vec![4],

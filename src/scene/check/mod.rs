@@ -26,6 +26,7 @@ use super::errors::{SceneFault, one_line};
 use super::model::{Course, Eos, Geometry, Material, Scene, Side, SideProperties};
 use crate::material::parameter_error::wrong_length;
 use crate::scene::moving_frame::Frame;
+use crate::scene::preset::MethodChoice;
 
 pub use bodies::CheckedBody;
 pub use boundary::{Piston, Wall};
@@ -56,6 +57,8 @@ pub struct CheckedScene {
     pub history_interval: Option<f64>,
     /// Warnings about settings that run but are known to be inaccurate, one line each.
     pub warnings: Vec<String>,
+    /// Choice of the method; `None` if the scene gives it in full.
+    pub method_choice: Option<MethodChoice>,
 }
 
 impl CheckedScene {
@@ -78,6 +81,7 @@ impl CheckedScene {
             warnings,
             file: file.to_string(),
             scene,
+            method_choice: None,
         };
         memory::check_counts(&checked)?;
         method::check_bodies(&checked)?;

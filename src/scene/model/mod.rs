@@ -49,7 +49,7 @@ pub struct Scene {
     pub domain: Domain,
     /// End time and time step control.
     pub time: Time,
-    /// Numerical method.
+    /// Numerical method, in full: the name of a preset is expanded when a scene is read.
     pub method: Method,
     /// Distribution of the work over ranks and threads; it changes no bit of the results.
     #[serde(default)]
@@ -61,7 +61,8 @@ pub struct Scene {
     /// Bodies; particles are numbered in this order.
     #[schemars(length(min = 1))]
     pub bodies: Vec<Body>,
-    /// Artificial viscosity; absent: none.
+    /// Artificial viscosity; absent: that of the method's preset, or none if the method is given in
+    /// full; null: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub artificial_viscosity: Option<ArtificialViscosity>,
     /// Body force per unit mass on every particle; absent: none.

@@ -1,0 +1,348 @@
+//! Methods by name: a scene without `method`, or with one of the names of [`Preset`], gets a complete
+//! method and artificial viscosity that suit its contents.
+//!
+//! Each preset is a base method and a list of rules. A rule changes keys if the scene contains what
+//! it names, and gives its reason. Explicit keys of the scene come last; an option of the preset
+//! that they exclude is left out.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
+
+use super::errors::{SceneFault, suggest};
+use super::model::{Material, Transfer};
+
+/// A complete method and artificial viscosity by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Preset {
+    /// The most accurate method that was measured to be stable with the contents of the scene.
+    Default,
+    /// Of the methods that pass every hard case, the one with the least error there.
+    Robust,
+    /// The method with the least error of plane impacts, in the total-Lagrangian frame where the
+    /// bodies touch; for shocks that leave bodies in contact.
+    Sharpest,
+}
+
+/// The preset of a scene, and why its options were chosen.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MethodChoice {
+    /// Name of the preset.
+    pub preset: Preset,
+    /// Reasons, one for each group of options.
+    pub reasons: Vec<String>,
+}
+
+impl std::fmt::Display for MethodChoice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {}", self.preset.name(), self.reasons.join("; "))
+    }
+}
+
+/// What a scene contains, as far as the choice of a method depends on it.
+#[derive(Default)]
+struct Contents {
+    plane: bool,
+    contact: bool,
+    /// Bodies on a line touch each other, and no side lets particles out.
+    joined: bool,
+    /// Some body is a fluid, or a solid whose pressure follows an equation of state of fluids.
+    fluid: bool,
+    strength: bool,
+    failure: bool,
+    gas: bool,
+    burn: bool,
+    porous: bool,
+}
+
+struct Rule {
+    applies: fn(&Contents) -> bool,
+    /// Keys of the method and of the viscosity that change; `null` removes a key.
+    changes: fn() -> [Value; 2],
+    reason: &'static str,
+}
+
+/// Rules of all presets, in the order in which they act.
+const RULES: &[Rule] = &[
+    Rule {
+        applies: |c| c.contact || c.failure || c.gas,
+        changes: || [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), moderate()],
+        reason: "FMPM(6) and a moderate viscosity, since surfaces part or gas expands",
+    },
+    Rule {
+        applies: |c| c.gas,
+        changes: || [json!({"domain_limit": 4.0}), json!({})],
+        reason: "a domain limit, since gas may expand without bound",
+    },
+    Rule {
+        applies: |c| c.strength,
+        changes: || {
+            let viscosity = json!({"linear": 0.2, "quadratic": 2.0, "growth": null});
+            [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), viscosity]
+        },
+        reason: "a strong viscosity, since a sharper front damps elastic precursors too much",
+    },
+    Rule {
+        applies: |c| c.porous,
+        changes: || {
+            let viscosity = json!({"linear": 0.5, "quadratic": 2.0, "growth": null, "limiter": null, "limited": null});
+            [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), viscosity]
+        },
+        reason: "the strongest viscosity, since oscillations ahead of a shock would crush pores",
+    },
+    Rule {
+        applies: |c| c.plane,
+        changes: || {
+            let relaxation = json!({"rate": 0.2, "interval": 1});
+            let method = json!({"transfer": {"fmpm": 4}, "edge_mask": 0.3, "domain_limit": 1.0,
+                "pressure_relaxation": relaxation, "frame": null});
+            [method, json!({"linear": 0.1, "quadratic": 0.75, "growth": null})]
+        },
+        reason: "FMPM(4) with a domain limit, in two dimensions",
+    },
+    Rule {
+        applies: |c| c.plane && c.strength,
+        changes: || [json!({"pressure_relaxation": {"rate": 0.4, "interval": 5}}), moderate()],
+        reason: "relaxation every fifth step, since plastic flow in two dimensions needs little",
+    },
+    Rule {
+        applies: |c| c.plane && c.gas,
+        changes: || {
+            let viscosity = json!({"linear": 0.1, "quadratic": 0.5, "limited": "both"});
+            [json!({"transfer": {"fmpm": 2}}), viscosity]
+        },
+        reason: "FMPM(2) and a limiter on both terms, since gas in two dimensions may converge",
+    },
+    Rule {
+        applies: |c| c.burn,
+        changes: || [json!({"transfer": {"fmpm": 2}}), moderate()],
+        reason: "FMPM(2), since burn fronts grow at higher orders",
+    },
+    Rule {
+        applies: |c| !c.fluid,
+        changes: || [json!({"pressure_relaxation": null}), json!({})],
+        reason: "no pressure relaxation, since every body is elastic",
+    },
+];
+
+/// The viscosity for scenes in which a sharp front costs stability.
+fn moderate() -> Value {
+    json!({"linear": 0.1, "quadratic": 1.25, "growth": null})
+}
+
+impl Preset {
+    const ALL: [Preset; 3] = [Preset::Default, Preset::Robust, Preset::Sharpest];
+
+    /// Name in a scene.
+    pub fn name(self) -> &'static str {
+        match self {
+            Preset::Default => "default",
+            Preset::Robust => "robust",
+            Preset::Sharpest => "sharpest",
+        }
+    }
+
+    /// The preset that `value` names.
+    fn of(value: &Value, path: &str) -> Result<Preset, SceneFault> {
+        let name = value.as_str().unwrap_or("");
+        Preset::ALL.into_iter().find(|preset| preset.name() == name).ok_or_else(|| {
+            let known = Preset::ALL.iter().map(|preset| preset.name());
+            let or = if path == "method" { ", or an object with method.shape" } else { "" };
+            SceneFault::new(path, value, format!("unknown name{}{or}", suggest(name, known)))
+        })
+    }
+
+    /// Method, viscosity and reason before the rules.
+    fn base(self, contents: &Contents) -> ([Value; 2], &'static str) {
+        let method = json!({
+            "shape": "cpdi_bspline_quadratic",
+            "transfer": {"fmpm": 8},
+            "stepping": "midpoint",
+            "energy": "compatible",
+            "filter_heat": true,
+            "pressure_relaxation": {"rate": 0.1, "interval": 1},
+            "edge_mask": 0.4
+        });
+        let viscosity = json!({
+            "linear": 0.05,
+            "quadratic": 0.5,
+            "growth": {"rate": 6.0, "max": 2.0},
+            "limiter": "christensen",
+            "limited": "linear"
+        });
+        let mut base = [method, viscosity];
+        let reason = match self {
+            Preset::Default => {
+                merge(&mut base, [json!({}), json!({"linear": 0.15})]);
+                "FMPM(8), with the viscosity that keeps peaks within half a per cent"
+            }
+            Preset::Robust => {
+                let changes = [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), moderate()];
+                merge(&mut base, changes);
+                "FMPM(6), least error over all hard cases"
+            }
+            Preset::Sharpest if contents.joined => {
+                let relaxation = json!({"rate": 0.05, "interval": 1});
+                let method = json!({"frame": "total_lagrangian", "transfer": {"fmpm": 10},
+                    "edge_mask": 0.3, "pressure_relaxation": relaxation});
+                merge(&mut base, [method, json!({})]);
+                "FMPM(10) in the total-Lagrangian frame, for bodies that touch and stay in contact"
+            }
+            Preset::Sharpest => "FMPM(8), least error of plane impacts in the updated frame",
+        };
+        (base, reason)
+    }
+}
+
+/// Replaces the preset of a scene by its method and viscosity. Returns the choice; `None` if the
+/// scene gives its method in full.
+pub(super) fn expand(scene: &mut Value) -> Result<Option<MethodChoice>, SceneFault> {
+    let Some(keys) = scene.as_object_mut() else { return Ok(None) };
+    let (preset, explicit) = match keys.get("method") {
+        None | Some(Value::Null) => (Preset::Default, Map::new()),
+        Some(Value::Object(method)) => match method.get("preset") {
+            None => return Ok(None),
+            Some(name) => {
+                let mut explicit = method.clone();
+                explicit.remove("preset");
+                (Preset::of(name, "method.preset")?, explicit)
+            }
+        },
+        Some(name @ Value::String(_)) => (Preset::of(name, "method")?, Map::new()),
+        // reported by the check against the schema
+        Some(_) => return Ok(None),
+    };
+    let contents = Contents::of(keys);
+    let ([mut method, viscosity], reason) = choose(preset, &contents);
+    let mut reasons = vec![reason.to_string()];
+    reasons.extend(acting(preset, &contents).map(|rule| rule.reason.to_string()));
+    if let Some(excluded) = method.as_object_mut().map(|m| override_keys(m, explicit)) {
+        reasons.extend(excluded);
+    }
+    keys.insert("method".into(), method);
+    match keys.contains_key("artificial_viscosity") {
+        true => reasons.push("the viscosity is that of the scene".into()),
+        false => drop(keys.insert("artificial_viscosity".into(), viscosity)),
+    }
+    Ok(Some(MethodChoice { preset, reasons }))
+}
+
+fn acting(preset: Preset, contents: &Contents) -> impl Iterator<Item = &'static Rule> {
+    // the base of this preset needs no rule for what touches
+    let sharp = preset == Preset::Sharpest && contents.joined;
+    RULES.iter().filter(move |rule| !sharp && (rule.applies)(contents))
+}
+
+/// Method, viscosity and reason of a preset with these contents.
+fn choose(preset: Preset, contents: &Contents) -> ([Value; 2], &'static str) {
+    let (mut chosen, reason) = preset.base(contents);
+    for rule in acting(preset, contents) {
+        merge(&mut chosen, (rule.changes)());
+    }
+    (chosen, reason)
+}
+
+/// Changes keys of the method and of the viscosity.
+fn merge(base: &mut [Value; 2], changes: [Value; 2]) {
+    for (base, changes) in base.iter_mut().zip(changes) {
+        let (Some(base), Value::Object(changes)) = (base.as_object_mut(), changes) else {
+            continue;
+        };
+        for (key, value) in changes {
+            match value {
+                Value::Null => base.remove(&key),
+                value => base.insert(key, value),
+            };
+        }
+    }
+}
+
+/// Overrides keys of a preset's method. Returns, in words, the options of the preset that these
+/// keys exclude and that are therefore left out.
+fn override_keys(method: &mut Map<String, Value>, explicit: Map<String, Value>) -> Vec<String> {
+    let is = |key: &str, name: &str| explicit.get(key).is_some_and(|value| value == name);
+    let plan = explicit.get("transfer");
+    let plan = plan.and_then(|t| serde_json::from_value::<Transfer>(t.clone()).ok());
+    let plan = plan.map(|transfer| transfer.plan());
+    let mut excluded: Vec<&str> = Vec::new();
+    if is("stepping", "leapfrog") {
+        excluded.extend(["energy", "filter_heat", "pressure_relaxation", "edge_mask"]);
+    }
+    if let Some(plan) = plan {
+        excluded.extend((!plan.filters).then_some("filter_heat"));
+        excluded.extend((!plan.full_mass_matrix).then_some("edge_mask"));
+        excluded.extend(plan.is_affine().then_some("energy"));
+    }
+    if is("frame", "total_lagrangian") || explicit.get("shape").is_some_and(|s| !deforms(s)) {
+        excluded.push("domain_limit");
+    }
+    let excluded: Vec<&str> =
+        excluded.into_iter().filter(|key| method.remove(*key).is_some()).collect();
+    let mut reasons = Vec::new();
+    if !explicit.is_empty() {
+        let names: Vec<&str> = explicit.keys().map(String::as_str).collect();
+        reasons.push(format!("from the scene: {}", names.join(", ")));
+    }
+    if !excluded.is_empty() {
+        reasons
+            .push(format!("left out, since the scene's keys exclude it: {}", excluded.join(", ")));
+    }
+    for (key, value) in explicit {
+        match value {
+            Value::Null => method.remove(&key),
+            value => method.insert(key, value),
+        };
+    }
+    reasons
+}
+
+/// Whether the particle domains of a shape function deform.
+fn deforms(shape: &Value) -> bool {
+    use crate::shape::{DomainExtent, ShapeKind};
+    let shape = serde_json::from_value::<ShapeKind>(shape.clone());
+    shape.is_ok_and(|shape| shape.extent() == DomainExtent::Current)
+}
+
+impl Contents {
+    /// Reads the contents of a scene whose library names are resolved. What is not understood counts
+    /// as absent; the check of the scene reports it.
+    fn of(scene: &Map<String, Value>) -> Self {
+        let domain = scene.get("domain").unwrap_or(&Value::Null);
+        let dimension = domain["lower"].as_array().map_or(1, Vec::len);
+        let bodies = scene.get("bodies").and_then(Value::as_array).into_iter().flatten();
+        let used =
+            bodies.filter_map(|body| scene.get("materials")?.get(body.get("material")?.as_str()?));
+        let used = used.filter_map(|json| {
+            let material = serde_json::from_value::<Material>(json.clone()).ok()?;
+            Some((material, !json["eos"]["burn"].is_null()))
+        });
+        let used: Vec<(Material, bool)> = used.collect();
+        let any = |such: fn(&Material, bool) -> bool| used.iter().any(|(m, burns)| such(m, *burns));
+        Contents {
+            plane: dimension > 1,
+            contact: scene.get("contact").is_some_and(|contact| !contact.is_null()),
+            joined: dimension == 1 && are_joined(scene),
+            fluid: any(|m, _| !m.eos.is_solid()),
+            strength: any(|m, _| m.strength.is_some()),
+            failure: any(|m, _| m.failure.is_some()),
+            gas: any(|m, burns| m.eos.is_gas() || burns),
+            burn: any(|_, burns| burns),
+            porous: any(|m, burns| m.eos.has_history() && !burns),
+        }
+    }
+}
+
+/// Whether the boxes of all bodies on a line form one piece, and the sides let no particle out.
+fn are_joined(scene: &Map<String, Value>) -> bool {
+    let end = |body: &Value, end: &str| body["box"][end][0].as_f64();
+    let bodies = scene.get("bodies").and_then(Value::as_array).into_iter().flatten();
+    let spans: Option<Vec<[f64; 2]>> =
+        bodies.map(|body| Some([end(body, "lower")?, end(body, "upper")?])).collect();
+    let Some(mut spans) = spans.filter(|spans| spans.len() > 1) else { return false };
+    spans.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let touch = spans.windows(2).all(|pair| pair[0][1] == pair[1][0]);
+    let open = scene.get("boundary").is_some_and(|sides| sides.to_string().contains("outflow"));
+    let contact = scene.get("contact").is_some_and(|contact| !contact.is_null());
+    touch && !open && !contact
+}

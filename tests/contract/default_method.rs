@@ -1,0 +1,62 @@
+//! A scene without `method`: what the program tells of its choice, and how accurate it is.
+
+use serde_json::json;
+
+use crate::home::Home;
+
+/// Tungsten on tantalum at 800 m/s. The exact pressure between them is 29.807 GPa.
+#[test]
+fn an_impact_without_a_method_is_accurate() {
+    let plate = |name: &str, ends: [f64; 2], speed: f64| {
+        json!({"name": name, "material": name, "velocity": [speed], "particles_per_cell": [2],
+               "box": {"lower": [ends[0]], "upper": [ends[1]]}})
+    };
+    let gauge = |name: &str, x: f64| json!({"name": name, "body": "tantalum", "at": [x]});
+    let gauges = [gauge("gauge_1", 0.0005), gauge("gauge_2", 0.0015), gauge("gauge_3", 0.0025)];
+    let scene = json!({
+        "title": "Tungsten on tantalum",
+        "domain": {"lower": [-0.002], "upper": [0.008], "cell_size": 1e-5},
+        "time": {"end": 1e-6},
+        "materials": {"tungsten": {"library": "tungsten"}, "tantalum": {"library": "tantalum"}},
+        "bodies": [plate("tungsten", [-0.001, 0.0], 800.0), plate("tantalum", [0.0, 0.006], 0.0)],
+        "output": {
+            "profiles": {"times": [3e-7, 6e-7, 1e-6]},
+            "histories": {"interval": 1e-9, "tracers": gauges},
+        },
+        "reference": {"flyer_impact": {"flyer": "tungsten", "target": "tantalum"}},
+    });
+    let home = Home::with(&scene);
+    let told = home.call(["check", "scene.json"]).end().succeeded();
+    assert!(told.contains("preset default") && told.contains("FMPM(8)"), "{told}");
+    let said = home.call(["scene.json"]).end();
+    assert!(said.stderr.contains("method default: FMPM(8)"), "{}", said.stderr);
+    said.succeeded();
+    let results = home.results("output/scene");
+    let summary = &results.summary;
+    assert_eq!(summary["method_choice"]["preset"], "default");
+    for profile in summary["profiles"].as_array().unwrap() {
+        let l1 = profile["errors_cell_averaged"]["l1"].as_f64().unwrap();
+        assert!(l1 < 0.01, "L1 {l1}");
+    }
+    let mut reader =
+        csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(results.bytes("histories.csv"));
+    let is_gauge = |name: &str| name.starts_with("gauge") && name.ends_with("pressure");
+    let gauges: Vec<usize> = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .enumerate()
+        .filter(|(_, name)| is_gauge(name))
+        .map(|(k, _)| k)
+        .collect();
+    assert_eq!(gauges.len(), 3);
+    let mut peaks = [0.0_f64; 3];
+    for row in reader.records().map(Result::unwrap) {
+        for (peak, k) in peaks.iter_mut().zip(&gauges) {
+            *peak = peak.max(row[*k].parse().unwrap());
+        }
+    }
+    for peak in peaks {
+        assert!((peak / 29.806946e9 - 1.0).abs() < 0.005, "peak {peak:e} Pa");
+    }
+}

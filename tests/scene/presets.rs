@@ -1,0 +1,147 @@
+//! Methods by name: which options each contents gets, and what explicit keys do.
+
+use flyer_mpm::scene::{CheckedScene, MethodChoice, Preset, parse};
+use serde_json::{Value, json};
+
+use crate::{refused_text, with};
+
+/// Two plates on a line, without a method.
+fn plates() -> Value {
+    json!({
+        "title": "plates",
+        "domain": {"lower": [-0.001], "upper": [0.003], "cell_size": 2e-5},
+        "time": {"end": 1e-7},
+        "materials": {"metal": {"library": "copper"}},
+        "bodies": [
+            {"name": "flyer", "material": "metal", "box": {"lower": [-0.0005], "upper": [0.0]},
+             "velocity": [500.0], "particles_per_cell": [1]},
+            {"name": "target", "material": "metal", "box": {"lower": [0.0], "upper": [0.002]},
+             "velocity": [0.0], "particles_per_cell": [1]},
+        ],
+    })
+}
+
+fn edited(edits: &[(&str, Value)]) -> CheckedScene {
+    let mut scene = plates();
+    for (path, value) in edits {
+        match path.rsplit_once('/') {
+            Some(("", key)) => scene[key] = value.clone(),
+            Some((parent, key)) => scene.pointer_mut(parent).unwrap()[key] = value.clone(),
+            None => panic!("{path}"),
+        }
+    }
+    parse(scene.to_string().as_bytes(), "plates.json", &[]).unwrap()
+}
+
+fn choice(scene: &CheckedScene) -> &MethodChoice {
+    scene.method_choice.as_ref().expect("a preset")
+}
+
+#[track_caller]
+fn transfer_is(edits: &[(&str, Value)], transfer: &Value, reason: &str) {
+    let scene = edited(edits);
+    assert_eq!(&json!(scene.scene.method.transfer), transfer, "{edits:?}");
+    let reasons = &choice(&scene).reasons;
+    assert!(reasons.iter().any(|r| r.contains(reason)), "no `{reason}` in {reasons:?}");
+}
+
+#[test]
+fn a_scene_without_a_method_has_that_of_the_flyer() {
+    let [own, flyer] = [edited(&[]), with("flyer.json", &[]).unwrap()];
+    assert_eq!(json!(own.scene.method), json!(flyer.scene.method));
+    assert_eq!(own.scene.artificial_viscosity.unwrap().linear, 0.15);
+    assert_eq!(choice(&own).preset, Preset::Default);
+    assert_eq!(flyer.method_choice, None);
+    let named = edited(&[("/method", json!("default"))]);
+    assert_eq!(json!(named.scene.method), json!(own.scene.method));
+}
+
+#[test]
+fn contents_change_the_default() {
+    transfer_is(&[], &json!({"fmpm": 8}), "FMPM(8)");
+    transfer_is(&[("/contact", json!({"type": "stick"}))], &json!({"fmpm": 6}), "surfaces part");
+    let strong = json!({"metal": {"library": "copper_johnson_cook"}});
+    transfer_is(&[("/materials", strong)], &json!({"fmpm": 6}), "precursors");
+    let explosive = with("detonation.json", &["method=default"]).unwrap();
+    assert_eq!(json!(explosive.scene.method.transfer), json!({"fmpm": 2}));
+    assert!(choice(&explosive).reasons.join("; ").contains("burn fronts"));
+    let porous = with("porous_impact.json", &["method=default", "artificial_viscosity=null"]);
+    assert!(choice(&porous.unwrap()).reasons.join("; ").contains("crush pores"));
+    let gas = json!({"metal": {"density": 1.0, "eos": {"type": "ideal_gas", "gamma": 1.4}}});
+    let warm = json!([{"name": "gas", "material": "metal", "pressure": 1e5, "velocity": [0.0],
+        "box": {"lower": [0.0], "upper": [0.002]}, "particles_per_cell": [2]}]);
+    let edits = [("/materials", gas), ("/bodies", warm)];
+    transfer_is(&edits, &json!({"fmpm": 6}), "domain limit");
+    assert!(edited(&edits).scene.method.domain_limit.is_some());
+    assert!(edited(&[]).scene.method.domain_limit.is_none());
+}
+
+#[test]
+fn bodies_in_two_dimensions_get_a_domain_limit_and_elastic_ones_no_relaxation() {
+    let plane = with("disks.json", &["method=default"]).unwrap();
+    assert_eq!(plane.scene.method.domain_limit, Some(1.0));
+    assert!(plane.scene.method.pressure_relaxation.is_none());
+    let fluid = with("oblique_impact.json", &["method=default"]).unwrap();
+    assert!(fluid.scene.method.pressure_relaxation.is_some());
+}
+
+#[test]
+fn presets_differ() {
+    let method = |name: &str| json!(edited(&[("/method", json!(name))]).scene.method);
+    let [default, robust, sharpest] = ["default", "robust", "sharpest"].map(method);
+    assert_eq!(default["transfer"], json!({"fmpm": 8}));
+    assert_eq!(robust["transfer"], json!({"fmpm": 6}));
+    assert_eq!(sharpest["frame"], "total_lagrangian");
+    // plates apart never meet in that frame
+    let apart = edited(&[
+        ("/method", json!("sharpest")),
+        ("/bodies/1/box", json!({"lower": [0.00002], "upper": [0.002]})),
+    ]);
+    assert_eq!(json!(apart.scene.method)["frame"], Value::Null);
+}
+
+#[test]
+fn explicit_keys_override_a_preset() {
+    let scene = edited(&[("/method", json!({"preset": "default", "edge_mask": 0.2}))]);
+    assert_eq!(scene.scene.method.edge_mask, Some(0.2));
+    assert!(scene.scene.method.filter_heat);
+    // what they exclude is left out, and named
+    let scene = edited(&[("/method", json!({"preset": "default", "transfer": "flip"}))]);
+    assert!(scene.scene.method.edge_mask.is_none() && !scene.scene.method.filter_heat);
+    let reasons = choice(&scene).reasons.join("; ");
+    assert!(reasons.contains("exclude it: filter_heat, edge_mask"), "{reasons}");
+    edited(&[("/method", json!({"preset": "default", "stepping": "leapfrog"}))]);
+    edited(&[("/method", json!({"preset": "robust", "transfer": "apic"}))]);
+    let none = edited(&[("/artificial_viscosity", Value::Null)]);
+    assert!(none.scene.artificial_viscosity.is_none());
+    let own = json!({"linear": 0.3, "quadratic": 1.0});
+    let own = edited(&[("/artificial_viscosity", own)]);
+    assert_eq!(own.scene.artificial_viscosity.unwrap().linear, 0.3);
+}
+
+#[test]
+fn unknown_presets_are_refused() {
+    let mut scene = plates();
+    scene["method"] = json!("robst");
+    refused_text(&scene.to_string(), &["method = \"robst\"", "did you mean robust?", "sharpest"]);
+    scene["method"] = json!({"preset": "sharp", "edge_mask": 0.1});
+    refused_text(&scene.to_string(), &["method.preset = \"sharp\"", "allowed: default, robust"]);
+    scene["method"] = json!({"edge_mask": 0.1});
+    refused_text(&scene.to_string(), &["method.shape", "missing key"]);
+}
+
+/// The published schema takes every form of `method` that a scene can have, and no other.
+#[test]
+fn the_schema_describes_every_form() {
+    let validator = jsonschema::validator_for(&flyer_mpm::scene::schema()).unwrap();
+    let valid = |method: Value| {
+        let mut scene = plates();
+        scene["method"] = method;
+        validator.is_valid(&scene)
+    };
+    assert!(validator.is_valid(&plates()));
+    assert!(valid(json!("robust")) && valid(json!({"preset": "robust", "edge_mask": 0.1})));
+    assert!(valid(json!({"shape": "cpdi", "transfer": "flip"})));
+    assert!(!valid(json!("robst")) && !valid(json!({"edge_mask": 0.1})));
+    assert!(!valid(json!({"preset": "robust", "edge_musk": 0.1})));
+}
