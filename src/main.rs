@@ -282,6 +282,7 @@ fn run_scene(comm: &dyn Comm, args: &RunArgs, started: Instant) -> Outcome<()> {
         output,
         keep: args.keep,
         quiet: args.quiet,
+        verbose: args.verbose,
         threads,
         trace: args.trace.clone().map(|file| (file, args.trace_steps.clone())),
         started,

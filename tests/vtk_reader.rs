@@ -102,6 +102,8 @@ fn write_run(folder: &Path, tables: &[ParticleTable]) {
         momentum: Momentum::new(&[0.0], &[0.0], &[0.0], 0.0),
         outflow: None,
         erosion: None,
+        method_choice: None,
+        measured: Vec::new(),
         profiles,
         error_estimate: None,
         plan: None,

@@ -89,6 +89,7 @@ fn once(
         output: home.path().join("run"),
         keep: false,
         quiet: true,
+        verbose: false,
         threads: 1,
         trace: None,
         started: Instant::now(),

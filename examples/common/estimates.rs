@@ -77,6 +77,7 @@ fn once(impact: &RandomImpact, folder: &Path) -> Result<Summary, String> {
         output: folder.to_path_buf(),
         keep: false,
         quiet: true,
+        verbose: false,
         threads: 1,
         trace: None,
         started: Instant::now(),

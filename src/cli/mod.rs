@@ -112,6 +112,10 @@ pub struct RunArgs {
     /// Print errors only.
     #[arg(long)]
     pub quiet: bool,
+
+    /// Print the errors of every profile, the cost of each effect and the work of each rank too.
+    #[arg(long, conflicts_with = "quiet")]
+    pub verbose: bool,
 }
 
 /// Default file that `perf calibrate` writes and `perf predict` reads.

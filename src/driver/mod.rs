@@ -4,6 +4,7 @@
 
 pub mod checkpoint;
 pub mod figures;
+mod measured;
 pub mod output;
 pub mod probes;
 pub mod rank_statistics;
@@ -31,7 +32,7 @@ use crate::driver::output::csv::{profile_names, write_profile};
 use crate::driver::output::folder::{OutputFolder, checkpoint_folder};
 use crate::driver::output::histories::HISTORIES_FILE;
 use crate::driver::output::origin::Maker;
-use crate::driver::output::report::report;
+use crate::driver::output::report;
 use crate::driver::output::summary::{
     Energy, FailureSummary, Momentum, OutflowSummary, ProfileSummary, SUMMARY_FORMAT, Summary,
 };
@@ -101,6 +102,8 @@ pub struct Options {
     pub keep: bool,
     /// Whether only errors are printed.
     pub quiet: bool,
+    /// Whether the report at the end has the errors of all profiles, the effects and the ranks.
+    pub verbose: bool,
     /// Threads per rank.
     pub threads: usize,
     /// File of the timeline, and the range of its steps.
@@ -411,6 +414,9 @@ where
     if scene.scene.output.pictures {
         draw(comm, scene, reference.as_ref(), &recorder, &profiles, &folder)?;
     }
+    let tables: Vec<&ParticleTable> = recorder.tables.iter().map(|t| &t.0).collect();
+    let histories = recorder.histories();
+    let measured = measured::quantities(scene, reference.as_ref(), &profiles, &tables, histories);
     let error_estimate = estimated.zip(companions.as_ref()).map(|(body, companions)| {
         let tables = recorder.tables.iter().map(|t| &t.0).collect();
         let (arrivals, steps) = (&recorder.arrivals, simulation.steps());
@@ -465,6 +471,7 @@ where
             .columns()
             .find("damage")
             .map(|_| FailureSummary { particles: end.failed, released_energy: end.released }),
+        measured,
         profiles,
         error_estimate,
         plan,
@@ -475,7 +482,8 @@ where
     if schedule.passing {
         folder::clear(&checkpoint_folder(&options.output)?);
     }
-    Ok(Some(report(&summary, &place)))
+    let text = if options.verbose { report::full } else { report::brief };
+    Ok(Some(text(&summary, &place)))
 }
 
 /// Drift of energy above which a run reports that it is inaccurate [-].

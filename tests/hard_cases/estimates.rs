@@ -111,6 +111,7 @@ fn ends(value: &Value, folder: &Path) -> Option<Result<Summary, String>> {
         output: folder.to_path_buf(),
         keep: false,
         quiet: true,
+        verbose: false,
         threads: 1,
         trace: None,
         started: Instant::now(),

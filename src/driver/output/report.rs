@@ -1,10 +1,10 @@
-//! The table that a run prints at its end.
+//! The report that a run prints at its end, brief or full.
 
 use std::fmt::Write;
 use std::path::Path;
 
 use super::decomposition::DecompositionSummary;
-use super::summary::{FailureSummary, OutflowSummary, ProfileSummary, Summary};
+use super::summary::{FailureSummary, MeasuredQuantity, OutflowSummary, ProfileSummary, Summary};
 use crate::accuracy::estimate::{Basis, Bounded, EstimatedErrors};
 use crate::accuracy::plan::Verdict;
 use crate::effects::{ledger_lines, ledger_rest};
@@ -17,14 +17,14 @@ const ERRORS: [(&str, &str, bool); 22] = [
     ("e1_cells", "E1 cells", false),
     ("plateau", "plateau %", true),
     ("noise", "noise %", true),
-    ("shock_position_cells", "shock cells", false),
+    ("shock_position_cells", "shock position cells", false),
     ("rise_cells", "rise cells", false),
     ("overshoot", "overshoot %", true),
-    ("second_plateau", "plateau 4 %", true),
-    ("density_plateau", "density %", true),
-    ("energy_plateau", "energy %", true),
+    ("second_plateau", "second plateau %", true),
+    ("density_plateau", "plateau density %", true),
+    ("energy_plateau", "plateau energy %", true),
     ("density_interface", "interface density %", true),
-    ("energy_interface", "energy %", true),
+    ("energy_interface", "interface energy %", true),
     ("displacement_l2", "displacement L2 %", true),
     ("angular_momentum_loss", "angular momentum lost %", true),
     ("energy_loss", "energy lost %", true),
@@ -36,12 +36,113 @@ const ERRORS: [(&str, &str, bool); 22] = [
     ("mean_density_error", "density error %", true),
 ];
 
-/// Errors per profile time, energy, momentum, steps, seconds and the folder of the files, as
-/// aligned text.
-pub fn report(summary: &Summary, folder: &Path) -> String {
-    let mut text = format!("{}\n", summary.title);
-    for warning in &summary.warnings {
-        text += &format!("warning: {warning}\n");
+/// Errors told in the short report: key, words before the value, words after it.
+const TOLD: [(&str, &str, &str); 9] = [
+    ("l1", "mean of the pressure", " %"),
+    ("rise_cells", "front", " cells wide"),
+    ("overshoot", "overshoot", " %"),
+    ("density_l1", "mean of the density", " %"),
+    ("mean_density_error", "density behind the shock", " %"),
+    ("displacement_l2", "displacement", " %"),
+    ("angular_momentum_loss", "angular momentum lost", " %"),
+    ("velocity_rms", "velocity", " %"),
+    ("pressure_rms", "pressure", " %"),
+];
+
+/// The short report: physical quantities, errors of the last profile, conservation, size, time and
+/// the folder of the files.
+pub fn brief(summary: &Summary, folder: &Path) -> String {
+    let mut text = heading(summary);
+    if !summary.measured.is_empty() {
+        text += &table(&measured(&summary.measured));
+    }
+    let mut facts = Vec::new();
+    facts.extend(last_errors(&summary.profiles).map(|text| ("errors", text)));
+    let drifts = [("energy", summary.energy.drift), ("momentum", summary.momentum.drift)];
+    let kept =
+        drifts.iter().filter_map(|(of, d)| Some(format!("{of} to {:.1e}", d.as_ref()?.abs())));
+    let kept: Vec<String> = kept.collect();
+    if !kept.is_empty() {
+        facts.push(("conserved", format!("{} of the total", kept.join(", "))));
+    }
+    facts.extend(events(summary));
+    let plural = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    facts.push((
+        "run",
+        format!(
+            "{} particles, {} steps, {}, {}: {} s",
+            summary.particles,
+            summary.steps,
+            plural(summary.ranks, "rank"),
+            plural(summary.threads, "thread"),
+            significant(summary.wall_seconds)
+        ),
+    ));
+    facts.push(("results", folder.display().to_string()));
+    text + &table(&named(facts))
+}
+
+/// Title and warnings.
+fn heading(summary: &Summary) -> String {
+    let warnings = summary.warnings.iter().map(|warning| format!("warning: {warning}\n"));
+    format!("{}\n{}", summary.title, warnings.collect::<String>())
+}
+
+fn named(facts: Vec<(&str, String)>) -> Vec<Vec<String>> {
+    facts.into_iter().map(|(name, text)| vec![name.to_owned(), text]).collect()
+}
+
+/// One line per quantity; the columns of exact values only if one is known.
+fn measured(all: &[MeasuredQuantity]) -> Vec<Vec<String>> {
+    let known = all.iter().any(|quantity| quantity.exact.is_some());
+    let mut lines = vec![["", "time", "computed"].map(String::from).to_vec()];
+    lines[0].extend(["exact", "difference"].into_iter().filter(|_| known).map(String::from));
+    for quantity in all {
+        let (unit, scale) = match quantity.unit.as_str() {
+            "Pa" if quantity.value.abs() >= 1e8 => ("GPa", 1e-9),
+            "Pa" if quantity.value.abs() >= 1e5 => ("MPa", 1e-6),
+            unit => (unit, 1.0),
+        };
+        let number = |value: f64| five_digits(value * scale);
+        let mut line = vec![quantity.name.clone(), seconds(quantity.time)];
+        line.push(format!("{} {unit}", number(quantity.value)));
+        if known {
+            line.push(
+                quantity.exact.map_or("-".into(), |exact| format!("{} {unit}", number(exact))),
+            );
+            let off = quantity.exact.filter(|exact| *exact != 0.0);
+            line.push(off.map_or("-".into(), |exact| {
+                format!("{} %", significant(100.0 * (quantity.value / exact - 1.0)))
+            }));
+        }
+        lines.push(line);
+    }
+    lines
+}
+
+/// A number with five significant digits.
+fn five_digits(value: f64) -> String {
+    let whole = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
+    format!("{value:.*}", (4 - whole).clamp(0, 12) as usize)
+}
+
+/// Errors of the last profile that has any, in words.
+fn last_errors(profiles: &[ProfileSummary]) -> Option<String> {
+    let last = profiles.iter().rfind(|profile| profile.errors.is_some())?;
+    let words = |(key, before, after): &(&str, &str, &str)| {
+        let scale = if after.contains('%') { 100.0 } else { 1.0 };
+        Some(format!("{before} {}{after}", significant(scale * last.error(key)?)))
+    };
+    let told: Vec<String> = TOLD.iter().filter_map(words).collect();
+    (!told.is_empty()).then(|| format!("{}, at {}", told.join(", "), seconds(last.time)))
+}
+
+/// The full report: errors of each profile, ranks, effects, energy, momentum, steps, times and the
+/// folder of the files, as aligned text.
+pub fn full(summary: &Summary, folder: &Path) -> String {
+    let mut text = heading(summary);
+    if !summary.measured.is_empty() {
+        text += &table(&measured(&summary.measured));
     }
     if summary.profiles.iter().any(|p| p.errors.is_some()) {
         text += &table(&errors(&summary.profiles));
@@ -105,8 +206,7 @@ fn errors(profiles: &[ProfileSummary]) -> Vec<Vec<String>> {
 
 fn facts(summary: &Summary, folder: &Path) -> Vec<Vec<String>> {
     let Summary { energy, momentum, .. } = summary;
-    let dimension = momentum.start.len();
-    let per = ["/m2", "/m", ""][dimension.clamp(1, 3) - 1];
+    let per = per_extent(momentum.start.len());
     let drift = |d: Option<f64>| d.map_or("-".into(), |d| format!("{d:.1e}"));
     let vector = |v: &[f64]| v.iter().map(|v| format!("{v:.6e}")).collect::<Vec<_>>().join(" ");
     let joined = |n: &[usize]| n.iter().map(usize::to_string).collect::<Vec<_>>().join(" x ");
@@ -132,25 +232,7 @@ fn facts(summary: &Summary, folder: &Path) -> Vec<Vec<String>> {
             ),
         ),
     ];
-    if let Some(out) = &summary.outflow {
-        facts.push(("outflow", format!("{} particles, {:.6e} kg{per}", out.particles, out.mass)));
-    }
-    if let Some(out) = &summary.erosion {
-        let OutflowSummary { particles, mass, energy, .. } = out;
-        let what = format!("{particles} particles, {mass:.6e} kg{per}, {energy:.6e} J{per}");
-        facts.push(("erosion", format!("{what} taken out")));
-    }
-    if let Some(failure) = &summary.failure {
-        let FailureSummary { particles, released_energy } = failure;
-        let text = format!(
-            "{particles} particles have failed; their elastic energy, {released_energy:.6e} J{per}, is heat"
-        );
-        facts.push(("failure", text));
-    }
-    if let Some(told) = &summary.error_estimate {
-        facts.extend(estimate_facts(told));
-    }
-    facts.extend(summary.plan.iter().map(|plan| ("plan", plan_fact(plan))));
+    facts.extend(events(summary));
     facts.push((
         "run",
         format!(
@@ -189,7 +271,38 @@ fn facts(summary: &Summary, folder: &Path) -> Vec<Vec<String>> {
     }
     facts.push(("sharing", shared));
     facts.push(("results", folder.display().to_string()));
-    facts.into_iter().map(|(name, text)| vec![name.to_owned(), text]).collect()
+    named(facts)
+}
+
+/// Unit of an integral over a body, without that of its density.
+fn per_extent(dimension: usize) -> &'static str {
+    ["/m2", "/m", ""][dimension.clamp(1, 3) - 1]
+}
+
+/// What happened in the run: outflow, erosion, failure, estimated errors, plan.
+fn events(summary: &Summary) -> Vec<(&'static str, String)> {
+    let per = per_extent(summary.momentum.start.len());
+    let mut facts = Vec::new();
+    if let Some(out) = &summary.outflow {
+        facts.push(("outflow", format!("{} particles, {:.6e} kg{per}", out.particles, out.mass)));
+    }
+    if let Some(out) = &summary.erosion {
+        let OutflowSummary { particles, mass, energy, .. } = out;
+        let what = format!("{particles} particles, {mass:.6e} kg{per}, {energy:.6e} J{per}");
+        facts.push(("erosion", format!("{what} taken out")));
+    }
+    if let Some(failure) = &summary.failure {
+        let FailureSummary { particles, released_energy } = failure;
+        let text = format!(
+            "{particles} particles have failed; their elastic energy, {released_energy:.6e} J{per}, is heat"
+        );
+        facts.push(("failure", text));
+    }
+    if let Some(told) = &summary.error_estimate {
+        facts.extend(estimate_facts(told));
+    }
+    facts.extend(summary.plan.iter().map(|plan| ("plan", plan_fact(plan))));
+    facts
 }
 
 /// Predicted and actual values of a plan.
@@ -318,13 +431,38 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tells_every_figure() {
-        let mut summary = example();
-        summary.profiles[1].errors = Some(serde_json::json!({"l1": 0.01, "density_l1": 0.5}));
-        let text = report(&summary, Path::new("output/flyer"));
+    fn brief_report_has_the_physics_and_the_last_errors() {
         let expected = "\
 flyer
 warning: linear shape functions ring across cells
+               time    computed       exact  difference
+  shock speed  1 us  6343.5 m/s  6343.0 m/s   0.00788 %
+  errors     mean of the pressure 0.890 %, at 0.5 us
+  conserved  energy to 5.0e-2, momentum to 0.0e0 of the total
+  run        1700 particles, 2612 steps, 2 ranks, 1 thread: 1.25 s
+  results    output/flyer
+";
+        let text = brief(&example(), Path::new("output/flyer"));
+        assert_eq!(text, expected);
+        assert!(text.lines().all(|line| line.len() <= 100));
+    }
+
+    #[test]
+    fn five_digits_are_kept() {
+        let texts = [0.0, 29.80695, 6343.512, 0.012345678, 123456.7].map(five_digits);
+        assert_eq!(texts, ["0.0000", "29.807", "6343.5", "0.012346", "123457"]);
+    }
+
+    #[test]
+    fn tells_every_figure() {
+        let mut summary = example();
+        summary.profiles[1].errors = Some(serde_json::json!({"l1": 0.01, "density_l1": 0.5}));
+        let text = full(&summary, Path::new("output/flyer"));
+        let expected = "\
+flyer
+warning: linear shape functions ring across cells
+               time    computed       exact  difference
+  shock speed  1 us  6343.5 m/s  6343.0 m/s   0.00788 %
   time     L1 %  plateau %  density l1
   0.5 us  0.890   -0.00100           -
   1 us     1.00          -       0.500
@@ -348,7 +486,7 @@ warning: linear shape functions ring across cells
     fn without_a_reference_there_are_no_errors() {
         let mut summary = example();
         summary.profiles[0].errors = None;
-        assert!(!report(&summary, Path::new("out")).contains("L1"));
+        assert!(!full(&summary, Path::new("out")).contains("L1"));
     }
 
     #[test]
@@ -357,7 +495,7 @@ warning: linear shape functions ring across cells
         let momentum = vec![0.25];
         summary.erosion = Some(OutflowSummary { particles: 7, mass: 0.5, momentum, energy: 2.0 });
         let line = "  erosion   7 particles, 5.000000e-1 kg/m2, 2.000000e0 J/m2 taken out\n";
-        assert!(report(&summary, Path::new("out")).contains(line));
+        assert!(full(&summary, Path::new("out")).contains(line));
     }
 
     #[test]

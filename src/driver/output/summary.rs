@@ -80,6 +80,9 @@ pub struct Summary {
     /// Failed particles; absent without failure.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failure: Option<FailureSummary>,
+    /// Physical quantities beside their exact values; empty in a plane.
+    #[serde(default)]
+    pub measured: Vec<MeasuredQuantity>,
     /// One entry per profile, in order of time.
     pub profiles: Vec<ProfileSummary>,
     /// The run's own estimate of its errors; absent unless the scene asks for it.
@@ -212,6 +215,22 @@ pub struct FailureSummary {
     pub particles: u64,
     /// Elastic energy that was converted to heat in these particles, in the unit of [`Energy`].
     pub released_energy: f64,
+}
+
+/// A physical quantity of a run beside its exact value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MeasuredQuantity {
+    /// Name in words.
+    pub name: String,
+    /// SI unit of the values.
+    pub unit: String,
+    /// Time at which it was measured \[s\].
+    pub time: f64,
+    /// Computed value.
+    pub value: f64,
+    /// Exact value; absent if it is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub exact: Option<f64>,
 }
 
 /// Entry of one profile.
@@ -360,6 +379,13 @@ pub(super) mod tests {
             outflow: None,
             erosion: None,
             failure: None,
+            measured: vec![MeasuredQuantity {
+                name: "shock speed".into(),
+                unit: "m/s".into(),
+                time: 1e-6,
+                value: 6343.5,
+                exact: Some(6343.0),
+            }],
             profiles: vec![
                 profile(5e-7, Some(json!({"l1": 0.0089, "plateau": -1e-5, "noise": null}))),
                 profile(1e-6, None),

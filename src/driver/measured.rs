@@ -1,0 +1,126 @@
+//! Physical quantities of a run beside their exact values: pressure and velocity behind the shock,
+//! shock speed, velocity of the free surface.
+
+use super::output::histories::HistoryTable;
+use super::output::summary::{MeasuredQuantity, ProfileSummary};
+use crate::accuracy::reference::{ImpactReference, ReferenceSolution};
+use crate::exact::Plate;
+use crate::scene::CheckedScene;
+use crate::simulation::ParticleTable;
+
+/// Number of the state behind the first shock in the chain of states.
+const SHOCKED: usize = 2;
+
+/// Difference from the exact pressure up to which a particle counts as behind the shock [-].
+const NEAR: f64 = 0.02;
+
+/// Quantities of a run on a line; empty in a plane. Without an exact solution of an impact, they are
+/// the largest pressure, tension and speed of the last profile.
+pub fn quantities(
+    scene: &CheckedScene,
+    reference: Option<&ReferenceSolution>,
+    profiles: &[ProfileSummary],
+    tables: &[&ParticleTable],
+    histories: Option<&HistoryTable>,
+) -> Vec<MeasuredQuantity> {
+    if scene.dimension > 1 {
+        return Vec::new();
+    }
+    let mut all = match reference {
+        Some(ReferenceSolution::Impact(impact)) => behind_shock(scene, impact, profiles, tables),
+        _ => Vec::new(),
+    };
+    if all.is_empty() {
+        all = tables.last().map(|table| extremes(table)).unwrap_or_default();
+    }
+    all.extend(histories.and_then(free_surface));
+    all
+}
+
+/// State behind the target's shock in the last profile that has a plateau.
+fn behind_shock(
+    scene: &CheckedScene,
+    impact: &ImpactReference,
+    profiles: &[ProfileSummary],
+    tables: &[&ParticleTable],
+) -> Vec<MeasuredQuantity> {
+    let last = profiles.iter().zip(tables).rev();
+    let found =
+        last.filter_map(|(profile, table)| Some((profile.error("plateau")?, profile, table)));
+    let Some((plateau, profile, table)) = found.into_iter().next() else { return Vec::new() };
+    let chain = &impact.chain;
+    let Some(state) = chain.states.iter().find(|state| state.number == SHOCKED) else {
+        return Vec::new();
+    };
+    let time = profile.time;
+    let one = |name: &str, unit: &str, value: f64, exact: f64| MeasuredQuantity {
+        name: name.into(),
+        unit: unit.into(),
+        time,
+        value,
+        exact: Some(exact),
+    };
+    let mut all = vec![one("pressure behind shock", "Pa", state.p * (1.0 + plateau), state.p)];
+    // velocities of the chain are relative to the target, along the flyer's motion
+    let way = if impact.impact.mirrored { -1.0 } else { 1.0 };
+    let rest = impact.impact.target.velocity;
+    if let Some(velocity) = velocity_near(table, state.p) {
+        all.push(one("particle velocity", "m/s", velocity, rest + way * state.u));
+    }
+    let shock = chain.waves.iter().find(|w| w.to == SHOCKED && w.plate == Plate::Target);
+    let travelled = time - impact.impact.contact_time;
+    if let Some(shock) = shock
+        && let Some(off) = profile.error("shock_position_cells")
+        && travelled > 0.0
+    {
+        let exact = shock.lagrangian_speed;
+        let behind = off * scene.cell_size[0] / travelled;
+        all.push(one("shock speed", "m/s", exact + behind, exact));
+    }
+    all
+}
+
+/// Median velocity of the particles whose pressure is close to `pressure` [Pa].
+fn velocity_near(table: &ParticleTable, pressure: f64) -> Option<f64> {
+    let values = table.column("pressure")?.iter().zip(table.column("velocity")?);
+    let near = values.filter(|(p, _)| (*p / pressure - 1.0).abs() < NEAR);
+    let mut near: Vec<f64> = near.map(|(_, u)| *u).collect();
+    near.sort_by(f64::total_cmp);
+    near.get(near.len() / 2).copied()
+}
+
+/// Largest pressure, tension and speed of a profile; a tension below [`NEAR`] of the pressure is
+/// left out.
+fn extremes(table: &ParticleTable) -> Vec<MeasuredQuantity> {
+    let largest = |column: &str, sign: fn(f64) -> f64| {
+        table.column(column)?.iter().copied().map(sign).max_by(f64::total_cmp)
+    };
+    let one = |name: &str, unit: &str, value: Option<f64>| {
+        let (name, unit) = (name.into(), unit.into());
+        Some(MeasuredQuantity { name, unit, time: table.time, value: value?, exact: None })
+    };
+    let pressure = largest("pressure", |p| p);
+    let tension = largest("pressure", |p| -p);
+    let tension = tension.filter(|t| *t > 0.0 && *t > NEAR * pressure.unwrap_or(0.0));
+    let speed = largest("velocity", f64::abs);
+    let all = [
+        one("largest pressure", "Pa", pressure.filter(|p| *p > 0.0)),
+        one("largest tension", "Pa", tension),
+        one("largest speed", "m/s", speed),
+    ];
+    all.into_iter().flatten().collect()
+}
+
+/// Largest velocity of the free surface in the histories.
+fn free_surface(histories: &HistoryTable) -> Option<MeasuredQuantity> {
+    let [times, velocities] = ["time", "free_surface_velocity"].map(|name| histories.column(name));
+    let pairs = times?.iter().zip(velocities?).filter(|(_, u)| u.is_finite());
+    let (time, value) = pairs.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    (*value != 0.0).then(|| MeasuredQuantity {
+        name: "free-surface velocity".into(),
+        unit: "m/s".into(),
+        time: *time,
+        value: *value,
+        exact: None,
+    })
+}
