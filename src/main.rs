@@ -326,7 +326,18 @@ fn announce(comm: &dyn Comm, scene: &CheckedScene, threads: usize) {
     for warning in &scene.warnings {
         eprintln!("warning: {warning}");
     }
+    let cores = std::thread::available_parallelism().map_or(threads, usize::from);
+    if threads > cores {
+        eprintln!("warning: {threads} threads a rank: more than the {cores} cores of this machine");
+    }
     let patches = flyer_mpm::simulation::patch_counts(scene, comm.size(), threads);
+    let idle = comm.size().saturating_sub(patches.iter().product());
+    if idle > 0 {
+        eprintln!(
+            "warning: {idle} of {} ranks have no patch: use fewer ranks, or more domain.patches",
+            comm.size()
+        );
+    }
     let chosen = if scene.scene.domain.patches.is_some() { "" } else { " (chosen)" };
     eprintln!(
         "{}: {} particles, {} cells, patches {patches:?}{chosen}, ranks {}, threads {threads}",
@@ -361,11 +372,27 @@ fn side_command(command: Command) -> Outcome<()> {
             say(&cli::check::hugoniot(&checked, &output)?);
             Ok(())
         }
-        Command::Material { scene, name, set, output } => {
-            let stem = scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            let (_, checked) = read_scene(&SceneArgs { scene, set }, false)?;
+        Command::Materials => {
+            say(&cli::materials::list());
+            Ok(())
+        }
+        Command::Material { source, name, set, output } => {
             let plain = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' };
-            let folder = format!("{stem}.material.{}", name.chars().map(plain).collect::<String>());
+            let folder =
+                |name: &str| format!("material.{}", name.chars().map(plain).collect::<String>());
+            let (checked, name, folder) = match name {
+                Some(name) => {
+                    let stem =
+                        source.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+                    let folder = format!("{stem}.{}", folder(&name));
+                    (read_scene(&SceneArgs { scene: source, set }, false)?.1, name, folder)
+                }
+                None => {
+                    let name = source.display().to_string();
+                    let folder = folder(&name);
+                    (cli::materials::scene_of(&name)?, name, folder)
+                }
+            };
             let output = output.unwrap_or_else(|| Path::new("output").join(folder));
             say(&cli::material::material(&checked, &name, &output)?);
             Ok(())

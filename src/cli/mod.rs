@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod material;
+pub mod materials;
 pub mod migrate;
 pub mod plan;
 pub mod predict;
@@ -197,19 +198,22 @@ pub enum Command {
         #[arg(long, value_name = "DIR")]
         output: Option<PathBuf>,
     },
+    /// List the materials of the library: models, density and source of each.
+    Materials,
     /// Print and draw the equation of state of a material: Hugoniot, isentropes, sound speed and
     /// limits of validity.
     Material {
-        /// The scene: a JSON file.
-        #[arg(value_name = "SCENE.json")]
-        scene: PathBuf,
+        /// Name of a material of the library, or a scene: a JSON file.
+        #[arg(value_name = "NAME|SCENE.json")]
+        source: PathBuf,
         /// Name of the material in the scene.
         #[arg(value_name = "NAME")]
-        name: String,
+        name: Option<String>,
         /// Override a value of the scene; may be repeated.
-        #[arg(long, value_name = "PATH=VALUE")]
+        #[arg(long, value_name = "PATH=VALUE", requires = "name")]
         set: Vec<String>,
-        /// Folder of the pictures [default: output/<name of the scene>.material.<name>/].
+        /// Folder of the pictures [default: output/<name of the scene>.material.<name>/, or
+        /// output/material.<name>/].
         #[arg(long, value_name = "DIR")]
         output: Option<PathBuf>,
     },

@@ -14,6 +14,7 @@ mod forecasts;
 mod formats;
 mod home;
 mod imports;
+mod materials;
 mod monitor;
 mod outputs;
 mod ownership;

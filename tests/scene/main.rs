@@ -2,6 +2,7 @@
 
 mod extremes;
 mod keys;
+mod plausibility;
 mod presets;
 mod random;
 mod refused;

@@ -18,6 +18,7 @@ mod method;
 mod motion;
 mod output;
 mod plane_reference;
+mod plausibility;
 mod reference;
 
 use serde::Serialize;
@@ -98,6 +99,7 @@ impl CheckedScene {
         if dimension == 1 {
             impact::check(&mut checked)?;
         }
+        checked.warnings.extend(plausibility::warnings(&checked));
         for warning in &mut checked.warnings {
             *warning = one_line(warning);
         }

@@ -1,0 +1,64 @@
+//! The library of materials: its list, and a scene with one of them.
+
+use std::path::Path;
+
+use flyer_mpm::scene::{self, CheckedScene, LIBRARY};
+use serde_json::{Value, json};
+
+use crate::{Outcome, bad};
+
+/// Largest number of characters of a source in the list.
+const SOURCE: usize = 60;
+
+/// All materials: name, models, density and source, one line each.
+pub fn list() -> String {
+    let lines = LIBRARY.iter().map(|(name, text)| {
+        let material: Value = serde_json::from_str(text).expect("the library is JSON");
+        let source = material["source"].as_str().unwrap_or("");
+        let source: String = match source.char_indices().nth(SOURCE) {
+            Some((end, _)) => format!("{}...", source[..end].trim_end()),
+            None => source.into(),
+        };
+        let density = material["density"].as_f64().unwrap_or(0.0);
+        format!("{name:<32} {:<40} {density:>6} kg/m3  {source}\n", models(&material))
+    });
+    let text: String = lines.collect();
+    text + "`flyer-mpm material NAME` prints and draws one; in a scene: {\"library\": \"NAME\"}\n"
+}
+
+/// Equation of state, strength, failure and further responses of a material, by their types.
+fn models(material: &Value) -> String {
+    let typed =
+        ["eos", "strength", "failure"].iter().filter_map(|key| material[key]["type"].as_str());
+    let plain = ["thermal", "erosion"].into_iter().filter(|key| !material[key].is_null());
+    typed.chain(plain).collect::<Vec<_>>().join(", ")
+}
+
+/// A scene with one body of a material of the library, an explosive as its products.
+///
+/// # Errors
+///
+/// If there is no such material; a file is refused with the missing name of its material.
+pub fn scene_of(name: &str) -> Outcome<CheckedScene> {
+    if Path::new(name).is_file() {
+        return Err(bad(format!("{name}: the name of a material of this scene is missing")));
+    }
+    let library = LIBRARY.iter().find(|(known, _)| *known == name);
+    let explosive = library.is_some_and(|(_, text)| {
+        let material: Value = serde_json::from_str(text).expect("the library is JSON");
+        material["eos"]["type"] == "jwl"
+    });
+    let mut material = json!({"library": name});
+    if explosive {
+        material["eos"] = json!({"burn": "complete"});
+    }
+    let scene = json!({
+        "title": "Material of the library",
+        "domain": {"lower": [0.0], "upper": [0.01], "cell_size": 1e-4},
+        "time": {"end": 1e-6},
+        "materials": {name: material},
+        "bodies": [{"name": "body", "material": name, "velocity": [0.0], "particles_per_cell": [1],
+                    "box": {"lower": [0.0], "upper": [0.01]}}],
+    });
+    scene::parse(scene.to_string().as_bytes(), "library", &[]).map_err(bad)
+}

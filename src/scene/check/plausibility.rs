@@ -1,0 +1,148 @@
+//! Warnings about values that are allowed but rarely meant: wrong units, bodies of few cells, runs
+//! that see nothing or do not end.
+
+use super::CheckedScene;
+use crate::material::constitutive;
+use crate::scene::validate::join;
+
+/// Least density of a material with a stiffness of its own, such as a metal [kg/m3]; foams are above.
+const LEAST_DENSITY: f64 = 20.0;
+
+/// Largest density of a material [kg/m3]; osmium has 22 600.
+const LARGEST_DENSITY: f64 = 3e4;
+
+/// Sound speed above which a material is stiff, so that its density and speeds are in SI [m/s].
+const STIFF: f64 = 300.0;
+
+/// Least number of cells across a body in which a wave is resolved.
+const LEAST_CELLS: f64 = 8.0;
+
+/// Impact speed above which a shock forms, over the sound speed [-].
+const SHOCK: f64 = 0.02;
+
+/// Least share of a body that a wave crosses in a run [-].
+const LEAST_CROSSED: f64 = 0.01;
+
+/// Number of steps above which a run is long.
+const LONG_RUN: f64 = 1e7;
+
+/// Particle-steps per second of one core, for an estimate of a run's time, in one and two
+/// dimensions.
+const PACE: [f64; 2] = [1e7, 2e6];
+
+/// Warnings of a checked scene, one line each.
+pub(super) fn warnings(checked: &CheckedScene) -> Vec<String> {
+    let speeds: Vec<f64> = (0..checked.bodies.len())
+        .map(|i| {
+            let model = constitutive::build(checked.material_of(i));
+            model.sound_speed_at(checked.scene.bodies[i].pressure)
+        })
+        .collect();
+    let fastest = speeds.iter().copied().fold(0.0, f64::max);
+    let mut all = densities(checked, &speeds);
+    all.extend(bodies(checked));
+    all.extend(viscosity(checked, &speeds));
+    all.extend(duration(checked, fastest));
+    all
+}
+
+/// Densities of stiff materials that are no density in kg/m3.
+fn densities(checked: &CheckedScene, speeds: &[f64]) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for (body, &speed) in checked.scene.bodies.iter().zip(speeds) {
+        let density = checked.scene.materials[&body.material].density;
+        let plausible = (LEAST_DENSITY..=LARGEST_DENSITY).contains(&density);
+        let text = format!(
+            "{} = {density}: no solid or liquid has this density; the unit is kg/m3",
+            join(&join("materials", &body.material), "density")
+        );
+        if speed > STIFF && !plausible && !all.contains(&text) {
+            all.push(text);
+        }
+    }
+    all
+}
+
+/// Bodies with few cells across. Elastic solids are left out, and directions in which a body fills
+/// the domain.
+fn bodies(checked: &CheckedScene) -> Vec<String> {
+    let cells = |i: usize| {
+        let body = &checked.bodies[i];
+        let across = |a: usize| (body.upper[a] - body.lower[a]) / checked.cell_size[a];
+        let fills = |a: &usize| across(*a) > checked.cells[*a] as f64 - 0.5;
+        (0..checked.dimension).filter(|a| !fills(a)).map(across).fold(f64::INFINITY, f64::min)
+    };
+    let few = fluids(checked).filter(|&i| cells(i) < LEAST_CELLS - 1e-6);
+    few.map(|i| {
+        format!(
+            "{}: {:.1} cells across; fewer than {LEAST_CELLS} do not resolve a wave; a smaller \
+             domain.cell_size",
+            join("bodies", &checked.scene.bodies[i].name),
+            cells(i)
+        )
+    })
+    .collect()
+}
+
+/// Shocks without viscosity.
+fn viscosity(checked: &CheckedScene, speeds: &[f64]) -> Option<String> {
+    let slowest = speeds.iter().copied().fold(f64::INFINITY, f64::min);
+    let speed = closing_speed(checked);
+    let shock = speed > 0.0 && speed > SHOCK * slowest;
+    (checked.scene.artificial_viscosity.is_none() && shock).then(|| {
+        format!(
+            "artificial_viscosity: absent, but bodies meet at {speed:.4} m/s, with a sound speed of \
+             {slowest:.4} m/s: the shock oscillates; without method and artificial_viscosity the \
+             program chooses both"
+        )
+    })
+}
+
+/// Largest speed at which two bodies approach each other along an axis on which they stand apart or
+/// touch [m/s]. Elastic solids are left out: in the rubbers that they stand for, no shock forms.
+fn closing_speed(checked: &CheckedScene) -> f64 {
+    let bodies = || fluids(checked).map(|i| &checked.bodies[i]);
+    let mut fastest = 0.0_f64;
+    for (one, other) in bodies().flat_map(|one| bodies().map(move |other| (one, other))) {
+        for a in 0..checked.dimension {
+            if one.upper[a] <= other.lower[a] + checked.tolerance(a) {
+                fastest = fastest.max(one.velocity[a] - other.velocity[a]);
+            }
+        }
+    }
+    fastest
+}
+
+/// Indices of the bodies whose material has an equation of state.
+fn fluids(checked: &CheckedScene) -> impl Iterator<Item = usize> {
+    (0..checked.bodies.len()).filter(|&i| !checked.material_of(i).eos.is_solid())
+}
+
+/// A run in which no wave gets far, or that takes very many steps.
+fn duration(checked: &CheckedScene, sound_speed: f64) -> Vec<String> {
+    let end = checked.scene.time.end;
+    let smallest = checked.cell_size.iter().copied().fold(f64::INFINITY, f64::min);
+    let steps = end * sound_speed / (checked.scene.time.courant * smallest);
+    let longest = checked.bodies.iter().flat_map(|b| b.upper.iter().zip(&b.lower));
+    let longest = longest.map(|(upper, lower)| upper - lower).fold(0.0, f64::max);
+    let mut all = Vec::new();
+    let reach = (sound_speed * end).max(top_speed(checked) * end);
+    if reach < LEAST_CROSSED * longest {
+        all.push(format!(
+            "time.end = {end:e}: a wave crosses {:.2} % of the longest body until then; the units \
+             are s and m",
+            100.0 * reach / longest
+        ));
+    }
+    if steps > LONG_RUN {
+        let hours = steps * checked.particles as f64 / PACE[checked.dimension - 1] / 3600.0;
+        all.push(format!(
+            "time.end = {end:e}: about {steps:.0e} steps, {hours:.0} hours on one core; the unit is s"
+        ));
+    }
+    all
+}
+
+fn top_speed(checked: &CheckedScene) -> f64 {
+    checked.bodies.iter().map(|body| body.top_speed).fold(0.0, f64::max)
+}

@@ -1,0 +1,34 @@
+//! The library of materials on the command line.
+
+use crate::home::Home;
+
+#[test]
+fn the_library_is_listed() {
+    let home = Home::new();
+    let text = home.call(["materials"]).end().succeeded();
+    for (name, _) in flyer_mpm::scene::LIBRARY {
+        let line = text.lines().find(|line| line.split(' ').next() == Some(name));
+        let line = line.unwrap_or_else(|| panic!("no {name} in {text}"));
+        assert!(line.contains("kg/m3"), "{line}");
+    }
+    let copper = text.lines().find(|line| line.starts_with("copper_johnson_cook")).unwrap();
+    assert!(copper.contains("mie_gruneisen, johnson_cook, thermal") && copper.contains("8930"));
+}
+
+/// A material by its name alone is the same as in a scene.
+#[test]
+fn a_material_needs_no_scene() {
+    let mut scene = crate::scenes::short();
+    scene["materials"]["copper"] = serde_json::json!({"library": "copper"});
+    let home = Home::with(&scene);
+    let from_scene = home.call(["material", "scene.json", "copper"]).end().succeeded();
+    let by_name = home.call(["material", "copper"]).end().succeeded();
+    let numbers =
+        |text: &str| text.lines().filter(|l| !l.starts_with("pictures")).collect::<String>();
+    assert_eq!(numbers(&from_scene), numbers(&by_name));
+    assert!(home.at("output/material.copper/summary.json").is_file());
+    // an explosive is described by its products
+    assert!(home.call(["material", "tnt"]).end().succeeded().contains("tnt"));
+    home.call(["material", "coper"]).end().failed(&["no such material", "did you mean copper"]);
+    home.call(["material", "scene.json"]).end().failed(&["scene.json: the name of a material"]);
+}
