@@ -18,10 +18,11 @@ use super::model::{Material, Transfer};
 pub enum Preset {
     /// The most accurate method that was measured to be stable with the contents of the scene.
     Default,
-    /// Of the methods that pass every hard case, the one with the least error there.
+    /// The shape function and transfer with the least error of those that pass every hard case,
+    /// with a moderate viscosity.
     Robust,
-    /// The method with the least error of plane impacts, in the total-Lagrangian frame where the
-    /// bodies touch; for shocks that leave bodies in contact.
+    /// The method with the least error of plane impacts, in the total-Lagrangian frame if the scene
+    /// has nothing but fluids on a line that touch and stay in contact.
     Sharpest,
 }
 
@@ -45,7 +46,7 @@ impl std::fmt::Display for MethodChoice {
 struct Contents {
     plane: bool,
     contact: bool,
-    /// Bodies on a line touch each other, and no side lets particles out.
+    /// Bodies on a line touch each other without a contact law, and no side lets particles out.
     joined: bool,
     /// Some body is a fluid, or a solid whose pressure follows an equation of state of fluids.
     fluid: bool,
@@ -180,9 +181,9 @@ impl Preset {
             Preset::Robust => {
                 let changes = [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), moderate()];
                 merge(&mut base, changes);
-                "FMPM(6), least error over all hard cases"
+                "FMPM(6), least error over all hard cases, with a moderate viscosity"
             }
-            Preset::Sharpest if contents.joined => {
+            Preset::Sharpest if contents.joined && acting(contents).next().is_none() => {
                 let relaxation = json!({"rate": 0.05, "interval": 1});
                 let method = json!({"frame": "total_lagrangian", "transfer": {"fmpm": 10},
                     "edge_mask": 0.3, "pressure_relaxation": relaxation});
@@ -216,7 +217,7 @@ pub(super) fn expand(scene: &mut Value) -> Result<Option<MethodChoice>, SceneFau
     let contents = Contents::of(keys);
     let ([mut method, viscosity], reason) = choose(preset, &contents);
     let mut reasons = vec![reason.to_string()];
-    reasons.extend(acting(preset, &contents).map(|rule| rule.reason.to_string()));
+    reasons.extend(acting(&contents).map(|rule| rule.reason.to_string()));
     if let Some(excluded) = method.as_object_mut().map(|m| override_keys(m, explicit)) {
         reasons.extend(excluded);
     }
@@ -228,16 +229,14 @@ pub(super) fn expand(scene: &mut Value) -> Result<Option<MethodChoice>, SceneFau
     Ok(Some(MethodChoice { preset, reasons }))
 }
 
-fn acting(preset: Preset, contents: &Contents) -> impl Iterator<Item = &'static Rule> {
-    // the base of this preset needs no rule for what touches
-    let sharp = preset == Preset::Sharpest && contents.joined;
-    RULES.iter().filter(move |rule| !sharp && (rule.applies)(contents))
+fn acting(contents: &Contents) -> impl Iterator<Item = &'static Rule> {
+    RULES.iter().filter(|rule| (rule.applies)(contents))
 }
 
 /// Method, viscosity and reason of a preset with these contents.
 fn choose(preset: Preset, contents: &Contents) -> ([Value; 2], &'static str) {
     let (mut chosen, reason) = preset.base(contents);
-    for rule in acting(preset, contents) {
+    for rule in acting(contents) {
         merge(&mut chosen, (rule.changes)());
     }
     (chosen, reason)

@@ -98,6 +98,16 @@ fn presets_differ() {
         ("/bodies/1/box", json!({"lower": [0.00002], "upper": [0.002]})),
     ]);
     assert_eq!(json!(apart.scene.method)["frame"], Value::Null);
+    // what the frame does not suit
+    for (material, transfer) in [("copper_johnson_cook", 6), ("copper", 10)] {
+        let materials = json!({"metal": {"library": material}});
+        let scene = edited(&[("/method", json!("sharpest")), ("/materials", materials)]);
+        assert_eq!(json!(scene.scene.method.transfer), json!({"fmpm": transfer}), "{material}");
+    }
+    let eos = json!({"type": "neo_hookean", "youngs_modulus": 1e9, "poissons_ratio": 0.3});
+    let rubber = json!({"metal": {"density": 1000.0, "eos": eos}});
+    let elastic = edited(&[("/method", json!("sharpest")), ("/materials", rubber)]);
+    assert!(elastic.scene.method.pressure_relaxation.is_none());
 }
 
 #[test]
