@@ -372,6 +372,13 @@ fn side_command(command: Command) -> Outcome<()> {
             say(&cli::check::hugoniot(&checked, &output)?);
             Ok(())
         }
+        Command::New { name: None, .. } => {
+            say(&cli::new::list());
+            Ok(())
+        }
+        Command::New { name: Some(name), output } => {
+            cli::new::write(&name, output.as_deref()).map(|text| say(&text))
+        }
         Command::Materials => {
             say(&cli::materials::list());
             Ok(())

@@ -4,6 +4,7 @@ pub mod check;
 pub mod material;
 pub mod materials;
 pub mod migrate;
+pub mod new;
 pub mod plan;
 pub mod predict;
 pub mod study;
@@ -196,6 +197,15 @@ pub enum Command {
         scene: SceneArgs,
         /// Folder of the pictures [default: output/<name of the scene>.hugoniot/].
         #[arg(long, value_name = "DIR")]
+        output: Option<PathBuf>,
+    },
+    /// Write a short scene that runs as it is, to start from; without a name, list them.
+    New {
+        /// Name of the template.
+        #[arg(value_name = "NAME")]
+        name: Option<String>,
+        /// File to write [default: NAME.json].
+        #[arg(long, value_name = "FILE", requires = "name")]
         output: Option<PathBuf>,
     },
     /// List the materials of the library: models, density and source of each.

@@ -1,5 +1,5 @@
-//! Methods by name: a scene without `method`, or with one of the names of [`Preset`], gets a complete
-//! method and artificial viscosity that suit its contents.
+//! Methods by name: a scene without `method`, or with one of the names of [`Preset`], gets a
+//! complete method and artificial viscosity that suit its contents.
 //!
 //! Each preset is a base method and a list of rules. A rule changes keys if the scene contains what
 //! it names, and gives its reason. Explicit keys of the scene come last; an option of the preset
@@ -31,7 +31,7 @@ pub enum Preset {
 pub struct MethodChoice {
     /// Name of the preset.
     pub preset: Preset,
-    /// Reasons, one for each group of options.
+    /// The transfer and the viscosity in short, then the reasons.
     pub reasons: Vec<String>,
 }
 
@@ -69,7 +69,7 @@ const RULES: &[Rule] = &[
     Rule {
         applies: |c| c.contact || c.failure || c.gas,
         changes: || [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), moderate()],
-        reason: "FMPM(6) and a moderate viscosity, since surfaces part or gas expands",
+        reason: "a moderate front, since surfaces part or gas expands",
     },
     Rule {
         applies: |c| c.gas,
@@ -82,7 +82,7 @@ const RULES: &[Rule] = &[
             let viscosity = json!({"linear": 0.2, "quadratic": 2.0, "growth": null});
             [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), viscosity]
         },
-        reason: "a strong viscosity, since a sharper front damps elastic precursors too much",
+        reason: "a stronger viscosity, since a sharp front damps elastic precursors",
     },
     Rule {
         applies: |c| c.porous,
@@ -90,7 +90,7 @@ const RULES: &[Rule] = &[
             let viscosity = json!({"linear": 0.5, "quadratic": 2.0, "growth": null, "limiter": null, "limited": null});
             [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), viscosity]
         },
-        reason: "the strongest viscosity, since oscillations ahead of a shock would crush pores",
+        reason: "the strongest viscosity, since oscillations ahead of a shock crush pores",
     },
     Rule {
         applies: |c| c.plane,
@@ -100,7 +100,7 @@ const RULES: &[Rule] = &[
                 "pressure_relaxation": relaxation, "frame": null});
             [method, json!({"linear": 0.1, "quadratic": 0.75, "growth": null})]
         },
-        reason: "FMPM(4) with a domain limit, in two dimensions",
+        reason: "a lower order and a domain limit, in two dimensions",
     },
     Rule {
         applies: |c| c.plane && c.strength,
@@ -113,12 +113,12 @@ const RULES: &[Rule] = &[
             let viscosity = json!({"linear": 0.1, "quadratic": 0.5, "limited": "both"});
             [json!({"transfer": {"fmpm": 2}}), viscosity]
         },
-        reason: "FMPM(2) and a limiter on both terms, since gas in two dimensions may converge",
+        reason: "a low order and a limiter on both terms, since gas in two dimensions may converge",
     },
     Rule {
         applies: |c| c.burn,
         changes: || [json!({"transfer": {"fmpm": 2}}), moderate()],
-        reason: "FMPM(2), since burn fronts grow at higher orders",
+        reason: "a low order, since burn fronts grow at higher ones",
     },
     Rule {
         applies: |c| !c.fluid,
@@ -176,21 +176,21 @@ impl Preset {
         let reason = match self {
             Preset::Default => {
                 merge(&mut base, [json!({}), json!({"linear": 0.15})]);
-                "FMPM(8), with the viscosity that keeps peaks within half a per cent"
+                "least error of plane impacts with peaks within half a per cent"
             }
             Preset::Robust => {
                 let changes = [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), moderate()];
                 merge(&mut base, changes);
-                "FMPM(6), least error over all hard cases, with a moderate viscosity"
+                "least error over all hard cases"
             }
             Preset::Sharpest if contents.joined && acting(contents).next().is_none() => {
                 let relaxation = json!({"rate": 0.05, "interval": 1});
                 let method = json!({"frame": "total_lagrangian", "transfer": {"fmpm": 10},
                     "edge_mask": 0.3, "pressure_relaxation": relaxation});
                 merge(&mut base, [method, json!({})]);
-                "FMPM(10) in the total-Lagrangian frame, for bodies that touch and stay in contact"
+                "least error of plane impacts; total-Lagrangian, for bodies that stay in contact"
             }
-            Preset::Sharpest => "FMPM(8), least error of plane impacts in the updated frame",
+            Preset::Sharpest => "least error of plane impacts",
         };
         (base, reason)
     }
@@ -216,19 +216,40 @@ pub(super) fn expand(scene: &mut Value) -> Result<Option<MethodChoice>, SceneFau
     };
     let contents = Contents::of(keys);
     let ([mut method, viscosity], reason) = choose(preset, &contents);
-    let mut reasons = vec![reason.to_string()];
-    reasons.extend(acting(&contents).map(|rule| rule.reason.to_string()));
+    let mut reasons: Vec<String> = acting(&contents).map(|rule| rule.reason.to_string()).collect();
+    if reasons.is_empty() {
+        reasons.push(reason.to_string());
+    }
     if let Some(excluded) = method.as_object_mut().map(|m| override_keys(m, explicit)) {
         reasons.extend(excluded);
     }
-    keys.insert("method".into(), method);
-    match keys.contains_key("artificial_viscosity") {
-        true => reasons.push("the viscosity is that of the scene".into()),
-        false => drop(keys.insert("artificial_viscosity".into(), viscosity)),
+    if keys.contains_key("artificial_viscosity") {
+        reasons.push("the viscosity is that of the scene".into());
+    } else {
+        keys.insert("artificial_viscosity".into(), viscosity);
     }
+    reasons.insert(0, in_short(&method, &keys["artificial_viscosity"]));
+    keys.insert("method".into(), method);
     Ok(Some(MethodChoice { preset, reasons }))
 }
 
+/// Transfer and viscosity in short, such as `FMPM(8), viscosity 0.15/0.5`.
+fn in_short(method: &Value, viscosity: &Value) -> String {
+    let transfer = &method["transfer"];
+    let only = transfer.as_object().and_then(|object| object.iter().next());
+    let transfer = match only {
+        Some((name, number)) => format!("{}({number})", name.to_uppercase()),
+        None => transfer.as_str().unwrap_or("").to_uppercase(),
+    };
+    match viscosity.is_null() {
+        true => format!("{transfer}, no viscosity"),
+        false => {
+            format!("{transfer}, viscosity {}/{}", viscosity["linear"], viscosity["quadratic"])
+        }
+    }
+}
+
+/// Rules that act on a scene with these contents.
 fn acting(contents: &Contents) -> impl Iterator<Item = &'static Rule> {
     RULES.iter().filter(|rule| (rule.applies)(contents))
 }

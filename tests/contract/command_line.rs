@@ -118,16 +118,23 @@ fn without_arguments_it_says_how_it_is_used() {
 }
 
 #[test]
-fn quiet_says_nothing_and_else_a_table_stands_at_the_end() {
+fn quiet_says_nothing_and_else_a_report_stands_at_the_end() {
     let home = Home::with(&short());
     let out = home.call(["scene.json", "--quiet"]).end();
     assert_eq!((out.stdout.as_str(), out.stderr.as_str()), ("", ""));
     let out = home.call(["scene.json"]).end();
     assert!(out.stderr.contains("400 particles") && out.stderr.contains("(chosen)"));
-    let table = out.succeeded();
-    for word in ["L1", "energy", "momentum", "steps", "seconds", "output/scene"] {
-        assert!(table.contains(word), "no {word} in: {table}");
-    }
+    let has = |text: &str, words: &[&str]| {
+        for word in words {
+            assert!(text.contains(word), "no {word} in: {text}");
+        }
+    };
+    let brief = out.succeeded();
+    has(&brief, &["pressure", "errors", "energy", "momentum", "steps", "output/scene"]);
+    assert!(brief.lines().count() <= 10 && brief.lines().all(|l| l.len() <= 100), "{brief}");
+    assert!(!brief.contains("share of step"), "{brief}");
+    let full = home.call(["scene.json", "--verbose"]).end().succeeded();
+    has(&full, &["L1", "energy", "momentum", "steps", "seconds", "share of step"]);
     let out = home.call(["scene.json", "--set", "domain.patches=[4]"]).end();
     assert!(!out.stderr.contains("(chosen)"), "{}", out.stderr);
 }

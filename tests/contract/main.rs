@@ -23,6 +23,7 @@ mod program;
 mod replacing;
 mod scenes;
 mod steps;
+mod templates;
 
 #[cfg(feature = "mpi")]
 mod ranks;
