@@ -111,16 +111,37 @@ fn extremes(table: &ParticleTable) -> Vec<MeasuredQuantity> {
     all.into_iter().flatten().collect()
 }
 
-/// Largest velocity of the free surface in the histories.
+/// Velocity of the free surface when it differs most from that at the start, in the histories.
 fn free_surface(histories: &HistoryTable) -> Option<MeasuredQuantity> {
     let [times, velocities] = ["time", "free_surface_velocity"].map(|name| histories.column(name));
-    let pairs = times?.iter().zip(velocities?).filter(|(_, u)| u.is_finite());
-    let (time, value) = pairs.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-    (*value != 0.0).then(|| MeasuredQuantity {
+    let (times, velocities) = (times?, velocities?);
+    let start = *velocities.first()?;
+    let change = |u: &f64| (u - start).abs();
+    let known = times.iter().zip(velocities).filter(|(_, u)| u.is_finite() && change(u) > 0.0);
+    let (time, value) = known.max_by(|a, b| change(a.1).total_cmp(&change(b.1)))?;
+    Some(MeasuredQuantity {
         name: "free-surface velocity".into(),
         unit: "m/s".into(),
         time: *time,
         value: *value,
         exact: None,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A surface that moves at the start, is accelerated and slowed down again.
+    #[test]
+    fn the_free_surface_is_told_at_its_largest_change() {
+        let columns = [("time", "s"), ("free_surface_velocity", "m/s")];
+        let mut histories = HistoryTable::new(columns);
+        for row in [[0.0, 300.0], [1e-6, 300.0], [2e-6, -120.0], [3e-6, 250.0]] {
+            histories.push(&row);
+        }
+        let told = free_surface(&histories).unwrap();
+        assert_eq!((told.time, told.value), (2e-6, -120.0));
+        assert!(free_surface(&histories.first(2)).is_none());
+    }
 }
