@@ -328,7 +328,9 @@ fn announce(comm: &dyn Comm, scene: &CheckedScene, threads: usize) {
     }
     let cores = std::thread::available_parallelism().map_or(threads, usize::from);
     if threads > cores {
-        eprintln!("warning: {threads} threads a rank: more than the {cores} cores of this machine");
+        eprintln!(
+            "warning: {threads} threads per rank, but this process may use only {cores} cores"
+        );
     }
     let patches = flyer_mpm::simulation::patch_counts(scene, comm.size(), threads);
     let idle = comm.size().saturating_sub(patches.iter().product());

@@ -40,10 +40,13 @@ fn models(material: &Value) -> String {
 ///
 /// If there is no such material; a file is refused with the missing name of its material.
 pub fn scene_of(name: &str) -> Outcome<CheckedScene> {
-    if Path::new(name).is_file() {
+    let library = LIBRARY.iter().find(|(known, _)| *known == name);
+    if library.is_none() && Path::new(name).is_file() {
         return Err(bad(format!("{name}: the name of a material of this scene is missing")));
     }
-    let library = LIBRARY.iter().find(|(known, _)| *known == name);
+    if library.is_none() && name.ends_with(".json") {
+        return Err(bad(format!("{name}: no such file")));
+    }
     let explosive = library.is_some_and(|(_, text)| {
         let material: Value = serde_json::from_str(text).expect("the library is JSON");
         material["eos"]["type"] == "jwl"

@@ -26,14 +26,22 @@ pub fn quantities(
     if scene.dimension > 1 {
         return Vec::new();
     }
-    let mut all = match reference {
-        Some(ReferenceSolution::Impact(impact)) => behind_shock(scene, impact, profiles, tables),
-        _ => Vec::new(),
+    let impact = match reference {
+        Some(ReferenceSolution::Impact(impact)) => Some(impact),
+        _ => None,
     };
+    let mut all =
+        impact.map_or_else(Vec::new, |impact| behind_shock(scene, impact, profiles, tables));
     if all.is_empty() {
         all = tables.last().map(|table| extremes(table)).unwrap_or_default();
     }
-    all.extend(histories.and_then(free_surface));
+    if let Some(impact) = impact.filter(|i| scene.face_is_free(i.target, !i.impact.mirrored)) {
+        all.extend(histories.and_then(free_surface).map(|mut velocity| {
+            let exact = impact.solution.target_rear.at(velocity.time);
+            velocity.exact = exact.map(|point| point.u);
+            velocity
+        }));
+    }
     all
 }
 
@@ -61,11 +69,15 @@ fn behind_shock(
         exact: Some(exact),
     };
     let mut all = vec![one("pressure behind shock", "Pa", state.p * (1.0 + plateau), state.p)];
-    // velocities of the chain are relative to the target, along the flyer's motion
+    // along the flyer's motion, with the target at rest
     let way = if impact.impact.mirrored { -1.0 } else { 1.0 };
     let rest = impact.impact.target.velocity;
     if let Some(velocity) = velocity_near(table, state.p) {
-        all.push(one("particle velocity", "m/s", velocity, rest + way * state.u));
+        let name = match rest {
+            0.0 => "particle velocity",
+            _ => "velocity relative to target",
+        };
+        all.push(one(name, "m/s", way * (velocity - rest), state.u));
     }
     let shock = chain.waves.iter().find(|w| w.to == SHOCKED && w.plate == Plate::Target);
     let travelled = time - impact.impact.contact_time;
@@ -75,7 +87,7 @@ fn behind_shock(
     {
         let exact = shock.lagrangian_speed;
         let behind = off * scene.cell_size[0] / travelled;
-        all.push(one("shock speed", "m/s", exact + behind, exact));
+        all.push(one("mean shock speed", "m/s", exact + behind, exact));
     }
     all
 }

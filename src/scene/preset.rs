@@ -12,17 +12,17 @@ use serde_json::{Map, Value, json};
 use super::errors::{SceneFault, suggest};
 use super::model::{Material, Transfer};
 
-/// A complete method and artificial viscosity by name.
+/// A complete method and artificial viscosity by name, adapted to the contents of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Preset {
     /// The most accurate method that was measured to be stable with the contents of the scene.
     Default,
-    /// The shape function and transfer with the least error of those that pass every hard case,
-    /// with a moderate viscosity.
+    /// From the shape function and transfer with the least error of those that pass every hard
+    /// case, with a moderate viscosity.
     Robust,
-    /// The method with the least error of plane impacts, in the total-Lagrangian frame if the scene
-    /// has nothing but fluids on a line that touch and stay in contact.
+    /// From the method with the least error of plane impacts, in the total-Lagrangian frame if the
+    /// scene has nothing but fluids on a line that touch and stay in contact.
     Sharpest,
 }
 
@@ -52,7 +52,9 @@ struct Contents {
     fluid: bool,
     strength: bool,
     failure: bool,
+    /// Some body is a gas or an explosive.
     gas: bool,
+    /// Some body is an explosive with a burn front.
     burn: bool,
     porous: bool,
 }
@@ -67,58 +69,70 @@ struct Rule {
 /// Rules of all presets, in the order in which they act.
 const RULES: &[Rule] = &[
     Rule {
-        applies: |c| c.contact || c.failure || c.gas,
+        applies: |c| (c.contact || c.failure || c.gas) && !c.plane && !c.strength,
         changes: || [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), moderate()],
-        reason: "a moderate front, since surfaces part or gas expands",
+        reason: "a moderate viscosity, since surfaces may separate or gas may expand",
     },
     Rule {
-        applies: |c| c.gas,
+        applies: |c| c.gas && !c.plane,
         changes: || [json!({"domain_limit": 4.0}), json!({})],
         reason: "a domain limit, since gas may expand without bound",
     },
     Rule {
-        applies: |c| c.strength,
+        applies: |c| c.strength && !c.plane,
         changes: || {
             let viscosity = json!({"linear": 0.2, "quadratic": 2.0, "growth": null});
             [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), viscosity]
         },
-        reason: "a stronger viscosity, since a sharp front damps elastic precursors",
-    },
-    Rule {
-        applies: |c| c.porous,
-        changes: || {
-            let viscosity = json!({"linear": 0.5, "quadratic": 2.0, "growth": null, "limiter": null, "limited": null});
-            [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), viscosity]
-        },
-        reason: "the strongest viscosity, since oscillations ahead of a shock crush pores",
+        reason: "a stronger viscosity, since elastic precursors are more accurate with it",
     },
     Rule {
         applies: |c| c.plane,
         changes: || {
             let relaxation = json!({"rate": 0.2, "interval": 1});
             let method = json!({"transfer": {"fmpm": 4}, "edge_mask": 0.3, "domain_limit": 1.0,
-                "pressure_relaxation": relaxation, "frame": null});
+                "pressure_relaxation": relaxation});
             [method, json!({"linear": 0.1, "quadratic": 0.75, "growth": null})]
         },
-        reason: "a lower order and a domain limit, in two dimensions",
+        reason: "a lower transfer order and a domain limit, since the scene has two dimensions",
     },
     Rule {
         applies: |c| c.plane && c.strength,
         changes: || [json!({"pressure_relaxation": {"rate": 0.4, "interval": 5}}), moderate()],
-        reason: "relaxation every fifth step, since plastic flow in two dimensions needs little",
+        reason: "relaxation every fifth step, since plastic flow needs little of it",
     },
     Rule {
-        applies: |c| c.plane && c.gas,
+        applies: |c| c.plane && c.gas && !c.burn,
         changes: || {
             let viscosity = json!({"linear": 0.1, "quadratic": 0.5, "limited": "both"});
             [json!({"transfer": {"fmpm": 2}}), viscosity]
         },
-        reason: "a low order and a limiter on both terms, since gas in two dimensions may converge",
+        reason: "a low transfer order, since gas may flow towards a point or an axis",
+    },
+    Rule {
+        applies: |c| c.plane && c.burn,
+        changes: || [json!({}), moderate()],
+        reason: "a moderate viscosity, since a body is an explosive",
     },
     Rule {
         applies: |c| c.burn,
-        changes: || [json!({"transfer": {"fmpm": 2}}), moderate()],
-        reason: "a low order, since burn fronts grow at higher ones",
+        changes: || [json!({"transfer": {"fmpm": 2}}), json!({})],
+        reason: "a low transfer order, since errors at burn fronts grow with the order",
+    },
+    Rule {
+        applies: |c| c.porous && !c.plane && !c.burn,
+        changes: || [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), json!({})],
+        reason: "a lower transfer order, since a body is porous",
+    },
+    Rule {
+        applies: |c| c.porous,
+        changes: || {
+            let off = Value::Null;
+            let viscosity = json!({"linear": 0.5, "quadratic": 2.0, "growth": off, "limiter": off,
+                "limited": off});
+            [json!({}), viscosity]
+        },
+        reason: "the strongest viscosity, since oscillations ahead of a shock crush pores",
     },
     Rule {
         applies: |c| !c.fluid,
@@ -176,7 +190,7 @@ impl Preset {
         let reason = match self {
             Preset::Default => {
                 merge(&mut base, [json!({}), json!({"linear": 0.15})]);
-                "least error of plane impacts with peaks within half a per cent"
+                "least error of plane impacts whose peak pressure is within 0.5 %"
             }
             Preset::Robust => {
                 let changes = [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), moderate()];
@@ -347,7 +361,7 @@ impl Contents {
             strength: any(|m, _| m.strength.is_some()),
             failure: any(|m, _| m.failure.is_some()),
             gas: any(|m, burns| m.eos.is_gas() || burns),
-            burn: any(|_, burns| burns),
+            burn: any(|m, burns| burns && m.eos.has_history()),
             porous: any(|m, burns| m.eos.has_history() && !burns),
         }
     }
@@ -365,4 +379,50 @@ fn are_joined(scene: &Map<String, Value>) -> bool {
     let open = scene.get("boundary").is_some_and(|sides| sides.to_string().contains("outflow"));
     let contact = scene.get("contact").is_some_and(|contact| !contact.is_null());
     touch && !open && !contact
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every combination of contents.
+    fn all() -> impl Iterator<Item = Contents> {
+        (0..512_u32).map(|bits| {
+            let has = |k: u32| bits >> k & 1 == 1;
+            Contents {
+                plane: has(0),
+                contact: has(1),
+                joined: has(2),
+                fluid: has(3),
+                strength: has(4),
+                failure: has(5),
+                gas: has(6),
+                burn: has(7),
+                porous: has(8),
+            }
+        })
+    }
+
+    #[test]
+    fn options_of_every_choice_fit_each_other() {
+        for (preset, c) in Preset::ALL.iter().flat_map(|p| all().map(move |c| (p, c))) {
+            let ([method, viscosity], _) = choose(*preset, &c);
+            let has = |value: &Value, key: &str| !value[key].is_null();
+            assert!(!has(&viscosity, "limited") || has(&viscosity, "limiter"), "{viscosity}");
+            let total = has(&method, "frame");
+            assert!(!total || !has(&method, "domain_limit"), "{method}");
+            assert_eq!(has(&method, "pressure_relaxation"), c.fluid);
+            if c.porous {
+                assert_eq!([&viscosity["linear"], &viscosity["quadratic"]], [0.5, 2.0]);
+            }
+            if c.burn {
+                assert_eq!(method["transfer"], json!({"fmpm": 2}));
+            }
+            if c.plane && c.fluid && !c.strength {
+                assert_eq!(method["pressure_relaxation"]["rate"], 0.2);
+            }
+            let growth = viscosity["growth"]["max"].as_f64().unwrap_or(f64::INFINITY);
+            assert!(growth > viscosity["quadratic"].as_f64().unwrap(), "{viscosity}");
+        }
+    }
 }

@@ -247,7 +247,7 @@ fn a_mistyped_command_is_told_the_nearest() {
         ("plna", "plan"),
         ("calibrat", "perf calibrate"),
         ("shema", "schema"),
-        ("materials", "material"),
+        ("materail", "material"),
     ] {
         let meant = format!("{typed}: no such scene or command; did you mean {meant}?");
         refused(&home, &[typed, "scene.json"], &[&meant]);

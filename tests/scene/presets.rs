@@ -59,14 +59,21 @@ fn a_scene_without_a_method_has_that_of_the_flyer() {
 #[test]
 fn contents_change_the_default() {
     transfer_is(&[], &json!({"fmpm": 8}), "FMPM(8)");
-    transfer_is(&[("/contact", json!({"type": "stick"}))], &json!({"fmpm": 6}), "surfaces part");
+    transfer_is(
+        &[("/contact", json!({"type": "stick"}))],
+        &json!({"fmpm": 6}),
+        "surfaces may separate",
+    );
     let strong = json!({"metal": {"library": "copper_johnson_cook"}});
     transfer_is(&[("/materials", strong)], &json!({"fmpm": 6}), "precursors");
     let explosive = with("detonation.json", &["method=default"]).unwrap();
     assert_eq!(json!(explosive.scene.method.transfer), json!({"fmpm": 2}));
     assert!(choice(&explosive).reasons.join("; ").contains("burn fronts"));
-    let porous = with("porous_impact.json", &["method=default", "artificial_viscosity=null"]);
-    assert!(choice(&porous.unwrap()).reasons.join("; ").contains("crush pores"));
+    let strong = json!({"metal": {"library": "copper_johnson_cook"}});
+    let contact = edited(&[("/contact", json!({"type": "stick"}))]);
+    let quadratic = |scene: CheckedScene| scene.scene.artificial_viscosity.unwrap().quadratic;
+    assert_eq!(quadratic(contact), 1.25);
+    assert_eq!(quadratic(edited(&[("/materials", strong)])), 2.0);
     let gas = json!({"metal": {"density": 1.0, "eos": {"type": "ideal_gas", "gamma": 1.4}}});
     let warm = json!([{"name": "gas", "material": "metal", "pressure": 1e5, "velocity": [0.0],
         "box": {"lower": [0.0], "upper": [0.002]}, "particles_per_cell": [2]}]);

@@ -36,20 +36,20 @@ const ERRORS: [(&str, &str, bool); 22] = [
     ("mean_density_error", "density error %", true),
 ];
 
-/// Errors told in the short report: key, words before the value, words after it.
-const TOLD: [(&str, &str, &str); 9] = [
-    ("l1", "mean of the pressure", " %"),
-    ("rise_cells", "front", " cells wide"),
+/// Errors in the brief report: key, label, unit.
+const BRIEF_ERRORS: [(&str, &str, &str); 9] = [
+    ("l1", "mean pressure error", " %"),
+    ("rise_cells", "shock width", " cells"),
     ("overshoot", "overshoot", " %"),
-    ("density_l1", "mean of the density", " %"),
-    ("mean_density_error", "density behind the shock", " %"),
-    ("displacement_l2", "displacement", " %"),
-    ("angular_momentum_loss", "angular momentum lost", " %"),
-    ("velocity_rms", "velocity", " %"),
-    ("pressure_rms", "pressure", " %"),
+    ("density_l1", "mean density error", " %"),
+    ("mean_density_error", "density error behind the shock", " %"),
+    ("displacement_l2", "displacement error", " %"),
+    ("angular_momentum_loss", "lost angular momentum", " %"),
+    ("velocity_rms", "velocity error", " %"),
+    ("pressure_rms", "pressure error", " %"),
 ];
 
-/// The short report: physical quantities, errors of the last profile, conservation, size, time and
+/// The brief report: physical quantities, errors of the last profile, conservation, size, time and
 /// the folder of the files.
 pub fn brief(summary: &Summary, folder: &Path) -> String {
     let mut text = heading(summary);
@@ -59,11 +59,10 @@ pub fn brief(summary: &Summary, folder: &Path) -> String {
     let mut facts = Vec::new();
     facts.extend(last_errors(&summary.profiles).map(|text| ("errors", text)));
     let drifts = [("energy", summary.energy.drift), ("momentum", summary.momentum.drift)];
-    let kept =
-        drifts.iter().filter_map(|(of, d)| Some(format!("{of} to {:.1e}", d.as_ref()?.abs())));
+    let kept = drifts.iter().filter_map(|(of, d)| Some(format!("{of} {:.1e}", d.as_ref()?.abs())));
     let kept: Vec<String> = kept.collect();
     if !kept.is_empty() {
-        facts.push(("conserved", format!("{} of the total", kept.join(", "))));
+        facts.push(("conservation", format!("relative errors: {}", kept.join(", "))));
     }
     facts.extend(events(summary));
     let plural = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
@@ -133,8 +132,8 @@ fn last_errors(profiles: &[ProfileSummary]) -> Option<String> {
         let scale = if after.contains('%') { 100.0 } else { 1.0 };
         Some(format!("{before} {}{after}", significant(scale * last.error(key)?)))
     };
-    let told: Vec<String> = TOLD.iter().filter_map(words).collect();
-    (!told.is_empty()).then(|| format!("{}, at {}", told.join(", "), seconds(last.time)))
+    let all: Vec<String> = BRIEF_ERRORS.iter().filter_map(words).collect();
+    (!all.is_empty()).then(|| format!("{}, at {}", all.join(", "), seconds(last.time)))
 }
 
 /// The full report: errors of each profile, ranks, effects, energy, momentum, steps, times and the
@@ -437,10 +436,10 @@ flyer
 warning: linear shape functions ring across cells
                time    computed       exact  difference
   shock speed  1 us  6343.5 m/s  6343.0 m/s   0.00788 %
-  errors     mean of the pressure 0.890 %, at 0.5 us
-  conserved  energy to 5.0e-2, momentum to 0.0e0 of the total
-  run        1700 particles, 2612 steps, 2 ranks, 1 thread: 1.25 s
-  results    output/flyer
+  errors        mean pressure error 0.890 %, at 0.5 us
+  conservation  relative errors: energy 5.0e-2, momentum 0.0e0
+  run           1700 particles, 2612 steps, 2 ranks, 1 thread: 1.25 s
+  results       output/flyer
 ";
         let text = brief(&example(), Path::new("output/flyer"));
         assert_eq!(text, expected);

@@ -1,5 +1,7 @@
 //! Warnings about values that are allowed but rarely meant: wrong units, bodies of few cells, runs
-//! that see nothing or do not end.
+//! that are too short or too long.
+
+use std::collections::HashMap;
 
 use super::CheckedScene;
 use crate::material::constitutive;
@@ -32,10 +34,14 @@ const PACE: [f64; 2] = [1e7, 2e6];
 
 /// Warnings of a checked scene, one line each.
 pub(super) fn warnings(checked: &CheckedScene) -> Vec<String> {
+    // a table is costly to build, and many bodies may have one material
+    let mut known: HashMap<(&str, u64), f64> = HashMap::new();
     let speeds: Vec<f64> = (0..checked.bodies.len())
         .map(|i| {
-            let model = constitutive::build(checked.material_of(i));
-            model.sound_speed_at(checked.scene.bodies[i].pressure)
+            let body = &checked.scene.bodies[i];
+            let model = || constitutive::build(checked.material_of(i));
+            let state = (body.material.as_str(), body.pressure.to_bits());
+            *known.entry(state).or_insert_with(|| model().sound_speed_at(body.pressure))
         })
         .collect();
     let fastest = speeds.iter().copied().fold(0.0, f64::max);
@@ -50,8 +56,10 @@ pub(super) fn warnings(checked: &CheckedScene) -> Vec<String> {
 fn densities(checked: &CheckedScene, speeds: &[f64]) -> Vec<String> {
     let mut all: Vec<String> = Vec::new();
     for (body, &speed) in checked.scene.bodies.iter().zip(speeds) {
-        let density = checked.scene.materials[&body.material].density;
-        let plausible = (LEAST_DENSITY..=LARGEST_DENSITY).contains(&density);
+        let material = &checked.scene.materials[&body.material];
+        let density = material.density;
+        let least = if material.eos.is_gas() { 0.0 } else { LEAST_DENSITY };
+        let plausible = (least..=LARGEST_DENSITY).contains(&density);
         let text = format!(
             "{} = {density}: no solid or liquid has this density; the unit is kg/m3",
             join(&join("materials", &body.material), "density")
@@ -75,8 +83,8 @@ fn bodies(checked: &CheckedScene) -> Vec<String> {
     let few = fluids(checked).filter(|&i| cells(i) < LEAST_CELLS - 1e-6);
     few.map(|i| {
         format!(
-            "{}: {:.1} cells across; fewer than {LEAST_CELLS} do not resolve a wave; a smaller \
-             domain.cell_size",
+            "{}: {:.1} cells across. At least {LEAST_CELLS} cells are needed to resolve a wave; \
+             reduce domain.cell_size",
             join("bodies", &checked.scene.bodies[i].name),
             cells(i)
         )
@@ -86,14 +94,16 @@ fn bodies(checked: &CheckedScene) -> Vec<String> {
 
 /// Shocks without viscosity.
 fn viscosity(checked: &CheckedScene, speeds: &[f64]) -> Option<String> {
+    if checked.scene.artificial_viscosity.is_some() {
+        return None;
+    }
     let slowest = speeds.iter().copied().fold(f64::INFINITY, f64::min);
     let speed = closing_speed(checked);
-    let shock = speed > 0.0 && speed > SHOCK * slowest;
-    (checked.scene.artificial_viscosity.is_none() && shock).then(|| {
+    (speed > 0.0 && speed > SHOCK * slowest).then(|| {
         format!(
-            "artificial_viscosity: absent, but bodies meet at {speed:.4} m/s, with a sound speed of \
-             {slowest:.4} m/s: the shock oscillates; without method and artificial_viscosity the \
-             program chooses both"
+            "artificial_viscosity: absent, but bodies meet at {speed:.0} m/s and the lowest sound \
+             speed is {slowest:.0} m/s. The shock will oscillate. If the scene has neither method \
+             nor artificial_viscosity, the program chooses both"
         )
     })
 }
@@ -101,19 +111,26 @@ fn viscosity(checked: &CheckedScene, speeds: &[f64]) -> Option<String> {
 /// Largest speed at which two bodies approach each other along an axis on which they stand apart or
 /// touch [m/s]. Elastic solids are left out: in the rubbers that they stand for, no shock forms.
 fn closing_speed(checked: &CheckedScene) -> f64 {
-    let bodies = || fluids(checked).map(|i| &checked.bodies[i]);
+    let bodies: Vec<_> = fluids(checked).map(|i| &checked.bodies[i]).collect();
     let mut fastest = 0.0_f64;
-    for (one, other) in bodies().flat_map(|one| bodies().map(move |other| (one, other))) {
-        for a in 0..checked.dimension {
-            if one.upper[a] <= other.lower[a] + checked.tolerance(a) {
-                fastest = fastest.max(one.velocity[a] - other.velocity[a]);
-            }
+    for a in 0..checked.dimension {
+        let mut sorted = bodies.clone();
+        sorted.sort_by(|p, q| p.lower[a].total_cmp(&q.lower[a]));
+        // least velocity of the bodies from number k on
+        let mut least = vec![f64::INFINITY; sorted.len() + 1];
+        for k in (0..sorted.len()).rev() {
+            least[k] = least[k + 1].min(sorted[k].velocity[a]);
+        }
+        for one in &bodies {
+            let beyond = one.upper[a] - checked.tolerance(a);
+            let k = sorted.partition_point(|other| other.lower[a] < beyond);
+            fastest = fastest.max(one.velocity[a] - least[k]);
         }
     }
     fastest
 }
 
-/// Indices of the bodies whose material has an equation of state.
+/// Indices of the bodies that are not elastic solids.
 fn fluids(checked: &CheckedScene) -> impl Iterator<Item = usize> {
     (0..checked.bodies.len()).filter(|&i| !checked.material_of(i).eos.is_solid())
 }
@@ -129,15 +146,15 @@ fn duration(checked: &CheckedScene, sound_speed: f64) -> Vec<String> {
     let reach = (sound_speed * end).max(top_speed(checked) * end);
     if reach < LEAST_CROSSED * longest {
         all.push(format!(
-            "time.end = {end:e}: a wave crosses {:.2} % of the longest body until then; the units \
-             are s and m",
+            "time.end = {end:e}: the fastest wave crosses only {:.2} % of the longest body by this \
+             time; check that times are in s and lengths in m",
             100.0 * reach / longest
         ));
     }
     if steps > LONG_RUN {
         let hours = steps * checked.particles as f64 / PACE[checked.dimension - 1] / 3600.0;
         all.push(format!(
-            "time.end = {end:e}: about {steps:.0e} steps, {hours:.0} hours on one core; the unit is s"
+            "time.end = {end:e}: about {steps:.0e} steps, {hours:.1} hours on one core; the unit is s"
         ));
     }
     all
