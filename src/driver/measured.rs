@@ -14,6 +14,9 @@ const SHOCKED: usize = 2;
 /// Difference from the exact pressure up to which a particle counts as behind the shock [-].
 const NEAR: f64 = 0.02;
 
+/// Change of a velocity that is no more than rounding, over the impact speed [-].
+const ROUNDING: f64 = 1e-6;
+
 /// Quantities of a run on a line; empty in a plane. Without an exact solution of an impact, they are
 /// the largest pressure, tension and speed of the last profile.
 pub fn quantities(
@@ -36,11 +39,13 @@ pub fn quantities(
         all = tables.last().map(|table| extremes(table)).unwrap_or_default();
     }
     if let Some(impact) = impact.filter(|i| scene.face_is_free(i.target, !i.impact.mirrored)) {
-        all.extend(histories.and_then(free_surface).map(|mut velocity| {
-            let exact = impact.solution.target_rear.at(velocity.time);
-            velocity.exact = exact.map(|point| point.u);
-            velocity
-        }));
+        all.extend(histories.and_then(|all| free_surface(all, impact.impact.speed)).map(
+            |mut velocity| {
+                let exact = impact.solution.target_rear.at(velocity.time);
+                velocity.exact = exact.map(|point| point.u);
+                velocity
+            },
+        ));
     }
     all
 }
@@ -123,13 +128,15 @@ fn extremes(table: &ParticleTable) -> Vec<MeasuredQuantity> {
     all.into_iter().flatten().collect()
 }
 
-/// Velocity of the free surface when it differs most from that at the start, in the histories.
-fn free_surface(histories: &HistoryTable) -> Option<MeasuredQuantity> {
+/// Velocity of the free surface when it differs most from that at the start, in the histories of an
+/// impact at `speed` [m/s]; `None` before a wave has reached it.
+fn free_surface(histories: &HistoryTable, speed: f64) -> Option<MeasuredQuantity> {
     let [times, velocities] = ["time", "free_surface_velocity"].map(|name| histories.column(name));
     let (times, velocities) = (times?, velocities?);
     let start = *velocities.first()?;
     let change = |u: &f64| (u - start).abs();
-    let known = times.iter().zip(velocities).filter(|(_, u)| u.is_finite() && change(u) > 0.0);
+    let known =
+        times.iter().zip(velocities).filter(|(_, u)| u.is_finite() && change(u) > ROUNDING * speed);
     let (time, value) = known.max_by(|a, b| change(a.1).total_cmp(&change(b.1)))?;
     Some(MeasuredQuantity {
         name: "free-surface velocity".into(),
@@ -149,11 +156,11 @@ mod tests {
     fn the_free_surface_is_told_at_its_largest_change() {
         let columns = [("time", "s"), ("free_surface_velocity", "m/s")];
         let mut histories = HistoryTable::new(columns);
-        for row in [[0.0, 300.0], [1e-6, 300.0], [2e-6, -120.0], [3e-6, 250.0]] {
+        for row in [[0.0, 300.0], [1e-6, 300.0 + 1e-9], [2e-6, -120.0], [3e-6, 250.0]] {
             histories.push(&row);
         }
-        let told = free_surface(&histories).unwrap();
+        let told = free_surface(&histories, 500.0).unwrap();
         assert_eq!((told.time, told.value), (2e-6, -120.0));
-        assert!(free_surface(&histories.first(2)).is_none());
+        assert!(free_surface(&histories.first(2), 500.0).is_none());
     }
 }
