@@ -1,12 +1,12 @@
 //! Measures the Courant numbers up to which each shape function is stable with each transfer, and
-//! prints the table that stands in `src/scene/check/courant.rs`.
+//! prints the table that stands in `src/input/check/courant.rs`.
 //!
 //! `cargo run --release --example courant_limits` takes some minutes.
 
 use std::path::Path;
 
 use decomp::Serial;
-use flyer_mpm::scene;
+use flyer_mpm::input;
 use flyer_mpm::simulation::Simulation;
 use serde_json::{Value, json};
 
@@ -76,7 +76,7 @@ fn scheme(base: &Value, shape: &str, transfer: &Value) -> Value {
 fn is_stable(value: &Value) -> bool {
     let text = value.to_string();
     let scene =
-        scene::parse(text.as_bytes(), "courant.json", &[]).unwrap_or_else(|e| panic!("{e}"));
+        input::parse(text.as_bytes(), "courant.json", &[]).unwrap_or_else(|e| panic!("{e}"));
     let Ok(mut simulation) = Simulation::<1>::new(&scene, &Serial, 1) else { return false };
     let end = scene.scene.time.end;
     while simulation.time() < end {

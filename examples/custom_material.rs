@@ -6,10 +6,10 @@
 //! ```
 
 use decomp::Serial;
+use flyer_mpm::input;
 use flyer_mpm::material::constitutive::CustomModel;
 use flyer_mpm::material::strength::{MaterialState, StrengthLaw};
 use flyer_mpm::material::{EquationOfState, LinearPressure};
-use flyer_mpm::scene;
 use flyer_mpm::simulation::Simulation;
 
 /// Murnaghan's cold curve (1944) with Grueneisen's thermal pressure, Gamma rho constant:
@@ -142,7 +142,7 @@ fn jump() -> (f64, f64, f64) {
 ///
 /// What is wrong with the scene or its run.
 pub fn plateau() -> Result<Vec<Figure>, Box<dyn std::error::Error>> {
-    let scene = scene::parse(SCENE.as_bytes(), "custom_material", &[])?;
+    let scene = input::parse(SCENE.as_bytes(), "custom_material", &[])?;
     let models = |material: &str| {
         (material == "metal").then(|| CustomModel::fluid(METAL).with_strength(STRONG))
     };

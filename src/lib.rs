@@ -9,7 +9,8 @@
 //! - [`simulation`]: a run in memory, which joins physics and messages;
 //! - [`solver`]: particles, nodal fields and the time step;
 //! - [`effects`]: optional effects of a scene;
-//! - [`scene`]: the input and its validation;
+//! - [`input`]: reading and checking of a scene;
+//! - [`scene`]: the data of a scene;
 //! - [`geometry`]: bodies and how they are filled with particles;
 //! - [`side`]: kinds of side of the domain;
 //! - [`contact`]: contact laws between bodies;
@@ -25,6 +26,7 @@ pub mod driver;
 pub mod effects;
 pub mod exact;
 pub mod geometry;
+pub mod input;
 pub mod material;
 pub mod perf_model;
 pub mod plot;

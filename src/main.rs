@@ -23,7 +23,9 @@ use flyer_mpm::driver::output::lock::Lock;
 use flyer_mpm::driver::output::origin::{Maker, Origin, RUN, check_target};
 use flyer_mpm::driver::output::trace::TRACE_START;
 use flyer_mpm::driver::{Beginning, Options, RunFailure, run};
-use flyer_mpm::scene::{self, CheckedScene, input_file};
+use flyer_mpm::input;
+use flyer_mpm::input::input_file;
+use flyer_mpm::scene::CheckedScene;
 use flyer_mpm::simulation::RunError;
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
 use signal_hook::iterator::Signals;
@@ -137,11 +139,11 @@ fn bad(error: impl ToString) -> (u8, String) {
 /// Reads and checks a scene on this rank. A scene that is too large is refused before its particles
 /// are made, unless `ignore_memory` is set.
 fn read_scene(args: &SceneArgs, ignore_memory: bool) -> Outcome<(Vec<u8>, CheckedScene)> {
-    let bytes = scene::read(&args.scene).map_err(bad)?;
+    let bytes = input::read(&args.scene).map_err(bad)?;
     let name = args.scene.display().to_string();
-    let available = scene::available_memory().filter(|_| !ignore_memory);
-    scene::check_size(&bytes, &name, &args.set, available).map_err(bad)?;
-    let checked = scene::parse(&bytes, &name, &args.set).map_err(bad)?;
+    let available = input::available_memory().filter(|_| !ignore_memory);
+    input::check_size(&bytes, &name, &args.set, available).map_err(bad)?;
+    let checked = input::parse(&bytes, &name, &args.set).map_err(bad)?;
     Ok((bytes, checked))
 }
 
@@ -182,7 +184,7 @@ fn begin(args: &RunArgs, reading: &AtomicBool) -> Outcome<Begun> {
             let bytes = checkpoint.scene.clone().into_bytes();
             let name = file.display().to_string();
             let checked =
-                scene::parse_changed(&bytes, &name, &args.set, &CHANGEABLE).map_err(bad)?;
+                input::parse_changed(&bytes, &name, &args.set, &CHANGEABLE).map_err(bad)?;
             checkpoint.fit(&checked, &file).map_err(bad)?;
             tell_restart(args, &checkpoint, &name);
             let output = folder::results_of(&file).unwrap_or_else(|| default_folder(&file));
@@ -198,7 +200,7 @@ fn begin(args: &RunArgs, reading: &AtomicBool) -> Outcome<Begun> {
         (None, None) => return Err((BAD_INPUT, "a scene is needed; see --help".into())),
     };
     if !args.ignore_memory {
-        checked.check_memory(scene::available_memory()).map_err(bad)?;
+        checked.check_memory(input::available_memory()).map_err(bad)?;
     }
     let output = args.output.clone().unwrap_or(default);
     reading.store(false, Ordering::Relaxed);
@@ -265,7 +267,7 @@ fn run_scene(comm: &dyn Comm, args: &RunArgs, started: Instant) -> Outcome<()> {
         Ok(begun) => (begun.checked, begun.beginning, begun.output, Some(begun.lock)),
         Err(error) if text.is_empty() => return Err(error),
         Err(_) => {
-            let checked = scene::parse(&text, &input(args), &args.set).map_err(bad)?;
+            let checked = input::parse(&text, &input(args), &args.set).map_err(bad)?;
             let beginning = match args.restart {
                 Some(_) => Beginning::Checkpoint(None),
                 None => Beginning::Scene,
@@ -356,13 +358,13 @@ fn announce(comm: &dyn Comm, scene: &CheckedScene, threads: usize) {
 fn side_command(command: Command) -> Outcome<()> {
     match command {
         Command::Schema => {
-            let text = serde_json::to_string_pretty(&scene::schema()).map_err(bad)?;
+            let text = serde_json::to_string_pretty(&input::schema()).map_err(bad)?;
             say(&(text + "\n"));
             Ok(())
         }
         Command::Check { scene } => {
             let (_, checked) = read_scene(&scene, false)?;
-            checked.check_memory(scene::available_memory()).map_err(bad)?;
+            checked.check_memory(input::available_memory()).map_err(bad)?;
             say(&cli::check::check(&checked).map_err(|e| (FAILED, e.to_string()))?);
             Ok(())
         }

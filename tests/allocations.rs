@@ -4,7 +4,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use decomp::Serial;
-use flyer_mpm::scene;
+use flyer_mpm::input;
 use flyer_mpm::simulation::Simulation;
 use serde_json::{Value, json};
 
@@ -35,7 +35,7 @@ static ALLOCATOR: Counting = Counting;
 
 /// Memory asked for in each of some windows of `steps` steps of a scene, one after the other.
 fn asked(value: &Value, steps: usize, windows: usize) -> Vec<u64> {
-    let checked = scene::parse(value.to_string().as_bytes(), "test.json", &[]).unwrap();
+    let checked = input::parse(value.to_string().as_bytes(), "test.json", &[]).unwrap();
     let mut simulation = Simulation::<1>::new(&checked, &Serial, 1).unwrap();
     let end = checked.scene.time.end;
     let mut asked = Vec::with_capacity(windows);

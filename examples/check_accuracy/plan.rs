@@ -6,7 +6,8 @@ use decomp::Serial;
 use flyer_mpm::accuracy::plan::{Data, ErrorTarget, PlanError, Verdict, plan};
 use flyer_mpm::driver::output::summary::Summary;
 use flyer_mpm::driver::{Beginning, Options, run};
-use flyer_mpm::scene::{self, PlannedQuantity};
+use flyer_mpm::input;
+use flyer_mpm::scene::PlannedQuantity;
 
 use crate::random_impacts::{HELD_OUT, Random, impact};
 use crate::table::{Show, Table};
@@ -83,7 +84,7 @@ fn once(
 ) -> Result<Verdict, String> {
     let plan = plan(scene, name, target, data).map_err(|e| e.to_string())?;
     let checked =
-        scene::parse(plan.scene.to_string().as_bytes(), name, &[]).map_err(|e| e.to_string())?;
+        input::parse(plan.scene.to_string().as_bytes(), name, &[]).map_err(|e| e.to_string())?;
     let home = tempfile::tempdir().map_err(|e| e.to_string())?;
     let options = Options {
         output: home.path().join("run"),

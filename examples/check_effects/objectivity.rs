@@ -14,9 +14,9 @@
 //! is left is the update of the stress.
 
 use decomp::Serial;
+use flyer_mpm::input;
 use flyer_mpm::material::Symmetric;
 use flyer_mpm::material::strength::{Rate, VonMises};
-use flyer_mpm::scene;
 use flyer_mpm::simulation::{Saved, Simulation};
 use serde_json::{Value, json};
 
@@ -97,7 +97,7 @@ fn turned(
     (stretch, start): (f64, Option<Symmetric>),
 ) -> Result<(f64, [f64; 4]), String> {
     let text = block(material, method, courant).to_string();
-    let scene = scene::parse(text.as_bytes(), "block", &[]).map_err(|e| e.to_string())?;
+    let scene = input::parse(text.as_bytes(), "block", &[]).map_err(|e| e.to_string())?;
     let mut run = Simulation::<2>::new(&scene, &Serial, 1).map_err(|e| e.to_string())?;
     let saved = strained(&run, stretch, start);
     run.restore(Some(&saved)).map_err(|e| e.to_string())?;

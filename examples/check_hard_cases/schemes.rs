@@ -22,7 +22,7 @@ both leave with a code that is not 0. A transfer in italics has energy that is n
 - state: a particle's state is outside of its model, mostly tension that grows; courant: a step turned
   out too long; speed: a particle faster than any wave; energy: it grew; cold: internal energy fell
   below none; crowd: particles clumped; step: the stable time step collapsed.
-- The Courant numbers up to which schemes are stable are in `src/scene/check/courant.rs`, measured by
+- The Courant numbers up to which schemes are stable are in `src/input/check/courant.rs`, measured by
   `cargo run --release --example courant_limits`; above them a scene is refused unless
   `monitor.on_courant_exceeded` says otherwise.
 

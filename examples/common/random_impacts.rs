@@ -3,8 +3,10 @@
 use flyer_mpm::accuracy::estimate::FittedRange;
 use flyer_mpm::accuracy::plan;
 use flyer_mpm::exact::{Impact, ImpactBody};
+use flyer_mpm::input;
+use flyer_mpm::input::LIBRARY;
 use flyer_mpm::material::MieGruneisen;
-use flyer_mpm::scene::{self, CheckedScene, LIBRARY};
+use flyer_mpm::scene::CheckedScene;
 use serde_json::{Value, json};
 
 /// Numbers that look random and are the same everywhere (Steele, Lea & Flood 2014, SplitMix64).
@@ -179,6 +181,6 @@ fn attempt(random: &mut Random, materials: &[&str]) -> Option<RandomImpact> {
 impl RandomImpact {
     /// Its scene, checked.
     pub fn checked(&self) -> Result<CheckedScene, String> {
-        scene::parse(self.scene.to_string().as_bytes(), &self.name, &[]).map_err(|e| e.to_string())
+        input::parse(self.scene.to_string().as_bytes(), &self.name, &[]).map_err(|e| e.to_string())
     }
 }

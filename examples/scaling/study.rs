@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use flyer_mpm::driver::output::folder::default_folder;
 use flyer_mpm::driver::output::origin::{Origin, claim};
-use flyer_mpm::scene::{self, CellSize, CheckedScene};
+use flyer_mpm::input;
+use flyer_mpm::scene::{CellSize, CheckedScene};
 use serde::Serialize;
 
 use crate::arguments::{Kind, Options};
@@ -53,9 +54,9 @@ pub struct Study {
 impl Plan {
     /// Checks the scene of every configuration, so that none fails after hours of others.
     pub fn new(kind: Kind, options: &Options) -> Result<Plan, String> {
-        let bytes = scene::read(&options.scene).map_err(|e| e.to_string())?;
+        let bytes = input::read(&options.scene).map_err(|e| e.to_string())?;
         let file = options.scene.display().to_string();
-        let parse = |sets: &[String]| scene::parse(&bytes, &file, sets).map_err(|e| e.to_string());
+        let parse = |sets: &[String]| input::parse(&bytes, &file, sets).map_err(|e| e.to_string());
         let unchanged = parse(&options.set)?;
         let cores = options.cores.unwrap_or_else(|| {
             std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
@@ -131,7 +132,7 @@ fn rows(jobs: &[Job], runs: &[Vec<RunSummary>]) -> Vec<Row> {
 
 /// Each configuration runs without and with skipping, where scenes know of it.
 fn skipping() -> &'static [bool] {
-    let schema = scene::schema();
+    let schema = input::schema();
     match schema.pointer("/$defs/Decomposition/properties/skip_quiescent") {
         Some(_) => &[false, true],
         None => &[false],
@@ -191,8 +192,8 @@ mod tests {
     #[test]
     fn weak_scaling_keeps_steps_and_particles_a_worker() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/inputs/flyer.json");
-        let bytes = scene::read(path.as_ref()).unwrap();
-        let parse = |sets: &[String]| scene::parse(&bytes, "flyer", sets).unwrap();
+        let bytes = input::read(path.as_ref()).unwrap();
+        let parse = |sets: &[String]| input::parse(&bytes, "flyer", sets).unwrap();
         let one = parse(&[]);
         let three = parse(&grown(&one, 3).unwrap());
         assert_eq!(three.particles, 3 * one.particles);

@@ -1,15 +1,15 @@
 //! Whatever stands in a scene's file, the verdict is a scene or one line.
 #![no_main]
 
-use flyer_mpm::scene;
+use flyer_mpm::input;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
     // bodies of a plane are cut into particles one by one as they are read
-    if scene::check_size(bytes, "scene.json", &[], Some(64 << 20)).is_err() {
+    if input::check_size(bytes, "scene.json", &[], Some(64 << 20)).is_err() {
         return;
     }
-    if let Err(error) = scene::parse(bytes, "scene.json", &[]) {
+    if let Err(error) = input::parse(bytes, "scene.json", &[]) {
         assert_eq!(error.to_string().lines().count(), 1, "{error}");
     }
 });

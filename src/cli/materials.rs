@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use flyer_mpm::scene::{self, CheckedScene, LIBRARY};
+use flyer_mpm::input;
+use flyer_mpm::input::LIBRARY;
+use flyer_mpm::scene::CheckedScene;
 use serde_json::{Value, json};
 
 use crate::{Outcome, bad};
@@ -63,5 +65,5 @@ pub fn scene_of(name: &str) -> Outcome<CheckedScene> {
         "bodies": [{"name": "body", "material": name, "velocity": [0.0], "particles_per_cell": [1],
                     "box": {"lower": [0.0], "upper": [0.01]}}],
     });
-    scene::parse(scene.to_string().as_bytes(), "library", &[]).map_err(bad)
+    input::parse(scene.to_string().as_bytes(), "library", &[]).map_err(bad)
 }

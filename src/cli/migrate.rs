@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use flyer_mpm::scene::{self, FORMAT, input_file};
+use flyer_mpm::input;
+use flyer_mpm::input::input_file;
+use flyer_mpm::scene::FORMAT;
 
 /// Rewrites `scene` in place, or into `output`; returns a report of the former names.
 ///
@@ -12,8 +14,8 @@ use flyer_mpm::scene::{self, FORMAT, input_file};
 pub fn migrate(scene: &Path, output: Option<&Path>) -> Result<String, (u8, String)> {
     let name = scene.display();
     let bad = |reason: String| (crate::BAD_INPUT, format!("{name}: {reason}"));
-    let text = input_file::read_text(scene, scene::LARGEST_FILE).map_err(|f| bad(f.to_string()))?;
-    let (new, former) = scene::migrate(&text).map_err(bad)?;
+    let text = input_file::read_text(scene, input::LARGEST_FILE).map_err(|f| bad(f.to_string()))?;
+    let (new, former) = input::migrate(&text).map_err(bad)?;
     let target = output.unwrap_or(scene);
     if new != text || output.is_some() {
         write(target, &new).map_err(|e| {

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use flyer_mpm::accuracy::estimate::Basis;
+use flyer_mpm::accuracy::estimate::EstimateBasis;
 use flyer_mpm::accuracy::plan::{self, Data, ErrorTarget, PlanError};
 use flyer_mpm::driver::output::origin::{absolute, check_target};
-use flyer_mpm::scene::input_file;
+use flyer_mpm::input::input_file;
 
 use serde_json::Value;
 
@@ -51,8 +51,8 @@ pub fn plan(args: &PlanArgs) -> Outcome<String> {
         .map_err(|e| bad(format!("{}: cannot be written: {e}", file.display())))?;
     let percent = plan::choose::percent;
     let guess = match plan.basis {
-        Basis::Calibrated => String::new(),
-        Basis::Guess => {
+        EstimateBasis::Calibrated => String::new(),
+        EstimateBasis::Guess => {
             let outside = plan.outside.join("; ");
             format!("guess      the schemes were not measured on such inputs: {outside}\n")
         }

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use decomp::{Comm, Serial};
 use flyer_mpm::driver::output::origin::check_target;
+use flyer_mpm::input;
+use flyer_mpm::input::input_file;
 use flyer_mpm::perf_model::calibrate;
 use flyer_mpm::perf_model::{Against, Machine, Network, forecast, machine_table, ranks_to, table};
-use flyer_mpm::scene::input_file;
-use flyer_mpm::scene::{self, CellSize, CheckedScene};
+use flyer_mpm::scene::{CellSize, CheckedScene};
 use flyer_mpm::simulation::Simulation;
 use serde_json::Value;
 
@@ -37,14 +38,14 @@ pub fn calibrate(comm: &dyn Comm, order: &Order) -> Outcome<()> {
     let file = file.as_deref();
     let name = file.map_or("flyer.json".into(), |f| f.display().to_string());
     let mine = match (comm.rank(), file) {
-        (0, Some(file)) => scene::read(file).map_err(bad),
+        (0, Some(file)) => input::read(file).map_err(bad),
         (0, None) => Ok(FLYER.as_bytes().to_vec()),
         _ => Ok(Vec::new()),
     };
     // rank 0 checks everything that could fail before it sends the scene to the other ranks
     let mine = mine.and_then(|bytes| {
         if comm.rank() == 0 {
-            check_line(&scene::parse(&bytes, &name, sets).map_err(bad)?, "calibrate")?;
+            check_line(&input::parse(&bytes, &name, sets).map_err(bad)?, "calibrate")?;
             input_file::check_place(output)
                 .map_err(|fault| bad(format!("{}: {fault}", output.display())))?;
             check_target(output, "a machine file of `flyer-mpm perf calibrate`", |text| {
@@ -64,7 +65,7 @@ pub fn calibrate(comm: &dyn Comm, order: &Order) -> Outcome<()> {
     if bytes.is_empty() {
         return Err((crate::BAD_INPUT, String::new()));
     }
-    let checked = scene::parse(&bytes, &name, sets).map_err(bad)?;
+    let checked = input::parse(&bytes, &name, sets).map_err(bad)?;
     if comm.rank() == 0 {
         eprintln!("calibrating about {seconds:.0} s: {}", checked.scene.title);
         if comm.size() > 1 && calibrate::cores() == 1 {
@@ -140,7 +141,7 @@ pub fn predict(args: &PredictArgs) -> Outcome<String> {
         sets.extend(study.sets.iter().cloned());
         sets.push("decomposition.skip_quiescent=false".into());
         let file = args.scene.scene.display().to_string();
-        let scene = scene::parse(&bytes, &file, &sets).map_err(bad)?;
+        let scene = input::parse(&bytes, &file, &sets).map_err(bad)?;
         check_line(&scene, "predict")?;
         machine.fits(&scene, &args.machine).map_err(bad)?;
         all.extend(study.compare(&machine, &network, &scene, path).map_err(bad)?);
@@ -172,6 +173,6 @@ fn coarsened(scene: &CheckedScene) -> Option<(CheckedScene, f64)> {
         let mut new = scene.scene.clone();
         new.domain.cell_size = CellSize::Uniform(scene.cell_size[0] * k as f64);
         new.domain.patches = None;
-        scene::check(new, &scene.file).ok().map(|checked| (checked, k as f64))
+        input::check(new, &scene.file).ok().map(|checked| (checked, k as f64))
     })
 }

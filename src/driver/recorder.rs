@@ -6,7 +6,7 @@ use decomp::Comm;
 
 use crate::accuracy::estimate::Arrivals;
 use crate::accuracy::reference::PlaneReference;
-use crate::driver::checkpoint::{Checkpoint, Contents, Due, Record, StateColumn};
+use crate::driver::checkpoint::{Checkpoint, CheckpointContents, Due, Record, StateColumn};
 use crate::driver::figures::PressureRow;
 use crate::driver::output::histories::HistoryTable;
 use crate::driver::output::origin::{Origin, RUN};
@@ -133,7 +133,7 @@ impl<'a> Recorder<'a> {
         scene: &'b str,
         saved: &'b Saved,
         columns: &'b [StateColumn],
-    ) -> Contents<'b> {
+    ) -> CheckpointContents<'b> {
         self.contents_at(&self.mark(), self.histories(), scene, saved, columns)
     }
 
@@ -161,7 +161,7 @@ impl<'a> Recorder<'a> {
         scene: &'b str,
         saved: &'b Saved,
         columns: &'b [StateColumn],
-    ) -> Contents<'b> {
+    ) -> CheckpointContents<'b> {
         let due = Due {
             history: mark.due_history,
             history_interval: self.scene.history_interval,
@@ -169,7 +169,7 @@ impl<'a> Recorder<'a> {
             end: self.scene.scene.time.end,
             arrivals: self.arrivals.state(),
         };
-        Contents {
+        CheckpointContents {
             origin: Some(&self.origin),
             scene,
             dimension: self.scene.dimension,

@@ -15,7 +15,7 @@
 use crate::scene::CheckedScene;
 use crate::scene::moving_frame::Frame;
 use crate::shape::with_width;
-use crate::solver::Stepper;
+use crate::solver::Scheme;
 use crate::solver::declare::{Declare, Role};
 use crate::solver::effect::{Effect, Package, Phase, Setup, StepContext};
 use crate::solver::patch::{BoundaryWork, Patch};
@@ -78,7 +78,7 @@ impl<const D: usize> AcceleratedGrid<D> {
         let acceleration = self.frame.acceleration(step.start, step.dt);
         for (a, acceleration) in acceleration.into_iter().enumerate() {
             let mut out = std::mem::take(&mut patch.block.columns[self.force + a]);
-            let mass = &patch.block.columns[step.stepper.columns.mass][..n];
+            let mass = &patch.block.columns[step.scheme.columns.mass][..n];
             out.clear();
             out.extend(mass.iter().map(|m| -m * acceleration));
             patch.block.columns[self.force + a] = out;
@@ -90,7 +90,7 @@ impl<const D: usize> AcceleratedGrid<D> {
     fn accumulate(&self, step: &StepContext<'_, D>, patch: &mut Patch<D>) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
-            s: &Stepper<D>,
+            s: &Scheme<D>,
             e: &AcceleratedGrid<D>,
             grid: [f64; D],
             dt: f64,
@@ -120,6 +120,6 @@ impl<const D: usize> AcceleratedGrid<D> {
         let (from, to) =
             (self.frame.velocity(step.start), self.frame.velocity(step.start + step.dt));
         let grid = std::array::from_fn(|a| 0.5 * (from[a] + to[a]));
-        with_width!(patch.stencils.width, go(patch, step.stepper, self, grid, step.dt));
+        with_width!(patch.stencils.width, go(patch, step.scheme, self, grid, step.dt));
     }
 }

@@ -10,7 +10,7 @@ use decomp::Block;
 use crate::exact::plane::Vortex;
 use crate::scene::{self, CheckedScene};
 use crate::shape::with_width;
-use crate::solver::Stepper;
+use crate::solver::Scheme;
 use crate::solver::declare::{Declare, Role};
 use crate::solver::effect::{Account, Effect, Package, Phase, Setup, StepContext};
 use crate::solver::patch::Patch;
@@ -128,7 +128,7 @@ impl<const D: usize> Effect<D> for BodyForceEffect {
 impl BodyForceEffect {
     /// Force m b of the own particles.
     fn find_force<const D: usize>(&self, step: &StepContext<'_, D>, patch: &mut Patch<D>) {
-        let c = &step.stepper.columns;
+        let c = &step.scheme.columns;
         let n = patch.block.own();
         let mut out: [Vec<f64>; D] =
             std::array::from_fn(|a| std::mem::take(&mut patch.block.columns[self.force + a]));
@@ -159,7 +159,7 @@ impl BodyForceEffect {
     fn accumulate<const D: usize>(&self, step: &StepContext<'_, D>, patch: &mut Patch<D>) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
-            s: &Stepper<D>,
+            s: &Scheme<D>,
             e: &BodyForceEffect,
             dt: f64,
         ) {
@@ -184,6 +184,6 @@ impl BodyForceEffect {
                 }
             }
         }
-        with_width!(patch.stencils.width, go(patch, step.stepper, self, step.dt));
+        with_width!(patch.stencils.width, go(patch, step.scheme, self, step.dt));
     }
 }

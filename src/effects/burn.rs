@@ -81,7 +81,7 @@ impl<const D: usize> Effect<D> for ProgrammedBurn {
         match phase {
             Phase::MidState => self.burn(step, patch, step.time, step.jacobian),
             _ => {
-                let jacobian = step.stepper.columns.jacobian;
+                let jacobian = step.scheme.columns.jacobian;
                 self.burn(step, patch, step.start + step.dt, jacobian);
             }
         }
@@ -116,7 +116,7 @@ impl ProgrammedBurn {
         let mut fraction = std::mem::take(&mut patch.block.columns[self.fraction]);
         let column = |k: usize| &patch.block.columns[k][..n];
         let (lit, j) = (column(self.lighting_time), column(jacobian));
-        for (body, particles) in bodies(column(step.stepper.columns.body)) {
+        for (body, particles) in bodies(column(step.scheme.columns.body)) {
             let Some(explosive) = &self.bodies[body] else { continue };
             for r in particles {
                 let mut now = burnt(time, lit[r], explosive.duration);

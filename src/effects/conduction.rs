@@ -21,7 +21,7 @@ use decomp::{Block, Parity};
 
 use crate::scene::CheckedScene;
 use crate::shape::with_width;
-use crate::solver::Stepper;
+use crate::solver::Scheme;
 use crate::solver::declare::{Declare, Role};
 use crate::solver::effect::{Account, Effect, Package, Phase, Setup, StepContext};
 use crate::solver::exchange::Nodal;
@@ -141,7 +141,7 @@ impl<const D: usize> Effect<D> for HeatConduction<D> {
     fn act(&self, phase: Phase, step: &StepContext<'_, D>, patch: &mut Patch<D>) {
         match phase {
             Phase::ParticleForce => self.find_conductance(step, patch),
-            _ => self.scatter(step.stepper, patch),
+            _ => self.scatter(step.scheme, patch),
         }
     }
 
@@ -156,12 +156,12 @@ impl<const D: usize> Effect<D> for HeatConduction<D> {
             inverse: f.inverse,
         };
         let others = [(f.inverse, Parity::Even), (f.temperature, Parity::Even)];
-        step.stepper.sum_scalar(nodal, "heat series", &others, series, |patch| {
-            self.find_rate(step.stepper, patch);
+        step.scheme.sum_scalar(nodal, step.effects, "heat series", &others, series, |patch| {
+            self.find_rate(step.scheme, patch);
         });
         nodal.refresh(&[(f.rate, Parity::Even)]);
         nodal.each("heat", |patch| {
-            self.set_sides(step.stepper, patch, f.rate, |_| 0.0);
+            self.set_sides(step.scheme, patch, f.rate, |_| 0.0);
             self.gather(step, patch);
         });
     }
@@ -172,7 +172,7 @@ impl<const D: usize> Effect<D> for HeatConduction<D> {
 
     /// Sets temperatures that have just been exchanged on and beyond sides of prescribed
     /// temperature.
-    fn set_boundary(&self, s: &Stepper<D>, patch: &mut Patch<D>, fields: &[(usize, Parity)]) {
+    fn set_boundary(&self, s: &Scheme<D>, patch: &mut Patch<D>, fields: &[(usize, Parity)]) {
         let f = self.fields;
         for (field, _) in fields.iter().filter(|(k, _)| *k == f.temperature || *k == f.projected) {
             self.set_sides(s, patch, *field, |held| held);
@@ -203,7 +203,7 @@ impl<const D: usize> Effect<D> for HeatConduction<D> {
 impl<const D: usize> HeatConduction<D> {
     /// Heat capacity m cv and conductance k V of the own particles.
     fn find_conductance(&self, step: &StepContext<'_, D>, patch: &mut Patch<D>) {
-        let c = &step.stepper.columns;
+        let c = &step.scheme.columns;
         let n = patch.block.own();
         let mut take = |k: usize| {
             let mut column = std::mem::take(&mut patch.block.columns[k]);
@@ -223,7 +223,7 @@ impl<const D: usize> HeatConduction<D> {
         patch.block.columns[self.conductance] = conductance;
     }
 
-    fn seen(&self, s: &Stepper<D>, axis: usize, place: i64) -> HeatedSide {
+    fn seen(&self, s: &Scheme<D>, axis: usize, place: i64) -> HeatedSide {
         let whole = 2 * s.cells[axis];
         let [lower, upper] = self.held[axis];
         match (lower, upper) {
@@ -236,10 +236,10 @@ impl<const D: usize> HeatConduction<D> {
     }
 
     /// Sums the nodal temperature on the nodes that the patch computes.
-    fn scatter(&self, s: &Stepper<D>, patch: &mut Patch<D>) {
+    fn scatter(&self, s: &Scheme<D>, patch: &mut Patch<D>) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
-            s: &Stepper<D>,
+            s: &Scheme<D>,
             e: &HeatConduction<D>,
         ) {
             let f = e.fields;
@@ -287,7 +287,7 @@ impl<const D: usize> HeatConduction<D> {
     /// minus the old value.
     fn set_sides(
         &self,
-        s: &Stepper<D>,
+        s: &Scheme<D>,
         patch: &mut Patch<D>,
         field: usize,
         on: impl Fn(f64) -> f64,
@@ -314,10 +314,10 @@ impl<const D: usize> HeatConduction<D> {
         }
     }
 
-    fn find_rate(&self, s: &Stepper<D>, patch: &mut Patch<D>) {
+    fn find_rate(&self, s: &Scheme<D>, patch: &mut Patch<D>) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
-            _: &Stepper<D>,
+            _: &Scheme<D>,
             e: &HeatConduction<D>,
         ) {
             let f = e.fields;
@@ -345,7 +345,7 @@ impl<const D: usize> HeatConduction<D> {
     fn gather(&self, step: &StepContext<'_, D>, patch: &mut Patch<D>) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
-            s: &Stepper<D>,
+            s: &Scheme<D>,
             e: &HeatConduction<D>,
             dt: f64,
         ) {
@@ -369,6 +369,6 @@ impl<const D: usize> HeatConduction<D> {
                 }
             }
         }
-        with_width!(patch.stencils.width, go(patch, step.stepper, self, step.dt));
+        with_width!(patch.stencils.width, go(patch, step.scheme, self, step.dt));
     }
 }

@@ -40,7 +40,7 @@ impl<const D: usize> Effect<D> for ErosionEffect {
     }
 
     fn act(&self, _: Phase, step: &StepContext<'_, D>, patch: &mut Patch<D>) {
-        let c = &step.stepper.columns;
+        let c = &step.scheme.columns;
         let n = patch.block.own();
         let column = |k: usize| &patch.block.columns[k][..n];
         let (jacobian, strain) = (column(c.jacobian), self.plastic_strain.map(column));
@@ -52,7 +52,7 @@ impl<const D: usize> Effect<D> for ErosionEffect {
         }
         if !gone.is_empty() {
             patch.block.drop_ghosts();
-            step.stepper.remove_particles(patch, &gone, true);
+            step.scheme.remove_particles(patch, &gone, true);
         }
     }
 }

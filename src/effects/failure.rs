@@ -8,7 +8,7 @@ use smallvec::SmallVec;
 
 use crate::material::constitutive::{ConstitutiveModel, DamageUpdate, FailureModel, failure_model};
 use crate::scene::CheckedScene;
-use crate::solver::Stepper;
+use crate::solver::Scheme;
 use crate::solver::declare::{Declare, Role};
 use crate::solver::effect::{Account, Effect, Package, Phase, Setup, StepContext};
 use crate::solver::particle_update::bodies;
@@ -65,7 +65,7 @@ impl<const D: usize> Effect<D> for FailureEffect {
     fn act(&self, phase: Phase, step: &StepContext<'_, D>, patch: &mut Patch<D>) {
         match phase {
             Phase::MidStress => self.release_mid_tension(step, patch),
-            Phase::PressureUpdate => self.release_tension(step.stepper, patch),
+            Phase::PressureUpdate => self.release_tension(step.scheme, patch),
             _ => self.fail(step, patch),
         }
     }
@@ -87,7 +87,7 @@ impl<const D: usize> Effect<D> for FailureEffect {
 impl FailureEffect {
     /// Removes the tension of failed particles at the middle of the step.
     fn release_mid_tension<const D: usize>(&self, step: &StepContext<'_, D>, patch: &mut Patch<D>) {
-        let c = &step.stepper.columns;
+        let c = &step.scheme.columns;
         let n = patch.block.own();
         let mut stress = std::mem::take(&mut patch.block.columns[c.stress_volume]);
         for r in 0..n {
@@ -110,8 +110,8 @@ impl FailureEffect {
 
     /// Removes the tension of failed particles at the end of a leapfrog step, and the work of that
     /// tension.
-    fn release_tension<const D: usize>(&self, stepper: &Stepper<D>, patch: &mut Patch<D>) {
-        let c = &stepper.columns;
+    fn release_tension<const D: usize>(&self, scheme: &Scheme<D>, patch: &mut Patch<D>) {
+        let c = &scheme.columns;
         let mut pressure = std::mem::take(&mut patch.block.columns[c.pressure]);
         let mut energy = std::mem::take(&mut patch.block.columns[c.energy]);
         let before = &patch.kept;
@@ -130,7 +130,7 @@ impl FailureEffect {
     /// Updates the damage of the own particles at the end of the step; those that fail lose their
     /// stress.
     fn fail<const D: usize>(&self, step: &StepContext<'_, D>, patch: &mut Patch<D>) {
-        let s = step.stepper;
+        let s = step.scheme;
         let c = &s.columns;
         let n = patch.block.own();
         let mut damage = std::mem::take(&mut patch.block.columns[self.damage]);
@@ -159,7 +159,7 @@ impl FailureEffect {
     /// Removes tension and shear from a particle, and counts their elastic energy as released.
     fn release_stress<const D: usize>(
         &self,
-        s: &Stepper<D>,
+        s: &Scheme<D>,
         patch: &mut Patch<D>,
         body: usize,
         r: usize,

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::EffectRegistry;
 use crate::scene::CheckedScene;
 use crate::solver::columns::Columns;
-use crate::solver::parts;
+use crate::solver::effect::{part_names, uses_part};
 
 /// One line of the ledger.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -36,14 +36,14 @@ pub fn ledger(scene: &CheckedScene, columns: &Columns, shares: Option<&[f64]>) -
         });
         EffectUse {
             effect: name.to_string(),
-            active: part.is_none_or(|part| parts::is_active::<EffectRegistry>(part, scene)),
+            active: part.is_none_or(|part| uses_part::<EffectRegistry>(part, scene)),
             columns: own().map(|s| s.name.to_string()).collect(),
             bytes_per_particle: 8 * own().count(),
             bytes_per_ghost: 8 * own().filter(|s| s.ghost).count(),
             step_share: share,
         }
     };
-    let names = parts::names::<EffectRegistry>();
+    let names = part_names::<EffectRegistry>();
     let parts = names.iter().enumerate().map(|(part, name)| line(name, Some(part)));
     std::iter::once(line("motion", None)).chain(parts).collect()
 }
@@ -90,7 +90,7 @@ mod tests {
             "porous_impact",
         ] {
             let text = std::fs::read(format!("{root}/inputs/{name}.json")).unwrap();
-            let scene = crate::scene::parse(&text, name, &[]).unwrap();
+            let scene = crate::input::parse(&text, name, &[]).unwrap();
             let columns = crate::effects::columns(&scene);
             let all = ledger(&scene, &columns, None);
             for line in &all {

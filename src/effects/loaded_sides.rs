@@ -10,7 +10,7 @@
 
 use crate::scene::{CheckedScene, Course};
 use crate::shape::with_width;
-use crate::solver::Stepper;
+use crate::solver::Scheme;
 use crate::solver::declare::{Declare, Role};
 use crate::solver::effect::{Effect, NewParticle, Package, Phase, Setup, StepContext};
 use crate::solver::patch::Patch;
@@ -76,7 +76,7 @@ impl<const D: usize> Effect<D> for LoadedSides {
             Phase::ParticleForce => self.find_volume(step, patch),
             _ => {
                 for (axis, end, load) in &self.loads {
-                    self.apply(step.stepper, patch, *axis, *end, load.at(step.time));
+                    self.apply(step.scheme, patch, *axis, *end, load.at(step.time));
                 }
             }
         }
@@ -91,7 +91,7 @@ impl<const D: usize> Effect<D> for LoadedSides {
 impl LoadedSides {
     /// Volumes of the own particles at the time of the forces.
     fn find_volume<const D: usize>(&self, step: &StepContext<'_, D>, patch: &mut Patch<D>) {
-        let c = &step.stepper.columns;
+        let c = &step.scheme.columns;
         let n = patch.block.own();
         let mut volume = std::mem::take(&mut patch.block.columns[self.volume]);
         let column = |k: usize| &patch.block.columns[k][..n];
@@ -104,7 +104,7 @@ impl LoadedSides {
     /// Adds the force of `pressure` [Pa] at the lower or upper `end` of direction `axis`.
     fn apply<const D: usize>(
         &self,
-        s: &Stepper<D>,
+        s: &Scheme<D>,
         patch: &mut Patch<D>,
         axis: usize,
         end: usize,
@@ -112,7 +112,7 @@ impl LoadedSides {
     ) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
-            (s, e): (&Stepper<D>, &LoadedSides),
+            (s, e): (&Scheme<D>, &LoadedSides),
             axis: usize,
             end: usize,
             pressure: f64,
@@ -178,7 +178,7 @@ impl LoadedSides {
     /// particles.
     fn sum_surface<const K: usize, const D: usize>(
         &self,
-        s: &Stepper<D>,
+        s: &Scheme<D>,
         patch: &mut Patch<D>,
         axis: usize,
         end: usize,

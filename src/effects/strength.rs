@@ -15,7 +15,7 @@ use crate::material::constitutive::{StrengthUpdate, TensorColumns, VelocityGradi
 use crate::material::strength::Rate;
 use crate::scene::CheckedScene;
 use crate::shape::with_width;
-use crate::solver::Stepper;
+use crate::solver::Scheme;
 use crate::solver::declare::{Declare, Role};
 use crate::solver::effect::{Effect, Package, Phase, Setup, StepContext};
 use crate::solver::gather::{put, tensor_of, trace};
@@ -88,7 +88,7 @@ impl<const D: usize> Effect<D> for StrengthEffect {
     }
 
     fn act(&self, phase: Phase, step: &StepContext<'_, D>, patch: &mut Patch<D>) {
-        let s = step.stepper;
+        let s = step.scheme;
         match phase {
             Phase::MidState => self.shear_to_middle(s, patch, 0.5 * step.dt, step.jacobian),
             Phase::Gather => self.gather_rate(s, patch),
@@ -121,7 +121,7 @@ fn power(stress: &Symmetric, rate: &Rate) -> f64 {
 impl StrengthEffect {
     fn rate<'a, const D: usize>(
         &self,
-        s: &Stepper<D>,
+        s: &Scheme<D>,
         patch: &'a Patch<D>,
         by: By,
         particles: Range<usize>,
@@ -144,8 +144,8 @@ impl StrengthEffect {
     }
 
     /// Writes the gradient of the mean velocity at the own particles to its columns.
-    fn gather_rate<const D: usize>(&self, s: &Stepper<D>, patch: &mut Patch<D>) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, first: usize) {
+    fn gather_rate<const D: usize>(&self, s: &Scheme<D>, patch: &mut Patch<D>) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>, first: usize) {
             let n = patch.block.own();
             let count = D * D + usize::from(D > 1 && s.axisymmetric);
             let mut out: Vec<Vec<f64>> = (first..first + count)
@@ -181,7 +181,7 @@ impl StrengthEffect {
     /// plastic strain and work to their scratch columns. Failed particles carry no shear.
     fn advance<const D: usize>(
         &self,
-        s: &Stepper<D>,
+        s: &Scheme<D>,
         patch: &mut Patch<D>,
         by: By,
         dt: f64,
@@ -247,7 +247,7 @@ impl StrengthEffect {
     /// deviator changes from its old value to that in the columns of the stress.
     fn add_shear_work<const D: usize>(
         &self,
-        s: &Stepper<D>,
+        s: &Scheme<D>,
         patch: &Patch<D>,
         dt: f64,
         jacobian: impl Fn(usize) -> f64,
@@ -276,7 +276,7 @@ impl StrengthEffect {
     /// pressure work.
     fn shear_to_middle<const D: usize>(
         &self,
-        s: &Stepper<D>,
+        s: &Scheme<D>,
         patch: &mut Patch<D>,
         half: f64,
         mid: usize,
@@ -291,7 +291,7 @@ impl StrengthEffect {
     }
 
     /// Deviator at the end of a leapfrog step of `dt`, and its work.
-    fn shear_and_heat<const D: usize>(&self, s: &Stepper<D>, patch: &mut Patch<D>, dt: f64) {
+    fn shear_and_heat<const D: usize>(&self, s: &Scheme<D>, patch: &mut Patch<D>, dt: f64) {
         let c = &s.columns;
         self.advance(s, patch, By::Last, dt, c.jacobian);
         let mut energy = std::mem::take(&mut patch.block.columns[c.energy]);
@@ -304,7 +304,7 @@ impl StrengthEffect {
 
     /// Takes the deviator and the plastic strain found by [`Self::advance`] as the state of the
     /// particles.
-    fn take_over<const D: usize>(&self, s: &Stepper<D>, patch: &mut Patch<D>) {
+    fn take_over<const D: usize>(&self, s: &Scheme<D>, patch: &mut Patch<D>) {
         let n = patch.block.own();
         let body = std::mem::take(&mut patch.block.columns[s.columns.body]);
         for (_, particles) in bodies(&body[..n]).filter(|(body, _)| s.strengths[*body].is_some()) {
@@ -330,7 +330,7 @@ impl StrengthEffect {
     }
 
     /// Sets the sound speed of own particles with shear stiffness to that of longitudinal waves.
-    fn add_shear_wave_speed<const D: usize>(&self, s: &Stepper<D>, patch: &mut Patch<D>) {
+    fn add_shear_wave_speed<const D: usize>(&self, s: &Scheme<D>, patch: &mut Patch<D>) {
         let c = &s.columns;
         let n = patch.block.own();
         let mut speed = std::mem::take(&mut patch.block.columns[c.sound_speed]);

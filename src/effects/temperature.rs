@@ -78,7 +78,7 @@ impl Temperature {
         step: &StepContext<'_, D>,
         patch: &mut Patch<D>,
     ) {
-        let (s, c) = (step.stepper, &step.stepper.columns);
+        let (s, c) = (step.scheme, &step.scheme.columns);
         let Some(plastic_work) = self.plastic_work else { return };
         let n = patch.block.own();
         let body = std::mem::take(&mut patch.block.columns[c.body]);
@@ -103,7 +103,7 @@ impl Temperature {
 
     /// Temperature of the own particles whose temperature follows from their energy.
     fn find_temperature<const D: usize>(&self, step: &StepContext<'_, D>, patch: &mut Patch<D>) {
-        let (s, c) = (step.stepper, &step.stepper.columns);
+        let (s, c) = (step.scheme, &step.scheme.columns);
         let mut temperature = std::mem::take(&mut patch.block.columns[self.temperature]);
         let pressure = &patch.block.columns[c.pressure];
         let mut lost = None;

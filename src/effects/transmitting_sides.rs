@@ -27,7 +27,7 @@
 use crate::scene::CheckedScene;
 use crate::scene::moving_frame::Frame;
 use crate::shape::with_width;
-use crate::solver::Stepper;
+use crate::solver::Scheme;
 use crate::solver::declare::{Declare, Role};
 use crate::solver::effect::{Effect, Package, Phase, Setup, StepContext};
 use crate::solver::particle_weights::{ParticleWeights, add};
@@ -123,7 +123,7 @@ impl<const D: usize> Effect<D> for TransmittingSides<D> {
             _ => {
                 let gained = self.gained_velocity(step);
                 for &(axis, end, ()) in &self.sides {
-                    self.transmit(step.stepper, patch, axis, end, gained, step.dt);
+                    self.transmit(step.scheme, patch, axis, end, gained, step.dt);
                 }
             }
         }
@@ -140,7 +140,7 @@ impl<const D: usize> TransmittingSides<D> {
 
     /// Volume, impedance and velocity gradient of the own particles.
     fn find_impedance(&self, step: &StepContext<'_, D>, patch: &mut Patch<D>) {
-        let s = step.stepper;
+        let s = step.scheme;
         let (c, jacobian) = (&s.columns, step.jacobian);
         let n = patch.block.own();
         let mut take = |k: usize| std::mem::take(&mut patch.block.columns[k]);
@@ -176,7 +176,7 @@ impl<const D: usize> TransmittingSides<D> {
     /// Applies the force of a transmitting side to its nodes.
     fn transmit(
         &self,
-        s: &Stepper<D>,
+        s: &Scheme<D>,
         patch: &mut Patch<D>,
         axis: usize,
         end: usize,
@@ -185,7 +185,7 @@ impl<const D: usize> TransmittingSides<D> {
     ) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
-            (s, e): (&Stepper<D>, &TransmittingSides<D>),
+            (s, e): (&Scheme<D>, &TransmittingSides<D>),
             axis: usize,
             end: usize,
             gained: [f64; D],
@@ -218,7 +218,7 @@ impl<const D: usize> TransmittingSides<D> {
     /// du/dn (x_i - x). `gained` is the change of the grid velocity since the start [m/s].
     fn sum_impedance<const K: usize>(
         &self,
-        s: &Stepper<D>,
+        s: &Scheme<D>,
         patch: &mut Patch<D>,
         axis: usize,
         outward: f64,
@@ -271,7 +271,7 @@ impl<const D: usize> TransmittingSides<D> {
     /// Applies the force of a transmitting side to one node.
     fn transmit_at(
         &self,
-        s: &Stepper<D>,
+        s: &Scheme<D>,
         patch: &mut Patch<D>,
         layer: usize,
         index: [i64; D],

@@ -9,7 +9,7 @@
 
 use crate::scene::CheckedScene;
 use crate::shape::with_width;
-use crate::solver::Stepper;
+use crate::solver::Scheme;
 use crate::solver::declare::Declare;
 use crate::solver::effect::{Effect, Package, Phase, Setup, StepContext};
 use crate::solver::particle_weights::{ParticleWeights, add};
@@ -50,7 +50,7 @@ impl<const D: usize> Effect<D> for WallFriction {
 
     fn act(&self, _: Phase, step: &StepContext<'_, D>, patch: &mut Patch<D>) {
         for &wall in &self.walls {
-            self.apply(step.stepper, patch, wall, step.dt);
+            self.apply(step.scheme, patch, wall, step.dt);
         }
     }
 }
@@ -59,14 +59,14 @@ impl WallFriction {
     /// Applies the friction of a wall to its nodes.
     fn apply<const D: usize>(
         &self,
-        s: &Stepper<D>,
+        s: &Scheme<D>,
         patch: &mut Patch<D>,
         (axis, end, coefficient): (usize, usize, f64),
         dt: f64,
     ) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
-            (s, e): (&Stepper<D>, &WallFriction),
+            (s, e): (&Scheme<D>, &WallFriction),
             (axis, end, coefficient): (usize, usize, f64),
             dt: f64,
         ) {
@@ -89,7 +89,7 @@ impl WallFriction {
     /// particles near a wall that are not images in it.
     fn sum_impulse<const K: usize, const D: usize>(
         &self,
-        s: &Stepper<D>,
+        s: &Scheme<D>,
         patch: &mut Patch<D>,
         axis: usize,
         wall: i64,
@@ -137,7 +137,7 @@ impl WallFriction {
     #[expect(clippy::too_many_arguments)]
     fn wall_impulse<const D: usize>(
         &self,
-        s: &Stepper<D>,
+        s: &Scheme<D>,
         patch: &Patch<D>,
         layer: usize,
         index: [i64; D],
@@ -176,7 +176,7 @@ impl WallFriction {
     /// particles (not images).
     fn apply_at<const D: usize>(
         &self,
-        s: &Stepper<D>,
+        s: &Scheme<D>,
         patch: &mut Patch<D>,
         layer: usize,
         index: [i64; D],

@@ -134,13 +134,14 @@ pub fn predict(machine: &Machine, network: &Network, work: &Work, share: &Share)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input;
     use crate::perf_model::machine::tests::machine;
-    use crate::scene::{self, CheckedScene};
+    use crate::scene::CheckedScene;
 
     fn flyer(sets: &[&str]) -> CheckedScene {
         let text = include_bytes!("../../inputs/flyer.json");
         let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
-        scene::parse(text, "flyer.json", &sets).unwrap()
+        input::parse(text, "flyer.json", &sets).unwrap()
     }
 
     fn on(machine: &Machine, network: &Network, ranks: usize, halo: FilterHalo) -> Prediction {

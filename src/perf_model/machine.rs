@@ -7,8 +7,8 @@ use serde_json::Value;
 
 use super::network::Network;
 use super::schedule::method_name;
+use crate::input::input_file;
 use crate::scene::CheckedScene;
-use crate::scene::input_file;
 
 /// Counts of the computing in a step: own particles, those that do not stay in cache, ghost
 /// particles, nodes, patches, and those whose arrays do not stay in a nearer cache.
@@ -240,12 +240,12 @@ impl Machine {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::scene;
+    use crate::input;
 
     fn flyer(sets: &[&str]) -> CheckedScene {
         let text = include_bytes!("../../inputs/flyer.json");
         let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
-        scene::parse(text, "flyer.json", &sets).unwrap()
+        input::parse(text, "flyer.json", &sets).unwrap()
     }
 
     /// Machine with round constants for the method of the flyer plate.

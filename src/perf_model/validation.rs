@@ -9,7 +9,7 @@ use super::load::Work;
 use super::machine::Machine;
 use super::network::Network;
 use super::table::{aligned, extrapolated, halo_name, number};
-use crate::scene::input_file;
+use crate::input::input_file;
 use crate::scene::{CheckedScene, FilterHalo};
 
 /// The required part of `scaling.json` of a strong-scaling study.

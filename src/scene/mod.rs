@@ -1,32 +1,20 @@
-//! The scene: the input of a run, read from JSON and checked as a whole once.
+//! The scene: the data of a run as its file gives them, and the quantities that follow from them.
 //!
-//! [`read`] takes the bytes from a file. [`parse`] turns them into a [`CheckedScene`] or a
-//! [`SceneError`] of one line: path of the key, its value, and what is allowed. Independent of MPI
-//! and particles.
+//! [`crate::input`] reads and checks a scene. Independent of MPI and particles.
 
-mod check;
-mod errors;
-pub mod input_file;
-mod library;
-mod load;
-mod migrate;
+mod checked;
+mod checked_body;
+mod estimated_body;
+mod faces;
+mod method_choice;
 mod model;
 pub mod motion;
 pub mod moving_frame;
-mod overrides;
-mod preset;
-mod schema;
-mod table;
-mod validate;
+mod walls;
+mod wave_direction;
 
-pub use check::{
-    BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, CheckedBody, CheckedScene, Piston, Wall,
-    available_memory,
-};
-pub use errors::SceneError;
-pub use library::LIBRARY;
-pub use load::{LARGEST_FILE, check, check_size, parse, parse_changed, read};
-pub use migrate::migrate;
+pub use checked::{CheckedScene, TOUCHING};
+pub use checked_body::CheckedBody;
+pub use method_choice::{MethodChoice, Preset};
 pub use model::*;
-pub use preset::{MethodChoice, Preset};
-pub use schema::schema;
+pub use walls::{Piston, Wall};

@@ -10,7 +10,7 @@
 //!
 //! Independent of particles and grid.
 
-use crate::scene::{CheckedScene, Course, SideProperties};
+use super::model::{Course, SideProperties};
 
 /// The frame of the grid.
 #[derive(Clone, Debug)]
@@ -19,13 +19,12 @@ pub struct Frame<const D: usize> {
 }
 
 impl<const D: usize> Frame<D> {
-    /// Frame of a scene: in each direction it moves with the piston on a side across this
-    /// direction.
-    pub fn new(scene: &CheckedScene) -> Self {
+    /// Frame of a scene with these `sides`: in each direction it moves with the piston on a side
+    /// across this direction.
+    pub fn new(sides: [[SideProperties; 2]; D]) -> Self {
         let piston = |ends: [SideProperties; 2]| ends.into_iter().find(|side| side.moves_grid);
         let course = |ends| piston(ends)?.rigid_velocity;
-        let courses = scene.side_properties::<D>();
-        Frame { courses: courses.map(|ends| course(ends).unwrap_or(Course::Constant(0.0))) }
+        Frame { courses: sides.map(|ends| course(ends).unwrap_or(Course::Constant(0.0))) }
     }
 
     /// Whether the velocity of the frame changes.

@@ -99,7 +99,7 @@ impl<const D: usize> Simulation<'_, D> {
         let rank = self.comm.rank();
         for (patch, index) in self.patches.iter().zip(self.layout.patches_of(rank)) {
             if new.rank_of(index) != rank {
-                self.given_contact.extend(&patch.contact.told);
+                self.given_contact.extend(&patch.contact.forces);
             }
         }
         let patches = std::mem::take(&mut self.patches);

@@ -118,14 +118,14 @@ mod tests {
     use decomp::Serial;
 
     use super::*;
-    use crate::scene;
+    use crate::input;
     use crate::solver::patch::Patch;
 
     #[test]
     fn particles_lost_doubled_or_changed_end_the_run() {
         let text = include_bytes!("../../inputs/sod.json");
         let sets = ["domain.patches=[4]".to_string()];
-        let scene = scene::parse(text, "sod.json", &sets).unwrap();
+        let scene = input::parse(text, "sod.json", &sets).unwrap();
         let faults: [fn(&mut Patch<1>); 3] = [
             |patch| {
                 patch.block.drop_ghosts();

@@ -113,9 +113,9 @@ impl<const D: usize> Simulation<'_, D> {
     /// without contact. Collective.
     pub fn contact_force(&self) -> [f64; 2] {
         exact_sums(self.comm, |add: &mut dyn FnMut(usize, &[f64])| {
-            let told = self.patches.iter().flat_map(|p| &p.contact.told);
-            for told in told.chain(&self.given_contact) {
-                told.iter().enumerate().for_each(|(k, &force)| add(k, &[force]));
+            let forces = self.patches.iter().flat_map(|p| &p.contact.forces);
+            for forces in forces.chain(&self.given_contact) {
+                forces.iter().enumerate().for_each(|(k, &force)| add(k, &[force]));
             }
         })
     }

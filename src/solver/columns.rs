@@ -8,7 +8,7 @@ use decomp::ColumnSpec;
 
 /// Column in tables of results.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Output {
+pub struct OutputColumn {
     /// Name in tables.
     pub name: &'static str,
     /// SI unit.
@@ -26,7 +26,7 @@ pub struct Columns {
     /// [Part](parts) of a step that each column belongs to; none: the motion itself.
     pub owners: Vec<Option<usize>>,
     /// Columns of effects in tables of results.
-    pub outputs: Vec<Output>,
+    pub outputs: Vec<OutputColumn>,
     /// Columns of effects that are zero for a particle at rest.
     pub zero_at_rest: Vec<usize>,
     /// External forces on particles [N], vectors.

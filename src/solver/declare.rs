@@ -2,7 +2,7 @@
 
 use decomp::{ColumnSpec, Mirror};
 
-use super::columns::{Columns, Output};
+use super::columns::{Columns, OutputColumn};
 use crate::scene::CheckedScene;
 
 /// Role of the values of a column.
@@ -108,7 +108,7 @@ impl<'a> Declare<'a> {
 
     /// Adds a column to tables of results.
     pub fn output(&mut self, name: &'static str, unit: &'static str, column: &'static str) {
-        self.columns.outputs.push(Output { name, unit, column });
+        self.columns.outputs.push(OutputColumn { name, unit, column });
     }
 
     /// Declares that a column is zero for a particle at rest.

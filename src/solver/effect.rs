@@ -7,12 +7,14 @@
 
 use decomp::{Block, Parity};
 
+use super::clock;
 use super::columns::Columns;
 use super::declare::Declare;
 use super::exchange::Nodal;
 use super::nodal_fields::Fields;
+use super::parts::StepPart;
 use super::patch::Patch;
-use super::{Stepper, clock};
+use super::scheme::Scheme;
 use crate::scene::CheckedScene;
 
 /// Points of a step where effects act, in order.
@@ -62,7 +64,9 @@ impl Phase {
 #[derive(Clone, Copy)]
 pub struct StepContext<'a, const D: usize> {
     /// Grid, columns and materials.
-    pub stepper: &'a Stepper<D>,
+    pub scheme: &'a Scheme<D>,
+    /// Effects of the scene.
+    pub effects: &'a Effects<D>,
     /// Time at the start of the step [s].
     pub start: f64,
     /// Time of the stress and the forces [s].
@@ -76,7 +80,7 @@ pub struct StepContext<'a, const D: usize> {
 impl<const D: usize> StepContext<'_, D> {
     /// Time of the middle of the step [s].
     pub fn middle(&self) -> f64 {
-        match self.stepper.columns.jacobian_mid {
+        match self.scheme.columns.jacobian_mid {
             Some(_) => self.time,
             None => self.time + 0.5 * self.dt,
         }
@@ -127,8 +131,8 @@ pub trait Effect<const D: usize>: Send + Sync {
     }
 
     /// Sets boundary values in nodal fields that have just been exchanged.
-    fn set_boundary(&self, stepper: &Stepper<D>, patch: &mut Patch<D>, fields: &[(usize, Parity)]) {
-        let _ = (stepper, patch, fields);
+    fn set_boundary(&self, scheme: &Scheme<D>, patch: &mut Patch<D>, fields: &[(usize, Parity)]) {
+        let _ = (scheme, patch, fields);
     }
 
     /// Whether [`Effect::set_boundary`] does anything.
@@ -221,6 +225,19 @@ pub trait Registry {
     fn build<const D: usize>(setup: &mut Setup<'_, D>) -> Vec<(usize, Box<dyn Effect<D>>)>;
 }
 
+/// Names of all parts of a step in a program with the effects of `R`.
+pub fn part_names<R: Registry>() -> Vec<&'static str> {
+    StepPart::NAMES.iter().chain(R::NAMES).copied().collect()
+}
+
+/// Whether `scene` uses part number `part` of a step.
+pub fn uses_part<R: Registry>(part: usize, scene: &CheckedScene) -> bool {
+    match StepPart::ALL.get(part) {
+        Some(part) => part.is_active(scene),
+        None => R::is_active(part - StepPart::COUNT, scene),
+    }
+}
+
 /// Effects of a scene, and the effects that act in each phase.
 pub struct Effects<const D: usize> {
     /// Each with its number among the [parts](super::parts) of a step.
@@ -260,12 +277,12 @@ impl<const D: usize> Effects<D> {
     /// Sets boundary values in nodal fields that have just been exchanged.
     pub(super) fn set_boundary(
         &self,
-        stepper: &Stepper<D>,
+        scheme: &Scheme<D>,
         patch: &mut Patch<D>,
         fields: &[(usize, Parity)],
     ) {
         for (_, effect) in self.all.iter().filter(|(_, effect)| effect.has_boundary()) {
-            effect.set_boundary(stepper, patch, fields);
+            effect.set_boundary(scheme, patch, fields);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::ops::DerefMut;
 
-use super::Stepper;
+use super::scheme::Scheme;
 use super::solid::{Taken, put_back};
 use crate::scene::Limiter;
 use crate::shape::with_width;
@@ -13,49 +13,40 @@ use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 use crate::transfer::VelocityUpdate;
 
-/// Product of two lines of nodes.
-#[inline(always)]
-fn times<const K: usize>(a: &[f64; K], b: &[f64; K]) -> [f64; K] {
-    std::array::from_fn(|k| a[k] * b[k])
-}
-
 /// Columns of a vector, taken out of their block: they are written while other columns are read.
-fn take_vector<const D: usize>(columns: &mut [Vec<f64>], first: usize) -> [Vec<f64>; D] {
+pub(super) fn take_vector<const D: usize>(columns: &mut [Vec<f64>], first: usize) -> [Vec<f64>; D] {
     std::array::from_fn(|a| std::mem::take(&mut columns[first + a]))
 }
 
 /// Columns of a tensor with `count` components, if it exists.
-fn take_tensor(columns: &mut [Vec<f64>], first: Option<usize>, count: usize) -> Taken {
+pub(super) fn take_tensor(columns: &mut [Vec<f64>], first: Option<usize>, count: usize) -> Taken {
     first.into_iter().flat_map(|k| k..k + count).map(|k| std::mem::take(&mut columns[k])).collect()
 }
 
 /// Own particles (the first `particles`) of `N` columns.
 #[inline(always)]
-fn own<const N: usize>(columns: &mut [Vec<f64>], particles: usize) -> [&mut [f64]; N] {
+pub(super) fn own<const N: usize>(columns: &mut [Vec<f64>], particles: usize) -> [&mut [f64]; N] {
     let mut columns = columns.iter_mut().map(|column| &mut column[..particles]);
     std::array::from_fn(|_| columns.next().expect("as many columns"))
 }
 
+/// Columns of a tensor in a plane, own particles, if it exists.
+pub(super) type OwnTensor<'a> = Option<[&'a mut [f64]; 4]>;
+
 /// Own particles of the columns of a tensor in a plane, if it exists.
 #[inline(always)]
-fn own_tensor(columns: &mut [Vec<f64>], particles: usize) -> Option<[&mut [f64]; 4]> {
+pub(super) fn own_tensor(columns: &mut [Vec<f64>], particles: usize) -> OwnTensor<'_> {
     (!columns.is_empty()).then(|| own(columns, particles))
 }
 
-/// Mean of two lines of nodes.
-#[inline(always)]
-fn half_sum<const K: usize>(a: &[f64; K], b: &[f64; K]) -> [f64; K] {
-    std::array::from_fn(|k| 0.5 * (a[k] + b[k]))
-}
-
-impl<const D: usize> Stepper<D> {
+impl<const D: usize> Scheme<D> {
     /// Updates the own particles at the end of a leapfrog step: velocity by the transfer scheme,
     /// its affine part, and position x += dt N v'; with `strain` also the results of
     /// [`Self::gather_gradient`].
     pub(super) fn gather_leapfrog(&self, patch: &mut Patch<D>, dt: f64, strain: bool) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
-            s: &Stepper<D>,
+            s: &Scheme<D>,
             dt: f64,
             strain: bool,
         ) {
@@ -82,7 +73,7 @@ impl<const D: usize> Stepper<D> {
     /// Divergence of v' at the own particles, its full gradient if domains deform, and the limiter
     /// computed from it.
     pub(super) fn gather_gradient(&self, patch: &mut Patch<D>) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
             if const { D == 1 } {
                 s.gather_end::<K, 1, false, true>(patch, 0.0);
             } else {
@@ -160,7 +151,7 @@ impl<const D: usize> Stepper<D> {
 
     /// C = B D^-1 with B = sum N v' (x_i - x_p) and D = sum N (x_i - x_p) (x_i - x_p) (Jiang et al.
     /// 2015): exact for a linear velocity, also if a sheared domain gives D an xy component.
-    fn gather_affine<const K: usize>(&self, patch: &mut Patch<D>, affine: usize) {
+    pub(super) fn gather_affine<const K: usize>(&self, patch: &mut Patch<D>, affine: usize) {
         for r in 0..patch.block.own() {
             let offset = self.offset(patch, r, patch.stencils.first[r] as usize);
             let weights = patch.stencils.particle::<K, D>(r);
@@ -223,7 +214,7 @@ impl<const D: usize> Stepper<D> {
         }
     }
 
-    fn gather_limiter<const K: usize>(&self, patch: &mut Patch<D>) {
+    pub(super) fn gather_limiter<const K: usize>(&self, patch: &mut Patch<D>) {
         if let (Some(limiter), Some(column)) =
             (self.viscosity.and_then(|v| v.limiter), self.columns.limiter)
         {
@@ -278,165 +269,6 @@ impl<const D: usize> Stepper<D> {
         }
         patch.block.columns[column] = limiters;
     }
-
-    /// Updates the own particles at the end of a mid-point step: volume and energy from the
-    /// gradients of the mean velocity and of w, heat of the filter, velocity, position and domain.
-    pub(super) fn gather_midpoint(&self, patch: &mut Patch<D>, dt: f64) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, dt: f64) {
-            if const { D == 1 } {
-                s.gather_particles::<K, 1, false>(patch, dt);
-            } else {
-                match s.tensor_stress() {
-                    false => s.gather_particles::<K, K, false>(patch, dt),
-                    true => s.gather_particles::<K, K, true>(patch, dt),
-                }
-            }
-            if let Some(affine) = s.columns.affine {
-                timed(StepPart::Affine as usize, patch, |patch| {
-                    s.gather_affine::<K>(patch, affine)
-                });
-            }
-            s.gather_limiter::<K>(patch);
-        }
-        with_width!(patch.stencils.width, go(patch, self, dt));
-    }
-
-    fn gather_particles<const K: usize, const L: usize, const TENSOR: bool>(
-        &self,
-        patch: &mut Patch<D>,
-        dt: f64,
-    ) {
-        let (c, f) = (&self.columns, &self.fields);
-        let n = patch.block.own();
-        let fields = &patch.nodes.fields;
-        // slices of equal length, so that the bounds of a window are checked only once
-        let nodes = fields[f.mass].len();
-        let vector = |k: usize| std::array::from_fn::<&[f64], D, _>(|a| &fields[k + a][..nodes]);
-        let (lumped, start, star) =
-            (vector(f.lumped_velocity), vector(f.velocity), vector(f.velocity_star));
-        let work = vector(f.work);
-        let remainder = f.filter_residual.filter(|_| self.filter_heat).map(vector);
-        let columns = &mut patch.block.columns;
-        let [mut x, mut v] = [c.position, c.velocity].map(|k| take_vector::<D>(columns, k));
-        let [mut j, mut e, mut d] =
-            [c.jacobian, c.energy, c.divergence].map(|k| std::mem::take(&mut columns[k]));
-        let [mut deformation, mut gradient] =
-            [c.deformation, c.velocity_gradient].map(|k| take_tensor(columns, k, D * D));
-        let (own_x, own_v) = (&mut own::<D>(&mut x, n), &mut own::<D>(&mut v, n));
-        let [own_j, own_e, own_d] = [&mut j, &mut e, &mut d].map(|column| &mut column[..n]);
-        let mut own_deformation = own_tensor(&mut deformation, n);
-        let mut own_gradient = own_tensor(&mut gradient, n);
-        let column = |k: usize| &patch.block.columns[k][..n];
-        let mid = c.jacobian_mid.expect("mid-point stepping has the column");
-        let (mass, j_mid, stress) = (column(c.mass), column(mid), column(c.stress_volume));
-        for (r, weights) in patch.stencils.particles::<K, D>(0..n).enumerate() {
-            // fetched once, as several sums use them
-            let (mut means, star) = (weights.windows::<L, D>(start), weights.windows::<L, D>(star));
-            let mut filtered = [0.0; D];
-            if remainder.is_some() {
-                for a in 0..D {
-                    filtered[a] = weights.sum(weights.values, |line| means[a][line]);
-                }
-            }
-            for a in 0..D {
-                for line in 0..L {
-                    means[a][line] = half_sum(&means[a][line], &star[a][line]);
-                }
-            }
-            let mean = |a: usize, line: usize| means[a][line];
-            let (mut heat, mut new) = (0.0, [0.0; D]);
-            for a in 0..D {
-                let old = own_v[a][r];
-                new[a] = weights.sum(weights.values, |line| star[a][line]);
-                match self.transfer.update {
-                    VelocityUpdate::Filtered => {
-                        if let Some(lost) = remainder {
-                            let [lost] = weights.windows::<L, 1>([lost[a]]);
-                            let both = |l: usize| times(&lost[l], &mean(a, l));
-                            let rest = old - filtered[a];
-                            heat += 0.5 * rest * rest
-                                + (weights.sum(weights.values, both)
-                                    - weights.sum(weights.values, |l| lost[l])
-                                        * weights.sum(weights.values, |l| mean(a, l)));
-                        }
-                    }
-                    VelocityUpdate::Blend(share) => {
-                        let [lumped] = weights.windows::<L, 1>([lumped[a]]);
-                        let on_grid = weights.sum(weights.values, |l| lumped[l]);
-                        let change = new[a] - on_grid;
-                        if self.filter_heat {
-                            let square = |l: usize| times(&lumped[l], &lumped[l]);
-                            let rest = old - on_grid;
-                            heat += 0.5 * (1.0 - share * share) * rest * rest
-                                + (1.0 - share)
-                                    * (weights.sum(weights.values, square) - on_grid * on_grid);
-                        }
-                        new[a] = share * old + (1.0 - share) * on_grid + change;
-                    }
-                    VelocityUpdate::Affine => {}
-                }
-            }
-            // if domains deform the full gradients are needed, otherwise only their traces
-            let plane = match (&mut own_deformation, &own_gradient) {
-                (Some(deformation), Some(gradient)) => {
-                    let during = tensor_of(&weights, mean);
-                    if self.total_lagrangian {
-                        deform_linearly(deformation, gradient, r, &during, dt);
-                    } else {
-                        deform(deformation, r, &during, dt);
-                    }
-                    trace(&during)
-                }
-                _ => (0..D).map(|a| weights.sum(weights.gradient(a), |l| mean(a, l))).sum(),
-            };
-            let end = match &mut own_gradient {
-                Some(gradient) => {
-                    let end = tensor_of(&weights, |a, l| star[a][l]);
-                    put(gradient, 0, r, &end);
-                    trace(&end)
-                }
-                None => (0..D).map(|a| weights.sum(weights.gradient(a), |l| star[a][l])).sum(),
-            };
-            let divergence = self.with_hoop(patch, &weights, r, plane, |l| mean(0, l));
-            // the velocity whose gradient does the work
-            let does = if self.compatible { weights.windows::<L, D>(work) } else { means };
-            let work_done = if TENSOR {
-                dt * self.stress_power(patch, &weights, r, |a, line| does[a][line])
-            } else {
-                let working = if self.compatible {
-                    let along = |a: usize| weights.sum(weights.gradient(a), |line| does[a][line]);
-                    self.with_hoop(patch, &weights, r, (0..D).map(along).sum(), |line| {
-                        does[0][line]
-                    })
-                } else {
-                    divergence
-                };
-                stress[r] * dt * working
-            };
-            for a in 0..D {
-                own_x[a][r] += match self.transfer.update {
-                    // with the grid: the particles' own velocities would break up the tiling
-                    VelocityUpdate::Blend(_) => dt * weights.sum(weights.values, |l| mean(a, l)),
-                    _ => 0.5 * dt * (own_v[a][r] + new[a]),
-                };
-                own_v[a][r] = new[a];
-            }
-            own_j[r] += dt * j_mid[r] * divergence;
-            own_e[r] += heat - work_done / mass[r];
-            own_d[r] = self.with_hoop(patch, &weights, r, end, |l| star[0][l]);
-        }
-        let columns = &mut patch.block.columns;
-        put_back(columns, c.position, x);
-        put_back(columns, c.velocity, v);
-        columns[c.jacobian] = j;
-        columns[c.energy] = e;
-        columns[c.divergence] = d;
-        for (first, taken) in [(c.deformation, deformation), (c.velocity_gradient, gradient)] {
-            if let Some(first) = first {
-                put_back(columns, first, taken);
-            }
-        }
-    }
 }
 
 /// Velocity gradient at a particle; `of` gives the velocity components for each line of nodes.
@@ -453,47 +285,6 @@ pub(crate) fn tensor_of<const K: usize, const D: usize>(
         }
     }
     tensor
-}
-
-/// Deformation gradient F of a particle in `columns` after `dt` with the velocity gradient `l`, by
-/// Cayley's form (1 - dt/2 l)^-1 (1 + dt/2 l) F, which keeps a rotation free of stretching.
-#[inline(always)]
-fn deform<const D: usize>(
-    columns: &mut [&mut [f64]; 4],
-    particle: usize,
-    l: &[[f64; D]; D],
-    dt: f64,
-) {
-    let half = 0.5 * dt;
-    let [xx, xy, yx, yy] = [l[0][0], l[0][D - 1], l[D - 1][0], l[D - 1][D - 1]].map(|l| half * l);
-    let inverse = 1.0 / ((1.0 - xx) * (1.0 - yy) - xy * yx);
-    for k in [0, 1] {
-        let (x, y) = (columns[k][particle], columns[k + 2][particle]);
-        let (x, y) = (x + xx * x + xy * y, y + yx * x + yy * y);
-        columns[k][particle] = inverse * ((1.0 - yy) * x + xy * y);
-        columns[k + 2][particle] = inverse * (yx * x + (1.0 - xx) * y);
-    }
-}
-
-/// F + dt l F_h of a particle, with the deformation at the middle of the step F_h = (1 + dt/2 L) F,
-/// which has pushed the velocity gradient `l` forward, and L the gradient in `before`: F then
-/// follows from the displacements of the grid.
-#[inline(always)]
-fn deform_linearly<const D: usize>(
-    columns: &mut [&mut [f64]; 4],
-    before: &[&mut [f64]; 4],
-    particle: usize,
-    l: &[[f64; D]; D],
-    dt: f64,
-) {
-    let half = 0.5 * dt;
-    for k in [0, 1] {
-        let (x, y) = (columns[k][particle], columns[k + 2][particle]);
-        let at = |a: usize| half * (before[2 * a][particle] * x + before[2 * a + 1][particle] * y);
-        let (mid_x, mid_y) = (x + at(0), y + at(1));
-        columns[k][particle] = x + dt * (l[0][0] * mid_x + l[0][D - 1] * mid_y);
-        columns[k + 2][particle] = y + dt * (l[D - 1][0] * mid_x + l[D - 1][D - 1] * mid_y);
-    }
 }
 
 /// Trace of a tensor.

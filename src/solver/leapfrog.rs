@@ -4,9 +4,10 @@
 
 use decomp::ParticleError;
 
-use super::{Stepper, World};
+use super::World;
+use super::stepper::Stepper;
 use crate::scene::StressUpdate;
-use crate::solver::effect::{Phase, StepContext};
+use crate::solver::effect::Phase;
 
 impl<const D: usize> Stepper<D> {
     /// One step of `dt` from `start` [s]. Collective.
@@ -20,7 +21,7 @@ impl<const D: usize> Stepper<D> {
         dt: f64,
     ) -> Result<(), ParticleError> {
         let jacobian = self.columns.jacobian;
-        let step = StepContext { stepper: self, start, time: start, dt, jacobian };
+        let step = self.context([start, start], dt, jacobian);
         world.each("start", |patch| {
             patch.block.drop_ghosts();
             self.current_stress(patch);
@@ -28,13 +29,13 @@ impl<const D: usize> Stepper<D> {
             self.find_contact_impulse(patch, jacobian, dt);
             self.effects.act(Phase::ParticleForce, &step, patch);
             self.find_cells(patch, 0.0, jacobian);
-            self.find_active(patch);
+            self.find_active(patch, &self.effects);
         });
         if self.stress_update == StressUpdate::First {
             world.exchange_particles(|nodal| {
                 nodal.each("scatter", |patch| self.scatter(patch, false, &step));
                 // no force yet: the sums of the acceleration are zero
-                self.solve_velocity(nodal, 0.0, false);
+                self.solve_velocity(nodal, &self.effects, 0.0, false);
                 nodal.each("update stress", |patch| {
                     self.gather_gradient(patch);
                     self.update_stress(patch, &step);
@@ -48,7 +49,7 @@ impl<const D: usize> Stepper<D> {
                 self.scatter(patch, true, &step);
                 self.effects.act(Phase::NodalStart, &step, patch);
             });
-            self.solve_velocity(nodal, dt, false);
+            self.solve_velocity(nodal, &self.effects, dt, false);
             self.effects.solve(&step, nodal);
             self.solve_friction_heat(nodal, dt);
             nodal.each("gather", |patch| {
@@ -70,7 +71,7 @@ impl<const D: usize> Stepper<D> {
                     self.start_series(patch);
                 });
                 // no force yet: the sums of the acceleration are zero
-                self.solve_velocity(nodal, 0.0, false);
+                self.solve_velocity(nodal, &self.effects, 0.0, false);
                 nodal.each("update stress", |patch| {
                     self.gather_gradient(patch);
                     self.update_stress(patch, &step);

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use super::Stepper;
+use super::scheme::Scheme;
 use crate::material::constitutive::Deviators;
 use crate::material::strength::MaterialState;
 use crate::solver::patch::Patch;
 
-impl<const D: usize> Stepper<D> {
+impl<const D: usize> Scheme<D> {
     /// Columns of the deviator, from `first` on.
     pub(crate) fn deviator<'a>(
         &self,

@@ -14,9 +14,10 @@
 
 use decomp::ParticleError;
 
-use super::{Stepper, World};
+use super::World;
+use super::stepper::Stepper;
 use crate::solver::clock::timed;
-use crate::solver::effect::{Phase, StepContext};
+use crate::solver::effect::Phase;
 use crate::solver::parts::StepPart;
 
 impl<const D: usize> Stepper<D> {
@@ -30,7 +31,7 @@ impl<const D: usize> Stepper<D> {
         relax: Option<f64>,
     ) -> Result<(), ParticleError> {
         let jacobian = self.columns.jacobian_mid.expect("mid-point stepping has the column");
-        let step = StepContext { stepper: self, start, time: start + 0.5 * dt, dt, jacobian };
+        let step = self.context([start, start + 0.5 * dt], dt, jacobian);
         world.each("start", |patch| {
             patch.block.drop_ghosts();
             self.half_step_volume(patch, dt);
@@ -43,7 +44,7 @@ impl<const D: usize> Stepper<D> {
             self.find_contact_impulse(patch, jacobian, dt);
             self.effects.act(Phase::ParticleForce, &step, patch);
             self.find_cells(patch, 0.5 * dt, jacobian);
-            self.find_active(patch);
+            self.find_active(patch, &self.effects);
         });
         world.exchange_particles(|nodal| {
             nodal.each("scatter", |patch| {
@@ -53,9 +54,9 @@ impl<const D: usize> Stepper<D> {
                 }
                 self.effects.act(Phase::NodalStart, &step, patch);
             });
-            self.solve_velocity(nodal, dt, relax.is_some());
+            self.solve_velocity(nodal, &self.effects, dt, relax.is_some());
             if self.compatible {
-                self.solve_work(nodal);
+                self.solve_work(nodal, &self.effects);
             }
             self.effects.solve(&step, nodal);
             self.solve_friction_heat(nodal, dt);
@@ -75,7 +76,7 @@ impl<const D: usize> Stepper<D> {
     /// nothing. Collective.
     pub(super) fn prime_gradient(&self, world: &mut World<'_, D>) -> Result<(), ParticleError> {
         let jacobian = self.columns.jacobian;
-        let step = StepContext { stepper: self, start: 0.0, time: 0.0, dt: 0.0, jacobian };
+        let step = self.context([0.0, 0.0], 0.0, jacobian);
         world.each("start", |patch| {
             self.current_stress(patch);
             self.invert_deformation(patch, 0.0, jacobian);
@@ -89,7 +90,7 @@ impl<const D: usize> Stepper<D> {
         });
         world.exchange_particles(|nodal| {
             nodal.each("scatter", |patch| self.scatter(patch, false, &step));
-            self.solve_velocity(nodal, 0.0, false);
+            self.solve_velocity(nodal, &self.effects, 0.0, false);
             nodal.each("gather", |patch| {
                 self.gather_gradient(patch);
             });

@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use super::Stepper;
+use super::scheme::Scheme;
 use crate::shape::{DomainExtent, ParticleDomain};
 use crate::solver::patch::{FaultPhase, Patch};
 
@@ -83,7 +83,7 @@ enum Outlines<'a> {
     Points,
 }
 
-impl<const D: usize> Stepper<D> {
+impl<const D: usize> Scheme<D> {
     /// Domains of the own particles [cells] at the volume ratio in column `jacobian`, and their
     /// volume if an edge mask needs it.
     pub(super) fn find_domains(&self, patch: &mut Patch<D>, ahead: f64, jacobian: usize) {
@@ -380,6 +380,24 @@ impl<const D: usize> Stepper<D> {
             Outlines::Points => {}
         }
         lengths
+    }
+
+    /// Greatest extent of the domains of all particles of a patch along a direction [cells].
+    pub(super) fn longest(&self, block: &decomp::Block<D>) -> f64 {
+        let column = |k: usize| &block.columns[self.columns.domain + k][..];
+        let greatest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+        match (D, self.extent()) {
+            (1, _) => greatest(column(0)),
+            (_, DomainExtent::Point) => 0.0,
+            (_, DomainExtent::Undeformed) => greatest(column(0)).max(greatest(column(1))),
+            (_, DomainExtent::Current) => {
+                let along = |a: usize| {
+                    let edges = column(a).iter().zip(column(a + 2));
+                    edges.fold(0.0f64, |l, (r1, r2)| l.max(2.0 * (r1.abs() + r2.abs())))
+                };
+                along(0).max(along(1))
+            }
+        }
     }
 
     /// Greatest extent of the own particles along a direction [cells].

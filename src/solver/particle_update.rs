@@ -6,12 +6,13 @@ use decomp::IndexBox;
 use smallvec::SmallVec;
 
 use super::particle_domains::greatest;
-use super::{Stepper, tension_free};
+use super::scheme::Scheme;
+use super::tension_free;
 use crate::material::constitutive::{ConstitutiveModel, MidStep, VolumeChange};
 use crate::shape::{floor, integer};
 use crate::solver::artificial_viscosity::{Flow, Viscosity};
 use crate::solver::clock::{timed, timed_if};
-use crate::solver::effect::{Phase, StepContext};
+use crate::solver::effect::{Effects, Phase, StepContext};
 use crate::solver::parts::StepPart;
 use crate::solver::patch::{Fault, FaultPhase, Patch, RemovedParticle};
 
@@ -57,7 +58,7 @@ pub(crate) fn bodies(column: &[f64]) -> impl Iterator<Item = (usize, Range<usize
     })
 }
 
-impl<const D: usize> Stepper<D> {
+impl<const D: usize> Scheme<D> {
     /// Finds the cell of each own particle at x + `ahead` v, its position in the cell, and its
     /// domain for the shape function at the volume ratio in column `jacobian`. Particles beyond an
     /// open side are removed. In the total-Lagrangian frame cell and domain are the initial ones.
@@ -274,7 +275,7 @@ impl<const D: usize> Stepper<D> {
     /// Finds the cells of the own particles that are not at rest, after their stress is known: a
     /// particle is at rest if velocity, its gradients and stress are zero, so that it exerts no
     /// force.
-    pub(super) fn find_active(&self, patch: &mut Patch<D>) {
+    pub(super) fn find_active(&self, patch: &mut Patch<D>, effects: &Effects<D>) {
         if !self.may_sleep {
             return;
         }
@@ -289,7 +290,7 @@ impl<const D: usize> Stepper<D> {
         let of_effects = c.zero_at_rest.iter().copied();
         let watched: SmallVec<[&[f64]; 16]> =
             vector.chain(scalars).chain(tensors).chain(of_effects).map(column).collect();
-        let acting = self.effects.iter().filter(|effect| effect.changes_particles_at_rest());
+        let acting = effects.iter().filter(|effect| effect.changes_particles_at_rest());
         let acting: SmallVec<[_; 4]> = acting.collect();
         let moves = |r: usize| {
             watched.iter().any(|column| column[r] != 0.0)
@@ -365,24 +366,24 @@ impl<const D: usize> Stepper<D> {
         patch.block.columns[c.pressure] = pressure;
         patch.block.columns[c.energy] = energy;
         patch.kept = before;
-        self.effects.act(Phase::PressureUpdate, step, patch);
-        self.effects.act(Phase::StressUpdate, step, patch);
+        step.effects.act(Phase::PressureUpdate, step, patch);
+        step.effects.act(Phase::StressUpdate, step, patch);
         self.deform_forward(patch, dt);
     }
 
     /// Ends a step: effects, then pressure, sound speed, and the report of the patch.
     pub(super) fn end_step(&self, patch: &mut Patch<D>, step: &StepContext<'_, D>) {
-        self.effects.act(Phase::EndState, step, patch);
+        step.effects.act(Phase::EndState, step, patch);
         self.refresh(patch, step);
-        self.effects.act(Phase::End, step, patch);
+        step.effects.act(Phase::End, step, patch);
     }
 
     /// Pressure, temperature, sound speed and stress, and the report of the patch: time step,
     /// longest particle, faults.
     pub(super) fn refresh(&self, patch: &mut Patch<D>, step: &StepContext<'_, D>) {
         let of_fluids = self.find_pressure(patch);
-        self.effects.act(Phase::EndTemperature, step, patch);
-        self.effects.act(Phase::EndSoundSpeed, step, patch);
+        step.effects.act(Phase::EndTemperature, step, patch);
+        step.effects.act(Phase::EndSoundSpeed, step, patch);
         let of_solids = self.find_end_stress(patch);
         self.report(patch, of_fluids.into_iter().chain(of_solids).collect());
     }
@@ -499,7 +500,7 @@ impl<const D: usize> Stepper<D> {
         let edge = if D == 1 { self.cell[0] } else { 1.0 };
         patch.report.time_step = if fastest > 0.0 { edge / fastest } else { f64::INFINITY };
         patch.report.time_step =
-            patch.report.time_step.min(self.diffusion_step / (shortest * shortest));
+            patch.report.time_step.min(self.of_effects.diffusion_step / (shortest * shortest));
         let limit = self.longest_ever();
         patch.report.length = self.longest_own(&patch.block);
         if patch.report.length > limit && self.domains_deform() {

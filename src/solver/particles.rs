@@ -3,8 +3,8 @@
 use decomp::{Block, IndexBox, Layout};
 use nalgebra::SVector;
 
-use super::Stepper;
 use super::effect::NewParticle;
+use super::stepper::Stepper;
 use crate::scene::CheckedScene;
 
 /// Centres of the equal boxes that result from cutting a box into `counts` parts along each
@@ -42,53 +42,14 @@ pub fn fill<const D: usize>(
     }
     let mut values = vec![0.0; columns.specs.len()];
     let mut id = 0u64;
-    for (number, (body, checked)) in scene.scene.bodies.iter().zip(&scene.bodies).enumerate() {
-        let density = scene.scene.materials[&body.material].density;
+    for (number, checked) in scene.bodies.iter().enumerate() {
         let mut add = |centre: [f64; D], size: [f64; D], volume: f64| {
             let cell = cell_of(scene, centre);
             let patch = layout.wrap_cell(cell).map(|c| layout.patch_of(c));
             id += 1;
             let Some(block) = patch.and_then(|p| place[p]) else { return };
-            let volume = if scene.axisymmetric() { volume * centre[0] } else { volume };
-            values.fill(0.0);
-            for a in 0..D {
-                values[columns.position + a] = centre[a];
-                values[columns.velocity + a] = checked.velocity[a] - grid_velocity[a];
-            }
-            let mut pressure = body.pressure;
-            if let Some(motion) = &checked.motion {
-                let place = std::array::from_fn(|a| if a < D { centre[a] } else { 0.0 });
-                let velocity = motion.velocity(place);
-                for a in 0..D {
-                    values[columns.velocity + a] = velocity[a] - grid_velocity[a];
-                }
-                if let Some(affine) = columns.affine {
-                    let gradient = motion.gradient(place, size[0]);
-                    (0..D * D).for_each(|k| values[affine + k] = gradient[k / D][k % D]);
-                }
-                pressure = motion.pressure(place).unwrap_or(pressure);
-            }
-            if let Some(initial) = columns.initial_position {
-                (0..D).for_each(|a| values[initial + a] = centre[a]);
-            }
-            values[columns.mass] = density * volume;
-            values[columns.volume0] = volume;
-            values[columns.jacobian] = 1.0;
-            values[columns.energy] = stepper.starting_energy(number, pressure, body.temperature);
             let particle = NewParticle { scene, body: number, centre, size };
-            for effect in stepper.effects.iter() {
-                effect.initialize(&particle, &mut values);
-            }
-            values[columns.body] = number as f64;
-            if let Some(column) = columns.contact_impulse {
-                values[column] = stepper.starting_impulse(number, pressure);
-            }
-            if let Some(half_lengths) = columns.half_lengths {
-                (0..D).for_each(|a| values[half_lengths + a] = 0.5 * size[a]);
-            }
-            if let Some(deformation) = columns.deformation {
-                (0..D).for_each(|a| values[deformation + (D + 1) * a] = 1.0);
-            }
+            set_initial_values(stepper, &particle, volume, grid_velocity, &mut values);
             blocks[block].push(id - 1, cell.map(|c| c as i32), &values);
         };
         match &checked.tiles {
@@ -111,6 +72,59 @@ pub fn fill<const D: usize>(
         block.sort_own();
     }
     blocks
+}
+
+/// Writes the initial values of a particle with `volume` [m3], per radian with axial symmetry over its
+/// radius, to all columns.
+fn set_initial_values<const D: usize>(
+    stepper: &Stepper<D>,
+    particle: &NewParticle<'_, D>,
+    volume: f64,
+    grid_velocity: [f64; D],
+    values: &mut [f64],
+) {
+    let &NewParticle { scene, body: number, centre, size } = particle;
+    let (columns, checked) = (&stepper.columns, &scene.bodies[number]);
+    let body = &scene.scene.bodies[number];
+    let volume = if scene.axisymmetric() { volume * centre[0] } else { volume };
+    values.fill(0.0);
+    for a in 0..D {
+        values[columns.position + a] = centre[a];
+        values[columns.velocity + a] = checked.velocity[a] - grid_velocity[a];
+    }
+    let mut pressure = body.pressure;
+    if let Some(motion) = &checked.motion {
+        let place = std::array::from_fn(|a| if a < D { centre[a] } else { 0.0 });
+        let velocity = motion.velocity(place);
+        for a in 0..D {
+            values[columns.velocity + a] = velocity[a] - grid_velocity[a];
+        }
+        if let Some(affine) = columns.affine {
+            let gradient = motion.gradient(place, size[0]);
+            (0..D * D).for_each(|k| values[affine + k] = gradient[k / D][k % D]);
+        }
+        pressure = motion.pressure(place).unwrap_or(pressure);
+    }
+    if let Some(initial) = columns.initial_position {
+        (0..D).for_each(|a| values[initial + a] = centre[a]);
+    }
+    values[columns.mass] = scene.material_of(number).density * volume;
+    values[columns.volume0] = volume;
+    values[columns.jacobian] = 1.0;
+    values[columns.energy] = stepper.starting_energy(number, pressure, body.temperature);
+    for effect in stepper.effects.iter() {
+        effect.initialize(particle, values);
+    }
+    values[columns.body] = number as f64;
+    if let Some(column) = columns.contact_impulse {
+        values[column] = stepper.starting_impulse(number, pressure);
+    }
+    if let Some(half_lengths) = columns.half_lengths {
+        (0..D).for_each(|a| values[half_lengths + a] = 0.5 * size[a]);
+    }
+    if let Some(deformation) = columns.deformation {
+        (0..D).for_each(|a| values[deformation + (D + 1) * a] = 1.0);
+    }
 }
 
 /// Number of particles in each slice of cells normal to `axis`, counted without creating them.

@@ -1,8 +1,7 @@
 //! Optional parts of a step. Columns and time are accounted for by part: first the parts of the
-//! solver itself, which are fused with the sums over particles, then the [effects](super::effect)
-//! of a program.
+//! solver itself, which are fused with the sums over particles, then the effects of a
+//! program.
 
-use super::effect::Registry;
 use crate::scene::CheckedScene;
 
 /// Optional part of the solver itself.
@@ -28,7 +27,7 @@ impl StepPart {
     pub const NAMES: [&'static str; 5] =
         ["artificial viscosity", "relaxation", "affine velocity", "stress tensor", "contact"];
 
-    const ALL: [StepPart; Self::COUNT] = [
+    pub(super) const ALL: [StepPart; Self::COUNT] = [
         StepPart::Viscosity,
         StepPart::Relaxation,
         StepPart::Affine,
@@ -36,7 +35,7 @@ impl StepPart {
         StepPart::Contact,
     ];
 
-    fn is_active(self, scene: &CheckedScene) -> bool {
+    pub(super) fn is_active(self, scene: &CheckedScene) -> bool {
         let method = &scene.scene.method;
         match self {
             StepPart::Viscosity => scene.scene.artificial_viscosity.is_some(),
@@ -47,18 +46,5 @@ impl StepPart {
             StepPart::StressTensor => scene.has_solids(),
             StepPart::Contact => scene.velocity_fields() > 1,
         }
-    }
-}
-
-/// Names of all parts of a program with the effects of `R`.
-pub fn names<R: Registry>() -> Vec<&'static str> {
-    StepPart::NAMES.iter().chain(R::NAMES).copied().collect()
-}
-
-/// Whether `scene` uses part number `part`.
-pub fn is_active<R: Registry>(part: usize, scene: &CheckedScene) -> bool {
-    match StepPart::ALL.get(part) {
-        Some(part) => part.is_active(scene),
-        None => R::is_active(part - StepPart::COUNT, scene),
     }
 }

@@ -6,7 +6,7 @@ use decomp::{Block, IndexBox, Layout, NodeArrays};
 
 use crate::shape::{ParticleDomain, Shape, Weights};
 use crate::solver::clock::Stopwatch;
-use crate::solver::contact::ContactNodes;
+use crate::solver::contact::PatchContact;
 use crate::solver::nodal_fields::Band;
 use crate::solver::particle_weights::{NARROW, lines};
 use crate::solver::shape_weights::Stencils;
@@ -125,7 +125,7 @@ pub struct Patch<const D: usize> {
     /// Computed nodes with little material, which filters leave out.
     pub edge: Vec<usize>,
     /// Nodes where velocity fields of bodies meet, with contact.
-    pub contact: ContactNodes<D>,
+    pub contact: PatchContact<D>,
     /// Layers of nodes that the patch computes beyond its own.
     pub extra_ghost_layers: i64,
     /// Results of the step.
@@ -193,7 +193,7 @@ impl<const D: usize> Patch<D> {
             active_lines: Vec::new(),
             span_lines: Vec::new(),
             edge: Vec::new(),
-            contact: ContactNodes::default(),
+            contact: PatchContact::default(),
             extra_ghost_layers: 0,
             report: StepReport::default(),
             side_forces: Vec::new(),

@@ -1,7 +1,13 @@
 //! Stencil radius of particles, which determines the depth of ghost layers and halos.
 
-use crate::scene::FilterHalo;
-use crate::shape::padded_width;
+use super::exchange::Sleep;
+use super::relaxation;
+use super::scheme::Scheme;
+use crate::scene::{CheckedScene, FilterHalo, Stepping, StressUpdate};
+use crate::shape::{most_nodes, padded_width};
+
+/// Ratio by which a particle may be longer at the middle of a step than at its start.
+const STRETCH: f64 = 1.25;
 
 /// Stencil radius of particles in one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,5 +57,74 @@ impl FilterHalo {
         } else {
             FilterHalo::Exchange
         }
+    }
+}
+
+impl<const D: usize> Scheme<D> {
+    /// Greatest initial extent of particles along a direction [cells].
+    pub fn longest_at_start(&self, scene: &CheckedScene) -> f64 {
+        let bodies = scene.bodies.iter();
+        bodies
+            .map(|c| {
+                let in_cells = |a: usize, length: f64| length / scene.cell_size[a];
+                match &c.tiles {
+                    Some(tiles) => tiles
+                        .iter()
+                        .flat_map(|t| (0..D).map(|a| in_cells(a, t.size[a])))
+                        .fold(0.0, f64::max),
+                    None => (0..D)
+                        .map(|a| in_cells(a, (c.upper[a] - c.lower[a]) / c.lattice[a] as f64))
+                        .fold(0.0, f64::max),
+                }
+            })
+            .fold(0.0, f64::max)
+    }
+
+    /// Stencil radius of particles up to `length` long [cells], with room to stretch in a step;
+    /// `None` if they are longer than any stencil.
+    pub fn reach(&self, length: f64) -> Option<StencilRadius> {
+        let length = if self.domains_deform() { length * STRETCH } else { length };
+        let nodes = self.shape.nodes(length);
+        (nodes <= most_nodes(D)).then_some(StencilRadius { nodes, products: self.products() })
+    }
+
+    /// Number of products with a matrix between sums over particles and the gather.
+    fn products(&self) -> usize {
+        let own = self.transfer.products(self.compatible);
+        let relaxed = self.relaxation.map_or(0, |_| relaxation::ORDER - 1);
+        own.max(relaxed).max(self.of_effects.products) as usize
+    }
+
+    /// Distance from moving material within which a step may change a particle, for a stencil
+    /// radius [cells]. The terms of the filters and of the pressure projection spread velocity and
+    /// pressure in each pass of a step over the grid. The velocity that does the work spreads
+    /// further, but it does no work on material without stress.
+    pub fn influence_radius(&self, reach: StencilRadius) -> i64 {
+        let order = self.transfer.order.max(self.relaxation.map_or(0, |_| relaxation::ORDER));
+        let pass = reach.cells() + i64::from(order) * (reach.nodes as i64 - 1) + 2;
+        match (self.stepping, self.stress_update) {
+            (Stepping::Midpoint, _) | (_, StressUpdate::Last) => pass,
+            _ => 2 * pass,
+        }
+    }
+
+    /// Conditions for quiescent patches: everything that a step computes has been computed at rest,
+    /// including pressure relaxation.
+    pub fn sleep(&self) -> Sleep {
+        let f = &self.fields;
+        Sleep {
+            needed: 1 + self.relaxation.map_or(0, |r| r.interval),
+            kept: [f.mass, f.inverse, f.volume, f.relaxation[0], f.relaxation[1]],
+        }
+    }
+
+    /// Longest particle [cells] for which `reach` is sufficient.
+    pub fn longest_within(&self, reach: StencilRadius) -> f64 {
+        (reach.nodes + 1 - self.shape.nodes(0.01)) as f64
+    }
+
+    /// Longest particle [cells] for which any stencil is sufficient, with room to stretch.
+    pub(super) fn longest_ever(&self) -> f64 {
+        self.longest_within(StencilRadius { nodes: most_nodes(D), products: 0 }) / STRETCH
     }
 }

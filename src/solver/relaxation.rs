@@ -31,8 +31,8 @@
 //! for particles all of whose nodes are filled, so that a free surface has no effect. Energy,
 //! momentum and mass do not change.
 
-use super::Stepper;
 use super::particle_update::bodies;
+use super::scheme::Scheme;
 use crate::material::constitutive::ConstitutiveModel;
 use crate::shape::with_width;
 use crate::solver::clock::timed;
@@ -49,10 +49,10 @@ const INNER: f64 = 0.8;
 /// Fraction of a particle's greatest weight above which it counts as touching a node.
 const TOUCHES: f64 = 1e-3;
 
-impl<const D: usize> Stepper<D> {
+impl<const D: usize> Scheme<D> {
     /// First term of the series of the pressure, P_L, on the nodes that the patch computes.
     pub(super) fn start_pressure(&self, patch: &mut Patch<D>) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
             s.scatter_pressure::<K>(patch);
         }
         with_width!(patch.stencils.width, go(patch, self));
@@ -109,7 +109,7 @@ impl<const D: usize> Stepper<D> {
 
     /// Relaxes volume and energy of the own particles.
     fn relax_pressure(&self, patch: &mut Patch<D>, rate: f64) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, rate: f64) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>, rate: f64) {
             let [_, _, sum, term] = s.fields.relaxation;
             let c = &s.columns;
             let (Some(p), Some(w)) = (c.pressure_mid, c.compliance) else { return };
@@ -135,7 +135,7 @@ impl<const D: usize> Stepper<D> {
 
     /// Relaxes the volumes of the own particles of fluids towards the space available to them.
     fn relax_volume(&self, patch: &mut Patch<D>, rate: f64) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, rate: f64) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>, rate: f64) {
             let c = &s.columns;
             let filled = &patch.nodes.fields[s.fields.volume][..];
             let mut j = std::mem::take(&mut patch.block.columns[c.jacobian]);

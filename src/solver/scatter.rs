@@ -1,15 +1,15 @@
 //! Particles to grid: each sum runs over own particles and ghosts in canonical order, so that all
 //! patches with a node get bitwise the same sums for it.
 
-use super::Stepper;
-use crate::shape::with_width;
+use super::scheme::Scheme;
+use crate::shape::{Shape, with_shape, with_width};
 use crate::solver::clock::timed;
 use crate::solver::effect::{Phase, StepContext};
-use crate::solver::particle_weights::{cut, lines};
+use crate::solver::particle_weights::{ParticleWeights, cut, lines};
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 
-impl<const D: usize> Stepper<D> {
+impl<const D: usize> Scheme<D> {
     /// All sums of a patch at new positions of its particles, with or without the force, and the
     /// lumped velocity and acceleration from them.
     pub(super) fn scatter(&self, patch: &mut Patch<D>, force: bool, step: &StepContext<'_, D>) {
@@ -17,7 +17,7 @@ impl<const D: usize> Stepper<D> {
         self.scatter_particles(patch, force, recomputed);
         if force {
             patch.side_forces.clear();
-            self.effects.act(Phase::NodalForce, step, patch);
+            step.effects.act(Phase::NodalForce, step, patch);
         }
         if let Some(contact) = &self.contact {
             timed(StepPart::Contact as usize, patch, |patch| {
@@ -26,6 +26,30 @@ impl<const D: usize> Stepper<D> {
         }
         self.divide_by_mass(patch);
         self.start_series(patch);
+    }
+
+    /// Finds the weights of all particles of a patch, with windows as wide as its longest particle
+    /// needs. Returns whether they have been recomputed, not kept.
+    fn find_weights(&self, patch: &mut Patch<D>) -> bool {
+        fn find<S: Shape, const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
+            let layer = (s.layers > 1).then_some(s.columns.body);
+            patch.find_weights::<S, K>(s.columns.fraction, s.columns.domain, s.inverse_cell, layer)
+        }
+        fn push<const K: usize, const D: usize>(patch: &mut Patch<D>, push: usize) {
+            patch.stencils.push_gradients::<K, D>(&patch.block, push);
+        }
+        let recomputed = !(self.total_lagrangian && patch.stencils.are_kept(&patch.block));
+        if recomputed {
+            let width = self.shape.nodes(self.longest(&patch.block));
+            with_shape!(self.shape, width, find(patch, self));
+        }
+        if let Some(inverse) = self.columns.inverse_deformation {
+            if recomputed {
+                patch.stencils.keep(&patch.block);
+            }
+            with_width!(patch.stencils.width, push(patch, inverse));
+        }
+        recomputed
     }
 
     /// Whether the scheme needs the mass matrix.
@@ -40,7 +64,7 @@ impl<const D: usize> Stepper<D> {
     pub(super) fn scatter_particles(&self, patch: &mut Patch<D>, force: bool, recomputed: bool) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
-            s: &Stepper<D>,
+            s: &Scheme<D>,
             force: bool,
             recomputed: bool,
         ) {
@@ -70,7 +94,7 @@ impl<const D: usize> Stepper<D> {
 
     /// Adds the force of all particles, in the columns from `from` on, to the nodes.
     fn scatter_force(&self, patch: &mut Patch<D>, from: usize) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, from: usize) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>, from: usize) {
             for a in 0..D {
                 let field = s.fields.acceleration + a;
                 let mut nodal = std::mem::take(&mut patch.nodes.fields[field]);
@@ -91,16 +115,7 @@ impl<const D: usize> Stepper<D> {
         force: bool,
     ) {
         let (c, f) = (&self.columns, &self.fields);
-        let scalars = [f.mass].into_iter().chain(f.scratch..f.scratch + f.scratches);
-        let vectors = [f.lumped_velocity, f.acceleration].into_iter().chain(f.filter_residual);
-        let components = vectors.flat_map(|v| v..v + D);
-        for field in scalars.chain(components) {
-            patch.nodes.fields[field].fill(0.0);
-        }
-        if MATRIX {
-            let nodes = patch.nodes.layers * patch.nodes.nodes.count();
-            patch.band.clear(nodes, K, D, patch.nodes.nodes.extent(0));
-        }
+        self.clear_sums::<K, MATRIX>(patch);
         // fields are taken out while others are read and written
         let mut take = |k: usize| std::mem::take(&mut patch.nodes.fields[k]);
         let mut masses = take(f.mass);
@@ -113,9 +128,6 @@ impl<const D: usize> Stepper<D> {
         let momentum = &mut momenta.each_mut().map(|field| &mut field[..nodes]);
         let nodal_force = &mut forces.each_mut().map(|field| &mut field[..nodes]);
         let mut volume = volumes.as_mut().map(|field| &mut field[..nodes]);
-        if let Some(volume) = &mut volume {
-            volume.fill(0.0);
-        }
         let particles = patch.block.particles();
         let column = |k: usize| &patch.block.columns[k][..particles];
         let vector = |k: usize| -> [&[f64]; D] { std::array::from_fn(|a| column(k + a)) };
@@ -134,29 +146,7 @@ impl<const D: usize> Stepper<D> {
                             weights.add(momentum[a], weights.values, |n| n * mv);
                         }
                     }
-                    Some(affine) => {
-                        // m N (v + C (x_i - x_p))
-                        let offset = self.offset(patch, r, weights.first);
-                        for a in 0..D {
-                            let mv = m * velocity[a][r];
-                            let mc: [f64; D] = std::array::from_fn(|b| {
-                                m * column(affine + D * a + b)[r] * self.cell[b]
-                            });
-                            for line in 0..const { lines(K, D) } {
-                                let across = if D == 1 {
-                                    mv
-                                } else {
-                                    mv + mc[D - 1] * (offset[D - 1] + line as f64)
-                                };
-                                let n = &weights.values[line];
-                                let at = weights.first + line * weights.stride;
-                                for k in 0..K {
-                                    momentum[a][at + k] +=
-                                        n[k] * (across + mc[0] * (offset[0] + k as f64));
-                                }
-                            }
-                        }
-                    }
+                    Some(affine) => self.add_affine_momentum(patch, &weights, r, affine, momentum),
                 }
                 if MATRIX {
                     patch.band.add(&weights, m);
@@ -189,6 +179,53 @@ impl<const D: usize> Stepper<D> {
         }
         if let Some(volume) = volumes {
             fields[f.volume] = volume;
+        }
+    }
+
+    /// Adds the momentum m N (v + C (x_i - x_p)) of a particle with an affine velocity to the nodes.
+    #[inline(always)]
+    fn add_affine_momentum<const K: usize>(
+        &self,
+        patch: &Patch<D>,
+        weights: &ParticleWeights<'_, K, D>,
+        r: usize,
+        affine: usize,
+        momentum: &mut [&mut [f64]; D],
+    ) {
+        let column = |k: usize| patch.block.columns[k][r];
+        let m = column(self.columns.mass);
+        let offset = self.offset(patch, r, weights.first);
+        for a in 0..D {
+            let mv = m * column(self.columns.velocity + a);
+            let mc: [f64; D] =
+                std::array::from_fn(|b| m * column(affine + D * a + b) * self.cell[b]);
+            for line in 0..const { lines(K, D) } {
+                let across = match D {
+                    1 => mv,
+                    _ => mv + mc[D - 1] * (offset[D - 1] + line as f64),
+                };
+                let n = &weights.values[line];
+                let at = weights.first + line * weights.stride;
+                for k in 0..K {
+                    momentum[a][at + k] += n[k] * (across + mc[0] * (offset[0] + k as f64));
+                }
+            }
+        }
+    }
+
+    /// Clears the sums over particles, and the mass matrix with `MATRIX`.
+    fn clear_sums<const K: usize, const MATRIX: bool>(&self, patch: &mut Patch<D>) {
+        let f = &self.fields;
+        let scalars = [f.mass].into_iter().chain(f.scratch..f.scratch + f.scratches);
+        let vectors = [f.lumped_velocity, f.acceleration].into_iter().chain(f.filter_residual);
+        let components = vectors.flat_map(|v| v..v + D);
+        let volume = self.edge_mask.map(|_| f.volume);
+        for field in scalars.chain(components).chain(volume) {
+            patch.nodes.fields[field].fill(0.0);
+        }
+        if MATRIX {
+            let nodes = patch.nodes.layers * patch.nodes.nodes.count();
+            patch.band.clear(nodes, K, D, patch.nodes.nodes.extent(0));
         }
     }
 

@@ -9,7 +9,10 @@
 use decomp::Parity;
 use smallvec::SmallVec;
 
-use super::{Nodal, Stepper, relaxation};
+use super::effect::Effects;
+use super::exchange::Nodal;
+use super::relaxation;
+use super::scheme::Scheme;
 use crate::solver::particle_weights::cut;
 use crate::solver::patch::Patch;
 use crate::transfer::VelocityUpdate;
@@ -137,7 +140,7 @@ fn copy<const D: usize>(patch: &mut Patch<D>, from: usize, to: usize) {
     }
 }
 
-impl<const D: usize> Stepper<D> {
+impl<const D: usize> Scheme<D> {
     /// Lists the computed nodes that the edge mask removes, so that later passes need not search
     /// the fields: chi = 0 where the filled fraction of the node's volume is below the edge mask.
     /// Nodes without material hold zeros anyway.
@@ -220,6 +223,7 @@ impl<const D: usize> Stepper<D> {
     fn sum_series(
         &self,
         nodal: &mut Nodal<'_, D>,
+        effects: &Effects<D>,
         name: &'static str,
         others: &[(usize, Parity)],
         all: &[ProductSeries],
@@ -241,7 +245,7 @@ impl<const D: usize> Stepper<D> {
             let next = Together::all::<D>(all, l + 2);
             nodal.each(name, |patch| {
                 self.apply_no_slip(patch, &fields);
-                self.effects.set_boundary(self, patch, &fields);
+                effects.set_boundary(self, patch, &fields);
                 for vector in &finished {
                     if let Some(last) = vector.last {
                         find_last(patch, vector.sum, last);
@@ -262,6 +266,7 @@ impl<const D: usize> Stepper<D> {
     pub(crate) fn sum_scalar(
         &self,
         nodal: &mut Nodal<'_, D>,
+        effects: &Effects<D>,
         name: &'static str,
         others: &[(usize, Parity)],
         series: ScalarSeries,
@@ -270,7 +275,7 @@ impl<const D: usize> Stepper<D> {
         let ScalarSeries { sum, first, order, matrix, inverse } = series;
         let matrix = Matrix::Effect(matrix, inverse);
         let series = ProductSeries { sum, first, last: None, order, matrix, mask: Mask::No };
-        self.sum_series(nodal, name, others, &[series], last);
+        self.sum_series(nodal, effects, name, others, &[series], last);
     }
 
     /// Series of velocity and force: v = sum_(l<k) K^l vL; b = sum_(l<k) t_l with t_0 = f/m and t_l
@@ -316,7 +321,13 @@ impl<const D: usize> Stepper<D> {
     /// From the first terms of the series, computes velocity, acceleration and the velocity at the
     /// end of the step v' = v + dt b, halos included; with `relax` also the nodal pressure.
     /// Collective between neighbours.
-    pub(super) fn solve_velocity(&self, nodal: &mut Nodal<'_, D>, dt: f64, relax: bool) {
+    pub(super) fn solve_velocity(
+        &self,
+        nodal: &mut Nodal<'_, D>,
+        effects: &Effects<D>,
+        dt: f64,
+        relax: bool,
+    ) {
         let f = &self.fields;
         let mut all: SmallVec<[ProductSeries; 3]> = self.velocity_series().into_iter().collect();
         if relax {
@@ -337,7 +348,7 @@ impl<const D: usize> Stepper<D> {
             others.push((f.volume, Parity::Even));
         }
         // the pressure series may have more terms than the velocity series
-        self.sum_series(nodal, "series", &others, &all, |patch| {
+        self.sum_series(nodal, effects, "series", &others, &all, |patch| {
             let still = self.quiescent_speed;
             for span in &patch.span_lines {
                 for a in 0..D {
@@ -414,7 +425,7 @@ impl<const D: usize> Stepper<D> {
     ///
     /// Series: w = sum_(l<k) (chi K)^l (vL + A v')/2 (only l = 0 if the force is lumped);
     /// blend: w = a vL + A ((1 - a) vL + dt b/2); A = m^-1 M.
-    pub(super) fn solve_work(&self, nodal: &mut Nodal<'_, D>) {
+    pub(super) fn solve_work(&self, nodal: &mut Nodal<'_, D>, effects: &Effects<D>) {
         let order = self.transfer.force_order();
         let series = ProductSeries {
             sum: self.fields.work,
@@ -424,6 +435,6 @@ impl<const D: usize> Stepper<D> {
             matrix: Matrix::Mass,
             mask: Mask::After,
         };
-        self.sum_series(nodal, "work", &[], &[series], |_| {});
+        self.sum_series(nodal, effects, "work", &[], &[series], |_| {});
     }
 }

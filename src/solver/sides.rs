@@ -6,7 +6,7 @@
 
 use decomp::{IndexBox, Parity};
 
-use super::Stepper;
+use super::scheme::Scheme;
 use crate::scene::{CheckedScene, SideProperties};
 use crate::shape::with_width;
 use crate::solver::particle_weights::ParticleWeights;
@@ -32,7 +32,7 @@ pub(crate) fn sides_of<const D: usize, T>(
     all.filter_map(|(axis, end)| Some((axis, end, of(&sides[axis][end])?))).collect()
 }
 
-impl<const D: usize> Stepper<D> {
+impl<const D: usize> Scheme<D> {
     /// Computed nodes of a patch whose index along `axis` is in a range, one box per layer; `None`
     /// if there are none. If there are some, sets the fields `sums` to zero.
     pub(crate) fn start_side(
@@ -174,7 +174,7 @@ impl<const D: usize> Stepper<D> {
     /// Reverses the internal force of particles beyond no-slip walls along these walls, after it
     /// has been summed.
     pub(crate) fn turn_forces(&self, patch: &mut Patch<D>) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>, axis: usize) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>, axis: usize) {
             for a in (0..D).filter(|&a| a != axis) {
                 let field = s.fields.acceleration + a;
                 let mut force = std::mem::take(&mut patch.nodes.fields[field]);

@@ -13,8 +13,8 @@
 
 use std::ops::Range;
 
-use super::Stepper;
 use super::particle_update::bodies;
+use super::scheme::Scheme;
 use crate::material::Symmetric;
 use crate::material::constitutive::{ConstitutiveModel, PlaneStrain, Strain, TensorColumns};
 use crate::shape::with_width;
@@ -57,7 +57,7 @@ pub(super) fn put_back(
     }
 }
 
-impl<const D: usize> Stepper<D> {
+impl<const D: usize> Scheme<D> {
     /// Whether the stress of the particles is a tensor.
     pub(super) fn tensor_stress(&self) -> bool {
         D > 1 && self.columns.stress.is_some()
@@ -242,7 +242,7 @@ impl<const D: usize> Stepper<D> {
 
     /// Adds the internal force of all particles, f_i = sum S G_i, to the nodes.
     pub(super) fn scatter_stress(&self, patch: &mut Patch<D>) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
             let c = &s.columns;
             let mut force: [Vec<f64>; D] = std::array::from_fn(|a| {
                 std::mem::take(&mut patch.nodes.fields[s.fields.acceleration + a])

@@ -15,7 +15,7 @@
 
 use decomp::Block;
 
-use super::Stepper;
+use super::scheme::Scheme;
 use crate::shape::DomainExtent;
 use crate::solver::patch::{FaultPhase, Patch};
 
@@ -58,7 +58,7 @@ fn ahead_of(columns: &[Vec<f64>], particle: usize, [f, l]: [usize; 2], ahead: f6
     })
 }
 
-impl<const D: usize> Stepper<D> {
+impl<const D: usize> Scheme<D> {
     /// F^-1, which pushes the gradients of the own particles forward, at the time `ahead` [s] of
     /// their deformation and the volume ratio in column `jacobian`.
     pub(super) fn invert_deformation(&self, patch: &mut Patch<D>, ahead: f64, jacobian: usize) {

@@ -6,7 +6,8 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 
 use super::spec::{Study, StudyAxis};
-use crate::scene::{self, CheckedScene};
+use crate::input;
+use crate::scene::CheckedScene;
 
 /// A case: a scene with overrides, and its numbers of ranks and threads.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,7 +74,7 @@ impl Case {
 
     /// The checked scene of the case. The error is the message of the scene check.
     pub fn scene(&self, bytes: &[u8], file: &str) -> Result<CheckedScene, String> {
-        scene::parse(bytes, file, &self.sets).map_err(|error| error.to_string())
+        input::parse(bytes, file, &self.sets).map_err(|error| error.to_string())
     }
 
     /// Key of the record: a hash of the resolved scene, the program, ranks and threads.

@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::StudyError;
 use crate::driver::output::summary::Summary;
-use crate::scene::input_file;
+use crate::input::input_file;
 
 /// CPU and wall times of one run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

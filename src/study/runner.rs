@@ -14,7 +14,7 @@ use super::record::StudyRecord;
 use super::spec::Study;
 use super::{StudyError, StudyRow};
 use crate::driver::output::summary::Summary;
-use crate::scene;
+use crate::input;
 
 /// Runs the program and stores its results.
 #[derive(Clone, Debug)]
@@ -91,7 +91,7 @@ impl StudyRunner {
     fn jobs(&self, study: &Study, records: &Path) -> Result<Vec<Job>, StudyError> {
         let refused =
             |reason: String| StudyError::Study { file: study.scene.display().to_string(), reason };
-        let bytes = scene::read(&study.scene).map_err(|e| refused(e.to_string()))?;
+        let bytes = input::read(&study.scene).map_err(|e| refused(e.to_string()))?;
         let version = self.version()?;
         let file = study.scene.display().to_string();
         let job = |case: Case| {

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::StudyError;
-use crate::scene::input_file;
+use crate::input::input_file;
 
 /// A study: its cases, their repeats, and the pictures.
 #[derive(Clone, Debug, Deserialize)]

@@ -2,7 +2,8 @@
 
 use decomp::comm::local::run_ranks;
 use decomp::{Comm, Serial};
-use flyer_mpm::scene::{self, CheckedScene};
+use flyer_mpm::input;
+use flyer_mpm::scene::CheckedScene;
 use flyer_mpm::simulation::{Saved, Simulation};
 use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
@@ -13,7 +14,7 @@ use crate::scenes::{shipped, small, small_leapfrog, with};
 const STEPS: u64 = 24;
 
 fn checked(scene: &Value) -> CheckedScene {
-    scene::parse(scene.to_string().as_bytes(), "scene.json", &[]).unwrap_or_else(|e| panic!("{e}"))
+    input::parse(scene.to_string().as_bytes(), "scene.json", &[]).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// All that a run tells of its state.

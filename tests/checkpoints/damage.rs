@@ -6,7 +6,7 @@ use std::path::Path;
 use decomp::{Census, StoredParticles};
 use flyer_mpm::driver::checkpoint::seal::HEAD;
 use flyer_mpm::driver::checkpoint::{
-    Checkpoint, CheckpointError, Contents, Due, StateColumn, file, folder,
+    Checkpoint, CheckpointContents, CheckpointError, Due, StateColumn, file, folder,
 };
 use flyer_mpm::driver::figures::PressureRow;
 use flyer_mpm::driver::output::histories::HistoryTable;
@@ -77,8 +77,8 @@ fn example() -> Checkpoint {
     checkpoint
 }
 
-fn contents(c: &Checkpoint) -> Contents<'_> {
-    Contents {
+fn contents(c: &Checkpoint) -> CheckpointContents<'_> {
+    CheckpointContents {
         origin: c.origin.as_ref(),
         scene: &c.scene,
         dimension: c.dimension,

@@ -8,7 +8,8 @@ use std::path::Path;
 use decomp::Comm;
 use decomp::comm::local::run_ranks;
 use flyer_mpm::driver::checkpoint::file;
-use flyer_mpm::scene::{self, CheckedScene};
+use flyer_mpm::input;
+use flyer_mpm::scene::CheckedScene;
 use flyer_mpm::simulation::{RunError, Simulation};
 use flyer_mpm::solver::{Stepper, Steps};
 
@@ -113,7 +114,7 @@ fn changed_scenes() {
     for round in 0..4000 {
         let text = changed(&corpus[round % corpus.len()], &mut seed);
         let told = || String::from_utf8_lossy(&text).into_owned();
-        taken += usize::from(judged(&told, || scene::parse(&text, "scene.json", &[])));
+        taken += usize::from(judged(&told, || input::parse(&text, "scene.json", &[])));
     }
     // some changes are within what is allowed: the rest of the check is reached as well
     assert!((100..3000).contains(&taken), "{taken}");
@@ -134,9 +135,9 @@ fn changed_overrides() {
         let set =
             String::from_utf8_lossy(&changed(sets[round % sets.len()], &mut seed)).into_owned();
         let told = || format!("--set {set}");
-        judged(&told, || scene::parse(&text, "scene.json", std::slice::from_ref(&set)));
+        judged(&told, || input::parse(&text, "scene.json", std::slice::from_ref(&set)));
         let allowed = flyer_mpm::driver::checkpoint::fit::CHANGEABLE;
-        judged(&told, || scene::parse_changed(&text, "c", std::slice::from_ref(&set), &allowed));
+        judged(&told, || input::parse_changed(&text, "c", std::slice::from_ref(&set), &allowed));
     }
 }
 
@@ -171,13 +172,13 @@ fn too_much_is_told_before_it_is_taken() {
     let text = |name: &str| {
         fs::read(format!("{}/inputs/{name}.json", env!("CARGO_MANIFEST_DIR"))).unwrap()
     };
-    let told = |verdict: Result<(), scene::SceneError>| {
+    let told = |verdict: Result<(), input::SceneError>| {
         let error = verdict.unwrap_err().to_string();
         let words = ["need about ", "GiB of memory; allowed: 8.0 GiB", "--ignore-memory"];
         assert!(words.iter().all(|w| error.contains(w)), "{error}");
     };
     // disks are cut into particles one by one as the scene is read
-    let size = |set: &str, left| scene::check_size(&text("disks"), "s", &[set.to_string()], left);
+    let size = |set: &str, left| input::check_size(&text("disks"), "s", &[set.to_string()], left);
     for set in ["domain.cell_size=5e-5", "bodies.lower.particles_per_cell=[300,300]"] {
         told(size(set, LEFT));
         size(set, None).unwrap();
@@ -189,7 +190,7 @@ fn too_much_is_told_before_it_is_taken() {
         ("flyer", "domain.cell_size=1e-10"),
         ("flyer_2d", "domain.patches=[300,180]"),
     ] {
-        let scene = scene::parse(&text(name), "s", &[set.to_string()]).unwrap();
+        let scene = input::parse(&text(name), "s", &[set.to_string()]).unwrap();
         told(scene.check_memory(LEFT));
         scene.check_memory(None).unwrap();
     }
@@ -236,10 +237,10 @@ fn changed_scenes_on_two_ranks() {
     let (mut seed, mut ran) = (6, 0);
     for round in 0..set("FLYER_MPM_MUTANTS").unwrap_or(600) {
         let text = changed(&corpus[round % corpus.len()], &mut seed);
-        if scene::check_size(&text, "scene.json", &[], Some(64 << 20)).is_err() {
+        if input::check_size(&text, "scene.json", &[], Some(64 << 20)).is_err() {
             continue;
         }
-        let Ok(scene) = scene::parse(&text, "scene.json", &[]) else { continue };
+        let Ok(scene) = input::parse(&text, "scene.json", &[]) else { continue };
         if scene.check_memory(Some(64 << 20)).is_err() {
             continue;
         }

@@ -3,7 +3,8 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use decomp::comm::local::run_ranks;
-use flyer_mpm::scene::{self, CheckedScene};
+use flyer_mpm::input;
+use flyer_mpm::scene::CheckedScene;
 use flyer_mpm::simulation::{RunError, Simulation};
 use serde_json::Value;
 
@@ -17,7 +18,7 @@ pub type End = Result<String, String>;
 /// Result of a scene on a layout. A scene that is rejected is rejected by all layouts.
 pub fn end_of(scene: &Value, layout: &Layout) -> End {
     let scene = with(scene, &layout.keys());
-    let scene = scene::parse(scene.to_string().as_bytes(), "scene.json", &[])
+    let scene = input::parse(scene.to_string().as_bytes(), "scene.json", &[])
         .map_err(|error| error.to_string())?;
     let ranks = || run_ranks(layout.ranks, |comm| run(&scene, comm, layout.threads));
     let ends = catch_unwind(AssertUnwindSafe(ranks)).map_err(|fault| {

@@ -1,17 +1,18 @@
 //! Layering of the library: a module uses only those below it, and no two files use each other.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use crate::imports::{Imports, ItemPath};
+use crate::imports::Imports;
 
 /// The modules from the top down; those on one line may use each other.
-const ROOMS: [&[&str]; 16] = [
+const ROOMS: [&[&str]; 17] = [
     &["study"],
     &["driver"],
     &["accuracy"],
     &["perf_model"],
     &["simulation"],
+    &["input"],
     &["effects"],
     &["solver"],
     &["scene"],
@@ -76,17 +77,86 @@ fn rooms_use_those_below_them_alone() {
     assert_eq!(seen.len(), ROOMS.iter().map(|rooms| rooms.len()).sum::<usize>());
 }
 
-/// Modules whose files still use each other.
-const OPEN: [&str; 3] = ["scene", "solver", "simulation"];
-
 #[test]
 fn no_two_files_use_each_other() {
     let imports = Imports::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
-    let mut circles = imports.circles();
-    let is_open = |file: &ItemPath| file.first().is_some_and(|room| OPEN.contains(&room.as_str()));
-    circles.retain(|group| !group.iter().all(is_open));
+    let circles = imports.circles();
     let ties: Vec<String> = circles.iter().map(|group| imports.ties(group).join("\n")).collect();
     assert!(ties.is_empty(), "files use each other:\n\n{}", ties.join("\n\n"));
+}
+
+/// Functions of a formatted source: name and number of lines. A function ends with the first brace at
+/// its own indent.
+fn functions(text: &str) -> Vec<(String, usize)> {
+    let lines: Vec<&str> = text.lines().collect();
+    let words = ["pub ", "pub(super) ", "pub(crate) ", "const ", "unsafe "];
+    let mut found = Vec::new();
+    for (first, line) in lines.iter().enumerate() {
+        let mut rest = line.trim_start();
+        while let Some(word) = words.iter().find(|word| rest.starts_with(**word)) {
+            rest = &rest[word.len()..];
+        }
+        let Some(rest) = rest.strip_prefix("fn ") else { continue };
+        let name = rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+        let indent = &line[..line.len() - line.trim_start().len()];
+        let ends = |line: &&str| {
+            line.strip_prefix(indent).is_some_and(|line| {
+                line == "}" || (!line.starts_with(' ') && line.ends_with([';', '}']))
+            })
+        };
+        let count = lines[first..].iter().position(ends).unwrap_or(lines.len() - first);
+        found.push((name, count + 1));
+    }
+    found
+}
+
+/// Greatest number of lines of a function in `src/solver` and `src/effects`.
+const LONGEST_FUNCTION: usize = 80;
+
+#[test]
+fn functions_of_the_step_are_short() {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut count = 0;
+    for file in ["solver", "effects"].iter().flat_map(|room| sources(&source.join(room))) {
+        for (name, lines) in functions(&std::fs::read_to_string(&file).unwrap()) {
+            assert!(lines <= LONGEST_FUNCTION, "{}: {name} has {lines} lines", file.display());
+            count += 1;
+        }
+    }
+    assert!(count > 300, "{count} functions found");
+}
+
+/// Types that a source defines outside its tests.
+fn types(text: &str) -> Vec<String> {
+    let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+    let kinds = ["struct ", "enum ", "trait "];
+    let lines = code.lines().filter(|line| !line.starts_with(' '));
+    let words = lines.filter_map(|line| {
+        let line = ["pub(crate) ", "pub(super) ", "pub "]
+            .iter()
+            .find_map(|word| line.strip_prefix(word))
+            .unwrap_or(line);
+        kinds.iter().find_map(|kind| line.strip_prefix(kind))
+    });
+    let name = |rest: &str| rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+    words.map(name).collect()
+}
+
+#[test]
+fn no_type_name_is_defined_twice() {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut places: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
+    for file in sources(&source) {
+        if file.components().any(|part| part.as_os_str().to_str().unwrap().contains("tests")) {
+            continue;
+        }
+        for name in types(&std::fs::read_to_string(&file).unwrap()) {
+            places.entry(name).or_default().push(file.clone());
+        }
+    }
+    assert!(places.len() > 300, "{} types found", places.len());
+    places.retain(|_, files| files.len() > 1);
+    assert!(places.is_empty(), "{places:#?}");
 }
 
 /// Names of columns that a source declares: the first text after `scalar(`.

@@ -1,6 +1,6 @@
 //! Use of names between the files of the library, from the syntax of all files. Tests are ignored.
-//! A public re-export does not count as a use: whoever names it uses the file that defines the
-//! item.
+//! A public re-export by itself does not count as a use: whoever names it uses the file that defines
+//! the item, and so does the file of the re-export where it names the item itself.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -9,7 +9,7 @@ use syn::visit::{self, Visit};
 use syn::{Attribute, Item, ItemUse, UseTree, Visibility};
 
 /// Path of a module from the crate's root, such as `["solver", "columns"]`, or of an item.
-pub type ItemPath = Vec<String>;
+type ItemPath = Vec<String>;
 
 /// Names that each file uses from each other file.
 pub struct Imports(BTreeMap<ItemPath, BTreeMap<ItemPath, BTreeSet<String>>>);
@@ -75,6 +75,18 @@ struct Module {
     exports: Vec<(String, ItemPath)>,
     /// Paths that the file names.
     paths: BTreeSet<ItemPath>,
+    /// First words of all paths outside of `use`.
+    words: BTreeSet<String>,
+}
+
+impl Module {
+    fn of(file: &syn::File) -> Self {
+        let mut module = Module::default();
+        module.visit_file(file);
+        let exports = module.exports.iter().filter(|(name, _)| module.words.contains(name));
+        module.paths.extend(exports.map(|(_, path)| path.clone()));
+        module
+    }
 }
 
 /// All files.
@@ -94,11 +106,8 @@ impl Modules {
             if path.is_dir() {
                 self.read(&path, &name);
             } else if path.extension().is_some_and(|ending| ending == "rs") {
-                let mut found = Module::default();
-                found.visit_file(
-                    &syn::parse_file(&std::fs::read_to_string(&path).unwrap()).unwrap(),
-                );
-                self.0.insert(name, found);
+                let text = std::fs::read_to_string(&path).unwrap();
+                self.0.insert(name, Module::of(&syn::parse_file(&text).unwrap()));
             }
         }
     }
@@ -199,6 +208,7 @@ impl<'ast> Visit<'ast> for Module {
 
     fn visit_path(&mut self, path: &'ast syn::Path) {
         let names: ItemPath = path.segments.iter().map(|part| part.ident.to_string()).collect();
+        self.words.insert(names[0].clone());
         if names.len() > 1 {
             self.paths.insert(names);
         }

@@ -6,7 +6,7 @@ use crate::home::Home;
 fn the_library_is_listed() {
     let home = Home::new();
     let text = home.call(["materials"]).end().succeeded();
-    for (name, _) in flyer_mpm::scene::LIBRARY {
+    for (name, _) in flyer_mpm::input::LIBRARY {
         let line = text.lines().find(|line| line.split(' ').next() == Some(name));
         let line = line.unwrap_or_else(|| panic!("no {name} in {text}"));
         assert!(line.contains("kg/m3"), "{line}");

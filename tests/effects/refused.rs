@@ -1,6 +1,6 @@
 //! Keys of strength, failure and temperature that are refused, and in what words.
 
-use flyer_mpm::scene;
+use flyer_mpm::input;
 
 use crate::tools::shipped;
 
@@ -8,7 +8,7 @@ use crate::tools::shipped;
 fn refused(sets: &[&str], fragments: &[&str]) {
     let sets: Vec<String> = sets.iter().map(|s| format!("materials.aluminium.{s}")).collect();
     let text = shipped("piston_elastic_plastic.json").to_string();
-    let error = scene::parse(text.as_bytes(), "p.json", &sets).unwrap_err().to_string();
+    let error = input::parse(text.as_bytes(), "p.json", &sets).unwrap_err().to_string();
     for fragment in fragments {
         assert!(error.contains(fragment), "{error}\nhas no {fragment}");
     }
@@ -76,7 +76,7 @@ fn erosion() {
     let among = |sets: &[&str], why: &str| {
         let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
         let text = shipped("heat_rod.json").to_string();
-        let error = scene::parse(text.as_bytes(), "h.json", &sets).unwrap_err().to_string();
+        let error = input::parse(text.as_bytes(), "h.json", &sets).unwrap_err().to_string();
         assert!(error.contains("materials.rod.erosion") && error.contains(why), "{error}");
     };
     let spread = "materials.rod.erosion={\"volume_ratio\": 2}";
@@ -102,7 +102,7 @@ fn exact_solutions_of_fluids() {
     let text = shipped("piston.json").to_string();
     let set = "materials.aluminium.strength={\"type\": \"von_mises\", \"shear_modulus\": 1e9, \
                \"yield_stress\": 1e8}";
-    let error = scene::parse(text.as_bytes(), "p.json", &[set.into()]).unwrap_err().to_string();
+    let error = input::parse(text.as_bytes(), "p.json", &[set.into()]).unwrap_err().to_string();
     assert!(
         error.contains("materials.aluminium.strength is not in this exact solution"),
         "{error}"
@@ -114,7 +114,7 @@ fn sides_and_bodies_without_heat() {
     let edit = |sets: &[&str], fragments: &[&str]| {
         let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
         let text = shipped("heat_rod.json").to_string();
-        let error = scene::parse(text.as_bytes(), "h.json", &sets).unwrap_err().to_string();
+        let error = input::parse(text.as_bytes(), "h.json", &sets).unwrap_err().to_string();
         for fragment in fragments {
             assert!(error.contains(fragment), "{error}\nhas no {fragment}");
         }

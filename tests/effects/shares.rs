@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use decomp::Serial;
 use flyer_mpm::effects::{EffectUse, ledger};
+use flyer_mpm::input;
 use flyer_mpm::scene;
 use flyer_mpm::simulation::Simulation;
 use flyer_mpm::solver::{Stepper, Steps};
@@ -22,7 +23,7 @@ fn measured(scene: &Value) -> Result<Vec<EffectUse>, String> {
         ledger(scene, simulation.columns(), Some(&shares))
     }
     let inputs = concat!(env!("CARGO_MANIFEST_DIR"), "/inputs/scene.json");
-    let checked = scene::parse(scene.to_string().as_bytes(), inputs, &[]);
+    let checked = input::parse(scene.to_string().as_bytes(), inputs, &[]);
     let checked = checked.map_err(|error| error.to_string())?;
     Ok(if checked.dimension == 1 { of::<1>(&checked) } else { of::<2>(&checked) })
 }

@@ -1,6 +1,6 @@
 //! The same bits for any patches, with columns that a material's history asks for.
 
-use flyer_mpm::scene::{self};
+use flyer_mpm::input;
 use serde_json::{Value, json};
 
 use crate::tools::{run, shipped};
@@ -24,7 +24,7 @@ fn any_patches_leave_the_same_bits() {
 #[test]
 fn columns_are_there_for_those_that_ask() {
     let names = |value: &Value| -> Vec<&'static str> {
-        let scene = scene::parse(value.to_string().as_bytes(), "test.json", &[]).unwrap();
+        let scene = input::parse(value.to_string().as_bytes(), "test.json", &[]).unwrap();
         let columns = flyer_mpm::effects::columns(&scene);
         columns.specs.iter().map(|s| s.name).collect()
     };

@@ -2,7 +2,8 @@
 
 use std::fs;
 
-use flyer_mpm::scene::{self, LIBRARY};
+use flyer_mpm::input;
+use flyer_mpm::input::LIBRARY;
 use serde_json::{Value, json};
 
 use crate::tools::{checked, run, shipped};
@@ -20,7 +21,7 @@ fn a_name_stands_for_its_material() {
     // overrides from the command line come before
     let sets = ["materials.aluminium.library=copper", "materials.aluminium.eos.s=1.5"];
     let sets: Vec<String> = sets.map(String::from).to_vec();
-    let scene = scene::parse(value.to_string().as_bytes(), "t", &sets).unwrap();
+    let scene = input::parse(value.to_string().as_bytes(), "t", &sets).unwrap();
     let material = scene.material_of(0);
     let straight = material.eos.straight(material.density).unwrap();
     assert_eq!((straight.rho0, straight.c0, straight.s), (8930.0, 3940.0, 1.5));
@@ -57,8 +58,8 @@ fn files_stand_beside_the_scene() {
     value["materials"]["aluminium"] = json!({"file": "metals/mine.json", "eos": {"c0": 4000.0}});
     let read = |value: &Value| -> Result<scene::CheckedScene, String> {
         fs::write(at("scene.json"), value.to_string()).unwrap();
-        let bytes = scene::read(&at("scene.json")).map_err(|e| e.to_string())?;
-        scene::parse(&bytes, "scene.json", &[]).map_err(|e| e.to_string())
+        let bytes = input::read(&at("scene.json")).map_err(|e| e.to_string())?;
+        input::parse(&bytes, "scene.json", &[]).map_err(|e| e.to_string())
     };
     let scene = read(&value).unwrap();
     let material = scene.material_of(0);
@@ -99,8 +100,8 @@ fn tables_stand_beside_the_scene() {
         value["materials"]["aluminium"] = material;
         fs::write(at("table.csv"), table).unwrap();
         fs::write(at("scene.json"), value.to_string()).unwrap();
-        let bytes = scene::read(&at("scene.json")).map_err(|e| e.to_string())?;
-        scene::parse(&bytes, "scene.json", &[]).map_err(|e| e.to_string())
+        let bytes = input::read(&at("scene.json")).map_err(|e| e.to_string())?;
+        input::parse(&bytes, "scene.json", &[]).map_err(|e| e.to_string())
     };
     read(json!({"density": 1500.0, "eos": eos}), &text).unwrap();
     let pores = json!({

@@ -1,6 +1,6 @@
 //! Keys of equations of state that are refused, and in what words.
 
-use flyer_mpm::scene;
+use flyer_mpm::input;
 use serde_json::{Value, json};
 
 use crate::tools::shipped;
@@ -20,7 +20,7 @@ fn refused_scene(density: f64, eos: Value, body: Value, fragments: &[&str]) {
         value["bodies"][0][key] = edit.clone();
     }
     let text = value.to_string();
-    let error = match scene::parse(text.as_bytes(), "bad.json", &[]) {
+    let error = match input::parse(text.as_bytes(), "bad.json", &[]) {
         Ok(_) => panic!("{eos} passed"),
         Err(error) => error.to_string(),
     };
@@ -73,7 +73,7 @@ fn mie_gruneisen() {
 fn the_exact_impact_needs_a_straight_line() {
     let mut value = shipped("flyer.json");
     value["materials"]["copper"]["eos"]["s2"] = json!(1e-5);
-    let error = scene::parse(value.to_string().as_bytes(), "b", &[]).unwrap_err().to_string();
+    let error = input::parse(value.to_string().as_bytes(), "b", &[]).unwrap_err().to_string();
     assert!(error.contains("reference.flyer_impact.flyer") && error.contains("s2"), "{error}");
 }
 
@@ -160,12 +160,12 @@ fn explosives() {
     refused_scene(1630.0, eos.clone(), pressed, &["pressure = 100000.0", "its own energy"]);
     let mut value = shipped("piston.json");
     value["materials"]["aluminium"] = json!({"density": 1630.0, "eos": eos});
-    let error = scene::parse(value.to_string().as_bytes(), "b", &[]).unwrap_err().to_string();
+    let error = input::parse(value.to_string().as_bytes(), "b", &[]).unwrap_err().to_string();
     assert!(error.contains("reference.wall_impact.body") && error.contains("burns"), "{error}");
     // a front that these products do not sustain is warned of
     value.as_object_mut().unwrap().remove("reference");
     value["materials"]["aluminium"]["eos"]["burn"]["detonation_velocity"] = json!(5000.0);
-    let scene = scene::parse(value.to_string().as_bytes(), "b", &[]).unwrap();
+    let scene = input::parse(value.to_string().as_bytes(), "b", &[]).unwrap();
     assert!(scene.warnings.iter().any(|w| w.contains("Chapman-Jouguet")), "{:?}", scene.warnings);
 }
 

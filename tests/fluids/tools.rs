@@ -5,7 +5,8 @@ use std::path::Path;
 use decomp::Serial;
 use flyer_mpm::accuracy::reference::ReferenceSolution;
 use flyer_mpm::exact::Errors;
-use flyer_mpm::scene::{self, CheckedScene};
+use flyer_mpm::input;
+use flyer_mpm::scene::CheckedScene;
 use flyer_mpm::simulation::ParticleTable;
 use flyer_mpm::simulation::{Simulation, Totals};
 use serde_json::{Value, json};
@@ -37,7 +38,7 @@ pub fn slab(density: f64, eos: Value, speed: f64, shock_speed: f64) -> Value {
 /// A scene that must pass its check.
 #[track_caller]
 pub fn checked(value: &Value) -> CheckedScene {
-    match scene::parse(value.to_string().as_bytes(), "test.json", &[]) {
+    match input::parse(value.to_string().as_bytes(), "test.json", &[]) {
         Ok(scene) => scene,
         Err(error) => panic!("{error}"),
     }

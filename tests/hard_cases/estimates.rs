@@ -7,10 +7,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use decomp::Serial;
-use flyer_mpm::accuracy::estimate::Basis;
+use flyer_mpm::accuracy::estimate::EstimateBasis;
 use flyer_mpm::driver::output::summary::Summary;
 use flyer_mpm::driver::{Beginning, Options, run};
-use flyer_mpm::scene;
+use flyer_mpm::input;
 use proptest::prelude::*;
 use proptest::sample::select;
 use proptest::strategy::ValueTree;
@@ -95,7 +95,7 @@ fn estimating() -> impl Strategy<Value = Value> {
 
 /// The run's summary; or how it ended. None: the scene is refused.
 fn ends(value: &Value, folder: &Path) -> Option<Result<Summary, String>> {
-    let checked = scene::parse(value.to_string().as_bytes(), "random.json", &[]);
+    let checked = input::parse(value.to_string().as_bytes(), "random.json", &[]);
     let scene = match checked {
         Ok(scene) => scene,
         Err(error) => {
@@ -140,7 +140,7 @@ fn fault(summary: &Summary) -> Option<String> {
         return Some(format!("an arrival outside of the run: {wrong:?}"));
     }
     // these materials, lengths and schemes are not those of the fit
-    (told.basis != Basis::Guess || told.outside.is_empty()).then(|| "no guess".into())
+    (told.basis != EstimateBasis::Guess || told.outside.is_empty()).then(|| "no guess".into())
 }
 
 #[test]

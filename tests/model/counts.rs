@@ -2,8 +2,9 @@
 
 use decomp::Comm;
 use decomp::comm::local::run_ranks;
+use flyer_mpm::input;
 use flyer_mpm::perf_model::{StepCounts, Work};
-use flyer_mpm::scene::{self, CheckedScene, FilterHalo};
+use flyer_mpm::scene::{CheckedScene, FilterHalo};
 use flyer_mpm::simulation::Simulation;
 
 const FLYER: &[u8] = include_bytes!("../../inputs/flyer.json");
@@ -28,7 +29,7 @@ fn parsed(text: &[u8], sets: &[&str], halo: FilterHalo, patches: usize) -> Check
     sets.push(format!("decomposition.filter_halo={name}"));
     sets.push(format!("domain.patches=[{patches}]"));
     sets.push("decomposition.skip_quiescent=false".into());
-    scene::parse(text, "scene.json", &sets).unwrap()
+    input::parse(text, "scene.json", &sets).unwrap()
 }
 
 /// Runs a few steps on two ranks.

@@ -1,8 +1,8 @@
 //! Bodies with positions of their own count with all their particles.
 
 use decomp::Serial;
+use flyer_mpm::input;
 use flyer_mpm::perf_model::Work;
-use flyer_mpm::scene;
 use flyer_mpm::simulation::Simulation;
 use serde_json::{Value, json};
 
@@ -13,7 +13,7 @@ fn each_position_is_a_particle() {
     let body = &mut flyer["bodies"][0];
     body.as_object_mut().expect("a body").remove("particles_per_cell");
     body["positions"] = json!((0..80).map(|k| [-4.97e-4 + 6.25e-6 * k as f64]).collect::<Vec<_>>());
-    let scene = scene::parse(flyer.to_string().as_bytes(), "positions.json", &[]).expect("a scene");
+    let scene = input::parse(flyer.to_string().as_bytes(), "positions.json", &[]).expect("a scene");
     // it stopped in an assertion: the body was one particle of its whole length
     let terrain = Work::new(&scene).terrain;
     assert!((terrain.longest - 0.625).abs() < 0.1, "{}", terrain.longest);
@@ -42,7 +42,7 @@ fn particles_too_long_for_a_step_are_refused() {
                             "box": {"lower": [2e-4], "upper": [2e-4 + 2.0 * length]},
                             "positions": [[2e-4 + 0.5 * length], [2e-4 + 1.5 * length]]}],
             });
-            match scene::parse(scene.to_string().as_bytes(), "long.json", &[]) {
+            match input::parse(scene.to_string().as_bytes(), "long.json", &[]) {
                 Ok(scene) => {
                     Simulation::<1>::new(&scene, &Serial, 1).expect("it starts");
                     run += 1;

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use decomp::Serial;
 use flyer_mpm::accuracy::reference::ReferenceSolution;
 use flyer_mpm::exact::Errors;
-use flyer_mpm::scene::{self, CheckedScene};
+use flyer_mpm::input;
+use flyer_mpm::scene::CheckedScene;
 use flyer_mpm::simulation::ParticleTable;
 use flyer_mpm::simulation::Removed;
 use flyer_mpm::simulation::{Simulation, Totals};
@@ -51,7 +52,7 @@ pub fn short(name: &str, end: f64) -> Value {
 /// A scene that must pass its check.
 #[track_caller]
 pub fn checked(value: &Value) -> CheckedScene {
-    match scene::parse(value.to_string().as_bytes(), "test.json", &[]) {
+    match input::parse(value.to_string().as_bytes(), "test.json", &[]) {
         Ok(scene) => scene,
         Err(error) => panic!("{error}"),
     }

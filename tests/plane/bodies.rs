@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use flyer_mpm::scene;
+use flyer_mpm::input;
 use serde_json::{Value, json};
 
 use crate::tools::{checked, impact, run};
@@ -83,7 +83,7 @@ fn what_makes_no_body_is_refused() {
         (two, &["bodies.flyer.disk", "one region a body"]),
     ] {
         let scene = with_flyer(region);
-        let error = scene::parse(scene.to_string().as_bytes(), "scene.json", &[]).unwrap_err();
+        let error = input::parse(scene.to_string().as_bytes(), "scene.json", &[]).unwrap_err();
         let text = error.to_string();
         assert!(words.iter().all(|word| text.contains(word)), "{text}");
     }
@@ -99,7 +99,7 @@ fn what_makes_no_body_is_refused() {
             Some(place) => *place = value,
             None => scene["domain"]["geometry"] = value,
         }
-        let error = scene::parse(scene.to_string().as_bytes(), "scene.json", &[]).unwrap_err();
+        let error = input::parse(scene.to_string().as_bytes(), "scene.json", &[]).unwrap_err();
         assert!(words.iter().all(|word| error.to_string().contains(word)), "{error}");
         match before {
             Some(before) => *scene.pointer_mut(path).unwrap() = before,

@@ -1,6 +1,7 @@
 //! Sides that press on what touches them.
 
-use flyer_mpm::scene::{self, CheckedScene, Course, Side};
+use flyer_mpm::input;
+use flyer_mpm::scene::{CheckedScene, Course, Side};
 use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
@@ -135,13 +136,13 @@ fn a_file_beside_the_scene_is_read() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("scene.json");
     std::fs::write(&file, slab(json!("ramp.csv"), 1e-8).to_string()).unwrap();
-    let told = scene::read(&file).unwrap_err().to_string();
+    let told = input::read(&file).unwrap_err().to_string();
     assert!(told.contains("ramp.csv") && told.contains("cannot be read"), "{told}");
     std::fs::write(folder.path().join("ramp.csv"), "time,pressure\n0,1e9\n1e-8,x\n").unwrap();
-    let told = scene::read(&file).unwrap_err().to_string();
+    let told = input::read(&file).unwrap_err().to_string();
     assert!(told.contains("ramp.csv") && told.contains("line 3"), "{told}");
     std::fs::write(folder.path().join("ramp.csv"), "time,pressure\n0,1e9\n1e-8,2e9\n").unwrap();
-    let read = scene::parse(&scene::read(&file).unwrap(), "scene.json", &[]).unwrap();
+    let read = input::parse(&input::read(&file).unwrap(), "scene.json", &[]).unwrap();
     let points = vec![[0.0, 1e9], [1e-8, 2e9]];
     assert_eq!(read.sides::<1>()[0][0], Side::Pressure(Course::Series(points)));
 }
@@ -152,7 +153,7 @@ fn what_cannot_press_is_refused() {
     fn refused(load: Value, sets: &[&str], fragments: &[&str]) {
         let sets: Vec<String> = sets.iter().map(|set| set.to_string()).collect();
         let text = slab(load, 1e-8).to_string();
-        let told = scene::parse(text.as_bytes(), "s.json", &sets).unwrap_err().to_string();
+        let told = input::parse(text.as_bytes(), "s.json", &sets).unwrap_err().to_string();
         for fragment in fragments {
             assert!(told.contains(fragment), "{told}\nhas no {fragment}");
         }
@@ -171,7 +172,7 @@ fn what_cannot_press_is_refused() {
     refused(json!(1e9), &[both], &["boundary.x_lower", "periodic"]);
     let blunt = ["method.edge_mask=null", "method.transfer={\"fmpm\": 4}"];
     let text = slab(json!(1e9), 1e-8).to_string();
-    let loaded = scene::parse(text.as_bytes(), "s.json", &blunt.map(String::from)).unwrap();
+    let loaded = input::parse(text.as_bytes(), "s.json", &blunt.map(String::from)).unwrap();
     let warned = |scene: &CheckedScene| scene.warnings.iter().any(|w| w.contains("pressure"));
     assert!(warned(&loaded) && !warned(&checked(&slab(json!(1e9), 1e-8))));
 }

@@ -1,6 +1,7 @@
 //! Pistons whose velocity changes: the grid accelerates with them.
 
-use flyer_mpm::scene::{self, Course, Side};
+use flyer_mpm::input;
+use flyer_mpm::scene::{Course, Side};
 use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
@@ -222,10 +223,10 @@ fn a_file_beside_the_scene_is_read() {
     let file = folder.path().join("scene.json");
     std::fs::write(&file, slab(json!("drive.csv"), 1e-8).to_string()).unwrap();
     std::fs::write(folder.path().join("drive.csv"), "time,pressure\n0,10\n1e-8,20\n").unwrap();
-    let told = scene::read(&file).unwrap_err().to_string();
+    let told = input::read(&file).unwrap_err().to_string();
     assert!(told.contains("drive.csv") && told.contains("time,velocity"), "{told}");
     std::fs::write(folder.path().join("drive.csv"), "time,velocity\n0,10\n1e-8,20\n").unwrap();
-    let read = scene::parse(&scene::read(&file).unwrap(), "scene.json", &[]).unwrap();
+    let read = input::parse(&input::read(&file).unwrap(), "scene.json", &[]).unwrap();
     let points = vec![[0.0, 10.0], [1e-8, 20.0]];
     assert_eq!(read.sides::<1>()[0][0], Side::Velocity(Course::Series(points)));
 }
@@ -235,7 +236,7 @@ fn what_makes_no_piston_is_refused() {
     let told = |edit: &dyn Fn(&mut Value)| {
         let mut scene = slab(ramp(300.0, 1e-7), 1e-7);
         edit(&mut scene);
-        match scene::parse(scene.to_string().as_bytes(), "scene.json", &[]) {
+        match input::parse(scene.to_string().as_bytes(), "scene.json", &[]) {
             Ok(_) => panic!("it was taken: {scene}"),
             Err(error) => error.to_string(),
         }

@@ -1,6 +1,6 @@
 //! Sides that waves pass, and walls that hold what slides along them.
 
-use flyer_mpm::scene;
+use flyer_mpm::input;
 use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
@@ -438,7 +438,7 @@ fn a_gas_within_a_round_wall_stays_at_rest() {
 fn sides_that_are_refused() {
     let told = |scene: &Value, fragments: &[&str]| {
         let text = scene.to_string();
-        let error = scene::parse(text.as_bytes(), "s", &[]).unwrap_err().to_string();
+        let error = input::parse(text.as_bytes(), "s", &[]).unwrap_err().to_string();
         for fragment in fragments {
             assert!(error.contains(fragment), "{error}\nhas no {fragment}");
         }

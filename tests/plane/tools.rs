@@ -2,7 +2,8 @@
 
 use decomp::comm::local::run_ranks;
 use decomp::{Comm, Serial};
-use flyer_mpm::scene::{self, CheckedScene};
+use flyer_mpm::input;
+use flyer_mpm::scene::CheckedScene;
 use flyer_mpm::simulation::ParticleTable;
 use flyer_mpm::simulation::{BoundaryWork, Removed, Simulation, Totals};
 use flyer_mpm::solver::{Stepper, Steps};
@@ -10,7 +11,7 @@ use serde_json::{Value, json};
 
 /// Makes a checked scene.
 pub fn checked(scene: &Value) -> CheckedScene {
-    scene::parse(scene.to_string().as_bytes(), "scene.json", &[])
+    input::parse(scene.to_string().as_bytes(), "scene.json", &[])
         .unwrap_or_else(|error| panic!("{error}"))
 }
 

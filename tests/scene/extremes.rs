@@ -4,7 +4,9 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use decomp::Serial;
-use flyer_mpm::scene::{self, CheckedScene, parse};
+use flyer_mpm::input;
+use flyer_mpm::input::parse;
+use flyer_mpm::scene::CheckedScene;
 use flyer_mpm::simulation::Simulation;
 use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
@@ -29,7 +31,7 @@ const CELLS: f64 = 60.0;
 fn corpus() -> Vec<(String, Value)> {
     let coarse = |path: std::path::PathBuf| {
         let name = path.file_name()?.to_string_lossy().into_owned();
-        let checked = parse(&scene::read(&path).ok()?, &name, &[]).ok()?;
+        let checked = parse(&input::read(&path).ok()?, &name, &[]).ok()?;
         let mut value = serde_json::to_value(&checked.scene).ok()?;
         let most = checked.cells.iter().copied().max()? as f64;
         let divides = |k: &usize| checked.cells.iter().all(|cells| cells.is_multiple_of(*k));
@@ -91,10 +93,10 @@ where
 
 /// Checks a scene, and runs it if it passes and is small; whether it ran.
 fn judged(text: &str) -> bool {
-    let (available, told) = (Some(64 << 20), |error: scene::SceneError| {
+    let (available, told) = (Some(64 << 20), |error: input::SceneError| {
         assert_eq!(error.to_string().lines().count(), 1, "{error}");
     });
-    if scene::check_size(text.as_bytes(), "scene.json", &[], available).is_err() {
+    if input::check_size(text.as_bytes(), "scene.json", &[], available).is_err() {
         return false;
     }
     let checked = match parse(text.as_bytes(), "scene.json", &[]) {

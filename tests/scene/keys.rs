@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use flyer_mpm::scene::{self, parse};
+use flyer_mpm::input;
+use flyer_mpm::input::parse;
 use serde_json::Value;
 
 use super::{refused, refused_edit, refused_text, tells, with};
@@ -10,13 +11,13 @@ use super::{refused, refused_edit, refused_text, tells, with};
 #[test]
 fn files_that_are_no_scene() {
     let folder = tempfile::tempdir().unwrap();
-    let message = |path: &Path| scene::read(path).unwrap_err().to_string();
+    let message = |path: &Path| input::read(path).unwrap_err().to_string();
     let missing = folder.path().join("missing.json");
     tells(&message(&missing), &["missing.json", "cannot be read", "No such file"]);
     tells(&message(folder.path()), &["is a directory"]);
     tells(&message(&folder.path().join("a\nb.json")), &["a\\nb.json", "cannot be read"]);
     let long = folder.path().join("long.json");
-    std::fs::File::create(&long).unwrap().set_len(scene::LARGEST_FILE + 1).unwrap();
+    std::fs::File::create(&long).unwrap().set_len(input::LARGEST_FILE + 1).unwrap();
     tells(&message(&long), &["long.json", "16777217 bytes", "at most 16777216 bytes"]);
 
     refused_text("", &["bad.json: is empty", "allowed"]);
@@ -51,7 +52,7 @@ fn numbers_that_are_none() {
     refused_text(&bad("0x10"), &["bad.json: line 3 column ", "at time: not JSON", "0x10"]);
     let mut checked = with("flyer.json", &[]).unwrap().scene;
     checked.bodies[0].velocity = Some(vec![f64::NAN]);
-    let error = scene::check(checked, "made").unwrap_err().to_string();
+    let error = input::check(checked, "made").unwrap_err().to_string();
     tells(&error, &["made: bodies.flyer.velocity[0] = null", "a number"]);
 }
 

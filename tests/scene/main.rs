@@ -10,7 +10,9 @@ mod shipped;
 
 use std::path::{Path, PathBuf};
 
-use flyer_mpm::scene::{self, CheckedScene, parse};
+use flyer_mpm::input;
+use flyer_mpm::input::parse;
+use flyer_mpm::scene::CheckedScene;
 use serde_json::Value;
 
 fn inputs() -> Vec<PathBuf> {
@@ -23,7 +25,7 @@ fn inputs() -> Vec<PathBuf> {
 }
 
 fn shipped(name: &str) -> Vec<u8> {
-    scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs").join(name)).unwrap()
+    input::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs").join(name)).unwrap()
 }
 
 fn with(name: &str, sets: &[&str]) -> Result<CheckedScene, String> {

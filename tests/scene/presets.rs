@@ -1,6 +1,7 @@
 //! Methods by name: which options each contents gets, and what explicit keys do.
 
-use flyer_mpm::scene::{CheckedScene, MethodChoice, Preset, parse};
+use flyer_mpm::input::parse;
+use flyer_mpm::scene::{CheckedScene, MethodChoice, Preset};
 use serde_json::{Value, json};
 
 use crate::{refused_text, with};
@@ -150,7 +151,7 @@ fn unknown_presets_are_refused() {
 /// The published schema takes every form of `method` that a scene can have, and no other.
 #[test]
 fn the_schema_describes_every_form() {
-    let validator = jsonschema::validator_for(&flyer_mpm::scene::schema()).unwrap();
+    let validator = jsonschema::validator_for(&flyer_mpm::input::schema()).unwrap();
     let valid = |method: Value| {
         let mut scene = plates();
         scene["method"] = method;

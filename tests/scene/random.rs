@@ -1,6 +1,6 @@
 //! No text and no override makes it panic.
 
-use flyer_mpm::scene::parse;
+use flyer_mpm::input::parse;
 use proptest::prelude::*;
 
 use super::shipped;

@@ -1,6 +1,6 @@
 //! Keys that are refused for what other keys say.
 
-use flyer_mpm::scene;
+use flyer_mpm::input;
 
 use super::{refused, tells, with};
 
@@ -70,7 +70,7 @@ fn memory_is_told_before_it_is_taken() {
     tells(&error, &["flyer.json", "50000001600 particles", "TiB", "allowed: 8.0 GiB", "cell_size"]);
     assert!(checked.check_memory(None).is_ok());
     let small = with("flyer.json", &[]).unwrap();
-    assert!(small.check_memory(scene::available_memory()).is_ok());
+    assert!(small.check_memory(input::available_memory()).is_ok());
     assert!(small.check_memory(Some(1000)).is_err());
 }
 

@@ -1,6 +1,8 @@
 //! Scenes that pass, and what follows from them.
 
-use flyer_mpm::scene::{self, Side, Transfer, parse};
+use flyer_mpm::input;
+use flyer_mpm::input::parse;
+use flyer_mpm::scene::{Side, Transfer};
 use serde_json::{Value, json};
 
 use super::{inputs, refused, shipped, tells, with};
@@ -37,7 +39,7 @@ fn shipped_scenes_pass() {
 
 #[test]
 fn shipped_scenes_hold_against_the_schema() {
-    let schema = scene::schema();
+    let schema = input::schema();
     let validator = jsonschema::validator_for(&schema).unwrap();
     for path in inputs() {
         let value: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
@@ -56,14 +58,14 @@ fn a_scene_written_out_is_read_back() {
         let text = serde_json::to_string(&first.scene).unwrap();
         let again = parse(text.as_bytes(), name, &[]).unwrap();
         assert_eq!(text, serde_json::to_string(&again.scene).unwrap());
-        let made = scene::check(first.scene, name).unwrap();
+        let made = input::check(first.scene, name).unwrap();
         assert_eq!(made.particles, again.particles);
     }
 }
 
 #[test]
 fn the_schema_tells_units() {
-    let text = scene::schema().to_string();
+    let text = input::schema().to_string();
     for unit in ["[m]", "[s]", "[m/s]", "[kg/m3]", "[Pa]", "[-]"] {
         assert!(text.contains(unit), "{unit}");
     }

@@ -1,6 +1,6 @@
 //! Keys of solids, motions and forces that are refused, and in what words.
 
-use flyer_mpm::scene;
+use flyer_mpm::input;
 use serde_json::Value;
 
 use crate::tools::shipped;
@@ -9,7 +9,7 @@ use crate::tools::shipped;
 fn refused(name: &str, sets: &[&str], fragments: &[&str]) {
     let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
     let text = shipped(name).to_string();
-    let error = scene::parse(text.as_bytes(), name, &sets).unwrap_err().to_string();
+    let error = input::parse(text.as_bytes(), name, &sets).unwrap_err().to_string();
     for fragment in fragments {
         assert!(error.contains(fragment), "{error}\nhas no {fragment}");
     }
@@ -85,7 +85,7 @@ fn forces() {
     edit("materials.solid.eos.type=linear_elastic", &["neo-Hookean"]);
     let mut gas: Value = shipped("gresho.json");
     gas["body_force"] = shipped("vortex.json")["body_force"].clone();
-    let error = scene::parse(gas.to_string().as_bytes(), "g", &[]).unwrap_err().to_string();
+    let error = input::parse(gas.to_string().as_bytes(), "g", &[]).unwrap_err().to_string();
     assert!(error.contains("body_force") && error.contains("bodies.gas is not"), "{error}");
 }
 

@@ -2,7 +2,8 @@
 
 use decomp::Serial;
 use flyer_mpm::accuracy::reference::PlaneReference;
-use flyer_mpm::scene::{self, CheckedScene};
+use flyer_mpm::input;
+use flyer_mpm::scene::CheckedScene;
 use flyer_mpm::simulation::ParticleTable;
 use flyer_mpm::simulation::{RemovedByKind, Simulation, Totals};
 use flyer_mpm::solver::{Stepper, Steps};
@@ -17,7 +18,7 @@ pub fn shipped(name: &str) -> Value {
 /// A scene that must pass its check.
 #[track_caller]
 pub fn checked(value: &Value) -> CheckedScene {
-    match scene::parse(value.to_string().as_bytes(), "test.json", &[]) {
+    match input::parse(value.to_string().as_bytes(), "test.json", &[]) {
         Ok(scene) => scene,
         Err(error) => panic!("{error}"),
     }

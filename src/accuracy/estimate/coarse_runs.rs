@@ -4,6 +4,7 @@ use decomp::Comm;
 
 use super::arrival::{Arrivals, Between, Levels};
 use super::polyline::{Polyline, least_pressure, line};
+use crate::input;
 use crate::scene::{self, CellSize, CheckedScene};
 use crate::simulation::{RunError, Simulation};
 use crate::solver::clock::user_cpu_seconds;
@@ -78,7 +79,7 @@ pub fn coarser(scene: &CheckedScene, factor: usize) -> Result<CheckedScene, Stri
         pictures: false,
         ..scene::Output::default()
     };
-    scene::check(new, &scene.file).map_err(|error| error.to_string())
+    input::check(new, &scene.file).map_err(|error| error.to_string())
 }
 
 /// Pressure histories at positions, recorded after every step.

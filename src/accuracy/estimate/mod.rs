@@ -26,7 +26,7 @@ pub use arrival::Arrivals;
 pub use coarse_runs::{Companion, Companions};
 pub use error_model::Laws;
 pub use polyline::{Polyline, line};
-pub use range::{Basis, FittedRange, OutOfRange};
+pub use range::{EstimateBasis, FittedRange, OutOfRange};
 
 use self::polyline::least_pressure;
 use crate::accuracy::reference::ReferenceSolution;
@@ -54,7 +54,7 @@ pub struct ProfileEstimate {
     pub time: f64,
     /// Whether the error models were fitted on such profiles.
     #[serde(default)]
-    pub basis: Basis,
+    pub basis: EstimateBasis,
     /// Pressure of the plateau behind the shock \[Pa\]; `None` if there is none over 20 cells.
     pub plateau_pressure: Option<Bounded>,
     /// Relative L1 of the pressure \[-\]: the value is 0 (no error), the half-width is the bound.
@@ -68,7 +68,7 @@ pub struct ArrivalEstimate {
     pub at: f64,
     /// Whether the error models were fitted on such arrivals.
     #[serde(default)]
-    pub basis: Basis,
+    pub basis: EstimateBasis,
     /// First time at which the pressure there passes half of its maximum \[s\]; `None`: not in the
     /// run.
     pub time: Option<Bounded>,
@@ -81,7 +81,7 @@ pub struct EstimatedErrors {
     pub body: String,
     /// Whether the error models were fitted on such scenes, for all profiles and arrivals.
     #[serde(default)]
-    pub basis: Basis,
+    pub basis: EstimateBasis,
     /// Inputs outside of the range of the fit, one line each.
     #[serde(default)]
     pub outside: Vec<String>,

@@ -13,7 +13,7 @@ use crate::scene::{CheckedScene, FlyerImpact, Side};
 /// Basis of an estimate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Basis {
+pub enum EstimateBasis {
     /// The inputs are within the range of the fit.
     Calibrated,
     /// The inputs are outside of the range of the fit.
@@ -60,18 +60,18 @@ pub struct OutOfRange {
 
 impl OutOfRange {
     /// Basis of the whole estimate.
-    pub fn basis(&self) -> Basis {
-        Basis::of(self.lines().is_empty())
+    pub fn basis(&self) -> EstimateBasis {
+        EstimateBasis::of(self.lines().is_empty())
     }
 
     /// Basis of profile number `k`.
-    pub fn of_profile(&self, k: usize) -> Basis {
-        Basis::of(self.scene.is_empty() && self.profiles.get(k).is_none_or(Option::is_none))
+    pub fn of_profile(&self, k: usize) -> EstimateBasis {
+        EstimateBasis::of(self.scene.is_empty() && self.profiles.get(k).is_none_or(Option::is_none))
     }
 
     /// Basis of arrival number `k`.
-    pub fn of_arrival(&self, k: usize) -> Basis {
-        Basis::of(self.scene.is_empty() && self.arrivals.get(k).is_none_or(Option::is_none))
+    pub fn of_arrival(&self, k: usize) -> EstimateBasis {
+        EstimateBasis::of(self.scene.is_empty() && self.arrivals.get(k).is_none_or(Option::is_none))
     }
 
     /// All lines.
@@ -81,9 +81,9 @@ impl OutOfRange {
     }
 }
 
-impl Basis {
-    fn of(fitted: bool) -> Basis {
-        if fitted { Basis::Calibrated } else { Basis::Guess }
+impl EstimateBasis {
+    fn of(fitted: bool) -> EstimateBasis {
+        if fitted { EstimateBasis::Calibrated } else { EstimateBasis::Guess }
     }
 }
 

@@ -6,8 +6,9 @@ use serde_json::{Value, json};
 use super::data::{Data, SchemeAccuracy, Size};
 use super::pilot::{self, Pilot};
 use super::schemes::{PlannedScheme, schemes};
-use crate::accuracy::estimate::{Basis, Laws};
-use crate::scene::{self, CheckedScene, PlannedQuantity};
+use crate::accuracy::estimate::{EstimateBasis, Laws};
+use crate::input;
+use crate::scene::{CheckedScene, PlannedQuantity};
 
 /// The target of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +47,7 @@ pub struct Plan {
     /// Wall time of the pilot runs \[s\].
     pub pilot_seconds: f64,
     /// Whether the errors of the schemes were measured on such scenes.
-    pub basis: Basis,
+    pub basis: EstimateBasis,
     /// Inputs outside of the range of these measurements, one line each.
     pub outside: Vec<String>,
     /// The scene to run.
@@ -209,7 +210,7 @@ pub fn plan(
     if let Some(at) = target.place {
         scene["error_estimate"]["arrivals"] = json!([at]);
     }
-    let checked = scene::parse(scene.to_string().as_bytes(), file, &[])
+    let checked = input::parse(scene.to_string().as_bytes(), file, &[])
         .map_err(|error| fail(error.to_string()))?;
     let body = checked.estimated_body().expect("the check has found it");
     let asked = checked.scene.error_estimate.as_ref().and_then(|e| e.arrivals.first().copied());
@@ -332,7 +333,7 @@ pub fn plan(
         "error": plan.error,
         "cpu_seconds": plan.cpu_seconds,
         "wall_seconds": plan.wall_seconds,
-        "guess": plan.basis == Basis::Guess,
+        "guess": plan.basis == EstimateBasis::Guess,
     });
     plan.scene = chosen;
     Ok(plan)

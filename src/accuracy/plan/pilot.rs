@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 use super::schemes::PlannedScheme;
 use crate::accuracy::estimate::arrival::Between;
 use crate::accuracy::estimate::{Polyline, line, plateau};
-use crate::scene::{self, CheckedScene};
+use crate::input;
+use crate::scene::CheckedScene;
 use crate::simulation::Simulation;
 use crate::solver::clock::user_cpu_seconds;
 
@@ -45,7 +46,7 @@ pub fn with_cells(
     if let Some(domain) = new["domain"].as_object_mut() {
         domain.remove("patches");
     }
-    let checked = scene::parse(new.to_string().as_bytes(), file, &[]);
+    let checked = input::parse(new.to_string().as_bytes(), file, &[]);
     checked.map(|checked| (new, checked)).map_err(|error| error.to_string())
 }
 

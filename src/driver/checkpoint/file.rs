@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::seal::{FORMAT, HEAD, hexadecimal, seal, verify};
-use super::{Checkpoint, CheckpointError, Contents, Due, Record, StateColumn};
+use super::{Checkpoint, CheckpointContents, CheckpointError, Due, Record, StateColumn};
 use crate::driver::figures::PressureRow;
 use crate::driver::output::OutputError;
 use crate::driver::output::histories::HistoryTable;
@@ -75,14 +75,18 @@ fn digest<T: Plain>(values: &[T]) -> String {
 }
 
 /// Writes a checkpoint at `path`, sealed and flushed to disk; `alive` is called regularly.
-pub fn write(path: &Path, contents: &Contents, alive: &dyn Fn()) -> Result<(), CheckpointError> {
+pub fn write(
+    path: &Path,
+    contents: &CheckpointContents,
+    alive: &dyn Fn(),
+) -> Result<(), CheckpointError> {
     write_as(path, contents, alive, FORMAT)
 }
 
 /// As `write`, with any format number.
 pub fn write_as(
     path: &Path,
-    contents: &Contents,
+    contents: &CheckpointContents,
     alive: &dyn Fn(),
     format: u32,
 ) -> Result<(), CheckpointError> {
@@ -107,8 +111,8 @@ fn refused(path: &Path, error: hdf5::Error) -> CheckpointError {
     OutputError::Hdf5 { path: path.into(), message }.into()
 }
 
-fn write_root(file: &Group, contents: &Contents, alive: &dyn Fn()) -> hdf5::Result<()> {
-    let Contents { saved, tables, .. } = contents;
+fn write_root(file: &Group, contents: &CheckpointContents, alive: &dyn Fn()) -> hdf5::Result<()> {
+    let CheckpointContents { saved, tables, .. } = contents;
     let books = Books {
         version: env!("CARGO_PKG_VERSION").into(),
         origin: contents.origin.cloned(),

@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 
 use nix::sys::statvfs::statvfs;
 
-use super::{Checkpoint, CheckpointError, Contents, file};
+use super::{Checkpoint, CheckpointContents, CheckpointError, file};
 use crate::driver::output::OutputError;
 use crate::driver::output::folder::{CHECKPOINTS, checkpoint_folder};
 use crate::driver::output::origin::{ExistingResult, Maker};
-use crate::scene::input_file;
+use crate::input::input_file;
 
 const BEFORE: &str = "checkpoint-";
 const AFTER: &str = ".hdf5";
@@ -25,7 +25,7 @@ const PARTIAL: &str = ".checkpoint-";
 pub fn write(
     folder: &Path,
     keep: u64,
-    contents: &Contents,
+    contents: &CheckpointContents,
     alive: &dyn Fn(),
 ) -> Result<PathBuf, CheckpointError> {
     try_write(folder, keep, contents, alive).map_err(|source| {
@@ -44,7 +44,7 @@ pub fn write(
 fn try_write(
     folder: &Path,
     keep: u64,
-    contents: &Contents,
+    contents: &CheckpointContents,
     alive: &dyn Fn(),
 ) -> Result<PathBuf, CheckpointError> {
     fs::create_dir_all(folder).map_err(OutputError::io("make the folder", folder))?;

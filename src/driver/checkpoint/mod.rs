@@ -83,7 +83,7 @@ pub struct Checkpoint {
 
 /// Contents of a checkpoint to be written: those of [`Checkpoint`], borrowed.
 #[derive(Clone, Debug)]
-pub struct Contents<'a> {
+pub struct CheckpointContents<'a> {
     /// The command and the scene file of the run.
     pub origin: Option<&'a Origin>,
     /// The scene as run, JSON.
@@ -112,7 +112,7 @@ impl Checkpoint {
     }
 }
 
-impl Contents<'_> {
+impl CheckpointContents<'_> {
     /// Approximate size of the file [bytes].
     pub fn bytes(&self) -> u64 {
         let rows = self.saved.particles.ids.len() * (16 + 8 * self.columns.len());

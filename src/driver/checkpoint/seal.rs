@@ -11,8 +11,8 @@ use sha2::{Digest, Sha256};
 
 use super::CheckpointError;
 use crate::driver::output::OutputError;
-use crate::scene::input_file::CHECKPOINT_START;
-use crate::scene::input_file::{self, InputFault};
+use crate::input::input_file::CHECKPOINT_START;
+use crate::input::input_file::{self, InputFault};
 
 /// Version of the checkpoint format.
 pub const FORMAT: u32 = 2;

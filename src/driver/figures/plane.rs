@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn what_has_left_a_joined_side_is_drawn_within() {
         let scene = include_bytes!("../../../inputs/shear_layer.json");
-        let scene = crate::scene::parse(scene, "shear_layer.json", &[]).unwrap();
+        let scene = crate::input::parse(scene, "shear_layer.json", &[]).unwrap();
         let half_edges = [[0.02, 0.0], [0.0, 0.01]];
         let tile = |x, y| FieldTile { centre: [x, y], half_edges, value: 1.0, body: 0 };
         let centres = |x, y| -> Vec<[f64; 2]> {

@@ -8,7 +8,7 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use super::error::{OutputError, read_text};
-use crate::scene::input_file::LARGEST_RESULT;
+use crate::input::input_file::LARGEST_RESULT;
 use crate::simulation::ParticleTable;
 
 /// Names of the profile files, one per time \[s\], such as `profile_0.500us.csv`. They are unique

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use super::file_names::SUMMARY_FILE;
-use crate::scene::input_file::{self, InputFault};
+use crate::input::input_file::{self, InputFault};
 
 /// An error in reading or writing results; each message is one line that names the path.
 #[derive(Debug, Error)]

@@ -15,8 +15,8 @@ use serde_json::Value;
 use super::error::OutputError;
 use super::file_names::SUMMARY_FILE;
 use super::paths::resolve;
+use crate::input::input_file::{self, InputFault, LARGEST_JSON, LARGEST_NUMBERS, LARGEST_RESULT};
 use crate::scene::CheckedScene;
-use crate::scene::input_file::{self, InputFault, LARGEST_JSON, LARGEST_NUMBERS, LARGEST_RESULT};
 
 /// Name of the file that records the origin of a folder without a summary.
 pub const ORIGIN_FILE: &str = "origin.json";

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::decomposition::DecompositionSummary;
 use super::summary::{FailureSummary, MeasuredQuantity, OutflowSummary, ProfileSummary, Summary};
-use crate::accuracy::estimate::{Basis, Bounded, EstimatedErrors};
+use crate::accuracy::estimate::{Bounded, EstimateBasis, EstimatedErrors};
 use crate::accuracy::plan::Verdict;
 use crate::effects::{ledger_lines, ledger_rest};
 use crate::solver::clock::Activity;
@@ -337,7 +337,7 @@ fn estimate_facts(told: &EstimatedErrors) -> Vec<(&'static str, String)> {
         }
         None => format!("{} {unit}, too little evidence of its error", b.value * scale),
     };
-    let guess = |basis: Basis| if basis == Basis::Guess { " (guess)" } else { "" };
+    let guess = |basis: EstimateBasis| if basis == EstimateBasis::Guess { " (guess)" } else { "" };
     let mut facts = Vec::new();
     for profile in &told.profiles {
         let guess = guess(profile.basis);
@@ -365,7 +365,7 @@ fn estimate_facts(told: &EstimatedErrors) -> Vec<(&'static str, String)> {
         let guess = guess(arrival.basis);
         facts.push(("estimate", format!("at {} mm: {time}{guess}", significant(1e3 * arrival.at))));
     }
-    if told.basis == Basis::Guess {
+    if told.basis == EstimateBasis::Guess {
         let outside = told.outside.join("; ");
         let text = format!("guess: the laws of errors were not fitted on such inputs: {outside}");
         facts.push(("estimate", text));

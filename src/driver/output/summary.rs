@@ -14,8 +14,8 @@ use super::origin::Origin;
 use crate::accuracy::estimate::EstimatedErrors;
 use crate::accuracy::plan::Verdict;
 use crate::effects::EffectUse;
+use crate::input::input_file::LARGEST_NUMBERS;
 use crate::scene::MethodChoice;
-use crate::scene::input_file::LARGEST_NUMBERS;
 
 /// Format of `summary.json`, increased by one whenever a key is renamed.
 pub const SUMMARY_FORMAT: u32 = 2;

@@ -1,8 +1,10 @@
 //! Constitutive models defined outside of this library.
 
 use super::deviatoric_update::StrengthKernel;
+use super::deviatoric_update::StrengthModel;
 use super::general::NonlinearEosKernel;
-use super::{ConstitutiveModel, LinearEosKernel, StrengthModel};
+use super::linear::LinearEosKernel;
+use super::model::ConstitutiveModel;
 use crate::material::definition::Material;
 use crate::material::strength::StrengthLaw;
 use crate::material::{EquationOfState, GeneralEos};

@@ -3,7 +3,7 @@
 //! The equations of [`FluidModel`] are solved to rounding per particle with
 //! [`energy_of_work`](crate::material::energy_of_work).
 
-use super::{FluidModel, MidStep, VolumeChange};
+use super::model::{FluidModel, MidStep, VolumeChange};
 use crate::material::{HistoryEos, energy_of_work};
 
 /// Particle loops over an equation of state of any form.
@@ -121,7 +121,7 @@ impl<E: HistoryEos> NonlinearEosKernel<E> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::constitutive::LinearEosKernel;
+    use crate::material::constitutive::linear::LinearEosKernel;
     use crate::material::{IdealGas, MieGruneisen, Porous, Tillotson};
 
     const GAS: IdealGas = IdealGas { rho0: 2.0, gamma: 1.4 };

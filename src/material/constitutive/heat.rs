@@ -9,7 +9,7 @@
 //! (Davison 2008, eqs. 5.127 and 5.135). s:s/(4 G rho) is the elastic energy of shear. `stored` is
 //! the part of the plastic work that does not heat (Taylor & Quinney 1934).
 
-use super::FluidModel;
+use super::model::FluidModel;
 
 /// Number of points of the isentrope on each side of rest.
 const POINTS: usize = 2000;
@@ -136,7 +136,7 @@ impl ThermalModel {
 
 #[cfg(test)]
 mod tests {
-    use super::super::LinearEosKernel;
+    use super::super::linear::LinearEosKernel;
     use super::*;
     use crate::material::{EquationOfState, MieGruneisen};
 

@@ -1,6 +1,6 @@
 //! Smallest specific internal energy that a material can reach in adiabatic flow.
 
-use super::{ConstitutiveModel, FluidModel};
+use super::model::{ConstitutiveModel, FluidModel};
 
 /// Largest step of ln J along the isentrope.
 const STEP: f64 = 0.01;
@@ -65,7 +65,7 @@ fn along_isentrope(model: &dyn FluidModel, rho0: f64, start: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{LinearEosKernel, general::NonlinearEosKernel};
+    use super::super::{general::NonlinearEosKernel, linear::LinearEosKernel};
     use super::*;
     use crate::material::{IdealGas, MieGruneisen, Porous};
 

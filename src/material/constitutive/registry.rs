@@ -1,8 +1,9 @@
 //! Builds the models of a material's equation of state: for the step, and for exact solutions.
 
 use super::general::NonlinearEosKernel;
+use super::linear::LinearEosKernel;
+use super::model::ConstitutiveModel;
 use super::solid::{SolidKernel, SolidModel};
-use super::{ConstitutiveModel, LinearEosKernel};
 use crate::material::definition::Material;
 use crate::material::{
     ElasticSolid, EosVisitor, EquationOfState, GeneralEos, HistoryEos, PlainEosVisitor,

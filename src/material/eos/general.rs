@@ -5,7 +5,7 @@
 //! linear equation of state ([`EquationOfState`]) is also a general one, so that exact solutions
 //! treat all of them alike.
 
-use super::EquationOfState;
+use super::linear::EquationOfState;
 
 /// Pressure, energy derivative and sound speed of an equation of state at one state.
 #[derive(Clone, Copy, Debug, PartialEq)]

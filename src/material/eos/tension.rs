@@ -4,7 +4,8 @@
 //! volume, and the work is that of the limited pressure. The sound speed there only sets the time
 //! step. It is the one at rest: recompressed material regains stiffness no sooner than there.
 
-use super::{EosPoint, EquationOfState, GeneralEos, LinearPressure};
+use super::general::{EosPoint, GeneralEos};
+use super::linear::{EquationOfState, LinearPressure};
 
 /// Equation of state with a lowest pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,8 +5,9 @@ use std::time::Instant;
 
 use decomp::Serial;
 
+use crate::input;
 use crate::perf_model::{Busy, RankWork, Share, Work};
-use crate::scene::{self, CellSize, CheckedScene, FilterHalo};
+use crate::scene::{CellSize, CheckedScene, FilterHalo};
 use crate::simulation::{LEAST_CELLS, Simulation};
 use crate::solver::clock::Activity;
 
@@ -76,7 +77,7 @@ fn sized(scene: &CheckedScene, finer: i64, denser: usize) -> Option<CheckedScene
         body.particles_per_cell.iter_mut().flatten().for_each(|n| *n *= denser);
     }
     new.decomposition.skip_quiescent = false;
-    scene::check(new, &scene.file).ok()
+    input::check(new, &scene.file).ok()
 }
 
 /// Variants with several sizes, patch counts and both halo methods, for this number of threads.

@@ -1,12 +1,11 @@
-//! Nodes at which velocity fields share degrees of freedom, and the projection onto shared values.
+//! Contact of two velocity fields at a node: the degrees of freedom that they share, and the
+//! projection onto shared values.
 
-use super::contact_nodes::Meetings;
-use super::multi_body_constraint::Knot;
-use crate::contact::BoundaryPoint;
+use super::vectors::dot;
 
 /// Contact of two velocity fields at a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Joint<const D: usize> {
+pub struct ContactConstraint<const D: usize> {
     /// Indices of the node in the layers of both fields.
     pub at: [usize; 2],
     /// Lumped masses [kg].
@@ -29,20 +28,14 @@ pub struct Joint<const D: usize> {
 
 /// Account of the jump in a projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Booked {
+pub enum ConstraintJump {
     /// Jump of velocity, counted as momentum.
     Velocity,
     /// Jump of acceleration, counted as force.
     Force,
 }
 
-/// Scalar product a.b.
-#[inline(always)]
-pub(super) fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
-    (1..D).fold(a[0] * b[0], |sum, k| sum + a[k] * b[k])
-}
-
-impl<const D: usize> Joint<D> {
+impl<const D: usize> ContactConstraint<D> {
     /// Both values after projection: shared components become their mean by mass.
     ///
     /// The normal components are removed and replaced, not corrected by their difference: a thin
@@ -64,110 +57,14 @@ impl<const D: usize> Joint<D> {
     }
 }
 
-/// Contact data of a patch in one step; buffers are reused.
-#[derive(Clone, Debug, Default)]
-pub struct ContactNodes<const D: usize> {
-    /// Nodes with particles of several bodies.
-    pub meetings: Meetings<D>,
-    /// Pairs of fields in contact.
-    pub joints: Vec<Joint<D>>,
-    /// Nodes with more than one pair in contact; their joints are consecutive.
-    pub knots: Vec<Knot<D>>,
-    /// Corners of particles, for normals by regression.
-    pub points: Vec<BoundaryPoint<D>>,
-    /// Normal and tangential force of each of the patch's own joints [N]: the normal force is
-    /// positive in compression, the tangential one a magnitude.
-    pub told: Vec<[f64; 2]>,
-}
-
-impl<const D: usize> ContactNodes<D> {
-    /// Discards the data of the last step.
-    pub fn clear(&mut self) {
-        self.joints.clear();
-        self.knots.clear();
-        self.told.clear();
-    }
-
-    /// Projects a vector with components in `fields`, and adds the jump to its account.
-    pub fn join(&mut self, fields: &mut [Vec<f64>], booked: Option<Booked>) {
-        let mut knots = self.knots.iter().peekable();
-        let mut k = 0;
-        while k < self.joints.len() {
-            if let Some(knot) = knots.next_if(|knot| knot.joints().start == k) {
-                let joints = &mut self.joints[knot.joints()];
-                knot.join(fields, joints, booked);
-                k = knot.joints().end;
-                continue;
-            }
-            let joint = &mut self.joints[k];
-            let values = joint.at.map(|at| std::array::from_fn(|a| fields[a][at]));
-            let shared = joint.shared(values);
-            for (at, value) in joint.at.into_iter().zip(shared) {
-                (0..D).for_each(|a| fields[a][at] = value[a]);
-            }
-            if let Some(booked) = booked {
-                let given = &mut joint.given[booked as usize];
-                for a in 0..D {
-                    given[a] += joint.mass[0] * (shared[0][a] - values[0][a]);
-                }
-            }
-            k += 1;
-        }
-    }
-
-    /// Replaces a scalar by its mean, weighted by `weight`, at nodes in contact.
-    pub fn join_scalar(&self, weight: &[f64], field: &mut [f64]) {
-        let mean = |places: &[usize], field: &mut [f64]| {
-            let sum: f64 = places.iter().map(|&i| weight[i]).sum();
-            if sum > 0.0 {
-                let mean = places.iter().map(|&i| weight[i] * field[i]).sum::<f64>() / sum;
-                places.iter().for_each(|&i| field[i] = mean);
-            }
-        };
-        let mut knots = self.knots.iter().peekable();
-        let mut k = 0;
-        while k < self.joints.len() {
-            if let Some(knot) = knots.next_if(|knot| knot.joints().start == k) {
-                mean(knot.places(), field);
-                k = knot.joints().end;
-                continue;
-            }
-            mean(&self.joints[k].at, field);
-            k += 1;
-        }
-    }
-
-    /// Removes the tangential motion from `fields` where filters leave it out, or replaces it by
-    /// that of `first`.
-    pub fn mask(&self, fields: &mut [Vec<f64>], first: Option<usize>, sum: usize) {
-        if D == 1 {
-            return;
-        }
-        for joint in self.joints.iter().filter(|j| !j.whole) {
-            for (at, low) in joint.at.into_iter().zip(joint.low) {
-                if !low {
-                    continue;
-                }
-                let read =
-                    |field: usize| -> [f64; D] { std::array::from_fn(|a| fields[field + a][at]) };
-                let kept = first.map_or([0.0; D], read);
-                let value = read(sum);
-                let n = &joint.normal;
-                let along = dot(&std::array::from_fn(|k| value[k] - kept[k]), n);
-                (0..D).for_each(|a| fields[sum + a][at] = kept[a] + along * n[a]);
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn joint<const D: usize>(normal: [f64; D], whole: bool) -> Joint<D> {
+    fn constraint<const D: usize>(normal: [f64; D], whole: bool) -> ContactConstraint<D> {
         let mass = [2.0, 6.0];
         let (low, given, friction) = ([false; 2], [[0.0; D]; 2], [0.0; D]);
-        Joint { at: [1, 4], mass, normal, whole, low, share: 1.0, given, friction }
+        ContactConstraint { at: [1, 4], mass, normal, whole, low, share: 1.0, given, friction }
     }
 
     #[test]
@@ -175,8 +72,8 @@ mod tests {
         let n = [0.6, 0.8];
         let (a, b) = ([3.0, -1.0], [0.5, 2.0]);
         for whole in [false, true] {
-            let joint = joint(n, whole);
-            let [x, y] = joint.shared([a, b]);
+            let constraint = constraint(n, whole);
+            let [x, y] = constraint.shared([a, b]);
             for k in 0..2 {
                 let momentum = 2.0 * (x[k] - a[k]) + 6.0 * (y[k] - b[k]);
                 assert!(momentum.abs() < 1e-14);
@@ -189,27 +86,15 @@ mod tests {
                 assert!((along(x) - along(a)).abs() < 1e-15, "the plane's motion is its own");
             }
             // applied twice it gives the same result
-            assert!((dot(&joint.shared([x, y])[0], &n) - dot(&x, &n)).abs() < 1e-15);
+            assert!((dot(&constraint.shared([x, y])[0], &n) - dot(&x, &n)).abs() < 1e-15);
         }
     }
 
     #[test]
     fn a_sliver_loses_no_digits() {
-        let sliver = Joint { mass: [1e-12, 1.0], ..joint([1.0], false) };
+        let sliver = ContactConstraint { mass: [1e-12, 1.0], ..constraint([1.0], false) };
         // its acceleration is huge, but the sum of momentum is kept
         let [a, b] = sliver.shared([[3e12], [5.0]]);
         assert!((a[0] - 8.0).abs() < 1e-11 && a == b);
-    }
-
-    #[test]
-    fn the_jump_is_booked_once_asked_for() {
-        let mut nodes = ContactNodes { joints: vec![joint([1.0], false)], ..Default::default() };
-        let mut fields = vec![vec![0.0, 4.0, 0.0, 0.0, 0.0]];
-        nodes.join(&mut fields, None);
-        assert_eq!((fields[0][1], fields[0][4]), (1.0, 1.0));
-        assert_eq!(nodes.joints[0].given, [[0.0]; 2]);
-        fields[0][4] = 5.0;
-        nodes.join(&mut fields, Some(Booked::Force));
-        assert_eq!(nodes.joints[0].given, [[0.0], [6.0]]);
     }
 }

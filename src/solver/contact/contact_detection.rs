@@ -2,10 +2,11 @@
 //! and their contact impulse.
 
 use crate::solver::clock::timed;
+use crate::solver::contact::vectors::norm;
 use crate::solver::contact::{Member, Touch};
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
-use crate::solver::{Stepper, norm};
+use crate::solver::scheme::Scheme;
 
 /// Bodies without stress touch if the gap between their edges is smaller than this [cells].
 const CLOSED: f64 = 0.01;
@@ -14,12 +15,6 @@ const CLOSED: f64 = 0.01;
 /// this [cells]: while a wave passes, the lengths and positions of the outermost particles are
 /// slightly inconsistent.
 const HELD: f64 = 0.1;
-
-/// Greatest adhesion impulse of bodies that were pressed together, as a fraction of rho h u [-],
-/// with the impact speed u of the scene and the cell edge h: oscillations run ahead of a shock, and
-/// an interface that opened at each of them would reflect a part of the shock. Bodies never return
-/// more impulse than their contact impulse, initial value included, so adhesion does not last.
-pub(in crate::solver) const PULL: f64 = 0.02;
 
 /// Fraction of the greatest adhesion impulse below which bodies do not adhere: well above the
 /// impulse of rounding errors.
@@ -45,7 +40,7 @@ struct BodyEdge {
     contact_impulse: f64,
 }
 
-impl<const D: usize> Stepper<D> {
+impl<const D: usize> Scheme<D> {
     /// Whether two bodies touch at a node. They do if the gap between the edges of their particles
     /// is closed, and without contact they would overlap by the end of a step of `dt`, with m the
     /// reduced mass, u the closing speed, A the area and s the mean p + q of their edges,
@@ -54,7 +49,7 @@ impl<const D: usize> Stepper<D> {
     /// m u + A s dt > 0,
     /// ```
     ///
-    /// or if they were pressed together and adhere: see [`PULL`].
+    /// or if they were pressed together and adhere: see [`MAX_ADHESION`](crate::contact::MAX_ADHESION).
     pub(super) fn touch(
         &self,
         patch: &Patch<D>,

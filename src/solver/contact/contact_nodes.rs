@@ -1,4 +1,4 @@
-//! Meetings: nodes with particles of several bodies, and those particles.
+//! Contact nodes: nodes with particles of several bodies, and those particles.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use smallvec::SmallVec;
 use crate::solver::particle_weights::lines;
 use crate::solver::shape_weights::Stencils;
 
-/// Particle that touches a meeting.
+/// Particle that touches a contact node.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Touch {
     /// Index of the particle.
@@ -17,7 +17,7 @@ pub struct Touch {
     pub at: u32,
 }
 
-/// Body at a meeting.
+/// Body at a contact node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Member<const D: usize> {
     /// Layer of the body.
@@ -34,20 +34,20 @@ pub struct Member<const D: usize> {
     pub gradient: [f64; D],
 }
 
-/// Meetings of a patch, each with the particles that touch it in canonical order.
+/// Contact nodes of a patch, each with the particles that touch it in canonical order.
 #[derive(Clone, Debug, Default)]
-pub struct Meetings<const D: usize> {
+pub struct ContactNodes<const D: usize> {
     /// Indices of the nodes in a layer.
     nodes: Vec<u32>,
-    /// 1 + index of the meeting at each node of a layer; 0: none.
+    /// 1 + index of the contact node at each node of a layer; 0: none.
     number: Vec<u32>,
-    /// Whether a window that starts at each node contains a meeting.
+    /// Whether a window that starts at each node contains a contact node.
     near: Vec<bool>,
     starts: Vec<u32>,
     touches: Vec<Touch>,
 }
 
-impl<const D: usize> Meetings<D> {
+impl<const D: usize> ContactNodes<D> {
     /// Finds the nodes in `nodes` at which more than one layer has more than `least` of `mass`,
     /// among the nodes that each layer computes, and the particles that touch them (with windows
     /// `K` wide), in the order of `runs`.
@@ -103,11 +103,11 @@ impl<const D: usize> Meetings<D> {
                 }
                 let values = stencils.particle::<K, D>(particle).values;
                 for (line, k) in window() {
-                    let meeting = self.number[first + line * stride + k] as usize;
-                    if meeting == 0 || values[line][k] <= 0.0 {
+                    let contact_node = self.number[first + line * stride + k] as usize;
+                    if contact_node == 0 || values[line][k] <= 0.0 {
                         continue;
                     }
-                    let start = &mut self.starts[meeting - usize::from(fills)];
+                    let start = &mut self.starts[contact_node - usize::from(fills)];
                     if fills {
                         let at = (line * K + k) as u32;
                         self.touches[*start as usize] = Touch { particle: particle as u32, at };
@@ -130,38 +130,38 @@ impl<const D: usize> Meetings<D> {
         }
     }
 
-    /// Number of meetings.
+    /// Number of nodes.
     pub fn len(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Whether there are no meetings.
+    /// Whether there are no nodes.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
-    /// Index of the node of a meeting in a layer.
-    pub fn node(&self, meeting: usize) -> usize {
-        self.nodes[meeting] as usize
+    /// Index of the node of a contact node in a layer.
+    pub fn node(&self, contact_node: usize) -> usize {
+        self.nodes[contact_node] as usize
     }
 
-    /// Particles that touch a meeting, in canonical order.
-    pub fn touches(&self, meeting: usize) -> &[Touch] {
-        &self.touches[self.starts[meeting] as usize..self.starts[meeting + 1] as usize]
+    /// Particles that touch a contact node, in canonical order.
+    pub fn touches(&self, contact_node: usize) -> &[Touch] {
+        &self.touches[self.starts[contact_node] as usize..self.starts[contact_node + 1] as usize]
     }
 
-    /// Bodies at a meeting with more than `least` of `mass`; `sums` are the components of momentum
+    /// Bodies at a contact node with more than `least` of `mass`; `sums` are the components of momentum
     /// and force.
     pub fn members(
         &self,
-        meeting: usize,
+        contact_node: usize,
         least: f64,
         layers: usize,
         mass: &[f64],
         [momentum, force]: [[&[f64]; D]; 2],
     ) -> SmallVec<[Member<D>; 3]> {
         let count = self.number.len();
-        let at = |layer: usize| layer * count + self.node(meeting);
+        let at = |layer: usize| layer * count + self.node(contact_node);
         let member = |layer: usize| {
             let i = at(layer);
             let [velocity, acceleration] =

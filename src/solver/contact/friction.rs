@@ -3,11 +3,13 @@
 use decomp::Parity;
 
 use crate::shape::with_width;
-use crate::solver::contact::{ContactNodes, Member};
+use crate::solver::contact::vectors::norm;
+use crate::solver::contact::{Member, PatchContact};
+use crate::solver::exchange::Nodal;
 use crate::solver::patch::Patch;
-use crate::solver::{Nodal, Stepper, norm};
+use crate::solver::scheme::Scheme;
 
-impl<const D: usize> Stepper<D> {
+impl<const D: usize> Scheme<D> {
     /// Whether two bodies stick in a step of `dt`, and if not the friction force of the second on
     /// the first [N].
     ///
@@ -45,11 +47,11 @@ impl<const D: usize> Stepper<D> {
     }
 
     /// Adds the friction forces to the nodal forces.
-    pub(super) fn rub(&self, patch: &mut Patch<D>, nodes: &ContactNodes<D>) {
-        for (joint, a) in nodes.joints.iter().flat_map(|j| (0..D).map(move |a| (j, a))) {
+    pub(super) fn rub(&self, patch: &mut Patch<D>, nodes: &PatchContact<D>) {
+        for (constraint, a) in nodes.constraints.iter().flat_map(|j| (0..D).map(move |a| (j, a))) {
             let force = &mut patch.nodes.fields[self.fields.acceleration + a];
-            force[joint.at[0]] += joint.friction[a];
-            force[joint.at[1]] -= joint.friction[a];
+            force[constraint.at[0]] += constraint.friction[a];
+            force[constraint.at[1]] -= constraint.friction[a];
         }
     }
 
@@ -66,12 +68,12 @@ impl<const D: usize> Stepper<D> {
             true => fields[f.work + a][at],
             false => 0.5 * (fields[f.velocity + a][at] + fields[f.velocity_star + a][at]),
         };
-        for joint in &patch.contact.joints {
-            let [i, j] = joint.at;
+        for constraint in &patch.contact.constraints {
+            let [i, j] = constraint.at;
             let slip = |a: usize| velocity(a, i) - velocity(a, j);
-            let power: f64 = (0..D).map(|a| -joint.friction[a] * slip(a)).sum();
-            heat[i] += 0.5 * dt * power / joint.mass[0];
-            heat[j] += 0.5 * dt * power / joint.mass[1];
+            let power: f64 = (0..D).map(|a| -constraint.friction[a] * slip(a)).sum();
+            heat[i] += 0.5 * dt * power / constraint.mass[0];
+            heat[j] += 0.5 * dt * power / constraint.mass[1];
         }
         for pushed in patch.side_forces.iter().filter(|p| p.has_friction) {
             let power: f64 = (0..D).map(|a| -pushed.force[a] * velocity(a, pushed.at)).sum();
@@ -93,7 +95,7 @@ impl<const D: usize> Stepper<D> {
 
     /// Transfers the heat of friction to the own particles.
     pub(super) fn gather_friction_heat(&self, patch: &mut Patch<D>) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Stepper<D>) {
+        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
             let Some(field) = s.fields.heat else { return };
             let n = patch.block.own();
             let energy = &mut patch.block.columns[s.columns.energy][..n];

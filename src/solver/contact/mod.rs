@@ -1,7 +1,7 @@
 //! Contact between bodies with separate velocity fields.
 //!
 //! The sums of each body (mass, momentum, force, mass matrix) are in a layer of the nodal arrays.
-//! Nodes with particles of several bodies are *meetings*. A pair of bodies in contact there shares
+//! Nodes with particles of several bodies are *contact nodes*. A pair of bodies in contact there shares
 //! the degrees of freedom across the contact plane, that is one normal velocity (and the whole
 //! velocity while friction holds). With m_i the lumped masses, D their diagonal matrix and Pi the
 //! projection onto the velocities shared in this way, orthogonal in the scalar product of D, the
@@ -30,22 +30,24 @@ mod contact_detection;
 mod contact_nodes;
 mod friction;
 mod multi_body_constraint;
+mod patch_contact;
+mod vectors;
 
-pub use contact_constraint::{Booked, ContactNodes, Joint};
-pub(super) use contact_detection::PULL;
+pub use contact_constraint::{ConstraintJump, ContactConstraint};
 pub use contact_nodes::{Member, Touch};
-pub use multi_body_constraint::Knot;
+pub use multi_body_constraint::MultiBodyConstraint;
+pub use patch_contact::PatchContact;
 
 use smallvec::SmallVec;
 
-use super::Stepper;
+use super::scheme::Scheme;
 use super::series::ProductSeries;
 use crate::contact::{BodyPair, BoundaryPoint, ContactCondition, INSET};
 use crate::shape::with_width;
 use crate::solver::clock::timed;
 use crate::solver::patch::Patch;
 
-impl<const D: usize> Stepper<D> {
+impl<const D: usize> Scheme<D> {
     /// Finds the pairs of bodies in contact at the nodes that the patch computes, after masses and
     /// momenta have been summed, in a step of `dt`; `forces` tells whether nodal forces are known.
     pub(super) fn find_contact(
@@ -57,15 +59,15 @@ impl<const D: usize> Stepper<D> {
     ) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
-            s: &Stepper<D>,
+            s: &Scheme<D>,
             contact: &ContactCondition,
             [dt, rubbing]: [f64; 2],
         ) {
-            let mut nodes = std::mem::take(&mut patch.contact);
-            nodes.clear();
+            let mut found = std::mem::take(&mut patch.contact);
+            found.clear();
             let mass = &patch.nodes.fields[s.fields.mass];
             let least = s.empty_mass;
-            nodes.meetings.find::<K>(
+            found.nodes.find::<K>(
                 mass,
                 least,
                 &patch.nodes.nodes,
@@ -73,25 +75,25 @@ impl<const D: usize> Stepper<D> {
                 &patch.stencils,
                 &patch.runs,
             );
-            for meeting in 0..nodes.meetings.len() {
-                s.find_joints::<K>(patch, &mut nodes, meeting, contact, [dt, rubbing]);
+            for contact_node in 0..found.nodes.len() {
+                s.find_constraints::<K>(patch, &mut found, contact_node, contact, [dt, rubbing]);
             }
-            s.fill_joints(patch, &mut nodes);
+            s.fill_constrained_nodes(patch, &mut found);
             if contact.coefficient.is_some() {
-                s.rub(patch, &nodes);
+                s.rub(patch, &found);
             }
-            patch.contact = nodes;
+            patch.contact = found;
         }
         let rubbing = if forces { dt } else { 0.0 };
         with_width!(patch.stencils.width, go(patch, self, contact, [dt, rubbing]));
     }
 
-    /// Finds the joints of a meeting, in a step of `dt` and with friction over the time `rubbing`.
-    fn find_joints<const K: usize>(
+    /// Finds the constraints of a contact_node, in a step of `dt` and with friction over the time `rubbing`.
+    fn find_constraints<const K: usize>(
         &self,
         patch: &Patch<D>,
-        nodes: &mut ContactNodes<D>,
-        meeting: usize,
+        found: &mut PatchContact<D>,
+        contact_node: usize,
         contact: &ContactCondition,
         [dt, rubbing]: [f64; 2],
     ) {
@@ -99,10 +101,11 @@ impl<const D: usize> Stepper<D> {
         let fields = &patch.nodes.fields;
         let vector = |k: usize| std::array::from_fn(|a| &fields[k + a][..]);
         let sums = [vector(f.lumped_velocity), vector(f.acceleration)];
-        let meetings = &nodes.meetings;
+        let nodes = &found.nodes;
         let layers = patch.nodes.layers;
-        let mut members = meetings.members(meeting, self.empty_mass, layers, &fields[f.mass], sums);
-        let touches = meetings.touches(meeting);
+        let mut members =
+            nodes.members(contact_node, self.empty_mass, layers, &fields[f.mass], sums);
+        let touches = nodes.touches(contact_node);
         let filled = self.columns.current_volume.expect("contact has the column");
         for touch in touches {
             let (r, at) = (touch.particle as usize, touch.at as usize);
@@ -115,21 +118,21 @@ impl<const D: usize> Stepper<D> {
                 }
             }
         }
-        let node = meetings.node(meeting);
+        let node = nodes.node(contact_node);
         let index = self.index_of(patch, node);
-        let first = nodes.joints.len();
+        let first = found.constraints.len();
         let share = self.share_of(patch, index);
         let count = patch.nodes.nodes.count();
         for (i, a) in members.iter().enumerate() {
             for b in &members[i + 1..] {
                 let pair = [a, b];
                 if contact.normals.uses_corners() {
-                    self.find_corners(patch, index, touches, pair, &mut nodes.points);
+                    self.find_corners(patch, index, touches, pair, &mut found.points);
                 }
                 let normal = contact.normals.normal(&BodyPair {
                     volume: [a.volume, b.volume],
                     gradient: [&a.gradient, &b.gradient],
-                    corners: &nodes.points,
+                    corners: &found.points,
                     cell: &self.cell,
                 });
                 let Some(normal) = normal else { continue };
@@ -140,7 +143,7 @@ impl<const D: usize> Stepper<D> {
                         }
                         _ => (false, [0.0; D]),
                     };
-                    nodes.joints.push(Joint {
+                    found.constraints.push(ContactConstraint {
                         at: pair.map(|m| m.layer * count + node),
                         mass: pair.map(|m| m.mass),
                         normal,
@@ -153,8 +156,8 @@ impl<const D: usize> Stepper<D> {
                 }
             }
         }
-        if nodes.joints.len() > first + 1 {
-            nodes.knots.push(Knot::new(first, &nodes.joints[first..]));
+        if found.constraints.len() > first + 1 {
+            found.multi_body.push(MultiBodyConstraint::new(first, &found.constraints[first..]));
         }
     }
 
@@ -172,7 +175,7 @@ impl<const D: usize> Stepper<D> {
         })
     }
 
-    /// See [`Joint::share`].
+    /// See [`ContactConstraint::share`].
     pub(crate) fn share_of(&self, patch: &Patch<D>, index: [i64; D]) -> f64 {
         if !patch.nodes.owned.contains(index) {
             return 0.0;
@@ -222,30 +225,30 @@ impl<const D: usize> Stepper<D> {
     }
 
     /// With an edge mask, bodies in contact fill a node together.
-    fn fill_joints(&self, patch: &mut Patch<D>, nodes: &mut ContactNodes<D>) {
+    fn fill_constrained_nodes(&self, patch: &mut Patch<D>, found: &mut PatchContact<D>) {
         let Some(least) = self.edge_mask else { return };
         let volume = &mut patch.nodes.fields[self.fields.volume];
-        let mut knotted = nodes.knots.iter().flat_map(|k| k.joints()).peekable();
-        for (k, joint) in nodes.joints.iter_mut().enumerate() {
-            if knotted.next_if_eq(&k).is_none() {
-                let own = joint.at.map(|at| volume[at]);
-                joint.low = own.map(|v| v < least);
-                joint.at.iter().for_each(|&at| volume[at] = own[0] + own[1]);
+        let mut grouped = found.multi_body.iter().flat_map(|k| k.constraints()).peekable();
+        for (k, constraint) in found.constraints.iter_mut().enumerate() {
+            if grouped.next_if_eq(&k).is_none() {
+                let own = constraint.at.map(|at| volume[at]);
+                constraint.low = own.map(|v| v < least);
+                constraint.at.iter().for_each(|&at| volume[at] = own[0] + own[1]);
             }
         }
-        for knot in &nodes.knots {
-            let sum: f64 = knot.places().iter().map(|&at| volume[at]).sum();
-            knot.places().iter().for_each(|&at| volume[at] = sum);
+        for group in &found.multi_body {
+            let sum: f64 = group.places().iter().map(|&at| volume[at]).sum();
+            group.places().iter().for_each(|&at| volume[at] = sum);
         }
     }
 
     /// Projects lumped velocity and acceleration at nodes in contact.
     pub(super) fn join_sums(&self, patch: &mut Patch<D>) {
         let f = &self.fields;
-        for (field, booked) in
-            [(f.lumped_velocity, Booked::Velocity), (f.acceleration, Booked::Force)]
+        for (field, jump_of) in
+            [(f.lumped_velocity, ConstraintJump::Velocity), (f.acceleration, ConstraintJump::Force)]
         {
-            patch.contact.join(&mut patch.nodes.fields[field..field + D], Some(booked));
+            patch.contact.join(&mut patch.nodes.fields[field..field + D], Some(jump_of));
         }
     }
 
@@ -257,12 +260,12 @@ impl<const D: usize> Stepper<D> {
             return patch.contact.join_scalar(weight, sum);
         }
         // the impulse and force between bodies are the jumps of the first and the last term
-        let booked = match series.sum {
-            s if ends && s == f.velocity => Some(Booked::Velocity),
-            s if ends && s == f.acceleration => Some(Booked::Force),
+        let jump_of = match series.sum {
+            s if ends && s == f.velocity => Some(ConstraintJump::Velocity),
+            s if ends && s == f.acceleration => Some(ConstraintJump::Force),
             _ => None,
         };
-        patch.contact.join(&mut patch.nodes.fields[series.sum..series.sum + D], booked);
+        patch.contact.join(&mut patch.nodes.fields[series.sum..series.sum + D], jump_of);
     }
 
     /// Projects the first term of the series of w.
@@ -272,7 +275,7 @@ impl<const D: usize> Stepper<D> {
         if self.transfer.is_filtered() {
             for a in 0..D {
                 let [work, first] = patch.nodes.fields_mut([f.work + a, f.first + a]);
-                for at in patch.contact.joints.iter().flat_map(|j| j.at) {
+                for at in patch.contact.constraints.iter().flat_map(|j| j.at) {
                     first[at] = work[at];
                 }
             }
@@ -295,17 +298,19 @@ impl<const D: usize> Stepper<D> {
             return;
         }
         let moved = self.moved();
-        let ContactNodes { joints, told, .. } = &mut patch.contact;
-        told.clear();
-        let own = joints.iter().filter(|j| j.share > 0.0);
-        told.extend(own.map(|joint| {
-            let [momentum, force] = joint.given;
-            let force: [f64; D] =
-                std::array::from_fn(|a| moved * momentum[a] / dt + force[a] + joint.friction[a])
-                    .map(|f: f64| joint.share * f);
-            let along: SmallVec<[f64; 2]> = (0..D).map(|a| force[a] * joint.normal[a]).collect();
+        let PatchContact { constraints, forces, .. } = &mut patch.contact;
+        forces.clear();
+        let own = constraints.iter().filter(|j| j.share > 0.0);
+        forces.extend(own.map(|constraint| {
+            let [momentum, force] = constraint.given;
+            let force: [f64; D] = std::array::from_fn(|a| {
+                moved * momentum[a] / dt + force[a] + constraint.friction[a]
+            })
+            .map(|f: f64| constraint.share * f);
+            let along: SmallVec<[f64; 2]> =
+                (0..D).map(|a| force[a] * constraint.normal[a]).collect();
             let normal: f64 = along.iter().sum();
-            let rest = |a: usize| force[a] - normal * joint.normal[a];
+            let rest = |a: usize| force[a] - normal * constraint.normal[a];
             let across = (0..D).map(|a| rest(a) * rest(a)).sum::<f64>().sqrt();
             [-normal, across]
         }));

@@ -9,7 +9,8 @@ use std::ops::Range;
 
 use smallvec::{SmallVec, smallvec};
 
-use super::contact_constraint::{Booked, Joint, dot};
+use super::contact_constraint::{ConstraintJump, ContactConstraint};
+use super::vectors::dot;
 
 /// Components of all velocities at a node.
 type Values = SmallVec<[f64; 8]>;
@@ -17,8 +18,8 @@ type Values = SmallVec<[f64; 8]>;
 /// Constraint c, made orthogonal to the previous ones.
 #[derive(Clone, Debug)]
 struct ConstraintRow<const D: usize> {
-    /// Joint, relative to the first one of the node, and constrained direction.
-    joint: usize,
+    /// ContactConstraint, relative to the first one of the node, and constrained direction.
+    constraint: usize,
     direction: [f64; D],
     c: Values,
     /// 1/(c D^-1 c).
@@ -29,8 +30,8 @@ struct ConstraintRow<const D: usize> {
 
 /// Node at which several pairs are in contact.
 #[derive(Clone, Debug)]
-pub struct Knot<const D: usize> {
-    joints: Range<usize>,
+pub struct MultiBodyConstraint<const D: usize> {
+    constraints: Range<usize>,
     places: SmallVec<[usize; 4]>,
     masses: SmallVec<[f64; 4]>,
     rows: Vec<ConstraintRow<D>>,
@@ -39,40 +40,40 @@ pub struct Knot<const D: usize> {
 /// Fraction of its length that a constraint must keep to count as independent.
 const INDEPENDENT: f64 = 1e-6;
 
-impl<const D: usize> Knot<D> {
-    /// Constraint of `joints`, which start at index `first`.
-    pub fn new(first: usize, joints: &[Joint<D>]) -> Self {
-        let mut knot = Knot {
-            joints: first..first + joints.len(),
+impl<const D: usize> MultiBodyConstraint<D> {
+    /// Constraint of `constraints`, which start at index `first`.
+    pub fn new(first: usize, constraints: &[ContactConstraint<D>]) -> Self {
+        let mut group = MultiBodyConstraint {
+            constraints: first..first + constraints.len(),
             places: SmallVec::new(),
             masses: SmallVec::new(),
             rows: Vec::new(),
         };
-        for joint in joints {
-            for (at, mass) in joint.at.into_iter().zip(joint.mass) {
-                if !knot.places.contains(&at) {
-                    knot.places.push(at);
-                    knot.masses.push(mass);
+        for constraint in constraints {
+            for (at, mass) in constraint.at.into_iter().zip(constraint.mass) {
+                if !group.places.contains(&at) {
+                    group.places.push(at);
+                    group.masses.push(mass);
                 }
             }
         }
-        for (k, joint) in joints.iter().enumerate() {
-            knot.add(k, joint, joint.normal);
-            if D > 1 && joint.whole {
-                let mut along = joint.normal;
-                (along[0], along[D - 1]) = (-joint.normal[D - 1], joint.normal[0]);
-                knot.add(k, joint, along);
+        for (k, constraint) in constraints.iter().enumerate() {
+            group.add(k, constraint, constraint.normal);
+            if D > 1 && constraint.whole {
+                let mut along = constraint.normal;
+                (along[0], along[D - 1]) = (-constraint.normal[D - 1], constraint.normal[0]);
+                group.add(k, constraint, along);
             }
         }
-        knot
+        group
     }
 
-    /// Indices of its joints.
-    pub fn joints(&self) -> Range<usize> {
-        self.joints.clone()
+    /// Indices of its constraints.
+    pub fn constraints(&self) -> Range<usize> {
+        self.constraints.clone()
     }
 
-    /// Indices of the node in the layers of the joints.
+    /// Indices of the node in the layers of the constraints.
     pub fn places(&self) -> &[usize] {
         &self.places
     }
@@ -82,9 +83,9 @@ impl<const D: usize> Knot<D> {
         (0..a.len()).map(|i| a[i] * b[i] / mass(i)).sum()
     }
 
-    fn add(&mut self, k: usize, joint: &Joint<D>, direction: [f64; D]) {
+    fn add(&mut self, k: usize, constraint: &ContactConstraint<D>, direction: [f64; D]) {
         let mut c: Values = smallvec![0.0; D * self.places.len()];
-        for (at, sign) in joint.at.into_iter().zip([1.0, -1.0]) {
+        for (at, sign) in constraint.at.into_iter().zip([1.0, -1.0]) {
             let place = self.places.iter().position(|&p| p == at).expect("it was added");
             (0..D).for_each(|a| c[D * place + a] = sign * direction[a]);
         }
@@ -97,13 +98,24 @@ impl<const D: usize> Knot<D> {
         }
         let left = self.product(&c, &c);
         if left > INDEPENDENT * INDEPENDENT * whole {
-            self.rows.push(ConstraintRow { joint: k, direction, c, inverse: 1.0 / left, taken });
+            self.rows.push(ConstraintRow {
+                constraint: k,
+                direction,
+                c,
+                inverse: 1.0 / left,
+                taken,
+            });
         }
     }
 
-    /// Projects a vector with components in `fields`, and adds the jumps of the joints to their
+    /// Projects a vector with components in `fields`, and adds the jumps of the constraints to their
     /// account.
-    pub fn join(&self, fields: &mut [Vec<f64>], joints: &mut [Joint<D>], booked: Option<Booked>) {
+    pub fn join(
+        &self,
+        fields: &mut [Vec<f64>],
+        constraints: &mut [ContactConstraint<D>],
+        jump_of: Option<ConstraintJump>,
+    ) {
         let place = |i: usize| (i % D, self.places[i / D]);
         let mut values: Values = (0..D * self.places.len())
             .map(|i| {
@@ -123,16 +135,16 @@ impl<const D: usize> Knot<D> {
             let (a, at) = place(i);
             fields[a][at] = *value;
         }
-        let Some(booked) = booked else { return };
+        let Some(jump_of) = jump_of else { return };
         // from the orthogonal rows back to the original constraints
         for k in (0..self.rows.len()).rev() {
-            let ConstraintRow { joint, direction, taken, .. } = &self.rows[k];
+            let ConstraintRow { constraint, direction, taken, .. } = &self.rows[k];
             let share = given[k];
             taken.iter().zip(&mut given).for_each(|(t, g)| *g -= share * t);
-            let sum = &mut joints[*joint].given[booked as usize];
+            let sum = &mut constraints[*constraint].given[jump_of as usize];
             (0..D).for_each(|a| sum[a] += share * direction[a]);
         }
-        debug_assert!(joints.iter().all(|j| dot(&j.normal, &j.normal) > 0.5));
+        debug_assert!(constraints.iter().all(|j| dot(&j.normal, &j.normal) > 0.5));
     }
 }
 
@@ -140,42 +152,49 @@ impl<const D: usize> Knot<D> {
 mod tests {
     use super::*;
 
-    fn joint<const D: usize>(at: [usize; 2], mass: [f64; 2], normal: [f64; D]) -> Joint<D> {
+    fn constraint<const D: usize>(
+        at: [usize; 2],
+        mass: [f64; 2],
+        normal: [f64; D],
+    ) -> ContactConstraint<D> {
         let (low, given, friction) = ([false; 2], [[0.0; D]; 2], [0.0; D]);
-        Joint { at, mass, normal, whole: false, low, share: 1.0, given, friction }
+        ContactConstraint { at, mass, normal, whole: false, low, share: 1.0, given, friction }
     }
 
     #[test]
     fn three_bodies_in_a_row_become_one() {
-        let mut joints = [joint([0, 1], [1.0, 2.0], [1.0]), joint([1, 2], [2.0, 5.0], [1.0])];
-        let knot = Knot::new(0, &joints);
+        let mut constraints =
+            [constraint([0, 1], [1.0, 2.0], [1.0]), constraint([1, 2], [2.0, 5.0], [1.0])];
+        let group = MultiBodyConstraint::new(0, &constraints);
         let mut fields = vec![vec![8.0, 4.0, 0.0]];
-        knot.join(&mut fields, &mut joints, Some(Booked::Velocity));
+        group.join(&mut fields, &mut constraints, Some(ConstraintJump::Velocity));
         assert!(fields[0].iter().all(|v| (v - 2.0).abs() < 1e-14), "{fields:?}");
         // the second body gives the first -6, the third gives the second -10
-        assert!((joints[0].given[0][0] + 6.0).abs() < 1e-13);
-        assert!((joints[1].given[0][0] + 10.0).abs() < 1e-13);
+        assert!((constraints[0].given[0][0] + 6.0).abs() < 1e-13);
+        assert!((constraints[1].given[0][0] + 10.0).abs() < 1e-13);
     }
 
     #[test]
     fn a_third_pair_that_says_no_more_is_left_out() {
         let mass = [1.0, 2.0, 4.0];
-        let pair = |a: usize, b: usize| joint([a, b], [mass[a], mass[b]], [1.0]);
-        let knot = Knot::new(0, &[pair(0, 1), pair(1, 2), pair(0, 2)]);
-        assert_eq!(knot.rows.len(), 2);
+        let pair = |a: usize, b: usize| constraint([a, b], [mass[a], mass[b]], [1.0]);
+        let group = MultiBodyConstraint::new(0, &[pair(0, 1), pair(1, 2), pair(0, 2)]);
+        assert_eq!(group.rows.len(), 2);
     }
 
     #[test]
     fn each_normal_holds_its_pair_and_momentum_stays() {
         let normals = [[0.6, 0.8], [-0.8, 0.6]];
-        let mut joints =
-            [joint([0, 1], [1.0, 2.0], normals[0]), joint([1, 2], [2.0, 4.0], normals[1])];
-        joints[1].whole = true;
-        let knot = Knot::new(0, &joints);
+        let mut constraints = [
+            constraint([0, 1], [1.0, 2.0], normals[0]),
+            constraint([1, 2], [2.0, 4.0], normals[1]),
+        ];
+        constraints[1].whole = true;
+        let group = MultiBodyConstraint::new(0, &constraints);
         let mut fields = vec![vec![1.0, -2.0, 3.0], vec![0.5, 4.0, -1.0]];
         let momentum = |f: &[f64]| f[0] + 2.0 * f[1] + 4.0 * f[2];
         let before = [momentum(&fields[0]), momentum(&fields[1])];
-        knot.join(&mut fields, &mut joints, None);
+        group.join(&mut fields, &mut constraints, None);
         let apart = |i: usize, j: usize, n: [f64; 2]| {
             n[0] * (fields[0][i] - fields[0][j]) + n[1] * (fields[1][i] - fields[1][j])
         };

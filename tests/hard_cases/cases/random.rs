@@ -1,7 +1,8 @@
 //! Runs of scenes drawn at random: how each ends, and whether that may be.
 
 use decomp::comm::local::run_ranks;
-use flyer_mpm::scene::{self, CheckedScene, ShapeKind};
+use flyer_mpm::input;
+use flyer_mpm::scene::{CheckedScene, ShapeKind};
 use flyer_mpm::simulation::Simulation;
 use flyer_mpm::simulation::monitor::keeps_energy;
 use flyer_mpm::solver::{Stepper, Steps};
@@ -29,7 +30,7 @@ pub enum Verdict {
 
 /// The end of a scene on a line or in a plane, on so many ranks.
 pub fn verdict(value: &Value, ranks: usize) -> Verdict {
-    let scene = match scene::parse(value.to_string().as_bytes(), "random.json", &[]) {
+    let scene = match input::parse(value.to_string().as_bytes(), "random.json", &[]) {
         Ok(scene) => scene,
         Err(error) => return Verdict::Refused(error.to_string()),
     };

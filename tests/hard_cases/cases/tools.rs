@@ -3,7 +3,8 @@
 use decomp::{Comm, Serial};
 use flyer_mpm::accuracy::reference::ReferenceSolution;
 use flyer_mpm::exact::Errors;
-use flyer_mpm::scene::{self, CheckedScene};
+use flyer_mpm::input;
+use flyer_mpm::scene::CheckedScene;
 use flyer_mpm::simulation::ParticleTable;
 use flyer_mpm::simulation::{Simulation, Totals};
 use flyer_mpm::solver::{Stepper, Steps};
@@ -43,7 +44,7 @@ impl<const D: usize> Ended<D> {
 
 /// Checks a scene.
 pub fn checked(value: &Value) -> Result<CheckedScene, String> {
-    scene::parse(value.to_string().as_bytes(), "hard.json", &[]).map_err(|e| e.to_string())
+    input::parse(value.to_string().as_bytes(), "hard.json", &[]).map_err(|e| e.to_string())
 }
 
 /// Runs a scene on this rank of `comm`. Collective.

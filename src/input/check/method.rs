@@ -1,0 +1,199 @@
+//! Options of the method that exclude each other, each rejected with both keys named.
+
+use serde::Serialize;
+
+use super::super::errors::SceneFault;
+use super::super::validate::join;
+use crate::scene::CheckedScene;
+use crate::scene::{EnergyUpdate, FrameKind, LimitedTerms, Method, Scene, Stepping, StressUpdate};
+use crate::shape::{DomainExtent, most_nodes};
+
+const MIDPOINT: &str = "method.stepping = \"midpoint\"";
+
+pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), SceneFault> {
+    let method = &scene.method;
+    if method.stepping == Stepping::Midpoint {
+        check_midpoint(scene)?;
+    } else {
+        check_leapfrog(scene)?;
+    }
+    if let Some(viscosity) = &scene.artificial_viscosity
+        && let Some(growth) = viscosity.growth
+        && growth.max <= viscosity.quadratic
+    {
+        let reason = format!(
+            "leaves no room to grow from artificial_viscosity.quadratic {}; allowed: a greater number",
+            viscosity.quadratic
+        );
+        return Err(SceneFault::new("artificial_viscosity.growth.max", growth.max, reason));
+    }
+    if let Some(viscosity) = &scene.artificial_viscosity
+        && viscosity.limited != LimitedTerms::Linear
+        && viscosity.limiter.is_none()
+    {
+        let reason = "says nothing while artificial_viscosity.limiter is left out; allowed: to \
+                      leave both out, or artificial_viscosity.limiter \"christensen\" or \"nodal\"";
+        return Err(SceneFault::new("artificial_viscosity.limited", viscosity.limited, reason));
+    }
+    if let Some(limit) = method.domain_limit
+        && method.shape.extent() != DomainExtent::Current
+    {
+        let reason = "has no effect: no particle's domain deforms; allowed: to leave it out, or \
+                      method.shape \"cpdi\" or \"cpdi_bspline_quadratic\"";
+        return Err(SceneFault::new("method.domain_limit", limit, reason));
+    }
+    if let (Some(rate), None) = (method.volume_relaxation, method.edge_mask) {
+        let reason = "needs method.edge_mask, which knows what is filled; allowed: to leave it \
+                      out, or method.edge_mask";
+        return Err(SceneFault::new("method.volume_relaxation", rate, reason));
+    }
+    check_contact(scene, warnings)?;
+    if method.shape.has_jumps() {
+        warnings.push(
+            "method.shape = \"linear\": inaccurate, since forces jump when a particle passes into \
+             another cell; allowed all the same"
+                .to_string(),
+        );
+    }
+    Ok(())
+}
+
+/// Rejects options that act only on fluids if no body is a fluid.
+pub(super) fn check_bodies(checked: &CheckedScene) -> Result<(), SceneFault> {
+    let fluids = (0..checked.bodies.len()).any(|i| !checked.material_of(i).eos.is_solid());
+    let reason = "acts on fluids alone, and every body is elastic; allowed: to leave it out";
+    let method = &checked.scene.method;
+    match (method.pressure_relaxation, method.volume_relaxation) {
+        (Some(relaxation), _) if !fluids => {
+            Err(SceneFault::new("method.pressure_relaxation", relaxation, reason))
+        }
+        (_, Some(rate)) if !fluids => {
+            Err(SceneFault::new("method.volume_relaxation", rate, reason))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Factor by which a particle may lengthen within a step.
+const STRETCH: f64 = 1.25;
+
+/// Maximum length of a particle for which the stencil has enough nodes [cells]; `None` if the shape
+/// function does not grow with the particle.
+fn longest_particle(method: &Method, dimension: usize) -> Option<f64> {
+    let extent = method.shape.extent();
+    if extent == DomainExtent::Point {
+        return None;
+    }
+    let deforms = extent == DomainExtent::Current && method.frame == FrameKind::UpdatedLagrangian;
+    let room = (most_nodes(dimension) + 1 - method.shape.nodes(1.0)) as f64;
+    Some(if deforms { room / STRETCH } else { room })
+}
+
+/// Checks that particles with their own positions fit the stencil; those of a lattice always do.
+pub(super) fn check_positions(checked: &CheckedScene) -> Result<(), SceneFault> {
+    let method = &checked.scene.method;
+    let Some(limit) = longest_particle(method, checked.dimension) else { return Ok(()) };
+    for (body, own) in checked.scene.bodies.iter().zip(&checked.bodies) {
+        let tiles = own.tiles.iter().flat_map(|tiles| tiles.iter());
+        let lengths = tiles.flat_map(|t| t.size.into_iter().zip(&checked.cell_size));
+        let longest = lengths.map(|(size, cell)| size / cell).fold(0.0, f64::max);
+        if longest > limit {
+            let reason = format!(
+                "too few: a particle is {longest:.1} cells long; allowed: up to {limit:.1} with \
+                 method.shape = {}",
+                serde_json::json!(method.shape)
+            );
+            return Err(SceneFault::missing(
+                join(&join("bodies", &body.name), "positions"),
+                reason,
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Checks the contact law against dimension and number of bodies.
+fn check_contact(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), SceneFault> {
+    let Some(contact) = scene.contact else { return Ok(()) };
+    let on_line = contact.condition().filter(|_| scene.domain.lower.len() == 1);
+    if let Some(normals) = on_line.map(|c| c.normals).filter(|normals| normals.uses_corners()) {
+        let reason = "says nothing: on a line every normal is along it; allowed: to leave it out, \
+                      or two dimensions";
+        return Err(SceneFault::new("contact.normals", normals, reason));
+    }
+    if scene.bodies.len() == 1 {
+        warnings.push("contact: the scene has one body, which touches no other".to_string());
+    } else if on_line.is_some_and(|condition| condition.coefficient.is_some()) {
+        warnings.push(format!(
+            "contact.type = \"{}\": on a line nothing slides; the same as \"frictionless\"",
+            contact.name()
+        ));
+    }
+    Ok(())
+}
+
+/// Checks the options of a mid-point step, which has one order of the stress update.
+fn check_midpoint(scene: &Scene) -> Result<(), SceneFault> {
+    let method = &scene.method;
+    if method.stress_update != StressUpdate::Last {
+        return Err(conflict(
+            ("method.stress_update", method.stress_update),
+            ("method.stepping", method.stepping),
+            "\"last\", or method.stepping = \"leapfrog\"",
+        ));
+    }
+    let transfer = ("method.transfer", method.transfer);
+    if method.energy == EnergyUpdate::Compatible && method.transfer.plan().is_affine() {
+        let allowed = "\"textbook\", or another method.transfer";
+        return Err(conflict(("method.energy", method.energy), transfer, allowed));
+    }
+    if method.filter_heat && !method.transfer.plan().filters {
+        let allowed = "false, or method.transfer \"pic\", {\"flip_pic\": a}, {\"xpic\": m} or \
+                       {\"fmpm\": m}";
+        return Err(conflict(("method.filter_heat", true), transfer, allowed));
+    }
+    match method.edge_mask {
+        Some(mask) if !method.transfer.plan().full_mass_matrix => {
+            let allowed = "to leave it out, or method.transfer {\"fmpm\": m}";
+            Err(conflict(("method.edge_mask", mask), transfer, allowed))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Rejects options that exist only for mid-point steps in a leapfrog step.
+fn check_leapfrog(scene: &Scene) -> Result<(), SceneFault> {
+    let method = &scene.method;
+    let stepping = ("method.stepping", method.stepping);
+    if method.energy != EnergyUpdate::Textbook {
+        let allowed = format!("\"textbook\", or {MIDPOINT}");
+        return Err(conflict(("method.energy", method.energy), stepping, &allowed));
+    }
+    if method.filter_heat {
+        let allowed = format!("false, or {MIDPOINT}");
+        return Err(conflict(("method.filter_heat", true), stepping, &allowed));
+    }
+    let allowed = format!("to leave it out, or {MIDPOINT}");
+    if let Some(relaxation) = method.pressure_relaxation {
+        return Err(conflict(("method.pressure_relaxation", relaxation), stepping, &allowed));
+    }
+    match method.edge_mask {
+        Some(mask) => Err(conflict(("method.edge_mask", mask), stepping, &allowed)),
+        None => Ok(()),
+    }
+}
+
+/// Fault of a key that excludes another one: paths and values of both, and what is allowed for the
+/// first.
+fn conflict(
+    (path, value): (&str, impl Serialize),
+    (other_path, other): (&str, impl Serialize),
+    allowed: &str,
+) -> SceneFault {
+    let other = serde_json::json!(other);
+    SceneFault::new(
+        path,
+        value,
+        format!("cannot go with {other_path} = {other}; allowed: {allowed}"),
+    )
+}

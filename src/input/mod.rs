@@ -1,0 +1,25 @@
+//! Reading and checking of a scene: from the bytes of a file to a
+//! [`CheckedScene`](crate::scene::CheckedScene), or to a [`SceneError`] of one line with the path of
+//! the key, its value, and what is allowed.
+//!
+//! [`read`] takes the bytes from a file, [`parse`] turns them into a checked scene. Independent of MPI
+//! and particles.
+
+mod check;
+mod errors;
+pub mod input_file;
+mod library;
+mod load;
+mod migrate;
+mod overrides;
+mod preset;
+mod schema;
+mod table;
+mod validate;
+
+pub use check::{BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, available_memory};
+pub use errors::SceneError;
+pub use library::LIBRARY;
+pub use load::{LARGEST_FILE, check, check_size, parse, parse_changed, read};
+pub use migrate::migrate;
+pub use schema::schema;

@@ -1,0 +1,386 @@
+//! Methods by name: a scene without `method`, or with one of the names of [`Preset`], gets a
+//! complete method and artificial viscosity that suit its contents.
+//!
+//! Each preset is a base method and a list of rules. A rule changes keys if the scene contains what
+//! it names, and gives its reason. Explicit keys of the scene come last; an option of the preset
+//! that they exclude is left out.
+
+use serde_json::{Map, Value, json};
+
+use super::errors::{SceneFault, suggest};
+use crate::scene::{Material, MethodChoice, Preset, Transfer};
+
+/// What a scene contains, as far as the choice of a method depends on it.
+#[derive(Default)]
+struct SceneContents {
+    plane: bool,
+    contact: bool,
+    /// Bodies on a line touch each other without a contact law, and no side lets particles out.
+    joined: bool,
+    /// Some body is a fluid, or a solid whose pressure follows an equation of state of fluids.
+    fluid: bool,
+    strength: bool,
+    failure: bool,
+    /// Some body is a gas or an explosive.
+    gas: bool,
+    /// Some body is an explosive with a burn front.
+    burn: bool,
+    porous: bool,
+}
+
+struct Rule {
+    applies: fn(&SceneContents) -> bool,
+    /// Keys of the method and of the viscosity that change; `null` removes a key.
+    changes: fn() -> [Value; 2],
+    reason: &'static str,
+}
+
+/// Rules of all presets, in the order in which they act.
+const RULES: &[Rule] = &[
+    Rule {
+        applies: |c| (c.contact || c.failure || c.gas) && !c.plane && !c.strength,
+        changes: || [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), moderate()],
+        reason: "a moderate viscosity, since surfaces may separate or gas may expand",
+    },
+    Rule {
+        applies: |c| c.gas && !c.plane,
+        changes: || [json!({"domain_limit": 4.0}), json!({})],
+        reason: "a domain limit, since gas may expand without bound",
+    },
+    Rule {
+        applies: |c| c.strength && !c.plane,
+        changes: || {
+            let viscosity = json!({"linear": 0.2, "quadratic": 2.0, "growth": null});
+            [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), viscosity]
+        },
+        reason: "a stronger viscosity, since elastic precursors are more accurate with it",
+    },
+    Rule {
+        applies: |c| c.plane,
+        changes: || {
+            let relaxation = json!({"rate": 0.2, "interval": 1});
+            let method = json!({"transfer": {"fmpm": 4}, "edge_mask": 0.3, "domain_limit": 1.0,
+                "pressure_relaxation": relaxation});
+            [method, json!({"linear": 0.1, "quadratic": 0.75, "growth": null})]
+        },
+        reason: "a lower transfer order and a domain limit, since the scene has two dimensions",
+    },
+    Rule {
+        applies: |c| c.plane && c.strength,
+        changes: || [json!({"pressure_relaxation": {"rate": 0.4, "interval": 5}}), moderate()],
+        reason: "relaxation every fifth step, since plastic flow needs little of it",
+    },
+    Rule {
+        applies: |c| c.plane && c.gas && !c.burn,
+        changes: || {
+            let viscosity = json!({"linear": 0.1, "quadratic": 0.5, "limited": "both"});
+            [json!({"transfer": {"fmpm": 2}}), viscosity]
+        },
+        reason: "a low transfer order, since gas may flow towards a point or an axis",
+    },
+    Rule {
+        applies: |c| c.plane && c.burn,
+        changes: || [json!({}), moderate()],
+        reason: "a moderate viscosity, since a body is an explosive",
+    },
+    Rule {
+        applies: |c| c.burn,
+        changes: || [json!({"transfer": {"fmpm": 2}}), json!({})],
+        reason: "a low transfer order, since errors at burn fronts grow with the order",
+    },
+    Rule {
+        applies: |c| c.porous && !c.plane && !c.burn,
+        changes: || [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), json!({})],
+        reason: "a lower transfer order, since a body is porous",
+    },
+    Rule {
+        applies: |c| c.porous,
+        changes: || {
+            let off = Value::Null;
+            let viscosity = json!({"linear": 0.5, "quadratic": 2.0, "growth": off, "limiter": off,
+                "limited": off});
+            [json!({}), viscosity]
+        },
+        reason: "the strongest viscosity, since oscillations ahead of a shock crush pores",
+    },
+    Rule {
+        applies: |c| !c.fluid,
+        changes: || [json!({"pressure_relaxation": null}), json!({})],
+        reason: "no pressure relaxation, since every body is elastic",
+    },
+];
+
+/// The viscosity for scenes in which a sharp front costs stability.
+fn moderate() -> Value {
+    json!({"linear": 0.1, "quadratic": 1.25, "growth": null})
+}
+
+impl Preset {
+    /// The preset that `value` names.
+    fn of(value: &Value, path: &str) -> Result<Preset, SceneFault> {
+        let name = value.as_str().unwrap_or("");
+        Preset::ALL.into_iter().find(|preset| preset.name() == name).ok_or_else(|| {
+            let known = Preset::ALL.iter().map(|preset| preset.name());
+            let or = if path == "method" { ", or an object with method.shape" } else { "" };
+            SceneFault::new(path, value, format!("unknown name{}{or}", suggest(name, known)))
+        })
+    }
+
+    /// Method, viscosity and reason before the rules.
+    fn base(self, contents: &SceneContents) -> ([Value; 2], &'static str) {
+        let method = json!({
+            "shape": "cpdi_bspline_quadratic",
+            "transfer": {"fmpm": 8},
+            "stepping": "midpoint",
+            "energy": "compatible",
+            "filter_heat": true,
+            "pressure_relaxation": {"rate": 0.1, "interval": 1},
+            "edge_mask": 0.4
+        });
+        let viscosity = json!({
+            "linear": 0.05,
+            "quadratic": 0.5,
+            "growth": {"rate": 6.0, "max": 2.0},
+            "limiter": "christensen",
+            "limited": "linear"
+        });
+        let mut base = [method, viscosity];
+        let reason = match self {
+            Preset::Default => {
+                merge(&mut base, [json!({}), json!({"linear": 0.15})]);
+                "least error of plane impacts whose peak pressure is within 0.5 %"
+            }
+            Preset::Robust => {
+                let changes = [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), moderate()];
+                merge(&mut base, changes);
+                "least error over all hard cases"
+            }
+            Preset::Sharpest if contents.joined && acting(contents).next().is_none() => {
+                let relaxation = json!({"rate": 0.05, "interval": 1});
+                let method = json!({"frame": "total_lagrangian", "transfer": {"fmpm": 10},
+                    "edge_mask": 0.3, "pressure_relaxation": relaxation});
+                merge(&mut base, [method, json!({})]);
+                "least error of plane impacts; total-Lagrangian, for bodies that stay in contact"
+            }
+            Preset::Sharpest => "least error of plane impacts",
+        };
+        (base, reason)
+    }
+}
+
+/// Replaces the preset of a scene by its method and viscosity. Returns the choice; `None` if the
+/// scene gives its method in full.
+pub(super) fn expand(scene: &mut Value) -> Result<Option<MethodChoice>, SceneFault> {
+    let Some(keys) = scene.as_object_mut() else { return Ok(None) };
+    let (preset, explicit) = match keys.get("method") {
+        None | Some(Value::Null) => (Preset::Default, Map::new()),
+        Some(Value::Object(method)) => match method.get("preset") {
+            None => return Ok(None),
+            Some(name) => {
+                let mut explicit = method.clone();
+                explicit.remove("preset");
+                (Preset::of(name, "method.preset")?, explicit)
+            }
+        },
+        Some(name @ Value::String(_)) => (Preset::of(name, "method")?, Map::new()),
+        // reported by the check against the schema
+        Some(_) => return Ok(None),
+    };
+    let contents = SceneContents::of(keys);
+    let ([mut method, viscosity], reason) = choose(preset, &contents);
+    let mut reasons: Vec<String> = acting(&contents).map(|rule| rule.reason.to_string()).collect();
+    if reasons.is_empty() {
+        reasons.push(reason.to_string());
+    }
+    if let Some(excluded) = method.as_object_mut().map(|m| override_keys(m, explicit)) {
+        reasons.extend(excluded);
+    }
+    if keys.contains_key("artificial_viscosity") {
+        reasons.push("the viscosity is that of the scene".into());
+    } else {
+        keys.insert("artificial_viscosity".into(), viscosity);
+    }
+    reasons.insert(0, in_short(&method, &keys["artificial_viscosity"]));
+    keys.insert("method".into(), method);
+    Ok(Some(MethodChoice { preset, reasons }))
+}
+
+/// Transfer and viscosity in short, such as `FMPM(8), viscosity 0.15/0.5`.
+fn in_short(method: &Value, viscosity: &Value) -> String {
+    let transfer = &method["transfer"];
+    let only = transfer.as_object().and_then(|object| object.iter().next());
+    let transfer = match only {
+        Some((name, number)) => format!("{}({number})", name.to_uppercase()),
+        None => transfer.as_str().unwrap_or("").to_uppercase(),
+    };
+    match viscosity.is_null() {
+        true => format!("{transfer}, no viscosity"),
+        false => {
+            format!("{transfer}, viscosity {}/{}", viscosity["linear"], viscosity["quadratic"])
+        }
+    }
+}
+
+/// Rules that act on a scene with these contents.
+fn acting(contents: &SceneContents) -> impl Iterator<Item = &'static Rule> {
+    RULES.iter().filter(|rule| (rule.applies)(contents))
+}
+
+/// Method, viscosity and reason of a preset with these contents.
+fn choose(preset: Preset, contents: &SceneContents) -> ([Value; 2], &'static str) {
+    let (mut chosen, reason) = preset.base(contents);
+    for rule in acting(contents) {
+        merge(&mut chosen, (rule.changes)());
+    }
+    (chosen, reason)
+}
+
+/// Changes keys of the method and of the viscosity.
+fn merge(base: &mut [Value; 2], changes: [Value; 2]) {
+    for (base, changes) in base.iter_mut().zip(changes) {
+        let (Some(base), Value::Object(changes)) = (base.as_object_mut(), changes) else {
+            continue;
+        };
+        for (key, value) in changes {
+            match value {
+                Value::Null => base.remove(&key),
+                value => base.insert(key, value),
+            };
+        }
+    }
+}
+
+/// Overrides keys of a preset's method. Returns, in words, the options of the preset that these
+/// keys exclude and that are therefore left out.
+fn override_keys(method: &mut Map<String, Value>, explicit: Map<String, Value>) -> Vec<String> {
+    let is = |key: &str, name: &str| explicit.get(key).is_some_and(|value| value == name);
+    let plan = explicit.get("transfer");
+    let plan = plan.and_then(|t| serde_json::from_value::<Transfer>(t.clone()).ok());
+    let plan = plan.map(|transfer| transfer.plan());
+    let mut excluded: Vec<&str> = Vec::new();
+    if is("stepping", "leapfrog") {
+        excluded.extend(["energy", "filter_heat", "pressure_relaxation", "edge_mask"]);
+    }
+    if let Some(plan) = plan {
+        excluded.extend((!plan.filters).then_some("filter_heat"));
+        excluded.extend((!plan.full_mass_matrix).then_some("edge_mask"));
+        excluded.extend(plan.is_affine().then_some("energy"));
+    }
+    if is("frame", "total_lagrangian") || explicit.get("shape").is_some_and(|s| !deforms(s)) {
+        excluded.push("domain_limit");
+    }
+    let excluded: Vec<&str> =
+        excluded.into_iter().filter(|key| method.remove(*key).is_some()).collect();
+    let mut reasons = Vec::new();
+    if !explicit.is_empty() {
+        let names: Vec<&str> = explicit.keys().map(String::as_str).collect();
+        reasons.push(format!("from the scene: {}", names.join(", ")));
+    }
+    if !excluded.is_empty() {
+        reasons
+            .push(format!("left out, since the scene's keys exclude it: {}", excluded.join(", ")));
+    }
+    for (key, value) in explicit {
+        match value {
+            Value::Null => method.remove(&key),
+            value => method.insert(key, value),
+        };
+    }
+    reasons
+}
+
+/// Whether the particle domains of a shape function deform.
+fn deforms(shape: &Value) -> bool {
+    use crate::shape::{DomainExtent, ShapeKind};
+    let shape = serde_json::from_value::<ShapeKind>(shape.clone());
+    shape.is_ok_and(|shape| shape.extent() == DomainExtent::Current)
+}
+
+impl SceneContents {
+    /// Reads the contents of a scene whose library names are resolved. What is not understood counts
+    /// as absent; the check of the scene reports it.
+    fn of(scene: &Map<String, Value>) -> Self {
+        let domain = scene.get("domain").unwrap_or(&Value::Null);
+        let dimension = domain["lower"].as_array().map_or(1, Vec::len);
+        let bodies = scene.get("bodies").and_then(Value::as_array).into_iter().flatten();
+        let used =
+            bodies.filter_map(|body| scene.get("materials")?.get(body.get("material")?.as_str()?));
+        let used = used.filter_map(|json| {
+            let material = serde_json::from_value::<Material>(json.clone()).ok()?;
+            Some((material, !json["eos"]["burn"].is_null()))
+        });
+        let used: Vec<(Material, bool)> = used.collect();
+        let any = |such: fn(&Material, bool) -> bool| used.iter().any(|(m, burns)| such(m, *burns));
+        SceneContents {
+            plane: dimension > 1,
+            contact: scene.get("contact").is_some_and(|contact| !contact.is_null()),
+            joined: dimension == 1 && are_joined(scene),
+            fluid: any(|m, _| !m.eos.is_solid()),
+            strength: any(|m, _| m.strength.is_some()),
+            failure: any(|m, _| m.failure.is_some()),
+            gas: any(|m, burns| m.eos.is_gas() || burns),
+            burn: any(|m, burns| burns && m.eos.has_history()),
+            porous: any(|m, burns| m.eos.has_history() && !burns),
+        }
+    }
+}
+
+/// Whether the boxes of all bodies on a line form one piece, and the sides let no particle out.
+fn are_joined(scene: &Map<String, Value>) -> bool {
+    let end = |body: &Value, end: &str| body["box"][end][0].as_f64();
+    let bodies = scene.get("bodies").and_then(Value::as_array).into_iter().flatten();
+    let spans: Option<Vec<[f64; 2]>> =
+        bodies.map(|body| Some([end(body, "lower")?, end(body, "upper")?])).collect();
+    let Some(mut spans) = spans.filter(|spans| spans.len() > 1) else { return false };
+    spans.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let touch = spans.windows(2).all(|pair| pair[0][1] == pair[1][0]);
+    let open = scene.get("boundary").is_some_and(|sides| sides.to_string().contains("outflow"));
+    let contact = scene.get("contact").is_some_and(|contact| !contact.is_null());
+    touch && !open && !contact
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every combination of contents.
+    fn all() -> impl Iterator<Item = SceneContents> {
+        (0..512_u32).map(|bits| {
+            let has = |k: u32| bits >> k & 1 == 1;
+            SceneContents {
+                plane: has(0),
+                contact: has(1),
+                joined: has(2),
+                fluid: has(3),
+                strength: has(4),
+                failure: has(5),
+                gas: has(6),
+                burn: has(7),
+                porous: has(8),
+            }
+        })
+    }
+
+    #[test]
+    fn options_of_every_choice_fit_each_other() {
+        for (preset, c) in Preset::ALL.iter().flat_map(|p| all().map(move |c| (p, c))) {
+            let ([method, viscosity], _) = choose(*preset, &c);
+            let has = |value: &Value, key: &str| !value[key].is_null();
+            assert!(!has(&viscosity, "limited") || has(&viscosity, "limiter"), "{viscosity}");
+            let total = has(&method, "frame");
+            assert!(!total || !has(&method, "domain_limit"), "{method}");
+            assert_eq!(has(&method, "pressure_relaxation"), c.fluid);
+            if c.porous {
+                assert_eq!([&viscosity["linear"], &viscosity["quadratic"]], [0.5, 2.0]);
+            }
+            if c.burn {
+                assert_eq!(method["transfer"], json!({"fmpm": 2}));
+            }
+            if c.plane && c.fluid && !c.strength {
+                assert_eq!(method["pressure_relaxation"]["rate"], 0.2);
+            }
+            let growth = viscosity["growth"]["max"].as_f64().unwrap_or(f64::INFINITY);
+            assert!(growth > viscosity["quadratic"].as_f64().unwrap(), "{viscosity}");
+        }
+    }
+}

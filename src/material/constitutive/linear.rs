@@ -1,0 +1,237 @@
+//! Particle loops over an equation of state that is linear in the energy.
+
+use super::model::{FluidModel, MidStep, VolumeChange};
+use crate::material::{EquationOfState, LinearPressure};
+
+/// Particle loops over an equation of state that is linear in the energy.
+pub(super) struct LinearEosKernel<E>(pub(super) E);
+
+impl<E: EquationOfState> FluidModel for LinearEosKernel<E> {
+    fn mid_step(&self, particles: MidStep<'_>) {
+        let n = particles.mass.len();
+        let (mass, volume0, j, j_mid) = (
+            particles.mass,
+            &particles.volume0[..n],
+            &particles.jacobian[..n],
+            &particles.jacobian_mid[..n],
+        );
+        let (energy, out) = (&particles.energy[..n], &mut particles.stress_volume[..n]);
+        let gradient = &particles.gradient[..n];
+        let pressure_at = |r: usize, q: f64| {
+            let dv = (j_mid[r] - j[r]) * volume0[r] / mass[r];
+            let LinearPressure { reference_pressure, gruneisen_rho } = self.0.linear(j_mid[r]);
+            let linear = reference_pressure + gruneisen_rho * (energy[r] - q * dv);
+            self.0.clamp_tension(linear / (1.0 + gruneisen_rho * dv))
+        };
+        // compute the pressure once if both outputs are requested
+        if let Some((pressure, compliance)) = particles.compliance {
+            let (pressure, compliance) = (&mut pressure[..n], &mut compliance[..n]);
+            for r in 0..n {
+                let p = pressure_at(r, particles.q.map_or(0.0, |q| q[r]));
+                out[r] = particles.q.map_or(p, |q| p + q[r]) * volume0[r] * j_mid[r];
+                let volume = volume0[r] * j_mid[r];
+                let c2 = self.0.sound_speed_squared(j_mid[r], p);
+                let jump = particles.edge * gradient[r];
+                let stiffness = mass[r] * (c2 + jump * jump) + particles.floor * volume;
+                pressure[r] = p;
+                compliance[r] = if c2 > 0.0 { volume * volume / stiffness } else { 0.0 };
+            }
+            return;
+        }
+        match particles.q {
+            Some(q) => {
+                for r in 0..n {
+                    out[r] = (pressure_at(r, q[r]) + q[r]) * volume0[r] * j_mid[r];
+                }
+            }
+            None => {
+                for r in 0..n {
+                    out[r] = pressure_at(r, 0.0) * volume0[r] * j_mid[r];
+                }
+            }
+        }
+    }
+
+    fn change_volume(&self, particles: VolumeChange<'_>) {
+        for r in 0..particles.mass.len() {
+            let dv = (particles.after[r] - particles.before[r]) * particles.volume0[r]
+                / particles.mass[r];
+            let q = particles.q.map_or(0.0, |q| q[r]);
+            let LinearPressure { reference_pressure, gruneisen_rho } =
+                self.0.linear(particles.after[r]);
+            let energy = (particles.energy[r]
+                - (0.5 * (particles.pressure[r] + reference_pressure) + q) * dv)
+                / (1.0 + 0.5 * gruneisen_rho * dv);
+            let pressure = reference_pressure + gruneisen_rho * energy;
+            let clamped = self.0.clamp_tension(pressure);
+            // tension that the material does not carry does no work
+            particles.energy[r] = energy + 0.5 * (pressure - clamped) * dv;
+            particles.pressure[r] = clamped;
+        }
+    }
+
+    fn refresh(
+        &self,
+        jacobian: &[f64],
+        energy: &[f64],
+        _history: Option<&mut [f64]>,
+        pressure: &mut [f64],
+        sound_speed: &mut [f64],
+    ) -> Option<(usize, String)> {
+        let n = jacobian.len();
+        let (energy, pressure, sound_speed) =
+            (&energy[..n], &mut pressure[..n], &mut sound_speed[..n]);
+        let mut sound = true;
+        for r in 0..n {
+            let p = self.0.pressure(jacobian[r], energy[r]);
+            let c2 = self.0.sound_speed_squared(jacobian[r], p);
+            pressure[r] = p;
+            sound_speed[r] = c2.sqrt();
+            // a comparison with NaN is false
+            sound &= jacobian[r] > 0.0 && c2 >= 0.0 && p.abs() < f64::INFINITY;
+            sound &= self.0.check_validity(jacobian[r], p).is_none();
+        }
+        if sound {
+            return None;
+        }
+        (0..n).find_map(|r| {
+            let (j, p) = (jacobian[r], pressure[r]);
+            let rho = self.0.reference_density() / j;
+            let state = format!("density {rho:.6e} kg/m3, pressure {p:.6e} Pa");
+            if !(j.is_finite() && p.is_finite() && energy[r].is_finite()) {
+                Some((r, format!("its state is not a number ({state})")))
+            } else if j <= 0.0 {
+                Some((r, format!("its volume is negative (J = {j:.6e})")))
+            } else if let Some(fault) = self.0.check_validity(j, p) {
+                Some((r, format!("it is {fault} ({state})")))
+            } else if sound_speed[r].is_nan() {
+                Some((r, format!("its sound speed is imaginary ({state})")))
+            } else {
+                None
+            }
+        })
+    }
+
+    fn energy_at(&self, pressure: f64) -> f64 {
+        self.0.energy_at(1.0, pressure)
+    }
+
+    fn sound_speed_at(&self, pressure: f64) -> f64 {
+        self.0.sound_speed_squared(1.0, pressure).max(0.0).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::{IdealGas, MieGruneisen};
+
+    const GAS: LinearEosKernel<IdealGas> = LinearEosKernel(IdealGas { rho0: 2.0, gamma: 1.4 });
+
+    #[test]
+    fn mid_step_pressure_has_the_energy_of_its_own_work() {
+        let (j, j_mid, e, q) = ([1.0], [0.98], [3.0], [0.2]);
+        let mut stress = [0.0];
+        GAS.mid_step(MidStep {
+            mass: &[0.02],
+            volume0: &[0.01],
+            jacobian: &j,
+            jacobian_mid: &j_mid,
+            energy: &e,
+            q: Some(&q),
+            history: None,
+            gradient: &[0.0],
+            edge: 1.0,
+            floor: 0.0,
+            stress_volume: &mut stress,
+            compliance: None,
+        });
+        let p = stress[0] / (0.01 * 0.98) - 0.2;
+        let dv = (0.98 - 1.0) / 2.0;
+        let e_mid = 3.0 - (p + 0.2) * dv;
+        assert!((p - GAS.0.pressure(0.98, e_mid)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn change_of_volume_is_second_order_along_an_isentrope() {
+        let error = |steps: usize| {
+            let (mut p, mut e) = ([GAS.0.pressure(1.0, 3.0)], [3.0]);
+            let start = p[0];
+            for k in 0..steps {
+                let at = |k: usize| [1.0 - 0.4 * k as f64 / steps as f64];
+                GAS.change_volume(VolumeChange {
+                    mass: &[0.02],
+                    volume0: &[0.01],
+                    before: &at(k),
+                    after: &at(k + 1),
+                    q: None,
+                    pressure: &mut p,
+                    energy: &mut e,
+                    history: None,
+                });
+            }
+            (p[0] / (start * 0.6f64.powf(-1.4)) - 1.0).abs()
+        };
+        let order = (error(20) / error(40)).log2();
+        assert!((order - 2.0).abs() < 0.05, "{order}");
+    }
+
+    #[test]
+    fn a_gas_short_of_energy_bears_no_tension() {
+        let (mut p, mut c) = ([1.0; 2], [1.0; 2]);
+        assert_eq!(GAS.refresh(&[1.0, 0.5], &[-1e-32, -1e-3], None, &mut p, &mut c), None);
+        assert_eq!((p, c), ([0.0; 2], [0.0; 2]));
+        assert!(GAS.refresh(&[1.0], &[f64::NAN], None, &mut p[..1], &mut c[..1]).is_some());
+        let mut stress = [1.0];
+        GAS.mid_step(MidStep {
+            mass: &[0.02],
+            volume0: &[0.01],
+            jacobian: &[1.0],
+            jacobian_mid: &[1.2],
+            energy: &[-1e-3],
+            q: Some(&[0.5]),
+            history: None,
+            gradient: &[0.0],
+            edge: 1.0,
+            floor: 0.0,
+            stress_volume: &mut stress,
+            compliance: None,
+        });
+        assert_eq!(stress, [0.5 * 0.01 * 1.2], "viscosity alone");
+        // expansion takes no work, and all work of the viscosity is kept
+        let (mut p, mut e) = ([0.0], [-1e-3]);
+        GAS.change_volume(VolumeChange {
+            mass: &[0.02],
+            volume0: &[0.01],
+            before: &[1.0],
+            after: &[1.2],
+            q: Some(&[0.5]),
+            pressure: &mut p,
+            energy: &mut e,
+            history: None,
+        });
+        assert_eq!(p, [0.0]);
+        assert!((e[0] + 1e-3 + 0.5 * 0.2 * 0.5).abs() < 1e-16, "{e:?}");
+    }
+
+    #[test]
+    fn a_state_outside_of_the_model_is_named() {
+        let copper =
+            LinearEosKernel(MieGruneisen { rho0: 8930.0, c0: 3940.0, s: 1.489, gamma0: 1.96 });
+        let told = |j: f64, e: f64| {
+            let (mut p, mut c) = ([0.0; 2], [0.0; 2]);
+            copper.refresh(&[0.9, j], &[0.0, e], None, &mut p, &mut c)
+        };
+        assert_eq!(told(0.9, 0.0), None);
+        for (j, e, word) in [
+            (0.2, 0.0, "limit 1/s"),
+            (1.5, 0.0, "tension"),
+            (-0.1, 0.0, "negative"),
+            (0.9, f64::NAN, "not a number"),
+        ] {
+            let (particle, what) = told(j, e).unwrap();
+            assert_eq!(particle, 1);
+            assert!(what.contains(word), "{what}");
+        }
+    }
+}

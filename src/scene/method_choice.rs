@@ -1,0 +1,47 @@
+//! Choice of a method by the name of a preset.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A complete method and artificial viscosity by name, adapted to the contents of the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Preset {
+    /// The most accurate method that was measured to be stable with the contents of the scene.
+    Default,
+    /// From the shape function and transfer with the least error of those that pass every hard
+    /// case, with a moderate viscosity.
+    Robust,
+    /// From the method with the least error of plane impacts, in the total-Lagrangian frame if the
+    /// scene has nothing but fluids on a line that touch and stay in contact.
+    Sharpest,
+}
+
+/// The preset of a scene, and why its options were chosen.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MethodChoice {
+    /// Name of the preset.
+    pub preset: Preset,
+    /// The transfer and the viscosity in short, then the reasons.
+    pub reasons: Vec<String>,
+}
+
+impl std::fmt::Display for MethodChoice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {}", self.preset.name(), self.reasons.join("; "))
+    }
+}
+
+impl Preset {
+    /// All presets.
+    pub const ALL: [Preset; 3] = [Preset::Default, Preset::Robust, Preset::Sharpest];
+
+    /// Name in a scene.
+    pub fn name(self) -> &'static str {
+        match self {
+            Preset::Default => "default",
+            Preset::Robust => "robust",
+            Preset::Sharpest => "sharpest",
+        }
+    }
+}

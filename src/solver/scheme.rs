@@ -1,0 +1,223 @@
+//! Numerical scheme of a scene.
+
+use super::body_models::{BodyModels, BodyWaves};
+use super::columns::Columns;
+use super::nodal_fields::Fields;
+use super::parts::StepPart;
+use crate::contact::ContactCondition;
+use crate::material::constitutive::{ConstitutiveModel, StrengthModel, ThermalModel};
+use crate::scene::{
+    CheckedScene, EnergyUpdate, FrameKind, PressureRelaxation, ShapeKind, SideProperties, Stepping,
+    StressUpdate,
+};
+use crate::shape::DomainExtent;
+use crate::solver::artificial_viscosity::Viscosity;
+use crate::transfer::TransferPlan;
+
+/// Numerical scheme of a scene: grid, columns, nodal fields, material models of the bodies and options
+/// of the method. It knows no effect.
+pub struct Scheme<const D: usize> {
+    /// Indices of the columns.
+    pub columns: Columns,
+    /// Indices of the nodal fields.
+    pub fields: Fields,
+    /// External forces on particles, each with the part of a step that it belongs to.
+    pub(super) forces: Vec<(usize, usize)>,
+    /// Part of a step that friction heat belongs to.
+    pub(super) friction_part: usize,
+    pub(super) transfer: TransferPlan,
+    pub(super) stepping: Stepping,
+    pub(super) stress_update: StressUpdate,
+    /// Whether the work uses the velocity that conserves energy exactly.
+    pub(crate) compatible: bool,
+    pub(super) filter_heat: bool,
+    pub(super) relaxation: Option<PressureRelaxation>,
+    pub(super) volume_relaxation: Option<f64>,
+    pub(super) edge_mask: Option<f64>,
+    pub(super) viscosity: Option<Viscosity>,
+    /// Contact between bodies with separate velocity fields.
+    pub(super) contact: Option<ContactCondition>,
+    /// Number of velocity fields, each in a layer of the nodal arrays: one for all bodies, or one
+    /// per body.
+    pub layers: usize,
+    /// Initial rho c^2 of each body [Pa].
+    pub(super) stiffness: Vec<f64>,
+    /// Initial acoustic impedance rho c of each body [Pa s/m].
+    pub(super) impedances: Vec<f64>,
+    /// Shear wave speed in each body at rest [m/s]; 0 in fluids without strength.
+    pub(crate) shear_speeds: Vec<f64>,
+    /// Impact speed of the scene, maximum over its bodies [m/s].
+    pub(super) impact: f64,
+    /// Greatest impulse that each body can return as adhesion under tension [Pa s].
+    pub(super) max_adhesion_impulse: Vec<f64>,
+    /// Constitutive model of each body.
+    pub(crate) models: Vec<ConstitutiveModel>,
+    /// Strength of each body's material, in addition to its equation of state.
+    pub(crate) strengths: Vec<Option<Box<dyn StrengthModel>>>,
+    /// Thermal model of each body.
+    pub(crate) thermals: Vec<Option<ThermalModel>>,
+    /// Column of the history variable of each body's equation of state.
+    pub(super) history: Vec<Option<usize>>,
+    pub(super) shape: ShapeKind,
+    /// Whether shape functions are evaluated at the initial positions of the particles.
+    pub(crate) total_lagrangian: bool,
+    /// Edges of a cell [m] and their inverse.
+    pub(crate) cell: [f64; D],
+    pub(super) inverse_cell: [f64; D],
+    /// Edge of a square or line with the volume of a cell [m].
+    pub(super) edge: f64,
+    /// Lower corner of the domain [m] and its number of cells.
+    pub(super) lower: [f64; D],
+    pub(crate) cells: [i64; D],
+    pub(super) sides: [[SideProperties; 2]; D],
+    /// Directions with a no-slip wall.
+    pub(super) no_slip: [bool; D],
+    /// Whether x is a radius: radial motion then causes hoop strain.
+    pub(crate) axisymmetric: bool,
+    /// Longest half diagonal of a particle's domain [cells], if it is limited.
+    pub(super) domain_limit: Option<f64>,
+    /// Requirements of the effects.
+    pub(super) of_effects: EffectLimits,
+    /// Whether quiescent patches are skipped.
+    pub(super) may_sleep: bool,
+    /// Greatest initial speed, of bodies or sound [m/s].
+    pub fastest: f64,
+    /// Mass below which a node counts as empty [kg].
+    pub(crate) empty_mass: f64,
+    /// Nodal speed below which a node counts as at rest [m/s].
+    pub(super) quiescent_speed: f64,
+    /// Acceleration that brings a node to that speed while the fastest wave crosses a cell [m/s2].
+    pub(super) still_acceleration: f64,
+    /// Nodal pressure below which a node counts as free of stress [Pa].
+    pub(super) still_pressure: f64,
+}
+
+/// Limits that the effects of a scene impose on the scheme.
+pub(super) struct EffectLimits {
+    /// Longest step of diffusive effects at a Courant number of 1 [s].
+    pub diffusion_step: f64,
+    /// Greatest number of products with a nodal matrix of an effect.
+    pub products: u32,
+}
+
+/// Fraction of the fastest speed of a scene below which nodal velocities count as zero; the limits
+/// of acceleration and pressure follow from it. It applies to all patches, quiescent or not.
+const STILL: f64 = 1.0 / (1u64 << 50) as f64;
+
+impl<const D: usize> Scheme<D> {
+    /// Scheme of `scene` with the `models` of its bodies, and the columns and nodal fields that the
+    /// effects have completed.
+    pub(super) fn new(
+        scene: &CheckedScene,
+        models: BodyModels,
+        columns: Columns,
+        fields: Fields,
+        of_effects: EffectLimits,
+    ) -> Self {
+        let method = &scene.scene.method;
+        let viscosity = scene.scene.artificial_viscosity.as_ref();
+        let cell: [f64; D] = std::array::from_fn(|a| scene.cell_size[a]);
+        let volume: f64 = cell.iter().product();
+        let smallest = cell.iter().copied().fold(f64::INFINITY, f64::min);
+        let waves = BodyWaves::new::<D>(scene, &models, smallest);
+        let densest =
+            (0..scene.bodies.len()).map(|i| scene.material_of(i).density).fold(0.0, f64::max);
+        // volume of a cell, with axial symmetry per radian at the outermost radius
+        let around = match scene.axisymmetric() {
+            true => scene.scene.domain.lower[0] + scene.cells[0] as f64 * cell[0],
+            false => 1.0,
+        };
+        // exact if all edges are equal
+        let edge = match cell.iter().all(|&h| h == cell[0]) {
+            true => cell[0],
+            false => volume.powf(1.0 / D as f64),
+        };
+        let contact = contact_condition(scene);
+        let friction_part = if rubs::<D>(contact) { None } else { columns.friction_heat };
+        let owner = |column: usize| columns.owners[column].expect("a force is an effect's");
+        let fastest = waves.fastest;
+        Scheme {
+            history: models.histories(&columns),
+            forces: columns.forces.iter().map(|&force| (force, owner(force))).collect(),
+            friction_part: friction_part.unwrap_or(StepPart::Contact as usize),
+            of_effects,
+            columns,
+            fields,
+            transfer: method.transfer.plan(),
+            stepping: method.stepping,
+            stress_update: method.stress_update,
+            compatible: method.energy == EnergyUpdate::Compatible,
+            filter_heat: method.filter_heat,
+            relaxation: method.pressure_relaxation,
+            volume_relaxation: method.volume_relaxation,
+            edge_mask: method.edge_mask,
+            viscosity: viscosity.map(|v| Viscosity::new(v, edge)),
+            contact,
+            layers: scene.velocity_fields(),
+            stiffness: waves.stiffness,
+            impedances: waves.impedances,
+            impact: waves.impact,
+            max_adhesion_impulse: waves.max_adhesion_impulse,
+            shear_speeds: waves.shear_speeds,
+            thermals: models.thermals,
+            models: models.models,
+            strengths: models.strengths,
+            shape: method.shape,
+            total_lagrangian: method.frame == FrameKind::TotalLagrangian,
+            cell,
+            inverse_cell: cell.map(|h| 1.0 / h),
+            edge,
+            lower: std::array::from_fn(|a| scene.scene.domain.lower[a]),
+            cells: std::array::from_fn(|a| scene.cells[a] as i64),
+            no_slip: scene.side_properties().map(|ends| ends.iter().any(|side| side.no_slip)),
+            sides: scene.side_properties(),
+            axisymmetric: scene.axisymmetric(),
+            domain_limit: method.domain_limit,
+            may_sleep: scene.skips_quiet(),
+            fastest,
+            // the content of such a node is below the rounding of its neighbours
+            empty_mass: densest * volume * around * 2f64.powi(-90),
+            // far ahead of a wave, values would decay until they are denormal numbers; below this
+            // fraction of the speeds of the scene they are below the rounding of the values behind
+            // the wave
+            quiescent_speed: fastest * STILL,
+            still_acceleration: fastest * fastest * STILL / smallest,
+            still_pressure: densest * fastest * fastest * STILL,
+        }
+    }
+
+    /// Shortest edge of a cell [m].
+    pub fn shortest_edge(&self) -> f64 {
+        self.cell.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether the domain of the shape function grows with the particle.
+    pub fn grows(&self) -> bool {
+        self.extent() == DomainExtent::Current
+    }
+
+    pub(super) fn extent(&self) -> DomainExtent {
+        self.shape.extent()
+    }
+
+    /// Whether the shape function depends on a deforming domain.
+    pub(super) fn domains_deform(&self) -> bool {
+        self.extent() == DomainExtent::Current && !self.total_lagrangian
+    }
+
+    /// Whether step number `step` (from 1) relaxes the pressure.
+    pub(super) fn relaxes(&self, step: u64) -> Option<f64> {
+        self.relaxation.filter(|r| step.is_multiple_of(r.interval as u64)).map(|r| r.rate)
+    }
+}
+
+/// Condition at the contact plane, if bodies of `scene` have separate velocity fields.
+pub(super) fn contact_condition(scene: &CheckedScene) -> Option<ContactCondition> {
+    let contact = scene.scene.contact.and_then(|contact| contact.condition());
+    contact.filter(|_| scene.velocity_fields() > 1)
+}
+
+/// Whether bodies in contact rub against each other: on a line there is no tangential motion.
+pub(super) fn rubs<const D: usize>(contact: Option<ContactCondition>) -> bool {
+    D > 1 && contact.is_some_and(|c| c.coefficient.is_some())
+}
