@@ -3,6 +3,7 @@
 use std::fs;
 
 use flyer_mpm::input;
+use flyer_mpm::scene::CheckedScene;
 use flyer_mpm::input::LIBRARY;
 use serde_json::{Value, json};
 
@@ -56,7 +57,7 @@ fn files_stand_beside_the_scene() {
     fs::write(at("metals/mine.json"), metal.to_string()).unwrap();
     let mut value = shipped("piston.json");
     value["materials"]["aluminium"] = json!({"file": "metals/mine.json", "eos": {"c0": 4000.0}});
-    let read = |value: &Value| -> Result<scene::CheckedScene, String> {
+    let read = |value: &Value| -> Result<CheckedScene, String> {
         fs::write(at("scene.json"), value.to_string()).unwrap();
         let bytes = input::read(&at("scene.json")).map_err(|e| e.to_string())?;
         input::parse(&bytes, "scene.json", &[]).map_err(|e| e.to_string())
@@ -95,7 +96,7 @@ fn tables_stand_beside_the_scene() {
     value.as_object_mut().unwrap().remove("reference");
     value["bodies"][0]["velocity"] = json!([-100.0]);
     let eos = json!({"type": "tabular", "table": "table.csv"});
-    let read = |material: Value, table: &str| -> Result<scene::CheckedScene, String> {
+    let read = |material: Value, table: &str| -> Result<CheckedScene, String> {
         let mut value = value.clone();
         value["materials"]["aluminium"] = material;
         fs::write(at("table.csv"), table).unwrap();
