@@ -13,6 +13,7 @@
 //! - [`scene`]: the data of a scene;
 //! - [`geometry`]: bodies and how they are filled with particles;
 //! - [`side`]: kinds of side of the domain;
+//! - [`balance`]: measures of a patch's load;
 //! - [`contact`]: contact laws between bodies;
 //! - [`exact`]: closed solutions; depends on materials only;
 //! - [`material`]: equations of state, strength and failure;
@@ -21,6 +22,7 @@
 //! - [`plot`]: pictures; independent of the other modules.
 
 pub mod accuracy;
+pub mod balance;
 pub mod contact;
 pub mod driver;
 pub mod effects;

@@ -5,7 +5,7 @@ mod ledger;
 
 pub use ledger::{EffectUse, ledger, ledger_lines, ledger_rest};
 
-use crate::scene::CheckedScene;
+use crate::scene::{CheckedScene, EffectKey};
 use crate::solver::Stepper;
 use crate::solver::columns::Columns;
 use crate::solver::declare::Declare;
@@ -18,6 +18,10 @@ macro_rules! packages {
 
         impl Registry for EffectRegistry {
             const NAMES: &'static [&'static str] = &[$(<$module::$package>::NAME),*];
+
+            fn keys() -> Vec<EffectKey> {
+                [$(<$module::$package>::key()),*].into_iter().flatten().collect()
+            }
 
             fn is_active(effect: usize, scene: &CheckedScene) -> bool {
                 let all: &[fn(&CheckedScene) -> bool] = &[$(<$module::$package>::is_active),*];
@@ -63,7 +67,13 @@ packages![
     temperature::Temperature,
     conduction::Conduction,
     pores::Pores,
+    heat_mixing::HeatMixing,
 ];
+
+/// Keys of the effects at the top of a scene.
+pub fn keys() -> Vec<EffectKey> {
+    EffectRegistry::keys()
+}
 
 /// Particle columns that `scene` needs.
 pub fn columns(scene: &CheckedScene) -> Columns {

@@ -3,6 +3,7 @@
 use schemars::{Schema, generate::SchemaSettings, transform::RecursiveTransform};
 use serde_json::{Value, json};
 
+use crate::effects;
 use crate::scene::{Preset, Scene};
 
 /// Largest magnitude of any number in a scene. Products of four such numbers, for example an energy
@@ -46,8 +47,28 @@ pub fn schema() -> Value {
 /// The JSON schema of a scene whose method is given in full, as every scene is once its preset is
 /// expanded.
 pub(super) fn full_schema() -> Value {
-    let settings = SchemaSettings::draft2020_12().with_transform(RecursiveTransform(bound));
-    settings.into_generator().into_root_schema_for::<Scene>().to_value()
+    let settings = || SchemaSettings::draft2020_12().with_transform(RecursiveTransform(bound));
+    let mut root = settings().into_generator().into_root_schema_for::<Scene>().to_value();
+    root["additionalProperties"] = json!(false);
+    for key in effects::keys() {
+        let mut options = (key.schema)(settings());
+        let name = options["title"].take();
+        let name = name.as_str().unwrap_or(key.name);
+        if let Some(object) = options.as_object_mut() {
+            ["$schema", "title"].into_iter().for_each(|key| drop(object.remove(key)));
+            if let Some(Value::Object(definitions)) = object.remove("$defs") {
+                definitions.into_iter().for_each(|(name, of)| root["$defs"][name] = of);
+            }
+        }
+        let description =
+            format!("{} Absent: none.", options["description"].as_str().unwrap_or(""));
+        root["properties"][key.name] = json!({
+            "description": description,
+            "anyOf": [{"$ref": format!("#/$defs/{name}")}, {"type": "null"}],
+        });
+        root["$defs"][name] = options;
+    }
+    root
 }
 
 /// Adds the general bounds to those of one number.

@@ -6,7 +6,7 @@ use super::machine::{COMPUTE, SERIAL};
 use super::particle_density::Terrain;
 use super::schedule::StepCounts;
 use crate::effects;
-use crate::scene::{BalanceCost, CheckedScene, FilterHalo};
+use crate::scene::{CheckedScene, FilterHalo};
 use crate::simulation::patch_counts;
 use crate::solver::StencilRadius;
 
@@ -95,7 +95,7 @@ impl Work {
             ghost_bytes: 8.0 * (3 + ghost_columns) as f64,
             notice: if scene.skips_quiet() { stepper.influence_radius(reach) as f64 } else { 0.0 },
             overlap: options.overlap,
-            evened: options.balance.every > 0 && options.balance.cost == BalanceCost::Time,
+            evened: options.balance.every > 0 && options.balance.cost.measures_time(),
             reach,
             terrain,
         }

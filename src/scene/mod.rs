@@ -4,6 +4,7 @@
 
 mod checked;
 mod checked_body;
+mod effect_options;
 mod estimated_body;
 mod faces;
 mod method_choice;
@@ -15,6 +16,7 @@ mod wave_direction;
 
 pub use checked::{CheckedScene, TOUCHING};
 pub use checked_body::CheckedBody;
+pub use effect_options::{EffectKey, EffectOptions};
 pub use method_choice::{MethodChoice, Preset};
 pub use model::*;
 pub use walls::{Piston, Wall};

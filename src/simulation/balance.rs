@@ -5,7 +5,7 @@ use std::time::Instant;
 use decomp::{assign_patches, busiest_share, relocate};
 
 use super::run::Simulation;
-use crate::scene::BalanceCost;
+use crate::balance::PatchLoad;
 use crate::solver::clock::Activity;
 use crate::solver::patch::Patch;
 
@@ -24,7 +24,7 @@ impl<const D: usize> Simulation<'_, D> {
     pub(super) fn samples(&self, step: u64) -> bool {
         let balance = self.scene.scene.decomposition.balance;
         self.may_balance()
-            && balance.cost == BalanceCost::Time
+            && balance.cost.measures_time()
             && step.is_multiple_of(SAMPLE_EVERY.min(balance.every))
     }
 
@@ -68,17 +68,20 @@ impl<const D: usize> Simulation<'_, D> {
 
     /// Cost and number of particles of every patch, on every rank. Collective.
     fn gather_costs(&self) -> (Vec<u64>, Vec<u64>) {
-        let by_time = self.scene.scene.decomposition.balance.cost == BalanceCost::Time;
+        let rule = self.scene.scene.decomposition.balance.cost;
         let count = self.layout.patches().len();
         let mut sums = vec![0; 2 * count];
         let mine = self.layout.patches_of(self.comm.rank());
         for (patch, index) in self.patches.iter().zip(mine) {
-            let particles = patch.block.own() as i64;
-            let computed = if patch.quiescence.is_quiescent() { 0 } else { particles };
-            // in nanoseconds, so that a patch that was measured once has a nonzero cost
-            let measured = patch.stopwatch.cost().map_or(computed, |c| (c * 1e9) as i64);
-            sums[index] = if by_time { measured } else { computed };
-            sums[count + index] = particles;
+            let particles = patch.block.own() as u64;
+            let computed = u64::from(!patch.quiescence.is_quiescent());
+            let load = PatchLoad {
+                particles: computed * particles,
+                cells: computed * self.layout.patches()[index].count() as u64,
+                seconds: patch.stopwatch.cost(),
+            };
+            sums[index] = rule.of(&load) as i64;
+            sums[count + index] = particles as i64;
         }
         self.comm.sum(&mut sums);
         let mut sums = sums.into_iter().map(|t| t as u64);

@@ -15,7 +15,7 @@ use super::nodal_fields::Fields;
 use super::parts::StepPart;
 use super::patch::Patch;
 use super::scheme::Scheme;
-use crate::scene::CheckedScene;
+use crate::scene::{CheckedScene, EffectKey};
 
 /// Points of a step where effects act, in order.
 ///
@@ -198,6 +198,11 @@ pub trait Package {
     /// Name in tables.
     const NAME: &'static str;
 
+    /// Key of the effect at the top of a scene, if it has one.
+    fn key() -> Option<EffectKey> {
+        None
+    }
+
     /// Whether `scene` uses the effect.
     fn is_active(scene: &CheckedScene) -> bool;
 
@@ -214,6 +219,9 @@ pub trait Package {
 pub trait Registry {
     /// Names of the effects, in order.
     const NAMES: &'static [&'static str];
+
+    /// Keys of the effects at the top of a scene.
+    fn keys() -> Vec<EffectKey>;
 
     /// Whether `scene` uses effect number `effect`.
     fn is_active(effect: usize, scene: &CheckedScene) -> bool;

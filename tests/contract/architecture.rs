@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::imports::Imports;
 
 /// The modules from the top down; those on one line may use each other.
-const ROOMS: [&[&str]; 17] = [
+const ROOMS: [&[&str]; 18] = [
     &["study"],
     &["driver"],
     &["accuracy"],
@@ -18,6 +18,7 @@ const ROOMS: [&[&str]; 17] = [
     &["scene"],
     &["geometry"],
     &["side"],
+    &["balance"],
     &["contact"],
     &["exact"],
     &["shape"],

@@ -41,6 +41,7 @@ fn on_a_line() {
     scene["bodies"][1]["box"]["upper"] = json!([0.001]);
     scene["time"]["end"] = json!(0.4e-6);
     scene["contact"] = json!({"type": "frictionless"});
+    scene["heat_mixing"] = json!({"coefficient": 10.0});
     scene["output"] = json!({});
     scene.as_object_mut().unwrap().remove("reference");
     let whole = on::<1>(&scene, json!([1]), 1);
@@ -67,6 +68,7 @@ fn about_an_axis_and_in_a_plane() {
                 "box": {"lower": [0.0, 0.0], "upper": [0.0013, 0.003]},
                 "velocity": [0.0, -400.0], "particles_per_cell": [2, 2]}],
             "artificial_viscosity": {"linear": 0.2, "quadratic": 2.0},
+            "heat_mixing": {"coefficient": 10.0},
             "boundary": {"x_lower": "symmetry", "y_lower": "wall",
                 "temperature": {"y_lower": 600.0}}
         });

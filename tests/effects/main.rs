@@ -3,6 +3,7 @@
 mod erosion;
 mod failure;
 mod heat;
+mod heat_mixing;
 mod layouts;
 mod metal;
 mod outside;

@@ -76,6 +76,7 @@ fn block() -> Value {
             "box": {"lower": [0.0, 0.0], "upper": [0.004, 0.002]},
             "velocity": [100.0, -100.0], "particles_per_cell": [2, 2]}],
         "artificial_viscosity": {"linear": 0.2, "quadratic": 2.0},
+        "heat_mixing": {"coefficient": 10.0},
         "boundary": {"x_lower": {"pressure": 1e8}, "x_upper": "transmitting",
             "y_lower": {"friction": 0.3}}
     })

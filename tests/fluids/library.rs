@@ -3,8 +3,8 @@
 use std::fs;
 
 use flyer_mpm::input;
-use flyer_mpm::scene::CheckedScene;
 use flyer_mpm::input::LIBRARY;
+use flyer_mpm::scene::CheckedScene;
 use serde_json::{Value, json};
 
 use crate::tools::{checked, run, shipped};

@@ -60,6 +60,9 @@ pub(super) fn check(scene: Scene, file: &str) -> Result<CheckedScene, SceneFault
     motion::check_body_force(&checked)?;
     output::check_tracers(&checked)?;
     output::check_checkpoints(&checked.scene)?;
+    for key in crate::effects::keys() {
+        (key.check)(&checked).map_err(|e| SceneFault::of_parameter(e, key.name))?;
+    }
     reference::check(&mut checked)?;
     estimate::check(&checked)?;
     if dimension == 1 {

@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 pub use body::*;
 pub use estimate::*;
@@ -22,6 +23,7 @@ pub use monitor::*;
 pub use motion::*;
 pub use output::*;
 
+pub use crate::balance::BalanceCost;
 pub use crate::contact::{Contact, Normals};
 pub use crate::geometry::region::*;
 pub use crate::material::definition::*;
@@ -34,7 +36,6 @@ pub const FORMAT: u32 = 2;
 
 /// A scene: the complete input of a run.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct Scene {
     /// Format of the scene; absent: the current format, the only one that is accepted.
     #[serde(default = "present_format")]
@@ -87,6 +88,10 @@ pub struct Scene {
     /// Estimate of the run's own errors; absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_estimate: Option<ErrorEstimate>,
+    /// Values of the keys of effects, by name.
+    #[serde(flatten)]
+    #[schemars(skip)]
+    pub effects: BTreeMap<String, Value>,
 }
 
 fn present_format() -> u32 {
@@ -178,16 +183,6 @@ impl Default for Balance {
     fn default() -> Self {
         Balance { every: 50, cost: BalanceCost::Time }
     }
-}
-
-/// Measure of a patch's load.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum BalanceCost {
-    /// Measured and smoothed computing time of the patch.
-    Time,
-    /// Number of particles that the patch computes; the migration is then the same in every run.
-    Particles,
 }
 
 /// Ghost data for a filter that extends over several cells. Both choices give the same bits at
