@@ -18,5 +18,6 @@ pub use checked::{CheckedScene, TOUCHING};
 pub use checked_body::CheckedBody;
 pub use effect_options::{EffectKey, EffectOptions};
 pub use method_choice::{MethodChoice, Preset};
+pub(crate) use model::planned_quantities;
 pub use model::*;
 pub use walls::{Piston, Wall};

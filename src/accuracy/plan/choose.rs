@@ -3,8 +3,9 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::data::{Data, SchemeAccuracy, Size};
+use super::data::{Data, SchemeAccuracy};
 use super::pilot::{self, Pilot};
+use super::quantities::ErrorScale;
 use super::schemes::{PlannedScheme, schemes};
 use crate::accuracy::estimate::{EstimateBasis, Laws};
 use crate::input;
@@ -140,47 +141,7 @@ struct Candidate {
     steps: f64,
 }
 
-/// Lengths of a scene that scale its errors.
-struct ErrorScale {
-    /// Shortest pulse of the profiles \[m\].
-    pulse: f64,
-    /// Shortest plateau \[m\].
-    plateau: Option<f64>,
-    /// Distance of the wave to the arrival position \[m\].
-    way: Option<f64>,
-}
-
 impl Candidate {
-    /// Expected error on cells of size `h`.
-    fn error(&self, quantity: PlannedQuantity, scale: &ErrorScale, h: f64) -> Option<Size> {
-        let m = &self.measured;
-        Some(match quantity {
-            PlannedQuantity::L1 => m.e1_cells.times(h / scale.pulse),
-            PlannedQuantity::PlateauPressure => {
-                m.plateau.times((h / scale.plateau?).powf(m.plateau_order))
-            }
-            PlannedQuantity::ArrivalTime => m.arrival_cells.times(h / scale.way?),
-        })
-    }
-
-    /// Largest cell size at which the error is at most `error` in 19 of 20 runs.
-    fn cells_for(&self, quantity: PlannedQuantity, scale: &ErrorScale, error: f64) -> Option<f64> {
-        let m = &self.measured;
-        Some(match quantity {
-            PlannedQuantity::L1 => error * scale.pulse / m.e1_cells.most,
-            PlannedQuantity::PlateauPressure => {
-                // a plateau of fewer cells cannot be evaluated
-                let plateau = scale.plateau?;
-                let h = plateau * (error / m.plateau.most).powf(1.0 / m.plateau_order);
-                h.min(plateau / LEAST_PLATEAU)
-            }
-            PlannedQuantity::ArrivalTime => {
-                let way = scale.way?;
-                (error * way / m.arrival_cells.most).min(way / LEAST_PLATEAU)
-            }
-        })
-    }
-
     fn wall(&self, h: f64, ranks: usize, extra: f64) -> f64 {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let share = ranks.min(cores).max(1) as f64;
@@ -188,9 +149,6 @@ impl Candidate {
         self.cost.at(h) * self.wall / share + messages
     }
 }
-
-/// Smallest number of cells of a plateau, or of the distance to an arrival position.
-const LEAST_PLATEAU: f64 = 26.0;
 
 /// Plans a scene.
 pub fn plan(
@@ -214,8 +172,8 @@ pub fn plan(
         .map_err(|error| fail(error.to_string()))?;
     let body = checked.estimated_body().expect("the check has found it");
     let asked = checked.scene.error_estimate.as_ref().and_then(|e| e.arrivals.first().copied());
-    let place = asked.filter(|_| target.quantity == PlannedQuantity::ArrivalTime);
-    if target.quantity == PlannedQuantity::ArrivalTime && place.is_none() {
+    let place = asked.filter(|_| target.quantity.at_place());
+    if target.quantity.at_place() && place.is_none() {
         return Err(fail(format!(
             "{file}: error_estimate.arrivals: missing key; allowed: places, or --at METRES"
         )));
@@ -266,7 +224,7 @@ pub fn plan(
     let mut best: Option<(&Candidate, f64, f64)> = None;
     let mut nearest: Option<(&Candidate, f64, f64)> = None;
     for candidate in &candidates {
-        let Some(h) = candidate.cells_for(target.quantity, &scale, target.error) else {
+        let Some(h) = target.quantity.cells_for(&candidate.measured, &scale, target.error) else {
             return Err(fail(format!("{file}: no plateau in the body that a pilot sees")));
         };
         let floor = least * candidate.scheme.particles_per_cell as f64;
@@ -276,7 +234,7 @@ pub fn plan(
         }
         let within = candidate.cost.cells_for(target.budget / candidate.wall * target.ranks as f64);
         let h = within.max(floor);
-        if let Some(error) = candidate.error(target.quantity, &scale, h)
+        if let Some(error) = target.quantity.error(&candidate.measured, &scale, h)
             && nearest.is_none_or(|n| error.most < n.2)
         {
             nearest = Some((candidate, h, error.most));
@@ -306,12 +264,13 @@ pub fn plan(
         steps,
         ..*candidate
     };
-    let error = candidate.error(target.quantity, &scale, h).expect("it has been looked at");
+    let error =
+        target.quantity.error(&candidate.measured, &scale, h).expect("it has been looked at");
     // the plan chooses the cell size itself
     let mut outside = Laws::shipped().fitted.outside_but_cells(&run, body);
-    match target.quantity {
-        PlannedQuantity::ArrivalTime => outside.profiles.clear(),
-        _ => outside.arrivals.clear(),
+    match target.quantity.at_place() {
+        true => outside.profiles.clear(),
+        false => outside.arrivals.clear(),
     }
     let mut plan = Plan {
         scheme: candidate.scheme.name.clone(),

@@ -10,6 +10,7 @@ pub mod choose;
 pub mod data;
 pub mod pilot;
 pub mod plan_result;
+mod quantities;
 pub mod schemes;
 
 pub use choose::{ErrorTarget, Plan, PlanError, plan};

@@ -41,31 +41,7 @@ pub fn verdict(
     estimate: Option<&EstimatedErrors>,
     [cpu_seconds, wall_seconds]: [f64; 2],
 ) -> Verdict {
-    let relative = |b: &crate::accuracy::estimate::Bounded| match (b.exact, b.half_width) {
-        (Some(exact), _) => Some(((b.value - exact).abs() / exact.abs(), true)),
-        (None, Some(width)) => Some((width / b.value.abs(), false)),
-        _ => None,
-    };
-    let all: Vec<(f64, bool)> = match planned.quantity {
-        PlannedQuantity::L1 => {
-            let exact: Vec<_> = exact_l1.iter().map(|&l1| (l1, true)).collect();
-            let bounds = estimate.iter().flat_map(|e| &e.profiles);
-            match exact.is_empty() {
-                true => bounds.filter_map(|p| Some((p.l1.half_width?, false))).collect(),
-                false => exact,
-            }
-        }
-        PlannedQuantity::PlateauPressure => estimate
-            .iter()
-            .flat_map(|e| &e.profiles)
-            .filter_map(|p| relative(p.plateau_pressure.as_ref()?))
-            .collect(),
-        PlannedQuantity::ArrivalTime => estimate
-            .iter()
-            .flat_map(|e| &e.arrivals)
-            .filter_map(|a| relative(a.time.as_ref()?))
-            .collect(),
-    };
+    let all = planned.quantity.actual(exact_l1, estimate);
     Verdict {
         quantity: planned.quantity,
         wanted: planned.wanted,

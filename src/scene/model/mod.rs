@@ -9,6 +9,7 @@ mod method;
 mod monitor;
 mod motion;
 mod output;
+mod planned_quantity;
 
 use std::collections::BTreeMap;
 
@@ -22,6 +23,8 @@ pub use method::*;
 pub use monitor::*;
 pub use motion::*;
 pub use output::*;
+pub use planned_quantity::PlannedQuantity;
+pub(crate) use planned_quantity::planned_quantities;
 
 pub use crate::balance::BalanceCost;
 pub use crate::contact::{Contact, Normals};

@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::planned_quantity::PlannedQuantity;
+
 /// Output files of a run.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -51,18 +53,6 @@ pub struct Planned {
     /// default false.
     #[serde(default)]
     pub guess: bool,
-}
-
-/// Quantity whose error is planned.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum PlannedQuantity {
-    /// Pressure on the plateau behind the shock.
-    PlateauPressure,
-    /// Relative L1 error of the pressure in each profile.
-    L1,
-    /// Arrival time at a position.
-    ArrivalTime,
 }
 
 impl Default for Output {
