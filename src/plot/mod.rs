@@ -20,7 +20,6 @@ mod annotations;
 mod axes;
 mod axis;
 mod bars;
-mod base64;
 mod canvas;
 mod color;
 mod color_bar;

@@ -6,13 +6,13 @@
 
 use std::fmt::Write as _;
 
+use base64::prelude::{BASE64_STANDARD, Engine};
 use plotters::backend::{BitMapBackend, DrawingBackend, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{
     Color as _, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle,
 };
 
-use super::base64::base64;
 use super::canvas::{Align, Canvas, CanvasImage, CanvasPoint, CanvasShape, Text};
 use super::color::Color;
 use super::error::PictureError;
@@ -84,7 +84,7 @@ pub(super) fn to_svg(canvas: &Canvas) -> Result<String, PictureError> {
             svg,
             "<image x=\"{x:.0}\" y=\"{y:.0}\" width=\"{w:.0}\" height=\"{h:.0}\" \
              preserveAspectRatio=\"none\" href=\"data:image/png;base64,{}\"/>",
-            base64(&png)
+            BASE64_STANDARD.encode(&png)
         );
     }
     svg.push_str(&body);

@@ -189,91 +189,41 @@ impl CsvTable {
 }
 
 /// Reads a file in the format of [`write_profile`].
+///
+/// # Errors
+///
+/// The file cannot be read, has no header, or has a line with another number of fields.
 pub fn read_csv(path: &Path) -> Result<CsvTable, OutputError> {
     let text = read_text(path, LARGEST_RESULT)?;
     let fault =
-        |line: usize, message: String| OutputError::Csv { path: path.into(), line, message };
-    let mut records = records(&text);
-    let Some((line, names)) = records.next() else { return Err(fault(1, "no header".into())) };
-    let names = names.map_err(|message| fault(line, message))?;
+        |line: u64, message: String| OutputError::Csv { path: path.into(), line, message };
+    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text.as_bytes());
+    let names = reader.headers().map_err(|error| fault(1, error.to_string()))?.clone();
+    if names.is_empty() {
+        return Err(fault(1, "no header".into()));
+    }
     let mut columns: Vec<Vec<String>> = vec![Vec::new(); names.len()];
-    for (line, record) in records {
-        let record = record.map_err(|message| fault(line, message))?;
+    for record in reader.records() {
+        let record = record.map_err(|error| {
+            fault(error.position().map_or(1, csv::Position::line), error.to_string())
+        })?;
         if record.len() != names.len() {
             let message = format!("{} fields, the header has {}", record.len(), names.len());
-            return Err(fault(line, message));
+            return Err(fault(record.position().map_or(1, csv::Position::line), message));
         }
-        for (column, value) in columns.iter_mut().zip(record) {
-            column.push(value);
+        for (column, value) in columns.iter_mut().zip(&record) {
+            column.push(value.to_string());
         }
     }
-    let columns = names.into_iter().zip(columns).map(|(name, texts)| {
+    let columns = names.iter().zip(columns).map(|(name, texts)| {
         let number = |s: &String| if s.is_empty() { Some(f64::NAN) } else { s.parse().ok() };
         let values = match texts.iter().map(number).collect() {
             Some(numbers) => CsvValues::Numbers(numbers),
             None => CsvValues::Text(texts),
         };
-        CsvColumn { name, values }
+        CsvColumn { name: name.to_string(), values }
     });
     Ok(CsvTable { columns: columns.collect() })
-}
-
-/// The records of the text, each with the number of its first line.
-fn records(text: &str) -> impl Iterator<Item = (usize, Result<Vec<String>, String>)> {
-    let (mut rest, mut line) = (text, 1);
-    std::iter::from_fn(move || {
-        if rest.is_empty() {
-            return None;
-        }
-        let first = line;
-        let mut fields = Vec::new();
-        loop {
-            let value;
-            (value, rest) = match next_field(rest) {
-                Ok(split) => split,
-                Err(message) => {
-                    rest = "";
-                    return Some((first, Err(message)));
-                }
-            };
-            line += value.matches('\n').count();
-            fields.push(value);
-            if let Some(next) = rest.strip_prefix(',') {
-                rest = next;
-                continue;
-            }
-            rest = rest.strip_prefix('\r').unwrap_or(rest);
-            rest = rest.strip_prefix('\n').unwrap_or(rest);
-            line += 1;
-            return Some((first, Ok(fields)));
-        }
-    })
-}
-
-/// Takes one field; the remaining text starts with a comma or a line end, or is empty.
-fn next_field(text: &str) -> Result<(String, &str), String> {
-    if !text.starts_with('"') {
-        let end = text.find([',', '\n', '\r']).unwrap_or(text.len());
-        return Ok((text[..end].to_owned(), &text[end..]));
-    }
-    let mut value = String::new();
-    let mut rest = &text[1..];
-    loop {
-        let Some((part, after)) = rest.split_once('"') else {
-            return Err("a quote is not closed".into());
-        };
-        value.push_str(part);
-        match after.strip_prefix('"') {
-            Some(more) => {
-                value.push('"');
-                rest = more;
-            }
-            None if after.is_empty() || after.starts_with([',', '\n', '\r']) => {
-                return Ok((value, after));
-            }
-            None => return Err("text after a closing quote".into()),
-        }
-    }
 }
 
 #[cfg(test)]

@@ -145,7 +145,7 @@ pub enum OutputError {
         /// The file.
         path: PathBuf,
         /// Number of the line, from 1.
-        line: usize,
+        line: u64,
         /// The error.
         message: String,
     },
