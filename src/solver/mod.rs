@@ -563,3 +563,6 @@ fn norm(v: &[f64]) -> f64 {
         _ => v.iter().map(|x| x * x).sum::<f64>().sqrt(),
     }
 }
+
+#[cfg(test)]
+pub(crate) mod tests;
