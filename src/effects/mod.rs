@@ -74,3 +74,6 @@ pub fn columns(scene: &CheckedScene) -> Columns {
 pub fn stepper<const D: usize>(scene: &CheckedScene) -> Stepper<D> {
     Stepper::new::<EffectRegistry>(scene)
 }
+
+#[cfg(test)]
+mod tests;
