@@ -123,3 +123,7 @@ impl<const D: usize> AcceleratedGrid<D> {
         with_width!(patch.stencils.width, go(patch, step.scheme, self, grid, step.dt));
     }
 }
+
+#[cfg(test)]
+#[path = "tests/accelerated_grid.rs"]
+mod tests;

@@ -187,3 +187,7 @@ impl BodyForceEffect {
         with_width!(patch.stencils.width, go(patch, step.scheme, self, step.dt));
     }
 }
+
+#[cfg(test)]
+#[path = "tests/body_force.rs"]
+mod tests;

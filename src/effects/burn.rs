@@ -167,42 +167,5 @@ fn burnt(time: f64, lighting_time: f64, duration: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::{Burn, BurnPlane};
-
-    fn front(points: Option<Vec<Vec<f64>>>, plane: Option<BurnPlane>) -> BurnFront {
-        BurnFront {
-            points,
-            plane,
-            detonation_velocity: 5000.0,
-            width: 1e-3,
-            start: 1e-6,
-            compression: false,
-        }
-    }
-
-    #[test]
-    fn the_nearest_point_lights() {
-        let front = front(Some(vec![vec![0.0, 0.0], vec![1.0, 0.0]]), None);
-        let time = |x: f64, y: f64| FrontTimes(&front).lighting_time(&[x, y]);
-        assert!((time(0.3, 0.4) - (1e-6 + 0.5 / 5000.0)).abs() < 1e-18);
-        assert!((time(0.9, 0.0) - (1e-6 + 0.1 / 5000.0)).abs() < 1e-18);
-    }
-
-    #[test]
-    fn a_plane_lights_to_both_sides() {
-        let plane = BurnPlane { point: vec![0.0, 1.0], normal: vec![0.0, -2.0] };
-        let front = Burn::Front(front(None, Some(plane)));
-        let time = |y: f64| FrontTimes(front.front().unwrap()).lighting_time(&[7.0, y]);
-        assert!((time(1.5) - (1e-6 + 1e-4)).abs() < 1e-18 && time(0.5) == time(1.5));
-    }
-
-    #[test]
-    fn it_burns_over_the_width() {
-        assert_eq!(
-            [burnt(0.9, 1.0, 0.5), burnt(1.25, 1.0, 0.5), burnt(2.0, 1.0, 0.5)],
-            [0.0, 0.5, 1.0]
-        );
-    }
-}
+#[path = "tests/burn.rs"]
+mod tests;

@@ -372,3 +372,7 @@ impl<const D: usize> HeatConduction<D> {
         with_width!(patch.stencils.width, go(patch, step.scheme, self, step.dt));
     }
 }
+
+#[cfg(test)]
+#[path = "tests/conduction.rs"]
+mod tests;

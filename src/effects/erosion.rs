@@ -56,3 +56,7 @@ impl<const D: usize> Effect<D> for ErosionEffect {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "tests/erosion.rs"]
+mod tests;

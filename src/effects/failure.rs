@@ -201,3 +201,7 @@ impl FailureEffect {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "tests/failure.rs"]
+mod tests;

@@ -208,3 +208,7 @@ impl LoadedSides {
         patch.nodes.fields[first + 1] = touched;
     }
 }
+
+#[cfg(test)]
+#[path = "tests/loaded_sides.rs"]
+mod tests;

@@ -43,3 +43,7 @@ impl<const D: usize> Effect<D> for Pores {
         values[self.distension] = particle.scene.material_of(particle.body).distension();
     }
 }
+
+#[cfg(test)]
+#[path = "tests/pores.rs"]
+mod tests;

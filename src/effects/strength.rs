@@ -348,3 +348,7 @@ impl StrengthEffect {
         patch.block.columns[c.sound_speed] = speed;
     }
 }
+
+#[cfg(test)]
+#[path = "tests/strength.rs"]
+mod tests;

@@ -124,3 +124,7 @@ impl Temperature {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "tests/temperature.rs"]
+mod tests;

@@ -296,3 +296,7 @@ impl<const D: usize> TransmittingSides<D> {
         s.push(patch, at, index, force, false);
     }
 }
+
+#[cfg(test)]
+#[path = "tests/transmitting_sides.rs"]
+mod tests;

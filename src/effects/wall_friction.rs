@@ -198,3 +198,7 @@ impl WallFriction {
         s.push(patch, at, index, force, true);
     }
 }
+
+#[cfg(test)]
+#[path = "tests/wall_friction.rs"]
+mod tests;

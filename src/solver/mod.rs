@@ -42,3 +42,6 @@ pub use exchange::{Nodal, Sleep, World};
 pub use reach::StencilRadius;
 pub use scheme::Scheme;
 pub use stepper::{Stepper, Steps};
+
+#[cfg(test)]
+pub(crate) mod tests;

@@ -1,0 +1,35 @@
+//! Tests on one patch with two particles: see [`Fixture`].
+
+use serde_json::json;
+
+use crate::solver::effect::{Account, Phase};
+use crate::solver::tests::fixture::{Fixture, close};
+
+#[test]
+fn gravity_accelerates_all_alike_and_counts_its_work() {
+    let mut f = Fixture::<2>::new(json!({"body_force": {"gravity": [3.0, -5.0]}}));
+    f.set("mass", &[2.0, 4.0]).act(Phase::ParticleForce, 0.1);
+    close(&f.get("body_force_x"), &[6.0, 12.0]);
+    close(&f.get("body_force_y"), &[-10.0, -20.0]);
+    f.advance(0.1);
+    close(&f.get("velocity_x"), &[0.3, 0.3]);
+    close(&f.get("velocity_y"), &[-0.5, -0.5]);
+    // m g . (v + v')/2 dt
+    close(&f.get("body_force_work"), &[2.0 * 0.17, 4.0 * 0.17]);
+    close(&f.get("body_force_impulse_x"), &[0.6, 1.2]);
+    close(&f.get("body_force_impulse_y"), &[-1.0, -2.0]);
+    // seen from a grid that moves at 7 m/s along x, its travel works too
+    close(&[f.account(Account::ExternalWork, [7.0, 0.0])], &[6.0 * 0.17 + 7.0 * 1.8]);
+    close(&[f.account(Account::ExternalImpulse(1), [0.0; 2])], &[-3.0]);
+}
+
+#[test]
+fn with_compatible_energy_its_work_is_the_gain_of_kinetic_energy() {
+    let method = json!({"transfer": {"xpic": 2}, "stepping": "midpoint", "energy": "compatible",
+        "filter_heat": true});
+    let mut f = Fixture::<1>::new(json!({"method": method, "body_force": {"gravity": [3.0]}}));
+    f.set("velocity", &[1.0, -1.0]).advance(0.1);
+    let (v, e) = (f.get("velocity"), f.get("specific_internal_energy"));
+    let energy = v[0] * v[0] + v[1] * v[1] + 2.0 * (e[0] + e[1]);
+    close(&[2.0 + f.account(Account::ExternalWork, [0.0])], &[energy]);
+}

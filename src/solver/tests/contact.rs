@@ -1,0 +1,189 @@
+//! Contact of two bodies at the nodes between them.
+
+use serde_json::{Value, json};
+
+use super::fixture::{Fixture, close};
+
+fn body(name: &str, lower: Value, upper: Value, velocity: Value) -> Value {
+    let ones = vec![1; lower.as_array().unwrap().len()];
+    json!({"name": name, "material": "fluid", "box": {"lower": lower, "upper": upper},
+        "velocity": velocity, "particles_per_cell": ones})
+}
+
+/// Two particles of 2 kg in the cells on both sides of node 4, of bodies that meet at 3 m/s: the
+/// greatest impulse of adhesion is 0.02 x 2 kg/m3 x 1 m x 3 m/s = 0.12 Pa s.
+fn pair(transfer: &str) -> Fixture<1> {
+    let bodies = [
+        body("a", json!([3.0]), json!([4.0]), json!([2.0])),
+        body("b", json!([4.0]), json!([5.0]), json!([-1.0])),
+    ];
+    let contact = json!({"type": "frictionless"});
+    let method = json!({"transfer": transfer});
+    Fixture::new(json!({"bodies": bodies, "contact": contact, "method": method}))
+}
+
+/// Values of a field at node 4 for both bodies.
+fn both(f: &Fixture<1>, field: &str) -> [f64; 2] {
+    [f.node_of(0, field, [4]), f.node_of(1, field, [4])]
+}
+
+#[test]
+fn bodies_that_meet_share_momentum_and_force() {
+    for (transfer, taken) in [("pic", 1.0), ("flip", 0.0)] {
+        let mut f = pair(transfer);
+        f.set("stress_volume", &[6.0, 2.0]).scatter(0.1);
+        // 1 kg of each: velocities 2 and -1 m/s, accelerations 6 and -2 m/s2
+        assert_eq!(both(&f, "mass"), [1.0, 1.0]);
+        close(&both(&f, "lumped_velocity"), &[0.5, 0.5]);
+        close(&both(&f, "acceleration"), &[2.0, 2.0]);
+        close(
+            &[f.node_of(0, "lumped_velocity", [3]), f.node_of(1, "lumped_velocity", [5])],
+            &[2.0, -1.0],
+        );
+        let constraint = f.patch.contact.constraints[0];
+        assert_eq!(constraint.normal, [1.0]);
+        // impulse and force of the second on the first
+        close(&[constraint.given[0][0], constraint.given[1][0]], &[-1.5, -4.0]);
+        f.run(0.1, |s, step, patch| s.gather_contact(patch, step.dt));
+        close(&f.patch.contact.forces[0], &[taken * 15.0 + 4.0, 0.0]);
+    }
+}
+
+#[test]
+fn bodies_do_not_pull_each_other() {
+    let mut f = pair("pic");
+    f.set("velocity", &[-2.0, 1.0]).scatter(0.1);
+    assert!(f.patch.contact.constraints.is_empty());
+    close(&both(&f, "lumped_velocity"), &[-2.0, 1.0]);
+}
+
+#[test]
+fn bodies_touch_if_they_would_overlap_by_the_end_of_the_step() {
+    // m u + A s dt > 0 with the reduced mass 1/2 kg, u = -3 m/s, A = 1, dt = 0.1 s: above 15 Pa
+    for (stress, touches) in [(14.0, false), (16.0, true)] {
+        let mut f = pair("pic");
+        f.set("velocity", &[-2.0, 1.0]).set("stress_volume", &[stress, stress]).scatter(0.1);
+        assert_eq!(f.patch.contact.constraints.len(), usize::from(touches), "{stress} Pa");
+    }
+}
+
+#[test]
+fn a_gap_keeps_bodies_apart() {
+    // closed below 0.01 cells, and under stress below 0.01 + s/(rho c^2) with rho c^2 = 200 Pa
+    for (gap, stress, touches) in
+        [(0.02, 0.0, false), (0.008, 0.0, true), (0.05, 10.0, true), (0.07, 10.0, false)]
+    {
+        let mut f = pair("pic");
+        f.set("position", &[3.5 - 0.5 * gap, 4.5 + 0.5 * gap]);
+        f.set("stress_volume", &[stress, stress]).scatter(0.1);
+        assert_eq!(f.patch.contact.constraints.len(), usize::from(touches), "{gap}, {stress} Pa");
+    }
+}
+
+#[test]
+fn bodies_that_were_pressed_together_adhere_for_a_while() {
+    // 0.1 Pa s are left of 0.12; a tension of 2 Pa takes more in a step
+    for (stress, adheres) in [(0.0, true), (-0.9, true), (-2.0, false)] {
+        let mut f = pair("pic");
+        f.set("velocity", &[-2.0, 1.0]).set("contact_impulse", &[0.1, 0.0]);
+        f.set("stress_volume", &[stress, stress]).scatter(0.1);
+        assert_eq!(f.patch.contact.constraints.len(), usize::from(adheres), "{stress} Pa");
+    }
+    // the impulse of the start, a tenth of it, holds against a slow separation alone
+    for (speed, adheres) in [(0.1, true), (0.2, false)] {
+        let mut f = pair("pic");
+        f.set("velocity", &[-speed, 0.0]).scatter(0.1);
+        assert_eq!(f.patch.contact.constraints.len(), usize::from(adheres), "{speed} m/s");
+    }
+}
+
+#[test]
+fn pressure_adds_to_the_contact_impulse() {
+    let mut f = pair("pic");
+    let mut impulse = |stress: [f64; 2]| {
+        f.set("contact_impulse", &[0.05, 0.05]).set("jacobian", &[0.5, 1.0]);
+        f.set("stress_volume", &stress);
+        f.run(0.1, |s, step, patch| s.find_contact_impulse(patch, step.jacobian, step.dt));
+        f.get("contact_impulse")
+    };
+    // 0.05 + 0.1 s of 0.6 Pa, and of -0.2 Pa
+    close(&impulse([0.3, -0.2]), &[0.11, 0.03]);
+    // between none and 0.12 Pa s
+    close(&impulse([3.0, -2.0]), &[0.12, 0.0]);
+}
+
+/// Two particles of 2 kg below and above y = 4; the upper one slides at 8 m/s and sinks at 2 m/s.
+fn sliding(transfer: &str, coefficient: f64) -> Fixture<2> {
+    let bodies = [
+        body("lower", json!([3.0, 3.0]), json!([4.0, 4.0]), json!([0.0, 0.0])),
+        body("upper", json!([3.0, 4.0]), json!([4.0, 5.0]), json!([8.0, -2.0])),
+    ];
+    let contact = json!({"type": "friction", "coefficient": coefficient});
+    Fixture::new(json!({"bodies": bodies, "contact": contact, "method": {"transfer": transfer}}))
+}
+
+/// Values of a vector at the node (3, 4) for both bodies: x, x, y, y.
+fn between(f: &Fixture<2>, field: &str) -> [f64; 4] {
+    let at = |body: usize, axis: &str| f.node_of(body, &format!("{field}_{axis}"), [3, 4]);
+    [at(0, "x"), at(1, "x"), at(0, "y"), at(1, "y")]
+}
+
+#[test]
+fn friction_is_bounded_by_coulombs_law() {
+    let mut f = sliding("pic", 0.3);
+    f.scatter(0.1);
+    // 1/2 kg of each at the node: N = 1/4 kg x 2 m/s, friction 0.3 N = 0.15 N s against the slip
+    close(&between(&f, "lumped_velocity"), &[0.0, 8.0, -1.0, -1.0]);
+    close(&between(&f, "acceleration"), &[3.0, -3.0, 0.0, 0.0]);
+    f.run(0.1, |s, step, patch| s.gather_contact(patch, step.dt));
+    // 1/2 kg x 1 m/s in 0.1 s, and 0.15 N s
+    close(&f.patch.contact.forces[0], &[5.0, 1.5]);
+}
+
+#[test]
+fn bodies_stick_below_coulombs_bound() {
+    let mut f = sliding("pic", 5.0);
+    f.scatter(0.1);
+    // T = 1/4 kg x 8 m/s is below 5 N: one velocity
+    close(&between(&f, "lumped_velocity"), &[4.0, 4.0, -1.0, -1.0]);
+    assert!(f.patch.contact.constraints.iter().all(|constraint| constraint.whole));
+}
+
+#[test]
+fn with_flip_sticking_needs_a_force() {
+    let mut f = sliding("flip", 5.0);
+    f.set("stress_volume", &[20.0, 20.0]).scatter(0.1);
+    // both are pushed together by 10 N, N = 1/4 kg x 0.1 s x 40 m/s2; T = 2 N s is below 5 N, so
+    // the force is T/dt = 20 N; along x both are also pushed by -10 N
+    close(&between(&f, "acceleration")[..2], &[2.0 * (20.0 - 10.0), 2.0 * (-20.0 - 10.0)]);
+    close(&between(&f, "lumped_velocity")[..2], &[0.0, 8.0]);
+}
+
+#[test]
+fn friction_heats_both_bodies() {
+    let mut f = sliding("pic", 0.3);
+    f.solve(0.1);
+    // the mean velocities at the node are 0.15 and 7.85 m/s: 1.5 N x 7.7 m/s x 0.1 s, half each
+    let heat = 0.5 * 1.5 * 7.7 * 0.1 / 0.5;
+    close(&[f.node_of(0, "heat", [3, 4]), f.node_of(1, "heat", [3, 4])], &[heat; 2]);
+    f.run(0.1, |s, step, patch| s.gather_contact(patch, step.dt));
+    // N = 1/4 at each of the two nodes
+    close(&f.get("specific_internal_energy"), &[0.5 * heat; 2]);
+}
+
+#[test]
+fn three_bodies_at_a_node_get_one_velocity() {
+    let bodies = [
+        body("a", json!([3.0]), json!([4.0]), json!([6.0])),
+        body("b", json!([4.0]), json!([4.5]), json!([0.0])),
+        body("c", json!([4.5]), json!([5.5]), json!([-3.0])),
+    ];
+    let contact = json!({"type": "frictionless"});
+    let mut f = Fixture::<1>::new(json!({"bodies": bodies, "contact": contact,
+        "method": {"shape": "gimp", "transfer": "pic"}}));
+    f.scatter(0.1);
+    // node 5: b reaches it with 1 kg x its share, c with its own
+    let velocities = [1, 2].map(|body| f.node_of(body, "lumped_velocity", [5]));
+    let masses = [1, 2].map(|body| f.node_of(body, "mass", [5]));
+    close(&velocities, &[-3.0 * masses[1] / (masses[0] + masses[1]); 2]);
+}

@@ -1,0 +1,17 @@
+//! Tests of single kernels of the step against closed answers, on one patch with a few particles.
+//!
+//! Cells have an edge of 1 m, and numbers are chosen so that the answers follow by hand.
+
+pub(crate) mod fixture;
+
+mod contact;
+mod gather;
+mod particle_domains;
+mod particle_update;
+mod relaxation;
+mod scatter;
+mod series;
+mod sides;
+mod solid;
+mod steps;
+mod total_lagrangian;
