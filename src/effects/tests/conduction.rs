@@ -74,3 +74,22 @@ fn conduction_limits_the_step() {
     // h^2/(4 kappa) with kappa = 5/(10 x 2)
     close(&[steps.into_iter().fold(f64::INFINITY, f64::min)], &[1.0]);
 }
+
+#[test]
+fn images_beyond_a_side_of_prescribed_temperature_are_as_much_warmer() {
+    let thermal = json!({"specific_heat": 10.0, "reference_temperature": 300.0,
+        "conductivity": 5.0});
+    let boundary = json!({"x_lower": "wall", "temperature": {"x_lower": 400.0}});
+    let mut f = Fixture::<1>::new(json!({
+        "method": {"shape": "gimp"},
+        "materials": {"fluid": {"thermal": thermal}},
+        "boundary": boundary,
+        "bodies": [{"name": "body", "material": "fluid", "particles_per_cell": [1],
+            "box": {"lower": [0.0], "upper": [2.0]}}],
+    }));
+    f.set("position", &[0.25, 6.5]).act(Phase::ParticleForce, 0.1).solve(0.1);
+    // at node 1 stand 9/32 of the particle with 300 K and 1/32 of its image with 500 K; the nodal
+    // temperature is the third field from the last, the node beyond the side is warmer by as much
+    close(&[f.added_node(2, [1])], &[0.9 * 300.0 + 0.1 * 500.0]);
+    close(&[f.added_node(2, [0]), f.added_node(2, [-1])], &[400.0, 480.0]);
+}

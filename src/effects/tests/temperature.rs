@@ -51,11 +51,17 @@ fn the_temperature_follows_from_the_energy() {
 
 #[test]
 fn a_body_may_start_warm() {
-    let thermal = json!({"specific_heat": 10.0, "reference_temperature": 300.0});
-    let body = json!({"name": "body", "material": "fluid", "particles_per_cell": [1],
-        "box": {"lower": [3.0], "upper": [5.0]}, "temperature": 310.0});
-    let f = Fixture::<1>::new(json!({"materials": {"fluid": {"thermal": thermal}},
-        "bodies": [body]}));
-    close(&f.get("temperature"), &[310.0; 2]);
-    close(&f.get("specific_internal_energy"), &[100.0; 2]);
+    for (source, energy) in [("energy", 100.0), ("plastic_work", 0.0)] {
+        let thermal =
+            json!({"specific_heat": 10.0, "reference_temperature": 300.0, "source": source});
+        let strength = json!({"type": "von_mises", "shear_modulus": 30.0, "yield_stress": 6.0});
+        let body = json!({"name": "body", "material": "fluid", "particles_per_cell": [1],
+            "box": {"lower": [3.0], "upper": [5.0]}, "temperature": 310.0});
+        let f = Fixture::<1>::new(json!({
+            "materials": {"fluid": {"thermal": thermal, "strength": strength}},
+            "bodies": [body],
+        }));
+        close(&f.get("temperature"), &[310.0; 2]);
+        close(&f.get("specific_internal_energy"), &[energy; 2]);
+    }
 }

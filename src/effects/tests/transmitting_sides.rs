@@ -73,3 +73,30 @@ fn shear_waves_leave_with_their_own_impedance() {
     close(&[f.node("acceleration_y", [8, 3])], &[-z * 3.0 / (1.0 + 0.05 * z)]);
     close(&[f.node("acceleration_x", [8, 3])], &[0.0]);
 }
+
+#[test]
+fn the_distance_to_the_side_is_in_metres() {
+    let mut f = Fixture::<1>::new(json!({
+        "domain": {"upper": [4.0], "cell_size": 0.5},
+        "boundary": {"x_upper": "transmitting"},
+        "bodies": [{"name": "body", "material": "fluid", "particles_per_cell": [1],
+            "box": {"lower": [3.0], "upper": [4.0]}}],
+    }));
+    f.set("velocity", &[3.0, 3.0]).set("velocity_gradient", &[4.0, 4.0]);
+    f.set("side_gradient_before_xx", &[4.0, 4.0]);
+    // 4/s over 1/4 m, on 1/2 kg: the mean velocity of the step is 4 (1/2)/(1/2 + 0.05 x 20)
+    close(&accelerations(&mut f), &[0.0, 0.0, -20.0 * (4.0 / 3.0) / 0.5]);
+}
+
+#[test]
+fn material_at_rest_is_left_alone_by_a_grid_that_accelerates() {
+    let mut f = Fixture::<1>::new(json!({
+        "boundary": {"x_lower": {"velocity": [[0.0, 0.0], [1.0, 4.0]]}, "x_upper": "transmitting"},
+        "bodies": [{"name": "body", "material": "fluid", "particles_per_cell": [1],
+            "box": {"lower": [0.0], "upper": [8.0]}}],
+    }));
+    // 0.8 m/s behind the grid after 0.2 s, 1 m/s in the middle of the step: inertia alone acts
+    f.time = 0.2;
+    f.set("velocity", &[-0.8; 8]);
+    close(&accelerations(&mut f), &[-4.0; 3]);
+}

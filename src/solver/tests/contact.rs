@@ -182,8 +182,65 @@ fn three_bodies_at_a_node_get_one_velocity() {
     let mut f = Fixture::<1>::new(json!({"bodies": bodies, "contact": contact,
         "method": {"shape": "gimp", "transfer": "pic"}}));
     f.scatter(0.1);
-    // node 5: b reaches it with 1 kg x its share, c with its own
-    let velocities = [1, 2].map(|body| f.node_of(body, "lumped_velocity", [5]));
-    let masses = [1, 2].map(|body| f.node_of(body, "mass", [5]));
-    close(&velocities, &[-3.0 * masses[1] / (masses[0] + masses[1]); 2]);
+    // at node 4 stand 1 kg of a, 3/4 kg of b and 1/4 kg of c
+    let at = |field: &str| [0, 1, 2].map(|body| f.node_of(body, field, [4]));
+    close(&at("mass"), &[1.0, 0.75, 0.25]);
+    close(&at("lumped_velocity"), &[(6.0 - 0.75) / 2.0; 3]);
+    assert_eq!(f.patch.contact.knots.len(), 1);
+}
+
+#[test]
+fn a_filter_acts_on_velocities_that_bodies_share() {
+    let bodies = [
+        body("a", json!([3.0]), json!([4.0]), json!([2.0])),
+        body("b", json!([4.0]), json!([5.0]), json!([-1.0])),
+    ];
+    let mut f = Fixture::<1>::new(json!({"bodies": bodies, "contact": {"type": "frictionless"},
+        "method": {"transfer": {"xpic": 2}}}));
+    f.solve(0.0);
+    // vL = 2, 1/2 | 1/2, -1; K vL = 3/4, -3/4 | 3/4, -3/4, whose mean at node 4 is 0
+    close(&both(&f, "velocity"), &[0.5, 0.5]);
+    close(&[f.node_of(0, "velocity", [3]), f.node_of(1, "velocity", [5])], &[2.75, -1.75]);
+    // the jump of the last term is an impulse too: 1 kg x 3/4 m/s
+    close(&[f.patch.contact.joints[0].given[0][0]], &[-1.5 + 0.75]);
+}
+
+#[test]
+fn bodies_in_contact_share_pressure_and_room() {
+    let bodies = [
+        body("a", json!([3.0]), json!([4.0]), json!([2.0])),
+        body("b", json!([4.0]), json!([5.0]), json!([-1.0])),
+    ];
+    let method = json!({"transfer": {"fmpm": 2}, "stepping": "midpoint", "edge_mask": 0.3,
+        "pressure_relaxation": {"rate": 0.1, "interval": 1}});
+    let mut f = Fixture::<1>::new(json!({"bodies": bodies, "method": method,
+        "contact": {"type": "frictionless"}}));
+    f.set("pressure_mid", &[30.0, 10.0]).set("compliance", &[1.0, 3.0]);
+    f.nodal(0.1, |s, step, nodal| {
+        nodal.each("scatter", |patch| {
+            s.scatter(patch, true, step);
+            s.start_pressure(patch);
+        });
+    });
+    // weighted by the compliances 1/2 and 3/2; filled by half a cell of each
+    close(&both(&f, "pressure"), &[15.0, 15.0]);
+    close(&both(&f, "volume"), &[1.0, 1.0]);
+    close(&[f.node_of(0, "pressure", [3]), f.node_of(1, "volume", [5])], &[30.0, 0.5]);
+}
+
+#[test]
+fn normals_by_regression_are_those_of_the_faces() {
+    let bodies = [
+        body("lower", json!([3.0, 3.0]), json!([4.0, 4.0]), json!([0.0, 0.0])),
+        body("upper", json!([3.0, 4.0]), json!([4.0, 5.0]), json!([8.0, -2.0])),
+    ];
+    let contact = json!({"type": "frictionless", "normals": "logistic_regression"});
+    let mut f = Fixture::<2>::new(
+        json!({"bodies": bodies, "contact": contact, "method": {"transfer": "pic"}}),
+    );
+    f.scatter(0.1);
+    close(&between(&f, "lumped_velocity"), &[0.0, 8.0, -1.0, -1.0]);
+    // one of two nodes on the face
+    assert_eq!(f.patch.contact.joints.len(), 2);
+    close(&f.patch.contact.joints[0].normal, &[0.0, 1.0]);
 }

@@ -201,6 +201,12 @@ where
         self.node_of(0, field, index)
     }
 
+    /// Value of one of the nodal fields that effects have added, counted from the last one.
+    pub(crate) fn added_node(&self, from_last: usize, index: [i64; D]) -> f64 {
+        let field = self.stepper.fields.count - 1 - from_last;
+        self.patch.nodes.fields[field][self.patch.nodes.nodes.flat(index)]
+    }
+
     /// Sets the value of a nodal field.
     pub(crate) fn set_node(&mut self, field: &str, index: [i64; D], value: f64) -> &mut Self {
         let (field, at) = (self.field(field), self.patch.nodes.nodes.flat(index));
@@ -277,13 +283,14 @@ where
     /// and the gradient of each component.
     pub(crate) fn set_flow(&mut self, start: [(f64, [f64; D]); D], end: [(f64, [f64; D]); D]) {
         self.scatter(0.0);
+        let (s, f) = (&self.stepper, &self.stepper.fields);
         let nodes = self.patch.nodes.nodes;
-        let f = &self.stepper.fields;
         let fields = [(f.lumped_velocity, start), (f.velocity, start), (f.velocity_star, end)];
         for (field, flow) in fields {
             for (a, (origin, slope)) in flow.into_iter().enumerate() {
                 for index in nodes.iter() {
-                    let along = (0..D).map(|b| slope[b] * index[b] as f64).sum::<f64>();
+                    let place = |b: usize| s.lower[b] + index[b] as f64 * s.cell[b];
+                    let along = (0..D).map(|b| slope[b] * place(b)).sum::<f64>();
                     self.patch.nodes.fields[field + a][nodes.flat(index)] = origin + along;
                 }
             }

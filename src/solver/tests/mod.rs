@@ -4,6 +4,7 @@
 
 pub(crate) mod fixture;
 
+mod cells;
 mod contact;
 mod gather;
 mod particle_domains;

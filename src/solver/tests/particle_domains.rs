@@ -71,6 +71,22 @@ fn a_volume_that_differs_from_the_deformation_changes_the_strained_direction() {
 }
 
 #[test]
+fn along_a_direction_between_the_axes_too() {
+    let mut f = deformed(json!({"shape": "cpdi"}));
+    // twice as long along (1, 1): with a volume of 3 three times, and as wide as before
+    for (component, value) in [("xx", 1.5), ("xy", 0.5), ("yx", 0.5), ("yy", 1.5)] {
+        f.set(&format!("deformation_{component}"), &[value, value]);
+    }
+    f.set("jacobian", &[2.0, 3.0]);
+    f.run(0.1, |s, step, patch| s.find_cells(patch, 0.0, step.jacobian));
+    let [ax, ay, bx, by] = half_edges(&f);
+    close(&ax, &[0.75, 1.0]);
+    close(&ay, &[0.25, 0.5]);
+    close(&bx, &[0.25, 0.5]);
+    close(&by, &[0.75, 1.0]);
+}
+
+#[test]
 fn with_axial_symmetry_the_area_is_the_volume_over_the_radius() {
     let mut f = Fixture::<2>::axisymmetric(json!({"method": {"shape": "cpdi"}}));
     // per radian at the radii 3.5 and 4.5; the second has moved out by half a metre

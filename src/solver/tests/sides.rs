@@ -4,49 +4,62 @@ use serde_json::json;
 
 use super::fixture::{Fixture, close};
 
-/// One particle of 8 kg at (3.25, 0.25) above a wall, with the velocity (4, 2) m/s and S = 6 J;
-/// another one is far away.
-fn above(wall: &str) -> Fixture<2> {
-    let mut f = Fixture::<2>::new(json!({"boundary": {"y_lower": wall}}));
-    f.set("position_x", &[3.25, 6.5]).set("position_y", &[0.25, 6.5]).set("mass", &[8.0, 1.0]);
-    f.set("velocity_x", &[4.0, 0.0]).set("velocity_y", &[2.0, 0.0]);
+/// One particle of 8 kg at a distance of 0.25 m from a lower wall normal to `axis`, with the
+/// velocities 4 m/s along it and 2 m/s away from it, and S = 6 J; another one is far away. Along the
+/// wall it is between the nodes 3 and 4, closer to 3.
+fn beside(wall: &str, axis: usize) -> Fixture<2> {
+    let side = ["x_lower", "y_lower"][axis];
+    let [along, away] = [["y", "x"], ["x", "y"]][axis];
+    let mut f = Fixture::<2>::new(json!({"boundary": {side: wall}}));
+    f.set(&format!("position_{along}"), &[3.25, 6.5]);
+    f.set(&format!("position_{away}"), &[0.25, 6.5]).set("mass", &[8.0, 1.0]);
+    f.set(&format!("velocity_{along}"), &[4.0, 0.0]);
+    f.set(&format!("velocity_{away}"), &[2.0, 0.0]);
     f.set("stress_volume", &[6.0, 0.0]).solve(0.1);
     f
 }
 
+/// Components along and away from the wall of a vector at the node 3 along it and at a distance.
+fn at(f: &Fixture<2>, axis: usize, field: &str, distance: i64) -> [f64; 2] {
+    let index = [[distance, 3], [3, distance]][axis];
+    let [x, y] = ["x", "y"].map(|a| f.node(&format!("{field}_{a}"), index));
+    [[y, x], [x, y]][axis]
+}
+
 #[test]
 fn material_slips_along_a_wall() {
-    let f = above("wall");
-    // particle and image push along the wall: f = -6 x 3/4 twice, on 2 x 4.5 kg
-    close(&[f.node("velocity_star_x", [3, 0])], &[4.0 - 0.1]);
-    assert_eq!(f.node("velocity_star_y", [3, 0]), 0.0);
-    // the image of the node above
-    close(&[f.node("velocity_star_x", [3, -1])], &[f.node("velocity_star_x", [3, 1])]);
-    close(&[f.node("velocity_star_y", [3, -1])], &[-f.node("velocity_star_y", [3, 1])]);
+    for axis in [0, 1] {
+        let f = beside("wall", axis);
+        // particle and image push along the wall: f = -6 x 3/4 twice, on 2 x 4.5 kg
+        close(&at(&f, axis, "velocity_star", 0), &[4.0 - 0.1, 0.0]);
+        // the image of the node above
+        let [along, away] = at(&f, axis, "velocity_star", 1);
+        close(&at(&f, axis, "velocity_star", -1), &[along, -away]);
+    }
 }
 
 #[test]
 fn material_rests_on_a_no_slip_wall_and_its_image_moves_the_other_way() {
-    let f = above("no_slip");
-    assert_eq!((f.node("velocity_x", [3, 0]), f.node("velocity_star_x", [3, 0])), (0.0, 0.0));
-    assert_eq!((f.node("mass", [3, 0]), f.node("acceleration_x", [3, 0])), (9.0, 0.0));
-    // 1.5 kg with the forces -6/4 and 6 x 3/4
-    let star = [4.0 - 0.1, 2.0 + 0.3];
-    close(&[f.node("velocity_star_x", [3, 1]), f.node("velocity_star_y", [3, 1])], &star);
-    let image = [f.node("velocity_star_x", [3, -1]), f.node("velocity_star_y", [3, -1])];
-    close(&image, &star.map(|v| -v));
-    // ghosts carry the reversed velocity
-    let c = &f.stepper.columns;
-    let columns = &f.patch.block.columns;
-    let image = (f.patch.block.own()..f.patch.block.particles())
-        .find(|&r| f.patch.block.cells[r] == [3, -1])
-        .expect("the image of the particle");
-    assert_eq!((columns[c.velocity][image], columns[c.velocity + 1][image]), (-4.0, -2.0));
+    for axis in [0, 1] {
+        let f = beside("no_slip", axis);
+        assert_eq!(at(&f, axis, "velocity_star", 0), [0.0; 2]);
+        assert_eq!(at(&f, axis, "acceleration", 0), [0.0; 2]);
+        // 1.5 kg with the forces -6/4 and 6 x 3/4
+        let star = [4.0 - 0.1, 2.0 + 0.3];
+        close(&at(&f, axis, "velocity_star", 1), &star);
+        close(&at(&f, axis, "velocity_star", -1), &star.map(|v| -v));
+        // ghosts carry the reversed velocity
+        let block = &f.patch.block;
+        let image = (block.own()..block.particles()).find(|&r| block.cells[r][axis] == -1);
+        let image = image.expect("the image of the particle");
+        let velocity = [0, 1].map(|a| block.columns[f.stepper.columns.velocity + a][image]);
+        assert_eq!(velocity, [[-2.0, -4.0], [-4.0, -2.0]][axis]);
+    }
 }
 
 #[test]
 fn the_work_and_impulse_of_a_side_are_counted_once() {
-    let mut f = above("wall");
+    let mut f = beside("wall", 1);
     for (index, share) in [([3, 0], 0.5), ([3, 1], 1.0)] {
         f.patch.side_forces.clear();
         f.patch.boundary_work.clear();
