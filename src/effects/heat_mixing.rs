@@ -214,3 +214,7 @@ impl HeatMixing {
         with_width!(patch.stencils.width, go(patch, s, self));
     }
 }
+
+#[cfg(test)]
+#[path = "tests/heat_mixing.rs"]
+mod tests;

@@ -195,8 +195,7 @@ impl CsvTable {
 /// The file cannot be read, has no header, or has a line with another number of fields.
 pub fn read_csv(path: &Path) -> Result<CsvTable, OutputError> {
     let text = read_text(path, LARGEST_RESULT)?;
-    let fault =
-        |line: u64, message: String| OutputError::Csv { path: path.into(), line, message };
+    let fault = |line: u64, message: String| OutputError::Csv { path: path.into(), line, message };
     let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text.as_bytes());
     let names = reader.headers().map_err(|error| fault(1, error.to_string()))?.clone();
     if names.is_empty() {

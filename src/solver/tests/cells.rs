@@ -136,6 +136,6 @@ fn contact_knows_the_edge() {
         }));
         f.set("velocity", &[-2.0, 1.0]).set("position", &[1.75 - gap, 2.25]);
         f.set("stress_volume", &[0.5 * stress, 0.5 * stress]).scatter(0.1);
-        assert_eq!(f.patch.contact.joints.len(), usize::from(touches), "{stress} Pa, {gap} m");
+        assert_eq!(f.patch.contact.constraints.len(), usize::from(touches), "{stress} Pa, {gap} m");
     }
 }

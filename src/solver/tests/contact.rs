@@ -186,7 +186,7 @@ fn three_bodies_at_a_node_get_one_velocity() {
     let at = |field: &str| [0, 1, 2].map(|body| f.node_of(body, field, [4]));
     close(&at("mass"), &[1.0, 0.75, 0.25]);
     close(&at("lumped_velocity"), &[(6.0 - 0.75) / 2.0; 3]);
-    assert_eq!(f.patch.contact.knots.len(), 1);
+    assert_eq!(f.patch.contact.multi_body.len(), 1);
 }
 
 #[test]
@@ -202,7 +202,7 @@ fn a_filter_acts_on_velocities_that_bodies_share() {
     close(&both(&f, "velocity"), &[0.5, 0.5]);
     close(&[f.node_of(0, "velocity", [3]), f.node_of(1, "velocity", [5])], &[2.75, -1.75]);
     // the jump of the last term is an impulse too: 1 kg x 3/4 m/s
-    close(&[f.patch.contact.joints[0].given[0][0]], &[-1.5 + 0.75]);
+    close(&[f.patch.contact.constraints[0].given[0][0]], &[-1.5 + 0.75]);
 }
 
 #[test]
@@ -241,6 +241,6 @@ fn normals_by_regression_are_those_of_the_faces() {
     f.scatter(0.1);
     close(&between(&f, "lumped_velocity"), &[0.0, 8.0, -1.0, -1.0]);
     // one of two nodes on the face
-    assert_eq!(f.patch.contact.joints.len(), 2);
-    close(&f.patch.contact.joints[0].normal, &[0.0, 1.0]);
+    assert_eq!(f.patch.contact.constraints.len(), 2);
+    close(&f.patch.contact.constraints[0].normal, &[0.0, 1.0]);
 }
