@@ -38,8 +38,9 @@ pub use reach::StencilRadius;
 
 use crate::contact::ContactCondition;
 use crate::material::constitutive::{
-    self, ConstitutiveModel, CustomModel, StrengthModel, ThermalModel,
+    self, ConstitutiveModel, CustomModel, FailureModel, StrengthModel, ThermalModel,
 };
+use crate::material::failure::RestState;
 use crate::material::strength::MaterialState;
 use crate::scene::{
     CheckedScene, EnergyUpdate, FrameKind, Material, PressureRelaxation, ShapeKind, SideProperties,
@@ -95,6 +96,8 @@ pub struct Stepper<const D: usize> {
     pub(crate) models: Vec<ConstitutiveModel>,
     /// Strength of each body's material, in addition to its equation of state.
     pub(crate) strengths: Vec<Option<Box<dyn StrengthModel>>>,
+    /// Failure model of each body's material.
+    pub(crate) failures: Vec<Option<Box<dyn FailureModel>>>,
     /// Thermal model of each body.
     pub(crate) thermals: Vec<Option<ThermalModel>>,
     /// Column of the history variable of each body's equation of state.
@@ -227,6 +230,20 @@ impl<const D: usize> Stepper<D> {
                 (b, density, w.fastest(m.sound_speed_at(b.pressure)))
             })
         };
+        // exact if all edges are equal
+        let edge = match cell.iter().all(|&h| h == cell[0]) {
+            true => cell[0],
+            false => volume.powf(1.0 / D as f64),
+        };
+        let failures = (bodies.iter().zip(&waves).zip(&models)).map(|((b, w), model)| {
+            let material = &materials[&b.material];
+            let density = material.density;
+            let bulk_modulus = density * model.sound_speed_at(0.0).powi(2);
+            let shear_modulus = density * w.shear.powi(2);
+            let rest = RestState { density, bulk_modulus, shear_modulus, cell: edge };
+            constitutive::failure_model(material, &rest)
+        });
+        let failures = failures.collect();
         let stiffness = speeds().map(|(_, density, c)| density * c.powi(2)).collect();
         let impedances = speeds().map(|(_, density, c)| density * c).collect();
         let impact = scene.impact_speed::<D>();
@@ -244,11 +261,6 @@ impl<const D: usize> Stepper<D> {
         let around = match scene.axisymmetric() {
             true => scene.scene.domain.lower[0] + scene.cells[0] as f64 * cell[0],
             false => 1.0,
-        };
-        // exact if all edges are equal
-        let edge = match cell.iter().all(|&h| h == cell[0]) {
-            true => cell[0],
-            false => volume.powf(1.0 / D as f64),
         };
         let transfer = method.transfer.plan();
         let series = transfer.series();
@@ -298,6 +310,7 @@ impl<const D: usize> Stepper<D> {
             thermals: thermals.collect(),
             models,
             strengths,
+            failures,
             shape: method.shape,
             total_lagrangian: method.frame == FrameKind::TotalLagrangian,
             cell,
