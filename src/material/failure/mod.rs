@@ -42,6 +42,7 @@ failure_laws![
     TensionLimit: tension_limit::TensionLimit,
     JohnsonCook: johnson_cook::JohnsonCookFracture,
     TulerButcher: tuler_butcher::TulerButcher,
+    CochranBanner: cochran_banner::CochranBanner,
 ];
 
 /// Visitor of a failure law of any type; see [`Failure::visit`].
