@@ -212,7 +212,10 @@ fn strength_failure_heat_pores_and_fire() {
 /// Damage that is under way at the cut, in both kinds of step.
 #[test]
 fn gradual_damage() {
-    for failure in [json!({"type": "cochran_banner", "stress": 5e8, "opening": 1e-4})] {
+    for failure in [
+        json!({"type": "cochran_banner", "stress": 5e8, "opening": 1e-4}),
+        json!({"type": "grady_kipp", "flaw_density": 1e28, "exponent": 8.0}),
+    ] {
         let mut scene = shipped("spall.json");
         scene["domain"]["cell_size"] = json!(1e-4);
         scene["output"] = json!({});

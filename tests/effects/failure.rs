@@ -208,3 +208,14 @@ fn cracks_of_cochran_and_banner_take_a_given_energy() {
     let [cracks, limit] = [finer(&law), finer(&limit)];
     assert!((0.8..1.25).contains(&cracks) && limit < 0.65, "{cracks} {limit}");
 }
+
+/// Brittle damage in each kind of step; none where flaws are too few.
+#[test]
+fn cracks_of_grady_and_kipp_part_a_plate() {
+    let law = |flaw_density: f64| json!({"type": "grady_kipp", "flaw_density": flaw_density, "exponent": 8.0});
+    spalls_gradually(&law(1e30));
+    // the weakest flaw of a cell needs a strain that the plate does not reach
+    let mut scene = spall();
+    scene["materials"]["aluminium"]["failure"] = law(1e10);
+    assert_eq!(run::<1>(&scene).greatest("damage"), 0.0);
+}

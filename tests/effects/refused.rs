@@ -61,6 +61,9 @@ fn failure() {
     let banner = "failure={\"type\": \"cochran_banner\", \"stress\": 1e9, \"opening\": 1e-5}";
     refused(&[banner, "failure.opening=0"], &["failure.opening = 0", "above 0"]);
     refused(&[banner, "failure.exponent=2"], &["failure.exponent = 2"]);
+    let kipp = "failure={\"type\": \"grady_kipp\", \"flaw_density\": 1e30, \"exponent\": 8}";
+    refused(&[kipp, "failure.flaw_density=0"], &["failure.flaw_density = 0", "above 0"]);
+    refused(&[kipp, "failure.exponent=0.5"], &["failure.exponent = 0.5"]);
 }
 
 #[test]

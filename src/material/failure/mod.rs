@@ -43,6 +43,7 @@ failure_laws![
     JohnsonCook: johnson_cook::JohnsonCookFracture,
     TulerButcher: tuler_butcher::TulerButcher,
     CochranBanner: cochran_banner::CochranBanner,
+    GradyKipp: grady_kipp::GradyKipp,
 ];
 
 /// Visitor of a failure law of any type; see [`Failure::visit`].
