@@ -1,0 +1,15 @@
+//! Cost of the program itself: time of builds and tests, instructions of a step.
+
+mod build;
+mod instructions;
+
+use crate::section::{Section, named, usual};
+
+pub const TITLE: &str =
+    "Cost of the program itself: time of builds and tests, instructions of a step";
+
+pub const SECTIONS: [Section; 2] = [
+    // half an hour, and some GB in the target folder
+    named("build", build::check),
+    usual("instructions", instructions::check),
+];
