@@ -140,6 +140,14 @@ mod tests {
     use super::*;
 
     #[test]
+    fn every_group_has_a_place_in_the_document() {
+        let text = std::fs::read_to_string(report::document()).unwrap();
+        for group in GROUPS {
+            assert!(report::replaced(&text, group.name, "").is_some(), "{}", group.name);
+        }
+    }
+
+    #[test]
     fn names_of_groups_and_sections_are_unique() {
         for (k, group) in GROUPS.iter().enumerate() {
             assert!(GROUPS[..k].iter().all(|other| other.name != group.name));

@@ -5,14 +5,16 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
-static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+/// The program that the user has named.
+static NAMED: OnceLock<PathBuf> = OnceLock::new();
 
-/// Set where the user has named the program.
-static TAKEN: OnceLock<()> = OnceLock::new();
+/// The program that cargo has built.
+static BUILT: OnceLock<PathBuf> = OnceLock::new();
 
 /// Root of the repository.
 pub fn root() -> &'static Path {
-    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+    let own = Path::new(env!("CARGO_MANIFEST_DIR"));
+    own.ancestors().nth(2).unwrap_or(own)
 }
 
 /// Folder of what the sections write: `acceptance` in cargo's target folder.
@@ -27,26 +29,27 @@ fn target() -> PathBuf {
 
 /// Takes a program that is built already.
 pub fn take(program: PathBuf) {
-    let _ = PROGRAM.set(program);
-    let _ = TAKEN.set(());
+    let _ = NAMED.set(program);
 }
 
-/// The release build of `flyer-mpm`, built at the first call. Ends the process where it cannot be
-/// built or Open MPI is missing.
+/// The named program, or the release build of `flyer-mpm`, built at the first call.
 pub fn path() -> &'static Path {
-    PROGRAM.get_or_init(|| {
-        let mpirun = mpirun().arg("--version").stdout(Stdio::null()).status();
-        let built = mpirun.is_ok_and(|status| status.success())
-            && cargo("build").args(["--bin", "flyer-mpm"]).status().is_ok_and(|s| s.success());
-        if !built {
-            eprintln!(
-                "error: flyer-mpm cannot be built and started; it needs Open MPI and HDF5: \
-                 run scripts/setup.sh"
-            );
-            std::process::exit(2);
-        }
-        target().join("release/flyer-mpm")
-    })
+    NAMED.get().unwrap_or_else(|| BUILT.get_or_init(build))
+}
+
+/// Ends the process where the program cannot be built or Open MPI is missing.
+fn build() -> PathBuf {
+    let mpirun = mpirun().arg("--version").stdout(Stdio::null()).status();
+    let built = mpirun.is_ok_and(|status| status.success())
+        && cargo("build").args(["--bin", "flyer-mpm"]).status().is_ok_and(|s| s.success());
+    if !built {
+        eprintln!(
+            "error: flyer-mpm cannot be built and started; it needs Open MPI and HDF5: \
+             run scripts/setup.sh"
+        );
+        std::process::exit(2);
+    }
+    target().join("release/flyer-mpm")
 }
 
 /// Variables of the environment that change the profile of `Cargo.toml`.
@@ -57,7 +60,7 @@ pub fn profile_variables() -> impl Iterator<Item = OsString> {
 
 /// Whether the program is built by the profile of `Cargo.toml`, as far as can be known.
 pub fn has_shipped_profile() -> bool {
-    TAKEN.get().is_some() || profile_variables().next().is_none()
+    NAMED.get().is_some() || profile_variables().next().is_none()
 }
 
 /// A quiet release command of cargo at the root.

@@ -3,10 +3,16 @@
 
 use std::fmt::Write;
 use std::fs;
+use std::path::PathBuf;
 
 use crate::program::root;
 use crate::section::{Extent, Group};
 use crate::table::Table;
+
+/// The document.
+pub fn document() -> PathBuf {
+    root().join("docs/verification.md")
+}
 
 /// Replaces the section of a group.
 ///
@@ -14,16 +20,16 @@ use crate::table::Table;
 ///
 /// The file cannot be read or written, or has no markers for the group.
 pub fn write(group: &Group, table: &Table) -> Result<(), String> {
-    let path = root().join("docs/verification.md");
+    let path = document();
     let failed = |error| format!("{}: {error}", path.display());
     let text = fs::read_to_string(&path).map_err(failed)?;
     let text = replaced(&text, group.name, &body(group, table, &machine()))
-        .ok_or_else(|| format!("docs/verification.md has no markers of {}", group.name))?;
+        .ok_or_else(|| format!("{} has no markers of {}", path.display(), group.name))?;
     fs::write(&path, text).map_err(failed)
 }
 
 /// `text` with `body` between the markers of a group.
-fn replaced(text: &str, group: &str, body: &str) -> Option<String> {
+pub fn replaced(text: &str, group: &str, body: &str) -> Option<String> {
     let (begin, end) = (format!("<!-- begin {group} -->\n"), format!("<!-- end {group} -->"));
     let (before, rest) = text.split_once(&begin)?;
     let (_, after) = rest.split_once(&end)?;

@@ -8,17 +8,19 @@ mod plan;
 pub mod random_impacts;
 mod schemes;
 
-use crate::section::{Section, usual};
+use crate::section::{Section, quick, usual};
 
+/// Subject of the group.
 pub const TITLE: &str = "Accuracy of the shipped schemes and its cost, error estimates and plans";
 
+/// Sections in the order in which they run.
 pub const SECTIONS: [Section; 8] = [
-    usual("standard", schemes::standard),
+    quick("standard", schemes::standard),
     usual("order", schemes::order),
     usual("impacts", schemes::impacts),
-    usual("noh", schemes::noh),
-    usual("smooth", schemes::smooth),
-    usual("cost", schemes::cost),
+    quick("noh", schemes::noh),
+    quick("smooth", schemes::smooth),
+    quick("cost", schemes::cost),
     usual("estimate", estimate::check),
     usual("plan", plan::check),
 ];

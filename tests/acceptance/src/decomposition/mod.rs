@@ -15,17 +15,19 @@ mod schemes;
 mod speed;
 
 use crate::hard_cases::scenes;
-use crate::section::{Section, usual};
+use crate::section::{Section, quick, usual};
 
+/// Subject of the group.
 pub const TITLE: &str =
     "Work shared over ranks, patches and threads: the same bits, speed, balance and memory";
 
+/// Sections in the order in which they run.
 pub const SECTIONS: [Section; 7] = [
     usual("bits", bits::check),
     usual("schemes", schemes::check),
     usual("speed", speed::check),
     usual("balance", balance::check),
-    usual("quiet", quiet::check),
+    quick("quiet", quiet::check),
     usual("memory", memory::check),
-    usual("hang", hang::check),
+    quick("hang", hang::check),
 ];

@@ -11,29 +11,31 @@ mod spall;
 mod strength;
 mod tables;
 
-use crate::section::{Section, named, usual};
+use crate::section::{Section, named, quick, usual};
 
+/// Subject of the group.
 pub const TITLE: &str =
     "Materials and effects against exact solutions and integrations of their own";
 
+/// Sections in the order in which they run.
 pub const SECTIONS: [Section; 18] = [
     usual("equations", equations::check),
     usual("porous", equations::porous),
-    usual("tables", tables::check),
-    usual("products", explosives::products),
-    usual("burn", explosives::burn),
-    usual("paths", paths::check),
-    usual("strength_paths", strength::paths),
+    quick("tables", tables::check),
+    quick("products", explosives::products),
+    quick("burn", explosives::burn),
+    quick("paths", paths::check),
+    quick("strength_paths", strength::paths),
     usual("objectivity", objectivity::check),
-    usual("piston", strength::piston),
-    usual("flyer", strength::flyer),
+    quick("piston", strength::piston),
+    quick("flyer", strength::flyer),
     usual("taylor", strength::taylor),
     // half an hour, and some three hours
     named("taylor_fine", strength::taylor_fine),
     usual("spall", spall::check),
-    usual("heat", heat::check),
-    usual("plates", plates::check),
-    usual("window", plates::window),
-    usual("wave", motion::wave),
-    usual("books", motion::books),
+    quick("heat", heat::check),
+    quick("plates", plates::check),
+    quick("window", plates::window),
+    quick("wave", motion::wave),
+    quick("books", motion::books),
 ];

@@ -7,22 +7,24 @@ use flyer_mpm::driver::output::csv::CsvTable;
 
 use crate::bounds::{Unit, flyer as bounds};
 use crate::runs::Job;
-use crate::section::{Section, usual};
+use crate::section::{Section, quick};
 use crate::table::Table;
 
+/// Subject of the group.
 pub const TITLE: &str = "The standard problem, inputs/flyer.json, and problems like it";
 
+/// Sections in the order in which they run.
 pub const SECTIONS: [Section; 10] = [
-    usual("profiles", profiles),
-    usual("cpdi", cpdi),
-    usual("impacts", impacts::check),
-    usual("attenuation", impacts::check_attenuation),
-    usual("convergence", convergence),
-    usual("uintah", uintah),
-    usual("sod", sod),
-    usual("symmetric", symmetric),
-    usual("speed", speed),
-    usual("bits", same_bits::check),
+    quick("profiles", profiles),
+    quick("cpdi", cpdi),
+    quick("impacts", impacts::check),
+    quick("attenuation", impacts::check_attenuation),
+    quick("convergence", convergence),
+    quick("uintah", uintah),
+    quick("sod", sod),
+    quick("symmetric", symmetric),
+    quick("speed", speed),
+    quick("bits", same_bits::check),
 ];
 
 /// The main job as shipped, on two ranks.

@@ -12,13 +12,12 @@ use crate::table::Table;
 
 const HEAD: &str = "# Schemes in hard cases
 
-Written by `cargo run --release -p acceptance -- hard_cases/schemes`; every shape function with every
-transfer. Mid-point
-steps with all of the options of `inputs/flyer.json` that the transfer allows, its viscosity, a Courant
-number of 0.4 unless a column says another. A number is the error: L1 of the pressure in per cent of
-the exact profile's, at 0.2 us, in `e` columns the drift of energy in per cent. **monitor** and a word
-is how the monitor ended the run before its answer was wrong, **refused** what the scene's check says;
-both leave with a code that is not 0. A transfer in italics has energy that is not exact.
+Written by `cargo run --release -p acceptance -- hard_cases/schemes`: every shape function with every
+transfer. Mid-point steps with all of the options of `inputs/flyer.json` that the transfer allows, its
+viscosity, a Courant number of 0.4 unless a column says another. A number is the error: L1 of the pressure
+in per cent of the exact profile's, at 0.2 us, in `e` columns the drift of energy in per cent. **monitor**
+and a word is how the monitor ended the run before its answer was wrong, **refused** what the scene's check
+says; both leave with a code that is not 0. A transfer in italics has energy that is not exact.
 
 - state: a particle's state is outside of its model, mostly tension that grows; courant: a step turned
   out too long; speed: a particle faster than any wave; energy: it grew; cold: internal energy fell

@@ -11,21 +11,23 @@ mod speed;
 mod turning;
 mod waves;
 
-use crate::section::{Section, usual};
+use crate::section::{Section, quick, usual};
 
+/// Subject of the group.
 pub const TITLE: &str = "Scenes in a plane, and bodies in contact";
 
+/// Sections in the order in which they run.
 pub const SECTIONS: [Section; 14] = [
-    usual("column", column::check),
+    quick("column", column::check),
     usual("bits", bits::check),
     usual("finite", waves::finite_flyer),
     usual("oblique", waves::oblique),
-    usual("sides", sides::check),
-    usual("contact", contact::check),
+    quick("sides", sides::check),
+    quick("contact", contact::check),
     usual("vortex", turning::vortex),
     usual("disk", turning::disk),
-    usual("shear", turning::shear),
-    usual("gresho", turning::gresho),
+    quick("shear", turning::shear),
+    quick("gresho", turning::gresho),
     usual("disks", disks::check),
     usual("noh", gases::noh),
     usual("sod", gases::sod),
