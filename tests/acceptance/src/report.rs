@@ -51,7 +51,7 @@ fn body(group: &Group, table: &Table, machine: &str) -> String {
             let _ = write!(text, "\n### {}/{section}\n\n", group.name);
             text += "| figure | measured | bound | ok |\n|---|---|---|---|\n";
         }
-        let _ = writeln!(text, "{}", row.line([0; 3]));
+        let _ = writeln!(text, "{}", row.line([0; 4]));
     }
     text
 }
@@ -93,7 +93,7 @@ mod tests {
             text,
             format!(
                 "## flyer\n\nTitle. Run: the quick part; one core.\n\n### flyer/bits\n\n{head}\
-                 | a | 1 | 1 | yes  |\n\n### flyer/speed\n\n{head}| b | 0.5000 |  |      |\n"
+                 | a | 1 | 1 | yes |\n\n### flyer/speed\n\n{head}| b | 0.5000 |  |  |\n"
             )
         );
     }

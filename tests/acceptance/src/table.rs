@@ -35,7 +35,7 @@ pub struct Row {
 
 impl Row {
     /// The row in Markdown, its cells at least as wide as given.
-    pub fn line(&self, [figure, measured, bound]: [usize; 3]) -> String {
+    pub fn line(&self, [figure, measured, bound, ok]: [usize; 4]) -> String {
         let verdict = match self.verdict {
             Verdict::Unbounded => "",
             Verdict::Held => "yes",
@@ -43,7 +43,7 @@ impl Row {
             Verdict::NotMeasured => "-",
         };
         format!(
-            "| {:figure$} | {:>measured$} | {:>bound$} | {verdict:4} |",
+            "| {:figure$} | {:>measured$} | {:>bound$} | {verdict:ok$} |",
             self.figure, self.measured, self.bound
         )
     }
@@ -78,7 +78,7 @@ impl Table {
             bound: bound.to_string(),
             verdict,
         };
-        println!("{}", row.line([54, 12, 14]));
+        println!("{}", row.line([54, 12, 14, 4]));
         self.rows.push(row);
     }
 
@@ -178,11 +178,12 @@ mod tests {
     fn rows_are_counted_by_their_verdict() {
         let mut table = Table::new(Extent::Quick);
         table.holds("a", "1 digest", "1 digest", true);
+        table.holds("a again", "1 digest", "1 digest", true);
         table.holds("b", "2 digests", "1 digest", false);
         table.not_measured("c", "no valgrind");
         assert!(table.take::<()>("d", Err("it failed".into())).is_none());
         table.beside("e", Some(1.0), "", Unit::One);
         let counts = [Verdict::Held, Verdict::Missed, Verdict::NotMeasured, Verdict::Unbounded];
-        assert_eq!(counts.map(|verdict| table.count(verdict)), [1, 2, 1, 1]);
+        assert_eq!(counts.map(|verdict| table.count(verdict)), [2, 2, 1, 1]);
     }
 }
