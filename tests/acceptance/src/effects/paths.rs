@@ -159,29 +159,44 @@ fn table_of_tillotson() -> String {
 
 /// All of them.
 pub fn check(table: &mut Table) {
-    let mut row = |name: &str, material: &str, depth: f64, p: &dyn Fn(f64, f64) -> f64| {
-        let value = apart(material, depth, 0.0, &|j, e, _| p(j, e));
-        table.check(&format!("{name} along a path"), value, bounds::paths::PRESSURE);
-    };
+    mie_gruneisen(table);
+    liquids(table);
+    others(table);
+    table_and_pores(table);
+}
+
+fn row(table: &mut Table, name: &str, material: &str, depth: f64, p: &dyn Fn(f64, f64) -> f64) {
+    let value = apart(material, depth, 0.0, &|j, e, _| p(j, e));
+    table.check(&format!("{name} along a path"), value, bounds::paths::PRESSURE);
+}
+
+fn mie_gruneisen(table: &mut Table) {
     row(
+        table,
         "mie_gruneisen",
         r#"{"density": 8930.0, "eos": {"type": "mie_gruneisen", "c0": 3940.0, "s": 1.489, "gamma0": 1.96}}"#,
         0.25,
         &copper,
     );
     row(
+        table,
         "mie_gruneisen, s2 and Gamma constant",
         r#"{"density": 2785.0, "eos": {"type": "mie_gruneisen", "c0": 5386.0, "s": 1.339, "s2": 3e-5, "gamma0": 2.1, "gruneisen": "gamma_constant"}}"#,
         0.25,
         &curved,
     );
     row(
+        table,
         "mie_gruneisen with a cutoff",
         r#"{"density": 8930.0, "eos": {"type": "mie_gruneisen", "c0": 3940.0, "s": 1.489, "gamma0": 1.96, "tension_cutoff": 2e8}}"#,
         -0.1,
         &|j, e| copper(j, e).max(-2e8),
     );
+}
+
+fn liquids(table: &mut Table) {
     row(
+        table,
         "stiffened_gas",
         r#"{"density": 1000.0, "eos": {"type": "stiffened_gas", "gamma": 4.4, "p_inf": 6e8}}"#,
         0.3,
@@ -191,12 +206,14 @@ pub fn check(table: &mut Table) {
         },
     );
     row(
+        table,
         "tait",
         r#"{"density": 1000.0, "eos": {"type": "tait", "bulk_modulus": 2.1e9, "exponent": 7.0}}"#,
         0.2,
         &|j, _| 3e8 * (j.powi(-7) - 1.0),
     );
     row(
+        table,
         "noble_abel_stiffened_gas",
         r#"{"density": 1057.0, "eos": {"type": "noble_abel_stiffened_gas", "gamma": 1.19, "p_inf": 7028e5, "covolume": 6.61e-4}}"#,
         0.1,
@@ -205,7 +222,11 @@ pub fn check(table: &mut Table) {
             0.19 * (e + 1.19 * 7028e5 * (v0 - b) / 0.19) / (j * v0 - b) - 1.19 * 7028e5
         },
     );
+}
+
+fn others(table: &mut Table) {
     row(
+        table,
         "vinet",
         r#"{"density": 8930.0, "eos": {"type": "vinet", "bulk_modulus": 138.6e9, "bulk_modulus_derivative": 4.96, "gamma0": 1.96}}"#,
         0.3,
@@ -218,6 +239,7 @@ pub fn check(table: &mut Table) {
         },
     );
     row(
+        table,
         "davis_reactants",
         r#"{"density": 1895.0, "eos": {"type": "davis_reactants", "a": 1800.0, "b": 4.6, "c": 0.34, "gamma0": 0.56, "z": 0.3}}"#,
         0.3,
@@ -234,17 +256,22 @@ pub fn check(table: &mut Table) {
         },
     );
     row(
+        table,
         "tillotson",
         r#"{"density": 2700.0, "eos": {"type": "tillotson", "a": 0.5, "b": 1.63, "bulk_modulus": 75.2e9, "second_modulus": 65e9, "alpha": 5.0, "beta": 5.0, "e0": 5e6, "e_iv": 3e6, "e_cv": 13.9e6}}"#,
         0.4,
         &tillotson,
     );
     row(
+        table,
         "jwl",
         r#"{"density": 1630.0, "eos": {"type": "jwl", "a": 371.2e9, "b": 3.231e9, "r1": 4.15, "r2": 0.95, "omega": 0.3, "energy": 7e9, "burn": "complete"}}"#,
         -3.0,
         &jwl,
     );
+}
+
+fn table_and_pores(table: &mut Table) {
     let value = apart(&table_of_tillotson(), 0.4, 0.0, &|j, e, _| cold(j, e));
     table.check("tabular along a path", value, bounds::paths::PRESSURE);
     let porous = r#"{"density": 7144.0, "eos": {"type": "p_alpha", "solid": {"type": "mie_gruneisen", "c0": 3940.0, "s": 1.489, "gamma0": 1.96}, "solid_density": 8930.0, "elastic_pressure": 1e8, "full_compaction_pressure": 1.6e9}}"#;
