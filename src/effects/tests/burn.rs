@@ -63,3 +63,13 @@ fn compression_burns_too() {
     let fraction = f.get("burn_fraction");
     assert!((fraction[0] - 0.5).abs() < 0.01 && fraction[1] == 0.0, "{fraction:?}");
 }
+
+#[test]
+fn an_explosive_that_is_not_burnt_is_active() {
+    let mut f = explosive(false, "leapfrog");
+    assert_eq!(f.active_cells(), 2);
+    f.set("burn_fraction", &[1.0, 0.5]);
+    assert_eq!(f.active_cells(), 1);
+    f.set("burn_fraction", &[1.0, 1.0]);
+    assert_eq!(f.active_cells(), 0);
+}
