@@ -470,7 +470,7 @@ where
         failure: simulation
             .columns()
             .may_fail()
-            .then(|| FailureSummary { particles: end.failed, released_energy: end.released }),
+            .then_some(FailureSummary { particles: end.failed, released_energy: end.released }),
         measured,
         profiles,
         error_estimate,

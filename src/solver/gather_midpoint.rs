@@ -22,6 +22,9 @@ fn half_sum<const K: usize>(a: &[f64; K], b: &[f64; K]) -> [f64; K] {
     std::array::from_fn(|k| 0.5 * (a[k] + b[k]))
 }
 
+/// Values of a nodal vector at the nodes of a particle: component, line of nodes, node.
+type Windows<const K: usize, const L: usize, const D: usize> = [[[f64; K]; L]; D];
+
 impl<const D: usize> Scheme<D> {
     /// Updates the own particles at the end of a mid-point step: volume and energy from the
     /// gradients of the mean velocity and of w, heat of the filter, velocity, position and domain.
@@ -89,9 +92,9 @@ impl<const D: usize> Scheme<D> {
             }
             let old = std::array::from_fn(|a| own_v[a][r]);
             let (new, heat) =
-                self.end_velocity(&weights, old, &filtered, (&means, &star), lumped, remainder);
+                self.end_velocity(&weights, old, &filtered, [&means, &star], lumped, remainder);
             let tensors = (&mut own_deformation, &mut own_gradient);
-            let [plane, end] = self.end_strain(&weights, r, (&means, &star), tensors, dt);
+            let [plane, end] = self.end_strain(&weights, r, [&means, &star], tensors, dt);
             let divergence = self.with_hoop(patch, &weights, r, plane, |l| means[0][l]);
             let does = if self.compatible { weights.windows::<L, D>(work) } else { means };
             let work_done = self
@@ -129,7 +132,7 @@ impl<const D: usize> Scheme<D> {
         weights: &ParticleWeights<'_, K, D>,
         old: [f64; D],
         filtered: &[f64; D],
-        (means, star): (&[[[f64; K]; L]; D], &[[[f64; K]; L]; D]),
+        [means, star]: [&Windows<K, L, D>; 2],
         lumped: [&[f64]; D],
         remainder: Option<[&[f64]; D]>,
     ) -> ([f64; D], f64) {
@@ -175,7 +178,7 @@ impl<const D: usize> Scheme<D> {
         &self,
         weights: &ParticleWeights<'_, K, D>,
         r: usize,
-        (means, star): (&[[[f64; K]; L]; D], &[[[f64; K]; L]; D]),
+        [means, star]: [&Windows<K, L, D>; 2],
         (deformation, gradient): (&mut OwnTensor<'_>, &mut OwnTensor<'_>),
         dt: f64,
     ) -> [f64; 2] {
@@ -211,7 +214,7 @@ impl<const D: usize> Scheme<D> {
         patch: &Patch<D>,
         weights: &ParticleWeights<'_, K, D>,
         r: usize,
-        does: &[[[f64; K]; L]; D],
+        does: &Windows<K, L, D>,
         divergence: f64,
         stress: f64,
         dt: f64,
