@@ -22,7 +22,7 @@ pub fn markdown(schema: &Value) -> String {
     while let Some(name) = waiting.pop() {
         let definition = definitions.get(&name).unwrap_or(&root);
         section(&mut text, &name, definition);
-        written.insert(name);
+        written.push(name);
         let compact = definition.to_string();
         let named =
             compact.rmatch_indices(DEFINITIONS).map(|(at, path)| &compact[at + path.len()..]);
