@@ -34,9 +34,14 @@ impl Random {
         self.between(low.ln(), high.ln()).exp()
     }
 
+    /// An integer below `limit`.
+    pub fn below(&mut self, limit: u64) -> u64 {
+        self.next() % limit
+    }
+
     /// One of some.
     pub fn one<'a, T>(&mut self, of: &'a [T]) -> &'a T {
-        &of[(self.next() % of.len() as u64) as usize]
+        &of[self.below(of.len() as u64) as usize]
     }
 }
 

@@ -201,8 +201,7 @@ impl StrengthEffect {
                     if k < components { take(self.stress + k) } else { Vec::new() }
                 },
             );
-        let mut strain = take(self.plastic_increment);
-        let mut work = take(self.plastic_work);
+        let [mut strain, mut work] = [take(self.plastic_increment), take(self.plastic_work)];
         for (body, particles) in bodies(&patch.block.columns[c.body][..n]) {
             let column = |k: usize| &patch.block.columns[k][particles.clone()];
             let Some(strength) = &s.strengths[body] else {
@@ -210,24 +209,36 @@ impl StrengthEffect {
                 work[particles.clone()].fill(0.0);
                 continue;
             };
-            let [xx, yy, xy] = &mut out;
-            let plane = (D > 1).then(|| [&mut yy[particles.clone()], &mut xy[particles.clone()]]);
-            strength.advance(StrengthUpdate {
-                dt,
-                rate: self.rate(s, patch, by, particles.clone()),
-                jacobian: column(jacobian),
-                pressure: column(c.pressure),
-                temperature: c.temperature.map(column),
-                deviator: s.deviator(patch, self.deviator, particles.clone()),
-                plastic_strain: column(self.plastic_strain),
-                deviator_after: TensorColumns {
-                    xx: &mut xx[particles.clone()],
-                    plane,
-                    across: None,
-                },
-                plastic_strain_after: &mut strain[particles.clone()],
-                plastic_work: &mut work[particles.clone()],
-            });
+            let mut out_of = |particles: Range<usize>, advance: &dyn Fn(StrengthUpdate<'_>)| {
+                let column = |k: usize| &patch.block.columns[k][particles.clone()];
+                let [xx, yy, xy] = &mut out;
+                let plane =
+                    (D > 1).then(|| [&mut yy[particles.clone()], &mut xy[particles.clone()]]);
+                advance(StrengthUpdate {
+                    dt,
+                    rate: self.rate(s, patch, by, particles.clone()),
+                    jacobian: column(jacobian),
+                    pressure: column(c.pressure),
+                    temperature: c.temperature.map(column),
+                    deviator: s.deviator(patch, self.deviator, particles.clone()),
+                    plastic_strain: column(self.plastic_strain),
+                    deviator_after: TensorColumns {
+                        xx: &mut xx[particles.clone()],
+                        plane,
+                        across: None,
+                    },
+                    plastic_strain_after: &mut strain[particles.clone()],
+                    plastic_work: &mut work[particles.clone()],
+                });
+            };
+            out_of(particles.clone(), &|update| strength.advance(update));
+            if let (Some(failure), Some(damage)) = (s.gradual_failure(body), c.tension_free[body]) {
+                let damage = &patch.block.columns[damage];
+                for r in particles.clone().filter(|&r| damage[r] > 0.0 && damage[r] < 1.0) {
+                    let share = failure.carried(damage[r]).shear;
+                    out_of(r..r + 1, &|update| strength.advance_weakened(share, update));
+                }
+            }
             if let Some(damage) = c.tension_free[body] {
                 let (damage, before) = (column(damage), column(self.plastic_strain));
                 for (k, r) in particles.clone().enumerate().filter(|(k, _)| damage[*k] >= 1.0) {

@@ -3,8 +3,9 @@
 use super::columns::Columns;
 use crate::contact::MAX_ADHESION;
 use crate::material::constitutive::{
-    self, ConstitutiveModel, CustomModel, StrengthModel, ThermalModel,
+    self, ConstitutiveModel, CustomModel, FailureModel, StrengthModel, ThermalModel,
 };
+use crate::material::failure::RestState;
 use crate::material::strength::MaterialState;
 use crate::scene::{CheckedScene, Material};
 
@@ -40,6 +41,25 @@ impl BodyModels {
         let thermals = materials().zip(&models);
         let thermals = thermals.map(|(m, model)| constitutive::thermal_of(m, model)).collect();
         Ok(BodyModels { models, strengths, thermals })
+    }
+
+    /// Failure model of each body's material, with the shear wave speed of each body at rest [m/s]
+    /// and the edge of a cell [m].
+    pub fn failures(
+        &self,
+        scene: &CheckedScene,
+        shear_speeds: &[f64],
+        cell: f64,
+    ) -> Vec<Option<Box<dyn FailureModel>>> {
+        let of = |(i, (model, shear)): (usize, (&ConstitutiveModel, &f64))| {
+            let material = scene.material_of(i);
+            let density = material.density;
+            let bulk_modulus = density * model.sound_speed_at(0.0).powi(2);
+            let shear_modulus = density * shear.powi(2);
+            let rest = RestState { density, bulk_modulus, shear_modulus, cell };
+            constitutive::failure_model(material, &rest)
+        };
+        self.models.iter().zip(shear_speeds).enumerate().map(of).collect()
     }
 
     /// Column of the history variable of each body's equation of state.

@@ -56,11 +56,14 @@ impl<const D: usize> Scheme<D> {
         of.isentrope.as_ref()?;
         let column = |k: usize| patch.block.columns[k][r];
         let j = column(c.jacobian);
+        let damage = c.tension_free[body].map_or(0.0, column);
+        let gradual = self.gradual_failure(body).filter(|_| damage < 1.0);
+        let carried = gradual.map(|failure| failure.carried(damage));
         let mut energy = column(c.energy);
         if let (Some(first), Some(strength)) = (c.deviator, &self.strengths[body]) {
             let s = self.deviator(patch, first, r..r + 1).at(0);
             let at = MaterialState { compression: 1.0 / j, pressure, temperature: before };
-            let modulus = strength.shear_modulus(&at);
+            let modulus = strength.shear_modulus(&at) * carried.map_or(1.0, |c| c.shear);
             if modulus > 0.0 {
                 energy -=
                     s.double_dot(&s) * column(c.volume0) * j / (4.0 * modulus * column(c.mass));
@@ -68,7 +71,13 @@ impl<const D: usize> Scheme<D> {
         }
         energy -= c.stored_work.map_or(0.0, column);
         // failed material that has separated is not stretched beyond its initial volume
-        let failed = c.tension_free[body].is_some_and(|damage| column(damage) >= 1.0);
-        of.temperature(if failed { j.min(1.0) } else { j }, energy)
+        let failed = damage >= 1.0;
+        let stretch = match carried {
+            _ if failed => j.min(1.0),
+            // the stretch at which intact material has the elastic energy of the damaged one
+            Some(c) if j > 1.0 => 1.0 + c.tension.sqrt() * (j - c.opening - 1.0).max(0.0),
+            _ => j,
+        };
+        of.temperature(stretch, energy)
     }
 }

@@ -16,10 +16,6 @@ use crate::solver::effect::{Effects, Phase, StepContext};
 use crate::solver::parts::StepPart;
 use crate::solver::patch::{Fault, FaultPhase, Patch, RemovedParticle};
 
-/// Smallest stiffness of a gas in pressure relaxation, over the pressure that counts as zero: 2^-30
-/// of the stiffness of the scene. Rounding errors of pressure then change no volume.
-const COLD: f64 = (1u64 << 20) as f64;
-
 /// Number of particles whose cells along a direction are kept at a time.
 const BLOCK: usize = 128;
 
@@ -252,7 +248,7 @@ impl<const D: usize> Scheme<D> {
                 energy: &column(energy)[particles.clone()],
                 gradient: &column(c.divergence)[particles.clone()],
                 edge: self.edge,
-                floor: COLD * self.still_pressure,
+                floor: self.least_stiffness(),
                 q: c.viscosity.map(|q| &column(q)[particles.clone()]),
                 history: self.history[body].map(|h| &column(h)[particles.clone()]),
                 stress_volume: &mut stress[particles.clone()],
@@ -409,7 +405,8 @@ impl<const D: usize> Scheme<D> {
             let told = timed_if(self.history_part(body), watch, || match c.tension_free[body] {
                 Some(damage) => {
                     let damage = &column(damage)[particles.clone()];
-                    tension_free::refresh((model.as_ref(), damage), (j, e), history, (p, speed))
+                    let models = (model.as_ref(), self.gradual_failure(body), damage);
+                    tension_free::refresh(models, (j, e), history, (p, speed))
                 }
                 None => model.refresh(j, e, history, p, speed),
             });

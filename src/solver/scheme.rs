@@ -5,7 +5,7 @@ use super::columns::Columns;
 use super::nodal_fields::Fields;
 use super::parts::StepPart;
 use crate::contact::ContactCondition;
-use crate::material::constitutive::{ConstitutiveModel, StrengthModel, ThermalModel};
+use crate::material::constitutive::{ConstitutiveModel, FailureModel, StrengthModel, ThermalModel};
 use crate::scene::{
     CheckedScene, EnergyUpdate, FrameKind, PressureRelaxation, ShapeKind, SideProperties, Stepping,
     StressUpdate,
@@ -54,6 +54,8 @@ pub struct Scheme<const D: usize> {
     pub(crate) models: Vec<ConstitutiveModel>,
     /// Strength of each body's material, in addition to its equation of state.
     pub(crate) strengths: Vec<Option<Box<dyn StrengthModel>>>,
+    /// Failure model of each body's material.
+    pub(crate) failures: Vec<Option<Box<dyn FailureModel>>>,
     /// Thermal model of each body.
     pub(crate) thermals: Vec<Option<ThermalModel>>,
     /// Column of the history variable of each body's equation of state.
@@ -104,6 +106,10 @@ pub(super) struct EffectLimits {
 /// of acceleration and pressure follow from it. It applies to all patches, quiescent or not.
 const STILL: f64 = 1.0 / (1u64 << 50) as f64;
 
+/// Smallest stiffness of a gas in pressure relaxation, over the pressure that counts as zero: 2^-30
+/// of the stiffness of the scene. Rounding errors of pressure then change no volume.
+const COLD: f64 = (1u64 << 20) as f64;
+
 impl<const D: usize> Scheme<D> {
     /// Scheme of `scene` with the `models` of its bodies, and the columns and nodal fields that the
     /// effects have completed.
@@ -137,6 +143,7 @@ impl<const D: usize> Scheme<D> {
         let owner = |column: usize| columns.owners[column].expect("a force is an effect's");
         let fastest = waves.fastest;
         Scheme {
+            failures: models.failures(scene, &waves.shear_speeds, edge),
             history: models.histories(&columns),
             forces: columns.forces.iter().map(|&force| (force, owner(force))).collect(),
             friction_part: friction_part.unwrap_or(StepPart::Contact as usize),
@@ -203,6 +210,11 @@ impl<const D: usize> Scheme<D> {
     /// Whether the shape function depends on a deforming domain.
     pub(super) fn domains_deform(&self) -> bool {
         self.extent() == DomainExtent::Current && !self.total_lagrangian
+    }
+
+    /// Smallest stiffness of a gas in pressure relaxation [Pa].
+    pub(super) fn least_stiffness(&self) -> f64 {
+        COLD * self.still_pressure
     }
 
     /// Whether step number `step` (from 1) relaxes the pressure.

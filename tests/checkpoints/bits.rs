@@ -210,6 +210,41 @@ fn strength_failure_heat_pores_and_fire() {
     same_bits::<1>(&coarse("detonation.json", 4e-4), &[9], &[&[4], &[2]]);
 }
 
+/// Damage that is under way at the cut, in both kinds of step.
+#[test]
+fn gradual_damage() {
+    for failure in [
+        json!({"type": "cochran_banner", "stress": 5e8, "opening": 1e-4}),
+        // slow cracks, so that the damage is under way for all steps
+        json!({"type": "grady_kipp", "flaw_density": 1e30, "exponent": 8.0, "crack_speed": 0.01}),
+    ] {
+        let mut scene = shipped("spall.json");
+        scene["domain"]["cell_size"] = json!(1e-4);
+        scene["output"] = json!({});
+        let metal = &mut scene["materials"]["aluminium"];
+        metal["failure"] = failure;
+        metal["strength"] =
+            json!({"type": "von_mises", "shear_modulus": 27e9, "yield_stress": 0.2e9});
+        metal["thermal"] = json!({"specific_heat": 896.0, "reference_temperature": 293.0});
+        // the bodies share their velocities on the grid, and pull each other
+        scene["bodies"][0]["velocity"] = json!([-200.0]);
+        let mut leapfrog = scene.clone();
+        leapfrog["method"] = json!({"shape": "cpdi", "transfer": {"xpic": 2}});
+        leapfrog["artificial_viscosity"] = json!({"linear": 0.2, "quadratic": 2.0});
+        for scene in [scene, leapfrog] {
+            let checked = checked(&scene);
+            let mut run = Simulation::<1>::new(&checked, &Serial, 1).unwrap();
+            while run.steps() < 9 {
+                run.advance(checked.scene.time.end).unwrap();
+            }
+            let (table, _) = run.gather().unwrap();
+            let damage = table.column("damage").unwrap();
+            assert!(damage.iter().any(|&d| d > 0.0 && d < 1.0), "{damage:?}");
+            same_bits::<1>(&scene, &[9, 15], &[&[3], &[2]]);
+        }
+    }
+}
+
 /// Patches that sleep at the cut are awake after it.
 #[test]
 fn patches_at_rest() {

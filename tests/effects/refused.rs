@@ -58,6 +58,12 @@ fn failure() {
     refused(&["strength=null", cook], &["failure.type", "needs plastic strain"]);
     refused(&[cook, "failure.d1=0"], &["failure.d1 = 0", "above 0"]);
     refused(&[cook, "failure.d5=1"], &["failure.d5 = 1", "softening"]);
+    let banner = "failure={\"type\": \"cochran_banner\", \"stress\": 1e9, \"opening\": 1e-5}";
+    refused(&[banner, "failure.opening=0"], &["failure.opening = 0", "above 0"]);
+    refused(&[banner, "failure.exponent=2"], &["failure.exponent = 2"]);
+    let kipp = "failure={\"type\": \"grady_kipp\", \"flaw_density\": 1e30, \"exponent\": 8}";
+    refused(&[kipp, "failure.flaw_density=0"], &["failure.flaw_density = 0", "above 0"]);
+    refused(&[kipp, "failure.exponent=0.5"], &["failure.exponent = 0.5"]);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Any layout, the same bits: ranks x patches x threads x balance x skipping x overlap x filter.
 //!
-//! Runs are made in process; ranks are threads. `scripts/check_decomposition.sh` does the same by
-//! mpirun, files and printed lines included.
+//! Runs are made in process; ranks are threads. The acceptance program (`decomposition/bits`) does the
+//! same by mpirun, files and printed lines included.
 
 #[path = "../common/covering.rs"]
 mod covering;

@@ -33,3 +33,20 @@ fn with_compatible_energy_its_work_is_the_gain_of_kinetic_energy() {
     let energy = v[0] * v[0] + v[1] * v[1] + 2.0 * (e[0] + e[1]);
     close(&[2.0 + f.account(Account::ExternalWork, [0.0])], &[energy]);
 }
+
+#[test]
+fn a_force_that_depends_on_time_is_that_of_the_time_of_the_forces() {
+    let force = |stepping: &str, time: f64| {
+        let ring = json!({"amplitude": 1.0, "period": 1.0, "inner": 1.0, "outer": 7.0});
+        let mut f = Fixture::<2>::solid(json!({"method": {"stepping": stepping},
+            "body_force": {"vortex": ring}}));
+        f.time = time;
+        // it is that of the initial position
+        f.set("position_x", &[1.5, 1.5]).act(Phase::ParticleForce, 0.1);
+        f.get("body_force_x")
+    };
+    let start = force("leapfrog", 0.25);
+    assert!(start[0] != 0.0 && start[0] != start[1]);
+    close(&force("midpoint", 0.2), &start);
+    assert_ne!(force("leapfrog", 0.2), start);
+}

@@ -101,3 +101,13 @@ fn it_burns_over_the_width() {
         [0.0, 0.5, 1.0]
     );
 }
+
+#[test]
+fn an_explosive_that_is_not_burnt_is_active() {
+    let mut f = explosive(false, "leapfrog");
+    assert_eq!(f.active_cells(), 2);
+    f.set("burn_fraction", &[1.0, 0.5]);
+    assert_eq!(f.active_cells(), 1);
+    f.set("burn_fraction", &[1.0, 1.0]);
+    assert_eq!(f.active_cells(), 0);
+}

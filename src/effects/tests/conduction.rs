@@ -73,6 +73,17 @@ fn conduction_limits_the_step() {
     let steps: Vec<f64> = f.stepper.effects.iter().map(|effect| effect.diffusion_step()).collect();
     // h^2/(4 kappa) with kappa = 5/(10 x 2)
     close(&[steps.into_iter().fold(f64::INFINITY, f64::min)], &[1.0]);
+    // below h/c = 0.1 s with a kappa of 5; in the frame of a grid that is half as long a quarter
+    let thermal = json!({"specific_heat": 10.0, "reference_temperature": 300.0,
+        "conductivity": 100.0});
+    for (frame, jacobian, step) in
+        [("updated_lagrangian", 0.5, 0.05), ("total_lagrangian", 0.5, 0.0125)]
+    {
+        let mut f = Fixture::<1>::new(json!({"method": {"frame": frame},
+            "materials": {"fluid": {"thermal": thermal}}}));
+        f.set("jacobian", &[jacobian, 1.0]).refresh();
+        close(&[f.patch.report.time_step], &[step]);
+    }
 }
 
 #[test]

@@ -36,3 +36,33 @@ fn energies_approach_the_means_and_their_sum_stays() {
     let rises = [(17.5 - 10.0) / 2.0, 3.0 * (27.5 - 30.0) / 6.0];
     close(&f.get("specific_internal_energy"), &[10.0 + rises[0], 30.0 + rises[1]]);
 }
+
+#[test]
+fn particles_of_other_materials_do_not_mix() {
+    let body = |name: &str, lower: f64, material: &str| {
+        json!({"name": name, "material": material, "particles_per_cell": [1],
+            "box": {"lower": [lower], "upper": [lower + 1.0]}})
+    };
+    let fluid = |density: f64| {
+        json!({"density": density,
+            "eos": {"type": "tait", "bulk_modulus": 200.0, "exponent": 1.0}})
+    };
+    for (second, moved) in [("fluid", true), ("other", false)] {
+        let mut scene = json!({
+            "heat_mixing": {"coefficient": 4.0},
+            "materials": {"fluid": fluid(2.0)},
+            "bodies": [body("a", 3.0, "fluid"), body("b", 4.0, second)],
+        });
+        if second == "other" {
+            scene["materials"]["other"] = fluid(3.0);
+        }
+        let mut f = Fixture::<1>::new(scene);
+        f.set("mass", &[2.0, 2.0]).set("mixing_mass", &[1.0, 1.0]);
+        f.set("mixing_energy", &[10.0, 30.0]);
+        f.solve(0.1).set("specific_internal_energy", &[10.0, 30.0]);
+        f.act(Phase::Gathered, 0.1);
+        // means of 10, 20 and 30 J/kg if they mix: +5 J/kg, of which half the mass takes part
+        let rise = if moved { 2.5 } else { 0.0 };
+        close(&f.get("specific_internal_energy"), &[10.0 + rise, 30.0 - rise]);
+    }
+}

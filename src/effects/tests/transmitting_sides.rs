@@ -100,3 +100,18 @@ fn material_at_rest_is_left_alone_by_a_grid_that_accelerates() {
     f.set("velocity", &[-0.8; 8]);
     close(&accelerations(&mut f), &[-4.0; 3]);
 }
+
+#[test]
+fn in_a_plane_the_whole_gradient_is_kept() {
+    let mut f = Fixture::<2>::new(json!({
+        "method": {"stepping": "midpoint"},
+        "boundary": {"x_upper": "transmitting"},
+        "bodies": [{"name": "body", "material": "fluid", "particles_per_cell": [1, 1],
+            "box": {"lower": [6.0, 3.0], "upper": [8.0, 4.0]}}],
+    }));
+    f.set_flow([(0.0, [0.0; 2]); 2], [(0.0, [4.0, 8.0]), (0.0, [3.0, -2.0])]);
+    f.gather_midpoint(0.1);
+    for (of, value) in [("xx", 4.0), ("xy", 8.0), ("yx", 3.0), ("yy", -2.0)] {
+        close(&f.get(&format!("velocity_gradient_{of}")), &[value; 2]);
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::Deviators;
 use crate::material::Symmetric;
-use crate::material::failure::{FailureLaw, StrengthBeside, StressState};
+use crate::material::failure::{Carried, FailureLaw, StrengthBeside, StressState};
 
 /// Arguments of [`FailureModel::advance`]; arrays have one entry per particle.
 pub struct DamageUpdate<'a> {
@@ -22,8 +22,15 @@ pub struct DamageUpdate<'a> {
 
 /// Failure of a material, as called by the step.
 pub trait FailureModel: Send + Sync {
-    /// Updates the damage and calls `failed` with the index of each particle that fails.
-    fn advance(&self, particles: DamageUpdate<'_>, failed: &mut dyn FnMut(usize));
+    /// Updates the damage and calls `weakened` with the index of each particle that carries less
+    /// than before, and its damage before.
+    fn advance(&self, particles: DamageUpdate<'_>, weakened: &mut dyn FnMut(usize, f64));
+
+    /// Whether damage below 1 reduces the stress.
+    fn is_gradual(&self) -> bool;
+
+    /// Part of the stress that material with `damage` carries.
+    fn carried(&self, damage: f64) -> Carried;
 }
 
 /// Particle loop over one failure law.
@@ -33,7 +40,7 @@ pub(super) struct FailureKernel<L> {
 }
 
 impl<L: FailureLaw> FailureModel for FailureKernel<L> {
-    fn advance(&self, particles: DamageUpdate<'_>, failed: &mut dyn FnMut(usize)) {
+    fn advance(&self, particles: DamageUpdate<'_>, weakened: &mut dyn FnMut(usize, f64)) {
         for (r, damage) in particles.damage.iter_mut().enumerate() {
             if *damage >= 1.0 {
                 continue;
@@ -45,10 +52,19 @@ impl<L: FailureLaw> FailureModel for FailureKernel<L> {
                 dt: particles.dt,
                 temperature: particles.temperature.map_or(f64::NAN, |t| t[r]),
             };
-            *damage = self.law.damage(*damage, &state, &self.strength);
-            if *damage >= 1.0 {
-                failed(r);
+            let before = *damage;
+            *damage = self.law.damage(before, &state, &self.strength);
+            if *damage >= 1.0 || (L::GRADUAL && *damage > before) {
+                weakened(r, before);
             }
         }
+    }
+
+    fn is_gradual(&self) -> bool {
+        L::GRADUAL
+    }
+
+    fn carried(&self, damage: f64) -> Carried {
+        if damage < 1.0 { self.law.carried(damage) } else { Carried::NOTHING }
     }
 }

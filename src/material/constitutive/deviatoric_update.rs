@@ -82,6 +82,9 @@ pub trait StrengthModel: Send + Sync {
     /// Updates deviator and plastic strain, and sets the plastic work.
     fn advance(&self, particles: StrengthUpdate<'_>);
 
+    /// As [`StrengthModel::advance`], with the share `share` of shear modulus and yield stress.
+    fn advance_weakened(&self, share: f64, particles: StrengthUpdate<'_>);
+
     /// Shear modulus at the state `at` [Pa].
     fn shear_modulus(&self, at: &MaterialState) -> f64;
 
@@ -94,20 +97,11 @@ pub(super) struct StrengthKernel<L>(pub L);
 
 impl<L: StrengthLaw> StrengthModel for StrengthKernel<L> {
     fn advance(&self, particles: StrengthUpdate<'_>) {
-        let mut out = particles.deviator_after;
-        for r in 0..particles.plastic_strain_after.len() {
-            let at = MaterialState {
-                compression: 1.0 / particles.jacobian[r],
-                pressure: particles.pressure[r],
-                temperature: particles.temperature.map_or(f64::NAN, |t| t[r]),
-            };
-            let (s, strain) = (particles.deviator.at(r), particles.plastic_strain[r]);
-            let after =
-                strength::advance(&self.0, &s, strain, &particles.rate.at(r), particles.dt, &at);
-            out.set(r, &after.deviator, 1.0);
-            particles.plastic_strain_after[r] = after.plastic_strain;
-            particles.plastic_work[r] = after.plastic_work;
-        }
+        advance_all(&self.0, particles);
+    }
+
+    fn advance_weakened(&self, share: f64, particles: StrengthUpdate<'_>) {
+        advance_all(&Weakened { law: self.0, share }, particles);
     }
 
     fn shear_modulus(&self, at: &MaterialState) -> f64 {
@@ -116,5 +110,86 @@ impl<L: StrengthLaw> StrengthModel for StrengthKernel<L> {
 
     fn yield_stress(&self, strain: f64, at: &MaterialState) -> f64 {
         self.0.yield_stress(strain, 0.0, at)
+    }
+}
+
+/// Strength law of damaged material: a share of the shear modulus and of the yield stress.
+#[derive(Clone, Copy)]
+struct Weakened<L> {
+    law: L,
+    /// Share of the intact material [-].
+    share: f64,
+}
+
+impl<L: StrengthLaw> StrengthLaw for Weakened<L> {
+    #[inline(always)]
+    fn shear_modulus(&self, at: &MaterialState) -> f64 {
+        self.share * self.law.shear_modulus(at)
+    }
+
+    #[inline(always)]
+    fn yield_stress(&self, strain: f64, rate: f64, at: &MaterialState) -> f64 {
+        self.share * self.law.yield_stress(strain, rate, at)
+    }
+}
+
+/// Particle loop over one strength law.
+#[inline(always)]
+fn advance_all(law: &impl StrengthLaw, particles: StrengthUpdate<'_>) {
+    let mut out = particles.deviator_after;
+    for r in 0..particles.plastic_strain_after.len() {
+        let at = MaterialState {
+            compression: 1.0 / particles.jacobian[r],
+            pressure: particles.pressure[r],
+            temperature: particles.temperature.map_or(f64::NAN, |t| t[r]),
+        };
+        let (s, strain) = (particles.deviator.at(r), particles.plastic_strain[r]);
+        let after = strength::advance(law, &s, strain, &particles.rate.at(r), particles.dt, &at);
+        out.set(r, &after.deviator, 1.0);
+        particles.plastic_strain_after[r] = after.plastic_strain;
+        particles.plastic_work[r] = after.plastic_work;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::strength::VonMises;
+
+    /// The deviator of damaged material is the share of that of intact material with the same
+    /// strain.
+    #[test]
+    fn damaged_material_bears_its_share_of_the_shear() {
+        let metal = VonMises { shear_modulus: 28e9, yield_stress: 0.3e9, hardening: 1e9 };
+        let kernel = StrengthKernel(metal);
+        // elastic, and beyond the yield stress
+        for rate in [1e5, 4e6] {
+            let advanced = |share: f64| {
+                let [mut xx, mut strain, mut work] = [[0.0]; 3];
+                let update = StrengthUpdate {
+                    dt: 1e-8,
+                    rate: VelocityGradients::Line(&[rate]),
+                    jacobian: &[1.0],
+                    pressure: &[0.0],
+                    temperature: None,
+                    deviator: Deviators { xx: &[share * 0.1e9], plane: None },
+                    plastic_strain: &[0.0],
+                    deviator_after: TensorColumns { xx: &mut xx, plane: None, across: None },
+                    plastic_strain_after: &mut strain,
+                    plastic_work: &mut work,
+                };
+                match share {
+                    1.0 => kernel.advance(update),
+                    _ => kernel.advance_weakened(share, update),
+                }
+                [xx[0], strain[0], work[0]]
+            };
+            let [intact, damaged] = [1.0, 0.25].map(advanced);
+            assert!(intact[0] > 0.1e9 && (intact[1] > 0.0) == (rate > 1e6), "{intact:?}");
+            let expected = [0.25 * intact[0], intact[1], 0.25 * intact[2]];
+            for (found, expected) in damaged.iter().zip(expected) {
+                assert!((found - expected).abs() <= 1e-12 * expected, "{damaged:?} {intact:?}");
+            }
+        }
     }
 }

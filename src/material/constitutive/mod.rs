@@ -47,7 +47,7 @@ pub use registry::{build, equation};
 pub use solid::{PlaneStrain, SolidModel, Strain, TensorColumns};
 
 use crate::material::definition::{HeatSource, Material};
-use crate::material::failure::{FailureLaw, FailureVisitor, StrengthBeside};
+use crate::material::failure::{FailureLaw, FailureVisitor, RestState, StrengthBeside};
 use crate::material::strength::{StrengthLaw, StrengthVisitor};
 
 /// Strength model of a fluid material, if the scene names one.
@@ -63,17 +63,18 @@ pub fn strength_model(material: &Material) -> Option<Box<dyn StrengthModel>> {
     material.strength.map(|strength| strength.visit(Build(material.density)))
 }
 
-/// Failure model of a material, if the scene names one.
-pub fn failure_model(material: &Material) -> Option<Box<dyn FailureModel>> {
-    struct Build(StrengthBeside);
-    impl FailureVisitor for Build {
+/// Failure model of a material with the properties `rest`, if the scene names one.
+pub fn failure_model(material: &Material, rest: &RestState) -> Option<Box<dyn FailureModel>> {
+    struct Build<'a>(StrengthBeside, &'a RestState);
+    impl FailureVisitor for Build<'_> {
         type Output = Box<dyn FailureModel>;
 
         fn visit<L: FailureLaw>(self, law: L) -> Self::Output {
+            let law = law.with_rest_state(self.1);
             Box::new(damage_update::FailureKernel { law, strength: self.0 })
         }
     }
-    material.failure.map(|failure| failure.visit(Build(material.strength_beside())))
+    material.failure.map(|failure| failure.visit(Build(material.strength_beside(), rest)))
 }
 
 /// Erosion limits of a material, if the scene gives any.

@@ -1,6 +1,8 @@
 //! Failure: when a material no longer carries tension and shear. One file per law.
 //!
-//! Damage is 0 in intact material and grows to 1, where the material has failed.
+//! Damage is 0 in intact material and grows to 1, where the material has failed. By most laws the
+//! material carries its whole stress until then. By a gradual law ([`FailureLaw::GRADUAL`]) damage
+//! reduces tension and shear before ([`Carried`]).
 //!
 //! Independent of particles, grid and dimension.
 
@@ -40,6 +42,8 @@ failure_laws![
     TensionLimit: tension_limit::TensionLimit,
     JohnsonCook: johnson_cook::JohnsonCookFracture,
     TulerButcher: tuler_butcher::TulerButcher,
+    CochranBanner: cochran_banner::CochranBanner,
+    GradyKipp: grady_kipp::GradyKipp,
 ];
 
 /// Visitor of a failure law of any type; see [`Failure::visit`].
@@ -60,12 +64,53 @@ pub struct StrengthBeside {
     pub softening_range: Option<[f64; 2]>,
 }
 
+/// Properties of a material at rest, and the size of a cell, for failure laws that depend on them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RestState {
+    /// Density [kg/m3].
+    pub density: f64,
+    /// Bulk modulus K [Pa].
+    pub bulk_modulus: f64,
+    /// Shear modulus G [Pa]; 0 without strength.
+    pub shear_modulus: f64,
+    /// Edge of a cell [m]; of a square with its area where cells are no squares.
+    pub cell: f64,
+}
+
+/// Part of its stress that a damaged material carries.
+///
+/// With p0(J) the pressure of intact material at the volume ratio J, the pressure is
+///
+/// ```text
+/// p = min(0, tension p0(J - opening))    where p0(J) < 0;  p = p0(J) elsewhere
+/// ```
+///
+/// Shear modulus and yield stress are multiplied by `shear`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carried {
+    /// Share of the tension [-].
+    pub tension: f64,
+    /// Share of the shear modulus and of the yield stress [-].
+    pub shear: f64,
+    /// Volume of open cracks per initial volume [-]; the material between them is stretched by so
+    /// much less. Cracks that close carry no pressure until the volume is that of intact material.
+    pub opening: f64,
+}
+
+impl Carried {
+    /// The whole stress, of intact material.
+    pub const WHOLE: Carried = Carried { tension: 1.0, shear: 1.0, opening: 0.0 };
+
+    /// No tension and no shear, of failed material.
+    pub const NOTHING: Carried = Carried { tension: 0.0, shear: 0.0, opening: 0.0 };
+}
+
 /// State of a material point at the end of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct StressState {
-    /// Pressure [Pa].
+    /// Pressure that the material carries at its damage before the step [Pa].
     pub pressure: f64,
-    /// Deviator of the stress [Pa].
+    /// Deviator of the stress that it carries likewise [Pa].
     pub deviator: Symmetric,
     /// Plastic strain of the step [-].
     pub plastic_strain: f64,
@@ -87,6 +132,9 @@ impl StressState {
 
 /// Failure law at one material point.
 pub trait FailureLaw: Copy + Send + Sync + 'static {
+    /// Whether damage below 1 reduces the stress, as [`FailureLaw::carried`] says.
+    const GRADUAL: bool = false;
+
     /// Checks the parameters against each other and against the strength of the material.
     ///
     /// # Errors
@@ -97,8 +145,21 @@ pub trait FailureLaw: Copy + Send + Sync + 'static {
         Ok(())
     }
 
-    /// Damage [-] at the end of a step; `before` is the damage at its start, less than 1.
+    /// The same law for a material with the properties `rest`.
+    fn with_rest_state(self, rest: &RestState) -> Self {
+        let _ = rest;
+        self
+    }
+
+    /// Damage [-] at the end of a step; `before` is the damage at its start, less than 1. It does
+    /// not decrease.
     fn damage(&self, before: f64, state: &StressState, strength: &StrengthBeside) -> f64;
+
+    /// Part of the stress that material with a `damage` below 1 carries; its shares are above 0.
+    fn carried(&self, damage: f64) -> Carried {
+        let _ = damage;
+        Carried::WHOLE
+    }
 }
 
 impl Failure {

@@ -162,13 +162,14 @@ fn with_flip_sticking_needs_a_force() {
 #[test]
 fn friction_heats_both_bodies() {
     let mut f = sliding("pic", 0.3);
-    f.solve(0.1);
-    // the mean velocities at the node are 0.15 and 7.85 m/s: 1.5 N x 7.7 m/s x 0.1 s, half each
-    let heat = 0.5 * 1.5 * 7.7 * 0.1 / 0.5;
-    close(&[f.node_of(0, "heat", [3, 4]), f.node_of(1, "heat", [3, 4])], &[heat; 2]);
+    f.set("mass", &[2.0, 6.0]).solve(0.1);
+    // 0.3 x 3/8 kg x 2 m/s in 0.1 s are 2.25 N on 1/2 and 3/2 kg: mean velocities 0.225 and
+    // 7.925 m/s; half of the work 2.25 N x 7.7 m/s x 0.1 s each
+    let heat = [0.5, 1.5].map(|mass| 0.5 * 2.25 * 7.7 * 0.1 / mass);
+    close(&[f.node_of(0, "heat", [3, 4]), f.node_of(1, "heat", [3, 4])], &heat);
     f.run(0.1, |s, step, patch| s.gather_contact(patch, step.dt));
     // N = 1/4 at each of the two nodes
-    close(&f.get("specific_internal_energy"), &[0.5 * heat; 2]);
+    close(&f.get("specific_internal_energy"), &heat.map(|heat| 0.5 * heat));
 }
 
 #[test]
@@ -243,4 +244,56 @@ fn normals_by_regression_are_those_of_the_faces() {
     // one of two nodes on the face
     assert_eq!(f.patch.contact.constraints.len(), 2);
     close(&f.patch.contact.constraints[0].normal, &[0.0, 1.0]);
+}
+
+#[test]
+fn compressed_bodies_touch_over_a_smaller_area() {
+    // V = 1/2 at 3.75 and 4.25 m: A = 1/2, 3/2 kg at the node: m u + A s dt > 0 above 45 Pa
+    for (stress, touches) in [(44.0, false), (46.0, true)] {
+        let mut f = pair("pic");
+        f.set("position", &[3.75, 4.25]).set("jacobian", &[0.5, 0.5]);
+        f.set("velocity", &[-2.0, 1.0]).set("stress_volume", &[0.5 * stress; 2]).scatter(0.1);
+        assert_eq!(f.patch.contact.constraints.len(), usize::from(touches), "{stress} Pa");
+    }
+}
+
+#[test]
+fn about_an_axis_the_area_grows_with_the_radius() {
+    // 7 kg per radian in each particle at the radius 3.5, 7/4 kg at the nodes: m u = -2.625 N s.
+    // The nodes are corners with volume gradients (1/2, 1/2): A = r/sqrt(2) at the radii 3 and 4,
+    // above 12.4 and 9.3 Pa
+    for (stress, touching) in [(9.0, 0), (11.0, 1), (13.0, 2)] {
+        let bodies = [
+            body("lower", json!([3.0, 3.0]), json!([4.0, 4.0]), json!([0.0, -2.0])),
+            body("upper", json!([3.0, 4.0]), json!([4.0, 5.0]), json!([0.0, 1.0])),
+        ];
+        let mut f = Fixture::<2>::axisymmetric(json!({"bodies": bodies,
+            "contact": {"type": "frictionless"}, "method": {"transfer": "pic"}}));
+        f.set("stress_volume", &[3.5 * stress; 2]).scatter(0.1);
+        assert_eq!(f.patch.contact.constraints.len(), touching, "{stress} Pa");
+    }
+}
+
+#[test]
+fn on_a_mirror_the_force_between_bodies_counts_by_half() {
+    let bodies = [
+        body("lower", json!([0.0, 3.0]), json!([1.0, 4.0]), json!([0.0, 0.0])),
+        body("upper", json!([0.0, 4.0]), json!([1.0, 5.0]), json!([0.0, -2.0])),
+    ];
+    let mut f = Fixture::<2>::new(json!({"bodies": bodies, "boundary": {"x_lower": "wall"},
+        "contact": {"type": "frictionless"}, "method": {"transfer": "pic"}}));
+    f.scatter(0.1);
+    f.run(0.1, |s, step, patch| s.gather_contact(patch, step.dt));
+    // 1/2 kg of each at the nodes (0, 4) and (1, 4), at the first one the images too
+    close(&f.patch.contact.forces.concat(), &[5.0, 0.0, 5.0, 0.0]);
+}
+
+#[test]
+fn the_affine_velocity_is_that_of_the_own_body() {
+    let mut f = pair("apic");
+    f.set("affine_velocity", &[0.0, 8.0]).scatter(0.1);
+    close(
+        &[f.node_of(0, "lumped_velocity", [3]), f.node_of(1, "lumped_velocity", [5])],
+        &[2.0, 3.0],
+    );
 }

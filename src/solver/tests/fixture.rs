@@ -243,6 +243,18 @@ where
         self
     }
 
+    /// Number of cells whose particles may change in this step.
+    pub(crate) fn active_cells(&mut self) -> usize {
+        self.run(0.0, |s, step, patch| s.find_active(patch, step.effects));
+        self.patch.block.active.count()
+    }
+
+    /// Gathers the results of a mid-point step of `dt` [s] from the nodes.
+    pub(crate) fn gather_midpoint(&mut self, dt: f64) -> &mut Self {
+        self.run(dt, |s, step, patch| s.gather_midpoint(patch, step.dt));
+        self
+    }
+
     /// Finds the cells of the particles where they are, copies ghosts, and runs phases with
     /// exchanges of nodal values.
     pub(crate) fn nodal(

@@ -56,7 +56,7 @@ fn positions_in_a_mid_point_step() {
         (json!("apic"), END, [0.05 * 20.5, 0.05 * 29.0]),
     ] {
         let mut f = pair(json!({"transfer": transfer, "stepping": "midpoint"}));
-        f.run(0.1, |s, step, patch| s.gather_midpoint(patch, step.dt));
+        f.gather_midpoint(0.1);
         close(&f.get("velocity"), &velocity);
         close(&f.get("position"), &[3.25 + moved[0], 4.5 + moved[1]]);
         close(&f.get("velocity_gradient"), &[14.0, 4.0]);
@@ -76,7 +76,7 @@ fn heated(method: Value, work: [f64; 3], lost: Option<[f64; 3]>) -> [Vec<f64>; 2
             f.set_node("filter_residual", [node], lost[k]);
         }
     }
-    f.run(0.1, |s, step, patch| s.gather_midpoint(patch, step.dt));
+    f.gather_midpoint(0.1);
     ["jacobian", "specific_internal_energy"].map(|column| f.get(column))
 }
 
@@ -178,7 +178,7 @@ fn a_rotation_turns_the_deformation_and_does_not_stretch_it() {
     let turning = [(0.0, [0.0, -10.0]), (0.0, [10.0, 0.0])];
     f.set("deformation_xx", &[2.0, 1.0]).set("deformation_xy", &[0.0, 1.0]);
     f.set_flow(turning, turning);
-    f.run(0.1, |s, step, patch| s.gather_midpoint(patch, step.dt));
+    f.gather_midpoint(0.1);
     close(&f.get("deformation_xx"), &[2.0 * 0.6, 0.6]);
     close(&f.get("deformation_xy"), &[-0.8, 0.6 - 0.8]);
     close(&f.get("deformation_yx"), &[2.0 * 0.8, 0.8]);
@@ -190,17 +190,19 @@ fn a_rotation_turns_the_deformation_and_does_not_stretch_it() {
 fn the_deformation_of_a_mid_point_step_is_cayleys_form() {
     let method = json!({"shape": "cpdi", "transfer": "flip", "stepping": "midpoint"});
     let mut f = Fixture::<2>::new(json!({"method": method}));
-    // mean gradient (2, 4; 0, -2), at the end (4, 8; 0, -4)
-    f.set_flow([(0.0, [0.0; 2]); 2], [(0.0, [4.0, 8.0]), (0.0, [0.0, -4.0])]);
-    f.run(0.1, |s, step, patch| s.gather_midpoint(patch, step.dt));
-    // (1 - dt/2 l)^-1 (1 + dt/2 l) with dt/2 l = (0.1, 0.2; 0, -0.1):
-    // yy = 0.9/1.1, xx = 1.1/0.9, xy = (0.2 + 0.2 yy)/0.9
+    // mean gradient (2, 4; 0, -1), at the end (4, 8; 0, -2)
+    f.set_flow([(0.0, [0.0; 2]); 2], [(0.0, [4.0, 8.0]), (0.0, [0.0, -2.0])]);
+    f.gather_midpoint(0.1);
+    // (1 - dt/2 l)^-1 (1 + dt/2 l) with dt/2 l = (0.1, 0.2; 0, -0.05):
+    // yy = 0.95/1.05, xx = 1.1/0.9, xy = (0.2 + 0.2 yy)/0.9
     close(&f.get("deformation_xx"), &[1.1 / 0.9; 2]);
-    close(&f.get("deformation_xy"), &[0.2 * (1.0 + 0.9 / 1.1) / 0.9; 2]);
-    close(&f.get("deformation_yy"), &[0.9 / 1.1; 2]);
+    close(&f.get("deformation_xy"), &[0.2 * (1.0 + 0.95 / 1.05) / 0.9; 2]);
+    close(&f.get("deformation_yy"), &[0.95 / 1.05; 2]);
     assert_eq!(f.get("deformation_yx"), [0.0; 2]);
+    close(&f.get("jacobian"), &[1.0 + 0.1 * (2.0 - 1.0); 2]);
     close(&f.get("velocity_gradient_xy"), &[8.0; 2]);
-    close(&f.get("velocity_gradient_yy"), &[-4.0; 2]);
+    close(&f.get("velocity_gradient_yy"), &[-2.0; 2]);
+    close(&f.get("velocity_gradient"), &[4.0 - 2.0; 2]);
 }
 
 #[test]
@@ -215,7 +217,7 @@ fn the_work_of_a_stress_tensor() {
         f.set(column, &[value, 0.0]);
     }
     let before = f.get("specific_internal_energy");
-    f.run(0.1, |s, step, patch| s.gather_midpoint(patch, step.dt));
+    f.gather_midpoint(0.1);
     // e -= dt S : l/m with m = 2 kg
     let work = 0.1 * (4.0 * 3.0 + 6.0 * 13.0 + 10.0 * (5.0 + 11.0));
     close(&f.get("specific_internal_energy"), &[before[0] - work / 2.0, before[1]]);

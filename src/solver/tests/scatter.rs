@@ -196,3 +196,24 @@ fn in_the_total_lagrangian_frame_gradients_follow_the_deformation() {
         close(&f.line("acceleration", 3..=5), &[-a, (a - b) / 2.0, b]);
     }
 }
+
+#[test]
+fn beyond_an_outer_wall_the_image_is_pushed_inward() {
+    let mut f = single(Fixture::axisymmetric(
+        json!({"boundary": {"x_lower": "symmetry", "x_upper": "wall"}}),
+    ));
+    f.set("position_x", &[7.75, 3.5]).set("stress_volume", &[4.0, 0.0]).scatter(0.1);
+    // the hoop stress of the particle at the radius 7.75 pushes outward, that of its image inward
+    close(&[f.node("acceleration_x", [8, 3])], &[0.0]);
+    close(&[f.node("acceleration_x", [7, 3])], &[4.0 * (-0.5 + 0.125 / 7.75)]);
+}
+
+#[test]
+fn about_an_axis_a_node_is_empty_below_the_mass_at_the_outer_radius() {
+    // 2^-90 of 2 kg/m3 x 1 m2 x 8 m; the node has 3/8 of the particle
+    for (scale, empty) in [(42.0, true), (43.0, false)] {
+        let mut f = single(Fixture::axisymmetric(json!({})));
+        f.set("mass", &[scale * 2f64.powi(-90), 1.0]).scatter(0.1);
+        assert_eq!(f.node("inverse", [3, 3]) == 0.0, empty, "{scale}");
+    }
+}

@@ -1,9 +1,9 @@
 //! Hard cases and what each must keep: figures beside their bounds, the same for the tests and for
-//! `scripts/check_hard_cases.sh`.
+//! the acceptance program.
 //!
 //! The scheme is that of `inputs/flyer.json`, read when a case is run.
 
-#![allow(dead_code)] // the tests and the check each use a part
+#![allow(dead_code)] // the tests and the acceptance program each use a part
 
 mod effects;
 mod impacts;

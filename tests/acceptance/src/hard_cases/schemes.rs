@@ -1,0 +1,161 @@
+//! Every shape function with every transfer in hard cases: stable and its error, ended by the
+//! monitor, or refused; written to `docs/hard_cases.md`.
+
+use std::fmt::Write;
+
+use serde_json::{Value, json};
+
+use super::cases::scenes::{SHAPES, shipped, with};
+use super::cases::tools::{checked, hard, run, scored, until};
+use crate::program::root;
+use crate::table::Table;
+
+const HEAD: &str = "# Schemes in hard cases
+
+Written by `cargo run --release -p acceptance -- hard_cases/schemes`: every shape function with every
+transfer. Mid-point steps with all of the options of `inputs/flyer.json` that the transfer allows, its
+viscosity, a Courant number of 0.4 unless a column says another. A number is the error: L1 of the pressure
+in per cent of the exact profile's, at 0.2 us, in `e` columns the drift of energy in per cent. **monitor**
+and a word is how the monitor ended the run before its answer was wrong, **refused** what the scene's check
+says; both leave with a code that is not 0. A transfer in italics has energy that is not exact.
+
+- state: a particle's state is outside of its model, mostly tension that grows; courant: a step turned
+  out too long; speed: a particle faster than any wave; energy: it grew; cold: internal energy fell
+  below none; crowd: particles clumped; step: the stable time step collapsed.
+- The Courant numbers up to which schemes are stable are in `src/input/check/courant.rs`, measured by
+  `cargo run --release --example courant_limits`; above them a scene is refused unless
+  `monitor.on_courant_exceeded` says otherwise.
+
+";
+
+/// A case: its heading, and the scene with the standard method.
+fn cases() -> Vec<(&'static str, Value)> {
+    let base = || {
+        let mut value = until(&shipped("flyer.json"), &[0.2e-6]);
+        value["domain"]["lower"] = json!([-0.0007]);
+        value["domain"]["upper"] = json!([0.0033]);
+        value["bodies"][1]["box"]["upper"] = json!([0.0026]);
+        value
+    };
+    let each = |edit: &dyn Fn(&mut Value)| {
+        let mut value = base();
+        (0..2).for_each(|body| edit(&mut value["bodies"][body]));
+        value
+    };
+    let faster = |speed: f64, end: f64| {
+        let mut value = until(&base(), &[end]);
+        value["bodies"][0]["velocity"] = json!([speed]);
+        value
+    };
+    let soft = {
+        let mut value = until(&shipped("soft_flyer.json"), &[0.2e-6]);
+        value["domain"]["upper"] = json!([0.0033]);
+        value["bodies"][1]["box"]["upper"] = json!([0.003]);
+        value
+    };
+    vec![
+        ("standard", base()),
+        ("no viscosity", with(&base(), &json!({"artificial_viscosity": null}))),
+        ("1 a cell", each(&|b| b["particles_per_cell"] = json!([1]))),
+        ("16 a cell", each(&|b| b["particles_per_cell"] = json!([16]))),
+        ("grid +0.37", {
+            let mut value = base();
+            value["domain"]["lower"] = json!([-0.0007 - 0.37e-5]);
+            value["domain"]["upper"] = json!([0.0033 - 0.37e-5]);
+            value
+        }),
+        ("5 km/s", faster(5e3, 0.1e-6)),
+        ("10 km/s", faster(1e4, 0.1e-6)),
+        ("soft, contact", soft),
+        ("courant 0.8", with(&base(), &json!({"time": {"courant": 0.8}}))),
+        ("torn e", hard("torn.json")),
+        ("10 km/s flight e", hard("flight.json")),
+    ]
+}
+
+fn transfers() -> [(&'static str, Value); 8] {
+    [
+        ("flip", json!("flip")),
+        ("pic", json!("pic")),
+        ("apic", json!("apic")),
+        ("flip 0.9", json!({"flip_pic": 0.9})),
+        ("xpic 3", json!({"xpic": 3})),
+        ("fmpm 4", json!({"fmpm": 4})),
+        ("fmpm 6", json!({"fmpm": 6})),
+        ("fmpm 8", json!({"fmpm": 8})),
+    ]
+}
+
+/// The scene with a scheme, and what it allows of the options.
+fn scheme(base: &Value, shape: &str, transfer: &Value) -> Value {
+    let mut value = base.clone();
+    let (affine, plain) = (transfer == "apic", transfer == "flip");
+    let method = value["method"].as_object_mut().expect("a method");
+    method.insert("shape".into(), json!(shape));
+    method.insert("transfer".into(), transfer.clone());
+    method.insert("filter_heat".into(), json!(!affine && !plain));
+    method.insert("energy".into(), json!(if affine { "textbook" } else { "compatible" }));
+    if transfer.get("fmpm").is_none() {
+        method.remove("edge_mask");
+    }
+    value
+}
+
+/// How a message of the monitor is told in a word.
+fn word(message: &str) -> &'static str {
+    let words = [
+        ("Courant number", "courant"),
+        ("faster than any wave", "speed"),
+        ("energy has grown", "energy"),
+        ("below none", "cold"),
+        ("in its cell", "crowd"),
+        ("stable time step", "step"),
+    ];
+    words.iter().find(|(text, _)| message.contains(text)).map_or("state", |(_, word)| word)
+}
+
+/// The end of a run in a cell of the table.
+fn cell(name: &str, value: &Value) -> String {
+    if let Err(message) = checked(value) {
+        let reason = message.split("allowed:").next().unwrap_or("").to_string();
+        let above = reason.find("above ").map(|at| &reason[at..]).and_then(|r| r.split(',').next());
+        return format!("**refused**, {}", above.unwrap_or("see the message"));
+    }
+    let error = |message: String| match message.contains("at set-up") {
+        true => "**refused**".to_string(),
+        false => format!("**monitor**, {}", word(&message)),
+    };
+    if name.ends_with(" e") {
+        return run(value)
+            .map_or_else(error, |e| format!("{:.1e}", 100.0 * e.energy_drift().abs()));
+    }
+    scored(value).map_or_else(error, |(_, errors)| {
+        errors.last().and_then(|e| e.l1).map_or("-".into(), |l1| format!("{:.2}", 100.0 * l1))
+    })
+}
+
+/// Writes the table; counts a row of the default scheme that is not stable as a miss.
+pub fn check(table: &mut Table) {
+    let cases = cases();
+    let mut text = HEAD.to_string();
+    let names: Vec<&str> = cases.iter().map(|(name, _)| *name).collect();
+    let _ = writeln!(text, "| shape, transfer | {} |", names.join(" | "));
+    let _ = writeln!(text, "|---|{}", "---|".repeat(names.len()));
+    for shape in SHAPES {
+        for (name, transfer) in transfers() {
+            let row: Vec<String> = cases
+                .iter()
+                .map(|(case, base)| cell(case, &scheme(base, shape, &transfer)))
+                .collect();
+            let name = if name == "apic" { "*apic*" } else { name };
+            let _ = writeln!(text, "| {shape}, {name} | {} |", row.join(" | "));
+            let default = shipped("flyer.json")["method"].clone();
+            if default["shape"] == shape && default["transfer"] == transfer {
+                let ok = row.iter().all(|cell| !cell.contains("monitor"));
+                table.holds("the default scheme in all cases", "", "stable or refused", ok);
+            }
+        }
+    }
+    let written = std::fs::write(root().join("docs/hard_cases.md"), text);
+    table.holds("docs/hard_cases.md", "", "written", written.is_ok());
+}

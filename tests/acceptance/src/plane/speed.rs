@@ -1,0 +1,80 @@
+//! Particle-steps a second on one core, and what a second rank gains.
+
+use crate::bounds::plane as bounds;
+use crate::runs::Job;
+use crate::table::Table;
+
+/// Runs of each kind.
+const ROUNDS: usize = 3;
+
+/// No option beyond the textbook's.
+const PLAIN: [&str; 7] = [
+    "method.transfer=flip",
+    "method.stepping=leapfrog",
+    "method.energy=textbook",
+    "method.filter_heat=false",
+    "method.pressure_relaxation=null",
+    "method.edge_mask=null",
+    "artificial_viscosity={\"linear\": 0.2, \"quadratic\": 2}",
+];
+
+fn job() -> Job {
+    Job::new("flyer_2d")
+        // hat functions at points tear the flyer's rear apart at 1.9e-8 s
+        .set("time.end=1.5e-8")
+        .set("output.profiles.times=[1.5e-8]")
+        .set("decomposition.skip_quiescent=false")
+}
+
+/// The schemes of the table, each with four particles a cell.
+pub fn check(table: &mut Table) {
+    let plain = |shape: &str| {
+        let job = PLAIN.iter().fold(job(), |job, set| job.set(*set));
+        job.set(format!("method.shape={shape}")).set("domain.patches=[1, 1]")
+    };
+    let linear = plain("linear").set("method.domain_limit=null");
+    let kinds = [
+        ("linear FLIP", linear, bounds::speed::LINEAR_FLIP),
+        ("CPDI FLIP", plain("cpdi"), bounds::speed::CPDI_FLIP),
+        (
+            "CPDI on quadratics, FMPM(4), exact energy",
+            job().set("method.pressure_relaxation=null").set("domain.patches=[1, 1]"),
+            bounds::speed::CPDI_QUADRATIC,
+        ),
+        ("flyer_2d.json as it is", job().set("domain.patches=[1, 1]"), bounds::speed::FLYER_2D),
+    ];
+    for (name, job, bound) in kinds {
+        let speeds =
+            (0..ROUNDS).map(|_| job.run().map(|r| r.summary.particle_steps_per_cpu_second));
+        let Some(speed) = table.take(name, speeds.collect::<Result<Vec<_>, _>>().map(median))
+        else {
+            continue;
+        };
+        let name = format!("{name}: particle-steps per CPU second");
+        table.check(&name, Some(speed), bound);
+    }
+    let large = |ranks| {
+        let job = job().set("time.end=3e-8").set("output.profiles.times=[3e-8]");
+        job.set("domain.cell_size=1.5e-5").ranks(ranks).on_own_cores()
+    };
+    let mut walls = [Vec::new(), Vec::new()];
+    for _ in 0..ROUNDS {
+        for (ranks, walls) in [1, 2].into_iter().zip(&mut walls) {
+            match table.take("200 000 particles", large(ranks).run()) {
+                Some(run) => walls.push(run.summary.loop_wall_seconds),
+                None => return,
+            }
+        }
+    }
+    let gain: Vec<f64> = walls[0].iter().zip(&walls[1]).map(|(one, two)| one / two).collect();
+    table.check(
+        "200 000 particles: 2 ranks against 1",
+        Some(median(gain)),
+        bounds::speed::TWO_RANKS,
+    );
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}

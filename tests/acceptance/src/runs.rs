@@ -1,0 +1,212 @@
+//! Starts the program as a user does, and reads what it writes.
+
+use std::fs::{self, File};
+use std::io::{self, Read, Seek};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use flyer_mpm::driver::output::csv::{CsvTable, read_csv};
+use flyer_mpm::driver::output::summary::Summary;
+use wait4::Wait4;
+
+use crate::program;
+use crate::resident::Watcher;
+
+/// A run of the program.
+#[derive(Clone, Debug)]
+pub struct Job {
+    scene: &'static str,
+    sets: Vec<String>,
+    ranks: usize,
+    threads: usize,
+    whole: bool,
+    own_cores: bool,
+    watched: bool,
+    counted: bool,
+}
+
+impl Job {
+    /// The shipped scene `inputs/SCENE.json` on one rank and thread, without pictures and HDF5.
+    pub fn new(scene: &'static str) -> Job {
+        Job {
+            scene,
+            sets: Vec::new(),
+            ranks: 1,
+            threads: 1,
+            whole: false,
+            own_cores: false,
+            watched: false,
+            counted: false,
+        }
+    }
+
+    /// With `--set PATH=VALUE`.
+    pub fn set(mut self, set: impl Into<String>) -> Job {
+        self.sets.push(set.into());
+        self
+    }
+
+    /// On this many ranks; more than one are started by mpirun.
+    pub fn ranks(self, ranks: usize) -> Job {
+        Job { ranks, ..self }
+    }
+
+    /// With this many threads a rank.
+    pub fn threads(self, threads: usize) -> Job {
+        Job { threads, ..self }
+    }
+
+    /// With every output that the scene has, pictures and HDF5 among them.
+    pub fn whole(self) -> Job {
+        Job { whole: true, ..self }
+    }
+
+    /// Started by mpirun even on one rank, each rank bound to a core of its own.
+    pub fn on_own_cores(self) -> Job {
+        Job { own_cores: true, ..self }
+    }
+
+    /// With its memory looked at while it runs.
+    pub fn watched(self) -> Job {
+        Job { watched: true, ..self }
+    }
+
+    /// With its instructions counted by callgrind, on one rank.
+    pub fn counted(self) -> Job {
+        Job { counted: true, ..self }
+    }
+
+    fn command(&self) -> Command {
+        let program = program::path();
+        let mut command = if self.counted {
+            let mut valgrind = Command::new("valgrind");
+            valgrind.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(program);
+            // rep movs counts as one instruction however much it copies
+            let above = "1000000000";
+            let tunables =
+                ["stosb", "movsb"].map(|i| format!("glibc.cpu.x86_rep_{i}_threshold={above}"));
+            valgrind.env("GLIBC_TUNABLES", tunables.join(":"));
+            valgrind
+        } else if self.ranks > 1 || self.own_cores {
+            let mut mpirun = program::mpirun();
+            if self.own_cores {
+                mpirun.args(["--bind-to", "core"]);
+            } else {
+                mpirun.args(["--oversubscribe", "--bind-to", "none"]);
+                let cores = std::thread::available_parallelism().map_or(1, usize::from);
+                if self.ranks * self.threads >= cores {
+                    mpirun.args(["--mca", "mpi_yield_when_idle", "1"]);
+                }
+            }
+            mpirun.args(["-n", &self.ranks.to_string()]).arg(program);
+            mpirun
+        } else {
+            Command::new(program)
+        };
+        command.arg(program::root().join(format!("inputs/{}.json", self.scene)));
+        command.args(["--threads", &self.threads.to_string()]);
+        // a run that hangs is to say so
+        command.args(["--stall-timeout", "60"]);
+        if !self.whole {
+            command.args(["--set", "output.pictures=false", "--set", "output.hdf5=false"]);
+        }
+        for set in &self.sets {
+            command.args(["--set", set]);
+        }
+        command
+    }
+
+    /// Runs it; the error is what the program said last.
+    pub fn run(&self) -> Result<Outcome, String> {
+        let folder = program::folder().join(self.scene);
+        let _ = fs::remove_dir_all(&folder);
+        let mut command = self.command();
+        command.arg("--output").arg(&folder).stdin(Stdio::null());
+        let ended = self.ended(&mut command);
+        let ended = ended.map_err(|error| format!("cannot run {command:?}: {error}"))?;
+        if !ended.usage.status.success() {
+            let line = ended.stderr.lines().find(|l| l.starts_with("error: "));
+            let line = line.or_else(|| ended.stderr.lines().find(|l| !l.trim().is_empty()));
+            return Err(format!("{}: {}", ended.usage.status, line.unwrap_or("no message")));
+        }
+        let summary = Summary::read(&folder).map_err(|e| e.to_string())?;
+        Ok(Outcome {
+            summary,
+            folder,
+            said: ended.stdout,
+            user_seconds: ended.usage.rusage.utime.as_secs_f64(),
+            peak_bytes: ended.usage.rusage.maxrss,
+            resident: ended.resident,
+            instructions: collected(&ended.stderr),
+        })
+    }
+
+    fn ended(&self, command: &mut Command) -> io::Result<Ended> {
+        // files, so that what is said never waits for a reader
+        let (mut stdout, mut stderr) = (tempfile::tempfile()?, tempfile::tempfile()?);
+        command.stdout(stdout.try_clone()?).stderr(stderr.try_clone()?);
+        let mut child = command.spawn()?;
+        let watcher = self.watched.then(|| Watcher::of(child.id()));
+        let usage = child.wait4()?;
+        let resident = watcher.map_or(Vec::new(), Watcher::end);
+        Ok(Ended { usage, resident, stdout: text(&mut stdout)?, stderr: text(&mut stderr)? })
+    }
+}
+
+/// How a process ended.
+struct Ended {
+    usage: wait4::ResUse,
+    resident: Vec<u64>,
+    stdout: String,
+    stderr: String,
+}
+
+fn text(file: &mut File) -> io::Result<String> {
+    let mut bytes = Vec::new();
+    file.rewind()?;
+    file.read_to_end(&mut bytes)?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// What a run has left.
+pub struct Outcome {
+    /// Its `summary.json`.
+    pub summary: Summary,
+    /// Its folder; the next run of the same scene replaces it.
+    pub folder: PathBuf,
+    /// What it printed.
+    pub said: String,
+    /// User CPU time of all its processes [s], as the system counts it.
+    pub user_seconds: f64,
+    /// Most memory that one of its processes has taken [bytes].
+    pub peak_bytes: u64,
+    /// Memory of all its processes, looked at in even intervals if it was watched [bytes].
+    pub resident: Vec<u64>,
+    /// Instructions of the whole process, where callgrind has counted them.
+    pub instructions: Option<u64>,
+}
+
+/// The number that callgrind tells at its end.
+fn collected(stderr: &str) -> Option<u64> {
+    stderr.lines().find_map(|line| line.split_once("Collected : ")?.1.trim().parse().ok())
+}
+
+impl Outcome {
+    /// The profiles as they stand in the files.
+    pub fn tables(&self) -> Result<Vec<CsvTable>, String> {
+        let files = self.summary.profiles.iter().map(|p| self.folder.join(&p.file));
+        files.map(|file| read_csv(&file).map_err(|e| e.to_string())).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_count_of_callgrind_is_found() {
+        let said = "==7== Events    : Ir\n==7== Collected : 231748\n==7==\n";
+        assert_eq!(collected(said), Some(231_748));
+        assert_eq!(collected("error: no scene\n"), None);
+    }
+}
