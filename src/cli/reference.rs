@@ -41,10 +41,8 @@ fn section(text: &mut String, name: &str, definition: &Value) {
     }
     let variants = variants(definition);
     for (i, variant) in variants.iter().enumerate() {
-        let kind = match tag(variant) {
-            Some(kind) => format!("`\"type\": \"{kind}\"`"),
-            None => type_name(variant),
-        };
+        let kind = tag(variant).map(|tag| format!("`\"type\": \"{tag}\"`"));
+        let kind = kind.unwrap_or_else(|| type_name(variant));
         let line = format!("{}- {kind}: {}", if i == 0 { "\n" } else { "" }, description(variant));
         let _ = writeln!(text, "{}", line.trim_end_matches(": "));
     }
@@ -122,17 +120,17 @@ fn type_name(of: &Value) -> String {
         "object" if of["properties"].is_null() => {
             format!("names, each with {}", type_name(&of["additionalProperties"]))
         }
-        "object" => keys(of)
-            .map(|(k, of)| format!("`{k}`: {}", type_name(of)))
-            .collect::<Vec<_>>()
-            .join(", "),
+        "object" => {
+            let keys = keys(of).map(|(key, of)| format!("`{key}`: {}", type_name(of)));
+            format!("{{{}}}", keys.collect::<Vec<_>>().join(", "))
+        }
         "array" => {
-            let item = type_name(&of["items"]);
-            match (of["minItems"].as_u64(), of["maxItems"].as_u64()) {
-                (Some(least), most) if Some(least) == most => format!("list of {least}: {item}"),
-                (Some(least), _) => format!("list of {least} or more: {item}"),
-                _ => format!("list of {item}"),
-            }
+            let count = match (of["minItems"].as_u64(), of["maxItems"].as_u64()) {
+                (Some(least), most) if Some(least) == most => format!(" ({least})"),
+                (Some(least), _) => format!(" (at least {least})"),
+                _ => String::new(),
+            };
+            format!("list of {}{count}", type_name(&of["items"]))
         }
         kind => kind.to_string() + &range(of),
     }
