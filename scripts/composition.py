@@ -23,7 +23,7 @@ ADDITIONS = {
     "equation of state": (2, "material/eos/vinet.rs", "copied", [("Vinet", "Copied")],
                           "material/eos/mod.rs", "    Vinet: vinet::VinetParameters,"),
     "strength": (2, "material/strength/zerilli_armstrong.rs", "copied", [("ZerilliArmstrong", "Copied")],
-                 "material/strength/mod.rs", r"    ZerilliArmstrong: .*"),
+                 "material/strength/mod.rs", r"    zerilli_armstrong::ZerilliArmstrong,"),
     "failure": (2, "material/failure/cochran_banner.rs", "copied", [("CochranBanner", "Copied")],
                 "material/failure/mod.rs", r"    CochranBanner: .*"),
     "shape function": (2, "shape/bspline_cubic.rs", "copied", [("BsplineCubic", "Copied")],

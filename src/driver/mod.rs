@@ -469,8 +469,8 @@ where
         erosion: scene.erodes().then(|| gone(&ways.erosion)),
         failure: simulation
             .columns()
-            .find("damage")
-            .map(|_| FailureSummary { particles: end.failed, released_energy: end.released }),
+            .may_fail()
+            .then(|| FailureSummary { particles: end.failed, released_energy: end.released }),
         measured,
         profiles,
         error_estimate,

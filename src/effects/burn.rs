@@ -45,11 +45,12 @@ impl Package for ProgrammedBurn {
     }
 
     fn declare(scene: &CheckedScene, d: &mut Declare<'_>) {
-        d.scalar("lighting_time", "s", Role::State);
+        let lighting_time = d.scalar("lighting_time", "s", Role::State);
         let fraction = d.scalar("burn_fraction", "", Role::State);
         for body in (0..scene.bodies.len()).filter(|&body| burns(scene, body)) {
             d.history(body, fraction);
         }
+        d.burn(fraction, lighting_time);
         d.output("burn_fraction", "-", "burn_fraction");
     }
 

@@ -11,6 +11,7 @@ use std::path::Path;
 use serde::Deserialize;
 use serde_json::Value;
 
+use super::comments::without_comments;
 use super::errors::{SceneError, SceneFault, one_line, suggest};
 use super::table::{is_hdf5, read_hdf5};
 use super::validate::join;
@@ -121,7 +122,7 @@ pub(super) fn inline_files(scene: &mut Value, folder: &Path) -> Result<bool, Sce
         let file = folder.join(name);
         let fail = |reason: String| fault(&file, reason);
         let text = read_text(&file, LARGEST_JSON)?;
-        let mut made: Value = serde_json::from_str(&text)
+        let mut made: Value = serde_json::from_str(&without_comments(&text))
             .map_err(|error| fail(format!("is no JSON: {error}; allowed: one material")))?;
         if !made.is_object() {
             return Err(fail("allowed: a material, one JSON object".into()));

@@ -11,6 +11,7 @@ use serde_json::{Map, Value};
 
 use super::check::BYTES_PER_PARTICLE;
 use super::check::{check as check_relations, tiles};
+use super::comments::without_comments;
 use super::errors::{LONGEST_VALUE, SceneError, SceneFault, one_line, shorten};
 use super::library::{inline_courses, inline_files, resolve};
 use super::migrate::check_format;
@@ -50,7 +51,10 @@ pub fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
 /// and velocities inserted, so that the text sent to the other ranks is complete.
 fn with_files(bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>, SceneError> {
     // errors of the text are reported when it is parsed
-    let Ok(mut scene) = serde_json::from_slice::<Value>(&bytes) else { return Ok(bytes) };
+    let text = String::from_utf8_lossy(&bytes);
+    let Ok(mut scene) = serde_json::from_str::<Value>(&without_comments(&text)) else {
+        return Ok(bytes);
+    };
     let plane =
         scene.pointer("/domain/lower").and_then(Value::as_array).is_some_and(|l| l.len() > 1);
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -154,7 +158,8 @@ fn parse_json(bytes: &[u8], file: &str) -> Result<Value, SceneError> {
     let text = std::str::from_utf8(bytes).map_err(|error| {
         fail(&format!("is not UTF-8 from byte {} on; allowed: JSON in UTF-8", error.valid_up_to()))
     })?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let text = without_comments(text.strip_prefix('\u{feff}').unwrap_or(text));
+    let text = &text[..];
     if text.trim().is_empty() {
         return Err(fail("is empty; allowed: a scene, one JSON object"));
     }
@@ -165,13 +170,18 @@ fn parse_json(bytes: &[u8], file: &str) -> Result<Value, SceneError> {
             Ok(()) => Ok(value),
             Err(error) => Err((String::new(), error)),
         });
-    value.map_err(|(path, error)| SceneError::Syntax {
+    let mut value = value.map_err(|(path, error)| SceneError::Syntax {
         file: one_line(file),
         line: error.line(),
         column: error.column(),
         path: one_line(&shorten(key_path(&path), LONGEST_VALUE)),
         reason: one_line(&syntax_reason(text, &error)),
-    })
+    })?;
+    // for editors alone
+    if let Some(object) = value.as_object_mut() {
+        object.remove("$schema");
+    }
+    Ok(value)
 }
 
 /// The known part of a path of serde_path_to_error, which ends in `?` between two keys.

@@ -6,6 +6,7 @@
 //! and particles.
 
 mod check;
+mod comments;
 mod errors;
 pub mod input_file;
 mod library;

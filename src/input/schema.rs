@@ -39,6 +39,10 @@ pub fn schema() -> Value {
                         keys over it; absent: `default`.",
         "anyOf": options,
     });
+    schema["properties"]["$schema"] = json!({
+        "description": "Name of a file with this schema, for editors.",
+        "type": "string",
+    });
     if let Some(required) = schema["required"].as_array_mut() {
         required.retain(|key| key != "method");
     }

@@ -10,11 +10,9 @@ impl<const D: usize> Simulation<'_, D> {
     /// Updates the peak values from all particles. Collective.
     pub(super) fn note_peaks(&mut self) {
         let mut peaks = Peaks::default();
-        let columns = &self.stepper.columns;
-        let burn = columns.find("burn_fraction").zip(columns.find("lighting_time"));
         for block in self.patches.iter().map(|p| &p.block) {
             for r in 0..block.own() {
-                peaks = peaks.max(&self.peaks_of(block, r, burn));
+                peaks = peaks.max(&self.peaks_of(block, r));
             }
         }
         let mut values = peaks.values().map(|value| -value);
@@ -22,7 +20,7 @@ impl<const D: usize> Simulation<'_, D> {
         self.peaks = self.peaks.max(&Peaks::of(values.map(|value| -value)));
     }
 
-    fn peaks_of(&self, block: &Block<D>, r: usize, burn: Option<(usize, usize)>) -> Peaks {
+    fn peaks_of(&self, block: &Block<D>, r: usize) -> Peaks {
         let c = &self.stepper.columns;
         let column = |k: usize| block.columns[k][r];
         let expected = &self.expected[column(c.body) as usize];
@@ -45,7 +43,7 @@ impl<const D: usize> Simulation<'_, D> {
                 peaks.against = against / ahead.velocity;
             }
         }
-        if let (Some(front), Some((fraction, lighting_time))) = (expected.front, burn) {
+        if let (Some(front), Some([fraction, lighting_time])) = (expected.front, c.burn) {
             let since = self.time - column(lighting_time);
             if column(fraction) == 0.0 {
                 let speed = velocity().iter().map(|v| v * v).sum::<f64>().sqrt();

@@ -42,6 +42,8 @@ pub struct Columns {
     pub energy_mid: Option<usize>,
     /// For each body a column; particles carry no tension after it has reached 1 [-].
     pub tension_free: Vec<Option<usize>>,
+    /// Burnt fraction [-] and lighting time [s], if a body burns.
+    pub burn: Option<[usize; 2]>,
     /// Temperature [K]; 0 in bodies without thermal properties.
     pub temperature: Option<usize>,
     /// Plastic work that is stored and does not heat [J/kg], if any.
@@ -130,6 +132,11 @@ pub struct Columns {
 }
 
 impl Columns {
+    /// Whether a body may fail.
+    pub fn may_fail(&self) -> bool {
+        self.tension_free.iter().any(Option::is_some)
+    }
+
     /// Index of the column `name`.
     pub fn find(&self, name: &str) -> Option<usize> {
         self.specs.iter().position(|spec| spec.name == name)

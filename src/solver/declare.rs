@@ -159,6 +159,11 @@ impl<'a> Declare<'a> {
         self.columns.tension_free[body] = Some(column);
     }
 
+    /// Sets [`Columns::burn`].
+    pub fn burn(&mut self, fraction: usize, lighting_time: usize) {
+        self.columns.burn = Some([fraction, lighting_time]);
+    }
+
     /// Sets [`Columns::temperature`].
     pub fn temperature(&mut self, column: usize) {
         self.columns.temperature = Some(column);

@@ -166,10 +166,10 @@ fn declared_scalars(text: &str) -> Vec<String> {
     calls.filter_map(|rest| rest.split('"').next().map(String::from)).collect()
 }
 
-/// The solver runs effects without naming one: `src/solver` contains no module name of an effect
-/// and no column that an effect declares.
+/// A run uses effects without naming one: the rooms below contain no column that an effect
+/// declares, and the module of an effect cannot be named from outside.
 #[test]
-fn the_solver_names_no_effect() {
+fn a_run_names_no_effect() {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let read = |path: &PathBuf| std::fs::read_to_string(path).unwrap();
     let effects = sources(&source.join("effects"));
@@ -185,7 +185,8 @@ fn the_solver_names_no_effect() {
             .any(|line| list.contains(&line.replace("{}", module)));
         assert!(private || module == "mod", "effects::{module} can be named from outside");
     }
-    for file in sources(&source.join("solver")) {
+    let rooms = ["solver", "simulation", "driver", "perf_model"];
+    for file in rooms.iter().flat_map(|room| sources(&source.join(room))) {
         let text = read(&file);
         let code = text.split("#[cfg(test)]").next().unwrap_or_default();
         for column in &columns {

@@ -27,11 +27,28 @@ fn files_that_are_no_scene() {
     refused_text("{\"title\": ", &["line 1 column", "ends too early"]);
     refused_text("title: flyer", &["line 1 column", "title"]);
     refused_text("{} {}", &["trailing characters"]);
-    refused_text("{\"title\": \"a\",}", &["line 1", "trailing comma"]);
     refused_text(&"[".repeat(1_000_000), &["nested too deep", "127 levels"]);
     refused_text(&"{\"a\":".repeat(1_000_000), &["nested too deep"]);
     let error = parse(b"{\"title\": \"\xff\"}", "bad.json", &[]).unwrap_err().to_string();
     tells(&error, &["bad.json", "not UTF-8 from byte 11"]);
+}
+
+/// Comments, trailing commas and the name of a schema change nothing, and faults keep their place.
+#[test]
+fn comments_trailing_commas_and_a_schema() {
+    let plain = std::fs::read_to_string(
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/flyer.json"),
+    )
+    .unwrap();
+    let read = |text: &str| parse(text.as_bytes(), "flyer.json", &[]);
+    let noted = plain.replacen('{', "{ // µ: the first\n \"$schema\": \"s.json\", /* and */", 1);
+    let end = noted.rfind('}').unwrap();
+    let noted = format!("{},\n}}", &noted[..end].trim_end());
+    let value = |text: &str| serde_json::to_value(read(text).unwrap().scene).unwrap();
+    assert_eq!(value(&noted), value(&plain));
+    let error = read("{\n /* two\n lines */ \"title\" 1,\n}").unwrap_err().to_string();
+    tells(&error, &["line 3 column", "expected `:`"]);
+    refused_text("{/* open", &["line 1 column"]);
 }
 
 #[test]

@@ -16,7 +16,7 @@ fn two(coefficient: f64) -> Fixture<1> {
 #[test]
 fn the_weight_is_the_compression_of_the_step_and_at_most_one_half() {
     let mut f = two(4.0);
-    f.set("specific_internal_energy", &[10.0, 30.0]).set("divergence", &[-2.0, 3.0]);
+    f.set("specific_internal_energy", &[10.0, 30.0]).set("velocity_gradient", &[-2.0, 3.0]);
     f.act(Phase::ParticleForce, 0.05);
     // theta = 4 0.05 2 = 0.4; none in expansion
     close(&f.get("mixing_mass"), &[0.8, 0.0]);
