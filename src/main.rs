@@ -357,7 +357,11 @@ fn announce(comm: &dyn Comm, scene: &CheckedScene, threads: usize) {
 
 fn side_command(command: Command) -> Outcome<()> {
     match command {
-        Command::Schema => {
+        Command::Schema { markdown: true } => {
+            say(&cli::reference::markdown(&input::schema()));
+            Ok(())
+        }
+        Command::Schema { markdown: false } => {
             let text = serde_json::to_string_pretty(&input::schema()).map_err(bad)?;
             say(&(text + "\n"));
             Ok(())

@@ -7,6 +7,7 @@ pub mod migrate;
 pub mod new;
 pub mod plan;
 pub mod predict;
+pub mod reference;
 pub mod study;
 
 use std::path::PathBuf;
@@ -264,7 +265,11 @@ pub enum Command {
     /// meanwhile.
     Plan(PlanArgs),
     /// Print the JSON schema of a scene.
-    Schema,
+    Schema {
+        /// Print it as tables in Markdown, as in docs/scene.md.
+        #[arg(long)]
+        markdown: bool,
+    },
     /// Compare the results of two runs: norms, and the first particle and column that differ. The
     /// exit code is 1 if they differ.
     Compare {

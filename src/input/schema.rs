@@ -23,7 +23,8 @@ pub fn schema() -> Value {
     let names_text = names["description"].take();
     let mut over = schema["$defs"]["Method"].clone();
     over["required"] = json!(["preset"]);
-    over["description"] = json!("A preset, and keys that override those of its method.");
+    over["description"] =
+        json!("The key `preset`, and keys of `Method` that override those of the preset.");
     over["properties"]["preset"] = json!({"$ref": "#/$defs/Preset"});
     for key in ["$schema", "title"] {
         names.as_object_mut().and_then(|names| names.remove(key));

@@ -18,6 +18,7 @@ mod materials;
 mod monitor;
 mod outputs;
 mod ownership;
+mod pages;
 mod pictures;
 mod program;
 mod replacing;
