@@ -7,18 +7,18 @@
 //! - [`accuracy`]: comparison with exact solutions, error estimates, plans;
 //! - [`perf_model`]: prediction of run time and scaling;
 //! - [`simulation`]: a run in memory, which joins physics and messages;
-//! - [`solver`]: particles, nodal fields and the time step;
-//! - [`effects`]: optional effects of a scene;
 //! - [`input`]: reading and checking of a scene;
+//! - [`effects`]: optional effects of a scene;
+//! - [`solver`]: particles, nodal fields and the time step;
 //! - [`scene`]: the data of a scene;
 //! - [`geometry`]: bodies and how they are filled with particles;
 //! - [`side`]: kinds of side of the domain;
 //! - [`balance`]: measures of a patch's load;
 //! - [`contact`]: contact laws between bodies;
 //! - [`exact`]: closed solutions; depends on materials only;
-//! - [`material`]: equations of state, strength and failure;
 //! - [`shape`]: shape functions: weights of particles on nodes;
 //! - [`transfer`]: transfers of velocity from nodes to particles;
+//! - [`material`]: equations of state, strength and failure;
 //! - [`plot`]: pictures; independent of the other modules.
 
 pub mod accuracy;

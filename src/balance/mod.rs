@@ -45,8 +45,6 @@ balance_costs! {
 pub struct PatchLoad {
     /// Number of particles that it computes; 0 for a quiescent patch.
     pub particles: u64,
-    /// Number of cells that it computes; 0 for a quiescent patch.
-    pub cells: u64,
     /// Measured and smoothed computing time [s]; `None` before the first measurement.
     pub seconds: Option<f64>,
 }
@@ -57,7 +55,7 @@ mod tests {
 
     #[test]
     fn each_rule_measures_its_own_load() {
-        let load = PatchLoad { particles: 40, cells: 100, seconds: Some(2.5e-6) };
+        let load = PatchLoad { particles: 40, seconds: Some(2.5e-6) };
         assert_eq!(BalanceCost::Time.of(&load), 2500);
         assert_eq!(BalanceCost::Time.of(&PatchLoad { seconds: None, ..load }), 40);
         assert_eq!(BalanceCost::Particles.of(&load), 40);

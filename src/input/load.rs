@@ -51,10 +51,10 @@ pub fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
 /// and velocities inserted, so that the text sent to the other ranks is complete.
 fn with_files(bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>, SceneError> {
     // errors of the text are reported when it is parsed
-    let text = String::from_utf8_lossy(&bytes);
-    let Ok(mut scene) = serde_json::from_str::<Value>(&without_comments(&text)) else {
-        return Ok(bytes);
-    };
+    let parse = |text: &str| serde_json::from_str::<Value>(&without_comments(text)).ok();
+    let text = std::str::from_utf8(&bytes).ok();
+    let text = text.map(|text| text.strip_prefix('\u{feff}').unwrap_or(text));
+    let Some(mut scene) = text.and_then(parse) else { return Ok(bytes) };
     let plane =
         scene.pointer("/domain/lower").and_then(Value::as_array).is_some_and(|l| l.len() > 1);
     let folder = path.parent().unwrap_or(Path::new(""));

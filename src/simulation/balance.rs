@@ -74,12 +74,8 @@ impl<const D: usize> Simulation<'_, D> {
         let mine = self.layout.patches_of(self.comm.rank());
         for (patch, index) in self.patches.iter().zip(mine) {
             let particles = patch.block.own() as u64;
-            let computed = u64::from(!patch.quiescence.is_quiescent());
-            let load = PatchLoad {
-                particles: computed * particles,
-                cells: computed * self.layout.patches()[index].count() as u64,
-                seconds: patch.stopwatch.cost(),
-            };
+            let computed = if patch.quiescence.is_quiescent() { 0 } else { particles };
+            let load = PatchLoad { particles: computed, seconds: patch.stopwatch.cost() };
             sums[index] = rule.of(&load) as i64;
             sums[count + index] = particles as i64;
         }

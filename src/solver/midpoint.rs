@@ -9,7 +9,7 @@
 //! e += -s V0 J_h dt (G w)/m + heat
 //! ```
 //!
-//! With w of [`Stepper::solve_work`] and the heat of the filter, the sum of kinetic and internal
+//! With w of [`Scheme::solve_work`](super::Scheme) and the heat of the filter, the sum of kinetic and internal
 //! energy is constant to rounding.
 
 use decomp::ParticleError;

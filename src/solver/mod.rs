@@ -1,8 +1,8 @@
 //! One time step, written like the description of the method in a paper.
 //!
 //! [`Scheme`] holds grid, columns, nodal fields and material models of a scene, [`Stepper`] also its
-//! effects; [`Steps::advance`] runs the phases of [`midpoint`] or [`leapfrog`]. [`World`] joins physics and messages: it runs a phase on every patch, and the
-//! exchanges between phases.
+//! effects; [`Steps::advance`] runs the phases of [`midpoint`] or [`leapfrog`]. [`World`] joins
+//! physics and messages: it runs a phase on every patch, and the exchanges between phases.
 
 pub mod artificial_viscosity;
 mod body_models;

@@ -35,8 +35,8 @@ pub(super) fn refresh(
             let (p, c) = (&mut pressure[particles.clone()], &mut speed[particles.clone()]);
             let history = history.as_mut().map(|h| &mut h[particles.clone()]);
             let (j, e) = (&jacobian[particles.clone()], &energy[particles.clone()]);
-            let told = model.refresh(j, e, history, p, c);
-            if let (None, Some((particle, what))) = (&found, told) {
+            let fault = model.refresh(j, e, history, p, c);
+            if let (None, Some((particle, what))) = (&found, fault) {
                 found = Some((particles.start + particle, what));
             }
             continue;
@@ -46,13 +46,13 @@ pub(super) fn refresh(
             let history = history.as_mut().map(|h| &mut h[r..=r]);
             if let (Some(gradual), true) = (gradual, damage[r] < 1.0) {
                 let carried = gradual.carried(damage[r]);
-                let told = refresh_damaged(model, &carried, jacobian[r], energy[r], history, p, c);
-                if let (None, Some(what)) = (&found, told) {
+                let fault = refresh_damaged(model, &carried, jacobian[r], energy[r], history, p, c);
+                if let (None, Some(what)) = (&found, fault) {
                     found = Some((r, what));
                 }
                 continue;
             }
-            let told = model.refresh(&jacobian[r..=r], &energy[r..=r], history, p, c);
+            let fault = model.refresh(&jacobian[r..=r], &energy[r..=r], history, p, c);
             let apart = p[0] < 0.0 && jacobian[r] > 0.0 && energy[r].is_finite();
             if p[0] < 0.0 {
                 p[0] = 0.0;
@@ -60,7 +60,7 @@ pub(super) fn refresh(
             if apart && (c[0].is_nan() || c[0] == 0.0) {
                 c[0] = model.sound_speed_at(0.0);
             }
-            if let (None, Some((_, what)), false) = (&found, told, apart) {
+            if let (None, Some((_, what)), false) = (&found, fault, apart) {
                 found = Some((r, what));
             }
         }
@@ -85,21 +85,37 @@ fn refresh_damaged(
             history[0] = start;
         }
         let history = history.as_deref_mut();
-        let told = model.refresh(&[jacobian], &[energy], history, pressure, speed);
-        (pressure[0], told.map(|(_, what)| what))
+        let fault = model.refresh(&[jacobian], &[energy], history, pressure, speed);
+        (pressure[0], fault.map(|(_, what)| what))
     };
-    let cracked = carried.opening > 0.0 && jacobian > carried.opening;
-    // cracks close where the intact material would be pressed
-    let closed =
-        cracked && state_at(jacobian - carried.opening).0 >= 0.0 && state_at(jacobian).0 >= 0.0;
-    let open = cracked && !closed;
-    let (carries, told) = state_at(if open { jacobian - carried.opening } else { jacobian });
-    if carries < 0.0 {
-        pressure[0] = carried.tension * carries;
-    } else if open && carries >= 0.0 {
-        pressure[0] = 0.0;
+    let between = jacobian - carried.opening;
+    let opens = carried.opening > 0.0 && between > 0.0;
+    if let Some((tension, fault)) = opens.then(|| state_at(between))
+        && is_stretched(between, tension, fault.is_some())
+    {
+        pressure[0] = carried.tension * tension;
+        return fault;
     }
-    told
+    let (intact, fault) = state_at(jacobian);
+    let is_tension = intact < 0.0 && jacobian > 0.0 && energy.is_finite();
+    if is_tension && carried.opening > 0.0 {
+        // the cracks are closing, and the material between them is free of stress
+        if let (Some(history), Some(start)) = (history, start) {
+            history[0] = start;
+        }
+        (pressure[0], speed[0]) = (0.0, model.sound_speed_at(0.0));
+        return None;
+    }
+    if is_tension {
+        pressure[0] = carried.tension * intact;
+    }
+    fault
+}
+
+/// Whether material between cracks at the volume ratio `between` is in tension: an equation of state
+/// may also give a negative pressure beyond the greatest compression for which it is valid.
+fn is_stretched(between: f64, pressure: f64, fault: bool) -> bool {
+    pressure < 0.0 && (between > 1.0 || !fault)
 }
 
 impl<const D: usize> Scheme<D> {
@@ -150,13 +166,25 @@ impl<const D: usize> Scheme<D> {
         };
         let column = |k: usize| &patch.block.columns[k][r..=r];
         let mid = c.jacobian_mid.expect("mid-point stepping has the column");
+        let energy = column(c.energy_mid.unwrap_or(c.energy));
+        let between = [column(c.jacobian)[0] - opening, column(mid)[0] - opening];
         let [mut stress, mut pressure, mut compliance] = [[0.0]; 3];
+        let is_valid = between.iter().all(|&jacobian| {
+            let mut history = self.history[body].map(|h| [patch.block.columns[h][r]]);
+            let history = history.as_mut().map(|h| &mut h[..]);
+            let fault = model.refresh(&[jacobian], energy, history, &mut pressure, &mut stress);
+            jacobian > 0.0 && (fault.is_none() || jacobian > 1.0)
+        });
+        if !is_valid {
+            // the cracks are closing
+            return [0.0; 2];
+        }
         model.mid_step(MidStep {
             mass: column(c.mass),
             volume0: column(c.volume0),
-            jacobian: &[column(c.jacobian)[0] - opening],
-            jacobian_mid: &[column(mid)[0] - opening],
-            energy: column(c.energy_mid.unwrap_or(c.energy)),
+            jacobian: &between[..1],
+            jacobian_mid: &between[1..],
+            energy,
             gradient: column(c.divergence),
             edge: self.edge,
             floor: self.least_stiffness(),
@@ -187,8 +215,8 @@ mod tests {
         };
         let [mut pressure, mut intact, mut speed] = [[0.0]; 3];
         let model = model.as_ref();
-        let told = refresh_damaged(model, carried, jacobian, 2e3, None, &mut pressure, &mut speed);
-        assert_eq!(told, None);
+        let fault = refresh_damaged(model, carried, jacobian, 2e3, None, &mut pressure, &mut speed);
+        assert_eq!(fault, None);
         model.refresh(&[at], &[2e3], None, &mut intact, &mut speed);
         [pressure[0], intact[0]]
     }
@@ -210,9 +238,14 @@ mod tests {
         // while cracks close they carry nothing
         let [closing, whole] = pressures(&cracked, 1.04, 1.04);
         assert!(closing == 0.0 && whole < -1e8);
-        // nor are they a fault, however wide, though intact material would bear no such stretch
-        let wide = Carried { opening: 0.5, ..Carried::WHOLE };
-        assert_eq!(pressures(&wide, 1.49, 1.0)[0], 0.0);
+        // nor are they a fault, however wide, though the equation of state is not valid at the
+        // compression that J less the opening would be, nor intact material at J
+        for opening in [0.5, 0.9, 1.0, 2.0] {
+            let wide = Carried { opening, ..Carried::WHOLE };
+            for jacobian in [1.02, 1.1, 1.3, 1.49] {
+                assert_eq!(pressures(&wide, jacobian, 1.0)[0], 0.0, "{opening} at {jacobian}");
+            }
+        }
         let [closed, whole] = pressures(&cracked, 0.99, 0.99);
         assert!(whole > 1e8 && closed == whole);
     }

@@ -233,7 +233,7 @@ impl FittedRange {
     }
 }
 
-/// Sides, forces and contact that the fit does not include.
+/// Sides, forces, contact and effects that the fit does not include.
 fn surroundings(scene: &CheckedScene) -> Vec<String> {
     let [[lower, upper]] = scene.sides::<1>();
     let contact = scene.scene.contact.is_some_and(|contact| {
@@ -246,8 +246,10 @@ fn surroundings(scene: &CheckedScene) -> Vec<String> {
         ("body_force", scene.scene.body_force.is_some()),
         ("contact", contact),
     ];
-    let outside = all.into_iter().filter(|(_, is)| *is);
-    outside.map(|(key, _)| format!("{key}: not in the fit")).collect()
+    let outside = all.into_iter().filter(|(_, is)| *is).map(|(key, _)| key);
+    let effects = scene.scene.effects.iter().filter(|(_, value)| !value.is_null());
+    let effects = effects.map(|(key, _)| key.as_str());
+    outside.chain(effects).map(|key| format!("{key}: not in the fit")).collect()
 }
 
 /// Whether a scene has the method, viscosity, Courant number and particles per cell of a scheme.

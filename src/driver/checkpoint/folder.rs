@@ -156,9 +156,11 @@ pub fn check_owner(target: &Path, maker: &Maker) -> Result<(), OutputError> {
     Err(OutputError::Foreign { path: folder, theirs, ours })
 }
 
-/// Whether a file looks like a JSON object, judged by its first character.
+/// Whether a file looks like a JSON object or a comment before it, judged by its first characters.
 fn is_json(path: &Path) -> bool {
-    ["{", " {", "\n{", "\r\n{", "\u{feff}{"].iter().any(|head| input_file::begins_with(path, head))
+    ["{", " {", "\n{", "\r\n{", "\u{feff}{", "//", "/*"]
+        .iter()
+        .any(|head| input_file::begins_with(path, head))
 }
 
 /// Folder of the results that belong to `checkpoint`, beside the checkpoint folder; `None` if the

@@ -196,6 +196,11 @@ impl CsvTable {
 pub fn read_csv(path: &Path) -> Result<CsvTable, OutputError> {
     let text = read_text(path, LARGEST_RESULT)?;
     let fault = |line: u64, message: String| OutputError::Csv { path: path.into(), line, message };
+    // the csv crate takes the rest of a truncated file as a field
+    if !text.matches('"').count().is_multiple_of(2) {
+        let lines = text.lines().count() as u64;
+        return Err(fault(lines.max(1), "a quote is not closed".into()));
+    }
     let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text.as_bytes());
     let names = reader.headers().map_err(|error| fault(1, error.to_string()))?.clone();
     if names.is_empty() {
@@ -318,6 +323,9 @@ mod tests {
                 .to_string()
                 .ends_with("p.csv: line 3: 1 fields, the header has 2")
         );
+        fs::write(&path, "x,y\n1,\"two\n").unwrap();
+        let error = read_csv(&path).unwrap_err().to_string();
+        assert!(error.ends_with("p.csv: line 2: a quote is not closed"), "{error}");
     }
 
     #[test]

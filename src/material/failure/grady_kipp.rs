@@ -80,8 +80,11 @@ impl FailureLaw for GradyKipp {
 
     #[inline(always)]
     fn damage(&self, before: f64, state: &StressState, _: &StrengthBeside) -> f64 {
-        let strain = state.greatest_principal_stress() / ((1.0 - before) * self.modulus);
-        if strain <= self.least_strain {
+        // damage reduces tension and shear, not the pressure of a compressed state
+        let compression = state.pressure.max(0.0);
+        let reduced = state.greatest_principal_stress() + compression;
+        let strain = (reduced / (1.0 - before) - compression) / self.modulus;
+        if strain.is_nan() || strain <= self.least_strain {
             return before;
         }
         let rate = self.growth * strain.powf(self.exponent / 3.0);

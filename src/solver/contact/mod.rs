@@ -88,7 +88,7 @@ impl<const D: usize> Scheme<D> {
         with_width!(patch.stencils.width, go(patch, self, contact, [dt, rubbing]));
     }
 
-    /// Finds the constraints of a contact_node, in a step of `dt` and with friction over the time `rubbing`.
+    /// Finds the constraints of a contact node, in a step of `dt`, with friction during `rubbing` [s].
     fn find_constraints<const K: usize>(
         &self,
         patch: &Patch<D>,

@@ -18,7 +18,7 @@ type Values = SmallVec<[f64; 8]>;
 /// Constraint c, made orthogonal to the previous ones.
 #[derive(Clone, Debug)]
 struct ConstraintRow<const D: usize> {
-    /// ContactConstraint, relative to the first one of the node, and constrained direction.
+    /// Index of the constraint, relative to the first one of the node, and constrained direction.
     constraint: usize,
     direction: [f64; D],
     c: Values,
