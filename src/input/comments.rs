@@ -33,14 +33,10 @@ pub(super) fn without_comments(text: &str) -> String {
             }
             _ => at + 1,
         };
-        match bytes[at] {
-            b'}' | b']' => comma.into_iter().for_each(|comma| blank(comma, comma + 1)),
-            b',' if !b"{[,:".contains(&last) => comma = Some(at),
-            _ => {}
+        if matches!(bytes[at], b'}' | b']') {
+            comma.into_iter().for_each(|comma| blank(comma, comma + 1));
         }
-        if bytes[at] != b',' {
-            comma = None;
-        }
+        comma = (bytes[at] == b',' && !b"{[,:".contains(&last)).then_some(at);
         last = bytes[at];
         at = end;
     }
