@@ -193,7 +193,7 @@ where
     ///
     /// # Errors
     ///
-    /// If the state becomes invalid, or if the time step is so short that the run would not finish.
+    /// If a check of the state fails, if particles are lost, or if the run needs too many steps.
     pub fn advance(&mut self, until: f64) -> Result<(), RunError> {
         let left = until - self.time;
         let stable = self.dt;

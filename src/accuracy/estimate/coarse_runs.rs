@@ -129,7 +129,8 @@ impl CoarsePeaks {
 ///
 /// # Errors
 ///
-/// If a particle of a coarse run moves past the neighbours of its patch. Other failures become notes.
+/// If a particle of a coarse run moves past the neighbours of its patch. Other failures become
+/// notes of the result.
 pub fn run(
     comm: &dyn Comm,
     scene: &CheckedScene,
