@@ -64,6 +64,10 @@ pub fn busiest_share(weights: &[u64], ranks_of: &[usize], ranks: usize) -> u64 {
 
 /// Number of patches per direction, with at least one patch per worker and, if possible, no patch
 /// narrower than `least` cells. The longest direction is cut first.
+///
+/// # Panics
+///
+/// If `D` is 0.
 pub fn choose_cuts<const D: usize>(cells: [usize; D], workers: usize, least: usize) -> [usize; D] {
     let mut cuts = [1; D];
     while cuts.iter().product::<usize>() < workers {

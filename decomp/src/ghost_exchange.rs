@@ -84,6 +84,7 @@ pub struct GhostExchange<const D: usize> {
 
 impl<const D: usize> GhostExchange<D> {
     /// Plans the exchange on `rank`.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn new(layout: &Layout<D>, rank: usize, reach: GhostReach) -> Self {
         let GhostReach { depth, travel, notice } = reach;
         let seen = depth.max(notice.unwrap_or(0));
@@ -182,6 +183,11 @@ impl<const D: usize> GhostExchange<D> {
     ///
     /// `meanwhile` is called once, with all patches, while messages are on their way;
     /// [`inner`](Self::inner) patches are complete by then. Collective between neighbours.
+    ///
+    /// # Errors
+    ///
+    /// If a particle has moved past the neighbours of its patch.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn run<P: AsMut<Block<D>>>(
         &mut self,
         comm: &dyn Comm,

@@ -126,6 +126,10 @@ impl<const D: usize> Layout<D> {
     }
 
     /// The same patches with patch k on rank `ranks[k]`.
+    ///
+    /// # Panics
+    ///
+    /// If the number of ranks differs from the number of patches.
     pub fn with_ranks(mut self, ranks: Vec<usize>) -> Self {
         assert_eq!(ranks.len(), self.patches.len(), "one rank a patch");
         self.ranks = ranks;

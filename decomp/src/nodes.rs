@@ -50,6 +50,10 @@ impl<const D: usize> NodeArrays<D> {
     }
 
     /// Mutable access to several arrays at once; the indices `which` must differ.
+    ///
+    /// # Panics
+    ///
+    /// If an index is out of range or occurs twice.
     pub fn fields_mut<const N: usize>(&mut self, which: [usize; N]) -> [&mut [f64]; N] {
         self.fields
             .get_disjoint_mut(which)

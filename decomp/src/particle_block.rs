@@ -101,6 +101,10 @@ impl<const D: usize> Block<D> {
     }
 
     /// Mutable access to several columns at once; the indices `which` must differ.
+    ///
+    /// # Panics
+    ///
+    /// If an index is out of range or occurs twice.
     pub fn columns_mut<const N: usize>(&mut self, which: [usize; N]) -> [&mut [f64]; N] {
         self.columns
             .get_disjoint_mut(which)

@@ -310,6 +310,10 @@ fn stopped(
 }
 
 /// Runs a scene and writes its results; returns the final table at rank 0. Collective.
+///
+/// # Errors
+///
+/// If the simulation fails, if a file cannot be read or written, or if the run is stopped.
 pub fn run(
     comm: &dyn Comm,
     scene: &CheckedScene,

@@ -126,6 +126,7 @@ impl Probes {
     }
 
     /// Records a row if one is due, at the end of the first step after each interval. Collective.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn sample<const D: usize>(&mut self, simulation: &Simulation<'_, D>) {
         let time = simulation.time();
         if time < self.due as f64 * self.interval {

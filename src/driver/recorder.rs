@@ -71,6 +71,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Continues at `time` [s] from the checkpoint that rank 0 holds. Collective.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn resume(&mut self, comm: &dyn Comm, checkpoint: Option<Checkpoint>, time: f64) {
         let told = checkpoint
             .as_ref()

@@ -111,6 +111,10 @@ impl<E: EquationOfState> Plastic<E> {
 
 impl ElasticPlastic {
     /// The fronts in a body of `material` at rest that meets a wall at `speed` [m/s].
+    ///
+    /// # Errors
+    ///
+    /// If a constant is not positive and finite, or if the material has no state at this speed.
     pub fn new<E: EquationOfState>(
         material: &Plastic<E>,
         speed: f64,

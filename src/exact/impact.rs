@@ -123,6 +123,11 @@ pub struct Impact {
 
 impl Impact {
     /// The impact of two bodies that approach each other, with or without a gap.
+    ///
+    /// # Errors
+    ///
+    /// If a body has no thickness, if the bodies overlap or do not approach each other, or if a
+    /// material cannot reach the impact state.
     pub fn new(flyer: ImpactBody, target: ImpactBody) -> Result<Impact, ExactError> {
         for body in [&flyer, &target] {
             finite("a body's lower face", body.lower)?;
@@ -167,12 +172,20 @@ impl Impact {
     }
 
     /// The chain of Burghardt (2010) in its own frame; see [`Impact::to_lab_x`].
+    ///
+    /// # Errors
+    ///
+    /// If a material cannot reach a state of the chain.
     pub fn chain(&self, last_state: usize) -> Result<Chain, ExactError> {
         let (f, t) = (self.flyer.material, self.target.material);
         Chain::new(f, t, self.speed, self.thickness(), last_state)
     }
 
     /// States and times of the true solution, in the frame of the target at rest.
+    ///
+    /// # Errors
+    ///
+    /// If a material cannot reach a state of the release.
     pub fn release(&self, last_state: usize) -> Result<Release, ExactError> {
         let (f, t) = (self.flyer.material, self.target.material);
         Release::new(f, t, self.speed, self.thickness(), last_state)
@@ -229,6 +242,10 @@ impl Impact {
 
     /// The true solution at `times` (in any order) and for the `tracers`. Histories and paths
     /// extend to the last of the times, or to [`Solution::stopped`].
+    ///
+    /// # Errors
+    ///
+    /// If a time is not finite, if a material cannot reach a state, or if there are too many waves.
     pub fn solve(
         &self,
         times: &[f64],

@@ -65,6 +65,10 @@ pub struct Release {
 
 impl Release {
     /// The times, and the states up to the number `last_state`.
+    ///
+    /// # Errors
+    ///
+    /// If a constant is out of range, or if a material cannot reach a state.
     pub fn new(
         flyer: MieGruneisen,
         target: MieGruneisen,

@@ -113,6 +113,10 @@ const FAN_PIECES: usize = 256;
 
 impl RiemannSolution {
     /// Solves the Riemann problem of the gases `left` and `right` of a diaphragm that bursts.
+    ///
+    /// # Errors
+    ///
+    /// If a state is not that of a gas, or if the gases separate so fast that a vacuum opens.
     pub fn solve(left: GasState, right: GasState) -> Result<RiemannSolution, ExactError> {
         left.check()?;
         right.check()?;

@@ -80,6 +80,11 @@ struct ReflectedFront {
 impl WallImpactSolution {
     /// A body from `lower` to `upper` [m] with `velocity` [m/s]. At t = 0 a wall that moves at
     /// `wall_velocity` [m/s] strikes its lower or its upper face.
+    ///
+    /// # Errors
+    ///
+    /// If a number is out of range, if body and wall do not approach each other, or if the material
+    /// cannot reach the state behind the shock.
     pub fn new(
         material: WallMaterial,
         lower: f64,

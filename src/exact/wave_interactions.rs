@@ -151,6 +151,10 @@ pub(super) fn check(
 impl Chain {
     /// The chain up to the state number `last_state`, at least 2. It ends earlier if the plates
     /// separate or come to rest.
+    ///
+    /// # Errors
+    ///
+    /// If a constant is out of range, or if a material cannot reach a state.
     pub fn new(
         flyer: MieGruneisen,
         target: MieGruneisen,

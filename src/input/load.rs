@@ -26,6 +26,10 @@ use crate::scene::{CheckedScene, Scene};
 pub const LARGEST_FILE: u64 = input_file::LARGEST_JSON;
 
 /// Reads the text of a scene, at most [`LARGEST_FILE`] bytes, without checking its contents.
+///
+/// # Errors
+///
+/// If the file cannot be read, is too large, or is a checkpoint.
 pub fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
     let fail = |reason: String| SceneError::File {
         file: one_line(&path.display().to_string()),
@@ -83,6 +87,10 @@ fn with_files(bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>, SceneError> {
 /// scene.
 ///
 /// `file` is the name of the scene in messages. The first fault is returned.
+///
+/// # Errors
+///
+/// The first fault of the text, of an override or of the scene.
 pub fn parse(bytes: &[u8], file: &str, sets: &[String]) -> Result<CheckedScene, SceneError> {
     let mut value = parse_json(bytes, file)?;
     if value.is_object() {
@@ -95,6 +103,10 @@ pub fn parse(bytes: &[u8], file: &str, sets: &[String]) -> Result<CheckedScene, 
 
 /// Rejects a scene whose individually generated particles, which the check of the scene creates,
 /// need more than `available` bytes. Other faults are left to [`parse`].
+///
+/// # Errors
+///
+/// If the particles need more than `available` bytes.
 pub fn check_size(
     bytes: &[u8],
     file: &str,
@@ -121,6 +133,10 @@ pub fn check_size(
 
 /// Parses and checks the scene of a checkpoint with overrides, which may change only keys in
 /// `allowed` or below them.
+///
+/// # Errors
+///
+/// If an override changes another key, or the first fault of the scene.
 pub fn parse_changed(
     bytes: &[u8],
     file: &str,
@@ -132,6 +148,10 @@ pub fn parse_changed(
 }
 
 /// Checks a scene that was not read from a file; `file` is its name in messages.
+///
+/// # Errors
+///
+/// The first fault of the scene.
 pub fn check(scene: Scene, file: &str) -> Result<CheckedScene, SceneError> {
     // a number that is not finite becomes null here, and is rejected as such
     let value = serde_json::to_value(scene)

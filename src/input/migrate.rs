@@ -142,7 +142,9 @@ impl Renamed {
 /// Text of a scene in the current format, and the former names that it contained. White space and
 /// the order of keys are preserved; comments are not allowed in JSON.
 ///
-/// # Errors If the text is not a JSON object, or of a format newer than [`FORMAT`].
+/// # Errors
+///
+/// If the text is not a JSON object, or of a format newer than [`FORMAT`].
 pub fn migrate(text: &str) -> Result<(String, Vec<&'static str>), String> {
     let strict = ParseOptions {
         allow_comments: false,

@@ -81,6 +81,7 @@ pub struct RankWork {
 
 impl Work {
     /// The work of a scene.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn new(scene: &CheckedScene) -> Self {
         let (stepper, terrain) = (effects::stepper::<1>(scene), Terrain::new(scene));
         let reach = stepper.reach(terrain.longest).expect("the scene check refuses longer ones");

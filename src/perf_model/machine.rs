@@ -137,6 +137,7 @@ pub enum MachineError {
 
 impl SchemeCosts {
     /// The properties of a scene that determine the cost per particle.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn of(scene: &CheckedScene) -> Self {
         let json = |value: serde_json::Result<Value>| value.expect("a scene is plain data");
         let mut equations: Vec<String> = (0..scene.bodies.len())
@@ -162,6 +163,10 @@ impl SchemeCosts {
 
 impl Machine {
     /// Reads a machine file.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be read or is not a valid machine file.
     pub fn read(path: &Path) -> Result<Self, MachineError> {
         let file = path.display().to_string();
         let fail = |reason: String| MachineError::File { file: file.clone(), reason };
@@ -203,6 +208,11 @@ impl Machine {
     }
 
     /// Writes the file.
+    ///
+    /// # Errors
+    ///
+    /// If the file or its folder cannot be written.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn write(&self, path: &Path) -> std::io::Result<()> {
         if let Some(folder) = path.parent().filter(|f| !f.as_os_str().is_empty()) {
             std::fs::create_dir_all(folder)?;
@@ -212,6 +222,10 @@ impl Machine {
     }
 
     /// Checks that the constants are valid for `scene`; `file` is named in messages.
+    ///
+    /// # Errors
+    ///
+    /// If the constants are of another method, viscosity or equation of state.
     pub fn fits(&self, scene: &CheckedScene, file: &Path) -> Result<(), MachineError> {
         let (there, here) = (&self.scheme, SchemeCosts::of(scene));
         if (&there.method, &there.viscosity, &there.equations)

@@ -71,6 +71,10 @@ impl Network {
     /// The network given by name, or as `LATENCY,BANDWIDTH` in s and B/s. The processor costs of a
     /// message are those of `own`, the network of the machine. The time per level of a reduction
     /// increases by the difference of the latencies.
+    ///
+    /// # Errors
+    ///
+    /// If the name is unknown, or if a number is out of range.
     pub fn parse(text: &str, own: &Network) -> Result<Network, NetworkError> {
         if text == "measured" {
             return Ok(own.clone());

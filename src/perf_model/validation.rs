@@ -74,6 +74,10 @@ impl Compared {
 
 impl Against {
     /// Reads a study.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be read or is not a valid study of strong scaling.
     pub fn read(path: &Path) -> Result<Self, PredictionError> {
         let fail = |reason: String| PredictionError { file: path.display().to_string(), reason };
         let bytes = input_file::read(path, input_file::LARGEST_JSON)
@@ -96,6 +100,10 @@ impl Against {
 
     /// Compares all configurations that computed quiescent patches too; `scene` is that of the
     /// study, with its overrides.
+    ///
+    /// # Errors
+    ///
+    /// If a row of the study is of another scene.
     pub fn compare(
         &self,
         machine: &Machine,

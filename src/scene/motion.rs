@@ -42,6 +42,10 @@ fn pair(numbers: &[f64]) -> Vector {
 impl Motion {
     /// The motion of a velocity field of the scene, for a body of `material`. The error is the
     /// reason if the constants are invalid or the material does not support the motion.
+    ///
+    /// # Errors
+    ///
+    /// If a constant is out of range, or if the material does not support the motion.
     pub fn new(field: &VelocityField, material: &Material) -> Result<Motion, String> {
         let told = |error: crate::exact::ExactError| error.to_string();
         Ok(match field {

@@ -11,6 +11,10 @@ pub fn fours<const K: usize>(line: &[f64; K], four: usize) -> f64x4 {
 }
 
 /// Adds `factor` times a line of values to the entries of `sums` from `first` on.
+///
+/// # Panics
+///
+/// If `sums` has fewer than `first + K` entries.
 #[inline(always)]
 pub fn add_product<const K: usize>(sums: &mut [f64], first: usize, factor: f64, values: &[f64; K]) {
     let sums: &mut [f64; K] = (&mut sums[first..first + K]).try_into().expect("K numbers");

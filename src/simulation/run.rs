@@ -100,6 +100,10 @@ where
     Stepper<D>: Steps<D>,
 {
     /// Creates the particles of `scene`, to be run by `threads` threads on each rank. Collective.
+    ///
+    /// # Errors
+    ///
+    /// If a check of the initial state fails.
     pub fn new(
         scene: &'a CheckedScene,
         comm: &'a dyn Comm,
@@ -114,6 +118,7 @@ where
     /// # Errors
     ///
     /// As [`Simulation::new`], and if the scene cannot use a custom model.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn with_models(
         scene: &'a CheckedScene,
         comm: &'a dyn Comm,
@@ -185,6 +190,10 @@ where
     /// Advances by one step. The last step before `until` [s] is shortened to end there exactly;
     /// the next step has its usual length again. If a check of the monitor fails, the step is an
     /// error, or is repeated with half the length if the scene asks for that. Collective.
+    ///
+    /// # Errors
+    ///
+    /// If a check of the state fails, if particles are lost, or if the run needs too many steps.
     pub fn advance(&mut self, until: f64) -> Result<(), RunError> {
         let left = until - self.time;
         let stable = self.dt;

@@ -73,6 +73,10 @@ impl<const D: usize> Simulation<'_, D> {
     /// Continues from the state that rank 0 passes; other ranks pass `None`. This run must be of
     /// the same scene and at its start. Collective.
     ///
+    /// # Errors
+    ///
+    /// If the particles are not those of the scene.
+    ///
     /// # Panics
     /// If the number of columns or sums differs, or a cell is outside the domain.
     pub fn restore(&mut self, saved: Option<&Saved>) -> Result<(), RunError> {

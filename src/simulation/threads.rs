@@ -50,6 +50,10 @@ fn stay_on(cores: &[usize]) {
 /// Pool of `threads` threads including the calling thread, which works instead of waiting for
 /// others to wake. A thread can belong to only one such pool in its life; the pool of a later run
 /// does not include it.
+///
+/// # Panics
+///
+/// If the system cannot start the threads.
 pub fn make_pool(threads: usize) -> ThreadPool {
     let allowed = allowed_cores();
     let cores = choose_cores(allowed, threads, ranks_here());

@@ -177,6 +177,7 @@ pub fn timed<T: AsMut<Stopwatch>>(part: usize, patch: &mut T, phase: impl FnOnce
 }
 
 /// Like `timed`, with `part` optional, for a phase that does not need the patch.
+#[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
 #[inline(always)]
 pub fn timed_if<R>(part: Option<usize>, watch: &mut Stopwatch, phase: impl FnOnce() -> R) -> R {
     let Some(part) = part else { return phase() };

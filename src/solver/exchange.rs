@@ -99,6 +99,10 @@ impl<const D: usize> World<'_, D> {
     /// which read nodal values beyond their patch: once for all patches, with messages, or for each
     /// patch separately if its ghost layer is deep enough. The first exchange of a step decides
     /// which patches are quiescent. Collective between neighbours.
+    ///
+    /// # Errors
+    ///
+    /// If a particle has moved past the neighbours of its patch.
     pub fn exchange_particles(
         &mut self,
         phases: impl Fn(&mut Nodal<'_, D>) + Send + Sync,

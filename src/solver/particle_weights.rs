@@ -129,6 +129,10 @@ fn sum<const K: usize>(weights: &[[f64; K]], nodes: usize, of: impl Fn(usize) ->
 }
 
 /// Adds `terms` to `field` from node `first` on.
+///
+/// # Panics
+///
+/// If `field` has fewer than `first + K` nodes.
 #[inline(always)]
 pub fn add<const K: usize>(field: &mut [f64], first: usize, terms: [f64; K]) {
     let window: &mut [f64; K] =
@@ -145,6 +149,10 @@ pub fn cut(value: f64, least: f64) -> f64 {
 }
 
 /// `K` nodes of `field` from `first` on.
+///
+/// # Panics
+///
+/// If `field` has fewer than `first + K` nodes.
 #[inline(always)]
 pub fn window<const K: usize>(field: &[f64], first: usize) -> &[f64; K] {
     field[first..first + K].try_into().expect("a window of K nodes")

@@ -28,6 +28,7 @@ impl<const D: usize> Deref for Stepper<D> {
 
 impl<const D: usize> Stepper<D> {
     /// Stepper of `scene`, with the effects of `R`.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn new<R: Registry>(scene: &CheckedScene) -> Self {
         Self::with_models::<R>(scene, &|_| None).expect("there is nothing to replace")
     }
@@ -82,9 +83,17 @@ impl<const D: usize> Stepper<D> {
 pub trait Steps<const D: usize> {
     /// Completes the initial state: pressure, sound speed and, if the scheme needs it, the gradient
     /// of the initial velocity. Collective.
+    ///
+    /// # Errors
+    ///
+    /// If a particle has moved past the neighbours of its patch.
     fn prime(&self, world: &mut World<'_, D>) -> Result<(), decomp::ParticleError>;
 
     /// Advances all patches from `time` by `dt` [s]; `step` numbers the steps from 1. Collective.
+    ///
+    /// # Errors
+    ///
+    /// If a particle has moved past the neighbours of its patch.
     fn advance(
         &self,
         world: &mut World<'_, D>,

@@ -73,11 +73,16 @@ impl Case {
     }
 
     /// The checked scene of the case. The error is the message of the scene check.
+    ///
+    /// # Errors
+    ///
+    /// The message of the scene check.
     pub fn scene(&self, bytes: &[u8], file: &str) -> Result<CheckedScene, String> {
         input::parse(bytes, file, &self.sets).map_err(|error| error.to_string())
     }
 
     /// Key of the record: a hash of the resolved scene, the program, ranks and threads.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn key(&self, scene: &CheckedScene, program: &str) -> String {
         let mut digest = Sha256::new();
         let text = serde_json::to_string(&scene.scene).expect("a scene is plain data");

@@ -35,6 +35,10 @@ pub const CHOICES_FILE: &str = "choices.md";
 
 /// Runs the missing cases of a study, and writes its table, choices and pictures to the folder of
 /// the runner. Returns the rows.
+///
+/// # Errors
+///
+/// If the study is not valid, if a program cannot be started, or if a file cannot be written.
 pub fn run(study: &Study, runner: &StudyRunner) -> Result<Vec<StudyRow>, StudyError> {
     let rows = runner.run(study)?;
     write(study, &rows, &runner.folder)?;
@@ -42,6 +46,10 @@ pub fn run(study: &Study, runner: &StudyRunner) -> Result<Vec<StudyRow>, StudyEr
 }
 
 /// Writes the table, choices and pictures of finished rows.
+///
+/// # Errors
+///
+/// If a file cannot be written, or if a picture cannot be drawn.
 pub fn write(study: &Study, rows: &[StudyRow], folder: &Path) -> Result<(), StudyError> {
     let put = |name: &str, text: String| {
         let path = folder.join(name);

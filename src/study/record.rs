@@ -98,6 +98,11 @@ impl StudyRecord {
     }
 
     /// Writes the record.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn write(&self, folder: &Path, key: &str) -> Result<(), StudyError> {
         let (place, aside) = (path(folder, key), folder.join(format!("{key}.part")));
         let text = serde_json::to_vec_pretty(self).expect("a record is plain data");

@@ -48,6 +48,10 @@ impl Job {
 
 impl StudyRunner {
     /// Runs the missing cases; returns rows in the order of the cases.
+    ///
+    /// # Errors
+    ///
+    /// If the study is not valid, if a program cannot be started, or if a file cannot be written.
     pub fn run(&self, study: &Study) -> Result<Vec<StudyRow>, StudyError> {
         let records = self.folder.join("runs");
         fs::create_dir_all(&records).map_err(StudyError::io("cannot be made", &records))?;

@@ -177,6 +177,10 @@ pub struct Choices {
 
 impl Study {
     /// Reads the file of a study; makes its paths relative to the current directory.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be read or is not a valid study.
     pub fn read(path: &Path) -> Result<Study, StudyError> {
         let fail = |reason: String| StudyError::Study { file: path.display().to_string(), reason };
         let text = input_file::read_text(path, input_file::LARGEST_JSON)

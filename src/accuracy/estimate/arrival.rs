@@ -105,6 +105,7 @@ impl Arrivals {
     }
 
     /// Checks the pressures of the particles. Collective.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn look<const D: usize>(&mut self, simulation: &Simulation<'_, D>) {
         if self.places.is_empty() {
             return;

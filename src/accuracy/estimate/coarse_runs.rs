@@ -43,6 +43,10 @@ pub struct Companions {
 /// the largest that fits, at most `factor` times that of the scene. A body with given particle
 /// positions gets its mean number of particles per cell. The error is the message of the scene
 /// check.
+///
+/// # Errors
+///
+/// The message of the scene check if the coarser scene is not valid.
 pub fn coarser(scene: &CheckedScene, factor: usize) -> Result<CheckedScene, String> {
     let mut new = scene.scene.clone();
     let cells = scene.cells[0].div_ceil(factor);
@@ -122,6 +126,11 @@ impl CoarsePeaks {
 }
 
 /// Runs the coarse runs of a scene on a line. Collective; rank 0 gets the results.
+///
+/// # Errors
+///
+/// If a particle of a coarse run moves past the neighbours of its patch. Other failures become
+/// notes of the result.
 pub fn run(
     comm: &dyn Comm,
     scene: &CheckedScene,
@@ -204,6 +213,7 @@ fn one(
 }
 
 /// Recorder of the arrivals in the run itself, with the levels of the coarse runs on all ranks.
+#[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
 pub fn arrivals(
     comm: &dyn Comm,
     scene: &CheckedScene,

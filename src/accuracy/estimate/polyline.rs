@@ -7,6 +7,10 @@ use crate::simulation::ParticleTable;
 pub type Polyline = Vec<(f64, f64)>;
 
 /// Pressure over position of the particles of one body.
+///
+/// # Panics
+///
+/// If the table has no column `x` or `pressure`.
 pub fn line(table: &ParticleTable, body: usize) -> Polyline {
     let column = |name| table.column(name).expect("the table has its own columns");
     let (x, p) = (column("x"), column("pressure"));

@@ -151,6 +151,11 @@ impl Candidate {
 }
 
 /// Plans a scene.
+///
+/// # Errors
+///
+/// If the scene cannot be planned, or if no scheme reaches the target in the allowed time.
+#[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
 pub fn plan(
     scene: &Value,
     file: &str,

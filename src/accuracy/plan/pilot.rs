@@ -32,6 +32,10 @@ pub struct Pilot {
 }
 
 /// The scene with a scheme on `cells` cells. The error is the message of the scene check.
+///
+/// # Errors
+///
+/// If the scene is not on a line, or fails the scene check on these cells.
 pub fn with_cells(
     scene: &Value,
     file: &str,
@@ -51,6 +55,11 @@ pub fn with_cells(
 }
 
 /// Runs a scene without output files. The error is the message of the run.
+///
+/// # Errors
+///
+/// The message of the first failure of the run.
+#[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
 pub fn run(scene: &CheckedScene, body: usize, place: Option<f64>) -> Result<Pilot, String> {
     let mut simulation =
         Simulation::<1>::new(scene, &Serial, 1).map_err(|error| error.to_string())?;

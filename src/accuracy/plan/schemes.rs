@@ -26,11 +26,13 @@ const STANDARD: &str = include_str!("../../../inputs/flyer.json");
 const KEYS: [&str; 2] = ["method", "artificial_viscosity"];
 
 /// The standard problem with the default scheme.
+#[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
 pub fn standard() -> Value {
     serde_json::from_str(STANDARD).expect("the shipped scene is whole")
 }
 
 /// All schemes that a plan can choose; the first is that of the standard problem.
+#[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
 pub fn schemes() -> Vec<PlannedScheme> {
     let mut all: Vec<PlannedScheme> =
         serde_json::from_str(include_str!("schemes.json")).expect("the shipped schemes are whole");

@@ -108,6 +108,14 @@ fn fronts(
 }
 
 /// The bodies of an impact as input of the exact solution, and their indices.
+///
+/// # Errors
+///
+/// If the bodies do not approach each other, or if a material cannot reach the impact state.
+///
+/// # Panics
+///
+/// If `named` is not the reference of this scene.
 pub fn impact_of(
     scene: &CheckedScene,
     named: &scene::FlyerImpact,
@@ -145,6 +153,11 @@ impl Drive for scene::Course {
 
 impl ReferenceSolution {
     /// The solution named by the scene, at its profile times and for its tracers.
+    ///
+    /// # Errors
+    ///
+    /// If the named solution does not exist for the bodies and materials of the scene.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn new(scene: &CheckedScene) -> Result<Option<ReferenceSolution>, ExactError> {
         let Some(named) = &scene.scene.reference else { return Ok(None) };
         Ok(Some(match named {

@@ -75,6 +75,10 @@ fn digest<T: Plain>(values: &[T]) -> String {
 }
 
 /// Writes a checkpoint at `path`, sealed and flushed to disk; `alive` is called regularly.
+///
+/// # Errors
+///
+/// If the file cannot be written.
 pub fn write(
     path: &Path,
     contents: &CheckpointContents,
@@ -84,6 +88,10 @@ pub fn write(
 }
 
 /// As `write`, with any format number.
+///
+/// # Errors
+///
+/// If the file cannot be written.
 pub fn write_as(
     path: &Path,
     contents: &CheckpointContents,
@@ -204,6 +212,10 @@ fn put_column(
 }
 
 /// Reads a checkpoint after verifying its seal.
+///
+/// # Errors
+///
+/// If the file cannot be read, is damaged, or has another format.
 pub fn read(path: &Path) -> Result<Checkpoint, CheckpointError> {
     verify(path)?;
     let length = std::fs::metadata(path).map_or(0, |m| m.len());

@@ -15,6 +15,10 @@ pub const CHANGEABLE: [&str; 5] = ["time", "monitor", "output", "domain.patches"
 impl Checkpoint {
     /// Refuses a scene with which a run cannot restart from this checkpoint. Drops records that the
     /// scene no longer asks for.
+    ///
+    /// # Errors
+    ///
+    /// The first difference between the scene and the checkpoint that prevents a restart.
     pub fn fit(&mut self, scene: &CheckedScene, path: &Path) -> Result<(), CheckpointError> {
         let why = self.check_rows(scene).or_else(|| self.check_record(scene));
         why.map_or(Ok(()), |why| Err(CheckpointError::Unfit { path: path.into(), why }))

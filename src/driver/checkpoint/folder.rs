@@ -22,6 +22,10 @@ const PARTIAL: &str = ".checkpoint-";
 
 /// Writes a checkpoint into `folder`, which is created if missing, and keeps the last `keep` files;
 /// returns the path of the new one. `alive` is called regularly.
+///
+/// # Errors
+///
+/// If the file cannot be written; the message names the last good checkpoint.
 pub fn write(
     folder: &Path,
     keep: u64,
@@ -105,6 +109,10 @@ pub fn clear(folder: &Path) {
 
 /// Reads the checkpoint at `path`, or the newest undamaged one if `path` is a folder of checkpoints
 /// or of results. Returns it with its path and one line for each damaged file.
+///
+/// # Errors
+///
+/// If the file cannot be read or is damaged, or if the folder has no undamaged checkpoint.
 pub fn open(path: &Path) -> Result<(Checkpoint, PathBuf, Vec<String>), CheckpointError> {
     let none = |why: String| CheckpointError::None { path: path.into(), why };
     let kind = fs::metadata(path);
@@ -140,6 +148,10 @@ pub fn open(path: &Path) -> Result<(Checkpoint, PathBuf, Vec<String>), Checkpoin
 
 /// Refuses a run whose checkpoints would replace those of another scene in the checkpoint folder of
 /// `target`. Damaged checkpoints are ignored.
+///
+/// # Errors
+///
+/// If the newest checkpoint is of another scene, or if the folder is itself a result.
 pub fn check_owner(target: &Path, maker: &Maker) -> Result<(), OutputError> {
     let folder = checkpoint_folder(target)?;
     if ExistingResult::read(&folder).is_some() {

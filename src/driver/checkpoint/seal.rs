@@ -35,6 +35,10 @@ pub fn hexadecimal(digest: Sha256) -> String {
 }
 
 /// Writes the head of a file that has reserved space for it, and flushes the file to disk.
+///
+/// # Errors
+///
+/// If the file cannot be written.
 pub fn seal(path: &Path, step: u64, time: f64, format: u32) -> Result<(), CheckpointError> {
     let write = || -> io::Result<()> {
         let mut file = OpenOptions::new().read(true).write(true).open(path)?;
@@ -67,6 +71,10 @@ fn digest_of(file: &mut File, head: &[u8]) -> io::Result<String> {
 }
 
 /// Refuses a file that has changed since it was sealed, or that has another format.
+///
+/// # Errors
+///
+/// If the file cannot be read, has changed since it was sealed, or has another format.
 pub fn verify(path: &Path) -> Result<(), CheckpointError> {
     let damaged = |why: String| CheckpointError::Damaged { path: path.into(), why };
     let fail =

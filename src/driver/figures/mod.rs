@@ -25,6 +25,10 @@ pub struct PressureRow {
 
 /// Draws figures 1 to 3 of Burghardt (2010) into `folder`: the Hugoniots with the states of the
 /// chain.
+///
+/// # Errors
+///
+/// If a picture cannot be drawn or written.
 pub fn draw_hugoniots(
     scene: &CheckedScene,
     bodies: [usize; 2],
@@ -102,6 +106,14 @@ pub fn draw_hugoniots(
 }
 
 /// Draws figure 4 for profile time number `k`; `stem` is the file name without its extension.
+///
+/// # Errors
+///
+/// If a picture cannot be drawn or written.
+///
+/// # Panics
+///
+/// If the table lacks a column that the figure shows.
 pub fn draw_profile(
     scene: &CheckedScene,
     reference: Option<&ReferenceSolution>,
@@ -229,6 +241,10 @@ fn path_style(kind: PathKind) -> (&'static str, Stroke) {
 }
 
 /// Draws velocity and pressure of the probes, with the exact histories.
+///
+/// # Errors
+///
+/// If a picture cannot be drawn or written.
 pub fn draw_histories(
     scene: &CheckedScene,
     histories: &HistoryTable,

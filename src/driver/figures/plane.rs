@@ -21,6 +21,14 @@ struct Drawn {
 
 /// Draws pressure, density and speed over the plane; `name` is the profile's file name without its
 /// extension.
+///
+/// # Errors
+///
+/// If a picture cannot be drawn or written.
+///
+/// # Panics
+///
+/// If the table lacks a drawn column, as that of a scene on a line does.
 pub fn draw_fields(
     scene: &CheckedScene,
     table: &ParticleTable,
@@ -143,6 +151,10 @@ fn in_domain(scene: &CheckedScene, joined: [bool; 2], tile: FieldTile) -> Vec<Fi
 
 /// Draws the pressure along the wave direction for profile time number `k`, with the exact
 /// pressure.
+///
+/// # Errors
+///
+/// If a picture cannot be drawn or written.
 pub fn draw_along(
     scene: &CheckedScene,
     reference: &ReferenceSolution,

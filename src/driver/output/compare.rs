@@ -84,6 +84,10 @@ impl ProfileComparison {
 }
 
 /// Compares the results in two folders.
+///
+/// # Errors
+///
+/// If a summary or table of either folder cannot be read.
 pub fn compare(a: &Path, b: &Path) -> Result<Comparison, OutputError> {
     let (first, second) = (Summary::read(a)?, Summary::read(b)?);
     let lacks = |profiles: &[ProfileSummary], time: f64| profiles.iter().all(|p| p.time != time);

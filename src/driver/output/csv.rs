@@ -45,6 +45,10 @@ pub fn profile_names(times: &[f64]) -> Vec<String> {
 /// Writes every particle of the table, in its order.
 ///
 /// The columns are those of the table; the name of the `material` follows `artificial_viscosity`.
+///
+/// # Errors
+///
+/// If the file cannot be written.
 pub fn write_profile(path: &Path, table: &ParticleTable) -> Result<(), OutputError> {
     let split = table
         .columns

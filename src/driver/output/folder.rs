@@ -23,6 +23,10 @@ pub fn default_folder(scene: &Path) -> PathBuf {
 /// Checks, before the run, whether a result can be written at `target`; leaves no files behind. An
 /// empty folder is always accepted. An earlier result is refused if `keep` is set or if `maker` may
 /// not replace it.
+///
+/// # Errors
+///
+/// If the path cannot be used, or if it holds files that this run may not replace.
 pub fn check_writable(target: &Path, keep: bool, maker: &Maker) -> Result<(), OutputError> {
     OutputFolder::create(target, keep, maker).map(drop)
 }
@@ -48,6 +52,10 @@ pub struct OutputFolder {
 impl OutputFolder {
     /// Creates the temporary folder beside `target`, and missing parent folders. An earlier result
     /// at `target` must be one that `maker` may replace.
+    ///
+    /// # Errors
+    ///
+    /// If the folder cannot be created, or if the target holds files that `maker` may not replace.
     pub fn create(target: &Path, keep: bool, maker: &Maker) -> Result<OutputFolder, OutputError> {
         let absolute = resolve(target)?;
         if let Some(parent) = absolute.parent() {
@@ -93,6 +101,10 @@ impl OutputFolder {
     }
 
     /// Replaces an earlier result by this one, as a whole; returns the target as named by the user.
+    ///
+    /// # Errors
+    ///
+    /// If the target has become one that may not be replaced, or if a folder cannot be renamed.
     pub fn commit(mut self) -> Result<PathBuf, OutputError> {
         check_replaceable(&self.target, &self.place, self.keep, &self.maker)?;
         let parent = self.place.parent().unwrap_or(Path::new("/"));
@@ -177,6 +189,10 @@ fn remove(folder: &Path) -> Result<(), OutputError> {
 
 /// Folder of the checkpoints of results at `target`. It is beside the target, so that it remains if
 /// the run has no result.
+///
+/// # Errors
+///
+/// If the target cannot be resolved to an absolute path.
 pub fn checkpoint_folder(target: &Path) -> Result<PathBuf, OutputError> {
     let place = resolve(target)?;
     let mut name = place.file_name().unwrap_or_default().to_os_string();

@@ -74,6 +74,10 @@ impl HistoryTable {
     }
 
     /// Writes the rows in the CSV format of the profiles.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), OutputError> {
         let header: Vec<String> = self.columns.iter().map(|c| field(&c.name)).collect();
         write_rows(path, &header, self.len(), |text, row| {

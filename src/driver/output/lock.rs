@@ -48,6 +48,10 @@ pub struct Lock {
 impl Lock {
     /// Locks the path `target` of results and creates its parent folders. Fails if another process
     /// holds the lock.
+    ///
+    /// # Errors
+    ///
+    /// If another process holds the lock, or if the path cannot be used.
     pub fn take(target: &Path) -> Result<Lock, OutputError> {
         let place = resolve(target)?;
         let Some(parent) = place.parent() else {

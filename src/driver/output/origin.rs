@@ -87,6 +87,7 @@ impl Maker {
     }
 
     /// The maker for a run with a known origin, such as that in a checkpoint.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn with(origin: Origin, scene: &CheckedScene) -> Maker {
         let scene = serde_json::to_value(&scene.scene).expect("a scene is plain data");
         Maker { origin, scene }
@@ -130,6 +131,10 @@ impl ExistingResult {
 
 /// Refuses a path inside a result, because a new run of that result would remove it. `named` is the
 /// path as named by the user.
+///
+/// # Errors
+///
+/// If the path is inside a result or cannot be resolved.
 pub fn check_outside_results(named: &Path) -> Result<(), OutputError> {
     let place = resolve(named)?;
     let inside = place.ancestors().skip(1).find(|folder| ExistingResult::read(folder).is_some());
@@ -141,6 +146,10 @@ pub fn check_outside_results(named: &Path) -> Result<(), OutputError> {
 
 /// Checks the path of a file that a command writes. Refuses a path inside a result, and a file that
 /// another command has made, by its text. Accepts empty files and anything but regular files.
+///
+/// # Errors
+///
+/// If the path is inside a result, or if the file cannot be read or is not of this command.
 pub fn check_target(
     file: &Path,
     kind: &str,
@@ -159,6 +168,11 @@ pub fn check_target(
 
 /// Claims a folder without a summary for `origin` and records it there. The folder must be missing,
 /// empty, or claimed before by the same command on the same file.
+///
+/// # Errors
+///
+/// If the folder is inside a result, has another maker, or cannot be written.
+#[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
 pub fn claim(folder: &Path, origin: &Origin) -> Result<(), OutputError> {
     check_outside_results(folder)?;
     let (place, file) = (resolve(folder)?, folder.join(ORIGIN_FILE));

@@ -259,6 +259,10 @@ impl ProfileSummary {
 
 impl Summary {
     /// Writes `summary.json` into `folder`.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), OutputError> {
         let path = folder.join(SUMMARY_FILE);
         let mut text = serde_json::to_string_pretty(self)

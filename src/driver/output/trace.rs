@@ -31,6 +31,10 @@ pub struct TraceEvent {
 }
 
 /// Writes the events of all ranks.
+///
+/// # Errors
+///
+/// If the file cannot be written.
 pub fn write_trace(path: &Path, events: &[TraceEvent]) -> Result<(), OutputError> {
     let mut lines: Vec<(usize, usize)> = events.iter().map(|e| (e.pid, e.tid)).collect();
     lines.sort_unstable();

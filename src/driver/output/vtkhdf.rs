@@ -31,6 +31,10 @@ pub struct RunInfo<'a> {
 /// Writes the tables in their order, one time step each.
 ///
 /// Values of a column that a table lacks are NaN.
+///
+/// # Errors
+///
+/// If the file cannot be written.
 pub fn write_vtkhdf(
     path: &Path,
     tables: &[ParticleTable],

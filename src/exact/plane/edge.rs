@@ -42,6 +42,10 @@ pub fn sound_speed_behind(material: &MieGruneisen, rho: f64, p: f64) -> f64 {
 
 impl EdgeRelease {
     /// The edge release of a flyer of `half_width` [m] that strikes a target at least as wide.
+    ///
+    /// # Errors
+    ///
+    /// If the half width is not positive and finite, or if a material cannot reach a state.
     pub fn new(impact: &Impact, half_width: f64) -> Result<EdgeRelease, ExactError> {
         positive("the flyer's half width", half_width)?;
         let release = impact.release(4)?;

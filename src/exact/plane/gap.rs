@@ -21,6 +21,10 @@ pub struct Gap {
 
 impl Gap {
     /// A gap of `width` [m] that closes at `speed` [m/s].
+    ///
+    /// # Errors
+    ///
+    /// If the width or the speed is not positive and finite.
     pub fn new(width: f64, speed: f64) -> Result<Gap, ExactError> {
         positive("the width of the gap", width)?;
         positive("the closing speed", speed)?;
@@ -28,6 +32,10 @@ impl Gap {
     }
 
     /// The gap between two bodies, either of them on the left; `None` if they touch.
+    ///
+    /// # Errors
+    ///
+    /// As [`Impact::new`].
     pub fn between(flyer: ImpactBody, target: ImpactBody) -> Result<Option<Gap>, ExactError> {
         let impact = Impact::new(flyer, target)?;
         let width = impact.contact_time * impact.speed;
@@ -52,6 +60,10 @@ impl Gap {
 
     /// The impact of a flyer that comes from the side of -x, starts at this gap from the face that
     /// it strikes, and moves at this speed relative to the target.
+    ///
+    /// # Errors
+    ///
+    /// As [`Impact::new`].
     pub fn impact(
         &self,
         flyer: crate::material::MieGruneisen,

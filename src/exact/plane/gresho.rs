@@ -52,6 +52,10 @@ impl Default for Gresho {
 
 impl Gresho {
     /// Refuses constants that do not describe a gas or a vortex.
+    ///
+    /// # Errors
+    ///
+    /// The first constant that is out of range.
     pub fn check(&self) -> Result<(), ExactError> {
         finite("the vortex's centre", self.centre[0])?;
         finite("the vortex's centre", self.centre[1])?;
@@ -68,6 +72,10 @@ impl Gresho {
 
     /// The same vortex with its pressure level set so that V over the sound speed at the centre is
     /// `mach`.
+    ///
+    /// # Errors
+    ///
+    /// If the Mach number or a constant of the vortex is out of range.
     pub fn with_mach(self, mach: f64) -> Result<Gresho, ExactError> {
         positive("the Mach number", mach)?;
         let centre_pressure = self.density * self.speed * self.speed / (self.gamma * mach * mach);

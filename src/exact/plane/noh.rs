@@ -55,6 +55,10 @@ const PIECES: usize = 512;
 
 impl Noh {
     /// Noh's problem; refuses constants that do not describe a gas.
+    ///
+    /// # Errors
+    ///
+    /// The first constant that is out of range.
     pub fn new(
         symmetry: Symmetry,
         gamma: f64,

@@ -43,6 +43,10 @@ pub struct PlanePoint {
 
 impl PlaneWave {
     /// The line through `origin` along `normal`, which need not have unit length.
+    ///
+    /// # Errors
+    ///
+    /// If a coordinate is not finite, or if the normal has no length.
     pub fn new(origin: Vector, normal: Vector) -> Result<PlaneWave, ExactError> {
         for value in [origin[0], origin[1], normal[0], normal[1]] {
             finite("a coordinate of the plane wave", value)?;
@@ -57,6 +61,10 @@ impl PlaneWave {
     }
 
     /// The line through `origin` at `angle` [rad] from the x axis.
+    ///
+    /// # Errors
+    ///
+    /// If a coordinate or the angle is not finite.
     pub fn at_angle(origin: Vector, angle: f64) -> Result<PlaneWave, ExactError> {
         PlaneWave::new(origin, [angle.cos(), angle.sin()])
     }

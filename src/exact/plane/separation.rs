@@ -37,6 +37,10 @@ pub struct Separation {
 
 impl Separation {
     /// Follows `impact` to the time `until` [s]; `None` if the plates do not separate before.
+    ///
+    /// # Errors
+    ///
+    /// As [`Impact::solve`].
     pub fn new(
         impact: &Impact,
         until: f64,

@@ -41,6 +41,10 @@ pub struct ShearLayer {
 
 impl ShearLayer {
     /// A shear layer; refuses a speed or height that is not positive.
+    ///
+    /// # Errors
+    ///
+    /// The first constant that is out of range.
     pub fn new(
         profile: ShearProfile,
         speed: f64,

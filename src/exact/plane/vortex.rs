@@ -90,6 +90,10 @@ struct Angle {
 
 impl Vortex {
     /// Refuses constants that do not describe a ring or a solid.
+    ///
+    /// # Errors
+    ///
+    /// The first constant that is out of range.
     pub fn check(&self) -> Result<(), ExactError> {
         positive("the ring's inner radius", self.inner)?;
         positive("the ring's width", self.outer - self.inner)?;

@@ -32,6 +32,10 @@ impl CheckedScene {
     ///
     /// Separate from the other checks because the available memory differs between ranks and over
     /// time: one rank determines it and informs the others.
+    ///
+    /// # Errors
+    ///
+    /// If the run needs more than `available` bytes.
     pub fn check_memory(&self, available: Option<u64>) -> Result<(), SceneError> {
         match available {
             Some(available) if self.memory() > available => Err(SceneError::Memory {

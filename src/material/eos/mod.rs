@@ -169,12 +169,20 @@ pub type Made<V> = Result<Option<<V as PlainEosVisitor>::Output>, String>;
 /// Parameters of an equation of state in a scene.
 pub trait EosParameters {
     /// See [`Eos::check`].
+    ///
+    /// # Errors
+    ///
+    /// The first parameter that does not fit.
     fn check(&self, at: &EosContext) -> Result<(), ParameterError> {
         let _ = at;
         Ok(())
     }
 
     /// See [`Eos::check_initial_pressure`].
+    ///
+    /// # Errors
+    ///
+    /// The reason why it may not, and the allowed values.
     fn check_initial_pressure(&self, density: f64, pressure: f64) -> Result<(), String> {
         let _ = (density, pressure);
         Ok(())
@@ -206,6 +214,10 @@ pub trait EosParameters {
     }
 
     /// See [`Eos::visit`].
+    ///
+    /// # Errors
+    ///
+    /// The fault of a table.
     fn visit<V: EosVisitor>(&self, rho0: f64, visitor: V) -> Made<V>
     where
         Self: Sized,
@@ -214,6 +226,10 @@ pub trait EosParameters {
     }
 
     /// See [`Eos::visit_plain`].
+    ///
+    /// # Errors
+    ///
+    /// The fault of a table.
     fn visit_plain<V: PlainEosVisitor>(&self, rho0: f64, visitor: V) -> Made<V>
     where
         Self: Sized,

@@ -57,6 +57,10 @@ pub struct Residual {
 
 /// Measures everything in about `seconds`. Rank 0 gets the constants and the residuals of the fit.
 /// Collective.
+///
+/// # Errors
+///
+/// If the scene is in a plane, or if no variant of it can run.
 pub fn calibrate(
     comm: &dyn Comm,
     scene: &CheckedScene,
