@@ -14,9 +14,9 @@ const THREADS: usize = 2;
 
 /// Coverage and tightness of the intervals.
 pub fn check(table: &mut Table) {
-    let told = gather(SEED, &HELD_OUT, IMPACTS, THREADS);
-    for (name, told) in QUANTITIES.iter().zip(&told) {
-        let (cases, held, median) = judge(told);
+    let samples = gather(SEED, &HELD_OUT, IMPACTS, THREADS);
+    for (name, samples) in QUANTITIES.iter().zip(&samples) {
+        let (cases, held, median) = judge(samples);
         table.check(&format!("{name}: cases"), Some(cases as f64), bounds::estimate::CASES);
         table.check(&format!("{name}: truth within"), Some(held), bounds::estimate::TRUTH_WITHIN);
         let figure = format!("{name}: median of half-width over error");

@@ -47,7 +47,7 @@ pub fn check(table: &mut Table) {
         match once(&impact.scene, &impact.name, &target, &data) {
             Ok(verdict) => {
                 println!(
-                    "  {}, {quantity:?} {:.3} %: actual {:.3} %, CPU {:.3} s foretold {:.3} s",
+                    "  {}, {quantity:?} {:.3} %: actual {:.3} %, CPU {:.3} s predicted {:.3} s",
                     impact.name,
                     100.0 * error,
                     100.0 * verdict.actual.unwrap_or(f64::NAN),

@@ -12,7 +12,7 @@ use crate::program::root;
 use crate::runs::{Job, Outcome};
 use crate::table::Table;
 
-/// The cell in which errors of impacts are told [m].
+/// Cell size at which the errors of impacts are listed [m].
 const CELL: f64 = 1e-5;
 
 /// Length of the target [m].
@@ -242,10 +242,10 @@ pub fn noh(table: &mut Table) {
             energy(table, &name, &run);
         }
         let falls = errors.windows(2).all(|e| e[1] < e[0]);
-        let told: Vec<String> = errors.iter().flatten().map(|e| format!("{e:.4}")).collect();
+        let listed: Vec<String> = errors.iter().flatten().map(|e| format!("{e:.4}")).collect();
         table.holds(
             &format!("noh by {scheme}.json: L1 of density falls"),
-            &told.join(", "),
+            &listed.join(", "),
             "",
             falls,
         );

@@ -61,7 +61,7 @@ pub fn check(table: &mut Table) {
         for (what, of) in [("in all", peak as fn(&Outcome) -> f64), ("in the steps", stepping)] {
             let a_particle = more(particles, of).map(|bytes| bytes / (p1 - p0));
             let a_cell = more(cells, of).map(|bytes| bytes / (c1 - c0));
-            table.beside(&format!("bytes a particle, {what}"), a_particle, "", Unit::One);
+            table.beside(&format!("bytes per particle, {what}"), a_particle, "", Unit::One);
             table.beside(&format!("bytes a cell, {what}"), a_cell, "", Unit::One);
         }
     }

@@ -37,5 +37,5 @@ pub const SECTIONS: [Section; 18] = [
     quick("plates", plates::check),
     quick("window", plates::window),
     quick("wave", motion::wave),
-    quick("books", motion::books),
+    quick("conservation", motion::conservation),
 ];

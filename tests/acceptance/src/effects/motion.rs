@@ -1,4 +1,4 @@
-//! Smooth waves against their exact solution, and books of bodies that fall and of voids that close.
+//! Smooth waves against their exact solution, and conservation for bodies that fall and voids that close.
 
 use crate::bounds::{Unit, effects as bounds};
 use crate::runs::Job;
@@ -33,7 +33,7 @@ pub fn wave(figures: &mut Table) {
         }
         figures.beside("its L2 at 10 um", runs[2].0, "", Unit::Fraction);
         figures.check(
-            "its energy, the piston's work booked",
+            "its energy, with the work of the piston",
             runs[2].1,
             bounds::wave::ENERGY_DRIFT,
         );
@@ -42,7 +42,7 @@ pub fn wave(figures: &mut Table) {
 
 /// Momentum and energy in free fall, of plates while the voids between them close, and while they
 /// erode.
-pub fn books(figures: &mut Table) {
+pub fn conservation(figures: &mut Table) {
     let fall = Job::new("simple_wave")
         .set("boundary=null")
         .set("reference=null")
@@ -64,16 +64,20 @@ pub fn books(figures: &mut Table) {
         figures.check(
             &format!("{what}: momentum"),
             summary.momentum.drift,
-            bounds::books::MOMENTUM_DRIFT,
+            bounds::conservation::MOMENTUM_DRIFT,
         );
         figures.check(
             &format!("{what}: energy"),
             summary.energy.drift,
-            bounds::books::ENERGY_DRIFT,
+            bounds::conservation::ENERGY_DRIFT,
         );
         if let Some(gone) = &summary.erosion {
             let gone = Some(gone.particles as f64);
-            figures.check(&format!("{what}: particles"), gone, bounds::books::ERODED_PARTICLES);
+            figures.check(
+                &format!("{what}: particles"),
+                gone,
+                bounds::conservation::ERODED_PARTICLES,
+            );
         }
     }
 }

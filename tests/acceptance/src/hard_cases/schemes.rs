@@ -101,7 +101,7 @@ fn scheme(base: &Value, shape: &str, transfer: &Value) -> Value {
     value
 }
 
-/// How a message of the monitor is told in a word.
+/// One word for a message of the monitor.
 fn word(message: &str) -> &'static str {
     let words = [
         ("Courant number", "courant"),

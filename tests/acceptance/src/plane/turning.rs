@@ -42,7 +42,7 @@ pub fn vortex(table: &mut Table) {
                     .set(format!("method.domain_limit={limit}"));
                 let limit = if limit == "null" { "" } else { ", domains to 2" };
                 let name = format!("vortex, 0.5 s: {}{limit}", name(shape, transfer));
-                // what a scheme does not live through is told, not missed
+                // a run that a scheme does not survive is listed, not counted as missed
                 let run = job.run();
                 let found = run.as_ref().ok().and_then(error);
                 table.beside(&name, found, if run.is_ok() { "" } else { "dies" }, Unit::Fraction);

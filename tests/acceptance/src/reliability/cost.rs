@@ -46,6 +46,6 @@ pub fn check(table: &mut Table) {
             bounds::cost::SHARE_OF_RUN_TIME,
         );
         let size = files.last().and_then(|f| fs::metadata(&f.1).ok()).map(|m| m.len() as f64);
-        table.beside("  bytes a particle", size.map(|s| s / particles), "", Unit::One);
+        table.beside("  bytes per particle", size.map(|s| s / particles), "", Unit::One);
     }
 }

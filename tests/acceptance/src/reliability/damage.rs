@@ -56,11 +56,11 @@ pub fn check(table: &mut Table) {
     // the program says so, and does not start
     let _ = fs::write(&path, &bytes[..bytes.len() - 1]);
     let (code, said) = end(2, &with(&[], &["--restart", &path.display().to_string()]));
-    let told = code == Some(2) && said.contains("is damaged");
+    let is_reported = code == Some(2) && said.contains("is damaged");
     table.holds(
         "  what the program says",
-        if told { "damaged" } else { "other" },
+        if is_reported { "damaged" } else { "other" },
         "damaged, code 2",
-        told,
+        is_reported,
     );
 }

@@ -82,11 +82,11 @@ pub fn check(table: &mut Table) {
         let (code, said) = end(ranks, &on);
         let line = said.lines().find(|l| l.starts_with("error:")).unwrap_or("no message");
         let words = ["the last good checkpoint is", "No space left on device"];
-        let told = words.iter().any(|w| line.contains(w)) && !said.contains("panicked");
+        let is_reported = words.iter().any(|w| line.contains(w)) && !said.contains("panicked");
         let shown = format!("code {}", code.map_or("none".into(), |c| c.to_string()));
-        let ok = matches!(code, Some(2 | 3)) && told;
+        let ok = matches!(code, Some(2 | 3)) && is_reported;
         table.holds(&format!("{name}: ends and says so"), &shown, "code 2 or 3", ok);
-        if !told {
+        if !is_reported {
             println!("  {line}");
         }
         let intact = left(&output).is_ok_and(|left| left.differs(&whole).is_none());

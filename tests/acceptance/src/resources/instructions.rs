@@ -49,6 +49,6 @@ fn run(job: Job, end: f64) -> Result<[f64; 3], String> {
         .set("domain.patches=null")
         .set("reference=null");
     let run = job.counted().run()?;
-    let instructions = run.instructions.ok_or("callgrind has told no number")?;
+    let instructions = run.instructions.ok_or("callgrind has printed no number")?;
     Ok([run.summary.steps as f64, run.summary.particles as f64, instructions as f64])
 }
