@@ -14,6 +14,7 @@ use serde_json::Value;
 use super::comments::without_comments;
 use super::errors::{SceneError, SceneFault, one_line, suggest};
 use super::table::{is_hdf5, read_hdf5};
+use super::units::is_quantity;
 use super::validate::join;
 use crate::input::input_file::{self, InputFault, LARGEST_JSON, LARGEST_NUMBERS};
 use crate::material::Table;
@@ -172,6 +173,10 @@ pub(super) fn inline_courses(scene: &mut Value, folder: &Path) -> Result<bool, S
         // the check of the scene rejects an invalid side
         let Ok(kind) = Side::deserialize(&*side) else { continue };
         let (Some(Course::File(name)), quantity) = (kind.course(), kind.name()) else { continue };
+        // such as "1 km/s"
+        if is_quantity(&name) {
+            continue;
+        }
         let file = folder.join(name);
         let points = Course::read(&read_text(&file, LARGEST_NUMBERS)?, quantity);
         side[quantity] = serde_json::json!(points.map_err(|reason| fault(&file, reason))?);

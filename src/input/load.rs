@@ -17,6 +17,8 @@ use super::library::{inline_courses, inline_files, resolve};
 use super::migrate::check_format;
 use super::overrides::{apply, check_allowed};
 use super::preset;
+use super::schema::full_schema;
+use super::units;
 use super::validate::conform;
 use crate::geometry::read_points;
 use crate::input::input_file::{self, InputFault};
@@ -117,6 +119,7 @@ pub fn check_size(
         let mut value = parse_json(bytes, file).ok()?;
         sets.iter().try_for_each(|set| apply(&mut value, set)).ok()?;
         resolve(&mut value).ok()?;
+        units::convert(&mut value, &full_schema()).ok()?;
         preset::expand(&mut value).ok()?;
         conform(&value).ok()?;
         serde_json::from_value(value).ok()
@@ -162,6 +165,7 @@ pub fn check(scene: Scene, file: &str) -> Result<CheckedScene, SceneError> {
 fn from_value(mut value: Value, file: &str) -> Result<CheckedScene, SceneError> {
     resolve(&mut value).map_err(|fault| fault.within(file))?;
     check_format(&value).map_err(|fault| fault.within(file))?;
+    units::convert(&mut value, &full_schema()).map_err(|fault| fault.within(file))?;
     let choice = preset::expand(&mut value).map_err(|fault| fault.within(file))?;
     conform(&value).map_err(|fault| fault.within(file))?;
     let scene = serde_path_to_error::deserialize(value).map_err(|e| {

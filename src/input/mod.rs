@@ -16,6 +16,7 @@ mod overrides;
 mod preset;
 mod schema;
 mod table;
+mod units;
 mod validate;
 
 pub use check::{BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, available_memory};

@@ -3,6 +3,7 @@
 use schemars::{Schema, generate::SchemaSettings, transform::RecursiveTransform};
 use serde_json::{Value, json};
 
+use super::units;
 use crate::effects;
 use crate::scene::{Preset, Scene};
 
@@ -18,6 +19,7 @@ pub(super) const LEAST: f64 = 1e-150;
 /// bounds of its own has the general bounds.
 pub fn schema() -> Value {
     let mut schema = full_schema();
+    units::allow_quantities(&mut schema);
     let generator = SchemaSettings::draft2020_12().into_generator();
     let mut names = generator.into_root_schema_for::<Preset>().to_value();
     let names_text = names["description"].take();

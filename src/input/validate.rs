@@ -24,7 +24,7 @@ pub(super) fn join(path: &str, key: &str) -> String {
 }
 
 /// Key of an array entry in a path: its name if that is unique, else its number.
-fn entry_key(entries: &[Value], i: usize) -> String {
+pub(super) fn entry_key(entries: &[Value], i: usize) -> String {
     let name = |entry: &Value| entry.get("name").and_then(Value::as_str).map(str::to_string);
     let unlike_others = |own: &String| {
         !own.is_empty() && entries.iter().filter(|e| name(e).as_ref() == Some(own)).count() == 1
@@ -287,7 +287,7 @@ fn variant_name(variant: &Value) -> Option<&str> {
     }
 }
 
-fn types(schema: &Value) -> Vec<&str> {
+pub(super) fn types(schema: &Value) -> Vec<&str> {
     match schema.get("type") {
         Some(Value::String(name)) => vec![name],
         Some(Value::Array(names)) => names.iter().filter_map(Value::as_str).collect(),

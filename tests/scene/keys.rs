@@ -51,6 +51,60 @@ fn comments_trailing_commas_and_a_schema() {
     refused_text("{/* open", &["line 1 column"]);
 }
 
+/// A scene in other units is the same scene to the bit: a key with a dimension takes text with a unit.
+#[test]
+fn units_give_the_same_doubles() {
+    let read = |text: &str| {
+        let scene = parse(text.as_bytes(), "units.json", &[]).unwrap_or_else(|e| panic!("{e}"));
+        serde_json::to_value(scene.scene).unwrap()
+    };
+    let si = r#"{
+        "title": "plates", "domain": {"lower": [-0.001], "upper": [0.009], "cell_size": 1e-5},
+        "time": {"end": 1e-6},
+        "materials": {
+            "copper": {"density": 8930.0, "eos": {"type": "mie_gruneisen", "c0": 3940.0, "s": 1.489,
+                "gamma0": 1.96, "tension_cutoff": 1.2e9}},
+            "aluminium": {"library": "aluminium_6061"}
+        },
+        "bodies": [
+            {"name": "flyer", "material": "copper", "box": {"lower": [-0.0005], "upper": [0.0]},
+                "velocity": [1000.0], "particles_per_cell": [2]},
+            {"name": "target", "material": "aluminium", "box": {"lower": [0.0], "upper": [0.008]},
+                "particles_per_cell": [2]}
+        ],
+        "boundary": {"x_upper": {"pressure": 1e5}},
+        "output": {"profiles": {"times": [2e-7, 1e-6]}}
+    }"#;
+    let mut other = si.to_string();
+    for (number, text) in [
+        ("[-0.001]", r#"["-1 mm"]"#),
+        ("[0.009]", r#"["9mm"]"#),
+        ("\"cell_size\": 1e-5", r#""cell_size": "10 um""#),
+        ("\"end\": 1e-6", r#""end": "1 us""#),
+        ("8930.0", r#""8.93 g/cm3""#),
+        ("3940.0", r#""3.94 km/s""#),
+        ("1.2e9", r#""12 kbar""#),
+        ("[-0.0005]", r#"["-0.5 mm"]"#),
+        ("[1000.0]", r#"["1 km/s"]"#),
+        ("\"pressure\": 1e5", r#""pressure": "0.1 MPa""#),
+        ("[2e-7, 1e-6]", r#"["0.2 us", 1e-6]"#),
+    ] {
+        assert!(other.contains(number), "{number}");
+        other = other.replacen(number, text, 1);
+    }
+    assert_eq!(read(&other), read(si));
+    let refuse = |from: &str, to: &str| {
+        let text = si.replacen(from, to, 1);
+        parse(text.as_bytes(), "units.json", &[]).unwrap_err().to_string()
+    };
+    let error = refuse("\"end\": 1e-6", r#""end": "1 mm""#);
+    tells(&error, &["units.json: time.end = \"1 mm\"", "another dimension", "s"]);
+    let error = refuse("8930.0", r#""8.93 lb/ft3""#);
+    tells(&error, &["materials.copper.density = \"8.93 lb/ft3\"", "unknown unit"]);
+    let error = refuse("1.489", r#""1.489 m""#);
+    tells(&error, &["materials.copper.eos.s = \"1.489 m\"", "a number"]);
+}
+
 #[test]
 fn numbers_that_are_none() {
     let bad = |end: &str| format!("{{\n  \"time\": {{\n    \"end\": {end}\n  }}\n}}");
