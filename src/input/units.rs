@@ -108,7 +108,7 @@ fn split(text: &str) -> Option<(&str, &str)> {
     let text = text.trim();
     let starts = text.starts_with(|c: char| c.is_ascii_digit() || c == '-' || c == '.');
     let is_number = |end: &usize| text[..*end].trim_end().parse::<f64>().is_ok();
-    let ends = text.char_indices().map(|(at, _)| at).skip(1);
+    let ends = text.char_indices().map(|(at, _)| at).skip(1).chain([text.len()]);
     let end = ends.filter(|_| starts).filter(is_number).last()?;
     Some((text[..end].trim_end(), text[end..].trim()))
 }
@@ -268,7 +268,9 @@ pub(super) fn allow_quantities(schema: &mut Value) {
 /// The number of `text` in SI units, if it is a quantity of the dimensions of `target`, whose name is
 /// `name`; `None` for other text.
 fn quantity(text: &str, name: &str, target: ScaledUnit) -> Result<Option<f64>, SceneFault> {
-    let Some((number, own)) = split(text) else { return Ok(None) };
+    let Some((number, own)) = split(text).filter(|(_, own)| !own.is_empty()) else {
+        return Ok(None);
+    };
     let fault = |reason: String| SceneFault::new("", text, reason);
     let Some(found) = unit(own) else {
         let known = list(SYMBOLS.map(|(symbol, ..)| symbol));
@@ -332,7 +334,7 @@ mod tests {
                 Ok(value) => assert!(text == "3 GPa/" && value == Some(3e9), "{text}: {value:?}"),
             }
         }
-        for text in ["velocity.csv", "wall", "", "1", "nan m", "inf Pa"] {
+        for text in ["velocity.csv", "wall", "", "1", "8930", "1e5", "nan m", "inf Pa"] {
             assert_eq!(quantity(text, "Pa", pascal).ok().flatten(), None, "{text}");
             assert!(!is_quantity(text), "{text}");
         }

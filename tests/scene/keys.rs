@@ -59,7 +59,7 @@ fn units_give_the_same_doubles() {
         serde_json::to_value(scene.scene).unwrap()
     };
     let si = r#"{
-        "title": "plates", "domain": {"lower": [-0.001], "upper": [0.009], "cell_size": 1e-5},
+        "title": "plates", "domain": {"lower": [-0.001], "upper": [0.008], "cell_size": 1e-5},
         "time": {"end": 1e-6},
         "materials": {
             "copper": {"density": 8930.0, "eos": {"type": "mie_gruneisen", "c0": 3940.0, "s": 1.489,
@@ -78,7 +78,7 @@ fn units_give_the_same_doubles() {
     let mut other = si.to_string();
     for (number, text) in [
         ("[-0.001]", r#"["-1 mm"]"#),
-        ("[0.009]", r#"["9mm"]"#),
+        ("[0.008]", r#"["8mm"]"#),
         ("\"cell_size\": 1e-5", r#""cell_size": "10 um""#),
         ("\"end\": 1e-6", r#""end": "1 us""#),
         ("8930.0", r#""8.93 g/cm3""#),
