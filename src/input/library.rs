@@ -13,9 +13,9 @@ use serde_json::Value;
 
 use super::comments::without_comments;
 use super::errors::{SceneError, SceneFault, one_line, suggest};
+use super::paths::join;
 use super::table::{is_hdf5, read_hdf5};
 use super::units::is_quantity;
-use super::validate::join;
 use crate::input::input_file::{self, InputFault, LARGEST_JSON, LARGEST_NUMBERS};
 use crate::material::Table;
 use crate::scene::{Course, Side};

@@ -13,6 +13,7 @@ mod library;
 mod load;
 mod migrate;
 mod overrides;
+mod paths;
 mod preset;
 mod schema;
 mod table;

@@ -26,7 +26,7 @@ pub(super) fn apply(scene: &mut Value, set: &str) -> Result<(), SceneError> {
     let mut walked = String::new();
     for key in &path {
         place = enter(place, &walked, key).map_err(fail)?;
-        walked = super::validate::join(&walked, key);
+        walked = super::paths::join(&walked, key);
     }
     *place = value;
     Ok(())

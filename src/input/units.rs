@@ -8,7 +8,7 @@
 use serde_json::{Map, Value};
 
 use super::errors::{SceneFault, list};
-use super::validate::{entry_key, quote, types};
+use super::paths::{entry_key, quote, types};
 
 /// Exponents of m, kg, s and K.
 type Dimensions = [i32; 4];

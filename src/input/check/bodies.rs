@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde_json::json;
 
 use super::super::errors::{SceneFault, suggest};
-use super::super::validate::join;
+use super::super::paths::join;
 use super::common::{MOST, check_box, check_length, check_printable};
 use super::{materials, motion};
 use crate::geometry::{BoundedRegion, PointFault, Tile, fill, voronoi, voronoi_line};

@@ -2,7 +2,7 @@
 //! other.
 
 use super::super::errors::SceneFault;
-use super::super::validate::join;
+use super::super::paths::join;
 use crate::material::ParameterError;
 use crate::scene::{HeatSource, Material, Scene};
 

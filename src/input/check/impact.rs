@@ -7,7 +7,7 @@
 //! strikes one is not checked.
 
 use super::super::errors::SceneFault;
-use super::super::validate::join;
+use super::super::paths::join;
 use crate::scene::CheckedScene;
 use crate::scene::Eos;
 

@@ -1,8 +1,8 @@
 //! Checks of materials: consistent constants and admissible pressures.
 
 use super::super::errors::SceneFault;
+use super::super::paths::join;
 use super::super::schema::{GREATEST, LEAST};
-use super::super::validate::join;
 use super::common::check_printable;
 use crate::material::constitutive::equation;
 use crate::material::{EosContext, HistoryEos};

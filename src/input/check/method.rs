@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::super::errors::SceneFault;
-use super::super::validate::join;
+use super::super::paths::join;
 use crate::scene::CheckedScene;
 use crate::scene::{EnergyUpdate, FrameKind, LimitedTerms, Method, Scene, Stepping, StressUpdate};
 use crate::shape::{DomainExtent, most_nodes};

@@ -1,7 +1,7 @@
 //! Checks of velocities that vary in space and of body forces: whether a body can have them.
 
 use super::super::errors::SceneFault;
-use super::super::validate::join;
+use super::super::paths::join;
 use super::common::check_length;
 use crate::scene::CheckedScene;
 use crate::scene::motion::{Motion, vortex_of};

@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::super::errors::{SceneFault, suggest};
-use super::super::validate::join;
+use super::super::paths::join;
 use super::common::check_length;
 use crate::scene::CheckedScene;
 use crate::scene::Scene;

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::super::errors::SceneFault;
-use super::super::validate::join;
+use super::super::paths::join;
 use super::common::find_body;
 use crate::scene::CheckedScene;
 use crate::scene::motion::Motion;

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use crate::input::validate::join;
+use crate::input::paths::join;
 use crate::material::constitutive;
 use crate::scene::CheckedScene;
 

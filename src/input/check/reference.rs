@@ -1,7 +1,7 @@
 //! Checks whether the exact solution of a scene is valid for its bodies.
 
 use super::super::errors::SceneFault;
-use super::super::validate::join;
+use super::super::paths::join;
 use super::common::find_body;
 use super::plane_reference;
 use crate::material::{IdealGasParameters, MieGruneisenParameters};
