@@ -17,7 +17,7 @@ pub const QUANTITIES: [&str; 3] = ["plateau pressure", "arrival time", "L1"];
 
 /// What an impact has told of one quantity.
 #[derive(Clone, Debug)]
-#[allow(dead_code)] // each program looks at its own
+#[allow(dead_code, reason = "each program uses a part")]
 pub struct Told {
     /// The impact, in words.
     pub name: String,

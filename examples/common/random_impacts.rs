@@ -46,7 +46,7 @@ impl Random {
 }
 
 /// Materials that laws are fitted on, and materials that they are held against.
-#[allow(dead_code)] // each program takes its own
+#[allow(dead_code, reason = "each program uses a part")]
 pub const FITTED: [&str; 7] =
     ["copper", "aluminium_2024", "tantalum", "steel_304", "lead", "pmma", "nickel"];
 /// No material is in both.
@@ -71,7 +71,7 @@ const DURATION: [f64; 2] = [0.6, 3.0];
 const PLACE: [f64; 2] = [0.3, 0.8];
 
 /// The range of the impacts of all these materials.
-#[allow(dead_code)] // each program takes its own
+#[allow(dead_code, reason = "each program uses a part")]
 pub fn range() -> FittedRange {
     let all: Vec<MieGruneisen> =
         FITTED.iter().chain(&HELD_OUT).map(|name| material(name)).collect();

@@ -402,7 +402,7 @@ impl<const D: usize> Scheme<D> {
             let (j, e) =
                 (&column(c.jacobian)[particles.clone()], &column(c.energy)[particles.clone()]);
             let (p, speed) = (&mut pressure[particles.clone()], &mut speed[particles.clone()]);
-            let told = timed_if(self.history_part(body), watch, || match c.tension_free[body] {
+            let fault = timed_if(self.history_part(body), watch, || match c.tension_free[body] {
                 Some(damage) => {
                     let damage = &column(damage)[particles.clone()];
                     let models = (model.as_ref(), self.gradual_failure(body), damage);
@@ -410,7 +410,7 @@ impl<const D: usize> Scheme<D> {
                 }
                 None => model.refresh(j, e, history, p, speed),
             });
-            if let (None, Some((particle, what))) = (&found, told) {
+            if let (None, Some((particle, what))) = (&found, fault) {
                 found = Some((particles.start + particle, what));
             }
         }

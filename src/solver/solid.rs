@@ -184,8 +184,8 @@ impl<const D: usize> Scheme<D> {
                     let strain = self.strain(patch, particles.clone(), 0.0, j);
                     let (p, speed) =
                         (&mut pressure[particles.clone()], &mut speed[particles.clone()]);
-                    let told = solid.refresh(strain, out, p, speed);
-                    if let (None, Some((particle, what))) = (&found, told) {
+                    let fault = solid.refresh(strain, out, p, speed);
+                    if let (None, Some((particle, what))) = (&found, fault) {
                         found = Some((particles.start + particle, what));
                     }
                 }

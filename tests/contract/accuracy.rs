@@ -142,7 +142,7 @@ fn a_statement_that_cannot_be_made_is_refused() {
 }
 
 #[test]
-fn a_plan_chooses_and_its_run_tells_foretold_against_actual() {
+fn a_plan_chooses_and_its_run_compares_predicted_and_actual() {
     let home = Home::with(&estimating());
     let ask = |error: &str, more: &[&str]| {
         let all =

@@ -69,7 +69,7 @@ impl Call {
     }
 
     /// Redirects stderr to a pipe instead of [`Ended::stderr`].
-    #[allow(dead_code)] // used by other targets
+    #[allow(dead_code, reason = "unused without the feature mpi")]
     pub fn stderr(self, pipe: PipeWriter) -> Call {
         Call { stderr: Some(pipe), ..self }
     }
@@ -131,7 +131,7 @@ impl Started {
     }
 
     /// Text on stderr so far.
-    #[allow(dead_code)] // used by other targets
+    #[allow(dead_code, reason = "unused without the feature mpi")]
     pub fn said(&self) -> String {
         text(&self.stderr)
     }

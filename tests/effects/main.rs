@@ -11,7 +11,6 @@ mod refused;
 mod shares;
 mod strength;
 mod temperature;
-// each target looks at figures of its own
-#[allow(dead_code)]
+#[allow(dead_code, reason = "each target uses a part")]
 #[path = "../solids/tools.rs"]
 mod tools;

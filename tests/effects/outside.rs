@@ -9,8 +9,7 @@ use serde_json::json;
 
 use crate::tools::{at_most, checked, run, shipped};
 
-// its main is not called
-#[allow(dead_code)]
+#[expect(dead_code, reason = "its main is not called")]
 #[path = "../../examples/custom_material.rs"]
 mod custom_material;
 

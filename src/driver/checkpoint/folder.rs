@@ -58,8 +58,7 @@ fn try_write(
     // remove the file of an earlier process, because HDF5 refuses to overwrite an open file
     let _ = fs::remove_file(&partial);
     if let Ok(disk) = statvfs(folder) {
-        // the types differ between systems
-        #[allow(clippy::unnecessary_cast)]
+        #[allow(clippy::unnecessary_cast, reason = "the types differ between systems")]
         let left = disk.blocks_available() as u64 * disk.fragment_size() as u64;
         let needed = contents.bytes();
         if left < needed {

@@ -297,8 +297,8 @@ fn events(summary: &Summary) -> Vec<(&'static str, String)> {
         );
         facts.push(("failure", text));
     }
-    if let Some(told) = &summary.error_estimate {
-        facts.extend(estimate_facts(told));
+    if let Some(estimate) = &summary.error_estimate {
+        facts.extend(estimate_facts(estimate));
     }
     facts.extend(summary.plan.iter().map(|plan| ("plan", plan_fact(plan))));
     facts
@@ -313,7 +313,7 @@ fn plan_fact(plan: &Verdict) -> String {
         (None, _) => "not known".into(),
     };
     format!(
-        "error wanted {}, foretold {}{}, actual {actual}; CPU seconds of the time loop foretold \
+        "error wanted {}, predicted {}{}, actual {actual}; CPU seconds of the time loop predicted \
          {:.3}, actual {:.3}; wall {:.3}, {:.3}",
         percent(plan.wanted),
         percent(plan.predicted),
@@ -326,7 +326,7 @@ fn plan_fact(plan: &Verdict) -> String {
 }
 
 /// Estimated errors of a run, one line per profile and per arrival.
-fn estimate_facts(told: &EstimatedErrors) -> Vec<(&'static str, String)> {
+fn estimate_facts(estimate: &EstimatedErrors) -> Vec<(&'static str, String)> {
     let within = |b: &Bounded, scale: f64, unit: &str| match b.half_width {
         Some(width) => {
             let exact = b.exact.map_or(String::new(), |e| {
@@ -339,7 +339,7 @@ fn estimate_facts(told: &EstimatedErrors) -> Vec<(&'static str, String)> {
     };
     let guess = |basis: EstimateBasis| if basis == EstimateBasis::Guess { " (guess)" } else { "" };
     let mut facts = Vec::new();
-    for profile in &told.profiles {
+    for profile in &estimate.profiles {
         let guess = guess(profile.basis);
         let plateau = match &profile.plateau_pressure {
             Some(bounded) => format!("plateau {}", within(bounded, 1e-9, "GPa")),
@@ -357,7 +357,7 @@ fn estimate_facts(told: &EstimatedErrors) -> Vec<(&'static str, String)> {
             format!("{}: {plateau}; {l1}{exact}{guess}", seconds(profile.time)),
         ));
     }
-    for arrival in &told.arrivals {
+    for arrival in &estimate.arrivals {
         let time = match &arrival.time {
             Some(bounded) => format!("arrival {}", within(bounded, 1e9, "ns")),
             None => "nothing has arrived".into(),
@@ -365,12 +365,12 @@ fn estimate_facts(told: &EstimatedErrors) -> Vec<(&'static str, String)> {
         let guess = guess(arrival.basis);
         facts.push(("estimate", format!("at {} mm: {time}{guess}", significant(1e3 * arrival.at))));
     }
-    if told.basis == EstimateBasis::Guess {
-        let outside = told.outside.join("; ");
+    if estimate.basis == EstimateBasis::Guess {
+        let outside = estimate.outside.join("; ");
         let text = format!("guess: the laws of errors were not fitted on such inputs: {outside}");
         facts.push(("estimate", text));
     }
-    facts.extend(told.notes.iter().map(|note| ("estimate", note.clone())));
+    facts.extend(estimate.notes.iter().map(|note| ("estimate", note.clone())));
     facts
 }
 

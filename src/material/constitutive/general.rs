@@ -244,8 +244,8 @@ mod tests {
         let crushed = alpha[0];
         assert_eq!(model.refresh(&[0.9], &[1e3], Some(&mut alpha), &mut p, &mut c), None);
         assert!(alpha[0] == crushed && p[0] < 0.1e9, "pores stay closed");
-        let (_, told) = model.refresh(&[0.2], &[0.0], Some(&mut alpha), &mut p, &mut c).unwrap();
-        assert!(told.contains("limit 1/s"), "{told}");
+        let (_, fault) = model.refresh(&[0.2], &[0.0], Some(&mut alpha), &mut p, &mut c).unwrap();
+        assert!(fault.contains("limit 1/s"), "{fault}");
         // the work of a step uses the pressure at its end
         let [p, e] = change(&model, Some(&[first]), 1.0, 0.88, [0.0, 0.0]);
         assert!((e / (0.5 * p * 0.12 * 1e-3 / 2.0) - 1.0).abs() < 1e-12);

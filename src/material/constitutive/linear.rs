@@ -218,18 +218,18 @@ mod tests {
     fn a_state_outside_of_the_model_is_named() {
         let copper =
             LinearEosKernel(MieGruneisen { rho0: 8930.0, c0: 3940.0, s: 1.489, gamma0: 1.96 });
-        let told = |j: f64, e: f64| {
+        let fault_at = |j: f64, e: f64| {
             let (mut p, mut c) = ([0.0; 2], [0.0; 2]);
             copper.refresh(&[0.9, j], &[0.0, e], None, &mut p, &mut c)
         };
-        assert_eq!(told(0.9, 0.0), None);
+        assert_eq!(fault_at(0.9, 0.0), None);
         for (j, e, word) in [
             (0.2, 0.0, "limit 1/s"),
             (1.5, 0.0, "tension"),
             (-0.1, 0.0, "negative"),
             (0.9, f64::NAN, "not a number"),
         ] {
-            let (particle, what) = told(j, e).unwrap();
+            let (particle, what) = fault_at(j, e).unwrap();
             assert_eq!(particle, 1);
             assert!(what.contains(word), "{what}");
         }

@@ -184,14 +184,14 @@ mod tests {
 
     #[test]
     fn a_state_outside_of_the_model_is_named() {
-        let told = |j: f64| {
+        let fault_at = |j: f64| {
             let (mut s, mut p, mut c) = ([0.0; 2], [0.0; 2], [0.0; 2]);
             let stress = TensorColumns { xx: &mut s, plane: None, across: None };
             STEEL.refresh(Strain::Line(&[0.9, j]), stress, &mut p, &mut c)
         };
-        assert_eq!(told(1.01), None);
+        assert_eq!(fault_at(1.01), None);
         for (j, word) in [(2.9, "no stiffness"), (-0.1, "inside out"), (f64::NAN, "not a number")] {
-            let (particle, what) = told(j).unwrap();
+            let (particle, what) = fault_at(j).unwrap();
             assert_eq!(particle, 1);
             assert!(what.contains(word), "{what}");
         }

@@ -3,7 +3,7 @@
 //!
 //! The scheme is that of `inputs/flyer.json`, read when a case is run.
 
-#![allow(dead_code)] // the tests and the acceptance program each use a part
+#![allow(dead_code, reason = "the tests and the acceptance program each use a part")]
 
 mod effects;
 mod impacts;

@@ -44,11 +44,11 @@ pub fn rarefaction() -> Vec<Figure> {
     let mut torn = limited.clone();
     let eos = torn["materials"]["copper"]["eos"].as_object_mut().expect("an equation of state");
     eos.remove("tension_cutoff");
-    let told = match run(&torn) {
+    let is_refused = match run(&torn) {
         Err(e) => e.contains("tension_cutoff") && e.contains("particle "),
         Ok(_) => false,
     };
-    figures.push(figure("metal torn without a limit: not told", f64::from(!told), 0.0));
+    figures.push(figure("metal torn without a limit: no message", f64::from(!is_refused), 0.0));
     let energy = run(&limited).map_or_else(|e| failed("torn", &e), |ended| ended.energy_drift());
     figures.push(figure("metal torn with a limit: energy", energy, 1e-10));
     figures

@@ -30,8 +30,7 @@ impl Drop for Disk {
 
 /// Fills what is left of the disk but for `rest` bytes.
 fn fill(disk: &Path, rest: u64) {
-    // whose types differ from system to system
-    #[allow(clippy::unnecessary_cast)]
+    #[allow(clippy::unnecessary_cast, reason = "the types differ between systems")]
     let bytes =
         |s: nix::sys::statvfs::Statvfs| s.blocks_available() as u64 * s.fragment_size() as u64;
     let room = nix::sys::statvfs::statvfs(disk);
