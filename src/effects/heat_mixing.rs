@@ -36,7 +36,8 @@ use crate::solver::patch::Patch;
 #[serde(deny_unknown_fields)]
 #[schemars(title = "HeatMixing")]
 pub struct HeatMixingOptions {
-    /// Rate of mixing over the rate of compression [-]; 10 reduces the error at a wall by about half.
+    /// Rate of mixing over the rate of compression [-]; 10 reduces the error of the density at the
+    /// wall of `noh_planar.json` from 50 to 15 %.
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 1000.0))]
     pub coefficient: f64,
 }

@@ -58,10 +58,11 @@ impl<const D: usize> ContactConstraint<D> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn constraint<const D: usize>(normal: [f64; D], whole: bool) -> ContactConstraint<D> {
+    /// Constraint of two fields at the nodes 1 and 4, with masses of 2 and 6 kg.
+    pub fn constraint<const D: usize>(normal: [f64; D], whole: bool) -> ContactConstraint<D> {
         let mass = [2.0, 6.0];
         let (low, given, friction) = ([false; 2], [[0.0; D]; 2], [0.0; D]);
         ContactConstraint { at: [1, 4], mass, normal, whole, low, share: 1.0, given, friction }

@@ -104,13 +104,8 @@ impl<const D: usize> PatchContact<D> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::contact_constraint::tests::constraint;
     use super::*;
-
-    fn constraint<const D: usize>(normal: [f64; D], whole: bool) -> ContactConstraint<D> {
-        let mass = [2.0, 6.0];
-        let (low, given, friction) = ([false; 2], [[0.0; D]; 2], [0.0; D]);
-        ContactConstraint { at: [1, 4], mass, normal, whole, low, share: 1.0, given, friction }
-    }
 
     #[test]
     fn the_jump_is_recorded_on_request() {
