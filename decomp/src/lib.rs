@@ -22,6 +22,7 @@
 //! `f64`. It does not interpolate, integrate or write files, and the caller decides when to
 //! exchange data.
 
+pub mod array;
 mod balance;
 mod bytes;
 pub mod comm;

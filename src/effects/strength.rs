@@ -135,9 +135,9 @@ impl StrengthEffect {
         let column = |k: usize| &patch.block.columns[k][particles.clone()];
         match (D, s.axisymmetric) {
             (1, _) => VelocityGradients::Line(column(first)),
-            (_, false) => VelocityGradients::Plane(std::array::from_fn(|k| column(first + k))),
+            (_, false) => VelocityGradients::Plane(decomp::array::from_fn(|k| column(first + k))),
             (_, true) => VelocityGradients::Axis(
-                std::array::from_fn(|k| column(first + k)),
+                decomp::array::from_fn(|k| column(first + k)),
                 column(divergence),
             ),
         }
@@ -156,13 +156,13 @@ impl StrengthEffect {
                 })
                 .collect();
             let vector =
-                |k: usize| std::array::from_fn::<&[f64], D, _>(|a| &patch.nodes.fields[k + a]);
+                |k: usize| decomp::array::from_fn::<&[f64], D, _>(|a| &patch.nodes.fields[k + a]);
             let (start, star) = (vector(s.fields.velocity), vector(s.fields.velocity_star));
             for r in 0..n {
                 let weights = patch.stencils.particle::<K, D>(r);
                 let mean = |a: usize, line: usize| -> [f64; K] {
                     let (v0, v1) = (weights.line(start[a], line), weights.line(star[a], line));
-                    std::array::from_fn(|k| 0.5 * (v0[k] + v1[k]))
+                    decomp::array::from_fn(|k| 0.5 * (v0[k] + v1[k]))
                 };
                 let rate = tensor_of(&weights, mean);
                 put(&mut out, 0, r, &rate);
@@ -196,7 +196,7 @@ impl StrengthEffect {
             column
         };
         let mut out: [Vec<f64>; 3] =
-            std::array::from_fn(
+            decomp::array::from_fn(
                 |k| {
                     if k < components { take(self.stress + k) } else { Vec::new() }
                 },

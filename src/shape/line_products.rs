@@ -7,7 +7,8 @@ use wide::f64x4;
 #[inline(always)]
 pub fn fours<const K: usize>(line: &[f64; K], four: usize) -> f64x4 {
     let at = |k: usize| if k < K { line[k] } else { 0.0 };
-    f64x4::new(std::array::from_fn(|k| at(4 * four + k)))
+    let k = 4 * four;
+    f64x4::new([at(k), at(k + 1), at(k + 2), at(k + 3)])
 }
 
 /// Adds `factor` times a line of values to the entries of `sums` from `first` on.
@@ -20,8 +21,9 @@ pub fn add_product<const K: usize>(sums: &mut [f64], first: usize, factor: f64, 
     let sums: &mut [f64; K] = (&mut sums[first..first + K]).try_into().expect("K numbers");
     for four in 0..const { K.div_ceil(4) } {
         let four_sums = fours(sums, four) + f64x4::splat(factor) * fours(values, four);
-        for (k, sum) in (4 * four..K).zip(four_sums.to_array()) {
-            sums[k] = sum;
+        let four_sums = four_sums.to_array();
+        for k in 4 * four..K.min(4 * four + 4) {
+            sums[k] = four_sums[k - 4 * four];
         }
     }
 }

@@ -39,9 +39,9 @@ pub(super) fn by_rule<const P: usize, const N: usize, const K: usize>(
     // outward normals of the edges at +r1 and +r2, times edge length over area
     let scale = 0.5 / (r1[0] * r2[1] - r1[1] * r2[0]);
     let (g1, g2) = ([r2[1] * scale, -r2[0] * scale], [-r1[1] * scale, r1[0] * scale]);
-    let bases: [[(i32, [f64; N]); 2]; P] = std::array::from_fn(|p| {
+    let bases: [[(i32, [f64; N]); 2]; P] = decomp::array::from_fn(|p| {
         let [s1, s2] = rule[p].place;
-        std::array::from_fn(|a| basis(fraction[a] + s1 * r1[a] + s2 * r2[a]))
+        decomp::array::from_fn(|a| basis(fraction[a] + s1 * r1[a] + s2 * r2[a]))
     });
     let mut first = [i32::MAX; 2];
     for point in &bases {
@@ -52,7 +52,7 @@ pub(super) fn by_rule<const P: usize, const N: usize, const K: usize>(
     let [mut values, mut gx, mut gy] = [[[0.0; K]; K]; 3];
     for (point, [x, y]) in rule.iter().zip(&bases) {
         let [s1, s2] = point.place;
-        let gradient: [f64; 2] = std::array::from_fn(|a| point.edge * (s1 * g1[a] + s2 * g2[a]));
+        let gradient: [f64; 2] = decomp::array::from_fn(|a| point.edge * (s1 * g1[a] + s2 * g2[a]));
         let (from_x, from_y) = ((x.0 - first[0]) as usize, (y.0 - first[1]) as usize);
         let mut across = [0.0; K];
         across[from_x..from_x + N].copy_from_slice(&x.1);

@@ -13,6 +13,8 @@
 //! relative to the sound speed, up to a limit: a2 = min(most, a2 + rate h |D|/c). Kuropatenko's
 //! (1967) viscosity grows likewise, from the Hugoniot of the material.
 
+use decomp::array::{from_fn, map};
+
 use crate::scene::{ArtificialViscosity, LimitedTerms, Limiter, ViscosityGrowth};
 use crate::solver::particle_weights::ParticleWeights;
 
@@ -190,8 +192,9 @@ fn christensen_line(v: [f64; 4], ends: [bool; 2]) -> f64 {
 pub fn christensen<const D: usize>(nodes: &Nodes<'_, D>, node: usize) -> f64 {
     let along = |axis: usize, from: usize| {
         let step = nodes.steps[axis];
-        let v = [from - step, from, from + step, from + 2 * step].map(|i| nodes.velocity(axis, i));
-        (v.map(|v| v.unwrap_or(0.0)), [v[0], v[3]].map(|v| v.is_some()))
+        let places = [from - step, from, from + step, from + 2 * step];
+        let v = map(places, |i| nodes.velocity(axis, i));
+        (map(v, |v| v.unwrap_or(0.0)), [v[0].is_some(), v[3].is_some()])
     };
     if D == 1 {
         let (v, ends) = along(0, node);
@@ -201,7 +204,7 @@ pub fn christensen<const D: usize>(nodes: &Nodes<'_, D>, node: usize) -> f64 {
     for axis in 0..D {
         let (a, a_ends) = along(axis, node);
         let (b, b_ends) = along(axis, node + nodes.steps[1 - axis]);
-        let v: [f64; 4] = std::array::from_fn(|k| a[k] + b[k]);
+        let v: [f64; 4] = from_fn(|k| a[k] + b[k]);
         let weight = (v[1] - v[2]).max(0.0) * nodes.inverse_cell[axis];
         if weight > 0.0 {
             let ends = [a_ends[0] && b_ends[0], a_ends[1] && b_ends[1]];

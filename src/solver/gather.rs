@@ -15,7 +15,7 @@ use crate::transfer::VelocityUpdate;
 
 /// Columns of a vector, taken out of their block: they are written while other columns are read.
 pub(super) fn take_vector<const D: usize>(columns: &mut [Vec<f64>], first: usize) -> [Vec<f64>; D] {
-    std::array::from_fn(|a| std::mem::take(&mut columns[first + a]))
+    decomp::array::from_fn(|a| std::mem::take(&mut columns[first + a]))
 }
 
 /// Columns of a tensor with `count` components, if it exists.
@@ -27,7 +27,7 @@ pub(super) fn take_tensor(columns: &mut [Vec<f64>], first: Option<usize>, count:
 #[inline(always)]
 pub(super) fn own<const N: usize>(columns: &mut [Vec<f64>], particles: usize) -> [&mut [f64]; N] {
     let mut columns = columns.iter_mut().map(|column| &mut column[..particles]);
-    std::array::from_fn(|_| columns.next().expect("as many columns"))
+    decomp::array::from_fn(|_| columns.next().expect("as many columns"))
 }
 
 /// Columns of a tensor in a plane, own particles, if it exists.
@@ -95,7 +95,7 @@ impl<const D: usize> Scheme<D> {
         let fields = &patch.nodes.fields;
         // slices of equal length, so that the bounds of a window are checked only once
         let nodes = fields[f.mass].len();
-        let vector = |k: usize| std::array::from_fn::<&[f64], D, _>(|a| &fields[k + a][..nodes]);
+        let vector = |k: usize| decomp::array::from_fn::<&[f64], D, _>(|a| &fields[k + a][..nodes]);
         let (lumped, star) = (vector(f.lumped_velocity), vector(f.velocity_star));
         let columns = &mut patch.block.columns;
         let [mut x, mut v] = [c.position, c.velocity].map(|k| take_vector::<D>(columns, k));
@@ -160,10 +160,10 @@ impl<const D: usize> Scheme<D> {
             };
             let second = |a: usize, b: usize| {
                 let product =
-                    |line: usize| std::array::from_fn(|k| apart(a, line, k) * apart(b, line, k));
+                    |line: usize| decomp::array::from_fn(|k| apart(a, line, k) * apart(b, line, k));
                 weights.sum(weights.values, product)
             };
-            let square: [f64; D] = std::array::from_fn(|b| second(b, b));
+            let square: [f64; D] = decomp::array::from_fn(|b| second(b, b));
             let (first, last) = (0, D - 1);
             let mixed = if D == 1 { 0.0 } else { second(first, last) };
             let determinant = square[first] * square[last] - mixed * mixed;
@@ -172,7 +172,7 @@ impl<const D: usize> Scheme<D> {
                 let moment = |b: usize| {
                     let product = |line: usize| {
                         let v = weights.line(star, line);
-                        std::array::from_fn(|k| v[k] * apart(b, line, k))
+                        decomp::array::from_fn(|k| v[k] * apart(b, line, k))
                     };
                     weights.sum(weights.values, product)
                 };
@@ -229,9 +229,9 @@ impl<const D: usize> Scheme<D> {
         let (fields, star) = (&patch.nodes.fields, self.fields.velocity_star);
         let stride = patch.stencils.stride;
         let nodes = Nodes {
-            velocity: std::array::from_fn::<&[f64], D, _>(|a| &fields[star + a]),
+            velocity: decomp::array::from_fn::<&[f64], D, _>(|a| &fields[star + a]),
             inverse_mass: &fields[self.fields.inverse],
-            steps: std::array::from_fn(|a| if a == 0 { 1 } else { stride }),
+            steps: decomp::array::from_fn(|a| if a == 0 { 1 } else { stride }),
             inverse_cell: self.inverse_cell,
             layer: patch.nodes.nodes.count(),
         };

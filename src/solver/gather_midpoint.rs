@@ -1,5 +1,7 @@
 //! Grid to particles at the end of a mid-point step, for own particles only.
 
+use decomp::array::{from_fn, sum};
+
 use super::gather::{OwnTensor, own, own_tensor, put, take_tensor, take_vector, tensor_of, trace};
 use super::scheme::Scheme;
 use super::solid::put_back;
@@ -13,13 +15,13 @@ use crate::transfer::VelocityUpdate;
 /// Product of two lines of nodes.
 #[inline(always)]
 fn times<const K: usize>(a: &[f64; K], b: &[f64; K]) -> [f64; K] {
-    std::array::from_fn(|k| a[k] * b[k])
+    from_fn(|k| a[k] * b[k])
 }
 
 /// Mean of two lines of nodes.
 #[inline(always)]
 fn half_sum<const K: usize>(a: &[f64; K], b: &[f64; K]) -> [f64; K] {
-    std::array::from_fn(|k| 0.5 * (a[k] + b[k]))
+    from_fn(|k| 0.5 * (a[k] + b[k]))
 }
 
 /// Values of a nodal vector at the nodes of a particle: component, line of nodes, node.
@@ -58,7 +60,7 @@ impl<const D: usize> Scheme<D> {
         let fields = &patch.nodes.fields;
         // slices of equal length, so that the bounds of a window are checked only once
         let nodes = fields[f.mass].len();
-        let vector = |k: usize| std::array::from_fn::<&[f64], D, _>(|a| &fields[k + a][..nodes]);
+        let vector = |k: usize| from_fn::<&[f64], D, _>(|a| &fields[k + a][..nodes]);
         let (lumped, start, star) =
             (vector(f.lumped_velocity), vector(f.velocity), vector(f.velocity_star));
         let work = vector(f.work);
@@ -90,7 +92,7 @@ impl<const D: usize> Scheme<D> {
                     means[a][line] = half_sum(&means[a][line], &star[a][line]);
                 }
             }
-            let old = std::array::from_fn(|a| own_v[a][r]);
+            let old = from_fn(|a| own_v[a][r]);
             let (new, heat) =
                 self.end_velocity(&weights, old, &filtered, [&means, &star], lumped, remainder);
             let tensors = (&mut own_deformation, &mut own_gradient);
@@ -193,7 +195,7 @@ impl<const D: usize> Scheme<D> {
                 }
                 trace(&during)
             }
-            _ => (0..D).map(|a| weights.sum(weights.gradient(a), |l| means[a][l])).sum(),
+            _ => sum::<D>(|a| weights.sum(weights.gradient(a), |l| means[a][l])),
         };
         let end = match gradient {
             Some(gradient) => {
@@ -201,7 +203,7 @@ impl<const D: usize> Scheme<D> {
                 put(gradient, 0, r, &end);
                 trace(&end)
             }
-            None => (0..D).map(|a| weights.sum(weights.gradient(a), |l| star[a][l])).sum(),
+            None => sum::<D>(|a| weights.sum(weights.gradient(a), |l| star[a][l])),
         };
         [plane, end]
     }
@@ -224,7 +226,7 @@ impl<const D: usize> Scheme<D> {
         } else {
             let working = if self.compatible {
                 let along = |a: usize| weights.sum(weights.gradient(a), |line| does[a][line]);
-                self.with_hoop(patch, weights, r, (0..D).map(along).sum(), |line| does[0][line])
+                self.with_hoop(patch, weights, r, sum::<D>(along), |line| does[0][line])
             } else {
                 divergence
             };

@@ -4,6 +4,8 @@
 
 use std::ops::Range;
 
+use decomp::array::map;
+
 use crate::shape::add_product;
 use crate::solver::particle_weights::{NARROW, ParticleWeights, lines};
 
@@ -238,9 +240,9 @@ impl Band {
                 for k in i..M {
                     rows[i * count + k - i] += term * here[k];
                 }
-                let across = rows[i * count + K..(i + 1) * count].chunks_exact_mut(2 * K - 1);
-                for (sums, values) in across.zip(later) {
-                    add_product(sums, K - 1 - i, term, &first_nodes(values));
+                for (line, values) in later.iter().enumerate() {
+                    let first = i * count + K + line * (2 * K - 1) + K - 1 - i;
+                    add_product(rows, first, term, &first_nodes(values));
                 }
             }
         }
@@ -294,7 +296,7 @@ impl Band {
         range: Range<usize>,
         y: [&mut [f64]; V],
     ) {
-        let cut = |fields: [&'a [f64]; V]| fields.map(|field| &field[range.clone()]);
+        let cut = |fields: [&'a [f64]; V]| map(fields, |field| &field[range.clone()]);
         let (x_here, d, t) = (cut(x), &d[range.clone()], cut(t));
         self.each_product(x, range, y, |product, v, i| t[v][i] + (x_here[v][i] - d[i] * product));
     }
@@ -332,9 +334,10 @@ impl Band {
             let n = to - from;
             let mut sums = [[0.0; BLOCK]; V];
             let main = self.diagonal(0, from..to);
-            for (sums, x) in sums.iter_mut().zip(x) {
-                for ((sum, m), x) in sums.iter_mut().zip(main).zip(&x[from..to]) {
-                    *sum += m * x;
+            for v in 0..V {
+                let (sums, x) = (&mut sums[v][..n], &x[v][from..to]);
+                for i in 0..n {
+                    sums[i] += main[i] * x[i];
                 }
             }
             for (d, &o) in self.offsets.iter().enumerate().skip(1) {
@@ -344,9 +347,9 @@ impl Band {
                 }
                 let (above, below) =
                     (self.diagonal(d, from..to), self.diagonal(d, from - o..to - o));
-                for (sums, x) in sums.iter_mut().zip(x) {
-                    let (x_above, x_below) = (&x[from + o..to + o], &x[from - o..to - o]);
-                    let sums = &mut sums[..n];
+                for v in 0..V {
+                    let (x_above, x_below) = (&x[v][from + o..to + o], &x[v][from - o..to - o]);
+                    let sums = &mut sums[v][..n];
                     for i in 0..n {
                         sums[i] += above[i] * x_above[i];
                         sums[i] += below[i] * x_below[i];
@@ -379,12 +382,12 @@ impl Band {
         }
         let n = to - from;
         let main = self.diagonal(0, from..to);
-        let above: [&[f64]; W] = std::array::from_fn(|d| self.diagonal(d, from..to));
-        let below: [&[f64]; W] = std::array::from_fn(|d| self.diagonal(d, from - d..to - d));
-        for (v, y) in y.into_iter().enumerate() {
-            let y = &mut y[from..to];
-            let x_above: [&[f64]; W] = std::array::from_fn(|d| &x[v][from + d..to + d]);
-            let x_below: [&[f64]; W] = std::array::from_fn(|d| &x[v][from - d..to - d]);
+        let above: [&[f64]; W] = decomp::array::from_fn(|d| self.diagonal(d, from..to));
+        let below: [&[f64]; W] = decomp::array::from_fn(|d| self.diagonal(d, from - d..to - d));
+        for v in 0..V {
+            let y = &mut y[v][from..to];
+            let x_above: [&[f64]; W] = decomp::array::from_fn(|d| &x[v][from + d..to + d]);
+            let x_below: [&[f64]; W] = decomp::array::from_fn(|d| &x[v][from - d..to - d]);
             for i in 0..n {
                 let mut sum = main[i] * x_above[0][i];
                 for d in 1..W {
@@ -495,7 +498,7 @@ mod tests {
             let value = |l: usize, k: usize| {
                 if l.max(k) < nodes { ((l * 7 + k * 5 + seed) % 11) as f64 / 40.0 } else { 0.0 }
             };
-            (0..K).map(|l| std::array::from_fn(|k| value(l, k))).collect()
+            (0..K).map(|l| decomp::array::from_fn(|k| value(l, k))).collect()
         };
         let inner = 6 * extent[0]..16 * extent[0];
         let at = |x: usize, y: usize| y * extent[0] + x;

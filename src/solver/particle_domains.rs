@@ -5,6 +5,8 @@
 
 use std::ops::Range;
 
+use decomp::array::map;
+
 use super::scheme::Scheme;
 use crate::shape::{DomainExtent, ParticleDomain};
 use crate::solver::patch::{FaultPhase, Patch};
@@ -24,7 +26,7 @@ fn lanes<const L: usize>(column: &[f64], first: usize) -> [f64; L] {
 /// One operation on `L` particles.
 #[inline(always)]
 fn each<const L: usize>(of: impl Fn(usize) -> f64) -> [f64; L] {
-    std::array::from_fn(of)
+    decomp::array::from_fn(of)
 }
 
 /// (1 + l) F, with the components of a tensor row by row.
@@ -42,8 +44,8 @@ fn moved_by<const L: usize>(l: &[[f64; L]; 4], f: &[[f64; L]; 4]) -> [[f64; L]; 
 /// Raises each of `most` to the corresponding value; NaN is ignored.
 #[inline(always)]
 fn raise<const L: usize>(most: &mut [f64; L], values: &[f64; L]) {
-    for (most, x) in most.iter_mut().zip(values) {
-        *most = if *x > *most { *x } else { *most };
+    for i in 0..LANES {
+        most[i] = if values[i] > most[i] { values[i] } else { most[i] };
     }
 }
 
@@ -151,7 +153,7 @@ impl<const D: usize> Scheme<D> {
         jacobian: usize,
     ) {
         let n = patch.block.own();
-        let mut columns: [Vec<f64>; 4] = std::array::from_fn(|k| {
+        let mut columns: [Vec<f64>; 4] = decomp::array::from_fn(|k| {
             let mut column = std::mem::take(&mut patch.block.columns[half_edges + k]);
             column.resize(n, 0.0);
             column
@@ -189,7 +191,7 @@ impl<const D: usize> Scheme<D> {
     ) -> Option<Strained<'a>> {
         let c = &self.columns;
         let column = |k: usize| &block.columns[k][..block.own()];
-        let tensor = |first: usize| std::array::from_fn(|k| column(first + k));
+        let tensor = |first: usize| decomp::array::from_fn(|k| column(first + k));
         let (deformation, half) = (c.deformation?, c.half_lengths?);
         let gradient = || tensor(c.velocity_gradient.expect("what deforms has the column"));
         Some(Strained {
@@ -250,20 +252,20 @@ impl<const D: usize> Scheme<D> {
         out: &mut [&mut [f64]; 4],
         at: usize,
     ) {
-        let mut f: [[f64; L]; 4] = from.deformation.map(|column| lanes(column, first));
+        let mut f: [[f64; L]; 4] = map(from.deformation, |column| lanes(column, first));
         let mut ahead = 0.0;
         if let (true, Some((gradient, time))) = (AHEAD, from.ahead) {
-            let l = gradient.map(|column| lanes::<L>(column, first));
-            f = moved_by(&l.map(|l| l.map(|l| time * l)), &f);
+            let l = map(gradient, |column| lanes::<L>(column, first));
+            f = moved_by(&map(l, |l| map(l, |l| time * l)), &f);
             ahead = time;
         }
-        let [volume0, jacobian] = from.volume.map(|column| lanes::<L>(column, first));
+        let [volume0, jacobian] = map(from.volume, |column| lanes::<L>(column, first));
         let mut area: [f64; L] = each(|r| volume0[r] * jacobian[r]);
         if let (true, Some(radius)) = (AXIS, from.radius) {
-            let [x, v] = radius.map(|column| lanes::<L>(column, first));
+            let [x, v] = map(radius, |column| lanes::<L>(column, first));
             area = each(|r| area[r] / (x[r] + ahead * v[r]));
         }
-        let half = from.half.map(|column| lanes::<L>(column, first));
+        let half = map(from.half, |column| lanes::<L>(column, first));
         let [xx, xy, yx, yy] = f;
         let q: [f64; L] = each(|r| {
             let determinant = xx[r] * yy[r] - xy[r] * yx[r];
@@ -286,7 +288,8 @@ impl<const D: usize> Scheme<D> {
         let ay: [f64; L] = each(|r| 1.0 + share[r] * sy[r]);
         let axy: [f64; L] = each(|r| share[r] * ss[r]);
         let rest: [f64; L] = each(|r| (q[r] / (ax[r] * ay[r] - axy[r] * axy[r])).sqrt());
-        for (k, (x, y)) in [(xx, yx), (xy, yy)].into_iter().enumerate() {
+        for k in 0..2 {
+            let (x, y) = [(&xx, &yx), (&xy, &yy)][k];
             let scale: [f64; L] = each(|r| rest[r] * half[k][r]);
             let [dx, dy] = [self.inverse_cell[0], self.inverse_cell[D - 1]];
             let along: [f64; L] = each(|r| scale[r] * (ax[r] * x[r] + axy[r] * y[r]) * dx);
@@ -302,7 +305,7 @@ impl<const D: usize> Scheme<D> {
     pub(super) fn deform_forward(&self, patch: &mut Patch<D>, dt: f64) {
         #[inline(never)]
         fn go<const L: usize>(f: &mut [&mut [f64]; 4], l: [&[f64]; 4], dt: f64, first: usize) {
-            let l = l.map(|column| lanes::<L>(column, first).map(|l| dt * l));
+            let l = map(l, |column| map(lanes::<L>(column, first), |l| dt * l));
             let start: [[f64; L]; 4] = f.each_ref().map(|column| lanes(column, first));
             for (column, moved) in f.iter_mut().zip(moved_by(&l, &start)) {
                 column[first..first + L].copy_from_slice(&moved);
@@ -477,12 +480,12 @@ mod tests {
         let mut particles: Vec<[f64; 4]> = vec![short; 7];
         particles[3] = long;
         let mut columns: [Vec<f64>; 4] =
-            std::array::from_fn(|k| particles.iter().map(|r| r[k]).collect());
+            decomp::array::from_fn(|k| particles.iter().map(|r| r[k]).collect());
         limit(columns.each_mut().map(|column| &mut column[..]), 1.0);
         let alone =
             ParticleDomain { half_edges: [[3.0, 0.5], [-0.1, 0.25]] }.limited(1.0).half_edges;
         for (r, particle) in particles.iter().enumerate() {
-            let found: [f64; 4] = std::array::from_fn(|k| columns[k][r]);
+            let found: [f64; 4] = decomp::array::from_fn(|k| columns[k][r]);
             let expected = if r == 3 { alone.as_flattened() } else { &particle[..] };
             assert_eq!(found, expected, "{r}");
         }

@@ -84,7 +84,7 @@ impl<const D: usize> Scheme<D> {
                 outside |= find_cells(from, drift, grid, &mut fraction[particles.clone()], cells);
             }
             for (r, cell) in patch.block.cells[particles].iter_mut().enumerate() {
-                *cell = std::array::from_fn(|a| cells[a][r]);
+                *cell = decomp::array::from_fn(|a| cells[a][r]);
             }
         }
         if self.total_lagrangian {
@@ -142,7 +142,7 @@ impl<const D: usize> Scheme<D> {
             patch.removed.push(RemovedParticle {
                 id: patch.block.ids[particle],
                 mass: column(c.mass),
-                velocity: std::array::from_fn(|a| column(c.velocity + a)),
+                velocity: decomp::array::from_fn(|a| column(c.velocity + a)),
                 energy: column(c.energy),
                 eroded,
             });
@@ -461,7 +461,7 @@ impl<const D: usize> Scheme<D> {
         let c = &self.columns;
         let mut total = std::mem::take(&mut patch.kept);
         let column = |k: usize| &patch.block.columns[k];
-        let velocity: [&[f64]; D] = std::array::from_fn(|a| &column(c.velocity + a)[..]);
+        let velocity: [&[f64]; D] = decomp::array::from_fn(|a| &column(c.velocity + a)[..]);
         let d = column(c.divergence);
         let speed = &column(c.sound_speed)[..patch.block.own()];
         // greatest number of cells that a signal or particle crosses along a direction per second
@@ -571,7 +571,9 @@ impl<const D: usize> Scheme<D> {
             phase,
             cell: block.cells[particle].map(i64::from),
             id: block.ids[particle],
-            position: std::array::from_fn(|a| block.columns[self.columns.position + a][particle]),
+            position: decomp::array::from_fn(|a| {
+                block.columns[self.columns.position + a][particle]
+            }),
             body: block.columns[self.columns.body][particle] as usize,
             what,
         };

@@ -6,6 +6,7 @@
 //!
 //! This module does not depend on materials, time stepping or messages.
 
+use decomp::array::map;
 use wide::f64x4;
 
 use crate::shape::{MOST_NODES, fours};
@@ -86,8 +87,8 @@ impl<'a, const K: usize, const D: usize> ParticleWeights<'a, K, D> {
         for line in 0..self.lines() {
             let (at, weights) = (self.first + line * self.stride, &weights[line]);
             match weights.first_chunk::<NARROW>() {
-                Some(weights) if self.is_narrow() => add(field, at, weights.map(&term)),
-                _ => add(field, at, weights.map(&term)),
+                Some(weights) if self.is_narrow() => add(field, at, map(*weights, &term)),
+                _ => add(field, at, map(*weights, &term)),
             }
         }
     }
@@ -165,7 +166,7 @@ mod tests {
 
     /// Test values of either sign without a pattern, so that no error in a sum can cancel.
     fn line<const K: usize>(seed: usize) -> [f64; K] {
-        std::array::from_fn(|k| ((seed * 31 + k * 17) % 97) as f64 / 7.0 - 6.0)
+        decomp::array::from_fn(|k| ((seed * 31 + k * 17) % 97) as f64 / 7.0 - 6.0)
     }
 
     /// Sums by fours, also of narrow particles, equal sums of one term after the other, bit by bit.

@@ -291,12 +291,12 @@ impl<const D: usize> Patch<D> {
             }
         } else {
             let fractions = [0, 1].map(|a| column(fraction + a));
-            let domains: [&[f64]; 4] = std::array::from_fn(|k| {
+            let domains: [&[f64]; 4] = decomp::array::from_fn(|k| {
                 if k < S::EXTENT.plane_columns() { column(domain + k) } else { &[] }
             });
             let stride = stencils.stride as i32;
             for (particle, ((first, values), gradients)) in out.enumerate() {
-                let place = fractions.map(|f| f[particle]);
+                let place = decomp::array::map(fractions, |f| f[particle]);
                 let domain = ParticleDomain::from_columns(S::EXTENT, &domains, particle);
                 let (gx, gy) = gradients.split_at_mut(nodes);
                 let mut lines = crate::shape::Plane {
@@ -310,7 +310,7 @@ impl<const D: usize> Patch<D> {
                     false => S::plane(place, &domain, &mut lines),
                 };
                 let at: [i32; D] =
-                    std::array::from_fn(|a| cells[particle][a] + corner[a] - lower[a]);
+                    decomp::array::from_fn(|a| cells[particle][a] + corner[a] - lower[a]);
                 for a in 0..D {
                     (least[a], most[a]) = (least[a].min(at[a]), most[a].max(at[a]));
                 }
@@ -362,14 +362,14 @@ impl<const D: usize> Patch<D> {
         let all = self.nodes.nodes;
         let own = self.nodes.owned.grow(self.extra_ghost_layers).intersect(&all);
         let touched = IndexBox {
-            lower: std::array::from_fn(|a| all.lower[a] + i64::from(least[a])),
-            upper: std::array::from_fn(|a| all.lower[a] + i64::from(most[a]) + width),
+            lower: decomp::array::from_fn(|a| all.lower[a] + i64::from(least[a])),
+            upper: decomp::array::from_fn(|a| all.lower[a] + i64::from(most[a]) + width),
         };
         let active = match least[0] > most[0] {
             true => IndexBox::new(own.lower, own.lower),
             false => {
                 let active = own.intersect(&touched);
-                let upper = std::array::from_fn(|a| active.upper[a].max(active.lower[a]));
+                let upper = decomp::array::from_fn(|a| active.upper[a].max(active.lower[a]));
                 IndexBox::new(active.lower, upper)
             }
         };
@@ -385,8 +385,8 @@ impl<const D: usize> Patch<D> {
         let all = self.nodes.nodes;
         let filled = self.active.iter().filter(|active| active.count() > 0);
         let hull = filled.copied().reduce(|a, b| IndexBox {
-            lower: std::array::from_fn(|k| a.lower[k].min(b.lower[k])),
-            upper: std::array::from_fn(|k| a.upper[k].max(b.upper[k])),
+            lower: decomp::array::from_fn(|k| a.lower[k].min(b.lower[k])),
+            upper: decomp::array::from_fn(|k| a.upper[k].max(b.upper[k])),
         });
         let Some(hull) = hull else { return };
         let span = hull.grow(width).intersect(&all);

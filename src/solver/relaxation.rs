@@ -121,7 +121,7 @@ impl<const D: usize> Scheme<D> {
                 let mean = weights.dot(weights.values, projected);
                 let product = weights.sum(weights.values, |line| {
                     let (u, nodal) = (weights.line(last, line), weights.line(projected, line));
-                    std::array::from_fn(|k| u[k] * nodal[k])
+                    decomp::array::from_fn(|k| u[k] * nodal[k])
                 });
                 let share = rate * w[r];
                 let dv = share * (p[r] - mean);

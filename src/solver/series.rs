@@ -207,7 +207,7 @@ impl<const D: usize> Scheme<D> {
         };
         let fields = &mut patch.nodes.fields;
         let mut next: [Vec<f64>; V] =
-            std::array::from_fn(|v| std::mem::take(&mut fields[self.fields.scratch + v]));
+            decomp::array::from_fn(|v| std::mem::take(&mut fields[self.fields.scratch + v]));
         let (x, t) = (all.map(|s| &fields[s.sum][..]), all.map(|s| &fields[s.first][..]));
         for line in &patch.active_lines {
             let y = next.each_mut().map(|y| &mut y[..]);

@@ -129,7 +129,7 @@ impl Stencils {
             }
             return;
         }
-        let [xx, xy, yx, yy] = std::array::from_fn(inverse);
+        let [xx, xy, yx, yy] = decomp::array::from_fn(inverse);
         for (r, (gradients, first)) in pairs {
             let (gx, gy) = gradients.split_at_mut(nodes);
             let (x, y) = first.split_at(nodes);

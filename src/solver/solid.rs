@@ -74,7 +74,7 @@ impl<const D: usize> Scheme<D> {
     ) -> Strain<'a> {
         let c = &self.columns;
         let tensor = |first: usize| -> [&'a [f64]; 4] {
-            std::array::from_fn(|k| &patch.block.columns[first + k][particles.clone()])
+            decomp::array::from_fn(|k| &patch.block.columns[first + k][particles.clone()])
         };
         let (Some(deformation), Some(gradient)) = (c.deformation, c.velocity_gradient) else {
             return Strain::Line(&jacobian[particles]);
@@ -244,7 +244,7 @@ impl<const D: usize> Scheme<D> {
     pub(super) fn scatter_stress(&self, patch: &mut Patch<D>) {
         fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
             let c = &s.columns;
-            let mut force: [Vec<f64>; D] = std::array::from_fn(|a| {
+            let mut force: [Vec<f64>; D] = decomp::array::from_fn(|a| {
                 std::mem::take(&mut patch.nodes.fields[s.fields.acceleration + a])
             });
             let column = |k: usize| &patch.block.columns[c.stress_volume + k][..];

@@ -50,9 +50,9 @@ fn stretch_of([ixx, ixy, iyx, iyy]: [f64; 4], [lxx, lxy, lyx, lyy]: [f64; 4]) ->
 #[inline(always)]
 fn ahead_of(columns: &[Vec<f64>], particle: usize, [f, l]: [usize; 2], ahead: f64) -> [f64; 4] {
     let tensor =
-        |first: usize| -> [f64; 4] { std::array::from_fn(|k| columns[first + k][particle]) };
+        |first: usize| -> [f64; 4] { decomp::array::from_fn(|k| columns[first + k][particle]) };
     let (f, l) = (tensor(f), tensor(l));
-    std::array::from_fn(|k| {
+    decomp::array::from_fn(|k| {
         let (a, b) = (k / 2, k % 2);
         f[k] + ahead * (l[2 * a] * f[b] + l[2 * a + 1] * f[2 + b])
     })
@@ -194,7 +194,7 @@ impl<const D: usize> Scheme<D> {
     pub(super) fn stretch(&self, patch: &Patch<D>, particle: usize) -> f64 {
         let tensor = |first: Option<usize>| -> [f64; 4] {
             let first = first.expect("the frame has the columns in a plane");
-            std::array::from_fn(|k| patch.block.columns[first + k][particle])
+            decomp::array::from_fn(|k| patch.block.columns[first + k][particle])
         };
         stretch_of(tensor(self.columns.inverse_deformation), tensor(self.columns.velocity_gradient))
     }
@@ -214,7 +214,7 @@ impl<const D: usize> Scheme<D> {
         let columns = &block.columns;
         let (push, _) = inverse(self.deformation(columns, particle, 0.0));
         let first = c.velocity_gradient.expect("the frame has the column in a plane");
-        let stretch = stretch_of(push, std::array::from_fn(|k| columns[first + k][particle]));
+        let stretch = stretch_of(push, decomp::array::from_fn(|k| columns[first + k][particle]));
         let [xx, xy, yx, yy] = push;
         let shorter = [(xx * xx + xy * xy).sqrt(), (yx * yx + yy * yy).sqrt()];
         let rate = |a: usize| shorter[a] * self.inverse_cell[a];
@@ -231,10 +231,10 @@ impl<const D: usize> Scheme<D> {
             patch.nodes.fields[field].fill(0.0);
         }
         let mut take = |k: usize| std::mem::take(&mut patch.nodes.fields[k]);
-        let mut momentum: [Vec<f64>; D] = std::array::from_fn(|a| take(f.lumped_velocity + a));
-        let mut nodal_force: [Vec<f64>; D] = std::array::from_fn(|a| take(f.acceleration + a));
+        let mut momentum: [Vec<f64>; D] = decomp::array::from_fn(|a| take(f.lumped_velocity + a));
+        let mut nodal_force: [Vec<f64>; D] = decomp::array::from_fn(|a| take(f.acceleration + a));
         let column = |k: usize| &patch.block.columns[k][..patch.block.particles()];
-        let velocity: [&[f64]; D] = std::array::from_fn(|a| column(c.velocity + a));
+        let velocity: [&[f64]; D] = decomp::array::from_fn(|a| column(c.velocity + a));
         let (mass, stress) = (column(c.mass), column(c.stress_volume));
         for r in patch.runs.iter().cloned().flatten() {
             let weights = patch.stencils.particle::<K, D>(r);
@@ -261,7 +261,7 @@ impl<const D: usize> Scheme<D> {
     pub(super) fn push_of(&self, patch: &Patch<D>, particle: usize) -> Option<[[f64; D]; D]> {
         let push = self.columns.inverse_deformation?;
         let at = |a: usize, b: usize| patch.block.columns[push + D * a + b][particle];
-        Some(std::array::from_fn(|a| std::array::from_fn(|b| at(a, b))))
+        Some(decomp::array::from_fn(|a| decomp::array::from_fn(|b| at(a, b))))
     }
 
     /// Reports a fault for particles beyond a rigid side: in this frame a wall acts only on

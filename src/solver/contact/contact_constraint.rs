@@ -46,13 +46,14 @@ impl<const D: usize> ContactConstraint<D> {
         let [ma, mb] = self.mass;
         let inverse = 1.0 / (ma + mb);
         if D == 1 || self.whole {
-            let mean = std::array::from_fn(|k| (ma * a[k] + mb * b[k]) * inverse);
+            let mean = decomp::array::from_fn(|k| (ma * a[k] + mb * b[k]) * inverse);
             return [mean, mean];
         }
         let n = &self.normal;
         let (an, bn) = (dot(&a, n), dot(&b, n));
         let mean = (ma * an + mb * bn) * inverse;
-        let put = |v: [f64; D], vn: f64| std::array::from_fn(|k| (v[k] - vn * n[k]) + mean * n[k]);
+        let put =
+            |v: [f64; D], vn: f64| decomp::array::from_fn(|k| (v[k] - vn * n[k]) + mean * n[k]);
         [put(a, an), put(b, bn)]
     }
 }

@@ -180,7 +180,7 @@ impl<const D: usize> Scheme<D> {
                 None => along([0.5 * filled[r]; D]).abs(),
                 Some(first) => {
                     let edge = |k: usize| {
-                        along(std::array::from_fn(|a| column(first + 2 * k + a)[r])).abs()
+                        along(decomp::array::from_fn(|a| column(first + 2 * k + a)[r])).abs()
                     };
                     edge(0) + edge(1)
                 }

@@ -165,7 +165,7 @@ impl<const D: usize> ContactNodes<D> {
         let member = |layer: usize| {
             let i = at(layer);
             let [velocity, acceleration] =
-                [momentum, force].map(|sums| std::array::from_fn(|a| sums[a][i] / mass[i]));
+                [momentum, force].map(|sums| decomp::array::from_fn(|a| sums[a][i] / mass[i]));
             Member { layer, mass: mass[i], velocity, acceleration, volume: 0.0, gradient: [0.0; D] }
         };
         (0..layers).filter(|&l| mass[at(l)] > least).map(member).collect()

@@ -26,12 +26,12 @@ impl<const D: usize> Scheme<D> {
     ) -> (bool, [f64; D]) {
         let moved = self.moved();
         let mass = a.mass * b.mass / (a.mass + b.mass);
-        let apart: [f64; D] = std::array::from_fn(|k| a.velocity[k] - b.velocity[k]);
+        let apart: [f64; D] = decomp::array::from_fn(|k| a.velocity[k] - b.velocity[k]);
         let pushed: [f64; D] =
-            std::array::from_fn(|k| dt * (a.acceleration[k] - b.acceleration[k]));
+            decomp::array::from_fn(|k| dt * (a.acceleration[k] - b.acceleration[k]));
         let along = |v: &[f64; D]| (0..D).map(|k| v[k] * normal[k]).sum::<f64>();
         let most = coefficient * mass * (moved * along(&apart) + along(&pushed)).max(0.0);
-        let slip: [f64; D] = std::array::from_fn(|k| {
+        let slip: [f64; D] = decomp::array::from_fn(|k| {
             let across = |v: &[f64; D]| v[k] - along(v) * normal[k];
             across(&apart) + across(&pushed)
         });

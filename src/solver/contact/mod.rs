@@ -99,7 +99,7 @@ impl<const D: usize> Scheme<D> {
     ) {
         let f = &self.fields;
         let fields = &patch.nodes.fields;
-        let vector = |k: usize| std::array::from_fn(|a| &fields[k + a][..]);
+        let vector = |k: usize| decomp::array::from_fn(|a| &fields[k + a][..]);
         let sums = [vector(f.lumped_velocity), vector(f.acceleration)];
         let nodes = &found.nodes;
         let layers = patch.nodes.layers;
@@ -169,7 +169,7 @@ impl<const D: usize> Scheme<D> {
     /// Grid index of the node at index `node` in a layer.
     fn index_of(&self, patch: &Patch<D>, node: usize) -> [i64; D] {
         let (nodes, stride) = (&patch.nodes.nodes, patch.stencils.stride);
-        std::array::from_fn(|a| {
+        decomp::array::from_fn(|a| {
             let at = if D == 1 { node } else { [node % stride, node / stride][a] };
             nodes.lower[a] + at as i64
         })
@@ -190,7 +190,7 @@ impl<const D: usize> Scheme<D> {
     /// Position of a particle relative to the initial position of a node [cells].
     fn place(&self, patch: &Patch<D>, particle: usize, index: [i64; D]) -> [f64; D] {
         let cell = patch.block.cells[particle];
-        std::array::from_fn(|a| {
+        decomp::array::from_fn(|a| {
             let cells = (i64::from(cell[a]) - index[a]) as f64;
             let first = cells + patch.block.columns[self.columns.fraction + a][particle];
             self.columns.displacement.map_or(first, |shift| {
@@ -218,7 +218,7 @@ impl<const D: usize> Scheme<D> {
             let x = self.place(patch, r, index);
             let edge = |k: usize, a: usize| patch.block.columns[edges + 2 * k + a][r];
             for (s, t) in [(-INSET, -INSET), (INSET, -INSET), (-INSET, INSET), (INSET, INSET)] {
-                let corner = std::array::from_fn(|a| x[a] + s * edge(0, a) + t * edge(1, a));
+                let corner = decomp::array::from_fn(|a| x[a] + s * edge(0, a) + t * edge(1, a));
                 points.push((corner, layer == b.layer));
             }
         }
@@ -303,7 +303,7 @@ impl<const D: usize> Scheme<D> {
         let own = constraints.iter().filter(|j| j.share > 0.0);
         forces.extend(own.map(|constraint| {
             let [momentum, force] = constraint.given;
-            let force: [f64; D] = std::array::from_fn(|a| {
+            let force: [f64; D] = decomp::array::from_fn(|a| {
                 moved * momentum[a] / dt + force[a] + constraint.friction[a]
             })
             .map(|f: f64| constraint.share * f);

@@ -42,7 +42,7 @@ impl<const D: usize> PatchContact<D> {
                 continue;
             }
             let constraint = &mut self.constraints[k];
-            let values = constraint.at.map(|at| std::array::from_fn(|a| fields[a][at]));
+            let values = constraint.at.map(|at| decomp::array::from_fn(|a| fields[a][at]));
             let shared = constraint.shared(values);
             for (at, value) in constraint.at.into_iter().zip(shared) {
                 (0..D).for_each(|a| fields[a][at] = value[a]);
@@ -90,12 +90,13 @@ impl<const D: usize> PatchContact<D> {
                 if !low {
                     continue;
                 }
-                let read =
-                    |field: usize| -> [f64; D] { std::array::from_fn(|a| fields[field + a][at]) };
+                let read = |field: usize| -> [f64; D] {
+                    decomp::array::from_fn(|a| fields[field + a][at])
+                };
                 let kept = first.map_or([0.0; D], read);
                 let value = read(sum);
                 let n = &constraint.normal;
-                let along = dot(&std::array::from_fn(|k| value[k] - kept[k]), n);
+                let along = dot(&decomp::array::from_fn(|k| value[k] - kept[k]), n);
                 (0..D).for_each(|a| fields[sum + a][at] = kept[a] + along * n[a]);
             }
         }
