@@ -83,20 +83,26 @@ fn merge(base: &mut Value, edit: Value) {
     }
 }
 
-/// Replaces names of the library by their materials.
-pub(super) fn resolve(scene: &mut Value) -> Result<(), SceneFault> {
-    let Some(materials) = scene.get_mut("materials").and_then(Value::as_object_mut) else {
-        return Ok(());
-    };
-    for (key, material) in materials {
-        let Some(object) = material.as_object_mut() else { continue };
+/// Replaces names of the library by their materials; returns the faults.
+pub(super) fn resolve(scene: &mut Value) -> Vec<SceneFault> {
+    let mut faults = Vec::new();
+    let materials = scene.get_mut("materials").and_then(Value::as_object_mut);
+    for (key, material) in materials.into_iter().flatten() {
         let path = join("materials", key);
+        // without its base, the material has no other keys to judge
+        faults.extend(resolve_one(material, &path).err().map(|fault| fault.spoils(path)));
+    }
+    faults
+}
+
+fn resolve_one(material: &mut Value, path: &str) -> Result<(), SceneFault> {
+    if let Some(object) = material.as_object_mut() {
         if let Some(file) = object.get("file") {
             let reason = "is read with the scene's own file alone; allowed: to name it there, or \
                           \"library\"";
             return Err(SceneFault::new(format!("{path}.file"), file, reason));
         }
-        let Some(name) = object.remove("library") else { continue };
+        let Some(name) = object.remove("library") else { return Ok(()) };
         let known = LIBRARY.iter().map(|(name, _)| *name);
         let found = LIBRARY.iter().find(|(known, _)| name == *known);
         let Some((_, text)) = found else {
@@ -208,8 +214,10 @@ mod tests {
 
     fn resolved(material: Value) -> Result<Value, SceneFault> {
         let mut scene = json!({"materials": {"m": material}});
-        resolve(&mut scene)?;
-        Ok(scene["materials"]["m"].take())
+        match resolve(&mut scene).pop() {
+            Some(fault) => Err(fault),
+            None => Ok(scene["materials"]["m"].take()),
+        }
     }
 
     #[test]

@@ -8,6 +8,7 @@
 mod check;
 mod comments;
 mod errors;
+mod faults;
 pub mod input_file;
 mod library;
 mod load;

@@ -133,12 +133,9 @@ fn unit_of(schema: &Value) -> Option<(&str, ScaledUnit)> {
 }
 
 /// Replaces the quantities in a scene by numbers in SI units; `schema` is that of a scene whose method
-/// is given in full.
-///
-/// # Errors
-///
-/// The first text with a unit of other dimensions than its key.
-pub(super) fn convert(scene: &mut Value, schema: &Value) -> Result<(), SceneFault> {
+/// is given in full. Returns a fault for each text whose unit is unknown or of other dimensions than
+/// its key.
+pub(super) fn convert(scene: &mut Value, schema: &Value) -> Vec<SceneFault> {
     let empty = Map::new();
     let definitions = schema["$defs"].as_object().unwrap_or(&empty);
     Converter { definitions }.convert(schema, None, scene)
@@ -169,38 +166,40 @@ impl<'a> Converter<'a> {
         schema: &'a Value,
         above: Option<(&'a str, ScaledUnit)>,
         value: &mut Value,
-    ) -> Result<(), SceneFault> {
+    ) -> Vec<SceneFault> {
         let variants = self.variants(schema);
         let own = |schema: &&'a Value| unit_of(schema);
         match value {
             Value::String(text) => {
                 let takes_numbers = |schema: &&&Value| types(schema).contains(&"number");
-                let Some(number) = variants.iter().find(takes_numbers) else { return Ok(()) };
+                let Some(number) = variants.iter().find(takes_numbers) else { return Vec::new() };
                 let Some((name, target)) = own(number).or(unit_of(schema)).or(above) else {
-                    return Ok(());
+                    return Vec::new();
                 };
-                if let Some(converted) = quantity(text, name, target)? {
-                    *value = Value::from(converted);
+                match quantity(text, name, target) {
+                    Ok(Some(converted)) => *value = Value::from(converted),
+                    Ok(None) => {}
+                    Err(fault) => return vec![fault],
                 }
-                Ok(())
+                Vec::new()
             }
             Value::Array(entries) => {
                 let Some(items) = variants.iter().find(|schema| schema.get("items").is_some())
                 else {
-                    return Ok(());
+                    return Vec::new();
                 };
                 let inner = own(items).or(unit_of(schema)).or(above);
                 // pairs of time and value have two units
                 let is_pairs = entries.iter().any(Value::is_array) && items["minItems"] == 1;
+                let mut faults = Vec::new();
                 for i in 0..if is_pairs { 0 } else { entries.len() } {
-                    if let Err(fault) = self.convert(&items["items"], inner, &mut entries[i]) {
-                        return Err(fault.below(&entry_key(entries, i)));
-                    }
+                    let found = self.convert(&items["items"], inner, &mut entries[i]);
+                    faults.extend(found.into_iter().map(|f| f.below(&entry_key(entries, i))));
                 }
-                Ok(())
+                faults
             }
             Value::Object(object) => self.convert_object(&variants, object),
-            _ => Ok(()),
+            _ => Vec::new(),
         }
     }
 
@@ -208,13 +207,14 @@ impl<'a> Converter<'a> {
         &self,
         variants: &[&'a Value],
         object: &mut Map<String, Value>,
-    ) -> Result<(), SceneFault> {
+    ) -> Vec<SceneFault> {
         let kind = object.get("type").cloned();
         let is_of = |schema: &&&Value| {
             let named = &schema["properties"]["type"]["const"];
             named.is_null() || kind.as_ref() == Some(named)
         };
         let schemas: Vec<&Value> = variants.iter().filter(is_of).copied().collect();
+        let mut faults = Vec::new();
         for (key, value) in object {
             let known = |schema: &&'a Value| {
                 let others = schema.get("additionalProperties").filter(|of| of.is_object());
@@ -224,10 +224,11 @@ impl<'a> Converter<'a> {
                 // a variant with a single key describes its value
                 let single = schema["properties"].as_object().is_some_and(|all| all.len() == 1);
                 let above = unit_of(schema).filter(|_| single);
-                self.convert(inner, above, value).map_err(|fault| fault.below(&quote(key)))?;
+                let found = self.convert(inner, above, value).into_iter();
+                faults.extend(found.map(|fault| fault.below(&quote(key))));
             }
         }
-        Ok(())
+        faults
     }
 }
 

@@ -6,7 +6,7 @@ use flyer_mpm::input;
 use flyer_mpm::input::parse;
 use serde_json::Value;
 
-use super::{refused, refused_edit, refused_text, tells, with};
+use super::{refused, refused_edit, refused_text, tells, tells_all, with};
 
 #[test]
 fn files_that_are_no_scene() {
@@ -148,7 +148,8 @@ fn unknown_keys_and_names() {
         &["materials.copper.eos.type = \"mie_gruneissen\"", "did you mean mie_gruneisen?"],
     );
     edit("materials.copper.eos.type=3", &["materials.copper.eos.type = 3", "ideal_gas"]);
-    edit("materials.copper.eos.type=ideal_gas", &["materials.copper.eos.c0", "allowed: gamma"]);
+    let told = with("flyer.json", &["materials.copper.eos.type=ideal_gas"]).unwrap_err();
+    tells_all(&told, &["materials.copper.eos.c0", "materials.copper.eos.s", "allowed: gamma"]);
     edit("materials.copper.eos={}", &["materials.copper.eos.type", "missing", "mie_gruneisen"]);
     edit(
         "method.shape=bspline_quadratik",

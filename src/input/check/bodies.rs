@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use serde_json::json;
 
-use super::super::errors::{SceneFault, suggest};
+use super::super::errors::SceneFault;
+use super::super::faults::Faults;
 use super::super::paths::join;
 use super::common::{MOST, check_box, check_length, check_printable};
 use super::{materials, motion};
@@ -18,27 +19,29 @@ pub(super) fn check(
     scene: &Scene,
     cell_size: &[f64],
     warnings: &mut Vec<String>,
-) -> Result<Vec<CheckedBody>, SceneFault> {
-    materials::check(scene, warnings)?;
+) -> Result<Vec<CheckedBody>, Faults> {
+    let mut faults = Faults::default();
+    faults.extend(materials::check(scene, warnings));
     let materials: Vec<_> = scene.materials.keys().map(String::as_str).collect();
     let index: HashMap<_, _> = materials.iter().enumerate().map(|(i, &name)| (name, i)).collect();
     let mut names = HashSet::new();
     let mut checked = Vec::with_capacity(scene.bodies.len());
     for (i, body) in scene.bodies.iter().enumerate() {
         let path = format!("bodies[{i}].name");
-        check_printable(&path, &body.name)?;
+        faults.take(check_printable(&path, &body.name));
         if !names.insert(body.name.as_str()) {
             let reason = "another body has this name; allowed: a name of its own";
-            return Err(SceneFault::new(path, &body.name, reason));
+            faults.add(SceneFault::new(path, &body.name, reason));
         }
         let path = join("bodies", &body.name);
-        let Some(&material) = index.get(body.material.as_str()) else {
-            let reason =
-                format!("no such material{}", suggest(&body.material, materials.iter().copied()));
-            return Err(SceneFault::new(join(&path, "material"), &body.material, reason));
-        };
-        checked.push(check_body(scene, body, &path, material, cell_size)?);
+        let material = index[body.material.as_str()];
+        // what a faulty material cannot do is no fault of the body
+        if faults.concern(&join("materials", &body.material)) {
+            continue;
+        }
+        checked.extend(faults.take(check_body(scene, body, &path, material, cell_size)));
     }
+    faults.or(())?;
     check_overlap(scene, &checked, cell_size)?;
     let used: HashSet<_> = checked.iter().map(|body| body.material).collect();
     for (i, name) in materials.iter().enumerate() {
