@@ -20,6 +20,7 @@ mod output;
 mod plane_reference;
 mod plausibility;
 mod reference;
+mod tension;
 
 use super::errors::{SceneFault, one_line};
 use super::faults::Faults;
