@@ -41,7 +41,11 @@ pub fn material(scene: &CheckedScene, name: &str, output: &Path) -> Outcome<Stri
         )));
     };
     let sheet = Sheet::new(&*eos, burnt.eos.products(burnt.density).map(|p| p.detonation()));
-    let text = sheet.text(name, material);
+    let mut text = sheet.text(name, material);
+    // by its name alone, the material is that of the library
+    if scene.file == super::materials::LIBRARY_SCENE {
+        text += &super::materials::failure_laws(name);
+    }
     let _lock = Lock::take(output).map_err(bad)?;
     let maker = Maker::new(&format!("material {name}"), scene);
     let folder = OutputFolder::create(output, false, &maker).map_err(bad)?;

@@ -9,6 +9,9 @@ use serde_json::{Value, json};
 
 use crate::{Outcome, bad};
 
+/// Name of the scene of a library material.
+pub const LIBRARY_SCENE: &str = "library";
+
 /// Largest number of characters of a source in the list.
 const SOURCE: usize = 60;
 
@@ -22,10 +25,27 @@ pub fn list() -> String {
             None => source.into(),
         };
         let density = material["density"].as_f64().unwrap_or(0.0);
-        format!("{name:<32} {:<40} {density:>6} kg/m3  {source}\n", models(&material))
+        let laws = input::failure_laws(name).into_iter().map(|(law, _)| law).collect::<Vec<_>>();
+        let laws = match laws.is_empty() {
+            true => String::new(),
+            false => format!("  failure: {}", laws.join(", ")),
+        };
+        format!("{name:<32} {:<40} {density:>6} kg/m3  {source}{laws}\n", models(&material))
     });
     let text: String = lines.collect();
-    text + "`flyer-mpm material NAME` prints and draws one; in a scene: {\"library\": \"NAME\"}\n"
+    text + "`flyer-mpm material NAME` prints and draws one; in a scene: {\"library\": \"NAME\"},\n\
+            with a failure law of the list {\"library\": \"NAME\", \"failure\": \"LAW\"}\n"
+}
+
+/// The failure laws that the library has of a material, one line each with the constants and the
+/// source.
+pub fn failure_laws(name: &str) -> String {
+    let line = |(law, mut constants): (String, Value)| {
+        let source = constants.as_object_mut().and_then(|keys| keys.remove("source"));
+        let source = source.as_ref().and_then(Value::as_str).unwrap_or("");
+        format!("failure {law}: {constants}; {source}\n")
+    };
+    input::failure_laws(name).into_iter().map(line).collect()
 }
 
 /// Equation of state, strength, failure and further responses of a material, by their types.
@@ -65,5 +85,5 @@ pub fn scene_of(name: &str) -> Outcome<CheckedScene> {
         "bodies": [{"name": "body", "material": name, "velocity": [0.0], "particles_per_cell": [1],
                     "box": {"lower": [0.0], "upper": [0.01]}}],
     });
-    input::parse(scene.to_string().as_bytes(), "library", &[]).map_err(bad)
+    input::parse(scene.to_string().as_bytes(), LIBRARY_SCENE, &[]).map_err(bad)
 }

@@ -1,4 +1,4 @@
-//! Errors of a scene, each with a message of one line.
+//! Errors of a scene, each with a message of one line; several faults are a list.
 
 use std::fmt::Write;
 
@@ -13,7 +13,7 @@ pub(super) const LONGEST_VALUE: usize = 120;
 /// Maximum number of characters of the reason in a message.
 pub(super) const LONGEST_REASON: usize = 1000;
 
-/// Reason why a scene cannot be run; the message is one line.
+/// Reason why a scene cannot be run; the message is one line, or one for each of several faults.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SceneError {
     /// The file cannot be read.
@@ -58,6 +58,17 @@ pub enum SceneError {
         /// Reason, and what is allowed.
         reason: String,
     },
+    /// Several keys are invalid.
+    #[error("{file}: {} faults{}", faults.len() + more, listed(faults, *more))]
+    Several {
+        /// Path of the scene.
+        file: String,
+        /// The first faults, in the order of the file: path and value of the key, what is wrong, and
+        /// what is allowed.
+        faults: Vec<String>,
+        /// Number of further faults.
+        more: usize,
+    },
     /// The run needs more memory than is available.
     #[error(
         "{file}: {particles} particles{} need about {} of memory; allowed: {}, what \
@@ -85,6 +96,8 @@ pub(super) struct SceneFault {
     path: String,
     value: String,
     reason: String,
+    /// Path of the part that cannot be judged any further.
+    spoilt: String,
 }
 
 impl SceneFault {
@@ -95,11 +108,8 @@ impl SceneFault {
         reason: impl Into<String>,
     ) -> Self {
         let value = serde_json::to_value(value).unwrap_or(Value::Null);
-        SceneFault {
-            path: path.into(),
-            value: shorten(&value.to_string(), LONGEST_VALUE),
-            reason: reason.into(),
-        }
+        let value = shorten(&value.to_string(), LONGEST_VALUE);
+        SceneFault { value, ..SceneFault::missing(path, reason) }
     }
 
     /// Fault of a parameter of the model at `path`.
@@ -113,13 +123,31 @@ impl SceneFault {
 
     /// Fault of a missing key.
     pub(super) fn missing(path: impl Into<String>, reason: impl Into<String>) -> Self {
-        SceneFault { path: path.into(), value: String::new(), reason: reason.into() }
+        let path = path.into();
+        SceneFault { spoilt: path.clone(), path, value: String::new(), reason: reason.into() }
+    }
+
+    /// The same fault, after which nothing at `path` or below can be judged.
+    pub(super) fn spoils(self, path: impl Into<String>) -> Self {
+        SceneFault { spoilt: path.into(), ..self }
+    }
+
+    /// Path of the key.
+    pub(super) fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// Whether `other` may be no more than a consequence of this fault.
+    pub(super) fn explains(&self, other: &SceneFault) -> bool {
+        is_within(&other.path, &self.spoilt)
     }
 
     /// The same fault with `parent` prepended to its path.
     pub(super) fn below(mut self, parent: &str) -> Self {
-        let dot = if self.path.is_empty() || self.path.starts_with('[') { "" } else { "." };
-        self.path = format!("{parent}{dot}{}", self.path);
+        for path in [&mut self.path, &mut self.spoilt] {
+            let dot = if path.is_empty() || path.starts_with('[') { "" } else { "." };
+            *path = format!("{parent}{dot}{path}");
+        }
         self
     }
 
@@ -133,6 +161,12 @@ impl SceneFault {
             reason: one_line(&shorten(&self.reason, LONGEST_REASON)),
         }
     }
+}
+
+/// Whether `path` is `parent` or below it.
+pub(super) fn is_within(path: &str, parent: &str) -> bool {
+    let rest = path.strip_prefix(parent);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
 /// `text` with control characters escaped, so that a message stays one line.
@@ -188,6 +222,15 @@ pub(super) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
         count if count <= MOST => names.join(", "),
         count => format!("{} and {} more", names[..MOST].join(", "), count - MOST),
     }
+}
+
+/// Faults, one a line, and the number of further ones.
+fn listed(faults: &[String], more: usize) -> String {
+    let mut text = faults.iter().map(|fault| format!("\n  {fault}")).collect::<String>();
+    if more > 0 {
+        let _ = write!(text, "\n  ... and {more} more");
+    }
+    text
 }
 
 fn at_key(path: &str) -> String {

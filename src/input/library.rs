@@ -13,6 +13,7 @@ use serde_json::Value;
 
 use super::comments::without_comments;
 use super::errors::{SceneError, SceneFault, one_line, suggest};
+use super::failure_laws::resolve_failure;
 use super::paths::join;
 use super::table::{is_hdf5, read_hdf5};
 use super::units::is_quantity;
@@ -83,29 +84,38 @@ fn merge(base: &mut Value, edit: Value) {
     }
 }
 
-/// Replaces names of the library by their materials.
-pub(super) fn resolve(scene: &mut Value) -> Result<(), SceneFault> {
-    let Some(materials) = scene.get_mut("materials").and_then(Value::as_object_mut) else {
-        return Ok(());
-    };
-    for (key, material) in materials {
-        let Some(object) = material.as_object_mut() else { continue };
+/// Replaces names of the library by their materials; returns the faults.
+pub(super) fn resolve(scene: &mut Value) -> Vec<SceneFault> {
+    let mut faults = Vec::new();
+    let materials = scene.get_mut("materials").and_then(Value::as_object_mut);
+    for (key, material) in materials.into_iter().flatten() {
         let path = join("materials", key);
+        // without its base, the material has no other keys to judge
+        faults.extend(resolve_one(material, &path).err().map(|fault| fault.spoils(path)));
+    }
+    faults
+}
+
+fn resolve_one(material: &mut Value, path: &str) -> Result<(), SceneFault> {
+    if let Some(object) = material.as_object_mut() {
         if let Some(file) = object.get("file") {
             let reason = "is read with the scene's own file alone; allowed: to name it there, or \
                           \"library\"";
             return Err(SceneFault::new(format!("{path}.file"), file, reason));
         }
-        let Some(name) = object.remove("library") else { continue };
+        let Some(name) = object.remove("library") else { return Ok(()) };
         let known = LIBRARY.iter().map(|(name, _)| *name);
         let found = LIBRARY.iter().find(|(known, _)| name == *known);
-        let Some((_, text)) = found else {
+        let Some((known, text)) = found else {
             let reason = format!("no such material{}", suggest(name.as_str().unwrap_or(""), known));
             return Err(SceneFault::new(format!("{path}.library"), name, reason));
         };
         let mut made: Value = serde_json::from_str(text).expect("the library is JSON");
         merge(&mut made, material.take());
         *material = made;
+        if let Some(object) = material.as_object_mut() {
+            resolve_failure(object, known, path)?;
+        }
     }
     Ok(())
 }
@@ -199,6 +209,7 @@ fn fault(file: &Path, reason: String) -> SceneError {
 
 #[cfg(test)]
 mod tests {
+    use super::super::failure_laws::failure_laws;
     use super::*;
     use crate::exact::hugoniot::{HugoniotState, piston};
     use crate::material::constitutive::{equation, strength_model};
@@ -208,8 +219,10 @@ mod tests {
 
     fn resolved(material: Value) -> Result<Value, SceneFault> {
         let mut scene = json!({"materials": {"m": material}});
-        resolve(&mut scene)?;
-        Ok(scene["materials"]["m"].take())
+        match resolve(&mut scene).pop() {
+            Some(fault) => Err(fault),
+            None => Ok(scene["materials"]["m"].take()),
+        }
     }
 
     #[test]
@@ -220,6 +233,51 @@ mod tests {
         let gas = json!({"type": "ideal_gas", "gamma": 1.4});
         let made = resolved(json!({"library": "copper", "eos": gas})).unwrap();
         assert_eq!(made["eos"], gas);
+    }
+
+    #[test]
+    fn failure_laws_are_those_named() {
+        let law = |failure: Value| {
+            let name = "copper_johnson_cook";
+            resolved(json!({"library": name, "failure": failure})).map(|made| {
+                assert!(
+                    made["source"].as_str().unwrap().contains("Failure: Johnson & Cook (1985)")
+                );
+                made["failure"].clone()
+            })
+        };
+        let constants = json!({"type": "johnson_cook", "d1": 0.54, "d2": 4.89, "d3": -3.03,
+            "d4": 0.014, "d5": 1.12, "reference_rate": 1.0});
+        assert_eq!(law(json!("johnson_cook")).unwrap(), constants);
+        let over = law(json!({"library": "johnson_cook", "d1": 0.6})).unwrap();
+        assert_eq!((&over["d1"], &over["d2"]), (&json!(0.6), &json!(4.89)));
+        let told = law(json!("jonson_cook")).unwrap_err().within("s").to_string();
+        assert!(
+            told.contains("materials.m.failure = \"jonson_cook\"")
+                && told.contains("did you mean johnson_cook?"),
+            "{told}"
+        );
+        // none by itself, and none of another material
+        assert!(resolved(json!({"library": "tantalum"})).unwrap()["failure"].is_null());
+        let spall = resolved(json!({"library": "tantalum", "failure": "spall"})).unwrap();
+        assert_eq!(spall["failure"], json!({"type": "tension_limit", "stress": 5.1e9}));
+        let told = resolved(json!({"library": "gold", "failure": "spall"})).unwrap_err();
+        assert!(told.within("s").to_string().contains("allowed: none, or a law"));
+        let own = json!({"type": "tension_limit", "stress": 1e9});
+        assert_eq!(resolved(json!({"library": "gold", "failure": own})).unwrap()["failure"], own);
+    }
+
+    /// Each law is one of the program and names its source.
+    #[test]
+    fn failure_laws_of_the_library_have_sources() {
+        let mut count = 0;
+        for (_, mut law) in LIBRARY.iter().flat_map(|(name, _)| failure_laws(name)) {
+            let source = law.as_object_mut().unwrap().remove("source").unwrap();
+            assert!(source.as_str().unwrap().len() > 60, "{source}");
+            serde_json::from_value::<crate::scene::Failure>(law).unwrap();
+            count += 1;
+        }
+        assert_eq!(count, 5);
     }
 
     #[test]

@@ -12,17 +12,19 @@ use serde_json::{Map, Value};
 use super::check::BYTES_PER_PARTICLE;
 use super::check::{check as check_relations, tiles};
 use super::comments::without_comments;
-use super::errors::{LONGEST_VALUE, SceneError, SceneFault, one_line, shorten};
+use super::errors::{LONGEST_VALUE, SceneError, SceneFault, one_line, shorten, suggest};
+use super::faults::Faults;
 use super::library::{inline_courses, inline_files, resolve};
 use super::migrate::check_format;
 use super::overrides::{apply, check_allowed};
+use super::paths::entry_key;
 use super::preset;
 use super::schema::full_schema;
 use super::units;
 use super::validate::conform;
 use crate::geometry::read_points;
 use crate::input::input_file::{self, InputFault};
-use crate::scene::{CheckedScene, Scene};
+use crate::scene::{CheckedScene, MethodChoice, Scene};
 
 /// Maximum size of a scene file [bytes].
 pub const LARGEST_FILE: u64 = input_file::LARGEST_JSON;
@@ -88,11 +90,12 @@ fn with_files(bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>, SceneError> {
 /// Parses the bytes of a file, applies the overrides `PATH=VALUE` in their order, and checks the
 /// scene.
 ///
-/// `file` is the name of the scene in messages. The first fault is returned.
+/// `file` is the name of the scene in messages.
 ///
 /// # Errors
 ///
-/// The first fault of the text, of an override or of the scene.
+/// The first fault of the text or of an override, else all faults of keys, else all faults of
+/// checks that do not depend on each other.
 pub fn parse(bytes: &[u8], file: &str, sets: &[String]) -> Result<CheckedScene, SceneError> {
     let mut value = parse_json(bytes, file)?;
     if value.is_object() {
@@ -100,7 +103,10 @@ pub fn parse(bytes: &[u8], file: &str, sets: &[String]) -> Result<CheckedScene, 
             apply(&mut value, set)?;
         }
     }
-    from_value(value, file)
+    judge(value, file).map_err(|faults| {
+        let text = String::from_utf8_lossy(bytes);
+        faults.within(file, text.strip_prefix('\u{feff}').unwrap_or(&text))
+    })
 }
 
 /// Rejects a scene whose individually generated particles, which the check of the scene creates,
@@ -118,10 +124,7 @@ pub fn check_size(
     let read = || -> Option<Scene> {
         let mut value = parse_json(bytes, file).ok()?;
         sets.iter().try_for_each(|set| apply(&mut value, set)).ok()?;
-        resolve(&mut value).ok()?;
-        units::convert(&mut value, &full_schema()).ok()?;
-        preset::expand(&mut value).ok()?;
-        conform(&value).ok()?;
+        complete(&mut value).ok()?;
         serde_json::from_value(value).ok()
     };
     let particles = read().map_or(0, |scene| tiles(&scene));
@@ -139,7 +142,7 @@ pub fn check_size(
 ///
 /// # Errors
 ///
-/// If an override changes another key, or the first fault of the scene.
+/// If an override changes another key, or as [`parse`].
 pub fn parse_changed(
     bytes: &[u8],
     file: &str,
@@ -154,26 +157,51 @@ pub fn parse_changed(
 ///
 /// # Errors
 ///
-/// The first fault of the scene.
+/// As [`parse`].
 pub fn check(scene: Scene, file: &str) -> Result<CheckedScene, SceneError> {
     // a number that is not finite becomes null here, and is rejected as such
     let value = serde_json::to_value(scene)
         .map_err(|e| SceneFault::missing("", e.to_string()).within(file))?;
-    from_value(value, file)
+    judge(value, file).map_err(|faults| faults.within(file, ""))
 }
 
-fn from_value(mut value: Value, file: &str) -> Result<CheckedScene, SceneError> {
-    resolve(&mut value).map_err(|fault| fault.within(file))?;
-    check_format(&value).map_err(|fault| fault.within(file))?;
-    units::convert(&mut value, &full_schema()).map_err(|fault| fault.within(file))?;
-    let choice = preset::expand(&mut value).map_err(|fault| fault.within(file))?;
-    conform(&value).map_err(|fault| fault.within(file))?;
-    let scene = serde_path_to_error::deserialize(value).map_err(|e| {
-        SceneFault::missing(e.path().to_string(), e.inner().to_string()).within(file)
-    })?;
-    let mut checked = check_relations(scene, file).map_err(|fault| fault.within(file))?;
+fn judge(mut value: Value, file: &str) -> Result<CheckedScene, Faults> {
+    let choice = complete(&mut value)?;
+    let scene = serde_path_to_error::deserialize(value)
+        .map_err(|e| SceneFault::missing(e.path().to_string(), e.inner().to_string()))?;
+    let mut checked = check_relations(scene, file)?;
     checked.method_choice = choice;
     Ok(checked)
+}
+
+/// Replaces library names, quantities and presets by what they stand for, and validates the keys.
+fn complete(value: &mut Value) -> Result<Option<MethodChoice>, Faults> {
+    let mut faults = Faults::default();
+    faults.extend(resolve(value));
+    // every key of a former format would be a fault
+    check_format(value)?;
+    faults.extend(units::convert(value, &full_schema()));
+    let choice = faults.take(preset::expand(value)).flatten();
+    faults.extend(conform(value));
+    faults.extend(unknown_materials(value));
+    faults.or(choice)
+}
+
+/// Bodies of materials that the scene does not have.
+fn unknown_materials(scene: &Value) -> Vec<SceneFault> {
+    let (Some(materials), Some(bodies)) =
+        (scene["materials"].as_object(), scene["bodies"].as_array())
+    else {
+        return Vec::new();
+    };
+    let unknown = |(i, body): (usize, &Value)| {
+        let name = body["material"].as_str().filter(|name| !materials.contains_key(*name))?;
+        let known = materials.keys().map(String::as_str);
+        let fault =
+            SceneFault::new("material", name, format!("no such material{}", suggest(name, known)));
+        Some(fault.below(&entry_key(bodies, i)).below("bodies"))
+    };
+    bodies.iter().enumerate().filter_map(unknown).collect()
 }
 
 /// Parses JSON text; a duplicate key is an error.

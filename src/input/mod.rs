@@ -8,6 +8,8 @@
 mod check;
 mod comments;
 mod errors;
+mod failure_laws;
+mod faults;
 pub mod input_file;
 mod library;
 mod load;
@@ -22,6 +24,7 @@ mod validate;
 
 pub use check::{BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, available_memory};
 pub use errors::SceneError;
+pub use failure_laws::failure_laws;
 pub use library::LIBRARY;
 pub use load::{LARGEST_FILE, check, check_size, parse, parse_changed, read};
 pub use migrate::migrate;

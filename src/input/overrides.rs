@@ -52,7 +52,7 @@ pub(super) fn check_allowed(set: &str, allowed: &[&str]) -> Result<(), SceneErro
 }
 
 /// Splits an override into the keys of its path and the text of its value.
-fn split(set: &str) -> Result<(Vec<String>, &str), String> {
+pub(super) fn split(set: &str) -> Result<(Vec<String>, &str), String> {
     let mut keys = Vec::new();
     let mut rest = set;
     loop {

@@ -179,7 +179,9 @@ pub(super) fn expand(scene: &mut Value) -> Result<Option<MethodChoice>, SceneFau
             Some(name) => {
                 let mut explicit = method.clone();
                 explicit.remove("preset");
-                (Preset::of(name, "method.preset")?, explicit)
+                // what the preset would give is not missing
+                let preset = Preset::of(name, "method.preset");
+                (preset.map_err(|fault| fault.spoils("method"))?, explicit)
             }
         },
         Some(name @ Value::String(_)) => (Preset::of(name, "method")?, Map::new()),

@@ -1,7 +1,8 @@
 //! Units in a scene: a number with a dimension may be text such as `"0.5 mm"` or `"8.93 g/cm3"`.
 //!
 //! The unit of a key stands in brackets in its description, such as `Density [kg/m3].`; keys without
-//! one take numbers only. Text becomes the number in SI units before anything else is checked. The
+//! one take numbers only. A time function takes the unit of the quantity that it gives: in pairs, the
+//! first entry has the unit of the description and the second that of the quantity. Text becomes the number in SI units before anything else is checked. The
 //! decimal exponent is shifted in the text, so that the double is the one nearest to the decimal
 //! number: `"8.93 g/cm3"` and `8930` are the same double.
 
@@ -133,12 +134,9 @@ fn unit_of(schema: &Value) -> Option<(&str, ScaledUnit)> {
 }
 
 /// Replaces the quantities in a scene by numbers in SI units; `schema` is that of a scene whose method
-/// is given in full.
-///
-/// # Errors
-///
-/// The first text with a unit of other dimensions than its key.
-pub(super) fn convert(scene: &mut Value, schema: &Value) -> Result<(), SceneFault> {
+/// is given in full. Returns a fault for each text whose unit is unknown or of other dimensions than
+/// its key.
+pub(super) fn convert(scene: &mut Value, schema: &Value) -> Vec<SceneFault> {
     let empty = Map::new();
     let definitions = schema["$defs"].as_object().unwrap_or(&empty);
     Converter { definitions }.convert(schema, None, scene)
@@ -169,52 +167,79 @@ impl<'a> Converter<'a> {
         schema: &'a Value,
         above: Option<(&'a str, ScaledUnit)>,
         value: &mut Value,
-    ) -> Result<(), SceneFault> {
+    ) -> Vec<SceneFault> {
         let variants = self.variants(schema);
         let own = |schema: &&'a Value| unit_of(schema);
         match value {
             Value::String(text) => {
                 let takes_numbers = |schema: &&&Value| types(schema).contains(&"number");
-                let Some(number) = variants.iter().find(takes_numbers) else { return Ok(()) };
+                let Some(number) = variants.iter().find(takes_numbers) else { return Vec::new() };
                 let Some((name, target)) = own(number).or(unit_of(schema)).or(above) else {
-                    return Ok(());
+                    return Vec::new();
                 };
-                if let Some(converted) = quantity(text, name, target)? {
-                    *value = Value::from(converted);
+                match quantity(text, name, target) {
+                    Ok(Some(converted)) => *value = Value::from(converted),
+                    Ok(None) => {}
+                    Err(fault) => return vec![fault],
                 }
-                Ok(())
+                Vec::new()
             }
             Value::Array(entries) => {
                 let Some(items) = variants.iter().find(|schema| schema.get("items").is_some())
                 else {
-                    return Ok(());
+                    return Vec::new();
                 };
-                let inner = own(items).or(unit_of(schema)).or(above);
-                // pairs of time and value have two units
-                let is_pairs = entries.iter().any(Value::is_array) && items["minItems"] == 1;
-                for i in 0..if is_pairs { 0 } else { entries.len() } {
-                    if let Err(fault) = self.convert(&items["items"], inner, &mut entries[i]) {
-                        return Err(fault.below(&entry_key(entries, i)));
-                    }
+                let unit = own(items).or(unit_of(schema));
+                let mut faults = Vec::new();
+                for i in 0..entries.len() {
+                    let found = match (&mut entries[i], unit, above) {
+                        (Value::Array(pair), Some(time), Some(value)) => {
+                            self.convert_pair(&items["items"]["items"], [time, value], pair)
+                        }
+                        // keys of an object have units of their own
+                        (entry @ Value::Object(_), ..) => {
+                            self.convert(&items["items"], None, entry)
+                        }
+                        (entry, ..) => self.convert(&items["items"], unit.or(above), entry),
+                    };
+                    faults.extend(found.into_iter().map(|f| f.below(&entry_key(entries, i))));
                 }
-                Ok(())
+                faults
             }
-            Value::Object(object) => self.convert_object(&variants, object),
-            _ => Ok(()),
+            Value::Object(object) => self.convert_object(&variants, above, object),
+            _ => Vec::new(),
         }
     }
 
+    /// A time and the value of a time function, whose units are `units`.
+    fn convert_pair(
+        &self,
+        schema: &'a Value,
+        units: [(&'a str, ScaledUnit); 2],
+        pair: &mut [Value],
+    ) -> Vec<SceneFault> {
+        let mut faults = Vec::new();
+        for (k, (unit, value)) in units.into_iter().zip(pair).enumerate() {
+            let found = self.convert(schema, Some(unit), value).into_iter();
+            faults.extend(found.map(|fault| fault.below(&format!("[{k}]"))));
+        }
+        faults
+    }
+
+    /// Keys of an object; `quantity` is the unit of those without one in a time function.
     fn convert_object(
         &self,
         variants: &[&'a Value],
+        quantity: Option<(&'a str, ScaledUnit)>,
         object: &mut Map<String, Value>,
-    ) -> Result<(), SceneFault> {
+    ) -> Vec<SceneFault> {
         let kind = object.get("type").cloned();
         let is_of = |schema: &&&Value| {
             let named = &schema["properties"]["type"]["const"];
             named.is_null() || kind.as_ref() == Some(named)
         };
         let schemas: Vec<&Value> = variants.iter().filter(is_of).copied().collect();
+        let mut faults = Vec::new();
         for (key, value) in object {
             let known = |schema: &&'a Value| {
                 let others = schema.get("additionalProperties").filter(|of| of.is_object());
@@ -223,46 +248,84 @@ impl<'a> Converter<'a> {
             if let Some((schema, inner)) = schemas.iter().find_map(known) {
                 // a variant with a single key describes its value
                 let single = schema["properties"].as_object().is_some_and(|all| all.len() == 1);
-                let above = unit_of(schema).filter(|_| single);
-                self.convert(inner, above, value).map_err(|fault| fault.below(&quote(key)))?;
+                let above = unit_of(schema).filter(|_| single).or(quantity);
+                let found = self.convert(inner, above, value).into_iter();
+                faults.extend(found.map(|fault| fault.below(&quote(key))));
             }
         }
-        Ok(())
+        faults
     }
 }
 
 /// Allows quantities in the published schema of a scene, where its descriptions give a unit.
 pub(super) fn allow_quantities(schema: &mut Value) {
-    fn allow(schema: &mut Value, above: bool) {
-        let has_unit = unit_of(schema).is_some();
-        let inner = has_unit || above;
-        let Some(object) = schema.as_object_mut() else { return };
-        let single =
-            object.get("properties").and_then(Value::as_object).is_some_and(|p| p.len() == 1);
-        for (key, value) in object.iter_mut() {
-            match (key.as_str(), &mut *value) {
-                ("properties", Value::Object(keys)) => {
-                    keys.values_mut().for_each(|of| allow(of, has_unit && single));
-                }
-                ("$defs", Value::Object(named)) => {
-                    named.values_mut().for_each(|of| allow(of, false));
-                }
-                ("anyOf" | "oneOf", Value::Array(all)) => {
-                    all.iter_mut().for_each(|of| allow(of, inner));
-                }
-                ("items", items) => allow(items, inner),
-                ("additionalProperties", others) => allow(others, false),
-                _ => {}
-            }
-        }
-        let mut kinds: Vec<Value> = types(schema).into_iter().map(Value::from).collect();
-        if inner && kinds.contains(&Value::from("number")) {
-            kinds.push("string".into());
-            schema["type"] = kinds.into();
-            schema["pattern"] = r"^\s*[-.0-9].*[A-Za-z)0-9]$".into();
+    let mut functions = Vec::new();
+    quantities(schema, &schema["$defs"], &mut functions);
+    allow(schema, false);
+    for (name, of) in schema["$defs"].as_object_mut().into_iter().flatten() {
+        let is_function = functions.contains(name);
+        allow(of, is_function);
+        let keys = of.get_mut("properties").and_then(Value::as_object_mut);
+        for value in keys.into_iter().flat_map(|keys| keys.values_mut()).filter(|_| is_function) {
+            allow(value, true);
         }
     }
-    allow(schema, false);
+}
+
+/// Appends the names of all definitions that give a quantity: those that stand for the value of a
+/// variant with a single key and a unit.
+fn quantities(schema: &Value, definitions: &Value, names: &mut Vec<String>) {
+    let keys = schema["properties"].as_object();
+    if let Some(inner) = keys.filter(|keys| keys.len() == 1 && unit_of(schema).is_some()) {
+        inner.values().for_each(|value| referred(value, definitions, names));
+    }
+    match schema {
+        Value::Object(object) => object.values().for_each(|v| quantities(v, definitions, names)),
+        Value::Array(all) => all.iter().for_each(|value| quantities(value, definitions, names)),
+        _ => {}
+    }
+}
+
+/// Appends the names of the definitions that `schema` stands for.
+fn referred(schema: &Value, definitions: &Value, names: &mut Vec<String>) {
+    if let Some(name) = schema["$ref"].as_str().and_then(|path| path.rsplit('/').next())
+        && !names.iter().any(|known| known == name)
+    {
+        names.push(name.to_string());
+        referred(&definitions[name], definitions, names);
+    }
+    for key in ["anyOf", "oneOf"] {
+        let variants = schema[key].as_array().into_iter().flatten();
+        variants.for_each(|variant| referred(variant, definitions, names));
+    }
+}
+
+/// Allows text in the numbers of `schema` that have a unit, or in all `above` which there is one.
+fn allow(schema: &mut Value, above: bool) {
+    let has_unit = unit_of(schema).is_some();
+    let inner = has_unit || above;
+    let Some(object) = schema.as_object_mut() else { return };
+    let single = object.get("properties").and_then(Value::as_object).is_some_and(|p| p.len() == 1);
+    for (key, value) in object.iter_mut() {
+        match (key.as_str(), &mut *value) {
+            ("properties", Value::Object(keys)) => {
+                keys.values_mut().for_each(|of| allow(of, has_unit && single));
+            }
+            ("anyOf" | "oneOf", Value::Array(all)) => {
+                all.iter_mut().for_each(|of| allow(of, inner));
+            }
+            ("items", items) => allow(items, inner),
+            ("additionalProperties", others) => allow(others, false),
+            _ => {}
+        }
+    }
+    let mut kinds: Vec<Value> = types(schema).into_iter().map(Value::from).collect();
+    let text = Value::from("string");
+    if inner && kinds.contains(&Value::from("number")) && !kinds.contains(&text) {
+        kinds.push(text);
+        schema["type"] = kinds.into();
+        schema["pattern"] = r"^\s*[-.0-9].*[A-Za-z)0-9]$".into();
+    }
 }
 
 /// The number of `text` in SI units, if it is a quantity of the dimensions of `target`, whose name is

@@ -2,8 +2,8 @@
 //!
 //! Errors of type, name and bounds are found here rather than by serde, whose messages lose the
 //! path inside tagged enums. The schema in an editor, the output of `schema` and the input that a
-//! run accepts can therefore not differ. A preset of the method is expanded before. Only those JSON schema keywords are supported that the
-//! structs of the scene produce.
+//! run accepts can therefore not differ. A preset of the method is expanded before. Only those JSON
+//! schema keywords are supported that the structs of the scene produce.
 
 use std::cell::RefCell;
 
@@ -13,8 +13,8 @@ use super::errors::{SceneFault, list, nearest, suggest};
 use super::paths::{entry_key, quote, types};
 use super::schema::{GREATEST, LEAST};
 
-/// Validates `scene` against the schema; returns the first fault.
-pub(super) fn conform(scene: &Value) -> Result<(), SceneFault> {
+/// Validates `scene` against the schema; returns all faults.
+pub(super) fn conform(scene: &Value) -> Vec<SceneFault> {
     let root = super::schema::full_schema();
     let empty = Map::new();
     let definitions = root.get("$defs").and_then(Value::as_object).unwrap_or(&empty);
@@ -33,26 +33,26 @@ impl Conform<'_> {
         name.and_then(|name| self.definitions.get(name)).unwrap_or(schema)
     }
 
-    fn check(&self, schema: &Value, value: &Value) -> Result<(), SceneFault> {
+    fn check(&self, schema: &Value, value: &Value) -> Vec<SceneFault> {
         let schema = self.resolve(schema);
         if let Some(options) = schema.get("anyOf").and_then(Value::as_array) {
             let option = options.iter().find(|o| has_type(self.resolve(o), value));
             return match option {
                 Some(option) => self.check(option, value),
-                None => Err(self.wrong(schema, value)),
+                None => vec![self.wrong(schema, value)],
             };
         }
         if let Some(variants) = schema.get("oneOf").and_then(Value::as_array) {
             return self.check_variants(schema, variants, value);
         }
         if !has_type(schema, value) {
-            return Err(self.wrong(schema, value));
+            return vec![self.wrong(schema, value)];
         }
         match value {
-            Value::Number(_) if !within_bounds(schema, value) => Err(self.wrong(schema, value)),
+            Value::Number(_) if !within_bounds(schema, value) => vec![self.wrong(schema, value)],
             Value::Array(entries) => self.check_array(schema, entries, value),
             Value::Object(object) => self.check_object(schema, object),
-            _ => Ok(()),
+            _ => Vec::new(),
         }
     }
 
@@ -78,67 +78,66 @@ impl Conform<'_> {
         SceneFault::new("", value, format!("not allowed; allowed: {}", self.allowed(schema)))
     }
 
-    fn check_array(
-        &self,
-        schema: &Value,
-        entries: &[Value],
-        value: &Value,
-    ) -> Result<(), SceneFault> {
+    fn check_array(&self, schema: &Value, entries: &[Value], value: &Value) -> Vec<SceneFault> {
         let least = schema.get("minItems").and_then(Value::as_u64).unwrap_or(0);
         let most = schema.get("maxItems").and_then(Value::as_u64).unwrap_or(u64::MAX);
         if !(least..=most).contains(&(entries.len() as u64)) {
-            return Err(self.wrong(schema, value));
+            return vec![self.wrong(schema, value)];
         }
-        let Some(items) = schema.get("items") else { return Ok(()) };
+        let Some(items) = schema.get("items") else { return Vec::new() };
+        let mut faults = Vec::new();
         for (i, entry) in entries.iter().enumerate() {
-            self.check(items, entry).map_err(|fault| fault.below(&entry_key(entries, i)))?;
+            let found = self.check(items, entry).into_iter();
+            faults.extend(found.map(|fault| fault.below(&entry_key(entries, i))));
         }
-        Ok(())
+        faults
     }
 
-    fn check_object(&self, schema: &Value, object: &Map<String, Value>) -> Result<(), SceneFault> {
+    /// A missing key of which an unknown one is a misspelling is no fault of its own.
+    fn check_object(&self, schema: &Value, object: &Map<String, Value>) -> Vec<SceneFault> {
         let empty = Map::new();
         let known = schema.get("properties").and_then(Value::as_object).unwrap_or(&empty);
         let others = schema.get("additionalProperties").filter(|others| others.is_object());
+        let mut faults = Vec::new();
+        let mut misspelt = Vec::new();
         for (key, value) in object {
+            let names = known.keys().map(String::as_str);
             match known.get(key).or(others) {
-                Some(schema) => self.check(schema, value).map_err(|f| f.below(&quote(key)))?,
+                Some(schema) => {
+                    let found = self.check(schema, value).into_iter();
+                    faults.extend(found.map(|fault| fault.below(&quote(key))));
+                }
                 None => {
-                    let names = known.keys().map(String::as_str);
+                    misspelt.extend(nearest(key, names.clone()));
                     let reason = format!("unknown key{}", suggest(key, names));
-                    return Err(SceneFault::new(quote(key), value, reason));
+                    faults.push(SceneFault::new(quote(key), value, reason));
                 }
             }
         }
         let required = schema.get("required").and_then(Value::as_array);
         for key in required.into_iter().flatten().filter_map(Value::as_str) {
-            if !object.contains_key(key) {
+            if !object.contains_key(key) && !misspelt.contains(&key) {
                 let allowed = self.allowed(&known[key]);
                 let reason = format!("missing key; allowed: {allowed}");
-                return Err(SceneFault::missing(key, reason));
+                faults.push(SceneFault::missing(key, reason));
             }
         }
-        Ok(())
+        faults
     }
 
     /// An enum: plain names, objects with one key, or objects with a `type`.
-    fn check_variants(
-        &self,
-        schema: &Value,
-        variants: &[Value],
-        value: &Value,
-    ) -> Result<(), SceneFault> {
+    fn check_variants(&self, schema: &Value, variants: &[Value], value: &Value) -> Vec<SceneFault> {
         if variants.iter().any(|variant| constant(variant) == Some(value)) {
-            return Ok(());
+            return Vec::new();
         }
         let Value::Object(object) = value else {
-            return Err(self.no_variant(schema, variants, value));
+            return vec![self.no_variant(schema, variants, value)];
         };
         if variants.iter().any(|variant| tag(variant).is_some()) {
             return self.check_tagged(variants, object);
         }
         let (1, Some((key, inner))) = (object.len(), object.iter().next()) else {
-            return Err(self.wrong(schema, value));
+            return vec![self.wrong(schema, value)];
         };
         let has_key = |v: &&Value| constant(v).is_none() && variant_name(v) == Some(key);
         match variants.iter().find(has_key) {
@@ -146,29 +145,24 @@ impl Conform<'_> {
             None => {
                 let known: Vec<_> = variants.iter().filter_map(variant_name).collect();
                 let reason = format!("unknown name{}", suggest(key, known));
-                Err(SceneFault::new(quote(key), inner, reason))
+                vec![SceneFault::new(quote(key), inner, reason)]
             }
         }
     }
 
     /// An object whose `type` selects the variant.
-    fn check_tagged(
-        &self,
-        variants: &[Value],
-        object: &Map<String, Value>,
-    ) -> Result<(), SceneFault> {
+    fn check_tagged(&self, variants: &[Value], object: &Map<String, Value>) -> Vec<SceneFault> {
         let known: Vec<_> = variants.iter().filter_map(tag).collect();
         let Some(value) = object.get("type") else {
-            return Err(SceneFault::missing(
-                "type",
-                format!("missing key; allowed: {}", list(known)),
-            ));
+            let reason = format!("missing key; allowed: {}", list(known));
+            return vec![SceneFault::missing("type", reason)];
         };
         let name = value.as_str().unwrap_or("");
         match variants.iter().find(|variant| tag(variant) == Some(name)) {
             Some(variant) => self.check_object(variant, object),
             None => {
-                Err(SceneFault::new("type", value, format!("unknown type{}", suggest(name, known))))
+                let reason = format!("unknown type{}", suggest(name, known));
+                vec![SceneFault::new("type", value, reason)]
             }
         }
     }

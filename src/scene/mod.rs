@@ -4,6 +4,7 @@
 
 mod checked;
 mod checked_body;
+mod clipped_region;
 mod effect_options;
 mod estimated_body;
 mod faces;

@@ -30,7 +30,7 @@ impl CheckedScene {
         let Some(front) = self.front().filter(|front| front.angle != 0.0) else {
             return Some([body.lower[0], body.upper[0]]);
         };
-        let regions = self.scene.bodies[i].regions();
+        let regions = self.scene.regions_of(&self.scene.bodies[i]);
         let (_, Region::Rotation(Rotation { angle, about, of })) = regions.first()? else {
             return None;
         };
@@ -49,7 +49,7 @@ impl CheckedScene {
         let [_, ends] = self.side_properties::<2>();
         let y = self.front().map_or(self.scene.domain.lower[1], |front| front.about[1]);
         let turned = self.front().is_some_and(|front| front.angle != 0.0);
-        let regions = self.scene.bodies[i].regions();
+        let regions = self.scene.regions_of(&self.scene.bodies[i]);
         let extent = match regions.first() {
             Some((_, Region::Box(extent))) if !turned => extent,
             Some((_, Region::Rotation(Rotation { of, .. }))) => match &**of {

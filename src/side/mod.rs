@@ -100,8 +100,8 @@ pub struct SideProperties {
     pub no_slip: bool,
     /// Whether waves pass the side without reflection.
     pub absorbs_waves: bool,
-    /// Whether the side may lie on the axis of an axisymmetric domain.
-    pub on_axis: bool,
+    /// Whether the side is a plane of symmetry, which may be the axis of an axisymmetric domain.
+    pub symmetric: bool,
 }
 
 impl SideProperties {
@@ -116,7 +116,7 @@ impl SideProperties {
             friction: None,
             no_slip: false,
             absorbs_waves: false,
-            on_axis: false,
+            symmetric: false,
         }
     }
 

@@ -3,5 +3,5 @@
 use super::SideProperties;
 
 pub(super) fn properties() -> SideProperties {
-    SideProperties { on_axis: true, ..SideProperties::wall() }
+    SideProperties { symmetric: true, ..SideProperties::wall() }
 }

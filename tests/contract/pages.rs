@@ -4,6 +4,8 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use serde_json::Value;
+
 use crate::home::Home;
 
 fn root() -> &'static Path {
@@ -53,6 +55,34 @@ fn the_reference_of_scenes_is_the_output_of_the_program() {
     for section in ["## Scene", "## Body", "### Eos `mie_gruneisen`", "## Monitor"] {
         assert!(page.lines().any(|line| line == section), "{section}");
     }
+}
+
+/// The schema that the shipped scenes name for editors is the program's.
+#[test]
+fn the_schema_of_the_inputs_is_the_output_of_the_program() {
+    let printed = Home::new().call(["schema"]).end().succeeded();
+    let file = root().join("inputs/schema/scene.schema.json");
+    let text = fs::read_to_string(file).unwrap();
+    assert!(
+        printed == text,
+        "flyer-mpm schema > inputs/schema/scene.schema.json writes the present one"
+    );
+    let mut count = 0;
+    for folder in ["inputs", "inputs/hard"] {
+        let folder = root().join(folder);
+        let files = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());
+        for scene in files.filter(|path| path.extension().is_some_and(|e| e == "json")) {
+            let value: Value = serde_json::from_str(&fs::read_to_string(&scene).unwrap()).unwrap();
+            let named = folder.join(value["$schema"].as_str().expect("a name"));
+            let same = fs::canonicalize(named).unwrap();
+            assert_eq!(
+                same,
+                fs::canonicalize(root().join("inputs/schema/scene.schema.json")).unwrap()
+            );
+            count += 1;
+        }
+    }
+    assert!(count > 40, "{count} scenes");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use flyer_mpm::input;
 use flyer_mpm::input::parse;
 use serde_json::Value;
 
-use super::{refused, refused_edit, refused_text, tells, with};
+use super::{refused, refused_edit, refused_text, tells, tells_all, with};
 
 #[test]
 fn files_that_are_no_scene() {
@@ -148,7 +148,8 @@ fn unknown_keys_and_names() {
         &["materials.copper.eos.type = \"mie_gruneissen\"", "did you mean mie_gruneisen?"],
     );
     edit("materials.copper.eos.type=3", &["materials.copper.eos.type = 3", "ideal_gas"]);
-    edit("materials.copper.eos.type=ideal_gas", &["materials.copper.eos.c0", "allowed: gamma"]);
+    let told = with("flyer.json", &["materials.copper.eos.type=ideal_gas"]).unwrap_err();
+    tells_all(&told, &["materials.copper.eos.c0", "materials.copper.eos.s", "allowed: gamma"]);
     edit("materials.copper.eos={}", &["materials.copper.eos.type", "missing", "mie_gruneisen"]);
     edit(
         "method.shape=bspline_quadratik",
@@ -295,4 +296,85 @@ fn huge_files_get_a_short_verdict_soon() {
         }
     };
     refused_edit(nobody, &["reference.flyer_impact.flyer", "no such body", "and 49980 more"]);
+}
+
+/// Pairs and ramps of pressures and velocities take units, and give the same doubles.
+#[test]
+fn units_of_time_functions_give_the_same_doubles() {
+    let side = |text: &str| {
+        let sets = [
+            "reference=null".to_string(),
+            "domain.lower=[-0.0005]".into(),
+            format!("boundary={{\"x_lower\": {text}}}"),
+        ];
+        let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
+        with("flyer.json", &sets)
+            .map(|checked| serde_json::to_value(checked.scene.boundary).unwrap())
+    };
+    for (text, number) in [
+        (
+            r#"{"pressure": [["0 us", "0 GPa"], [1e-7, "12 GPa"], ["0.3 us", 1e5]]}"#,
+            r#"{"pressure": [[0, 0], [1e-7, 12e9], [0.3e-6, 1e5]]}"#,
+        ),
+        (
+            r#"{"pressure": {"from": "1 bar", "to": "0.1 Mbar", "start": "1 ns", "duration": "0.2 us"}}"#,
+            r#"{"pressure": {"from": 1e5, "to": 1e10, "start": 1e-9, "duration": 0.2e-6}}"#,
+        ),
+        (
+            r#"{"velocity": [["0 us", "1 km/s"], ["0.3 us", "0.5 mm/us"]]}"#,
+            r#"{"velocity": [[0, 1000], [0.3e-6, 500]]}"#,
+        ),
+        (
+            r#"{"velocity": {"to": "0.7 km/s", "duration": "1 ms"}}"#,
+            r#"{"velocity": {"to": 700, "duration": 1e-3}}"#,
+        ),
+    ] {
+        assert_eq!(side(text).unwrap(), side(number).unwrap(), "{text}");
+    }
+    for (text, fragments) in [
+        (
+            r#"{"pressure": [["0 us", "0 GPa"], ["1 Pa", "12 km/s"]]}"#,
+            [
+                "boundary.x_lower.pressure[1][0] = \"1 Pa\": has another dimension",
+                "boundary.x_lower.pressure[1][1] = \"12 km/s\": has another dimension",
+            ],
+        ),
+        (
+            r#"{"velocity": {"to": "1 GPa", "duration": "3 mm"}}"#,
+            [
+                "boundary.x_lower.velocity.to = \"1 GPa\": has another dimension",
+                "boundary.x_lower.velocity.duration = \"3 mm\": has another dimension",
+            ],
+        ),
+    ] {
+        tells_all(&side(text).unwrap_err(), &fragments);
+    }
+    // the published schema takes them too
+    let validator = jsonschema::validator_for(&input::schema()).unwrap();
+    let mut scene: Value = serde_json::from_slice(&super::shipped("flyer.json")).unwrap();
+    for (text, valid) in [
+        (r#"{"pressure": [["0 us", "0 GPa"], [1e-7, "12 GPa"]]}"#, true),
+        (r#"{"velocity": {"from": "1 m/s", "to": "0.7 km/s", "duration": "1 ms"}}"#, true),
+        (r#"{"velocity": {"to": "fast", "duration": "1 ms"}}"#, false),
+    ] {
+        scene["boundary"] =
+            serde_json::json!({"x_lower": serde_json::from_str::<Value>(text).unwrap()});
+        assert_eq!(validator.is_valid(&scene), valid, "{text}");
+    }
+}
+
+/// Vertices of a polygon are no pairs of a time function.
+#[test]
+fn units_of_vertices_are_lengths() {
+    let polygon = |vertices: &str| {
+        let text = format!(
+            r#"{{"title": "a", "domain": {{"lower": [0.0, 0.0], "upper": [0.01, 0.01], "cell_size": 1e-3}},
+            "time": {{"end": 1e-6}}, "materials": {{"copper": {{"library": "copper"}}}},
+            "bodies": [{{"name": "b", "material": "copper", "particles_per_cell": [2, 2],
+                         "polygon": {{"vertices": {vertices}}}}}]}}"#
+        );
+        parse(text.as_bytes(), "a.json", &[]).unwrap().bodies[0].upper.clone()
+    };
+    let text = r#"[["0 mm", "0 mm"], ["8 mm", 0], [0, "6 mm"]]"#;
+    assert_eq!(polygon(text), polygon("[[0, 0], [8e-3, 0], [0, 6e-3]]"));
 }

@@ -1,6 +1,7 @@
 //! Scenes: those shipped, overrides, and every bad one with its message.
 
 mod extremes;
+mod faults;
 mod keys;
 mod plausibility;
 mod presets;
@@ -31,6 +32,28 @@ fn shipped(name: &str) -> Vec<u8> {
 fn with(name: &str, sets: &[&str]) -> Result<CheckedScene, String> {
     let sets: Vec<_> = sets.iter().map(ToString::to_string).collect();
     parse(&shipped(name), name, &sets).map_err(|error| error.to_string())
+}
+
+/// Whether a message is one line, or a number of faults and then that many lines or the longest list.
+fn is_told_well(message: &str) -> bool {
+    let mut lines = message.lines();
+    let (Some(first), rest) = (lines.next(), lines.collect::<Vec<_>>()) else { return false };
+    if rest.is_empty() {
+        return true;
+    }
+    let count =
+        first.strip_suffix(" faults").and_then(|text| text.rsplit(' ').next()?.parse().ok());
+    let expected = count.map(|count: usize| if count > 20 { 21 } else { count });
+    expected == Some(rest.len()) && rest.iter().all(|line| line.starts_with("  "))
+}
+
+/// The message holds every fragment in a list of several faults.
+#[track_caller]
+fn tells_all(message: &str, fragments: &[&str]) {
+    assert!(message.lines().count() > 2 && is_told_well(message), "{message}");
+    for fragment in fragments {
+        assert!(message.contains(fragment), "no `{fragment}` in: {message}");
+    }
 }
 
 /// The message is one line that holds every fragment.

@@ -62,3 +62,79 @@ fn runs_that_end_too_early_or_too_late() {
     assert!(told.iter().any(|w| w.contains("steps") && w.contains("hours")), "{told:?}");
     assert!(warnings(&right).is_empty(), "{:?}", warnings(&right));
 }
+
+#[test]
+fn lengths_in_other_units() {
+    let sizes = |lower: &str, upper: &str, cell: &str| {
+        let flyer = format!("bodies.flyer.box={{\"lower\": [{lower}], \"upper\": [0]}}");
+        let target = format!("bodies.target.box={{\"lower\": [0], \"upper\": [{upper}]}}");
+        let domain =
+            format!("domain={{\"lower\":[{lower}],\"upper\":[{upper}],\"cell_size\":{cell}}}");
+        vec![flyer, target, domain]
+    };
+    let told = |sets: Vec<String>| {
+        let sets: Vec<&str> = sets.iter().map(String::as_str).chain(["reference=null"]).collect();
+        with("flyer.json", &sets).unwrap().warnings.join("; ")
+    };
+    assert!(told(sizes("-1e-9", "1e-9", "2e-11")).contains("smaller than an atom"));
+    assert!(!told(sizes("-1e-7", "1e-7", "2e-9")).contains("the unit is m"));
+    assert!(told(sizes("-1e7", "1e7", "1e5")).contains("domain is 2e7 m long"));
+    assert!(!told(sizes("-1e6", "1e6", "1e4")).contains("the unit is m"));
+}
+
+/// Rarefactions meet after (0.5 + 8) mm over the sound speeds, 1.6 us.
+#[test]
+fn tension_that_no_material_bears() {
+    let plates = |end: &str, speed: &str, more: &str| {
+        let sets = [
+            format!("time.end={end}"),
+            format!("bodies.flyer.velocity=[{speed}]"),
+            "domain.upper=[0.02]".into(),
+            "output.profiles.times=[1e-8]".into(),
+            "reference=null".into(),
+            more.into(),
+        ];
+        let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
+        with("flyer.json", &sets).unwrap().warnings.join("; ")
+    };
+    // P = v Z Z'/(Z + Z') with Z = 2785*5386 and Z' = 8930*3940 kg/(m2 s), less what copper keeps up:
+    // 2 P Z/(Z + Z')
+    let told = plates("3e-6", "1000", "title=plates");
+    assert!(
+        told.contains("bodies.target: aluminium would bear about 6.3 GPa in tension"),
+        "{told}"
+    );
+    for (end, speed, more) in [
+        ("1e-6", "1000", "title=too short for the waves to meet"),
+        ("3e-6", "300", "title=slow"),
+        ("3e-6", "1000", "materials.aluminium.eos.tension_cutoff=1e9"),
+        ("3e-6", "1000", "boundary={\"x_upper\": \"wall\"}"),
+        (
+            "3e-6",
+            "1000",
+            "materials.aluminium.failure={\"type\": \"tension_limit\", \"stress\": 1e9}",
+        ),
+    ] {
+        let told = plates(end, speed, more);
+        assert!(!told.contains("in tension"), "{more}: {told}");
+    }
+}
+
+#[test]
+fn limits_beyond_the_cutoff_never_act() {
+    let law = |text: &str| format!("materials.aluminium.failure={{{text}}}");
+    let cut = |gpa: &str| format!("materials.aluminium.eos.tension_cutoff={gpa}e9");
+    for text in [
+        "\"type\": \"tension_limit\", \"stress\": 2e9",
+        "\"type\": \"cochran_banner\", \"stress\": 2e9, \"opening\": 1e-5",
+        "\"type\": \"tuler_butcher\", \"threshold\": 2e9, \"exponent\": 2, \"impulse\": 1e12",
+    ] {
+        let law = law(text);
+        warned("spall.json", &[&law, &cut("1.9")], &[&law, &cut("2.1")], "= 2e9: never acts");
+        warned("spall.json", &[&law, &cut("1.9")], &[&law], "never acts");
+    }
+    // a principal stress has a part that the cutoff does not limit
+    let strong = "materials.aluminium.strength={\"type\": \"von_mises\", \"shear_modulus\": 26e9, \"yield_stress\": 3e8}";
+    let law = law("\"type\": \"tension_limit\", \"stress\": 2e9");
+    warned("spall.json", &[&law, &cut("1.9")], &[&law, &cut("1.9"), strong], "never acts");
+}

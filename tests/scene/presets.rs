@@ -4,7 +4,7 @@ use flyer_mpm::input::parse;
 use flyer_mpm::scene::{CheckedScene, MethodChoice, Preset};
 use serde_json::{Value, json};
 
-use crate::{refused_text, with};
+use crate::{refused_text, tells_all, with};
 
 /// Two plates on a line, without a method.
 fn plates() -> Value {
@@ -145,7 +145,8 @@ fn unknown_presets_are_refused() {
     scene["method"] = json!({"preset": "sharp", "edge_mask": 0.1});
     refused_text(&scene.to_string(), &["method.preset = \"sharp\"", "allowed: default, robust"]);
     scene["method"] = json!({"edge_mask": 0.1});
-    refused_text(&scene.to_string(), &["method.shape", "missing key"]);
+    let error = parse(scene.to_string().as_bytes(), "bad.json", &[]).unwrap_err();
+    tells_all(&error.to_string(), &["method.shape: missing key", "method.transfer: missing key"]);
 }
 
 /// The published schema takes every form of `method` that a scene can have, and no other.

@@ -2,7 +2,7 @@
 
 use flyer_mpm::input;
 
-use super::{refused, tells, with};
+use super::{refused, tells, tells_all, with};
 
 #[test]
 fn domains_that_do_not_fit() {
@@ -20,9 +20,9 @@ fn domains_that_do_not_fit() {
     let far = ["domain.lower=[1e9]", "domain.upper=[1.000000001e9]", "domain.cell_size=1e-3"];
     refused("flyer.json", &far, &["domain.cell_size = 0.001", "too small for doubles"]);
     let plane = ["domain.lower=[0, 0]", "domain.upper=[1, 1]"];
-    refused(
-        "flyer.json",
-        &plane,
+    let told = with("flyer.json", &plane).unwrap_err();
+    tells_all(
+        &told,
         &["bodies.flyer.box.lower = [-0.0005]", "domain.lower has 2", "allowed: 2 numbers"],
     );
     edit("boundary={\"y_upper\": \"wall\"}", &["boundary.y_upper = \"wall\"", "a side along y"]);

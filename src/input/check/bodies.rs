@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use serde_json::json;
 
-use super::super::errors::{SceneFault, suggest};
+use super::super::errors::SceneFault;
+use super::super::faults::Faults;
 use super::super::paths::join;
 use super::common::{MOST, check_box, check_length, check_printable};
 use super::{materials, motion};
@@ -18,27 +19,29 @@ pub(super) fn check(
     scene: &Scene,
     cell_size: &[f64],
     warnings: &mut Vec<String>,
-) -> Result<Vec<CheckedBody>, SceneFault> {
-    materials::check(scene, warnings)?;
+) -> Result<Vec<CheckedBody>, Faults> {
+    let mut faults = Faults::default();
+    faults.extend(materials::check(scene, warnings));
     let materials: Vec<_> = scene.materials.keys().map(String::as_str).collect();
     let index: HashMap<_, _> = materials.iter().enumerate().map(|(i, &name)| (name, i)).collect();
     let mut names = HashSet::new();
     let mut checked = Vec::with_capacity(scene.bodies.len());
     for (i, body) in scene.bodies.iter().enumerate() {
         let path = format!("bodies[{i}].name");
-        check_printable(&path, &body.name)?;
+        faults.take(check_printable(&path, &body.name));
         if !names.insert(body.name.as_str()) {
             let reason = "another body has this name; allowed: a name of its own";
-            return Err(SceneFault::new(path, &body.name, reason));
+            faults.add(SceneFault::new(path, &body.name, reason));
         }
         let path = join("bodies", &body.name);
-        let Some(&material) = index.get(body.material.as_str()) else {
-            let reason =
-                format!("no such material{}", suggest(&body.material, materials.iter().copied()));
-            return Err(SceneFault::new(join(&path, "material"), &body.material, reason));
-        };
-        checked.push(check_body(scene, body, &path, material, cell_size)?);
+        let material = index[body.material.as_str()];
+        // what a faulty material cannot do is no fault of the body
+        if faults.concern(&join("materials", &body.material)) {
+            continue;
+        }
+        checked.extend(faults.take(check_body(scene, body, &path, material, cell_size)));
     }
+    faults.or(())?;
     check_overlap(scene, &checked, cell_size)?;
     let used: HashSet<_> = checked.iter().map(|body| body.material).collect();
     for (i, name) in materials.iter().enumerate() {
@@ -59,7 +62,7 @@ fn check_body(
     let dimension = cell_size.len();
     let below = |key: &str| format!("{path}.{key}");
     let velocity = body.velocity.clone().unwrap_or_else(|| vec![0.0; dimension]);
-    let mut regions = body.regions();
+    let mut regions = scene.regions_of(body);
     let keys: Vec<_> = regions.iter().map(|(key, _)| *key).collect();
     let (Some((key, region)), 1) = (regions.pop(), keys.len()) else {
         let allowed = if dimension == 1 { "\"box\"" } else { KEYS };
@@ -76,7 +79,7 @@ fn check_body(
     let fill = Fill { scene, body, path, key, region: &region, cell_size };
     let filled = if dimension == 1 { fill.line()? } else { fill.plane()? };
     check_length(&below("velocity"), &velocity, dimension)?;
-    check_inside(scene, path, key, &filled, cell_size)?;
+    check_inside(scene, path, (key, &region), &filled, cell_size)?;
     materials::check_pressure(scene, body, &below("pressure"))?;
     let motion = motion::check_field(scene, body, path, dimension)?;
     let Filled { lower, upper, lattice, tiles } = filled;
@@ -240,11 +243,11 @@ impl Fill<'_> {
 /// Maximum number of particles of a body whose tiles are generated one by one.
 const MOST_TILES: f64 = 1e9;
 
-/// Checks that a body lies within the domain.
+/// Checks that a body, whose region has the key `key`, lies within the domain.
 fn check_inside(
     scene: &Scene,
     path: &str,
-    key: &str,
+    (key, region): (&str, &Region),
     filled: &Filled,
     cell_size: &[f64],
 ) -> Result<(), SceneFault> {
@@ -259,11 +262,24 @@ fn check_inside(
         } else {
             continue;
         };
-        let reason = format!(
-            "outside of the domain; allowed: {lower} to {upper} (domain.lower, domain.upper)"
-        );
-        let key = if key == "box" { format!("box.{corner}") } else { key.to_string() };
-        return Err(SceneFault::new(format!("{path}.{key}"), value, reason));
+        let allowed = format!("allowed: {lower} to {upper} (domain.lower, domain.upper)");
+        // a box has the corner as a key; the corners of other regions follow from theirs
+        return Err(match region {
+            Region::Box(_) => {
+                let reason = format!("outside of the domain; {allowed}");
+                SceneFault::new(format!("{path}.box.{corner}"), value, reason)
+            }
+            _ => {
+                let reason = format!(
+                    "outside of the domain: it reaches from {:?} to {:?} along {}; {allowed}",
+                    filled.lower[d],
+                    filled.upper[d],
+                    ["x", "y"][d]
+                );
+                let value = json!(region)[key].clone();
+                SceneFault::new(format!("{path}.{key}"), value, reason)
+            }
+        });
     }
     Ok(())
 }
@@ -324,7 +340,7 @@ fn check_overlap(
         let boxes = cell_size.iter().enumerate().all(|(d, size)| {
             one.upper[d].min(other.upper[d]) - one.lower[d].max(other.lower[d]) > TOUCHING * size
         });
-        let region = |i: usize| scene.bodies[i].regions().pop().map(|(_, region)| region);
+        let region = |i: usize| scene.regions_of(&scene.bodies[i]).pop().map(|(_, region)| region);
         match (boxes, region(a), region(b)) {
             (false, ..) | (_, None, _) | (.., None) => false,
             (_, Some(Region::Box(_)), Some(Region::Box(_))) => true,

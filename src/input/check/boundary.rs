@@ -6,7 +6,7 @@ use crate::scene::{CheckedScene, Course, Geometry, Scene, Side};
 pub(super) fn check(scene: &Scene) -> Result<(), SceneFault> {
     let at_axis = scene.domain.geometry == Geometry::Axisymmetric && scene.domain.lower[0] == 0.0;
     let inner = scene.boundary.clone().unwrap_or_default().x_lower;
-    if at_axis && !inner.properties().on_axis {
+    if at_axis && !inner.properties().symmetric {
         let reason = "stands on the axis of domain.geometry = \"axisymmetric\"; allowed: \
                       \"symmetry\", or domain.lower[0] above 0";
         return Err(SceneFault::new("boundary.x_lower", inner, reason));

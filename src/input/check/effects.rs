@@ -6,17 +6,18 @@ use super::super::paths::join;
 use crate::material::ParameterError;
 use crate::scene::{HeatSource, Material, Scene};
 
-pub(super) fn check(scene: &Scene) -> Result<(), SceneFault> {
-    check_sides(scene)?;
-    check_bodies(scene)?;
-    for (name, material) in &scene.materials {
+pub(super) fn check(scene: &Scene) -> Vec<SceneFault> {
+    let of_materials = scene.materials.iter().flat_map(|(name, material)| {
         let path = join("materials", name);
-        check_strength(&path, material)?;
-        check_failure(&path, material)?;
-        check_erosion(&path, material, scene)?;
-        check_thermal(&path, material)?;
-    }
-    Ok(())
+        [
+            check_strength(&path, material),
+            check_failure(&path, material),
+            check_erosion(&path, material, scene),
+            check_thermal(&path, material),
+        ]
+    });
+    let checks = [check_sides(scene), check_bodies(scene)].into_iter().chain(of_materials);
+    checks.filter_map(Result::err).collect()
 }
 
 /// Checks that side temperatures have a material with heat conduction and a rigid side.

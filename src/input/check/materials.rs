@@ -16,24 +16,34 @@ const NEAR: f64 = 0.05;
 /// cells.
 const STABLE_ORDER: u32 = 2;
 
-pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), SceneFault> {
+pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Vec<SceneFault> {
+    let mut faults = Vec::new();
     for (name, material) in &scene.materials {
-        check_printable("materials", name)?;
         let path = join("materials", name);
-        let at = EosContext { density: material.density, dimension: scene.domain.lower.len() };
-        let of_eos = |error| SceneFault::of_parameter(error, &format!("{path}.eos"));
-        material.eos.check(&at).map_err(of_eos)?;
-        if let Ok(Some(eos)) = equation(material) {
-            check_stiffness(&*eos, material, &path)?;
+        match check_one(scene, name, material, &path) {
+            Ok(()) => {
+                warn_of_front(material, &path, warnings);
+                warn_of_filter(scene, material, &path, warnings);
+            }
+            Err(fault) => faults.push(fault),
         }
-        if !(LEAST..=GREATEST).contains(&material.density) {
-            let reason = format!("out of range; allowed: {LEAST:e} to {GREATEST:e} kg/m3");
-            return Err(SceneFault::new(format!("{path}.density"), material.density, reason));
-        }
-        warn_of_front(material, &path, warnings);
-        warn_of_filter(scene, material, &path, warnings);
     }
-    Ok(())
+    faults
+}
+
+fn check_one(scene: &Scene, name: &str, material: &Material, path: &str) -> Result<(), SceneFault> {
+    check_printable("materials", name)?;
+    let at = EosContext { density: material.density, dimension: scene.domain.lower.len() };
+    let of_eos = |error| SceneFault::of_parameter(error, &format!("{path}.eos"));
+    material.eos.check(&at).map_err(of_eos)?;
+    if let Ok(Some(eos)) = equation(material) {
+        check_stiffness(&*eos, material, path)?;
+    }
+    if (LEAST..=GREATEST).contains(&material.density) {
+        return Ok(());
+    }
+    let reason = format!("out of range; allowed: {LEAST:e} to {GREATEST:e} kg/m3");
+    Err(SceneFault::new(format!("{path}.density"), material.density, reason))
 }
 
 /// Checks that the initial sound speed is a finite number.

@@ -60,7 +60,7 @@ pub(in super::super) fn tiles(scene: &Scene) -> u64 {
         }
     };
     let of_body = |body: &crate::scene::Body| -> Option<f64> {
-        let (_, region) = body.regions().pop()?;
+        let (_, region) = scene.regions_of(body).pop()?;
         let counts = body.particles_per_cell.as_ref()?;
         if matches!(region, Region::Box(_)) || counts.len() != 2 || scene.domain.lower.len() != 2 {
             return None;

@@ -20,52 +20,24 @@ mod output;
 mod plane_reference;
 mod plausibility;
 mod reference;
+mod tension;
 
 use super::errors::{SceneFault, one_line};
+use super::faults::Faults;
 use crate::scene::{CheckedScene, Scene};
 use common::check_printable;
 
 pub(super) use memory::tiles;
 pub use memory::{BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, available_memory};
 
-/// Checks `scene`, read from `file`.
-pub(super) fn check(scene: Scene, file: &str) -> Result<CheckedScene, SceneFault> {
-    let mut warnings = Vec::new();
-    check_printable("title", &scene.title)?;
-    let domain::Grid { dimension, cell_size, cells } = domain::check(&scene.domain)?;
-    method::check(&scene, &mut warnings)?;
-    boundary::check(&scene)?;
-    effects::check(&scene)?;
-    let bodies = bodies::check(&scene, &cell_size, &mut warnings)?;
-    let mut checked = CheckedScene {
-        dimension,
-        cell_size,
-        cells,
-        particles: bodies.iter().fold(0, |sum, body| sum.saturating_add(body.particles)),
-        bodies,
-        profile_times: output::profile_times(&scene)?,
-        history_interval: output::history_interval(&scene),
-        warnings,
-        file: file.to_string(),
-        scene,
-        method_choice: None,
-    };
-    memory::check_counts(&checked)?;
-    method::check_bodies(&checked)?;
-    method::check_positions(&checked)?;
-    frame::check(&checked)?;
-    boundary::check_transmitting(&mut checked)?;
-    boundary::check_loads(&mut checked)?;
-    courant::check(&mut checked)?;
-    motion::check_body_force(&checked)?;
-    output::check_tracers(&checked)?;
-    output::check_checkpoints(&checked.scene)?;
-    for key in crate::effects::keys() {
-        (key.check)(&checked).map_err(|e| SceneFault::of_parameter(e, key.name))?;
-    }
+/// Checks `scene`, read from `file`. Checks of one group do not depend on each other; a group is
+/// only judged if the one before has no fault.
+pub(super) fn check(scene: Scene, file: &str) -> Result<CheckedScene, Faults> {
+    let mut checked = build(scene, file)?;
+    check_whole(&mut checked)?;
     reference::check(&mut checked)?;
     estimate::check(&checked)?;
-    if dimension == 1 {
+    if checked.dimension == 1 {
         impact::check(&mut checked)?;
     }
     checked.warnings.extend(plausibility::warnings(&checked));
@@ -73,4 +45,57 @@ pub(super) fn check(scene: Scene, file: &str) -> Result<CheckedScene, SceneFault
         *warning = one_line(warning);
     }
     Ok(checked)
+}
+
+/// Checks the parts of a scene, each by itself.
+fn build(scene: Scene, file: &str) -> Result<CheckedScene, Faults> {
+    let mut warnings = Vec::new();
+    let mut faults = Faults::default();
+    faults.take(check_printable("title", &scene.title));
+    let grid = faults.take(domain::check(&scene.domain));
+    // the other parts have the dimension of the domain
+    let Some(domain::Grid { dimension, cell_size, cells }) = grid else {
+        return Err(faults);
+    };
+    faults.take(method::check(&scene, &mut warnings));
+    faults.take(boundary::check(&scene));
+    faults.extend(effects::check(&scene));
+    let profile_times = faults.take(output::profile_times(&scene));
+    let bodies = faults.take(bodies::check(&scene, &cell_size, &mut warnings));
+    let (Some(bodies), Some(profile_times)) = (bodies, profile_times) else {
+        return Err(faults);
+    };
+    faults.or(CheckedScene {
+        dimension,
+        cell_size,
+        cells,
+        particles: bodies.iter().fold(0, |sum, body| sum.saturating_add(body.particles)),
+        bodies,
+        profile_times,
+        history_interval: output::history_interval(&scene),
+        warnings,
+        file: file.to_string(),
+        scene,
+        method_choice: None,
+    })
+}
+
+/// Checks the parts of a scene against each other.
+fn check_whole(checked: &mut CheckedScene) -> Result<(), Faults> {
+    memory::check_counts(checked)?;
+    let mut faults = Faults::default();
+    faults.take(method::check_bodies(checked));
+    faults.take(method::check_positions(checked));
+    faults.take(frame::check(checked));
+    faults.take(boundary::check_transmitting(checked));
+    faults.take(boundary::check_loads(checked));
+    faults.take(courant::check(checked));
+    faults.take(motion::check_body_force(checked));
+    faults.take(output::check_tracers(checked));
+    faults.take(output::check_checkpoints(&checked.scene));
+    for key in crate::effects::keys() {
+        let fault = (key.check)(checked).map_err(|e| SceneFault::of_parameter(e, key.name));
+        faults.take(fault);
+    }
+    faults.or(())
 }

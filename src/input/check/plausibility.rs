@@ -3,6 +3,7 @@
 
 use std::collections::HashMap;
 
+use super::tension;
 use crate::input::paths::join;
 use crate::material::constitutive;
 use crate::scene::CheckedScene;
@@ -12,6 +13,12 @@ const LEAST_DENSITY: f64 = 20.0;
 
 /// Largest density of a material [kg/m3]; osmium has 22 600.
 const LARGEST_DENSITY: f64 = 3e4;
+
+/// Size of an atom, below which no material is a continuum [m].
+const LEAST_CELL: f64 = 1e-10;
+
+/// Diameter of the Earth [m].
+const LARGEST_DOMAIN: f64 = 1.3e7;
 
 /// Sound speed above which a material is stiff, so that its density and speeds are in SI [m/s].
 const STIFF: f64 = 300.0;
@@ -49,7 +56,25 @@ pub(super) fn warnings(checked: &CheckedScene) -> Vec<String> {
     all.extend(bodies(checked));
     all.extend(viscosity(checked, &speeds));
     all.extend(duration(checked, fastest));
+    all.extend(lengths(checked));
+    all.extend(tension::warnings(checked, &speeds));
     all
+}
+
+/// Cells smaller than atoms and domains larger than planets.
+fn lengths(checked: &CheckedScene) -> Vec<String> {
+    let domain = &checked.scene.domain;
+    let extents = domain.upper.iter().zip(&domain.lower).map(|(upper, lower)| upper - lower);
+    let largest = extents.fold(0.0, f64::max);
+    let smallest = checked.cell_size.iter().copied().fold(f64::INFINITY, f64::min);
+    let small = (smallest < LEAST_CELL)
+        .then(|| format!("domain.cell_size = {smallest:e}: smaller than an atom; the unit is m"));
+    let large = (largest > LARGEST_DOMAIN).then(|| {
+        format!(
+            "domain.upper: the domain is {largest:e} m long, longer than the Earth; the unit is m"
+        )
+    });
+    small.into_iter().chain(large).collect()
 }
 
 /// Densities of stiff materials that are no density in kg/m3.

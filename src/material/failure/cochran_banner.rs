@@ -31,7 +31,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Carried, FailureLaw, RestState, StrengthBeside, StressState};
+use super::{Carried, FailureLaw, PressureLimit, RestState, StrengthBeside, StressState};
 
 /// Cochran & Banner (1977): cracks open where the tension exceeds a strength that falls with their
 /// volume, `stress` (1 - D^exponent), and nothing holds when their volume per area reaches
@@ -84,6 +84,10 @@ impl FailureLaw for CochranBanner {
     fn with_rest_state(self, rest: &RestState) -> Self {
         let strain = self.opening / rest.cell;
         CochranBanner { strain, bulk_modulus: rest.bulk_modulus, ..self }
+    }
+
+    fn pressure_limit(&self, _: &StrengthBeside) -> Option<PressureLimit> {
+        Some(PressureLimit { key: "stress", tension: self.stress })
     }
 
     fn damage(&self, before: f64, state: &StressState, _: &StrengthBeside) -> f64 {

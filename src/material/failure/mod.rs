@@ -130,6 +130,15 @@ impl StressState {
     }
 }
 
+/// Tension, minus the pressure, that a law needs for any damage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PressureLimit {
+    /// Key of the parameter.
+    pub key: &'static str,
+    /// Its value [Pa].
+    pub tension: f64,
+}
+
 /// Failure law at one material point.
 pub trait FailureLaw: Copy + Send + Sync + 'static {
     /// Whether damage below 1 reduces the stress, as [`FailureLaw::carried`] says.
@@ -155,6 +164,12 @@ pub trait FailureLaw: Copy + Send + Sync + 'static {
     /// not decrease.
     fn damage(&self, before: f64, state: &StressState, strength: &StrengthBeside) -> f64;
 
+    /// Limit of the pressure below which there is no damage, if there is one.
+    fn pressure_limit(&self, strength: &StrengthBeside) -> Option<PressureLimit> {
+        let _ = strength;
+        None
+    }
+
     /// Part of the stress that material with a `damage` below 1 carries; its shares are above 0.
     fn carried(&self, damage: f64) -> Carried {
         let _ = damage;
@@ -178,6 +193,19 @@ impl Failure {
             }
         }
         self.visit(Check(strength))
+    }
+
+    /// See [`FailureLaw::pressure_limit`].
+    pub fn pressure_limit(&self, strength: &StrengthBeside) -> Option<PressureLimit> {
+        struct Limit<'a>(&'a StrengthBeside);
+        impl FailureVisitor for Limit<'_> {
+            type Output = Option<PressureLimit>;
+
+            fn visit<L: FailureLaw>(self, law: L) -> Self::Output {
+                law.pressure_limit(self.0)
+            }
+        }
+        self.visit(Limit(strength))
     }
 }
 

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{FailureLaw, StrengthBeside, StressState};
+use super::{FailureLaw, PressureLimit, StrengthBeside, StressState};
 
 /// Instantaneous failure at a tension limit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -37,9 +37,19 @@ impl TensionMeasure {
             TensionMeasure::MeanStress => -state.pressure,
         }
     }
+
+    /// Whether the tension is minus the pressure, which without strength every principal stress is.
+    pub(super) fn is_of_pressure(self, strength: &StrengthBeside) -> bool {
+        self == TensionMeasure::MeanStress || !strength.present
+    }
 }
 
 impl FailureLaw for TensionLimit {
+    fn pressure_limit(&self, strength: &StrengthBeside) -> Option<PressureLimit> {
+        let limit = PressureLimit { key: "stress", tension: self.stress };
+        self.measure.is_of_pressure(strength).then_some(limit)
+    }
+
     #[inline(always)]
     fn damage(&self, before: f64, state: &StressState, _: &StrengthBeside) -> f64 {
         if self.measure.tension(state) >= self.stress { 1.0 } else { before }

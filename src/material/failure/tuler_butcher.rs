@@ -10,7 +10,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{FailureLaw, StrengthBeside, StressState, TensionMeasure};
+use super::{FailureLaw, PressureLimit, StrengthBeside, StressState, TensionMeasure};
 
 /// Tuler & Butcher (1968): failure when the time integral of (tension - threshold)^exponent reaches
 /// `impulse`.
@@ -32,6 +32,11 @@ pub struct TulerButcher {
 }
 
 impl FailureLaw for TulerButcher {
+    fn pressure_limit(&self, strength: &StrengthBeside) -> Option<PressureLimit> {
+        let limit = PressureLimit { key: "threshold", tension: self.threshold };
+        self.measure.is_of_pressure(strength).then_some(limit)
+    }
+
     #[inline(always)]
     fn damage(&self, before: f64, state: &StressState, _: &StrengthBeside) -> f64 {
         let above = self.measure.tension(state) - self.threshold;

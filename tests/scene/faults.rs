@@ -1,0 +1,159 @@
+//! All faults of a scene in one reply, in the order of its file, and no consequences of one another.
+
+use flyer_mpm::input::parse;
+use serde_json::{Value, json};
+
+use super::{refused_edit, shipped};
+
+/// The lines of the reply to `flyer.json` with some edits.
+#[track_caller]
+fn reply(edit: impl FnOnce(&mut Value)) -> Vec<String> {
+    let mut value: Value = serde_json::from_slice(&shipped("flyer.json")).unwrap();
+    edit(&mut value);
+    lines(&value.to_string())
+}
+
+#[track_caller]
+fn lines(text: &str) -> Vec<String> {
+    let error = parse(text.as_bytes(), "bad.json", &[]).expect_err("the scene passed");
+    error.to_string().lines().map(str::to_string).collect()
+}
+
+fn remove(scene: &mut Value, parent: &str, key: &str) {
+    let object = scene.pointer_mut(parent).unwrap().as_object_mut().unwrap();
+    object.remove(key).unwrap();
+}
+
+/// Each line names its path, in this order.
+#[track_caller]
+fn holds(lines: &[String], paths: &[&str]) {
+    assert_eq!(lines[0], format!("bad.json: {} faults", paths.len()), "{lines:#?}");
+    assert_eq!(lines.len(), paths.len() + 1, "{lines:#?}");
+    for (line, path) in lines[1..].iter().zip(paths) {
+        assert!(line.starts_with(&format!("  {path}")), "{path}: {lines:#?}");
+        assert!(line.contains("; allowed: ") || line.contains("did you mean"), "{line}");
+    }
+}
+
+#[test]
+fn six_missing_keys_are_told_at_once() {
+    let lines = reply(|scene| {
+        remove(scene, "", "title");
+        remove(scene, "/domain", "upper");
+        remove(scene, "/time", "end");
+        remove(scene, "/materials/copper/eos", "c0");
+        remove(scene, "/bodies/0", "material");
+        remove(scene, "/bodies/1/box", "upper");
+    });
+    holds(
+        &lines,
+        &[
+            "bodies.flyer.material: missing key",
+            "bodies.target.box.upper: missing key",
+            "domain.upper: missing key",
+            "materials.copper.eos.c0: missing key",
+            "time.end: missing key",
+            "title: missing key",
+        ],
+    );
+}
+
+#[test]
+fn units_and_names_are_told_with_them() {
+    let lines = reply(|scene| {
+        scene["materials"]["copper"]["density"] = json!("8.93 GPa");
+        scene["time"]["end"] = json!("3 parsec");
+        scene["bodies"][1]["material"] = json!("coper");
+        scene["materials"]["copper"]["eos"]["type"] = json!("mie_grueneisen");
+    });
+    holds(
+        &lines,
+        &[
+            "bodies.target.material = \"coper\": no such material; did you mean copper?",
+            "materials.copper.density = \"8.93 GPa\": has another dimension",
+            "materials.copper.eos.type = \"mie_grueneisen\": unknown type",
+            "time.end = \"3 parsec\": unknown unit",
+        ],
+    );
+}
+
+#[test]
+fn the_order_is_that_of_the_file_and_not_of_the_alphabet() {
+    let text = r#"{
+        // the last letter first
+        "title": 3,
+        "materials": {"zinc": {"library": "zinc"}, "gas": {"density": "1 m"}},
+        "domain": {"lower": [0.0], "uper": [1.0], "cell_size": "x"},
+        "bodies": [],
+        "time": {"courant": 0.3}
+    }"#;
+    holds(
+        &lines(text),
+        &[
+            "title = 3",
+            "materials.zinc.library = \"zinc\": no such material",
+            "materials.gas.density = \"1 m\"",
+            "materials.gas.eos: missing key",
+            "domain.uper = [1.0]: unknown key; did you mean upper?",
+            "domain.cell_size = \"x\"",
+            "bodies = []",
+            "time.end: missing key",
+        ],
+    );
+}
+
+#[test]
+fn a_consequence_of_a_fault_is_not_told() {
+    // a misspelt key is not missing as well
+    refused_edit(
+        |scene| {
+            let end = scene["time"]["end"].take();
+            scene["time"] = json!({"ende": end, "courant": 0.3});
+        },
+        &["time.ende", "did you mean end?"],
+    );
+    // nor are the keys of an unknown library material, or of an unknown preset
+    refused_edit(
+        |s| s["materials"]["copper"] = json!({"library": "coper"}),
+        &["did you mean copper"],
+    );
+    refused_edit(|s| s["method"] = json!({"preset": "defalt"}), &["method.preset", "default"]);
+    // a body cannot be judged with a material that has a fault of its own
+    refused_edit(
+        |scene| {
+            scene["materials"]["copper"]["eos"]["c0"] = json!(1e-100);
+            scene["materials"]["copper"]["eos"]["tension_cutoff"] = json!(1e3);
+            scene["bodies"][0]["pressure"] = json!(-1e9);
+        },
+        &["materials.copper.density", "no finite stiffness"],
+    );
+}
+
+#[test]
+fn checks_that_do_not_depend_on_each_other_are_all_told() {
+    let lines = reply(|scene| {
+        scene["bodies"][0]["velocity"] = json!([1.0, 2.0]);
+        scene["bodies"][1]["box"]["upper"] = json!([1.0]);
+        scene["boundary"] = json!({"y_lower": "wall"});
+        scene["output"]["profiles"]["times"] = json!([1.0]);
+    });
+    holds(
+        &lines,
+        &[
+            "bodies.flyer.velocity = [1.0,2.0]",
+            "bodies.target.box.upper = [1.0]: outside of the domain",
+            "boundary.y_lower = \"wall\": a side along y",
+            "output.profiles.times[0] = 1.0: beyond time.end",
+        ],
+    );
+}
+
+#[test]
+fn of_many_faults_the_first_twenty_are_told() {
+    let lines = reply(|scene| {
+        let keys = (0..23).map(|k| (format!("zz{k:02}"), json!(1)));
+        scene.as_object_mut().unwrap().extend(keys);
+    });
+    assert_eq!((lines.len(), &lines[0][..]), (22, "bad.json: 23 faults"));
+    assert!(lines[20].contains("zz19") && lines[21] == "  ... and 3 more", "{lines:#?}");
+}
