@@ -416,6 +416,10 @@ fn side_command(command: Command) -> Outcome<()> {
             say(&cli::predict::predict(&args)?);
             Ok(())
         }
+        Command::Perf(PerfCommand::Study(args)) => {
+            say(&cli::scaling::scaling(&args)?);
+            Ok(())
+        }
         Command::Study { study, output, quiet } => {
             cli::study::study(&study, output.as_deref(), quiet).map(|text| say(&text))
         }

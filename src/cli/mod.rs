@@ -8,6 +8,7 @@ pub mod new;
 pub mod plan;
 pub mod predict;
 pub mod reference;
+pub mod scaling;
 pub mod study;
 
 use std::path::PathBuf;
@@ -148,7 +149,7 @@ pub struct PredictArgs {
     #[arg(long, value_name = "NAME|LATENCY,BANDWIDTH", default_value = "hdr")]
     pub network: String,
 
-    /// Compare predictions with this scaling.json of scripts/strong_scaling.sh instead, with the
+    /// Compare predictions with this scaling.json of `flyer-mpm perf study strong` instead, with the
     /// study's overrides of the scene; may be repeated.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["ranks", "threads"])]
     pub against: Vec<PathBuf>,
@@ -234,7 +235,7 @@ pub enum Command {
         #[command(flatten)]
         scene: SceneArgs,
     },
-    /// Measure this machine and predict how a run scales to more ranks.
+    /// Measure this machine and the scaling of a scene, and predict runs on more ranks.
     #[command(subcommand)]
     Perf(PerfCommand),
     /// Rewrite a scene of a former format with the present names, in place.
@@ -312,6 +313,11 @@ pub enum PerfCommand {
     /// Predict, without a run, the time of a step and of the whole run on more ranks, and the
     /// limits of strong scaling. Uses the constants of `flyer-mpm perf calibrate`.
     Predict(PredictArgs),
+    /// Measure strong or weak scaling: run a scene under mpirun on every combination of ranks and
+    /// threads, and on 1 x 1, each with every particle computed and once more with patches at rest
+    /// skipped. Writes a table, a CSV, scaling.json and a picture. Nothing else should run
+    /// meanwhile.
+    Study(scaling::ScalingArgs),
 }
 
 /// The command that the unknown name `name` resembles, if any.

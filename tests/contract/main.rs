@@ -29,4 +29,6 @@ mod templates;
 #[cfg(feature = "mpi")]
 mod ranks;
 #[cfg(feature = "mpi")]
+mod scaling;
+#[cfg(feature = "mpi")]
 mod stalls;
