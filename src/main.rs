@@ -17,8 +17,9 @@ use cli::{Cli, Command, PerfCommand, RunArgs, SceneArgs};
 use decomp::{Comm, Serial};
 use flyer_mpm::driver::checkpoint::fit::CHANGEABLE;
 use flyer_mpm::driver::checkpoint::{Checkpoint, folder};
+use flyer_mpm::driver::default_folder::default_folder;
 use flyer_mpm::driver::output::compare::compare;
-use flyer_mpm::driver::output::folder::{check_writable, default_folder};
+use flyer_mpm::driver::output::folder::check_writable;
 use flyer_mpm::driver::output::lock::Lock;
 use flyer_mpm::driver::output::origin::{Maker, Origin, RUN, check_target};
 use flyer_mpm::driver::output::trace::TRACE_START;
@@ -177,7 +178,7 @@ fn input(args: &RunArgs) -> String {
 /// Checks all inputs and targets that could make a run fail, before the scene is sent to the other
 /// ranks.
 fn begin(args: &RunArgs, reading: &AtomicBool) -> Outcome<Begun> {
-    let (bytes, checked, beginning, default, origin) = match (&args.restart, &args.scene) {
+    let (bytes, checked, beginning, restarted, origin) = match (&args.restart, &args.scene) {
         (Some(path), _) => {
             let (mut checkpoint, file, notes) = folder::open(path).map_err(bad)?;
             notes.iter().for_each(|note| eprintln!("warning: {note}; taking the one before"));
@@ -187,25 +188,29 @@ fn begin(args: &RunArgs, reading: &AtomicBool) -> Outcome<Begun> {
                 input::parse_changed(&bytes, &name, &args.set, &CHANGEABLE).map_err(bad)?;
             checkpoint.fit(&checked, &file).map_err(bad)?;
             tell_restart(args, &checkpoint, &name);
-            let output = folder::results_of(&file).unwrap_or_else(|| default_folder(&file));
+            let output = folder::results_of(&file)
+                .unwrap_or_else(|| Path::new("output").join(file.file_stem().unwrap_or_default()));
             let origin = checkpoint.run_origin();
             let beginning = Beginning::Checkpoint(Some(Box::new(checkpoint)));
-            (bytes, checked, beginning, output, origin)
+            (bytes, checked, beginning, Some(output), origin)
         }
         (None, Some(path)) => {
             let scene = SceneArgs { scene: path.clone(), set: args.set.clone() };
             let (bytes, checked) = read_scene(&scene, args.ignore_memory)?;
-            (bytes, checked, Beginning::Scene, default_folder(path), Origin::new(RUN, path))
+            (bytes, checked, Beginning::Scene, None, Origin::new(RUN, path))
         }
         (None, None) => return Err((BAD_INPUT, "a scene is needed; see --help".into())),
     };
     if !args.ignore_memory {
         checked.check_memory(input::available_memory()).map_err(bad)?;
     }
-    let output = args.output.clone().unwrap_or(default);
+    let maker = Maker::with(origin, &checked);
+    let output = match args.output.clone().or(restarted) {
+        Some(output) => output,
+        None => results_folder(args, &maker),
+    };
     reading.store(false, Ordering::Relaxed);
     let lock = Lock::take(&output).map_err(bad)?;
-    let maker = Maker::with(origin, &checked);
     check_writable(&output, args.keep, &maker).map_err(bad)?;
     folder::check_owner(&output, &maker).map_err(bad)?;
     if let Some(file) = &args.trace {
@@ -213,6 +218,20 @@ fn begin(args: &RunArgs, reading: &AtomicBool) -> Outcome<Begun> {
         check_file(file)?;
     }
     Ok(Begun { bytes, checked, beginning, output, lock })
+}
+
+/// The folder of the results of a scene without `--output`; prints why it has a number.
+fn results_folder(args: &RunArgs, maker: &Maker) -> PathBuf {
+    let scene = args.scene.as_deref().unwrap_or(Path::new(""));
+    let found = default_folder(scene, maker);
+    if let Some((avoided, theirs)) = found.avoided.filter(|_| !args.quiet) {
+        eprintln!(
+            "results go to {}, because {} holds {theirs}",
+            found.path.display(),
+            avoided.display()
+        );
+    }
+    found.path
 }
 
 /// Prints the checkpoint from which a run restarts.

@@ -25,8 +25,9 @@ use flyer_mpm::scene::PlannedQuantity;
 ///
 /// Results go to output/<name of the scene>/: summary.json (errors against the exact solution,
 /// energy, times), one CSV per profile time, histories.csv, results.hdf5 (for ParaView) and
-/// pictures. A new run of the same scene replaces them when it is complete; a run that fails leaves
-/// them unchanged, and a run of another scene into the same folder is refused.
+/// pictures. A new run of the same scene file replaces them when it is complete; a run that fails
+/// leaves them unchanged. Another scene of the same name gets output/<name>-2/; with --output, a
+/// folder with results of another scene is refused.
 ///
 /// Checkpoints go to output/<name of the scene>.checkpoints/ (output.checkpoint of the scene;
 /// default: every ten minutes). SIGTERM, SIGINT, SIGUSR1 and time.wall_limit write one and end the

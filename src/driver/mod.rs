@@ -3,6 +3,7 @@
 //! All ranks compute; rank 0 gathers, evaluates errors and writes.
 
 pub mod checkpoint;
+pub mod default_folder;
 pub mod figures;
 mod measured;
 pub mod output;
