@@ -23,6 +23,7 @@ use flyer_mpm::driver::output::folder::check_writable;
 use flyer_mpm::driver::output::lock::Lock;
 use flyer_mpm::driver::output::origin::{Maker, Origin, RUN, check_target};
 use flyer_mpm::driver::output::trace::TRACE_START;
+use flyer_mpm::driver::output::wrap::{warning, wrapped};
 use flyer_mpm::driver::{Beginning, Options, RunFailure, run};
 use flyer_mpm::input;
 use flyer_mpm::input::input_file;
@@ -181,12 +182,15 @@ fn begin(args: &RunArgs, reading: &AtomicBool) -> Outcome<Begun> {
     let (bytes, checked, beginning, restarted, origin) = match (&args.restart, &args.scene) {
         (Some(path), _) => {
             let (mut checkpoint, file, notes) = folder::open(path).map_err(bad)?;
-            notes.iter().for_each(|note| eprintln!("warning: {note}; taking the one before"));
+            notes.iter().for_each(|note| {
+                eprintln!("{}", warning(&format!("{note}; taking the one before")))
+            });
             let bytes = checkpoint.scene.clone().into_bytes();
             let name = file.display().to_string();
-            let checked =
+            let mut checked =
                 input::parse_changed(&bytes, &name, &args.set, &CHANGEABLE).map_err(bad)?;
             checkpoint.fit(&checked, &file).map_err(bad)?;
+            checked.method_choice = checkpoint.method_choice.clone();
             tell_restart(args, &checkpoint, &name);
             let output = folder::results_of(&file)
                 .unwrap_or_else(|| Path::new("output").join(file.file_stem().unwrap_or_default()));
@@ -239,7 +243,8 @@ fn tell_restart(args: &RunArgs, checkpoint: &Checkpoint, file: &str) {
     let ours = env!("CARGO_PKG_VERSION");
     if checkpoint.version != ours {
         let theirs = &checkpoint.version;
-        eprintln!("warning: {file}: written by version {theirs}, this is {ours}: bits may differ");
+        let text = format!("{file}: written by version {theirs}, this is {ours}: bits may differ");
+        eprintln!("{}", warning(&text));
     }
     if !args.quiet {
         let saved = &checkpoint.saved;
@@ -304,6 +309,7 @@ fn run_scene(comm: &dyn Comm, args: &RunArgs, started: Instant) -> Outcome<()> {
         keep: args.keep,
         quiet: args.quiet,
         verbose: args.verbose,
+        progress: args.progress.into(),
         threads,
         trace: args.trace.clone().map(|file| (file, args.trace_steps.clone())),
         started,
@@ -344,33 +350,35 @@ fn run_scene(comm: &dyn Comm, args: &RunArgs, started: Instant) -> Outcome<()> {
 
 /// Prints one line about the run, and the warnings.
 fn announce(comm: &dyn Comm, scene: &CheckedScene, threads: usize) {
-    for warning in &scene.warnings {
-        eprintln!("warning: {warning}");
+    for text in &scene.warnings {
+        eprintln!("{}", warning(text));
     }
     let cores = std::thread::available_parallelism().map_or(threads, usize::from);
     if threads > cores {
-        eprintln!(
-            "warning: {threads} threads per rank, but this process may use only {cores} cores"
-        );
+        let text =
+            format!("{threads} threads per rank, but this process may use only {cores} cores");
+        eprintln!("{}", warning(&text));
     }
     let patches = flyer_mpm::simulation::patch_counts(scene, comm.size(), threads);
     let idle = comm.size().saturating_sub(patches.iter().product());
     if idle > 0 {
-        eprintln!(
-            "warning: {idle} of {} ranks have no patch: use fewer ranks, or more domain.patches",
-            comm.size()
+        let ranks = comm.size();
+        let text = format!(
+            "{idle} of {ranks} ranks have no patch: use fewer ranks, or more domain.patches"
         );
+        eprintln!("{}", warning(&text));
     }
     let chosen = if scene.scene.domain.patches.is_some() { "" } else { " (chosen)" };
-    eprintln!(
+    let size = format!(
         "{}: {} particles, {} cells, patches {patches:?}{chosen}, ranks {}, threads {threads}",
         scene.scene.title,
         scene.particles,
         scene.cell_count(),
         comm.size(),
     );
+    eprintln!("{}", wrapped(&size, 2));
     if let Some(choice) = &scene.method_choice {
-        eprintln!("method {choice}");
+        eprintln!("{}", wrapped(&format!("method {choice}"), 2));
     }
 }
 
@@ -442,6 +450,11 @@ fn side_command(command: Command) -> Outcome<()> {
         Command::Study { study, output, quiet } => {
             cli::study::study(&study, output.as_deref(), quiet).map(|text| say(&text))
         }
+        Command::Completions { shell } => {
+            say(&cli::manual::completions(shell));
+            Ok(())
+        }
+        Command::Man { output } => cli::manual::man(output.as_deref()).map(|text| say(&text)),
         Command::Migrate { scene, output } => {
             cli::migrate::migrate(&scene, output.as_deref()).map(|text| say(&text))
         }

@@ -1,6 +1,7 @@
 //! The command line: arguments and subcommands, one file each.
 
 pub mod check;
+pub mod manual;
 pub mod material;
 pub mod materials;
 pub mod migrate;
@@ -13,7 +14,9 @@ pub mod study;
 
 use std::path::PathBuf;
 
-use clap::{Args, CommandFactory, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use flyer_mpm::driver::progress::ProgressChoice;
 use flyer_mpm::scene::PlannedQuantity;
 
 /// Impact and shock waves by the material point method, compared with exact solutions.
@@ -118,9 +121,34 @@ pub struct RunArgs {
     #[arg(long)]
     pub quiet: bool,
 
+    /// Progress during the run.
+    #[arg(long, value_name = "WHEN", default_value = "auto")]
+    pub progress: ProgressArg,
+
     /// Print the errors of every profile, the cost of each effect and the work of each rank too.
     #[arg(long, conflicts_with = "quiet")]
     pub verbose: bool,
+}
+
+/// When a run shows its progress.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum ProgressArg {
+    /// A bar with the time left on a terminal, also under mpirun; otherwise a line every ten seconds
+    Auto,
+    /// A bar, wherever the output goes
+    Always,
+    /// No progress
+    Never,
+}
+
+impl From<ProgressArg> for ProgressChoice {
+    fn from(arg: ProgressArg) -> ProgressChoice {
+        match arg {
+            ProgressArg::Auto => ProgressChoice::Auto,
+            ProgressArg::Always => ProgressChoice::Always,
+            ProgressArg::Never => ProgressChoice::Never,
+        }
+    }
 }
 
 /// Default file that `perf calibrate` writes and `perf predict` reads.
@@ -239,6 +267,18 @@ pub enum Command {
     /// Measure this machine and the scaling of a scene, and predict runs on more ranks.
     #[command(subcommand)]
     Perf(PerfCommand),
+    /// Print a script that completes commands and options in a shell.
+    Completions {
+        /// The shell.
+        #[arg(value_name = "SHELL")]
+        shell: Shell,
+    },
+    /// Print the manual page, or write the pages of all commands.
+    Man {
+        /// Folder of the pages, such as ~/.local/share/man/man1.
+        #[arg(long, value_name = "DIR")]
+        output: Option<PathBuf>,
+    },
     /// Rewrite a scene of a former format with the present names, in place.
     Migrate {
         /// The scene: a JSON file.

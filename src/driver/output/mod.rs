@@ -15,6 +15,7 @@ pub mod report;
 pub mod summary;
 pub mod trace;
 pub mod vtkhdf;
+pub mod wrap;
 
 pub use error::OutputError;
 pub use file_names::SUMMARY_FILE;

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::decomposition::DecompositionSummary;
 use super::summary::{FailureSummary, MeasuredQuantity, OutflowSummary, ProfileSummary, Summary};
+use super::wrap::warning;
 use crate::accuracy::estimate::{Bounded, EstimateBasis, EstimatedErrors};
 use crate::accuracy::plan::Verdict;
 use crate::effects::{ledger_lines, ledger_rest};
@@ -83,7 +84,7 @@ pub fn brief(summary: &Summary, folder: &Path) -> String {
 
 /// Title and warnings.
 fn heading(summary: &Summary) -> String {
-    let warnings = summary.warnings.iter().map(|warning| format!("warning: {warning}\n"));
+    let warnings = summary.warnings.iter().map(|text| warning(text) + "\n");
     format!("{}\n{}", summary.title, warnings.collect::<String>())
 }
 
