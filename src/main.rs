@@ -369,8 +369,10 @@ fn announce(comm: &dyn Comm, scene: &CheckedScene, threads: usize) {
         eprintln!("{}", warning(&text));
     }
     let chosen = if scene.scene.domain.patches.is_some() { "" } else { " (chosen)" };
+    // without spaces, so that a line does not end within it
+    let patches = patches.iter().map(usize::to_string).collect::<Vec<_>>().join(",");
     let size = format!(
-        "{}: {} particles, {} cells, patches {patches:?}{chosen}, ranks {}, threads {threads}",
+        "{}: {} particles, {} cells, patches [{patches}]{chosen}, ranks {}, threads {threads}",
         scene.scene.title,
         scene.particles,
         scene.cell_count(),

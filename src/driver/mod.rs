@@ -425,10 +425,11 @@ where
         momentum,
         outflow: lets_out.then(|| gone(&ways.outflow)),
         erosion: scene.erodes().then(|| gone(&ways.erosion)),
-        failure: simulation
-            .columns()
-            .may_fail()
-            .then_some(FailureSummary { particles: end.failed, released_energy: end.released }),
+        failure: simulation.columns().may_fail().then_some(FailureSummary {
+            particles: end.failed,
+            damaged: end.damaged,
+            released_energy: end.released,
+        }),
         measured,
         profiles,
         error_estimate,

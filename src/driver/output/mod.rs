@@ -8,6 +8,7 @@ pub mod error;
 mod file_names;
 pub mod folder;
 pub mod histories;
+pub mod labels;
 pub mod lock;
 pub mod origin;
 mod paths;

@@ -130,16 +130,16 @@ impl ScalingRow {
 }
 
 #[cfg(test)]
-pub mod tests {
+pub(super) mod tests {
     use std::path::PathBuf;
 
     use serde_json::json;
 
-    use super::configuration::Configuration;
+    use super::super::configuration::Configuration;
     use super::*;
 
     /// A job, and its runs with these wall times \[s\].
-    pub fn measured(ranks: usize, walls: &[f64], sections: bool) -> (ScalingRun, Vec<MeasuredRun>) {
+    pub(in super::super) fn measured(ranks: usize, walls: &[f64], sections: bool) -> (ScalingRun, Vec<MeasuredRun>) {
         let job = ScalingRun {
             configuration: Configuration { ranks, threads: 1 },
             binding: RankBinding::Core,
