@@ -25,6 +25,7 @@ mod replacing;
 mod scenes;
 mod steps;
 mod templates;
+mod terminal;
 
 #[cfg(feature = "mpi")]
 mod ranks;
