@@ -372,14 +372,16 @@ pub fn meant(name: &str) -> Option<String> {
             names.push((below.get_name().to_string(), whole));
         }
     }
+    // a command before one of `perf` with the same name
     names
         .into_iter()
         .map(|(known, whole)| {
-            (strsim::damerau_levenshtein(&name.to_lowercase(), &known), known, whole)
+            let distance = strsim::damerau_levenshtein(&name.to_lowercase(), &known);
+            (distance, known != whole, known, whole)
         })
-        .filter(|(distance, known, _)| *distance <= (known.len().max(name.len()) / 3).max(1))
+        .filter(|(distance, _, known, _)| *distance <= (known.len().max(name.len()) / 3).max(1))
         .min()
-        .map(|(_, _, whole)| whole)
+        .map(|(_, _, _, whole)| whole)
 }
 
 /// Steps A to B, both included, as a range.

@@ -406,7 +406,7 @@ where
         version: env!("CARGO_PKG_VERSION").into(),
         origin: Some(folder.origin()),
         scene: as_run,
-        method_choice: recorder.method_choice.clone(),
+        method_choice: scene.method_choice.clone(),
         ranks: comm.size(),
         threads: options.threads,
         patches: layout.parts().to_vec(),

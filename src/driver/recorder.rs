@@ -11,7 +11,7 @@ use crate::driver::figures::PressureRow;
 use crate::driver::output::histories::HistoryTable;
 use crate::driver::output::origin::{Origin, RUN};
 use crate::driver::probes::Probes;
-use crate::scene::{CheckedScene, MethodChoice};
+use crate::scene::CheckedScene;
 use crate::simulation::ParticleTable;
 use crate::simulation::{Saved, Simulation};
 use crate::solver::{Stepper, Steps};
@@ -27,9 +27,6 @@ pub struct Recorder<'a> {
     scene: &'a CheckedScene,
     /// The command and the file of the original run, before any restart.
     pub origin: Origin,
-    /// Choice of the method by the original run, before any restart; `None` if the scene gives the
-    /// method in full.
-    pub method_choice: Option<MethodChoice>,
     probes: Option<Probes>,
     /// Profiles and the digests of their states.
     pub tables: Vec<(ParticleTable, String)>,
@@ -63,7 +60,6 @@ impl<'a> Recorder<'a> {
         Recorder {
             scene,
             origin: Origin::new(RUN, Path::new(&scene.file)),
-            method_choice: scene.method_choice.clone(),
             probes: Probes::new(scene),
             tables: Vec::new(),
             start: if needs_start { simulation.gather().map(|(table, _)| table) } else { None },
@@ -87,7 +83,6 @@ impl<'a> Recorder<'a> {
         self.arrivals.resume(due.arrivals);
         if let Some(checkpoint) = &checkpoint {
             self.origin = checkpoint.run_origin();
-            self.method_choice = checkpoint.method_choice.clone();
         }
         let Record { tables, waves, histories } =
             checkpoint.map_or_else(Record::default, |c| c.record);
@@ -177,7 +172,7 @@ impl<'a> Recorder<'a> {
         };
         CheckpointContents {
             origin: Some(&self.origin),
-            method_choice: self.method_choice.as_ref(),
+            method_choice: self.scene.method_choice.as_ref(),
             scene,
             dimension: self.scene.dimension,
             saved,

@@ -139,7 +139,11 @@ pub(super) mod tests {
     use super::*;
 
     /// A job, and its runs with these wall times \[s\].
-    pub(in super::super) fn measured(ranks: usize, walls: &[f64], sections: bool) -> (ScalingRun, Vec<MeasuredRun>) {
+    pub(in super::super) fn measured(
+        ranks: usize,
+        walls: &[f64],
+        sections: bool,
+    ) -> (ScalingRun, Vec<MeasuredRun>) {
         let job = ScalingRun {
             configuration: Configuration { ranks, threads: 1 },
             binding: RankBinding::Core,
