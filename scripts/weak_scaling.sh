@@ -10,5 +10,5 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/scripts/mpi_env.sh"
 
 "$root/scripts/setup.sh"
-cargo build --release --quiet --manifest-path "$root/Cargo.toml" --bin flyer-mpm --example scaling
-exec "${CARGO_TARGET_DIR:-$root/target}/release/examples/scaling" weak --cores "$(cores)" "$@"
+cargo build --release --quiet --manifest-path "$root/Cargo.toml"
+exec "${CARGO_TARGET_DIR:-$root/target}/release/flyer-mpm" perf study weak --cores "$(cores)" "$@"

@@ -17,11 +17,13 @@ use cli::{Cli, Command, PerfCommand, RunArgs, SceneArgs};
 use decomp::{Comm, Serial};
 use flyer_mpm::driver::checkpoint::fit::CHANGEABLE;
 use flyer_mpm::driver::checkpoint::{Checkpoint, folder};
+use flyer_mpm::driver::default_folder::default_folder;
 use flyer_mpm::driver::output::compare::compare;
-use flyer_mpm::driver::output::folder::{check_writable, default_folder};
+use flyer_mpm::driver::output::folder::check_writable;
 use flyer_mpm::driver::output::lock::Lock;
 use flyer_mpm::driver::output::origin::{Maker, Origin, RUN, check_target};
 use flyer_mpm::driver::output::trace::TRACE_START;
+use flyer_mpm::driver::output::wrap::{warning, wrapped};
 use flyer_mpm::driver::{Beginning, Options, RunFailure, run};
 use flyer_mpm::input;
 use flyer_mpm::input::input_file;
@@ -177,35 +179,42 @@ fn input(args: &RunArgs) -> String {
 /// Checks all inputs and targets that could make a run fail, before the scene is sent to the other
 /// ranks.
 fn begin(args: &RunArgs, reading: &AtomicBool) -> Outcome<Begun> {
-    let (bytes, checked, beginning, default, origin) = match (&args.restart, &args.scene) {
+    let (bytes, checked, beginning, restarted, origin) = match (&args.restart, &args.scene) {
         (Some(path), _) => {
             let (mut checkpoint, file, notes) = folder::open(path).map_err(bad)?;
-            notes.iter().for_each(|note| eprintln!("warning: {note}; taking the one before"));
+            notes.iter().for_each(|note| {
+                eprintln!("{}", warning(&format!("{note}; taking the one before")))
+            });
             let bytes = checkpoint.scene.clone().into_bytes();
             let name = file.display().to_string();
-            let checked =
+            let mut checked =
                 input::parse_changed(&bytes, &name, &args.set, &CHANGEABLE).map_err(bad)?;
             checkpoint.fit(&checked, &file).map_err(bad)?;
+            checked.method_choice = checkpoint.method_choice.clone();
             tell_restart(args, &checkpoint, &name);
-            let output = folder::results_of(&file).unwrap_or_else(|| default_folder(&file));
+            let output = folder::results_of(&file)
+                .unwrap_or_else(|| Path::new("output").join(file.file_stem().unwrap_or_default()));
             let origin = checkpoint.run_origin();
             let beginning = Beginning::Checkpoint(Some(Box::new(checkpoint)));
-            (bytes, checked, beginning, output, origin)
+            (bytes, checked, beginning, Some(output), origin)
         }
         (None, Some(path)) => {
             let scene = SceneArgs { scene: path.clone(), set: args.set.clone() };
             let (bytes, checked) = read_scene(&scene, args.ignore_memory)?;
-            (bytes, checked, Beginning::Scene, default_folder(path), Origin::new(RUN, path))
+            (bytes, checked, Beginning::Scene, None, Origin::new(RUN, path))
         }
         (None, None) => return Err((BAD_INPUT, "a scene is needed; see --help".into())),
     };
     if !args.ignore_memory {
         checked.check_memory(input::available_memory()).map_err(bad)?;
     }
-    let output = args.output.clone().unwrap_or(default);
+    let maker = Maker::with(origin, &checked);
+    let output = match args.output.clone().or(restarted) {
+        Some(output) => output,
+        None => results_folder(args, &maker),
+    };
     reading.store(false, Ordering::Relaxed);
     let lock = Lock::take(&output).map_err(bad)?;
-    let maker = Maker::with(origin, &checked);
     check_writable(&output, args.keep, &maker).map_err(bad)?;
     folder::check_owner(&output, &maker).map_err(bad)?;
     if let Some(file) = &args.trace {
@@ -215,12 +224,27 @@ fn begin(args: &RunArgs, reading: &AtomicBool) -> Outcome<Begun> {
     Ok(Begun { bytes, checked, beginning, output, lock })
 }
 
+/// The folder of the results of a scene without `--output`; prints why it has a number.
+fn results_folder(args: &RunArgs, maker: &Maker) -> PathBuf {
+    let scene = args.scene.as_deref().unwrap_or(Path::new(""));
+    let found = default_folder(scene, maker);
+    if let Some((avoided, theirs)) = found.avoided.filter(|_| !args.quiet) {
+        eprintln!(
+            "results go to {}, because {} holds {theirs}",
+            found.path.display(),
+            avoided.display()
+        );
+    }
+    found.path
+}
+
 /// Prints the checkpoint from which a run restarts.
 fn tell_restart(args: &RunArgs, checkpoint: &Checkpoint, file: &str) {
     let ours = env!("CARGO_PKG_VERSION");
     if checkpoint.version != ours {
         let theirs = &checkpoint.version;
-        eprintln!("warning: {file}: written by version {theirs}, this is {ours}: bits may differ");
+        let text = format!("{file}: written by version {theirs}, this is {ours}: bits may differ");
+        eprintln!("{}", warning(&text));
     }
     if !args.quiet {
         let saved = &checkpoint.saved;
@@ -285,6 +309,7 @@ fn run_scene(comm: &dyn Comm, args: &RunArgs, started: Instant) -> Outcome<()> {
         keep: args.keep,
         quiet: args.quiet,
         verbose: args.verbose,
+        progress: args.progress.into(),
         threads,
         trace: args.trace.clone().map(|file| (file, args.trace_steps.clone())),
         started,
@@ -325,33 +350,37 @@ fn run_scene(comm: &dyn Comm, args: &RunArgs, started: Instant) -> Outcome<()> {
 
 /// Prints one line about the run, and the warnings.
 fn announce(comm: &dyn Comm, scene: &CheckedScene, threads: usize) {
-    for warning in &scene.warnings {
-        eprintln!("warning: {warning}");
+    for text in &scene.warnings {
+        eprintln!("{}", warning(text));
     }
     let cores = std::thread::available_parallelism().map_or(threads, usize::from);
     if threads > cores {
-        eprintln!(
-            "warning: {threads} threads per rank, but this process may use only {cores} cores"
-        );
+        let text =
+            format!("{threads} threads per rank, but this process may use only {cores} cores");
+        eprintln!("{}", warning(&text));
     }
     let patches = flyer_mpm::simulation::patch_counts(scene, comm.size(), threads);
     let idle = comm.size().saturating_sub(patches.iter().product());
     if idle > 0 {
-        eprintln!(
-            "warning: {idle} of {} ranks have no patch: use fewer ranks, or more domain.patches",
-            comm.size()
+        let ranks = comm.size();
+        let text = format!(
+            "{idle} of {ranks} ranks have no patch: use fewer ranks, or more domain.patches"
         );
+        eprintln!("{}", warning(&text));
     }
     let chosen = if scene.scene.domain.patches.is_some() { "" } else { " (chosen)" };
-    eprintln!(
-        "{}: {} particles, {} cells, patches {patches:?}{chosen}, ranks {}, threads {threads}",
+    // without spaces, so that a line does not end within it
+    let patches = patches.iter().map(usize::to_string).collect::<Vec<_>>().join(",");
+    let size = format!(
+        "{}: {} particles, {} cells, patches [{patches}]{chosen}, ranks {}, threads {threads}",
         scene.scene.title,
         scene.particles,
         scene.cell_count(),
         comm.size(),
     );
+    eprintln!("{}", wrapped(&size, 2));
     if let Some(choice) = &scene.method_choice {
-        eprintln!("method {choice}");
+        eprintln!("{}", wrapped(&format!("method {choice}"), 2));
     }
 }
 
@@ -416,9 +445,18 @@ fn side_command(command: Command) -> Outcome<()> {
             say(&cli::predict::predict(&args)?);
             Ok(())
         }
+        Command::Perf(PerfCommand::Study(args)) => {
+            say(&cli::scaling::scaling(&args)?);
+            Ok(())
+        }
         Command::Study { study, output, quiet } => {
             cli::study::study(&study, output.as_deref(), quiet).map(|text| say(&text))
         }
+        Command::Completions { shell } => {
+            say(&cli::manual::completions(shell));
+            Ok(())
+        }
+        Command::Man { output } => cli::manual::man(output.as_deref()).map(|text| say(&text)),
         Command::Migrate { scene, output } => {
             cli::migrate::migrate(&scene, output.as_deref()).map(|text| say(&text))
         }

@@ -78,6 +78,7 @@ fn once(impact: &RandomImpact, folder: &Path) -> Result<Summary, String> {
         keep: false,
         quiet: true,
         verbose: false,
+        progress: Default::default(),
         threads: 1,
         trace: None,
         started: Instant::now(),

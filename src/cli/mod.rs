@@ -1,6 +1,7 @@
 //! The command line: arguments and subcommands, one file each.
 
 pub mod check;
+pub mod manual;
 pub mod material;
 pub mod materials;
 pub mod migrate;
@@ -8,11 +9,14 @@ pub mod new;
 pub mod plan;
 pub mod predict;
 pub mod reference;
+pub mod scaling;
 pub mod study;
 
 use std::path::PathBuf;
 
-use clap::{Args, CommandFactory, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use flyer_mpm::driver::progress::ProgressChoice;
 use flyer_mpm::scene::PlannedQuantity;
 
 /// Impact and shock waves by the material point method, compared with exact solutions.
@@ -24,8 +28,9 @@ use flyer_mpm::scene::PlannedQuantity;
 ///
 /// Results go to output/<name of the scene>/: summary.json (errors against the exact solution,
 /// energy, times), one CSV per profile time, histories.csv, results.hdf5 (for ParaView) and
-/// pictures. A new run of the same scene replaces them when it is complete; a run that fails leaves
-/// them unchanged, and a run of another scene into the same folder is refused.
+/// pictures. A new run of the same scene file replaces them when it is complete; a run that fails
+/// leaves them unchanged. Another scene of the same name gets output/<name>-2/; with --output, a
+/// folder with results of another scene is refused.
 ///
 /// Checkpoints go to output/<name of the scene>.checkpoints/ (output.checkpoint of the scene;
 /// default: every ten minutes). SIGTERM, SIGINT, SIGUSR1 and time.wall_limit write one and end the
@@ -116,9 +121,34 @@ pub struct RunArgs {
     #[arg(long)]
     pub quiet: bool,
 
+    /// Progress during the run.
+    #[arg(long, value_name = "WHEN", default_value = "auto")]
+    pub progress: ProgressArg,
+
     /// Print the errors of every profile, the cost of each effect and the work of each rank too.
     #[arg(long, conflicts_with = "quiet")]
     pub verbose: bool,
+}
+
+/// When a run shows its progress.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum ProgressArg {
+    /// A bar with the time left on a terminal, also under mpirun; otherwise a line every ten seconds
+    Auto,
+    /// A bar, wherever the output goes
+    Always,
+    /// No progress
+    Never,
+}
+
+impl From<ProgressArg> for ProgressChoice {
+    fn from(arg: ProgressArg) -> ProgressChoice {
+        match arg {
+            ProgressArg::Auto => ProgressChoice::Auto,
+            ProgressArg::Always => ProgressChoice::Always,
+            ProgressArg::Never => ProgressChoice::Never,
+        }
+    }
 }
 
 /// Default file that `perf calibrate` writes and `perf predict` reads.
@@ -148,7 +178,7 @@ pub struct PredictArgs {
     #[arg(long, value_name = "NAME|LATENCY,BANDWIDTH", default_value = "hdr")]
     pub network: String,
 
-    /// Compare predictions with this scaling.json of scripts/strong_scaling.sh instead, with the
+    /// Compare predictions with this scaling.json of `flyer-mpm perf study strong` instead, with the
     /// study's overrides of the scene; may be repeated.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["ranks", "threads"])]
     pub against: Vec<PathBuf>,
@@ -234,9 +264,21 @@ pub enum Command {
         #[command(flatten)]
         scene: SceneArgs,
     },
-    /// Measure this machine and predict how a run scales to more ranks.
+    /// Measure this machine and the scaling of a scene, and predict runs on more ranks.
     #[command(subcommand)]
     Perf(PerfCommand),
+    /// Print a script that completes commands and options in a shell.
+    Completions {
+        /// The shell.
+        #[arg(value_name = "SHELL")]
+        shell: Shell,
+    },
+    /// Print the manual page, or write the pages of all commands.
+    Man {
+        /// Folder of the pages, such as ~/.local/share/man/man1.
+        #[arg(long, value_name = "DIR")]
+        output: Option<PathBuf>,
+    },
     /// Rewrite a scene of a former format with the present names, in place.
     Migrate {
         /// The scene: a JSON file.
@@ -312,6 +354,11 @@ pub enum PerfCommand {
     /// Predict, without a run, the time of a step and of the whole run on more ranks, and the
     /// limits of strong scaling. Uses the constants of `flyer-mpm perf calibrate`.
     Predict(PredictArgs),
+    /// Measure strong or weak scaling: run a scene under mpirun on every combination of ranks and
+    /// threads, and on 1 x 1, each with every particle computed and once more with patches at rest
+    /// skipped. Writes a table, a CSV, scaling.json and a picture. Nothing else should run
+    /// meanwhile.
+    Study(scaling::ScalingArgs),
 }
 
 /// The command that the unknown name `name` resembles, if any.
@@ -325,14 +372,16 @@ pub fn meant(name: &str) -> Option<String> {
             names.push((below.get_name().to_string(), whole));
         }
     }
+    // a command before one of `perf` with the same name
     names
         .into_iter()
         .map(|(known, whole)| {
-            (strsim::damerau_levenshtein(&name.to_lowercase(), &known), known, whole)
+            let distance = strsim::damerau_levenshtein(&name.to_lowercase(), &known);
+            (distance, known != whole, known, whole)
         })
-        .filter(|(distance, known, _)| *distance <= (known.len().max(name.len()) / 3).max(1))
+        .filter(|(distance, _, known, _)| *distance <= (known.len().max(name.len()) / 3).max(1))
         .min()
-        .map(|(_, _, whole)| whole)
+        .map(|(_, _, _, whole)| whole)
 }
 
 /// Steps A to B, both included, as a range.

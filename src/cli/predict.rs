@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use decomp::{Comm, Serial};
 use flyer_mpm::driver::output::origin::check_target;
+use flyer_mpm::driver::output::wrap::warning;
 use flyer_mpm::input;
 use flyer_mpm::input::input_file;
 use flyer_mpm::perf_model::calibrate;
@@ -69,10 +70,9 @@ pub fn calibrate(comm: &dyn Comm, order: &Order) -> Outcome<()> {
     if comm.rank() == 0 {
         eprintln!("calibrating about {seconds:.0} s: {}", checked.scene.title);
         if comm.size() > 1 && calibrate::cores() == 1 {
-            eprintln!(
-                "warning: this rank has one core, so threads and a second busy core are not \
-                 measured; mpirun --bind-to none gives it all"
-            );
+            let text = "this rank has one core, so threads and a second busy core are not \
+                        measured; mpirun --bind-to none gives it all";
+            eprintln!("{}", warning(text));
         }
     }
     let found =

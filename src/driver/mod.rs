@@ -3,22 +3,22 @@
 //! All ranks compute; rank 0 gathers, evaluates errors and writes.
 
 pub mod checkpoint;
+pub mod default_folder;
 pub mod figures;
 mod measured;
 pub mod output;
 pub mod probes;
+pub mod progress;
 pub mod rank_statistics;
 pub mod recorder;
 
-use std::io::IsTerminal;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicU8;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use decomp::Comm;
-use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::accuracy::estimate::{self, Answer, Laws, coarse_runs};
 use crate::accuracy::plan;
@@ -38,6 +38,7 @@ use crate::driver::output::summary::{
 };
 use crate::driver::output::trace::write_trace;
 use crate::driver::output::vtkhdf::{RESULTS_FILE, RunInfo, write_vtkhdf};
+use crate::driver::progress::{Progress, ProgressChoice};
 use crate::driver::recorder::{Mark, Recorder};
 use crate::effects::ledger;
 use crate::plot::PictureError;
@@ -102,6 +103,8 @@ pub struct Options {
     pub keep: bool,
     /// Whether only errors are printed.
     pub quiet: bool,
+    /// When rank 0 shows the progress; never if `quiet`.
+    pub progress: ProgressChoice,
     /// Whether the report at the end has the errors of all profiles, the effects and the ranks.
     pub verbose: bool,
     /// Threads per rank.
@@ -112,56 +115,6 @@ pub struct Options {
     pub started: Instant,
     /// Number of a signal that requests an end; 0: none.
     pub signal: Arc<AtomicU8>,
-}
-
-/// Progress of a run: a bar on a terminal, otherwise a line at intervals.
-struct Progress {
-    bar: Option<ProgressBar>,
-    /// Start and end time [s].
-    span: [f64; 2],
-    told: Instant,
-    started: Instant,
-    speaks: bool,
-}
-
-impl Progress {
-    fn new(span: [f64; 2], speaks: bool) -> Self {
-        let bar = (speaks && std::io::stderr().is_terminal()).then(|| {
-            let bar = ProgressBar::new(1000);
-            let style = "{bar:40} {percent:>3} %  {msg}  left {eta}";
-            bar.set_style(ProgressStyle::with_template(style).expect("the template is sound"));
-            bar
-        });
-        Progress { bar, span, told: Instant::now(), started: Instant::now(), speaks }
-    }
-
-    fn tell(&mut self, time: f64, step: u64) {
-        let every = Duration::from_millis(if self.bar.is_some() { 100 } else { 10_000 });
-        if !self.speaks || self.told.elapsed() < every {
-            return;
-        }
-        self.told = Instant::now();
-        let share = (time - self.span[0]) / (self.span[1] - self.span[0]);
-        match &self.bar {
-            Some(bar) => {
-                bar.set_position((1000.0 * share) as u64);
-                bar.set_message(format!("{time:.4e} s, step {step}"));
-            }
-            None => {
-                let left = self.started.elapsed().as_secs_f64() * (1.0 / share.max(1e-9) - 1.0);
-                eprintln!(
-                    "{:5.1} %  time {time:.4e} s, step {step}, {left:.0} s left",
-                    100.0 * share
-                );
-            }
-        }
-    }
-
-    fn finish(self) {
-        if let Some(bar) = self.bar {
-            bar.finish_and_clear();
-        }
-    }
 }
 
 /// Steps to the end time, recording and writing checkpoints. Collective.
@@ -178,7 +131,8 @@ where
 {
     let end = scene.scene.time.end;
     let first = comm.rank() == 0;
-    let mut progress = Progress::new([simulation.time(), end], first && !options.quiet);
+    let shown = if first && !options.quiet { options.progress } else { ProgressChoice::Never };
+    let mut progress = Progress::new([simulation.time(), end], shown);
     // the start and the restart state need no checkpoint
     let mut fresh = true;
     let mut mark = recorder.mark();
@@ -471,10 +425,11 @@ where
         momentum,
         outflow: lets_out.then(|| gone(&ways.outflow)),
         erosion: scene.erodes().then(|| gone(&ways.erosion)),
-        failure: simulation
-            .columns()
-            .may_fail()
-            .then_some(FailureSummary { particles: end.failed, released_energy: end.released }),
+        failure: simulation.columns().may_fail().then_some(FailureSummary {
+            particles: end.failed,
+            damaged: end.damaged,
+            released_energy: end.released,
+        }),
         measured,
         profiles,
         error_estimate,

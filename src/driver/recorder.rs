@@ -172,6 +172,7 @@ impl<'a> Recorder<'a> {
         };
         CheckpointContents {
             origin: Some(&self.origin),
+            method_choice: self.scene.method_choice.as_ref(),
             scene,
             dimension: self.scene.dimension,
             saved,

@@ -80,6 +80,8 @@ impl<const D: usize> Effect<D> for FailureEffect {
         let damage = &block.columns[self.damage][particles.clone()];
         let failed = damage.iter().map(|d| f64::from(u8::from(*d >= 1.0)));
         add(Account::FailedParticles, &failed.collect::<SmallVec<[f64; 128]>>());
+        let damaged = damage.iter().map(|d| f64::from(u8::from(*d > 0.0 && *d < 1.0)));
+        add(Account::DamagedParticles, &damaged.collect::<SmallVec<[f64; 128]>>());
         add(Account::ReleasedEnergy, &block.columns[self.released][particles]);
     }
 }

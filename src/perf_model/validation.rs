@@ -1,4 +1,4 @@
-//! Comparison of predictions with measurements of `scripts/strong_scaling.sh`.
+//! Comparison of predictions with measurements of `perf study`.
 
 use std::path::{Path, PathBuf};
 
@@ -81,9 +81,9 @@ impl Against {
     pub fn read(path: &Path) -> Result<Self, PredictionError> {
         let fail = |reason: String| PredictionError { file: path.display().to_string(), reason };
         let bytes = input_file::read(path, input_file::LARGEST_JSON)
-            .map_err(|e| fail(format!("{e}; scripts/strong_scaling.sh writes scaling.json")))?;
+            .map_err(|e| fail(format!("{e}; flyer-mpm perf study strong writes scaling.json")))?;
         let study: Against = serde_json::from_slice(&bytes).map_err(|e| {
-            fail(format!("no scaling study: {e}; allowed: scaling.json of strong_scaling.sh"))
+            fail(format!("no scaling study: {e}; allowed: scaling.json of perf study strong"))
         })?;
         if study.kind != "strong" {
             let kind = &study.kind;

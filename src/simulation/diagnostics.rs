@@ -28,6 +28,8 @@ pub struct Totals<const D: usize> {
     pub conducted: f64,
     /// Number of failed particles.
     pub failed: u64,
+    /// Number of particles with a damage between 0 and 1.
+    pub damaged: u64,
     /// Elastic energy that failure has converted to heat so far [J].
     pub released: f64,
 }
@@ -66,6 +68,7 @@ impl<const D: usize> Simulation<'_, D> {
             conducted,
             failed,
             released,
+            damaged,
         ] = exact_sums(self.comm, |add: &mut dyn FnMut(usize, &[f64])| {
             for block in self.patches.iter().map(|patch| &patch.block) {
                 for from in (0..block.own()).step_by(PARTICLES_AT_ONCE) {
@@ -104,6 +107,7 @@ impl<const D: usize> Simulation<'_, D> {
             body_force_impulse: std::array::from_fn(|a| [pull_x, pull_y][a]),
             conducted,
             failed: failed as u64,
+            damaged: damaged as u64,
             released,
         }
     }
@@ -326,6 +330,7 @@ fn number_of(account: Account) -> usize {
         Account::ExternalHeat => 9,
         Account::FailedParticles => 10,
         Account::ReleasedEnergy => 11,
+        Account::DamagedParticles => 12,
     }
 }
 

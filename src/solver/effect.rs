@@ -98,6 +98,8 @@ pub enum Account {
     ExternalHeat,
     /// Number of failed particles.
     FailedParticles,
+    /// Number of particles with a damage between 0 and 1.
+    DamagedParticles,
     /// Accumulated elastic energy that failure has converted to heat [J].
     ReleasedEnergy,
 }

@@ -11,6 +11,7 @@ use flyer_mpm::driver::checkpoint::{
 use flyer_mpm::driver::figures::PressureRow;
 use flyer_mpm::driver::output::histories::HistoryTable;
 use flyer_mpm::driver::output::origin::{Origin, RUN};
+use flyer_mpm::scene::{MethodChoice, Preset};
 use flyer_mpm::simulation::Saved;
 use flyer_mpm::simulation::monitor::Peaks;
 use flyer_mpm::simulation::{ParticleTable, TableColumn};
@@ -38,6 +39,10 @@ fn example() -> Checkpoint {
     let mut checkpoint = Checkpoint {
         version: env!("CARGO_PKG_VERSION").into(),
         origin: Some(Origin::new(RUN, Path::new("Cargo.toml"))),
+        method_choice: Some(MethodChoice {
+            preset: Preset::Sharpest,
+            reasons: vec!["FMPM(8)".into(), "two \"bodies\"".into()],
+        }),
         scene: r#"{"title": "x"}"#.into(),
         dimension: 2,
         saved: Saved {
@@ -80,6 +85,7 @@ fn example() -> Checkpoint {
 fn contents(c: &Checkpoint) -> CheckpointContents<'_> {
     CheckpointContents {
         origin: c.origin.as_ref(),
+        method_choice: c.method_choice.as_ref(),
         scene: &c.scene,
         dimension: c.dimension,
         saved: &c.saved,

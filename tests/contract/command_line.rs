@@ -187,3 +187,92 @@ fn no_environment_is_needed() {
     assert!(status.unwrap().success());
     assert_eq!(home.results("output/scene").count("ranks"), 1);
 }
+
+/// Names of all subcommands, those of `perf` too, from the help.
+fn subcommands(home: &Home, of: &[&str]) -> Vec<String> {
+    let help = home.call(of.iter().copied().chain(["--help"])).end().succeeded();
+    let lines = help.lines().skip_while(|line| *line != "Commands:").skip(1);
+    let lines = lines.take_while(|line| !line.is_empty());
+    let names = lines.filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+    names.filter_map(|line| line.split_whitespace().next()).map(String::from).collect()
+}
+
+#[test]
+fn completions_name_every_command() {
+    let home = Home::new();
+    let commands = [subcommands(&home, &[]), subcommands(&home, &["perf"])].concat();
+    assert!(commands.len() > 15 && commands.contains(&"calibrate".into()), "{commands:?}");
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = home.call(["completions", shell]).end().succeeded();
+        for name in &commands {
+            assert!(script.contains(name.as_str()), "no {name} for {shell}");
+        }
+        for option in ["restart", "ignore-memory", "progress"] {
+            assert!(script.contains(option), "no --{option} for {shell}");
+        }
+    }
+    home.write("flyer-mpm.bash", &home.call(["completions", "bash"]).end().succeeded());
+    // the shell reads the script, and completes a command by it
+    let typed = "source flyer-mpm.bash; COMP_WORDS=(flyer-mpm hug); COMP_CWORD=1; \
+                 _flyer__mpm flyer-mpm hug flyer-mpm; echo \"${COMPREPLY[@]}\"";
+    for (args, said) in [(["-n", "flyer-mpm.bash"], ""), (["-c", typed], "hugoniot\n")] {
+        let bash = Command::new("bash").current_dir(home.path()).args(args).output().unwrap();
+        assert!(bash.status.success(), "{}", String::from_utf8_lossy(&bash.stderr));
+        assert_eq!(String::from_utf8_lossy(&bash.stdout), said);
+    }
+    home.call(["completions", "cmd"]).end().failed(&["cmd"]);
+}
+
+#[test]
+fn there_is_a_page_for_every_command() {
+    let home = Home::new();
+    let page = home.call(["man"]).end().succeeded();
+    assert!(page.contains(".TH flyer-mpm 1") && page.contains("stall\\-timeout"), "{page}");
+    home.call(["man", "--output", "pages"]).end().succeeded();
+    let pages = names(&home.at("pages"));
+    for name in subcommands(&home, &[]).into_iter().filter(|name| name != "help") {
+        assert!(pages.contains(&format!("flyer-mpm-{name}.1")), "no {name} in {pages:?}");
+    }
+    for name in ["flyer-mpm.1", "flyer-mpm-perf-study.1"] {
+        assert!(pages.contains(&name.to_string()), "no {name} in {pages:?}");
+    }
+    home.write("file", "");
+    home.call(["man", "--output", "file/below"]).end().failed(&["file/below: cannot write"]);
+}
+
+/// Where there is no terminal, no bar is drawn unless it is asked for.
+#[test]
+fn a_bar_is_drawn_without_a_terminal_only_if_it_is_asked_for() {
+    let home = Home::with(&short());
+    let long = ["--set", "domain.cell_size=2e-6", "--set", "time.end=1e-7"];
+    let drawn = |choice: &str| {
+        let args = ["scene.json", "--progress", choice].into_iter().chain(long);
+        let out = home.call(args).end();
+        assert!(out.status.success(), "{}", out.stderr);
+        out.stderr.contains('\x1b')
+    };
+    assert_eq!(["auto", "always", "never"].map(drawn), [false, true, false]);
+    home.call(["scene.json", "--progress", "often"]).end().failed(&["often"]);
+}
+
+#[test]
+fn warnings_end_their_lines_between_words() {
+    let home = Home::with(&short());
+    let out = home
+        .call([
+            "scene.json",
+            "--set",
+            "monitor.on_courant_exceeded=allow",
+            "--set",
+            "materials.copper.density=8.93",
+        ])
+        .end();
+    let warned = out.stderr.lines().filter(|line| line.starts_with("warning: ")).count();
+    let more = out.stderr.lines().filter(|line| line.starts_with("         ")).count();
+    assert!(warned > 0 && more > 0, "{}", out.stderr);
+    assert!(
+        out.stderr.lines().filter(|l| !l.starts_with("error: ")).all(|l| l.chars().count() <= 100),
+        "{}",
+        out.stderr
+    );
+}

@@ -3,6 +3,7 @@
 use serde_json::json;
 
 use crate::home::Home;
+use crate::scenes::short;
 
 /// Tungsten on tantalum at 800 m/s. The exact pressure between them is 29.807 GPa.
 #[test]
@@ -58,5 +59,33 @@ fn an_impact_without_a_method_is_accurate() {
     }
     for peak in peaks {
         assert!((peak / 29.806946e9 - 1.0).abs() < 0.005, "peak {peak:e} Pa");
+    }
+}
+
+/// The checkpoint holds the method in full; the restarted run still says how it was chosen.
+#[test]
+fn a_restarted_run_tells_of_the_same_choice() {
+    let mut scene = short();
+    for key in ["method", "artificial_viscosity"] {
+        scene.as_object_mut().unwrap().remove(key);
+    }
+    scene["output"]["checkpoint"] = json!({"every_steps": 5, "keep": 9});
+    let home = Home::with(&scene);
+    let method = |stderr: &str| {
+        let lines = stderr.lines().skip_while(|line| !line.starts_with("method "));
+        let end = |line: &&str| line.starts_with("method ") || line.starts_with("  ");
+        lines.take_while(end).map(String::from).collect::<Vec<_>>()
+    };
+    let whole = home.call(["scene.json", "--output", "run"]).end();
+    let choice = home.results("run").summary["method_choice"].clone();
+    assert!(choice["reasons"].as_array().is_some_and(|reasons| !reasons.is_empty()), "{choice}");
+    let said = method(&whole.stderr);
+    assert!(said[0].starts_with("method default: "), "{}", whole.stderr);
+    for _ in 0..2 {
+        let file = "run.checkpoints/checkpoint-000001.hdf5";
+        let again = home.call(["--restart", file, "--output", "run"]).end();
+        assert_eq!(method(&again.stderr), said);
+        again.succeeded();
+        assert_eq!(home.results("run").summary["method_choice"], choice);
     }
 }

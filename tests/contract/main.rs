@@ -25,8 +25,11 @@ mod replacing;
 mod scenes;
 mod steps;
 mod templates;
+mod terminal;
 
 #[cfg(feature = "mpi")]
 mod ranks;
+#[cfg(feature = "mpi")]
+mod scaling;
 #[cfg(feature = "mpi")]
 mod stalls;

@@ -49,9 +49,38 @@ fn harmless(home: &Home, args: &[&str]) -> Ended {
 fn two_scenes_of_one_name_do_not_share_a_result() {
     let home = home();
     let words = ["output/plate", "a/plate.json", "b/plate.json", "--output DIR"];
-    refused(&home, &["b/plate.json"], &words);
+    refused(&home, &["b/plate.json", "--output", "output/plate"], &words);
     harmless(&home, &["b/plate.json", "--quiet", "--output", "output/b"]).succeeded();
     refused(&home, &["a/plate.json", "--output", "output/b"], &words[1..]);
+    // without --output, each scene has its own folder, also when it is run again
+    for _ in 0..2 {
+        let out = home.call(["b/plate.json"]).end();
+        let lines: Vec<&str> = out.stderr.lines().filter(|l| l.contains("results go")).collect();
+        assert_eq!(lines.len(), 1, "{}", out.stderr);
+        for word in ["output/plate-2", "output/plate holds", "a/plate.json"] {
+            assert!(lines[0].contains(word), "no {word} in: {}", lines[0]);
+        }
+        assert!(out.succeeded().contains("output/plate-2"));
+    }
+    let out = home.call(["a/plate.json"]).end();
+    assert!(!out.stderr.contains("results go"), "{}", out.stderr);
+    out.succeeded();
+    assert_eq!(home.results("output/plate").summary["scene"]["bodies"][0]["velocity"][0], 1000.0);
+    assert_eq!(home.results("output/plate-2").summary["scene"]["bodies"][0]["velocity"][0], 700.0);
+    assert!(!home.at("output/plate-3").exists());
+}
+
+/// A run that was killed before its first result has checkpoints only.
+#[test]
+fn a_scene_with_checkpoints_alone_keeps_its_folder() {
+    let home = home();
+    let checkpoints = "output.checkpoint={\"every_steps\": 3}";
+    home.call(["a/plate.json", "--quiet", "--set", checkpoints]).end().succeeded();
+    fs::remove_dir_all(home.at("output/plate")).unwrap();
+    harmless(&home, &["b/plate.json", "--quiet"]).succeeded();
+    assert!(home.at("output/plate-2/summary.json").exists());
+    home.call(["--restart", "output/plate.checkpoints", "--quiet"]).end().succeeded();
+    assert!(home.at("output/plate/summary.json").exists());
 }
 
 #[test]
@@ -66,9 +95,11 @@ fn an_edited_a_copied_and_a_moved_scene() {
     home.write("a/plate.json", &edited.to_string());
     home.call(["a/plate.json", "--quiet"]).end().succeeded();
     assert_ne!(home.results("output/plate").states(), first.states());
-    // a copy gives the same bits
+    // a copy is another scene
     fs::copy(home.at("a/plate.json"), home.at("b/plate.json")).unwrap();
-    home.call(["b/plate.json", "--quiet"]).end().succeeded();
+    harmless(&home, &["b/plate.json", "--quiet"]).succeeded();
+    let states = home.results("output/plate-2");
+    assert_eq!(states.states(), home.results("output/plate").states());
     // scenes and results moved together
     fs::create_dir(home.at("old")).unwrap();
     for name in ["a", "b", "output"] {
@@ -76,12 +107,12 @@ fn an_edited_a_copied_and_a_moved_scene() {
     }
     fs::rename(home.at("old"), home.at("new")).unwrap();
     edited["time"]["end"] = json!(2e-8);
-    home.write("new/b/plate.json", &edited.to_string());
-    let args = ["new/b/plate.json", "--quiet", "--output", "new/output/plate"];
+    home.write("new/a/plate.json", &edited.to_string());
+    let args = ["new/a/plate.json", "--quiet", "--output", "new/output/plate"];
     home.call(args).end().succeeded();
     edited["time"]["end"] = json!(1.5e-8);
-    home.write("new/a/plate.json", &edited.to_string());
-    refused(&home, &["new/a/plate.json", "--output", "new/output/plate"], &["new/output/plate"]);
+    home.write("new/b/plate.json", &edited.to_string());
+    refused(&home, &["new/b/plate.json", "--output", "new/output/plate"], &["new/output/plate"]);
 }
 
 #[test]
@@ -91,7 +122,8 @@ fn a_result_without_a_record_is_replaced_by_the_same_values_alone() {
     let mut summary: Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
     assert!(summary.as_object_mut().unwrap().remove("origin").is_some());
     home.write("output/plate/summary.json", &summary.to_string());
-    refused(&home, &["b/plate.json"], &["an unknown file", "b/plate.json"]);
+    let other = ["b/plate.json", "--output", "output/plate"];
+    refused(&home, &other, &["an unknown file", "b/plate.json"]);
     home.call(["a/plate.json", "--quiet"]).end().succeeded();
     assert!(home.results("output/plate").summary["origin"]["file"].is_string());
 }

@@ -11,6 +11,10 @@ use std::time::{Duration, Instant};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_flyer-mpm");
 
+/// Lets Open MPI run in a container.
+const AS_ROOT: [(&str, &str); 2] =
+    [("OMPI_ALLOW_RUN_AS_ROOT", "1"), ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")];
+
 /// Several ranks that wait for each other are slow on few cores, so such calls run alone.
 static CORES: RwLock<()> = RwLock::new(());
 
@@ -77,7 +81,8 @@ impl Call {
     fn command(&self) -> Command {
         let Some(ranks) = self.ranks else {
             let mut plain = Command::new(PROGRAM);
-            plain.args(&self.args);
+            // for commands that start mpirun themselves
+            plain.args(&self.args).envs(AS_ROOT);
             return plain;
         };
         let mut mpirun = Command::new("mpirun");
@@ -85,8 +90,7 @@ impl Call {
             .args(["--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "--bind-to", "none"])
             .args(["-n", &ranks.to_string(), PROGRAM])
             .args(&self.args)
-            .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
-            .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+            .envs(AS_ROOT)
             .env("OMPI_MCA_btl_vader_single_copy_mechanism", "none");
         mpirun
     }

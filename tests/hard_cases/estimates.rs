@@ -112,6 +112,7 @@ fn ends(value: &Value, folder: &Path) -> Option<Result<Summary, String>> {
         keep: false,
         quiet: true,
         verbose: false,
+        progress: Default::default(),
         threads: 1,
         trace: None,
         started: Instant::now(),

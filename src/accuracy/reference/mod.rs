@@ -52,6 +52,17 @@ pub enum ReferenceSolution {
     Plane(PlaneReference),
 }
 
+/// A particle of a plane wave in a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AlongWave {
+    /// Position along the wave [m].
+    pub x: f64,
+    /// Velocity along the wave [m/s].
+    pub u: f64,
+    /// Pressure [Pa].
+    pub p: f64,
+}
+
 /// Impact of a plate on a target.
 pub struct ImpactReference {
     /// The two bodies.
@@ -276,7 +287,7 @@ impl ReferenceSolution {
     }
 
     /// Whether, in a plane, releases from the plate edges have reached the scored strip.
-    fn edge_release_has_come(&self, scene: &CheckedScene, k: usize) -> bool {
+    pub fn edge_release_has_come(&self, scene: &CheckedScene, k: usize) -> bool {
         let ReferenceSolution::Impact(all) = self else { return false };
         if scene.dimension == 1 {
             return false;
@@ -310,6 +321,19 @@ impl ReferenceSolution {
         cells: f64,
     ) -> Vec<ScoreSample> {
         plane_samples(scene, table, self.scored(), cells * scene.cell_size[0])
+    }
+
+    /// In a plane: the scored particles in the strip along the waves.
+    pub fn particles_along(&self, scene: &CheckedScene, table: &ParticleTable) -> Vec<AlongWave> {
+        let line = wave_line(scene);
+        let points = plane_points(scene, table, self.scored());
+        let state = |q: &PlanePoint| AlongWave {
+            x: line.along(q.x),
+            u: line.normal()[0] * q.v[0] + line.normal()[1] * q.v[1],
+            p: q.p,
+        };
+        let in_strip = |q: &&PlanePoint| line.across(q.x).abs() < half_width(scene);
+        points.iter().filter(in_strip).map(state).collect()
     }
 
     /// Scores of the particles at profile time number `k`: unaveraged, and averaged over cells.
@@ -378,6 +402,11 @@ fn wave_line(scene: &CheckedScene) -> PlaneWave {
     PlaneWave::at_angle(about, angle).expect("the scene's numbers are finite")
 }
 
+/// Half of the width of the scored strip along the wave direction [m]; infinite without a limit.
+fn half_width(scene: &CheckedScene) -> f64 {
+    scene.front().and_then(|front| front.half_width).unwrap_or(f64::INFINITY)
+}
+
 /// The particles of `body` (or all) in a plane, as means over `width` [m] along the wave direction.
 fn plane_samples(
     scene: &CheckedScene,
@@ -385,6 +414,15 @@ fn plane_samples(
     body: Option<usize>,
     width: f64,
 ) -> Vec<ScoreSample> {
+    wave_line(scene).binned(&plane_points(scene, table, body), half_width(scene), width)
+}
+
+/// The particles of `body` (or all) in a plane within the scored range.
+fn plane_points(
+    scene: &CheckedScene,
+    table: &ParticleTable,
+    body: Option<usize>,
+) -> Vec<PlanePoint> {
     let column = |name| table.column(name).expect("the table has its own columns");
     let [x, y] = ["x", "y"].map(column);
     let [vx, vy] = ["velocity_x", "velocity_y"].map(column);
@@ -396,7 +434,7 @@ fn plane_samples(
         body.is_none_or(|b| table.body[r] as usize == b)
             && range.is_none_or(|[from, to]| (from..=to).contains(&line.along([x[r], y[r]])))
     };
-    let points: Vec<PlanePoint> = (0..table.len())
+    (0..table.len())
         .filter(scored)
         .map(|r| PlanePoint {
             x: [x[r], y[r]],
@@ -406,9 +444,7 @@ fn plane_samples(
             rho: rho[r],
             e: e[r],
         })
-        .collect();
-    let half_width = scene.front().and_then(|front| front.half_width).unwrap_or(f64::INFINITY);
-    line.binned(&points, half_width, width)
+        .collect()
 }
 
 /// The particles of `body` (or all) as samples.

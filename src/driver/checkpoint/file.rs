@@ -18,6 +18,7 @@ use crate::driver::figures::PressureRow;
 use crate::driver::output::OutputError;
 use crate::driver::output::histories::HistoryTable;
 use crate::driver::output::origin::Origin;
+use crate::scene::MethodChoice;
 use crate::simulation::Saved;
 use crate::simulation::monitor::Peaks;
 use crate::simulation::{ParticleTable, TableColumn};
@@ -28,6 +29,8 @@ struct Books {
     version: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     origin: Option<Origin>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    method_choice: Option<MethodChoice>,
     dimension: usize,
     time: f64,
     step: u64,
@@ -124,6 +127,7 @@ fn write_root(file: &Group, contents: &CheckpointContents, alive: &dyn Fn()) -> 
     let books = Books {
         version: env!("CARGO_PKG_VERSION").into(),
         origin: contents.origin.cloned(),
+        method_choice: contents.method_choice.cloned(),
         dimension: contents.dimension,
         time: saved.time,
         step: saved.step,
@@ -258,6 +262,7 @@ fn read_root(file: &Group, length: u64) -> hdf5::Result<Checkpoint> {
     Ok(Checkpoint {
         version: books.version,
         origin: books.origin,
+        method_choice: books.method_choice,
         scene,
         dimension: books.dimension,
         saved: Saved {

@@ -21,6 +21,7 @@ use crate::accuracy::estimate::arrival::Passing;
 use crate::driver::figures::PressureRow;
 use crate::driver::output::histories::HistoryTable;
 use crate::driver::output::origin::{Origin, RUN};
+use crate::scene::MethodChoice;
 use crate::simulation::ParticleTable;
 use crate::simulation::Saved;
 
@@ -67,6 +68,8 @@ pub struct Checkpoint {
     pub version: String,
     /// The command and the scene file of the run; `None` if not recorded.
     pub origin: Option<Origin>,
+    /// Choice of the method; `None` if the scene gave it in full.
+    pub method_choice: Option<MethodChoice>,
     /// The scene as run, JSON.
     pub scene: String,
     /// Dimension of the scene.
@@ -86,6 +89,8 @@ pub struct Checkpoint {
 pub struct CheckpointContents<'a> {
     /// The command and the scene file of the run.
     pub origin: Option<&'a Origin>,
+    /// Choice of the method; `None` if the scene gave it in full.
+    pub method_choice: Option<&'a MethodChoice>,
     /// The scene as run, JSON.
     pub scene: &'a str,
     /// Dimension of the scene.

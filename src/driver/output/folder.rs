@@ -14,12 +14,6 @@ use super::error::OutputError;
 use super::origin::{ExistingResult, Maker, Origin, check_outside_results};
 use super::paths::resolve;
 
-/// Default folder of a scene's results, without `--output`: `output/<stem of the scene>`.
-pub fn default_folder(scene: &Path) -> PathBuf {
-    let stem = scene.file_stem().unwrap_or_else(|| "scene".as_ref());
-    Path::new("output").join(stem)
-}
-
 /// Checks, before the run, whether a result can be written at `target`; leaves no files behind. An
 /// empty folder is always accepted. An earlier result is refused if `keep` is set or if `maker` may
 /// not replace it.

@@ -8,6 +8,7 @@ pub mod error;
 mod file_names;
 pub mod folder;
 pub mod histories;
+pub mod labels;
 pub mod lock;
 pub mod origin;
 mod paths;
@@ -15,6 +16,7 @@ pub mod report;
 pub mod summary;
 pub mod trace;
 pub mod vtkhdf;
+pub mod wrap;
 
 pub use error::OutputError;
 pub use file_names::SUMMARY_FILE;

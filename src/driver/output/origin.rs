@@ -1,9 +1,10 @@
 //! The origin of a result: the command and the scene that made it, and the rule for replacing it.
 //!
 //! Only the same command on the same scene replaces a result. A scene is the same if it is the same
-//! file, edited or not, or if it has the same values, because then the new result has the same
-//! bits. If the original file no longer exists, a file at the same path relative to the result
-//! counts as the same. Therefore a folder of scenes and results can be moved as a whole.
+//! file, edited or not. If the original file is not known or no longer exists, a scene with the same
+//! values counts as the same, because the new result has the same bits, and so does a file at the
+//! same path relative to the result. Therefore a folder of scenes and results can be moved as a
+//! whole.
 
 use std::fmt;
 use std::fs;
@@ -95,8 +96,10 @@ impl Maker {
 
     /// Whether this maker may replace the result at `place` with origin `theirs` and `scene`.
     pub fn may_replace(&self, theirs: &Origin, scene: &Value, place: &Path) -> bool {
-        let same = self.origin.command == theirs.command && self.scene == *scene;
-        same || self.origin.is(theirs, place)
+        let same_values = self.origin.command == theirs.command && self.scene == *scene;
+        let other_file = self.origin.file != theirs.file
+            && theirs.file.as_ref().is_some_and(|file| Path::new(file).exists());
+        (same_values && !other_file) || self.origin.is(theirs, place)
     }
 }
 
@@ -224,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn the_same_file_or_the_same_values_are_the_same_scene() {
+    fn the_same_file_is_the_same_scene_and_the_same_values_once_it_is_gone() {
         let home = tempfile::tempdir().unwrap();
         let home = home.path().canonicalize().unwrap();
         let (a, b) = (home.join("a.json"), home.join("b.json"));
@@ -235,11 +238,17 @@ mod tests {
         assert_eq!(theirs.relative.as_deref(), Some("../../a.json"));
         // edited; the same values in another file; another scene; another command
         assert!(maker(&a, 2).may_replace(&theirs, &scene, &place));
-        assert!(maker(&b, 1).may_replace(&theirs, &scene, &place));
+        assert!(!maker(&b, 1).may_replace(&theirs, &scene, &place));
         assert!(!maker(&b, 2).may_replace(&theirs, &scene, &place));
         let mut other = maker(&a, 1);
         other.origin.command = "hugoniot".into();
         assert!(!other.may_replace(&theirs, &scene, &place));
+        // a result that records no file; the file of the result is gone
+        let unknown = Origin { file: None, relative: None, ..theirs.clone() };
+        assert!(maker(&b, 1).may_replace(&unknown, &scene, &place));
+        fs::remove_file(&a).unwrap();
+        assert!(maker(&b, 1).may_replace(&theirs, &scene, &place));
+        assert!(!maker(&b, 2).may_replace(&theirs, &scene, &place));
     }
 
     #[test]

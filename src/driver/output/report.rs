@@ -4,7 +4,9 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::decomposition::DecompositionSummary;
+use super::labels;
 use super::summary::{FailureSummary, MeasuredQuantity, OutflowSummary, ProfileSummary, Summary};
+use super::wrap::{warning, wrapped};
 use crate::accuracy::estimate::{Bounded, EstimateBasis, EstimatedErrors};
 use crate::accuracy::plan::Verdict;
 use crate::effects::{ledger_lines, ledger_rest};
@@ -38,36 +40,55 @@ const ERRORS: [(&str, &str, bool); 22] = [
 
 /// Errors in the brief report: key, label, unit.
 const BRIEF_ERRORS: [(&str, &str, &str); 9] = [
-    ("l1", "mean pressure error", " %"),
-    ("rise_cells", "shock width", " cells"),
-    ("overshoot", "overshoot", " %"),
-    ("density_l1", "mean density error", " %"),
-    ("mean_density_error", "density error behind the shock", " %"),
-    ("displacement_l2", "displacement error", " %"),
-    ("angular_momentum_loss", "lost angular momentum", " %"),
-    ("velocity_rms", "velocity error", " %"),
-    ("pressure_rms", "pressure error", " %"),
+    ("l1", labels::MEAN_PRESSURE_ERROR, " %"),
+    ("rise_cells", labels::SHOCK_WIDTH, " cells"),
+    ("overshoot", labels::OVERSHOOT, " %"),
+    ("density_l1", labels::MEAN_DENSITY_ERROR, " %"),
+    ("mean_density_error", labels::SHOCK_DENSITY_ERROR, " %"),
+    ("displacement_l2", labels::DISPLACEMENT_ERROR, " %"),
+    ("angular_momentum_loss", labels::LOST_ANGULAR_MOMENTUM, " %"),
+    ("velocity_rms", labels::VELOCITY_ERROR, " %"),
+    ("pressure_rms", labels::PRESSURE_ERROR, " %"),
 ];
+
+/// Lines of a brief report, warnings aside, if the facts leave room for a quantity.
+const BRIEF_LINES: usize = 10;
 
 /// The brief report: physical quantities, errors of the last profile, conservation, size, time and
 /// the folder of the files.
 pub fn brief(summary: &Summary, folder: &Path) -> String {
-    let mut text = heading(summary);
-    if !summary.measured.is_empty() {
-        text += &table(&measured(&summary.measured));
-    }
+    let facts = brief_facts(summary, folder);
+    let lines = table(&named(facts));
+    // names have a column of their own, below which the lines go on
+    let indent = lines.len() - lines.trim_start().len();
+    let names = lines.lines().next().map_or(0, |line| {
+        let rest = line.trim_start();
+        rest.len() - rest.trim_start_matches(|c: char| !c.is_whitespace()).trim_start().len()
+    });
+    let lines: Vec<String> =
+        lines.lines().map(|line| wrapped(line, indent + names) + "\n").collect();
+    let lines = lines.concat();
+    // title and heading of the quantities
+    let room = BRIEF_LINES.saturating_sub(2 + lines.lines().count()).max(1);
+    let shown = &summary.measured[..summary.measured.len().min(room)];
+    let quantities = if shown.is_empty() { String::new() } else { table(&measured(shown)) };
+    heading(summary) + &quantities + &lines
+}
+
+/// Facts of the brief report: label and text.
+fn brief_facts(summary: &Summary, folder: &Path) -> Vec<(&'static str, String)> {
     let mut facts = Vec::new();
-    facts.extend(last_errors(&summary.profiles).map(|text| ("errors", text)));
+    facts.extend(last_errors(&summary.profiles).map(|text| (labels::ERRORS, text)));
     let drifts = [("energy", summary.energy.drift), ("momentum", summary.momentum.drift)];
     let kept = drifts.iter().filter_map(|(of, d)| Some(format!("{of} {:.1e}", d.as_ref()?.abs())));
     let kept: Vec<String> = kept.collect();
     if !kept.is_empty() {
-        facts.push(("conservation", format!("relative errors: {}", kept.join(", "))));
+        facts.push((labels::CONSERVATION, format!("relative errors: {}", kept.join(", "))));
     }
     facts.extend(events(summary));
     let plural = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     facts.push((
-        "run",
+        labels::RUN,
         format!(
             "{} particles, {} steps, {}, {}: {} s",
             summary.particles,
@@ -77,13 +98,13 @@ pub fn brief(summary: &Summary, folder: &Path) -> String {
             significant(summary.wall_seconds)
         ),
     ));
-    facts.push(("results", folder.display().to_string()));
-    text + &table(&named(facts))
+    facts.push((labels::RESULTS, folder.display().to_string()));
+    facts
 }
 
 /// Title and warnings.
 fn heading(summary: &Summary) -> String {
-    let warnings = summary.warnings.iter().map(|warning| format!("warning: {warning}\n"));
+    let warnings = summary.warnings.iter().map(|text| warning(text) + "\n");
     format!("{}\n{}", summary.title, warnings.collect::<String>())
 }
 
@@ -100,6 +121,7 @@ fn measured(all: &[MeasuredQuantity]) -> Vec<Vec<String>> {
         let (unit, scale) = match quantity.unit.as_str() {
             "Pa" if quantity.value.abs() >= 1e8 => ("GPa", 1e-9),
             "Pa" if quantity.value.abs() >= 1e5 => ("MPa", 1e-6),
+            "m" if quantity.value.abs() < 0.1 => ("mm", 1e3),
             unit => (unit, 1.0),
         };
         let number = |value: f64| five_digits(value * scale);
@@ -283,24 +305,28 @@ fn events(summary: &Summary) -> Vec<(&'static str, String)> {
     let per = per_extent(summary.momentum.start.len());
     let mut facts = Vec::new();
     if let Some(out) = &summary.outflow {
-        facts.push(("outflow", format!("{} particles, {:.6e} kg{per}", out.particles, out.mass)));
+        facts.push((
+            labels::OUTFLOW,
+            format!("{} particles, {:.6e} kg{per}", out.particles, out.mass),
+        ));
     }
     if let Some(out) = &summary.erosion {
         let OutflowSummary { particles, mass, energy, .. } = out;
         let what = format!("{particles} particles, {mass:.6e} kg{per}, {energy:.6e} J{per}");
-        facts.push(("erosion", format!("{what} taken out")));
+        facts.push((labels::EROSION, format!("{what} taken out")));
     }
     if let Some(failure) = &summary.failure {
-        let FailureSummary { particles, released_energy } = failure;
+        let FailureSummary { particles, damaged, released_energy } = failure;
         let text = format!(
-            "{particles} particles have failed; their elastic energy, {released_energy:.6e} J{per}, is heat"
+            "{particles} particles have failed, {damaged} are damaged; {released_energy:.6e} J{per} \
+             of elastic energy is heat"
         );
-        facts.push(("failure", text));
+        facts.push((labels::FAILURE, text));
     }
     if let Some(estimate) = &summary.error_estimate {
         facts.extend(estimate_facts(estimate));
     }
-    facts.extend(summary.plan.iter().map(|plan| ("plan", plan_fact(plan))));
+    facts.extend(summary.plan.iter().map(|plan| (labels::PLAN, plan_fact(plan))));
     facts
 }
 
@@ -353,7 +379,7 @@ fn estimate_facts(estimate: &EstimatedErrors) -> Vec<(&'static str, String)> {
         let exact =
             exact.map_or(String::new(), |e| format!(", in truth {}", significant(100.0 * e)));
         facts.push((
-            "estimate",
+            labels::ESTIMATE,
             format!("{}: {plateau}; {l1}{exact}{guess}", seconds(profile.time)),
         ));
     }
@@ -363,14 +389,17 @@ fn estimate_facts(estimate: &EstimatedErrors) -> Vec<(&'static str, String)> {
             None => "nothing has arrived".into(),
         };
         let guess = guess(arrival.basis);
-        facts.push(("estimate", format!("at {} mm: {time}{guess}", significant(1e3 * arrival.at))));
+        facts.push((
+            labels::ESTIMATE,
+            format!("at {} mm: {time}{guess}", significant(1e3 * arrival.at)),
+        ));
     }
     if estimate.basis == EstimateBasis::Guess {
         let outside = estimate.outside.join("; ");
         let text = format!("guess: the laws of errors were not fitted on such inputs: {outside}");
-        facts.push(("estimate", text));
+        facts.push((labels::ESTIMATE, text));
     }
-    facts.extend(estimate.notes.iter().map(|note| ("estimate", note.clone())));
+    facts.extend(estimate.notes.iter().map(|note| (labels::ESTIMATE, note.clone())));
     facts
 }
 
@@ -444,6 +473,26 @@ warning: linear shape functions ring across cells
         let text = brief(&example(), Path::new("output/flyer"));
         assert_eq!(text, expected);
         assert!(text.lines().all(|line| line.len() <= 100));
+    }
+
+    #[test]
+    fn a_brief_report_has_ten_short_lines_and_names_the_damaged() {
+        let mut summary = example();
+        summary.warnings.clear();
+        let quantity = summary.measured[0].clone();
+        summary.measured = vec![quantity; 9];
+        let released_energy = 1.5;
+        let failure = FailureSummary { particles: 7, damaged: 11, released_energy };
+        summary.failure = Some(failure);
+        let folder = format!("output/{}", "a long name ".repeat(10));
+        let text = brief(&summary, Path::new(folder.trim()));
+        assert_eq!(text.lines().count(), BRIEF_LINES, "{text}");
+        let line = "  failure       7 particles have failed, 11 are damaged; 1.500000e0 J/m2 of elastic \
+                    energy is heat";
+        assert!(text.lines().any(|l| l == line), "{text}");
+        assert!(text.lines().all(|line| line.len() <= 100), "{text}");
+        assert!(text.lines().last().unwrap().starts_with("                long name"), "{text}");
+        assert_eq!(text.matches("shock speed").count(), 2, "{text}");
     }
 
     #[test]

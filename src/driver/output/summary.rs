@@ -77,10 +77,10 @@ pub struct Summary {
     /// Eroded particles; absent without erosion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub erosion: Option<OutflowSummary>,
-    /// Failed particles; absent without failure.
+    /// Failed and damaged particles; absent without failure.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failure: Option<FailureSummary>,
-    /// Physical quantities beside their exact values; empty in a plane.
+    /// Physical quantities beside their exact values, if these are known.
     #[serde(default)]
     pub measured: Vec<MeasuredQuantity>,
     /// One entry per profile, in order of time.
@@ -208,11 +208,14 @@ pub struct OutflowSummary {
     pub energy: f64,
 }
 
-/// Failed particles at the end.
+/// Failed and damaged particles at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FailureSummary {
     /// Number of particles that are present and carry neither tension nor shear any more.
     pub particles: u64,
+    /// Number of particles that are present with a damage between 0 and 1.
+    #[serde(default)]
+    pub damaged: u64,
     /// Elastic energy that was converted to heat in these particles, in the unit of [`Energy`].
     pub released_energy: f64,
 }

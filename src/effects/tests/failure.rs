@@ -27,7 +27,16 @@ fn tension_is_released_as_heat() {
     // p^2/(2 K) V with K = rho c^2 = 4 x 100 Pa
     close(&f.get("released_energy"), &[36.0 / 800.0 * 0.5, 0.0]);
     assert_eq!(f.account(Account::FailedParticles, [0.0]), 1.0);
+    assert_eq!(f.account(Account::DamagedParticles, [0.0]), 0.0);
     close(&[f.account(Account::ReleasedEnergy, [0.0])], &[0.0225]);
+}
+
+#[test]
+fn a_damaged_particle_has_not_failed() {
+    let mut f = brittle(json!({}));
+    f.set("damage", &[0.25, 1.0]);
+    assert_eq!(f.account(Account::DamagedParticles, [0.0]), 1.0);
+    assert_eq!(f.account(Account::FailedParticles, [0.0]), 1.0);
 }
 
 #[test]

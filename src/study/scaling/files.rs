@@ -1,18 +1,18 @@
-//! The files of a study: a CSV, the same numbers as JSON, a picture.
+//! The files of a scaling study: a CSV, the same numbers as JSON, a picture.
 
 use std::fs;
 use std::path::Path;
 
-use flyer_mpm::plot;
+use super::error::ScalingError;
+use super::kind::ScalingKind;
+use super::picture;
+use super::study::ScalingStudy;
+use crate::plot;
 
-use crate::arguments::Kind;
-use crate::picture;
-use crate::study::Study;
-
-/// What the columns of the CSV mean.
+/// Meaning of the columns of the CSV.
 const COLUMNS: &str = "\
-# One row a configuration: medians over the repeats, which were run in turn.
-# ranks, threads, workers = ranks * threads; skip_quiescent: what is quiet was skipped.
+# One row per configuration: medians over the repeats, which were run in turn.
+# ranks, threads, workers = ranks * threads; skip_quiescent: patches at rest were skipped.
 # oversubscribed: more workers than cores; binding: core, none, oversubscribed.
 # patches, particles, steps of the run.
 # wall_seconds, _min, _max: wall time of the time loop [s]; cpu_seconds: user CPU time of all
@@ -22,27 +22,36 @@ const COLUMNS: &str = "\
 #   times workers.
 # compute, exchange, migrate, balance, wait, output, rest: shares of the wall time of all ranks.
 # bytes_per_step, messages_per_step: sent by all ranks; imbalance: work of the busiest rank over
-#   the mean; skipped: share of particle-steps. Empty where the program does not count it.
+#   the mean; skipped: share of particle-steps. Empty if the program does not count it.
 ";
 
-/// Writes everything into `folder`.
-pub fn write(study: &Study, folder: &Path) -> Result<(), String> {
+/// Writes the CSV, `scaling.json` and the picture of a study into `folder`.
+///
+/// # Errors
+///
+/// If a file cannot be written, or if the picture cannot be drawn.
+pub fn write(study: &ScalingStudy, folder: &Path) -> Result<(), ScalingError> {
     let save = |name: &str, bytes: &[u8]| {
         let path = folder.join(name);
-        fs::write(&path, bytes).map_err(|e| format!("{}: {e}", path.display()))
+        fs::write(&path, bytes).map_err(ScalingError::io(&path))
     };
-    save(&format!("{}.csv", study.kind.name()), &table(study)?)?;
-    let json = serde_json::to_string_pretty(study).map_err(|e| e.to_string())? + "\n";
+    let name = format!("{}.csv", study.kind.name());
+    let csv = table(study).map_err(ScalingError::format(&folder.join(&name)))?;
+    save(&name, &csv)?;
+    let json = serde_json::to_string_pretty(study);
+    let json = json.map_err(ScalingError::format(&folder.join("scaling.json")))? + "\n";
     save("scaling.json", json.as_bytes())?;
-    plot::draw(&picture::figure(study), &folder.join("scaling")).map_err(|e| e.to_string())?;
+    plot::draw(&picture::figure(study), &folder.join("scaling"))?;
     Ok(())
 }
 
-/// The CSV, with what it is in comments.
-fn table(study: &Study) -> Result<Vec<u8>, String> {
+/// The CSV; comments at its head explain it.
+fn table(study: &ScalingStudy) -> Result<Vec<u8>, csv::Error> {
     let fixed = match study.kind {
-        Kind::Strong => "the same scene on every row",
-        Kind::Weak => "cell size and end divided by workers: particles a worker and steps are kept",
+        ScalingKind::Strong => "the same scene on every row",
+        ScalingKind::Weak => {
+            "cell size and end divided by workers: particles a worker and steps are kept"
+        }
     };
     let head = format!(
         "# {}: {fixed}\n# scene: {} ({}), --set {:?}\n# machine: {} cores, {}\n# repeats: {}\n",
@@ -56,23 +65,23 @@ fn table(study: &Study) -> Result<Vec<u8>, String> {
     );
     let mut writer = csv::Writer::from_writer((head + COLUMNS).into_bytes());
     for row in &study.rows {
-        writer.serialize(row).map_err(|e| e.to_string())?;
+        writer.serialize(row)?;
     }
-    writer.into_inner().map_err(|e| e.to_string())
+    writer.into_inner().map_err(|e| e.into_error().into())
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::row::ScalingRow;
+    use super::super::row::tests::measured;
     use super::*;
-    use crate::row::Row;
-    use crate::row::tests::measured;
 
     #[test]
     fn all_files_hold_the_rows() {
         let (job, runs) = measured(1, &[1.0], false);
-        let rows = vec![Row::new(&job, &runs, None)];
-        let study = Study {
-            kind: Kind::Weak,
+        let rows = vec![ScalingRow::new(&job, &runs, None)];
+        let study = ScalingStudy {
+            kind: ScalingKind::Weak,
             title: "Flyer".into(),
             scene: "flyer.json".into(),
             sets: vec!["time.end=1e-7".into()],

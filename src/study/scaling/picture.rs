@@ -1,20 +1,18 @@
 //! The picture: speed-up against workers, and where the time went.
 
-use flyer_mpm::plot::{
-    Axis, Bar, BarPart, Bars, Color, Figure, Panel, Points, Series, Stroke, Style,
-};
+use crate::plot::{Axis, Bar, BarPart, Bars, Color, Figure, Panel, Points, Series, Stroke, Style};
 
-use crate::arguments::Kind;
-use crate::row::Row;
-use crate::statistics::PARTS;
-use crate::study::Study;
+use super::kind::ScalingKind;
+use super::row::ScalingRow;
+use super::statistics::PARTS;
+use super::study::ScalingStudy;
 
 /// The figure of the rows that skip nothing.
-pub fn figure(study: &Study) -> Figure {
-    let rows: Vec<&Row> = study.rows.iter().filter(|row| !row.skip_quiescent).collect();
+pub fn figure(study: &ScalingStudy) -> Figure {
+    let rows: Vec<&ScalingRow> = study.rows.iter().filter(|row| !row.skip_quiescent).collect();
     let (title, upright) = match study.kind {
-        Kind::Strong => ("Strong scaling", "Speed-up"),
-        Kind::Weak => ("Weak scaling", "Scaled speed-up"),
+        ScalingKind::Strong => ("Strong scaling", "Speed-up"),
+        ScalingKind::Weak => ("Weak scaling", "Scaled speed-up"),
     };
     let most = rows.iter().map(|row| row.workers).max().unwrap_or(1);
     let ticks = ticks(most);
@@ -48,14 +46,14 @@ pub fn figure(study: &Study) -> Figure {
 }
 
 /// Shares of time, a bar a configuration.
-fn bars(rows: &[&Row]) -> Bars {
+fn bars(rows: &[&ScalingRow]) -> Bars {
     let color = |index: usize| match PARTS[index] {
         "rest" => Color::GRAY,
         _ => Color::palette(index),
     };
     let parts = PARTS.iter().enumerate();
     let parts = parts.map(|(index, &name)| BarPart { name: name.into(), color: color(index) });
-    let bar = |row: &&Row| Bar {
+    let bar = |row: &&ScalingRow| Bar {
         label: format!(
             "{} × {}{}",
             row.ranks,
@@ -73,7 +71,7 @@ fn bars(rows: &[&Row]) -> Bars {
 }
 
 /// The numbers of threads, in ascending order.
-fn threads(rows: &[&Row]) -> Vec<usize> {
+fn threads(rows: &[&ScalingRow]) -> Vec<usize> {
     let mut threads: Vec<usize> = rows.iter().map(|row| row.threads).collect();
     threads.sort_unstable();
     threads.dedup();

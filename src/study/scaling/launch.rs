@@ -3,17 +3,18 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use crate::configuration::{Binding, Configuration};
-use crate::summary::RunSummary;
+use super::configuration::{Configuration, RankBinding};
+use super::error::ScalingError;
+use super::measured_run::MeasuredRun;
 
-/// One configuration with everything that the program is told.
+/// One configuration with all arguments of the program.
 #[derive(Clone, Debug)]
-pub struct Job {
+pub struct ScalingRun {
     /// Ranks and threads.
     pub configuration: Configuration,
-    /// How its ranks are placed.
-    pub binding: Binding,
-    /// Whether what is quiet is skipped.
+    /// Placement of its ranks.
+    pub binding: RankBinding,
+    /// Whether patches at rest are skipped.
     pub skip_quiescent: bool,
     /// The scene's file.
     pub scene: PathBuf,
@@ -21,12 +22,16 @@ pub struct Job {
     pub sets: Vec<String>,
 }
 
-impl Job {
-    /// Runs it, with its results in `folder`; the error is what the program said first.
-    pub fn run(&self, folder: &Path) -> Result<RunSummary, String> {
+impl ScalingRun {
+    /// Runs the program at path `program` under mpirun, with its results in `folder`.
+    ///
+    /// # Errors
+    ///
+    /// If mpirun cannot be started, if the run fails, or if its summary cannot be read.
+    pub fn run(&self, program: &Path, folder: &Path) -> Result<MeasuredRun, ScalingError> {
         let Configuration { ranks, threads } = self.configuration;
         let mut command = mpirun(ranks, self.binding);
-        command.arg(program()).arg(&self.scene).arg("--quiet");
+        command.arg(program).arg(&self.scene).arg("--quiet");
         command.arg("--output").arg(folder).args(["--threads", &threads.to_string()]);
         for set in &self.sets {
             command.args(["--set", set]);
@@ -34,45 +39,46 @@ impl Job {
         let output = started(&mut command)?;
         if !output.status.success() {
             let text = String::from_utf8_lossy(&output.stderr);
-            return Err(format!(
+            return Err(ScalingError::Run(format!(
                 "{ranks} ranks x {threads} threads, {}: {}",
                 output.status,
                 first_words(&text)
-            ));
+            )));
         }
-        RunSummary::read(folder)
+        MeasuredRun::read(folder)
     }
 }
 
-/// The binding wished for, or none where mpirun cannot have it here.
-pub fn possible_binding(configuration: Configuration, cores: usize) -> Result<Binding, String> {
-    let wished = Binding::of(configuration, cores);
+/// The best binding for a configuration, or none if mpirun cannot provide it on this machine.
+///
+/// # Errors
+///
+/// If mpirun cannot be started.
+pub fn possible_binding(
+    configuration: Configuration,
+    cores: usize,
+) -> Result<RankBinding, ScalingError> {
+    let wished = RankBinding::of(configuration, cores);
     let output = started(mpirun(configuration.ranks, wished).arg("true"))?;
-    Ok(if output.status.success() { wished } else { Binding::None })
+    Ok(if output.status.success() { wished } else { RankBinding::None })
 }
 
-fn mpirun(ranks: usize, binding: Binding) -> Command {
+fn mpirun(ranks: usize, binding: RankBinding) -> Command {
     let mut command = Command::new("mpirun");
     command.args(["--quiet", "-n", &ranks.to_string()]).args(binding.options());
     command
 }
 
-fn started(command: &mut Command) -> Result<Output, String> {
-    command.output().map_err(|e| format!("cannot start {command:?}: {e}"))
+fn started(command: &mut Command) -> Result<Output, ScalingError> {
+    let output = command.output();
+    output.map_err(|source| ScalingError::Start { command: format!("{command:?}"), source })
 }
 
-/// What a failed run says: the program's own line, else mpirun's first that is no rule.
+/// Message of a failed run: the line of the program, otherwise the first line of mpirun with words.
 fn first_words(text: &str) -> &str {
     let own = text.lines().find_map(|line| line.strip_prefix("error: "));
     let other = || text.lines().find(|line| line.contains(char::is_alphabetic));
     own.or_else(other).unwrap_or("no message").trim()
-}
-
-/// The release build of the program.
-fn program() -> PathBuf {
-    let target = std::env::var_os("CARGO_TARGET_DIR")
-        .map_or(Path::new(env!("CARGO_MANIFEST_DIR")).join("target"), PathBuf::from);
-    target.join("release/flyer-mpm")
 }
 
 #[cfg(test)]

@@ -1,15 +1,17 @@
-//! The part of `summary.json` that a study reads.
+//! The part of `summary.json` that a scaling study reads.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use flyer_mpm::driver::output::SUMMARY_FILE;
 use serde::Deserialize;
 
-/// One run.
+use super::error::ScalingError;
+use crate::driver::output::SUMMARY_FILE;
+
+/// Sizes and times of one run.
 #[derive(Clone, Debug, Deserialize)]
-pub struct RunSummary {
+pub struct MeasuredRun {
     /// Particles at the start.
     pub particles: u64,
     /// Steps of the time loop.
@@ -20,49 +22,53 @@ pub struct RunSummary {
     pub loop_wall_seconds: f64,
     /// User CPU time of all ranks, set-up and files included \[s\].
     pub cpu_seconds: f64,
-    /// What the decomposition cost; absent where the program does not count it.
-    pub decomposition: Option<Decomposition>,
+    /// Costs of the decomposition; absent if the program does not count them.
+    pub decomposition: Option<MeasuredDecomposition>,
 }
 
-/// What the decomposition cost, over all ranks.
+/// Costs of the decomposition, over all ranks.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
-pub struct Decomposition {
+pub struct MeasuredDecomposition {
     /// Particles computed, summed over steps.
     pub particle_steps_computed: f64,
-    /// Particles left out because nothing happens to them, summed over steps.
+    /// Particles of quiescent patches, which were skipped, summed over steps.
     pub particle_steps_skipped: f64,
     /// Work of the busiest rank over the mean of all.
     pub imbalance: Option<f64>,
-    /// Bytes sent a step.
+    /// Bytes sent per step.
     pub bytes_per_step: Option<f64>,
-    /// Messages sent a step.
+    /// Messages sent per step.
     pub messages_per_step: Option<f64>,
-    /// Each rank.
-    pub ranks: Vec<Rank>,
+    /// Times of each rank.
+    pub ranks: Vec<MeasuredRank>,
 }
 
-/// One rank.
+/// Times of one rank.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
-pub struct Rank {
+pub struct MeasuredRank {
     /// Wall time of each part of the loop by name \[s\].
     pub seconds: BTreeMap<String, f64>,
 }
 
-impl Decomposition {
-    /// Share of particle-steps that were left out.
+impl MeasuredDecomposition {
+    /// Share of particle-steps that were skipped.
     pub fn skipped(&self) -> Option<f64> {
         let all = self.particle_steps_computed + self.particle_steps_skipped;
         (all > 0.0).then(|| self.particle_steps_skipped / all)
     }
 }
 
-impl RunSummary {
+impl MeasuredRun {
     /// Reads the summary of the results in `folder`.
-    pub fn read(folder: &Path) -> Result<RunSummary, String> {
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be read or has another format.
+    pub fn read(folder: &Path) -> Result<MeasuredRun, ScalingError> {
         let path = folder.join(SUMMARY_FILE);
-        let text = fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
-        serde_json::from_str(&text).map_err(|e| format!("{}: {e}", path.display()))
+        let text = fs::read_to_string(&path).map_err(ScalingError::io(&path))?;
+        serde_json::from_str(&text).map_err(ScalingError::format(&path))
     }
 }

@@ -1,4 +1,4 @@
-//! Ranks x threads, how they are bound to cores, and in which order they take their turns.
+//! Ranks x threads, their binding to cores, and the order of their runs.
 
 /// Ranks and the threads of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,7 +10,7 @@ pub struct Configuration {
 }
 
 impl Configuration {
-    /// What every other configuration is held against.
+    /// Configuration with which all others are compared.
     pub const BASE: Configuration = Configuration { ranks: 1, threads: 1 };
 
     /// Ranks times threads.
@@ -38,48 +38,48 @@ pub fn turns(count: usize, round: usize) -> Vec<usize> {
     turns
 }
 
-/// How mpirun places the ranks.
+/// Placement of the ranks by mpirun.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Binding {
-    /// A core each rank.
+pub enum RankBinding {
+    /// One core per rank.
     Core,
-    /// A core each thread.
+    /// One core per thread.
     Cores(usize),
-    /// Anywhere.
+    /// No binding.
     None,
-    /// More workers than cores: those that wait give way to those that work.
+    /// More workers than cores: ranks that wait yield to those that compute.
     Oversubscribed,
 }
 
-impl Binding {
-    /// The binding wished for on a machine of so many cores.
-    pub fn of(configuration: Configuration, cores: usize) -> Binding {
+impl RankBinding {
+    /// The best binding on a machine with `cores` cores.
+    pub fn of(configuration: Configuration, cores: usize) -> RankBinding {
         match configuration.threads {
-            _ if configuration.workers() > cores => Binding::Oversubscribed,
-            1 => Binding::Core,
-            threads => Binding::Cores(threads),
+            _ if configuration.workers() > cores => RankBinding::Oversubscribed,
+            1 => RankBinding::Core,
+            threads => RankBinding::Cores(threads),
         }
     }
 
     /// Options of mpirun.
     pub fn options(self) -> Vec<String> {
         let line = match self {
-            Binding::Core => "--bind-to core".into(),
-            Binding::Cores(threads) => format!("--map-by slot:PE={threads} --bind-to core"),
-            Binding::None => "--oversubscribe --bind-to none".into(),
-            Binding::Oversubscribed => {
+            RankBinding::Core => "--bind-to core".into(),
+            RankBinding::Cores(threads) => format!("--map-by slot:PE={threads} --bind-to core"),
+            RankBinding::None => "--oversubscribe --bind-to none".into(),
+            RankBinding::Oversubscribed => {
                 "--oversubscribe --bind-to none --mca mpi_yield_when_idle 1".to_string()
             }
         };
         line.split(' ').map(String::from).collect()
     }
 
-    /// A word for the table.
+    /// Name in the table.
     pub fn name(self) -> &'static str {
         match self {
-            Binding::Core | Binding::Cores(_) => "core",
-            Binding::None => "none",
-            Binding::Oversubscribed => "oversubscribed",
+            RankBinding::Core | RankBinding::Cores(_) => "core",
+            RankBinding::None => "none",
+            RankBinding::Oversubscribed => "oversubscribed",
         }
     }
 }
@@ -107,10 +107,10 @@ mod tests {
 
     #[test]
     fn threads_get_cores_as_far_as_there_are_any() {
-        let binding = |ranks, threads| Binding::of(Configuration { ranks, threads }, 4);
-        assert_eq!(binding(4, 1), Binding::Core);
-        assert_eq!(binding(2, 2), Binding::Cores(2));
-        assert_eq!(binding(3, 2), Binding::Oversubscribed);
-        assert_eq!(Binding::Cores(2).options(), ["--map-by", "slot:PE=2", "--bind-to", "core"]);
+        let binding = |ranks, threads| RankBinding::of(Configuration { ranks, threads }, 4);
+        assert_eq!(binding(4, 1), RankBinding::Core);
+        assert_eq!(binding(2, 2), RankBinding::Cores(2));
+        assert_eq!(binding(3, 2), RankBinding::Oversubscribed);
+        assert_eq!(RankBinding::Cores(2).options(), ["--map-by", "slot:PE=2", "--bind-to", "core"]);
     }
 }

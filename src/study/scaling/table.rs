@@ -1,14 +1,14 @@
 //! The table on standard output.
 
-use crate::row::Row;
-use crate::statistics::PARTS;
+use super::row::ScalingRow;
+use super::statistics::PARTS;
 
 const HEAD: [&str; 7] =
-    ["ranks x threads", "quiet", "wall s", "spread", "CPU s", "speed-up", "efficiency"];
+    ["ranks x threads", "at rest", "wall s", "spread", "CPU s", "speed-up", "efficiency"];
 const TAIL: [&str; 5] = ["bytes/step", "msgs/step", "imbalance", "skipped", "note"];
 
-/// The rows as aligned text; a dash where nothing is counted.
-pub fn text(rows: &[Row]) -> String {
+/// The rows as aligned text; a dash for values that were not counted.
+pub fn text(rows: &[ScalingRow]) -> String {
     let head = HEAD.iter().chain(&PARTS).chain(&TAIL).map(|name| name.to_string()).collect();
     let lines: Vec<Vec<String>> = std::iter::once(head).chain(rows.iter().map(cells)).collect();
     let width = |column: usize| lines.iter().map(|line| line[column].len()).max().unwrap_or(0);
@@ -25,7 +25,7 @@ pub fn text(rows: &[Row]) -> String {
     text
 }
 
-fn cells(row: &Row) -> Vec<String> {
+fn cells(row: &ScalingRow) -> Vec<String> {
     let number = |value: Option<f64>, decimals: usize| {
         value.map_or("-".into(), |value| format!("{value:.decimals$}"))
     };
@@ -56,14 +56,14 @@ fn cells(row: &Row) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::row::tests::measured;
     use super::*;
-    use crate::row::tests::measured;
 
     #[test]
     fn what_is_not_counted_is_a_dash() {
         let rows = [false, true].map(|sections| {
             let (job, runs) = measured(2, &[1.0, 2.0], sections);
-            Row::new(&job, &runs, None)
+            ScalingRow::new(&job, &runs, None)
         });
         let text = text(&rows);
         let lines: Vec<&str> = text.lines().collect();

@@ -2,25 +2,25 @@
 
 use serde::Serialize;
 
-use crate::configuration::Binding;
-use crate::launch::Job;
-use crate::statistics::{PARTS, median, shares};
-use crate::summary::{Decomposition, RunSummary};
+use super::configuration::RankBinding;
+use super::launch::ScalingRun;
+use super::measured_run::{MeasuredDecomposition, MeasuredRun};
+use super::statistics::{PARTS, median, shares};
 
-/// A configuration, measured. What the program did not count is absent.
+/// Medians of a configuration. Values that the program did not count are absent.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct ScalingRow {
     /// Ranks.
     pub ranks: usize,
     /// Threads of each rank.
     pub threads: usize,
     /// Ranks times threads.
     pub workers: usize,
-    /// Whether what is quiet was skipped.
+    /// Whether patches at rest were skipped.
     pub skip_quiescent: bool,
     /// Whether there are more workers than cores.
     pub oversubscribed: bool,
-    /// How the ranks were placed: core, none, oversubscribed.
+    /// Placement of the ranks: core, none, oversubscribed.
     pub binding: &'static str,
     /// Patches.
     pub patches: usize,
@@ -30,35 +30,35 @@ pub struct Row {
     pub steps: u64,
     /// Wall time of the time loop, median \[s\].
     pub wall_seconds: f64,
-    /// The least \[s\].
+    /// Least wall time \[s\].
     pub wall_seconds_min: f64,
-    /// The greatest \[s\].
+    /// Greatest wall time \[s\].
     pub wall_seconds_max: f64,
     /// User CPU time of all ranks, set-up and files included, median \[s\].
     pub cpu_seconds: f64,
     /// Wall time of the loop times workers over particles times steps \[s\].
     pub worker_seconds_per_particle_step: f64,
-    /// Particle-steps a wall second over those of 1 x 1.
+    /// Particle-steps per wall second over those of 1 x 1.
     pub speed_up: f64,
     /// Speed-up over workers.
     pub efficiency: f64,
-    /// Share of the ranks' time in computing.
+    /// Share of the ranks' time in computing \[-\].
     pub compute: Option<f64>,
-    /// In packing, sending and unpacking ghosts.
+    /// Share in packing, sending and unpacking ghosts.
     pub exchange: Option<f64>,
-    /// In handing particles over.
+    /// Share in migrating particles.
     pub migrate: Option<f64>,
-    /// In moving patches between ranks.
+    /// Share in moving patches between ranks.
     pub balance: Option<f64>,
-    /// In waiting for other ranks.
+    /// Share in waiting for other ranks.
     pub wait: Option<f64>,
-    /// In recording results.
+    /// Share in recording results.
     pub output: Option<f64>,
-    /// In the rest of the loop.
+    /// Share in the rest of the loop.
     pub rest: Option<f64>,
-    /// Bytes sent a step, all ranks.
+    /// Bytes sent per step, all ranks.
     pub bytes_per_step: Option<f64>,
-    /// Messages a step, all ranks.
+    /// Messages per step, all ranks.
     pub messages_per_step: Option<f64>,
     /// Work of the busiest rank over the mean.
     pub imbalance: Option<f64>,
@@ -66,10 +66,14 @@ pub struct Row {
     pub skipped: Option<f64>,
 }
 
-impl Row {
+impl ScalingRow {
     /// The row of a job's runs, of which there is at least one; `base` is the row of 1 x 1, or
     /// none for that row itself.
-    pub fn new(job: &Job, runs: &[RunSummary], base: Option<&Row>) -> Row {
+    ///
+    /// # Panics
+    ///
+    /// If there is no run.
+    pub fn new(job: &ScalingRun, runs: &[MeasuredRun], base: Option<&ScalingRow>) -> ScalingRow {
         let walls = || runs.iter().map(|run| run.loop_wall_seconds);
         let wall = median(walls()).expect("a job has runs");
         let [first, ..] = runs else { unreachable!("a job has runs") };
@@ -78,15 +82,16 @@ impl Row {
         let per_step = wall * workers as f64 / particle_steps;
         let efficiency = base.map_or(1.0, |b| b.worker_seconds_per_particle_step / per_step);
         let counted = || runs.iter().filter_map(|run| run.decomposition.as_ref());
-        let middle = |value: fn(&Decomposition) -> Option<f64>| median(counted().filter_map(value));
+        let middle =
+            |value: fn(&MeasuredDecomposition) -> Option<f64>| median(counted().filter_map(value));
         let time = shares(counted().flat_map(|d| &d.ranks).map(|rank| &rank.seconds));
         let share = |part: usize| time.map(|shares| shares[part]);
-        Row {
+        ScalingRow {
             ranks: job.configuration.ranks,
             threads: job.configuration.threads,
             workers,
             skip_quiescent: job.skip_quiescent,
-            oversubscribed: job.binding == Binding::Oversubscribed,
+            oversubscribed: job.binding == RankBinding::Oversubscribed,
             binding: job.binding.name(),
             patches: first.patches.iter().product(),
             particles: first.particles,
@@ -108,13 +113,13 @@ impl Row {
             bytes_per_step: middle(|d| d.bytes_per_step),
             messages_per_step: middle(|d| d.messages_per_step),
             imbalance: middle(|d| d.imbalance),
-            skipped: middle(Decomposition::skipped),
+            skipped: middle(MeasuredDecomposition::skipped),
         }
     }
 
     /// The shares of time in the order of [`PARTS`].
     pub fn shares(&self) -> [Option<f64>; PARTS.len()] {
-        let Row { compute, exchange, migrate, balance, wait, output, rest, .. } = *self;
+        let ScalingRow { compute, exchange, migrate, balance, wait, output, rest, .. } = *self;
         [compute, exchange, migrate, balance, wait, output, rest]
     }
 
@@ -125,19 +130,23 @@ impl Row {
 }
 
 #[cfg(test)]
-pub mod tests {
+pub(super) mod tests {
     use std::path::PathBuf;
 
     use serde_json::json;
 
+    use super::super::configuration::Configuration;
     use super::*;
-    use crate::configuration::Configuration;
 
     /// A job, and its runs with these wall times \[s\].
-    pub fn measured(ranks: usize, walls: &[f64], sections: bool) -> (Job, Vec<RunSummary>) {
-        let job = Job {
+    pub(in super::super) fn measured(
+        ranks: usize,
+        walls: &[f64],
+        sections: bool,
+    ) -> (ScalingRun, Vec<MeasuredRun>) {
+        let job = ScalingRun {
             configuration: Configuration { ranks, threads: 1 },
-            binding: Binding::Core,
+            binding: RankBinding::Core,
             skip_quiescent: false,
             scene: PathBuf::new(),
             sets: Vec::new(),
@@ -163,12 +172,12 @@ pub mod tests {
     #[test]
     fn speed_up_is_against_the_base() {
         let (job, runs) = measured(1, &[8.0, 12.0, 9.0], false);
-        let base = Row::new(&job, &runs, None);
+        let base = ScalingRow::new(&job, &runs, None);
         assert_eq!((base.wall_seconds, base.speed_up, base.efficiency), (9.0, 1.0, 1.0));
         assert_eq!(base.spread(), 4.0 / 9.0);
         assert_eq!((base.cpu_seconds, base.shares(), base.skipped), (18.0, [None; 7], None));
         let (job, runs) = measured(4, &[3.0], true);
-        let row = Row::new(&job, &runs, Some(&base));
+        let row = ScalingRow::new(&job, &runs, Some(&base));
         assert!((row.speed_up - 3.0).abs() < 1e-12 && (row.efficiency - 0.75).abs() < 1e-12);
         assert_eq!((row.compute, row.wait, row.skipped), (Some(0.75), Some(0.25), Some(0.25)));
     }
@@ -176,10 +185,10 @@ pub mod tests {
     #[test]
     fn a_weak_row_counts_its_own_particles() {
         let (job, runs) = measured(1, &[2.0], false);
-        let base = Row::new(&job, &runs, None);
+        let base = ScalingRow::new(&job, &runs, None);
         let (job, mut runs) = measured(2, &[2.5], false);
         runs[0].particles = 2000;
-        let row = Row::new(&job, &runs, Some(&base));
+        let row = ScalingRow::new(&job, &runs, Some(&base));
         assert!((row.efficiency - 0.8).abs() < 1e-12 && (row.speed_up - 1.6).abs() < 1e-12);
     }
 }

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-/// What a rank's time is spent on, as `summary.json` names it, in the order of the table.
+/// Activities of a rank, with the names of `summary.json`, in the order of the table.
 pub const PARTS: [&str; 7] =
     ["compute", "exchange", "migrate", "balance", "wait", "output", "rest"];
 
-/// The middle value, the mean of the two in the middle; none of nothing.
+/// The median: the middle value, or the mean of the two in the middle; `None` without values.
 pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let mut sorted: Vec<f64> = values.into_iter().collect();
     sorted.sort_by(f64::total_cmp);
@@ -18,8 +18,8 @@ pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     }
 }
 
-/// The shares of [`PARTS`] in the time of all ranks of all runs; none where no time is counted. A
-/// part of another name counts as rest.
+/// The shares of [`PARTS`] in the time of all ranks of all runs; `None` if no time is counted. Time
+/// of an activity with another name counts as rest.
 pub fn shares<'a>(
     ranks: impl IntoIterator<Item = &'a BTreeMap<String, f64>>,
 ) -> Option<[f64; PARTS.len()]> {

@@ -1,0 +1,102 @@
+//! The folder of the results of a scene that is run without `--output`.
+//!
+//! It has the name of the scene's file. If that folder holds results or checkpoints of another
+//! scene, a number is appended: `output/plate-2`. A scene that is run again finds its own folder
+//! again. Independent of MPI: called on one rank only.
+
+use std::path::{Path, PathBuf};
+
+use crate::driver::checkpoint::folder::check_owner;
+use crate::driver::output::OutputError;
+use crate::driver::output::origin::{ExistingResult, Maker};
+
+/// Largest number that is appended to the name of a folder.
+const LARGEST_NUMBER: usize = 999;
+
+/// The folder for the results of a scene, and the folder of another scene that it avoids.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DefaultFolder {
+    /// The folder.
+    pub path: PathBuf,
+    /// The folder with the name of the scene, and the origin of what it holds, if this is another
+    /// scene.
+    pub avoided: Option<(PathBuf, String)>,
+}
+
+/// The first of `output/NAME`, `output/NAME-2`, ... that holds nothing of another scene or command;
+/// `NAME` is the name of the file `scene` without its ending.
+pub fn default_folder(scene: &Path, maker: &Maker) -> DefaultFolder {
+    let name = scene.file_stem().unwrap_or_else(|| "scene".as_ref());
+    free_folder(&Path::new("output").join(name), maker)
+}
+
+/// The first of `base`, `base-2`, ... that holds nothing of another scene or command.
+fn free_folder(base: &Path, maker: &Maker) -> DefaultFolder {
+    let Some(origin) = other_origin(base, maker) else {
+        return DefaultFolder { path: base.into(), avoided: None };
+    };
+    let numbered = |number: usize| {
+        let mut name = base.file_name().unwrap_or_default().to_os_string();
+        name.push(format!("-{number}"));
+        base.with_file_name(name)
+    };
+    let free = (2..=LARGEST_NUMBER).map(numbered).find(|path| other_origin(path, maker).is_none());
+    // without a free number, the run is refused with the name of the other scene
+    let path = free.unwrap_or_else(|| base.into());
+    DefaultFolder { path, avoided: Some((base.into(), origin)) }
+}
+
+/// Origin of the result or of the checkpoints at `folder` that `maker` may not replace.
+fn other_origin(folder: &Path, maker: &Maker) -> Option<String> {
+    match ExistingResult::read(folder) {
+        Some(made) if !maker.may_replace(&made.origin, &made.scene, folder) => {
+            Some(made.origin.to_string())
+        }
+        _ => match check_owner(folder, maker) {
+            Err(OutputError::Foreign { theirs, .. }) => Some(theirs),
+            _ => None,
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use serde_json::{Value, json};
+
+    use super::*;
+    use crate::driver::output::origin::{Origin, RUN};
+
+    #[test]
+    fn another_scene_gets_a_number_and_finds_it_again() {
+        let home = tempfile::tempdir().unwrap();
+        let home = home.path().canonicalize().unwrap();
+        let base = home.join("output/plate");
+        let makers = ["a.json", "b.json", "c.json"].map(|name| {
+            fs::write(home.join(name), "").unwrap();
+            Maker { origin: Origin::new(RUN, &home.join(name)), scene: json!({"same": "values"}) }
+        });
+        let write = |folder: &Path, maker: &Maker| {
+            fs::create_dir_all(folder).unwrap();
+            let origin = serde_json::to_value(&maker.origin).unwrap();
+            let summary: Value =
+                json!({"version": "0", "scene": maker.scene, "profiles": [], "origin": origin});
+            fs::write(folder.join("summary.json"), summary.to_string()).unwrap();
+        };
+        let expected = ["plate", "plate-2", "plate-3"].map(|name| home.join("output").join(name));
+        // the second time, each finds its own folder
+        for _ in 0..2 {
+            for (maker, path) in makers.iter().zip(&expected) {
+                let found = free_folder(&base, maker);
+                assert_eq!(&found.path, path);
+                let avoided = found.avoided.map(|(folder, origin)| {
+                    assert!(origin.contains("a.json"), "{origin}");
+                    folder
+                });
+                assert_eq!(avoided, (*path != base).then(|| base.clone()));
+                write(path, maker);
+            }
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! A scaling study: its configurations, and their runs in turn.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::configuration::{configurations, turns};
+use super::error::ScalingError;
+use super::kind::ScalingKind;
+use super::launch::{ScalingRun, possible_binding};
+use super::measured_run::MeasuredRun;
+use super::row::ScalingRow;
+use crate::driver::output::lock::Lock;
+use crate::driver::output::origin::{Origin, claim};
+use crate::input;
+use crate::scene::{CellSize, CheckedScene};
+
+/// Folder of the results of one run, within that of the study.
+const RUN_FOLDER: &str = "run";
+
+/// Options of a scaling study.
+#[derive(Clone, Debug)]
+pub struct ScalingOptions {
+    /// The quantity that is held fixed.
+    pub kind: ScalingKind,
+    /// Path of the program.
+    pub program: PathBuf,
+    /// The file of the scene.
+    pub scene: PathBuf,
+    /// Overrides of the scene.
+    pub sets: Vec<String>,
+    /// Numbers of ranks.
+    pub ranks: Vec<usize>,
+    /// Numbers of threads per rank.
+    pub threads: Vec<usize>,
+    /// Runs of each configuration.
+    pub repeats: usize,
+    /// Physical cores of the machine; `None`: those that this process may use.
+    pub cores: Option<usize>,
+    /// Folder of the results; `None`: `output/<kind>_scaling_<name of the scene>`.
+    pub output: Option<PathBuf>,
+}
+
+/// Files that no run writes, because they are not measured.
+const WITHOUT: [&str; 3] = ["output.pictures=false", "output.hdf5=false", "output.histories=null"];
+
+/// The runs of a scaling study.
+pub struct ScalingPlan {
+    options: ScalingOptions,
+    title: String,
+    cores: usize,
+    runs: Vec<ScalingRun>,
+    /// Folder of the results.
+    pub output: PathBuf,
+}
+
+/// Results of a scaling study.
+#[derive(Debug, Serialize)]
+pub struct ScalingStudy {
+    /// The quantity that is held fixed.
+    pub kind: ScalingKind,
+    /// Title of the scene.
+    pub title: String,
+    /// The scene's file.
+    pub scene: PathBuf,
+    /// The user's overrides of the scene.
+    pub sets: Vec<String>,
+    /// Runs of each row.
+    pub repeats: usize,
+    /// Physical cores of the machine.
+    pub cores: usize,
+    /// The machine's processor.
+    pub processor: String,
+    /// Two rows per configuration, without and with skipping of patches at rest.
+    pub rows: Vec<ScalingRow>,
+}
+
+impl ScalingPlan {
+    /// Checks the scene of every configuration, so that none fails after hours of others.
+    ///
+    /// # Errors
+    ///
+    /// If the scene is not valid for a configuration, or if mpirun cannot be started.
+    pub fn new(options: ScalingOptions) -> Result<ScalingPlan, ScalingError> {
+        let invalid = |e: &dyn std::fmt::Display| ScalingError::Scene(e.to_string());
+        let bytes = input::read(&options.scene).map_err(|e| invalid(&e))?;
+        let file = options.scene.display().to_string();
+        let parse = |sets: &[String]| input::parse(&bytes, &file, sets).map_err(|e| invalid(&e));
+        let unchanged = parse(&options.sets)?;
+        let cores = options.cores.unwrap_or_else(|| {
+            std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
+        });
+        let mut runs = Vec::new();
+        for configuration in configurations(&options.ranks, &options.threads) {
+            let workers = configuration.workers();
+            let grown = match options.kind {
+                ScalingKind::Strong => Vec::new(),
+                ScalingKind::Weak => grown(&unchanged, workers)?,
+            };
+            let all = [&options.sets, &WITHOUT.map(String::from)[..], &grown].concat();
+            parse(&all)?;
+            let binding = possible_binding(configuration, cores)?;
+            for skip_quiescent in [false, true] {
+                let mut sets = all.clone();
+                sets.push(format!("decomposition.skip_quiescent={skip_quiescent}"));
+                let scene = options.scene.clone();
+                runs.push(ScalingRun { configuration, binding, skip_quiescent, scene, sets });
+            }
+        }
+        let output = options.output.clone().unwrap_or_else(|| {
+            let name = options.scene.file_stem().unwrap_or_default().to_string_lossy();
+            Path::new("output").join(format!("{}_{name}", options.kind.name()))
+        });
+        Ok(ScalingPlan { title: unchanged.scene.title, cores, runs, output, options })
+    }
+
+    /// Runs all configurations in rounds. `tell` gets a line at the start of each round.
+    ///
+    /// # Errors
+    ///
+    /// If the folder of the results cannot be used, or if a run fails.
+    pub fn measure(&self, tell: impl Fn(&str)) -> Result<ScalingStudy, ScalingError> {
+        let ScalingOptions { kind, program, scene, sets, repeats, .. } = &self.options;
+        let _lock = Lock::take(&self.output)?;
+        claim(&self.output, &Origin::new(kind.name(), scene))?;
+        let folder = self.output.join(RUN_FOLDER);
+        let mut measured: Vec<Vec<MeasuredRun>> = vec![Vec::new(); self.runs.len()];
+        for round in 0..*repeats {
+            tell(&format!("round {} of {repeats}: {} runs", round + 1, self.runs.len()));
+            for turn in turns(self.runs.len(), round) {
+                measured[turn].push(self.runs[turn].run(program, &folder)?);
+            }
+        }
+        fs::remove_dir_all(&folder).map_err(ScalingError::io(&folder))?;
+        Ok(ScalingStudy {
+            kind: *kind,
+            title: self.title.clone(),
+            scene: scene.clone(),
+            sets: sets.clone(),
+            repeats: *repeats,
+            cores: self.cores,
+            processor: processor(),
+            rows: rows(&self.runs, &measured),
+        })
+    }
+}
+
+/// The rows of all runs, each compared with 1 x 1 with the same skipping.
+fn rows(jobs: &[ScalingRun], runs: &[Vec<MeasuredRun>]) -> Vec<ScalingRow> {
+    let mut rows: Vec<ScalingRow> = Vec::new();
+    for (job, runs) in jobs.iter().zip(runs) {
+        let base = |row: &&ScalingRow| row.workers == 1 && row.skip_quiescent == job.skip_quiescent;
+        let row = ScalingRow::new(job, runs, rows.iter().find(base));
+        rows.push(row);
+    }
+    rows
+}
+
+/// The overrides that multiply the particles by `workers` and keep the number of steps. The time
+/// step shrinks with the cells, so the end time does too, and the waves cover the same number of
+/// cells. There is a profile at the end only, because other profile times may be later.
+fn grown(scene: &CheckedScene, workers: usize) -> Result<Vec<String>, ScalingError> {
+    let refused = || {
+        let reason = "weak scaling divides cells in one dimension; allowed: a scene on a line";
+        Err(ScalingError::Scene(format!("{}: {reason}", scene.file)))
+    };
+    let size = match &scene.scene.domain.cell_size {
+        CellSize::Uniform(size) => *size,
+        CellSize::PerDirection(sizes) if sizes.len() == 1 => sizes[0],
+        CellSize::PerDirection(_) => return refused(),
+    };
+    if scene.dimension != 1 {
+        return refused();
+    }
+    let workers = workers as f64;
+    Ok(vec![
+        format!("domain.cell_size={:e}", size / workers),
+        format!("time.end={:e}", scene.scene.time.end / workers),
+        "output.profiles.times=[]".into(),
+    ])
+}
+
+/// Name of the processor; `unknown` without `/proc/cpuinfo`.
+fn processor() -> String {
+    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
+    name.map_or("unknown", |(_, name)| name.trim()).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::row::tests::measured;
+    use super::*;
+
+    #[test]
+    fn rows_are_held_against_the_base_of_the_same_skipping() {
+        let (mut jobs, mut runs) = (Vec::new(), Vec::new());
+        for (ranks, skip_quiescent, wall) in
+            [(1, false, 4.0), (1, true, 2.0), (2, false, 2.0), (2, true, 1.25)]
+        {
+            let (job, run) = measured(ranks, &[wall], false);
+            jobs.push(ScalingRun { skip_quiescent, ..job });
+            runs.push(run);
+        }
+        let speed_ups: Vec<f64> = rows(&jobs, &runs).iter().map(|row| row.speed_up).collect();
+        for (got, wanted) in speed_ups.iter().zip([1.0, 1.0, 2.0, 1.6]) {
+            assert!((got - wanted).abs() < 1e-12, "{speed_ups:?}");
+        }
+    }
+
+    #[test]
+    fn weak_scaling_keeps_steps_and_particles_a_worker() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/inputs/flyer.json");
+        let bytes = input::read(path.as_ref()).unwrap();
+        let parse = |sets: &[String]| input::parse(&bytes, "flyer", sets).unwrap();
+        let one = parse(&[]);
+        let three = parse(&grown(&one, 3).unwrap());
+        assert_eq!(three.particles, 3 * one.particles);
+        let cells = |scene: &CheckedScene| scene.scene.time.end / scene.cell_size[0];
+        assert!((cells(&three) / cells(&one) - 1.0).abs() < 1e-12);
+    }
+}
