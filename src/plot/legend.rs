@@ -50,7 +50,7 @@ fn swatch(canvas: &mut Canvas, style: &Style, x: f64, y: f64) {
         let places: &[f64] = if style.stroke.is_some() { &[0.5] } else { &[0.2, 0.5, 0.8] };
         for share in places {
             let at = (x + share * SWATCH, y);
-            canvas.mark(at, radius, style.color, style.hollow);
+            canvas.mark(at, radius, style);
         }
     }
 }
