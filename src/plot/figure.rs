@@ -67,7 +67,7 @@ pub struct Panel {
     /// Part of the x axis that is shown again, enlarged, if there is space.
     pub close_up: Option<(f64, f64)>,
     /// Coloured bands above the panel, which name parts of the x axis.
-    pub bands: Vec<Band>,
+    pub bands: Vec<MaterialBand>,
     /// Abscissae of thin vertical lines under the series, such as interfaces.
     pub lines: Vec<f64>,
     /// A colour map under the series.
@@ -108,7 +108,7 @@ impl Panel {
 
 /// A part of the x axis, such as a body of one material, drawn as a coloured band above the panel.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Band {
+pub struct MaterialBand {
     /// Name in the legend: "copper".
     pub name: String,
     /// Lower end, in the unit of the x axis.
@@ -119,7 +119,7 @@ pub struct Band {
     pub(super) style: Style,
 }
 
-impl Band {
+impl MaterialBand {
     /// A band of this colour.
     pub fn new(name: impl Into<String>, (low, high): (f64, f64), color: Color) -> Self {
         Self { name: name.into(), low, high, style: Style::line(color).width(14.0) }

@@ -64,7 +64,7 @@ pub use color::Color;
 pub use color_map::DiagramRow;
 pub use error::PictureError;
 pub use field::{Cells, Direction, Field, FieldData, FieldQuantity, FieldTile, SymmetryPlane};
-pub use figure::{Band, Figure, Label, Panel};
+pub use figure::{Figure, Label, MaterialBand, Panel};
 pub use histories::{HistoriesFigure, HistoryCurve, HistoryPanel};
 pub use hugoniot::{HugoniotCurve, HugoniotFigure, HugoniotPoint};
 pub use limits::Shading;

@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::color::Color;
-use super::figure::{Band, Figure, Panel};
+use super::figure::{Figure, MaterialBand, Panel};
 use super::series::{Points, Series, Style};
 
 /// A pressure profile with its reference solutions: positions \[m\], pressures \[Pa\].
@@ -21,7 +21,7 @@ pub struct ProfileFigure {
     /// Computed points of failed material: black crosses.
     pub failed: Points,
     /// Bodies at this time, as coloured bands above the profile.
-    pub bands: Vec<Band>,
+    pub bands: Vec<MaterialBand>,
     /// Positions of the surfaces where bodies touch \[m\]: thin lines.
     pub interfaces: Vec<f64>,
     /// Lines of text, such as errors.

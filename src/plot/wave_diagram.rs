@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::color::Color;
 use super::color_map::{ColorMap, DiagramRow};
-use super::figure::{Band, Figure, Panel};
+use super::figure::{Figure, MaterialBand, Panel};
 use super::series::{Points, Series, Stroke, Style};
 
 /// Colour of failed parts; the dark border makes them visible on bright parts of the map.
@@ -24,7 +24,7 @@ pub struct WaveDiagram {
     /// Upper end of the time axis \[s\]; `None`: the last time of the data.
     pub end: Option<f64>,
     /// Bodies at the end, as coloured bands above the diagram.
-    pub bands: Vec<Band>,
+    pub bands: Vec<MaterialBand>,
     /// Computed surfaces of the bodies, positions \[m\] as x and times \[s\] as y.
     pub surfaces: Vec<Points>,
     /// Parts of the rows that have failed: lower and upper position \[m\] and time \[s\].

@@ -1,6 +1,6 @@
 //! Surfaces and failed parts of the bodies of a run on a line, for the x-t diagram.
 
-use super::Simulation;
+use super::run::Simulation;
 use crate::solver::{Stepper, Steps};
 
 /// Surfaces and failed parts of all bodies at one time.

@@ -1,6 +1,7 @@
 //! Colours and surfaces of the bodies of a scene.
 
-use crate::plot::{Band, Color};
+use crate::material::failure::DAMAGE;
+use crate::plot::{Color, MaterialBand};
 use crate::scene::CheckedScene;
 use crate::simulation::ParticleTable;
 
@@ -11,11 +12,11 @@ pub(super) fn colors(scene: &CheckedScene) -> Vec<Color> {
 }
 
 /// Bands of the bodies of a scene on a line, from their `ends` [m].
-pub(super) fn bands(scene: &CheckedScene, ends: &[[f64; 2]]) -> Vec<Band> {
+pub(super) fn bands(scene: &CheckedScene, ends: &[[f64; 2]]) -> Vec<MaterialBand> {
     let bodies = scene.scene.bodies.iter().zip(colors(scene)).zip(closed(scene, ends));
     let there = bodies.filter(|(_, [low, high])| low <= high);
     there
-        .map(|((body, color), [low, high])| Band::new(&body.material, (low, high), color))
+        .map(|((body, color), [low, high])| MaterialBand::new(&body.material, (low, high), color))
         .collect()
 }
 
@@ -56,7 +57,7 @@ pub(super) fn ends_of(scene: &CheckedScene, table: &ParticleTable) -> Vec<[f64; 
 
 /// Rows of the particles that have failed.
 pub(super) fn failed(table: &ParticleTable) -> impl Iterator<Item = usize> {
-    let damage = table.column("damage").unwrap_or(&[]);
+    let damage = table.column(DAMAGE).unwrap_or(&[]);
     damage.iter().enumerate().filter(|(_, damage)| **damage >= 1.0).map(|(row, _)| row)
 }
 
