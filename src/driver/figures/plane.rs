@@ -70,6 +70,7 @@ pub fn draw_fields(
     let corner = |corner: &[f64]| [corner[0], corner[1]];
     let axes = if scene.axisymmetric() { ["r", "z"] } else { ["x", "y"] };
     let joined = joined_sides(scene);
+    let mirrored = scene.axisymmetric() && domain.lower[0] == 0.0;
     let mut notes = notes.to_vec();
     notes.extend(bodies::removed(scene, table));
     let materials = materials(scene);
@@ -98,7 +99,7 @@ pub fn draw_fields(
             extent: Some([corner(&domain.lower), corner(&domain.upper)]),
             axes: axes.map(String::from),
             // an axisymmetric domain is mirrored at its axis
-            mirror: (scene.axisymmetric() && domain.lower[0] == 0.0).then_some(SymmetryPlane {
+            mirror: mirrored.then_some(SymmetryPlane {
                 across: Direction::X,
                 at: 0.0,
                 changes_sign: false,
@@ -111,7 +112,7 @@ pub fn draw_fields(
                 _ => Vec::new(),
             }
             .into_iter()
-            .chain(failed(table, &scene.scene.domain))
+            .chain(failed(table, &scene.scene.domain, mirrored))
             .collect(),
             ..Field::new(
                 scene.scene.title.clone(),
@@ -141,8 +142,9 @@ fn materials(scene: &CheckedScene) -> Vec<Series> {
 /// Squares along the longer side of the domain, each of which has one cross at most.
 const CROSSES: f64 = 60.0;
 
-/// Crosses at failed particles, one per square of the domain; `None` if no particle has failed.
-fn failed(table: &ParticleTable, domain: &Domain) -> Option<Series> {
+/// Crosses at failed particles, one per square of the domain, and if the picture shows the other side
+/// of an axis at x = 0 also there; `None` if no particle has failed.
+fn failed(table: &ParticleTable, domain: &Domain, mirrored: bool) -> Option<Series> {
     let [x, y] = ["x", "y"].map(|name| table.column(name).unwrap_or(&[]));
     let sides = domain.lower.iter().zip(&domain.upper).map(|(low, high)| high - low);
     let square = sides.fold(0.0, f64::max) / CROSSES;
@@ -151,8 +153,9 @@ fn failed(table: &ParticleTable, domain: &Domain) -> Option<Series> {
     for row in bodies::failed(table) {
         let (x, y) = (x[row], y[row]);
         if marked.insert([x, y].map(|at| (at / square).floor() as i64)) {
-            points.0.push(x);
-            points.1.push(y);
+            let images: &[f64] = if mirrored { &[x, -x] } else { &[x] };
+            points.0.extend(images);
+            points.1.extend(images.iter().map(|_| y));
         }
     }
     let style = Style { outlined: true, ..Style::crosses(Color::BLACK) };
@@ -286,10 +289,12 @@ mod tests {
             ],
             half_edges: vec![[[0.01, 0.0], [0.0, 0.01]]; 4],
         };
-        let crosses = |damage: &[f64]| failed(&table(damage), &scene.scene.domain);
+        let crosses = |damage: &[f64]| failed(&table(damage), &scene.scene.domain, false);
         let marked = crosses(&[1.0, 1.0, 1.0, 0.99]).unwrap();
         assert_eq!(marked.points, Points::new([0.501, 0.6], [0.501, 0.6]));
         assert!(crosses(&[0.0, 0.5, 0.9, 0.0]).is_none());
+        let both = failed(&table(&[0.0, 0.0, 1.0, 0.0]), &scene.scene.domain, true).unwrap();
+        assert_eq!(both.points, Points::new([0.6, -0.6], [0.6, 0.6]));
     }
 
     #[test]

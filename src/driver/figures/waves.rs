@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{PressureRow, bodies};
 use crate::accuracy::reference::ReferenceSolution;
-use crate::exact::{self, ExactError, PathKind, Solution};
+use crate::exact::{self, ExactError, PathKind, Plate, Solution};
 use crate::plot::{self, PictureError, Points, Stroke, WaveDiagram, WavePath};
 use crate::scene::CheckedScene;
 use crate::simulation::BodyRow;
@@ -75,7 +75,10 @@ fn diagram(
     let end = rows.iter().map(|r| r.time).fold(end.unwrap_or(0.0), f64::max);
     let mut diagram = WaveDiagram { end: Some(end), ..WaveDiagram::default() };
     if let Some(ReferenceSolution::Impact(all)) = reference {
-        diagram.paths = all.solution.paths.iter().map(|path| drawn_path(path, end)).collect();
+        diagram.paths = {
+            let free_rear = all.impact.free_rear;
+            all.solution.paths.iter().map(|path| drawn_path(path, end, free_rear)).collect()
+        };
         (diagram.exact_until, diagram.notes) = ends(&all.solution, end);
     }
     let drawn = |row: &PressureRow| plot::DiagramRow {
@@ -122,8 +125,10 @@ fn surfaces(rows: &[BodyRow], shown: &[usize]) -> Vec<Points> {
     bodies.flat_map(|body| [surface(body, 0), surface(body, 1)]).collect()
 }
 
-fn drawn_path(path: &exact::Path, end: f64) -> WavePath {
-    let (name, stroke) = path_style(path.kind);
+/// The part of a path up to `end` [s]. `free_rear`: whether the target's rear is a free surface.
+fn drawn_path(path: &exact::Path, end: f64, free_rear: bool) -> WavePath {
+    let held = path.kind == PathKind::FreeSurface && path.plate == Plate::Target && !free_rear;
+    let (name, stroke) = path_style(if held { PathKind::Interface } else { path.kind });
     let points = until(&path.points, end);
     let points = Points::new(
         points.iter().map(|q| q[1]).collect::<Vec<f64>>(),
@@ -186,5 +191,8 @@ mod tests {
         assert!(until.is_some_and(|t| (1.1e-6..1.4e-6).contains(&t)), "{until:?}");
         assert!(notes[0].starts_with("exact lines end at 1.") && notes[1].contains("not free"));
         assert_eq!(ends(&solution, 1e-6).0, None);
+        let free = solution.paths.iter().map(|path| drawn_path(path, 3e-6, impact.free_rear));
+        let free = free.filter(|path| path.name == "free surface").count();
+        assert_eq!(free, 1, "the flyer's rear alone");
     }
 }
