@@ -539,16 +539,17 @@ fn draw(
             comm.heartbeat();
             continue;
         }
-        let stem = stem.to_string_lossy().replace("profile", "figure_4");
-        figures::draw_profile(scene, reference, k, table, notes, &folder.file(&stem))?;
+        let stem = stem.to_string_lossy();
+        let place = (folder.path(), stem.trim_start_matches("profile_"));
+        figures::draw_profile(scene, reference, k, table, notes, place)?;
         comm.heartbeat();
     }
     if scene.dimension > 1 {
         return Ok(());
     }
-    let title = format!("{}: pressure and wave paths", scene.scene.title);
     let stem = folder.file("x_t_diagram");
-    figures::draw_waves(&title, &recorded.waves, None, reference, &stem)?;
+    let (rows, bodies) = (&recorded.waves, &recorded.bodies);
+    figures::draw_run_waves(scene, rows, bodies, reference, &stem)?;
     comm.heartbeat();
     if let Some(histories) = recorded.histories() {
         figures::draw_histories(scene, histories, reference, &folder.file("histories"))?;

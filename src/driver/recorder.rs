@@ -12,7 +12,7 @@ use crate::driver::output::histories::HistoryTable;
 use crate::driver::output::origin::{Origin, RUN};
 use crate::driver::probes::Probes;
 use crate::scene::CheckedScene;
-use crate::simulation::ParticleTable;
+use crate::simulation::{BodyRow, ParticleTable};
 use crate::simulation::{Saved, Simulation};
 use crate::solver::{Stepper, Steps};
 
@@ -34,6 +34,8 @@ pub struct Recorder<'a> {
     pub start: Option<ParticleTable>,
     /// Rows of the x-t diagram.
     pub waves: Vec<PressureRow>,
+    /// Surfaces and failed parts of the bodies, at the times of `waves`.
+    pub bodies: Vec<BodyRow>,
     /// Wave arrivals; empty unless the scene asks for them.
     pub arrivals: Arrivals,
     due_wave: u64,
@@ -64,6 +66,7 @@ impl<'a> Recorder<'a> {
             tables: Vec::new(),
             start: if needs_start { simulation.gather().map(|(table, _)| table) } else { None },
             waves: Vec::new(),
+            bodies: Vec::new(),
             arrivals: Arrivals::default(),
             due_wave: 0,
             due_profile: 0,
@@ -84,9 +87,9 @@ impl<'a> Recorder<'a> {
         if let Some(checkpoint) = &checkpoint {
             self.origin = checkpoint.run_origin();
         }
-        let Record { tables, waves, histories } =
+        let Record { tables, waves, bodies, histories } =
             checkpoint.map_or_else(Record::default, |c| c.record);
-        (self.tables, self.waves) = (tables, waves);
+        (self.tables, self.waves, self.bodies) = (tables, waves, bodies);
         if let Some(probes) = &mut self.probes {
             let same = due.history_interval == self.scene.history_interval;
             probes.resume(time, same.then_some(due.history), histories);
@@ -108,8 +111,10 @@ impl<'a> Recorder<'a> {
             self.due_wave = wave_after(time, end);
             let stride = self.scene.particles.div_ceil(WAVE_POINTS).max(1);
             let points = simulation.sample_pressure(stride);
+            let bodies = simulation.body_row(stride);
             if first {
                 self.waves.push(PressureRow { time, points });
+                self.bodies.push(bodies);
             }
         }
         if self.scene.profile_times.get(self.due_profile) == Some(&time) {
@@ -180,6 +185,7 @@ impl<'a> Recorder<'a> {
             due,
             tables: &self.tables[..mark.tables],
             waves: &self.waves[..mark.waves],
+            bodies: &self.bodies[..mark.waves],
             histories,
         }
     }

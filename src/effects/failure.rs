@@ -10,7 +10,7 @@ use decomp::Block;
 use smallvec::SmallVec;
 
 use crate::material::constitutive::{ConstitutiveModel, DamageUpdate, FailureModel};
-use crate::material::failure::Carried;
+use crate::material::failure::{Carried, DAMAGE};
 use crate::scene::CheckedScene;
 use crate::solver::Scheme;
 use crate::solver::declare::{Declare, Role};
@@ -43,7 +43,7 @@ impl Package for FailureEffect {
         let may_fail = bodies.filter(|&body| scene.material_of(body).failure.is_some());
         may_fail.for_each(|body| d.tension_free(body, damage));
         d.scalar("released_energy", "J", Role::State);
-        d.output("damage", "-", "damage");
+        d.output(DAMAGE, "-", "damage");
     }
 
     fn build<const D: usize>(setup: &mut Setup<'_, D>) -> Box<dyn Effect<D>> {

@@ -63,6 +63,9 @@ pub(super) fn notes(canvas: &mut Canvas, occupancy: &Occupancy, notes: &[String]
         return;
     }
     let line = 1.45 * NOTE_EM;
+    let room = 0.6 * area.width();
+    let notes: Vec<String> =
+        notes.iter().flat_map(|note| text::wrapped(note, NOTE_EM, false, room)).collect();
     let widths = notes.iter().map(|note| text::width(note, NOTE_EM, false));
     let width = widths.fold(0.0, f64::max) + 24.0;
     let height = notes.len() as f64 * line + 14.0;

@@ -1,7 +1,7 @@
 //! A page of shapes \[pixel\], y downwards: the result of the layout and the input of the painter.
 
 use super::color::Color;
-use super::series::Stroke;
+use super::series::{Stroke, Style, Symbol};
 
 /// Width of most pages \[pixel\].
 pub(super) const WIDTH: f64 = 1200.0;
@@ -141,11 +141,31 @@ impl Canvas {
         }
     }
 
-    /// Draws a disc, or a ring if `hollow`.
-    pub fn mark(&mut self, at: CanvasPoint, radius: f64, color: Color, hollow: bool) {
-        self.shapes.push(CanvasShape::Dot { at, radius, color });
-        if hollow {
-            self.shapes.push(CanvasShape::Dot { at, radius: 0.55 * radius, color: Color::WHITE });
+    /// Draws a mark in the colour and with the symbol of `style`.
+    pub fn mark(&mut self, at: CanvasPoint, radius: f64, style: &Style) {
+        let color = style.color;
+        match style.symbol {
+            Symbol::Disc => self.shapes.push(CanvasShape::Dot { at, radius, color }),
+            Symbol::Ring => {
+                self.shapes.push(CanvasShape::Dot { at, radius, color });
+                let radius = 0.55 * radius;
+                self.shapes.push(CanvasShape::Dot { at, radius, color: Color::WHITE });
+            }
+            Symbol::Cross => {
+                let corner =
+                    |across: f64, down: f64| (at.0 + across * radius, at.1 + down * radius);
+                let strokes = [
+                    [corner(-1.0, -1.0), corner(1.0, 1.0)],
+                    [corner(-1.0, 1.0), corner(1.0, -1.0)],
+                ];
+                if style.outlined {
+                    let (width, color) = (4.0, Color::WHITE);
+                    let line = |points: Vec<_>| CanvasShape::Line { points, width, color };
+                    self.shapes.extend(strokes.map(|s| line(s.to_vec())));
+                }
+                let line = |points: Vec<_>| CanvasShape::Line { points, width: 1.8, color };
+                self.shapes.extend(strokes.map(|s| line(s.to_vec())));
+            }
         }
     }
 

@@ -2,11 +2,12 @@
 
 use super::canvas::{CanvasImage, Rect};
 use super::color::Color;
+use super::limits::{AxisLimits, Shading};
 use super::shades::Shades;
 use super::ticks::Ruler;
 
-/// Background colour: no material.
-const NOTHING: Color = Color(0xf1, 0xf1, 0xf3);
+/// Background colour: no material. White, because light gray stands for a value.
+const NOTHING: Color = Color::WHITE;
 
 /// Pressure along x at one time.
 #[derive(Debug, Clone)]
@@ -25,16 +26,28 @@ pub(super) struct ColorMap {
     pub label: String,
     pub unit: String,
     pub rows: Vec<DiagramRow>,
+    /// Ends of the colour scale [`unit`]; by default, it covers nearly all values.
+    pub limits: Option<(f64, f64)>,
 }
 
 impl ColorMap {
+    /// The colour scale: with zero in the middle if there are significant negative values.
+    pub fn scale(&self) -> AxisLimits {
+        AxisLimits::of(self.values().collect(), Shading::BySign, self.limits)
+    }
+
     /// All values.
     pub fn values(&self) -> impl Iterator<Item = f64> {
         self.rows.iter().flat_map(|row| row.pressure.iter().copied())
     }
 
     /// The image of the map in `rect`: linear between the points of a row, nearest row in time.
-    pub fn image(&self, rect: Rect, x: &Ruler, t: &Ruler, colors: &Ruler) -> CanvasImage {
+    pub fn image(
+        &self,
+        rect: Rect,
+        (x, t): (&Ruler, &Ruler),
+        (colors, shades): (&Ruler, Shades),
+    ) -> CanvasImage {
         // One value per two pixels of the page: fine enough for the eye, and four times cheaper.
         let columns = (rect.width() / 2.0).ceil().max(1.0) as usize;
         let rows = (rect.height() / 2.0).ceil().max(1.0) as usize;
@@ -48,7 +61,7 @@ impl ColorMap {
             match nearest(&order, time) {
                 Some(index) if index == strip.0 => pixels.extend_from_slice(&strip.1),
                 Some(index) => {
-                    strip = (index, colors_of(order[index], columns, x, colors));
+                    strip = (index, colors_of(order[index], columns, x, (colors, shades)));
                     pixels.extend_from_slice(&strip.1);
                 }
                 None => pixels.resize(pixels.len() + columns, NOTHING),
@@ -78,7 +91,12 @@ fn nearest(rows: &[&DiagramRow], time: f64) -> Option<usize> {
 }
 
 /// Colours of a row at `columns` even steps of the x axis.
-fn colors_of(row: &DiagramRow, columns: usize, x: &Ruler, colors: &Ruler) -> Vec<Color> {
+fn colors_of(
+    row: &DiagramRow,
+    columns: usize,
+    x: &Ruler,
+    (colors, shades): (&Ruler, Shades),
+) -> Vec<Color> {
     let mut points: Vec<(f64, f64)> = std::iter::zip(&row.x, &row.pressure)
         .filter(|(x, p)| x.is_finite() && p.is_finite())
         .map(|(&x, &p)| (x, p))
@@ -88,7 +106,7 @@ fn colors_of(row: &DiagramRow, columns: usize, x: &Ruler, colors: &Ruler) -> Vec
     let middle = gaps.len() / 2;
     let usual =
         if gaps.is_empty() { 0.0 } else { *gaps.select_nth_unstable_by(middle, f64::total_cmp).1 };
-    let shade = |p: f64| colors.place(p).map_or(NOTHING, |place| Shades::Sequential.color(place));
+    let shade = |p: f64| colors.place(p).map_or(NOTHING, |place| shades.color(place));
     let mut next = 0;
     let value = |column: usize| x.value((column as f64 + 0.5) / columns as f64);
     let pixel = (x.value(1.0) - x.value(0.0)) / columns as f64;
@@ -119,13 +137,25 @@ mod tests {
     use super::*;
 
     #[test]
+    fn zero_is_in_the_middle_of_signed_values() {
+        let map = |pressure: Vec<f64>| {
+            let rows = vec![DiagramRow { time: 0.0, x: vec![0.0, 1.0, 2.0], pressure }];
+            let scale =
+                ColorMap { label: "p".into(), unit: "Pa".into(), rows, limits: None }.scale();
+            (scale.shades, scale.low, scale.high)
+        };
+        assert_eq!(map(vec![-1e9, 0.0, 3e9]), (Shades::Diverging, -3e9, 3e9));
+        assert_eq!(map(vec![0.0, 1e9, 3e9]), (Shades::Sequential, 0.0, 3e9));
+    }
+
+    #[test]
     fn gaps_between_bodies_stay_empty() {
         let axis = |label| Axis::linear(label, "").tight();
         let x = Ruler::new(&axis("x"), [0.0, 10.0].into_iter(), 5);
         let colors = Ruler::new(&axis("p"), [0.0, 1.0].into_iter(), 5);
         let positions = vec![0.0, 0.5, 1.0, 1.5, 2.0, 8.0, 8.5, 9.0, 9.5, 10.0];
         let row = DiagramRow { time: 0.0, x: positions, pressure: vec![1.0; 10] };
-        let shades = colors_of(&row, 100, &x, &colors);
+        let shades = colors_of(&row, 100, &x, (&colors, Shades::Sequential));
         assert_eq!(shades[5], Shades::Sequential.color(1.0));
         assert_eq!(shades[50], NOTHING);
         assert_eq!(shades[95], Shades::Sequential.color(1.0));

@@ -75,7 +75,7 @@ pub(super) fn draw(
     let marked = runs.iter().filter(|run| style.mark.is_some() || lone(run)).flatten();
     for &at in marked.filter(|at| area.grown(0.5).contains(**at)) {
         occupancy.add_point(at);
-        canvas.mark(at, radius, style.color, style.hollow);
+        canvas.mark(at, radius, style);
     }
 }
 

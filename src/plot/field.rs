@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::color::Color;
 use super::error::PictureError;
 use super::limits::Shading;
 use super::series::Series;
@@ -30,6 +31,8 @@ pub struct Field {
     pub mirror: Option<SymmetryPlane>,
     /// Whether to draw a thin line where bodies touch and a fainter one at their free edges.
     pub outlines: bool,
+    /// Colour of each body, in place of the colours of the values: the picture then has no colour bar.
+    pub fills: Option<Vec<Color>>,
     /// Curves over the field, both coordinates \[m\].
     pub overlays: Vec<Series>,
     /// Short texts under the title.
@@ -123,8 +126,8 @@ impl Field {
     ) -> Self {
         let (title, axes) = (title.into(), ["x".into(), "y".into()]);
         let (overlays, notes) = (Vec::new(), Vec::new());
-        let (extent, mirror, outlines) = (None, None, false);
-        Self { title, time, quantity, data, extent, axes, mirror, outlines, overlays, notes }
+        let (extent, mirror, outlines, fills) = (None, None, false, None);
+        Self { title, time, quantity, data, extent, axes, mirror, outlines, fills, overlays, notes }
     }
 
     /// Tiles of the computed half: particles, or cells that have a value.

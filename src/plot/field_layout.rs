@@ -1,9 +1,8 @@
 //! The page of a field; its size follows from equal scales in both directions.
 
-use super::axes::{self, INK, LABEL_EM, MARGIN, TICK, TICK_EM, TITLE_EM};
+use super::axes::{self, INK, LABEL_EM, MARGIN, TICK, TICK_EM};
 use super::axis::Axis;
-use super::canvas::{Align, Canvas, CanvasPoint, CanvasShape, Rect, Text};
-use super::color::Color;
+use super::canvas::{Align, Canvas, CanvasPoint, Rect};
 use super::color_bar::{self, BAR, ColorBar};
 use super::curves::{self, place};
 use super::error::PictureError;
@@ -15,12 +14,13 @@ use super::limits::AxisLimits;
 use super::occupancy::Occupancy;
 use super::text;
 use super::ticks::Ruler;
+use super::title;
 
 /// Largest size of the plane on the page \[pixel\].
 const WIDEST: f64 = 980.0;
 const HIGHEST: f64 = 800.0;
 /// Smallest size of the plane on the page \[pixel\]; a thinner plane is stretched.
-const THINNEST: f64 = 64.0;
+const THINNEST: f64 = 96.0;
 /// Smallest width of a page, so that the title has space \[pixel\].
 const NARROWEST: f64 = 620.0;
 /// Below this height of the plane, the colour bar is placed under it \[pixel\].
@@ -41,7 +41,8 @@ pub(super) fn lay_out(
     let empty = shown.is_empty();
     let limits = AxisLimits::of(shown, field.quantity.shading, field.quantity.limits);
     let (size, stretch) = panel_size(&extent);
-    let is_low = size.1 < LOW;
+    let has_bar = field.fills.is_none();
+    let is_low = has_bar && size.1 < LOW;
 
     let axis = Axis::linear(&field.quantity.label, &field.quantity.unit);
     let axis = axis.range(limits.low, limits.high);
@@ -58,6 +59,7 @@ pub(super) fn lay_out(
 
     let left = MARGIN + LABEL_EM + 14.0 + y.widest(TICK_EM) + 6.0 + TICK;
     let right = match is_low {
+        _ if !has_bar => 0.5 * x.widest(TICK_EM),
         true => 0.5 * x.widest(TICK_EM),
         false => color_bar::room_beside(&colors),
     };
@@ -68,7 +70,7 @@ pub(super) fn lay_out(
 
     let mut canvas = Canvas::new(&figure.title, (width, 0.0));
     let head = if content < width { MARGIN } else { left };
-    let mut top = MARGIN + heading(&mut canvas, figure, head);
+    let mut top = MARGIN + title::draw(&mut canvas, &figure.title, head);
     top += notes(&mut canvas, (figure, panel), stretch, head, top);
     let names = figure.legend();
     top = legend::draw(&mut canvas, &names, (head, width - MARGIN), top);
@@ -92,7 +94,7 @@ pub(super) fn lay_out(
         let whole = Rect { left, right, top, bottom: top + BAR };
         bar.draw_lying(&mut canvas, &whole, &colors);
         bottom = whole.bottom + UNDER;
-    } else {
+    } else if has_bar {
         bar.draw_beside(&mut canvas, &area, &colors, width - MARGIN - shift);
     }
     canvas.size.1 = (bottom + MARGIN).ceil();
@@ -133,25 +135,6 @@ fn fitting(axis: &Axis, most: usize, size: Option<f64>, room: impl Fn(&Ruler) ->
         places.windows(2).all(|pair| (pair[1] - pair[0]) * room(ruler) >= 1.0)
     };
     (1..=most).rev().map(ruler).find(fits).unwrap_or_else(|| ruler(1))
-}
-
-/// Draws the title, wrapped to the page width; returns its height.
-fn heading(canvas: &mut Canvas, figure: &Figure, left: f64) -> f64 {
-    let room = canvas.size.0 - MARGIN - left;
-    let lines = text::wrapped(&figure.title, TITLE_EM, true, room);
-    for (index, line) in lines.iter().enumerate() {
-        let width = text::width(line, TITLE_EM, true);
-        canvas.shapes.push(CanvasShape::Text(Text {
-            text: line.clone(),
-            at: (left, MARGIN + (0.8 + 1.25 * index as f64) * TITLE_EM),
-            em: if width > room { TITLE_EM * room / width } else { TITLE_EM },
-            bold: true,
-            color: Color::BLACK,
-            align: Align::Left,
-            upright: false,
-        }));
-    }
-    1.25 * TITLE_EM * lines.len() as f64
 }
 
 /// Draws the notes from `top` downwards; returns their height.

@@ -131,8 +131,11 @@ pub(super) fn image(
         Some(at) => table[(at.clamp(0.0, 1.0) * 1023.0).round() as usize],
         None => NOTHING,
     };
-    let mut pixels: Vec<Color> =
-        (0..columns * rows).map(|i| raster.value(i).map_or(NOTHING, shade)).collect();
+    let fill = |i: usize| match &field.fills {
+        Some(fills) => fills.get(raster.body(i) as usize).copied().unwrap_or(NOTHING),
+        None => raster.value(i).map_or(NOTHING, shade),
+    };
+    let mut pixels: Vec<Color> = (0..columns * rows).map(fill).collect();
     if field.outlines {
         outline(&raster, &mut pixels);
     }

@@ -113,7 +113,7 @@ fn a_thin_plane_is_stretched_and_its_bar_lies_below() {
     assert_eq!([0.05, 0.3, 0.8].map(|x| at(image, x, 0.5)), [Color::WHITE, YELLOW, PURPLE]);
     assert!(bar.rect.top > image.rect.bottom && bar.rect.width() > 10.0 * bar.rect.height());
     let texts = texts(&canvas);
-    for text in ["Strip, t = 1 µs", "x (mm)", "y (µm)", "y stretched ×65", "Pressure (GPa)"] {
+    for text in ["Strip, t = 1 µs", "x (mm)", "y (µm)", "y stretched ×98", "Pressure (GPa)"] {
         assert!(texts.contains(&text), "{text} is missing in {texts:?}");
     }
 }
@@ -153,6 +153,18 @@ fn a_hairline_parts_bodies() {
         row.iter().filter(|color| color.0 < 100).count()
     };
     assert_eq!((dark(true, 1), dark(true, 0), dark(false, 1)), (2, 0, 0));
+}
+
+#[test]
+fn bodies_have_the_colours_that_are_given() {
+    let square = |x: f64, body: u32| FieldTile { body, ..tile([x, 1.0], 1.0, 1e9) };
+    let tiles = vec![square(1.0, 0), square(3.0, 1)];
+    let fills = Some(vec![Color::ORANGE, Color::GRAY]);
+    let canvas = laid_out(Field { fills, ..field(tiles, [[0.0; 2], [5.0, 2.0]]) });
+    let image = &canvas.images[0];
+    let row = [1.0, 3.0, 4.5].map(|x| at(image, x / 5.0, 0.5));
+    assert_eq!(row, [Color::ORANGE, Color::GRAY, Color::WHITE]);
+    assert_eq!(canvas.images.len(), 1, "there is no colour bar");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use super::axis::Axis;
 use super::bars::Bars;
+use super::color::Color;
 use super::color_map::ColorMap;
 use super::field::Field;
 use super::series::{Series, Style};
@@ -36,12 +37,16 @@ impl Figure {
         self
     }
 
-    /// Names of the series with the first style of each, in drawing order.
+    /// Names of the bands and the series with the first style of each, in drawing order.
     pub(super) fn legend(&self) -> Vec<(&str, &Style)> {
         let mut entries: Vec<(&str, &Style)> = Vec::new();
-        for series in self.panels.iter().flat_map(|panel| &panel.series) {
-            if !series.name.is_empty() && entries.iter().all(|(name, _)| *name != series.name) {
-                entries.push((&series.name, &series.style));
+        let bands = self.panels.iter().flat_map(|panel| &panel.bands);
+        let bands = bands.map(|band| (band.name.as_str(), &band.style));
+        let series = self.panels.iter().flat_map(|panel| &panel.series);
+        let series = series.map(|series| (series.name.as_str(), &series.style));
+        for (name, style) in bands.chain(series) {
+            if !name.is_empty() && entries.iter().all(|(known, _)| *known != name) {
+                entries.push((name, style));
             }
         }
         entries
@@ -61,6 +66,10 @@ pub struct Panel {
     pub notes: Vec<String>,
     /// Part of the x axis that is shown again, enlarged, if there is space.
     pub close_up: Option<(f64, f64)>,
+    /// Coloured bands above the panel, which name parts of the x axis.
+    pub bands: Vec<MaterialBand>,
+    /// Abscissae of thin vertical lines under the series, such as interfaces.
+    pub lines: Vec<f64>,
     /// A colour map under the series.
     pub(super) map: Option<ColorMap>,
     /// A field under the series; it is then the only panel of the figure.
@@ -70,8 +79,18 @@ pub struct Panel {
 impl Panel {
     /// An empty panel.
     pub fn new(y: Axis) -> Self {
-        let (series, labels, notes) = (Vec::new(), Vec::new(), Vec::new());
-        Self { y, series, labels, notes, close_up: None, map: None, field: None }
+        let (series, labels, notes, bands) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Self {
+            y,
+            series,
+            labels,
+            notes,
+            close_up: None,
+            bands,
+            lines: vec![],
+            map: None,
+            field: None,
+        }
     }
 
     /// Adds a series on top of the others.
@@ -84,6 +103,26 @@ impl Panel {
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.notes.push(note.into());
         self
+    }
+}
+
+/// A part of the x axis, such as a body of one material, drawn as a coloured band above the panel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MaterialBand {
+    /// Name in the legend: "copper".
+    pub name: String,
+    /// Lower end, in the unit of the x axis.
+    pub low: f64,
+    /// Upper end, in the unit of the x axis.
+    pub high: f64,
+    /// Colour, and the look of the legend entry.
+    pub(super) style: Style,
+}
+
+impl MaterialBand {
+    /// A band of this colour.
+    pub fn new(name: impl Into<String>, (low, high): (f64, f64), color: Color) -> Self {
+        Self { name: name.into(), low, high, style: Style::line(color).width(14.0) }
     }
 }
 

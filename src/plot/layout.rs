@@ -1,10 +1,9 @@
 //! Layout: turns a figure into shapes on a page.
 
 use super::annotations;
-use super::axes::{self, LABEL_EM, MARGIN, TICK, TICK_EM, TITLE_EM};
+use super::axes::{self, LABEL_EM, MARGIN, TICK, TICK_EM};
 use super::axis::Axis;
-use super::canvas::{Align, Canvas, CanvasPoint, CanvasShape, HEIGHT, Rect, Text, WIDTH};
-use super::color::Color;
+use super::canvas::{Canvas, CanvasPoint, HEIGHT, Rect, WIDTH};
 use super::color_bar::{self, ColorBar};
 use super::color_map::ColorMap;
 use super::curves::{self, place};
@@ -12,11 +11,11 @@ use super::error::PictureError;
 use super::field_layout;
 use super::figure::{Figure, Panel};
 use super::legend;
+use super::limits::AxisLimits;
 use super::occupancy::Occupancy;
-use super::series::{Points, Series};
-use super::shades::Shades;
-use super::text;
+use super::series::{Points, Series, Stroke};
 use super::ticks::{Ruler, drawable};
+use super::title;
 
 /// Gap between the panels and the bars beside them \[pixel\].
 const GUTTER: f64 = 40.0;
@@ -29,18 +28,18 @@ pub(super) fn lay_out(figure: &Figure) -> Result<Canvas, PictureError> {
     }
     let mut canvas = Canvas::new(&figure.title, (WIDTH, HEIGHT));
     let areas = areas(figure);
-    let top = MARGIN + TITLE_EM + 6.0;
+    let top = MARGIN + title::draw(&mut canvas, &figure.title, areas.left);
     let names = figure.legend();
     let mut legend_end = legend::draw(&mut canvas, &names, (areas.left, right_edge(figure)), top);
     let beside = (right_edge(figure) + GUTTER, WIDTH - MARGIN);
     if let Some(bars) = &figure.bars {
         legend_end = legend_end.max(bars.draw_legend(&mut canvas, beside, top));
     }
-    title(&mut canvas, &figure.title, areas.left);
-
     let x = Ruler::new(&figure.x, x_values(figure), wanted(areas.right - areas.left, 120.0));
     let bottom = HEIGHT - MARGIN - LABEL_EM - TICK_EM - 24.0;
-    let panels = areas_of_panels(figure.panels.len(), &areas, legend_end + 16.0, bottom);
+    let banded = figure.panels.iter().any(|panel| !panel.bands.is_empty());
+    let head = if banded { 24.0 } else { 16.0 };
+    let panels = areas_of_panels(figure.panels.len(), &areas, legend_end + head, bottom);
     for (index, (panel, area)) in figure.panels.iter().zip(&panels).enumerate() {
         let y = y_ruler(figure, panel, area.height());
         draw_panel(&mut canvas, figure, panel, area, (&x, &y));
@@ -97,7 +96,8 @@ fn areas(figure: &Figure) -> Areas {
     let rulers = panels().map(|(panel, height)| y_ruler(figure, panel, height));
     let numbers = rulers.map(|ruler| ruler.widest(TICK_EM)).fold(0.0, f64::max);
     let maps = panels().filter_map(|(panel, height)| Some((panel.map.as_ref()?, height)));
-    let bars = maps.map(|(map, height)| color_bar::room_beside(&bar_ruler(map, height)));
+    let bars =
+        maps.map(|(map, height)| color_bar::room_beside(&bar_ruler(map, &map.scale(), height)));
     Areas {
         left: MARGIN + LABEL_EM + 14.0 + numbers + 6.0 + TICK,
         right: right_edge(figure) - bars.fold(0.0, f64::max),
@@ -147,23 +147,9 @@ fn y_ruler(figure: &Figure, panel: &Panel, height: f64) -> Ruler {
     Ruler::new(&panel.y, series.chain(labels).chain(mapped), wanted(height, 70.0))
 }
 
-fn bar_ruler(map: &ColorMap, height: f64) -> Ruler {
-    let axis = Axis::linear(&map.label, &map.unit).tight();
-    Ruler::new(&axis, map.values(), wanted(height, 70.0))
-}
-
-fn title(canvas: &mut Canvas, title: &str, left: f64) {
-    let (room, width) = (WIDTH - MARGIN - left, text::width(title, TITLE_EM, true));
-    let em = if width > room { TITLE_EM * room / width } else { TITLE_EM };
-    canvas.shapes.push(CanvasShape::Text(Text {
-        text: title.into(),
-        at: (left, MARGIN + 0.8 * TITLE_EM),
-        em,
-        bold: true,
-        color: Color::BLACK,
-        align: Align::Left,
-        upright: false,
-    }));
+fn bar_ruler(map: &ColorMap, scale: &AxisLimits, height: f64) -> Ruler {
+    let axis = Axis::linear(&map.label, &map.unit).range(scale.low, scale.high);
+    Ruler::new(&axis, std::iter::empty(), wanted(height, 70.0))
 }
 
 fn draw_panel(
@@ -176,12 +162,21 @@ fn draw_panel(
     let mut occupancy = Occupancy::new(*area);
     let below = canvas.shapes.len();
     if let Some(map) = &panel.map {
-        let colors = bar_ruler(map, area.height());
-        canvas.images.push(map.image(*area, x, y, &colors));
-        let bar = ColorBar { shades: Shades::Sequential, under: false, over: false };
+        let scale = map.scale();
+        let colors = bar_ruler(map, &scale, area.height());
+        canvas.images.push(map.image(*area, (x, y), (&colors, scale.shades)));
+        let bar = ColorBar { shades: scale.shades, under: scale.under, over: scale.over };
         bar.draw_beside(canvas, area, &colors, WIDTH - MARGIN);
     } else {
         axes::grid(canvas, area, x, y);
+    }
+    bands(canvas, panel, area, x);
+    for at in panel.lines.iter().filter_map(|&value| x.place(value)) {
+        if (0.0..=1.0).contains(&at) {
+            let at = area.left + at * area.width();
+            let line = [(at, area.top), (at, area.bottom)];
+            canvas.line(&line, 1.5, axes::INK, Stroke::Dashed);
+        }
     }
     let mut empty = true;
     for series in &panel.series {
@@ -200,4 +195,20 @@ fn draw_panel(
     }
     annotations::close_up(canvas, &mut occupancy, (figure, panel), area, (x, y), below);
     annotations::notes(canvas, &occupancy, &panel.notes, area);
+}
+
+/// Draws the bands above a panel, which name parts of the x axis by colour.
+fn bands(canvas: &mut Canvas, panel: &Panel, area: &Rect, x: &Ruler) {
+    for band in &panel.bands {
+        let [Some(from), Some(to)] = [band.low, band.high].map(|end| x.place(end)) else {
+            continue;
+        };
+        let [left, right] = [from, to].map(|at| area.left + at.clamp(0.0, 1.0) * area.width());
+        if right > left {
+            let (top, bottom) = (area.top - 14.0, area.top - 4.0);
+            // a thin part stays visible
+            let rect = Rect { left, top, right: right.max(left + 2.0), bottom };
+            canvas.fill(rect, band.style.color, 1.0);
+        }
+    }
 }

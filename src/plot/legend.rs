@@ -24,12 +24,14 @@ pub(super) fn draw(
     }
     let (mut x, mut y) = (left, top + 0.5 * ROW);
     for (name, style) in entries {
-        let width = SWATCH + 10.0 + text::width(name, EM, false);
+        let (room, whole) = (right - left - SWATCH - 10.0, text::width(name, EM, false));
+        let em = if whole > room { EM * room / whole } else { EM };
+        let width = SWATCH + 10.0 + whole.min(room);
         if x > left && x + width > right {
             (x, y) = (left, y + ROW);
         }
         swatch(canvas, style, x, y);
-        canvas.text(name, (x + SWATCH + 10.0, y + 0.35 * EM), EM, Align::Left, Color::BLACK);
+        canvas.text(name, (x + SWATCH + 10.0, y + 0.35 * EM), em, Align::Left, Color::BLACK);
         x += width + SPACE;
     }
     y + 0.5 * ROW
@@ -50,7 +52,28 @@ fn swatch(canvas: &mut Canvas, style: &Style, x: f64, y: f64) {
         let places: &[f64] = if style.stroke.is_some() { &[0.5] } else { &[0.2, 0.5, 0.8] };
         for share in places {
             let at = (x + share * SWATCH, y);
-            canvas.mark(at, radius, style.color, style.hollow);
+            canvas.mark(at, radius, style);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::canvas::CanvasShape;
+    use super::*;
+
+    #[test]
+    fn names_of_any_length_end_within_the_page() {
+        let style = Style::line(Color::RED);
+        let long = "aluminium of the second plate ".repeat(8);
+        let mut canvas = Canvas::new("", (1200.0, 800.0));
+        let entries = [("copper", &style), (long.as_str(), &style), ("pmma", &style)];
+        let end = draw(&mut canvas, &entries, (100.0, 1172.0), 60.0);
+        assert_eq!(end, 60.0 + 3.0 * ROW);
+        for shape in &canvas.shapes {
+            let CanvasShape::Text(text) = shape else { continue };
+            let right = text.at.0 + text::width(&text.text, text.em, false);
+            assert!(right < 1172.5, "{} ends at {right}", text.text);
         }
     }
 }

@@ -48,6 +48,7 @@ mod text;
 mod thin;
 mod ticks;
 mod tile_map;
+mod title;
 mod wave_diagram;
 
 #[cfg(test)]
@@ -63,13 +64,13 @@ pub use color::Color;
 pub use color_map::DiagramRow;
 pub use error::PictureError;
 pub use field::{Cells, Direction, Field, FieldData, FieldQuantity, FieldTile, SymmetryPlane};
-pub use figure::{Figure, Label, Panel};
+pub use figure::{Figure, Label, MaterialBand, Panel};
 pub use histories::{HistoriesFigure, HistoryCurve, HistoryPanel};
 pub use hugoniot::{HugoniotCurve, HugoniotFigure, HugoniotPoint};
 pub use limits::Shading;
 pub use line_out::{LineOut, LineOutCurve, LineStyle};
-pub use profile::ProfileFigure;
-pub use series::{Points, Series, Stroke, Style};
+pub use profile::{ProfileFigure, ProfilePart};
+pub use series::{Points, Series, Stroke, Style, Symbol};
 pub use tile_map::TileMap;
 pub use wave_diagram::{WaveDiagram, WavePath};
 

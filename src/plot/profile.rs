@@ -1,8 +1,8 @@
-//! Figure 4 of Burghardt (2010): pressure against position in the target at one time.
+//! Pressure against position at one time, as in figure 4 of Burghardt (2010).
 
 use super::axis::Axis;
 use super::color::Color;
-use super::figure::{Figure, Panel};
+use super::figure::{Figure, MaterialBand, Panel};
 use super::series::{Points, Series, Style};
 
 /// A pressure profile with its reference solutions: positions \[m\], pressures \[Pa\].
@@ -16,8 +16,14 @@ pub struct ProfileFigure {
     pub approximation: Option<Points>,
     /// Exact solution, with release fans: a red line.
     pub exact: Option<Points>,
-    /// Computed points: green marks.
-    pub computed: Points,
+    /// Computed points, one part per material.
+    pub computed: Vec<ProfilePart>,
+    /// Computed points of failed material: black crosses.
+    pub failed: Points,
+    /// Bodies at this time, as coloured bands above the profile.
+    pub bands: Vec<MaterialBand>,
+    /// Positions of the surfaces where bodies touch \[m\]: thin lines.
+    pub interfaces: Vec<f64>,
     /// Lines of text, such as errors.
     pub notes: Vec<String>,
     /// Positions \[m\] between which the profile is shown again, enlarged, if there is space: the
@@ -25,11 +31,31 @@ pub struct ProfileFigure {
     pub close_up: Option<(f64, f64)>,
 }
 
+/// The computed points of one material.
+#[derive(Debug, Clone)]
+pub struct ProfilePart {
+    /// Name in the legend.
+    pub name: String,
+    /// Colour of the marks.
+    pub color: Color,
+    /// Positions \[m\] and pressures \[Pa\].
+    pub points: Points,
+}
+
 impl ProfileFigure {
     /// The figure.
     pub fn figure(&self) -> Figure {
         let mut panel = Panel::new(Axis::linear("Pressure", "Pa"));
-        panel.series.push(Series::new("MPM", self.computed.clone(), Style::marks(Color::GREEN)));
+        panel.bands.clone_from(&self.bands);
+        panel.lines.clone_from(&self.interfaces);
+        for part in &self.computed {
+            let style = Style::marks(part.color);
+            panel.series.push(Series::new(&part.name, part.points.clone(), style));
+        }
+        if !self.failed.x.is_empty() {
+            let style = Style::crosses(Color::BLACK);
+            panel.series.push(Series::new("failed", self.failed.clone(), style));
+        }
         if let Some(points) = &self.approximation {
             let style = Style::line(Color::BLACK).width(2.0);
             panel.series.push(Series::new("shock approximation", points.clone(), style));

@@ -47,6 +47,17 @@ pub enum Stroke {
     Dotted,
 }
 
+/// Shape of a mark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Symbol {
+    /// A disc.
+    Disc,
+    /// A ring.
+    Ring,
+    /// A diagonal cross.
+    Cross,
+}
+
 /// Style of a series: a line, marks, or both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Style {
@@ -58,17 +69,22 @@ pub struct Style {
     pub width: f64,
     /// Radius of round marks \[pixel\]; `None`: line only.
     pub mark: Option<f64>,
-    /// Whether marks are rings.
-    pub hollow: bool,
+    /// Shape of the marks.
+    pub symbol: Symbol,
     /// Whether the line has a dark border, so that it is visible on a colour map.
     pub outlined: bool,
 }
 
 impl Style {
+    /// Crosses without a line.
+    pub fn crosses(color: Color) -> Self {
+        Self { mark: Some(5.0), symbol: Symbol::Cross, ..Self::marks(color) }
+    }
+
     /// A solid line.
     pub fn line(color: Color) -> Self {
         let stroke = Some(Stroke::Solid);
-        Self { color, stroke, width: 2.5, mark: None, hollow: false, outlined: false }
+        Self { color, stroke, width: 2.5, mark: None, symbol: Symbol::Disc, outlined: false }
     }
 
     /// Marks without a line.
@@ -88,7 +104,7 @@ impl Style {
 
     /// The same style with rings as marks.
     pub fn hollow(self) -> Self {
-        Self { hollow: true, ..self }
+        Self { symbol: Symbol::Ring, ..self }
     }
 
     /// The same style with another line width.

@@ -39,7 +39,14 @@ fn profile() -> ProfileFigure {
         time: 0.5e-6,
         approximation: Some(Points::new(x.clone(), p.clone())),
         exact: Some(Points::new(x.clone(), p.clone())),
-        computed: Points::new(x, p),
+        computed: vec![ProfilePart {
+            name: "MPM".into(),
+            color: Color::GREEN,
+            points: Points::new(x, p),
+        }],
+        failed: Points::new([], []),
+        bands: vec![],
+        interfaces: vec![],
         notes: vec!["L1 = 0.9 %".into()],
         close_up: Some((4.8e-3, 5.2e-3)),
     }
@@ -71,14 +78,7 @@ fn profile_shows_text_and_points_in_both_files() {
 fn figures_without_data_say_so() {
     let empty = [
         HugoniotFigure { title: "Nothing".into(), curves: vec![], states: vec![] }.figure(),
-        WaveDiagram {
-            title: "Nothing".into(),
-            rows: vec![],
-            paths: vec![],
-            end: None,
-            notes: vec![],
-        }
-        .figure(),
+        WaveDiagram { title: "Nothing".into(), ..WaveDiagram::default() }.figure(),
         Figure::new("Nothing", Axis::log("Cost", "s")).panel(
             Panel::new(Axis::log("Error", "")).series(Series::new(
                 "nought",
@@ -116,10 +116,7 @@ fn odd_data_are_drawn_as_far_as_they_go() {
         DiagramRow { time: 1e-6, x: vec![0.0, 0.0, f64::NAN], pressure: vec![f64::NAN, 2.0, 1.0] },
         DiagramRow { time: 1e-6, x: vec![], pressure: vec![] },
     ];
-    drawn(
-        &WaveDiagram { title: "odd".into(), rows, paths: vec![], end: None, notes: vec![] }
-            .figure(),
-    );
+    drawn(&WaveDiagram { title: "odd".into(), rows, ..WaveDiagram::default() }.figure());
 }
 
 #[test]
@@ -152,7 +149,7 @@ fn bars_stand_beside_the_panels() {
 fn columns_of_unequal_length_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let mut bad = profile();
-    bad.computed.y.pop();
+    bad.computed[0].points.y.pop();
     let error = draw(&bad.figure(), &folder.path().join("bad")).unwrap_err().to_string();
     assert!(error.contains("'MPM' has 400 abscissae but 399 ordinates"), "{error}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
@@ -188,7 +185,7 @@ fn colour_map_is_in_both_files() {
     };
     let title = "Waves".into();
     let (png, svg) = drawn(
-        &WaveDiagram { title, rows: rows.collect(), paths: vec![path], end: None, notes: vec![] }
+        &WaveDiagram { title, rows: rows.collect(), paths: vec![path], ..WaveDiagram::default() }
             .figure(),
     );
     let yellow = |p: &[u8]| p[0] > 240 && p[1] > 220 && p[2] < 60;

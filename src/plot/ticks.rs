@@ -5,6 +5,9 @@ use super::axis::{Axis, AxisScale};
 /// Larger values are not drawn, because differences of such numbers overflow.
 const HUGE: f64 = 1e200;
 
+/// Fewest numbers on an axis: two do not tell a linear axis from a logarithmic one.
+const FEWEST: usize = 3;
+
 /// Whether a value can be drawn on an axis of this scale.
 pub(super) fn drawable(value: f64, scale: AxisScale) -> bool {
     value.abs() < HUGE && (scale == AxisScale::Linear || value > 1.0 / HUGE)
@@ -102,10 +105,22 @@ impl Ruler {
 
     fn ticks_linear(&self, factor: f64, wanted: usize) -> Vec<Tick> {
         let (low, high) = (self.low / factor, self.high / factor);
-        let (step, parts) = round_step((high - low) / wanted.max(1) as f64);
-        let decimals = (-(step.log10() + 1e-9).floor()).clamp(0.0, 15.0) as usize;
-        let numbered = multiples(low, high, step)
-            .filter_map(|v| self.tick(v * factor, with_minus(&format!("{v:.decimals$}"))));
+        let (mut step, mut parts) = round_step((high - low) / wanted.max(1) as f64);
+        if multiples(low, high, step).count() < FEWEST {
+            (step, parts) = widest_step(low, high);
+        }
+        // Numbers of a logarithmic axis have no unit with a prefix: large ones get a power of ten.
+        let power = match self.scale {
+            AxisScale::Log => shown_power(high),
+            AxisScale::Linear => 0,
+        };
+        let unit = 10f64.powi(power);
+        let decimals = decimals_of(step / unit);
+        let times = if power == 0 { String::new() } else { format!("×10{}", superscript(power)) };
+        let numbered = multiples(low, high, step).filter_map(|v| {
+            let number = format!("{:.decimals$}{times}", v / unit);
+            self.tick(v * factor, with_minus(&number))
+        });
         let minor =
             multiples(low, high, step / parts).filter_map(|v| self.tick(v * factor, String::new()));
         numbered.chain(minor).collect()
@@ -117,14 +132,15 @@ impl Ruler {
         if last - first < 2 {
             return self.ticks_within_decades(wanted);
         }
+        let shown = |stride: i32| (first..=last).filter(move |k| k.rem_euclid(stride) == 0);
         let stride = ((last - first + 1) as usize).div_ceil(wanted.max(2)) as i32;
+        // three powers or more lie on the axis, so that a stride of 1 has enough
+        let stride = (1..=stride).rev().find(|s| shown(*s).count() >= FEWEST).unwrap_or(1);
         let plain = first >= -3 && last <= 4;
         let power = |k: i32| {
             if plain { format!("{}", 10f64.powi(k)) } else { format!("10{}", superscript(k)) }
         };
-        let numbered = (first..=last)
-            .filter(|k| k.rem_euclid(stride) == 0)
-            .filter_map(|k| self.tick(10f64.powi(k), power(k)));
+        let numbered = shown(stride).filter_map(|k| self.tick(10f64.powi(k), power(k)));
         let minor = if stride == 1 { self.minor_log() } else { Vec::new() };
         numbered.chain(minor).collect()
     }
@@ -157,10 +173,10 @@ impl Ruler {
                 .collect()
         };
         let mut ticks = round(&[1.0, 2.0, 5.0]);
-        if ticks.len() < 3 {
+        if ticks.len() < FEWEST {
             ticks = round(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0]);
         }
-        if ticks.len() < 2 {
+        if ticks.len() < FEWEST {
             return self.ticks_linear(1.0, wanted);
         }
         ticks.extend(self.minor_log());
@@ -237,6 +253,32 @@ fn round_step(raw: f64) -> (f64, f64) {
     }
 }
 
+/// The widest round step with at least [`FEWEST`] multiples from `low` to `high`, and the number of
+/// parts into which minor ticks divide it.
+fn widest_step(low: f64, high: f64) -> (f64, f64) {
+    let power = 10f64.powf((high - low).log10().floor());
+    let steps = [5.0, 4.0, 2.5, 2.0, 1.0, 0.5, 0.4, 0.25];
+    let parts = [5.0, 4.0, 5.0, 4.0, 5.0, 5.0, 4.0, 5.0];
+    let steps = steps.map(|step| step * power).into_iter().zip(parts);
+    let enough = |step: f64| multiples(low, high, step).count() >= FEWEST;
+    steps.clone().find(|(step, _)| enough(*step)).unwrap_or((0.2 * power, 4.0))
+}
+
+/// Decimals that a multiple of the round number `step` needs, at most 15.
+fn decimals_of(step: f64) -> usize {
+    let whole = |decimals: &usize| {
+        let scaled = step * 10f64.powi(*decimals as i32);
+        scaled > 0.5 && (scaled - scaled.round()).abs() < 1e-6 * scaled
+    };
+    (0..15).find(whole).unwrap_or(15)
+}
+
+/// The power of ten by which a number is written on a logarithmic axis; 0: in full.
+fn shown_power(greatest: f64) -> i32 {
+    let power = greatest.log10().floor() as i32;
+    if (-3..5).contains(&power) { 0 } else { power }
+}
+
 /// Multiples of `step` from `low` to `high`, at most a hundred.
 fn multiples(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
     let first = (low / step - 1e-6).ceil();
@@ -306,6 +348,54 @@ mod tests {
         assert_eq!(numbers(&axis, &[0.02, 0.06]).1.join(" "), "0.02 0.03 0.04 0.05 0.06");
         assert_eq!(numbers(&axis, &[0.5, 200.0]).1.join(" "), "1 10 100");
         assert_eq!(numbers(&axis, &[0.03, 0.9]).1.join(" "), "0.05 0.1 0.2 0.5 1");
+    }
+
+    #[test]
+    fn every_axis_has_three_numbers_or_more() {
+        let widths = [1.0, 1.3, 1.7, 2.1, 2.6, 3.4, 4.4, 5.5, 7.2, 9.3, 9.9];
+        let lows = [0.0, 0.04, 0.93, 1.0, 2.3, 7.7, -0.51, -3.0, 123.4];
+        for scale in [AxisScale::Linear, AxisScale::Log] {
+            for wanted in [1, 2, 3, 5, 10] {
+                for power in [-12, -6, -3, 0, 2, 7, 9] {
+                    for (width, low) in widths.iter().flat_map(|w| lows.map(|low| (w, low))) {
+                        let size = 10f64.powi(power);
+                        let (low, high) = match scale {
+                            AxisScale::Linear => (low * size, (low + width) * size),
+                            // from a small part of a decade to 35 decades
+                            AxisScale::Log => (
+                                (low.abs() + 0.01) * size,
+                                (low.abs() + 0.01) * size * width.powf(low.abs().min(8.0) + 0.3),
+                            ),
+                        };
+                        let axis = Axis { scale, ..Axis::linear("x", "Pa").tight() };
+                        let ruler = Ruler::new(&axis, [low, high].into_iter(), wanted);
+                        if high - low < 1e-9 * high {
+                            continue;
+                        }
+                        let texts = ruler.ticks.iter().filter(|tick| !tick.text.is_empty());
+                        let mut texts: Vec<&str> = texts.map(|tick| tick.text.as_str()).collect();
+                        assert!(texts.len() >= 3, "{scale:?} {low} {high} {wanted}: {texts:?}");
+                        assert!(texts.len() <= 15, "{scale:?} {low} {high} {wanted}: {texts:?}");
+                        texts.dedup();
+                        let all = ruler.ticks.iter().filter(|tick| !tick.text.is_empty()).count();
+                        assert_eq!(texts.len(), all, "{low} {high}: equal numbers in {texts:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn short_axes_have_round_numbers() {
+        let shown = |axis: Axis, low: f64, high: f64| {
+            let ruler = Ruler::new(&axis.tight(), [low, high].into_iter(), 1);
+            let texts = ruler.ticks.into_iter().map(|tick| tick.text);
+            texts.filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" ")
+        };
+        assert_eq!(shown(Axis::linear("x", ""), 0.0, 8.0), "0 4 8");
+        assert_eq!(shown(Axis::linear("x", ""), 0.1, 0.9), "0.25 0.50 0.75");
+        assert_eq!(shown(Axis::log("x", ""), 1.0e9, 1.2e9), "1.0×10⁹ 1.1×10⁹ 1.2×10⁹");
+        assert_eq!(shown(Axis::log("x", ""), 0.2, 3000.0), "1 10 100 1000");
     }
 
     #[test]

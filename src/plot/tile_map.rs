@@ -44,7 +44,12 @@ impl TileMap {
             }
         }
         let mut panel = Panel::new(ranged(self.y.clone(), &y_ends));
-        panel.map = Some(ColorMap { label: self.label.clone(), unit: self.unit.clone(), rows });
+        // every tile is a result: the scale covers all of them
+        let values = || self.values.iter().flatten().flatten().filter(|v| v.is_finite());
+        let low = values().copied().fold(f64::INFINITY, f64::min);
+        let limits = Some((low, values().copied().fold(f64::NEG_INFINITY, f64::max)));
+        let (label, unit) = (self.label.clone(), self.unit.clone());
+        panel.map = Some(ColorMap { label, unit, rows, limits });
         let looks = [Color::WHITE, Color(0xff, 0x6e, 0x6e), Color(0xff, 0xc8, 0x5a)];
         for ((text, x, y), color) in self.marks.iter().zip(looks.iter().cycle()) {
             let look = Style { mark: Some(10.0), outlined: true, ..Style::marks(*color) };

@@ -6,6 +6,7 @@
 mod accounts;
 mod arrival;
 mod balance;
+mod body_row;
 mod conservation;
 mod diagnostics;
 mod error;
@@ -23,6 +24,7 @@ pub mod threads;
 
 pub use crate::solver::patch::BoundaryWork;
 pub use accounts::{Counters, Removed, RemovedByKind};
+pub use body_row::BodyRow;
 pub use diagnostics::{Followed, Totals};
 pub use error::RunError;
 pub use particle_table::{ParticleTable, TableColumn};

@@ -14,7 +14,7 @@ use flyer_mpm::driver::output::origin::{Origin, RUN};
 use flyer_mpm::scene::{MethodChoice, Preset};
 use flyer_mpm::simulation::Saved;
 use flyer_mpm::simulation::monitor::Peaks;
-use flyer_mpm::simulation::{ParticleTable, TableColumn};
+use flyer_mpm::simulation::{BodyRow, ParticleTable, TableColumn};
 
 /// A checkpoint of a few particles with all that one can hold.
 fn example() -> Checkpoint {
@@ -78,6 +78,9 @@ fn example() -> Checkpoint {
         PressureRow { time: 0.5, points: vec![] },
         PressureRow { time: 0.6, points: vec![(4.0, -0.0)] },
     ];
+    let row = |time, failed| BodyRow { time, ends: vec![[0.0, 2.0], [2.0, 4.0]], failed };
+    checkpoint.record.bodies =
+        vec![row(0.0, vec![]), row(0.5, vec![[1.0, 1.5], [3.0, 3.0]]), row(0.6, vec![[1.0, 2.0]])];
     checkpoint.record.histories = Some(histories);
     checkpoint
 }
@@ -93,6 +96,7 @@ fn contents(c: &Checkpoint) -> CheckpointContents<'_> {
         due: c.due.clone(),
         tables: &c.record.tables,
         waves: &c.record.waves,
+        bodies: &c.record.bodies,
         histories: c.record.histories.as_ref(),
     }
 }
@@ -182,7 +186,7 @@ fn another_format_is_refused_in_words() {
     file::write_as(&path, &contents(&example()), &|| {}, 7).unwrap();
     let error = file::read(&path).unwrap_err().to_string();
     let version = env!("CARGO_PKG_VERSION");
-    for words in ["format 7", &format!("version {version}"), "reads format 2", "c.hdf5"] {
+    for words in ["format 7", &format!("version {version}"), "reads format 3", "c.hdf5"] {
         assert!(error.contains(words), "{error}");
     }
     assert!(!error.contains('\n'));

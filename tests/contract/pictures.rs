@@ -59,5 +59,27 @@ fn a_picture_says_what_it_is() {
 fn without_a_reference_there_are_no_hugoniots() {
     let mut scene = whole();
     scene.as_object_mut().unwrap().remove("reference");
-    has_pictures(&Home::with(&scene).run("run", &[]).files, &STEMS[3..]);
+    let stems = ["histories", "pressure_0.050us", "pressure_0.100us", "x_t_diagram"];
+    let run = Home::with(&scene).run("run", &[]);
+    has_pictures(&run.files, &stems);
+    let svg = run.text("x_t_diagram.svg");
+    assert!(!svg.contains("wave paths") && svg.contains("surface of a body"), "{svg}");
+    let svg = run.text("pressure_0.100us.svg");
+    assert!(svg.contains("copper") && svg.contains("aluminium"));
+}
+
+#[test]
+fn other_impacts_are_no_figures_of_a_paper() {
+    let run = Home::with(&whole()).run("run", &["--set", "bodies.flyer.velocity=[800]"]);
+    let stems = [
+        "histories",
+        "hugoniot_free_surface",
+        "hugoniot_impact",
+        "hugoniot_second_interface",
+        "pressure_0.050us",
+        "pressure_0.100us",
+        "x_t_diagram",
+    ];
+    has_pictures(&run.files, &stems);
+    assert!(!run.text("hugoniot_impact.svg").contains("Figure"));
 }

@@ -19,9 +19,8 @@ use crate::driver::output::OutputError;
 use crate::driver::output::histories::HistoryTable;
 use crate::driver::output::origin::Origin;
 use crate::scene::MethodChoice;
-use crate::simulation::Saved;
 use crate::simulation::monitor::Peaks;
-use crate::simulation::{ParticleTable, TableColumn};
+use crate::simulation::{BodyRow, ParticleTable, Saved, TableColumn};
 
 /// All scalar values.
 #[derive(Serialize, Deserialize)]
@@ -166,6 +165,7 @@ fn write_root(file: &Group, contents: &CheckpointContents, alive: &dyn Fn()) -> 
     put(&waves, "time", &times)?;
     put(&waves, "points", &counts)?;
     put(&waves, "x_and_pressure", &points)?;
+    put_bodies(&file.create_group("bodies")?, contents.bodies)?;
     let histories = file.create_group("histories")?;
     let columns = contents.histories.map_or(&[][..], |h| h.columns());
     for (k, column) in columns.iter().enumerate() {
@@ -173,6 +173,20 @@ fn write_root(file: &Group, contents: &CheckpointContents, alive: &dyn Fn()) -> 
     }
     alive();
     Ok(())
+}
+
+/// Writes the surfaces and the failed parts of bodies: ends in pairs, with their numbers per row.
+fn put_bodies(group: &Group, rows: &[BodyRow]) -> hdf5::Result<()> {
+    put(group, "time", &rows.iter().map(|row| row.time).collect::<Vec<f64>>())?;
+    let put_parts = |name: &str, parts: Vec<&Vec<[f64; 2]>>| -> hdf5::Result<()> {
+        let counts: Vec<u64> = parts.iter().map(|parts| parts.len() as u64).collect();
+        let ends: Vec<f64> = parts.into_iter().flatten().flatten().copied().collect();
+        put(group, &format!("{name}_counts"), &counts)?;
+        put(group, name, &ends)?;
+        Ok(())
+    };
+    put_parts("ends", rows.iter().map(|row| &row.ends).collect())?;
+    put_parts("failed", rows.iter().map(|row| &row.failed).collect())
 }
 
 fn write_table(group: &Group, table: &ParticleTable, state: &str) -> hdf5::Result<()> {
@@ -255,6 +269,7 @@ fn read_root(file: &Group, length: u64) -> hdf5::Result<Checkpoint> {
         let points = points.by_ref().take(count as usize).collect();
         record.waves.push(PressureRow { time, points });
     }
+    record.bodies = get.bodies(&file.group("bodies")?)?;
     if books.has_histories {
         record.histories = Some(HistoryTable::of(get.columns(&file.group("histories")?)?));
     }
@@ -303,6 +318,19 @@ impl Reader {
             true => Ok(values),
             false => Err(format!("the values of {name} are not those that were written").into()),
         }
+    }
+
+    fn bodies(&self, group: &Group) -> hdf5::Result<Vec<BodyRow>> {
+        let times: Vec<f64> = self.values(group, "time")?;
+        let parts = |name: &str| -> hdf5::Result<Vec<Vec<[f64; 2]>>> {
+            let ends: Vec<f64> = self.values(group, name)?;
+            let mut ends = ends.chunks_exact(2).map(|pair| [pair[0], pair[1]]);
+            let counts: Vec<u64> = self.values(group, &format!("{name}_counts"))?;
+            Ok(counts.into_iter().map(|n| ends.by_ref().take(n as usize).collect()).collect())
+        };
+        let parts = parts("ends")?.into_iter().zip(parts("failed")?);
+        let rows = times.into_iter().zip(parts);
+        Ok(rows.map(|(time, (ends, failed))| BodyRow { time, ends, failed }).collect())
     }
 
     fn columns(&self, group: &Group) -> hdf5::Result<Vec<TableColumn>> {

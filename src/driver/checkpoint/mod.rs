@@ -22,8 +22,7 @@ use crate::driver::figures::PressureRow;
 use crate::driver::output::histories::HistoryTable;
 use crate::driver::output::origin::{Origin, RUN};
 use crate::scene::MethodChoice;
-use crate::simulation::ParticleTable;
-use crate::simulation::Saved;
+use crate::simulation::{BodyRow, ParticleTable, Saved};
 
 /// A column of the particle state.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -57,6 +56,8 @@ pub struct Record {
     pub tables: Vec<(ParticleTable, String)>,
     /// Rows of the x-t diagram.
     pub waves: Vec<PressureRow>,
+    /// Surfaces and failed parts of the bodies, at the times of `waves`.
+    pub bodies: Vec<BodyRow>,
     /// Histories.
     pub histories: Option<HistoryTable>,
 }
@@ -105,6 +106,8 @@ pub struct CheckpointContents<'a> {
     pub tables: &'a [(ParticleTable, String)],
     /// Rows of the x-t diagram.
     pub waves: &'a [PressureRow],
+    /// Surfaces and failed parts of the bodies, at the times of `waves`.
+    pub bodies: &'a [BodyRow],
     /// Histories.
     pub histories: Option<&'a HistoryTable>,
 }
@@ -124,8 +127,10 @@ impl CheckpointContents<'_> {
         let table = |t: &ParticleTable| t.len() * (16 + 8 * (t.columns.len() + 4));
         let tables: usize = self.tables.iter().map(|t| table(&t.0)).sum();
         let waves: usize = self.waves.iter().map(|w| 16 * (w.points.len() + 1)).sum();
+        let bodies = self.bodies.iter();
+        let bodies: usize = bodies.map(|b| 16 * (b.ends.len() + b.failed.len() + 1)).sum();
         let histories = self.histories.map_or(0, |h| 8 * h.len() * h.columns().len());
         // overhead of HDF5
-        (rows + tables + waves + histories + self.scene.len() + (64 << 10)) as u64
+        (rows + tables + waves + bodies + histories + self.scene.len() + (64 << 10)) as u64
     }
 }

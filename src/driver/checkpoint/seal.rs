@@ -15,7 +15,7 @@ use crate::input::input_file::CHECKPOINT_START;
 use crate::input::input_file::{self, InputFault};
 
 /// Version of the checkpoint format.
-pub const FORMAT: u32 = 2;
+pub const FORMAT: u32 = 3;
 
 /// Length of the head [bytes].
 pub const HEAD: u64 = 512;

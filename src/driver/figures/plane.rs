@@ -1,13 +1,15 @@
 //! Pictures of a run in two dimensions: fields of its particles, and pressure along its waves.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
+use super::bodies;
 use crate::accuracy::reference::ReferenceSolution;
 use crate::plot::{
-    self, Direction, Field, FieldData, FieldQuantity, FieldTile, LineOut, LineOutCurve, LineStyle,
-    PictureError, Points, Shading, SymmetryPlane,
+    self, Color, Direction, Field, FieldData, FieldQuantity, FieldTile, LineOut, LineOutCurve,
+    LineStyle, PictureError, Points, Series, Shading, Style, SymmetryPlane,
 };
-use crate::scene::{CheckedScene, SideProperties};
+use crate::scene::{CheckedScene, Domain, SideProperties};
 use crate::simulation::ParticleTable;
 
 /// A particle quantity to draw, with the names in its pictures.
@@ -19,7 +21,8 @@ struct Drawn {
     values: Vec<f64>,
 }
 
-/// Draws pressure, density and speed over the plane; `name` is the profile's file name without its
+/// Draws pressure, density and speed over the plane, and the materials if there are several; crosses
+/// mark failed particles. `name` is the profile's file name without its
 /// extension.
 ///
 /// # Errors
@@ -67,6 +70,21 @@ pub fn draw_fields(
     let corner = |corner: &[f64]| [corner[0], corner[1]];
     let axes = if scene.axisymmetric() { ["r", "z"] } else { ["x", "y"] };
     let joined = joined_sides(scene);
+    let mirrored = scene.axisymmetric() && domain.lower[0] == 0.0;
+    let mut notes = notes.to_vec();
+    notes.extend(bodies::removed(scene, table));
+    let materials = materials(scene);
+    let mut drawn = Vec::from(drawn);
+    if materials.len() > 1 {
+        let (label, unit, shading) = ("Material", "", Shading::Sequential);
+        drawn.push(Drawn {
+            stem: "materials",
+            label,
+            unit,
+            shading,
+            values: vec![0.0; table.len()],
+        });
+    }
     for Drawn { stem, label, unit, shading, values } in drawn {
         let tile = |(k, value): (usize, f64)| FieldTile {
             centre: [x[k], y[k]],
@@ -81,13 +99,21 @@ pub fn draw_fields(
             extent: Some([corner(&domain.lower), corner(&domain.upper)]),
             axes: axes.map(String::from),
             // an axisymmetric domain is mirrored at its axis
-            mirror: (scene.axisymmetric() && domain.lower[0] == 0.0).then_some(SymmetryPlane {
+            mirror: mirrored.then_some(SymmetryPlane {
                 across: Direction::X,
                 at: 0.0,
                 changes_sign: false,
             }),
             outlines: scene.bodies.len() > 1,
-            notes: notes.to_vec(),
+            notes: notes.clone(),
+            fills: (stem == "materials").then(|| bodies::colors(scene)),
+            overlays: match stem {
+                "materials" => materials.clone(),
+                _ => Vec::new(),
+            }
+            .into_iter()
+            .chain(failed(table, &scene.scene.domain, mirrored))
+            .collect(),
             ..Field::new(
                 scene.scene.title.clone(),
                 table.time,
@@ -99,6 +125,42 @@ pub fn draw_fields(
         plot::draw(&field.figure(), &folder.join(file))?;
     }
     Ok(())
+}
+
+/// Legend entries of the materials; they have no points.
+fn materials(scene: &CheckedScene) -> Vec<Series> {
+    let mut entries: Vec<Series> = Vec::new();
+    for (body, color) in scene.scene.bodies.iter().zip(bodies::colors(scene)) {
+        if entries.iter().all(|entry| entry.name != body.material) {
+            let style = Style::line(color).width(14.0);
+            entries.push(Series::new(&body.material, Points::new([], []), style));
+        }
+    }
+    entries
+}
+
+/// Squares along the longer side of the domain, each of which has one cross at most.
+const CROSSES: f64 = 60.0;
+
+/// Crosses at failed particles, one per square of the domain, and if the picture shows the other side
+/// of an axis at x = 0 also there; `None` if no particle has failed.
+fn failed(table: &ParticleTable, domain: &Domain, mirrored: bool) -> Option<Series> {
+    let [x, y] = ["x", "y"].map(|name| table.column(name).unwrap_or(&[]));
+    let sides = domain.lower.iter().zip(&domain.upper).map(|(low, high)| high - low);
+    let square = sides.fold(0.0, f64::max) / CROSSES;
+    let mut marked = BTreeSet::new();
+    let mut points = (Vec::new(), Vec::new());
+    for row in bodies::failed(table) {
+        let (x, y) = (x[row], y[row]);
+        if marked.insert([x, y].map(|at| (at / square).floor() as i64)) {
+            let images: &[f64] = if mirrored { &[x, -x] } else { &[x] };
+            points.0.extend(images);
+            points.1.extend(images.iter().map(|_| y));
+        }
+    }
+    let style = Style { outlined: true, ..Style::crosses(Color::BLACK) };
+    let some = !points.0.is_empty();
+    some.then(|| Series::new("failed", Points::new(points.0, points.1), style))
 }
 
 /// Longest half diagonal up to which a parallelogram is drawn in its own shape [cells].
@@ -192,6 +254,7 @@ pub fn draw_along(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simulation::TableColumn;
 
     #[test]
     fn a_needle_is_drawn_as_a_square_of_its_area() {
@@ -201,6 +264,37 @@ mod tests {
         let [[a, zero], [other, b]] = compact(needle, &[1.0, 1.0]);
         assert!((a * b - 0.05f64).abs() < 1e-15 && a == b && zero == 0.0 && other == 0.0);
         assert_eq!(compact(needle, &[4.0, 4.0]), needle, "cells are larger");
+    }
+
+    #[test]
+    fn failed_particles_have_one_cross_per_square() {
+        let scene = include_bytes!("../../../inputs/shear_layer.json");
+        let scene = crate::input::parse(scene, "shear_layer.json", &[]).unwrap();
+        let column = |name: &str, values: &[f64]| TableColumn {
+            name: name.into(),
+            unit: String::new(),
+            values: values.into(),
+        };
+        let table = |damage: &[f64]| ParticleTable {
+            time: 0.0,
+            dimension: 2,
+            ids: vec![0, 1, 2, 3],
+            material: vec![0; 4],
+            materials: vec!["gas".into()],
+            body: vec![0; 4],
+            columns: vec![
+                column("x", &[0.501, 0.502, 0.6, 0.7]),
+                column("y", &[0.501, 0.502, 0.6, 0.7]),
+                column("damage", damage),
+            ],
+            half_edges: vec![[[0.01, 0.0], [0.0, 0.01]]; 4],
+        };
+        let crosses = |damage: &[f64]| failed(&table(damage), &scene.scene.domain, false);
+        let marked = crosses(&[1.0, 1.0, 1.0, 0.99]).unwrap();
+        assert_eq!(marked.points, Points::new([0.501, 0.6], [0.501, 0.6]));
+        assert!(crosses(&[0.0, 0.5, 0.9, 0.0]).is_none());
+        let both = failed(&table(&[0.0, 0.0, 1.0, 0.0]), &scene.scene.domain, true).unwrap();
+        assert_eq!(both.points, Points::new([0.6, -0.6], [0.6, 0.6]));
     }
 
     #[test]

@@ -13,6 +13,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::material::{ParameterError, Symmetric};
 
+/// Name of the damage in tables of particles.
+pub const DAMAGE: &str = "damage";
+
 macro_rules! failure_laws {
     ($($type:ident: $module:ident::$law:ident),* $(,)?) => {
         $(mod $module;)*
