@@ -16,11 +16,13 @@ impl<const D: usize> IndexBox<D> {
     }
 
     /// Number of indices along `axis`; 0 if the box is empty there.
+    #[inline]
     pub fn extent(&self, axis: usize) -> usize {
         (self.upper[axis] - self.lower[axis]).max(0) as usize
     }
 
     /// Total number of indices.
+    #[inline]
     pub fn count(&self) -> usize {
         (0..D).map(|a| self.extent(a)).product()
     }
@@ -31,6 +33,7 @@ impl<const D: usize> IndexBox<D> {
     }
 
     /// Whether `index` is inside.
+    #[inline]
     pub fn contains(&self, index: [i64; D]) -> bool {
         (0..D).all(|a| self.lower[a] <= index[a] && index[a] < self.upper[a])
     }
@@ -64,6 +67,7 @@ impl<const D: usize> IndexBox<D> {
     }
 
     /// Flat index of `index` in an array over this box. `index` must be inside.
+    #[inline]
     pub fn flat(&self, index: [i64; D]) -> usize {
         debug_assert!(self.contains(index), "{index:?} is not in {self:?}");
         let mut at = 0;

@@ -162,6 +162,7 @@ impl<const D: usize> Layout<D> {
     }
 
     /// The cell `c`, moved into the domain across joined sides; `None` if it lies outside.
+    #[inline]
     pub fn wrap_cell(&self, mut c: [i64; D]) -> Option<[i64; D]> {
         for (a, c) in c.iter_mut().enumerate() {
             if self.sides[a][0] == SideKind::Wrap {
@@ -173,6 +174,7 @@ impl<const D: usize> Layout<D> {
     }
 
     /// The patch that contains the cell `c`, which must lie in the domain.
+    #[inline]
     pub fn patch_of(&self, c: [i64; D]) -> usize {
         let mut at = 0;
         for a in (0..D).rev() {

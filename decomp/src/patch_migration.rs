@@ -120,6 +120,7 @@ pub struct Census {
 
 impl Census {
     /// Adds one particle.
+    #[inline]
     pub fn add(&mut self, id: u64, value: f64) {
         self.particles += 1;
         self.marks = self.marks.wrapping_add(mix(mix(id) ^ value.to_bits()));
@@ -144,6 +145,7 @@ impl Census {
 }
 
 /// The finalizer of SplitMix64 (Steele, Lea & Flood 2014).
+#[inline]
 fn mix(mut z: u64) -> u64 {
     z = z.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -74,6 +74,7 @@ impl Color {
     }
 
     /// A mixture of this colour and `other`; `share` (0 to 1) is the fraction of `other`.
+    #[inline]
     pub fn mix(self, other: Color, share: f64) -> Color {
         let mix =
             |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * share).round() as u8;

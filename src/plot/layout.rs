@@ -95,9 +95,11 @@ fn areas(figure: &Figure) -> Areas {
     let panels = || heights.iter().flat_map(|&h| figure.panels.iter().map(move |p| (p, h)));
     let rulers = panels().map(|(panel, height)| y_ruler(figure, panel, height));
     let numbers = rulers.map(|ruler| ruler.widest(TICK_EM)).fold(0.0, f64::max);
-    let maps = panels().filter_map(|(panel, height)| Some((panel.map.as_ref()?, height)));
-    let bars =
-        maps.map(|(map, height)| color_bar::room_beside(&bar_ruler(map, &map.scale(), height)));
+    let maps = figure.panels.iter().filter_map(|panel| panel.map.as_ref());
+    let bars = maps.flat_map(|map| {
+        let scale = map.scale();
+        heights.map(|height| color_bar::room_beside(&bar_ruler(map, &scale, height)))
+    });
     Areas {
         left: MARGIN + LABEL_EM + 14.0 + numbers + 6.0 + TICK,
         right: right_edge(figure) - bars.fold(0.0, f64::max),

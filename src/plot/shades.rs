@@ -13,6 +13,7 @@ pub(super) enum Shades {
 
 impl Shades {
     /// The colour at a fraction from 0 to 1; values beyond are clamped.
+    #[inline]
     pub fn color(self, fraction: f64) -> Color {
         let colors = match self {
             Shades::Sequential => &VIRIDIS,

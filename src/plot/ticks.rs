@@ -9,6 +9,7 @@ const HUGE: f64 = 1e200;
 const FEWEST: usize = 3;
 
 /// Whether a value can be drawn on an axis of this scale.
+#[inline]
 pub(super) fn drawable(value: f64, scale: AxisScale) -> bool {
     value.abs() < HUGE && (scale == AxisScale::Linear || value > 1.0 / HUGE)
 }
@@ -79,6 +80,7 @@ impl Ruler {
 
     /// Position of `value` as a fraction of the axis, below 0 or above 1 if outside; `None` if it
     /// cannot be drawn.
+    #[inline]
     pub fn place(&self, value: f64) -> Option<f64> {
         if !drawable(value, self.scale) {
             return None;
@@ -90,6 +92,7 @@ impl Ruler {
     }
 
     /// Value at a fraction of a linear axis.
+    #[inline]
     pub fn value(&self, fraction: f64) -> f64 {
         self.low + fraction * (self.high - self.low)
     }
