@@ -19,7 +19,9 @@
 //! - [`shape`]: shape functions: weights of particles on nodes;
 //! - [`transfer`]: transfers of velocity from nodes to particles;
 //! - [`material`]: equations of state, strength and failure;
-//! - [`plot`]: pictures; independent of the other modules.
+//!
+//! Beside them stand two crates: `decomp`, patches and messages, and [`plot`], pictures. They do not
+//! depend on this library.
 
 pub mod accuracy;
 pub mod balance;
@@ -31,7 +33,6 @@ pub mod geometry;
 pub mod input;
 pub mod material;
 pub mod perf_model;
-pub mod plot;
 pub mod scene;
 pub mod shape;
 pub mod side;
@@ -39,3 +40,5 @@ pub mod simulation;
 pub mod solver;
 pub mod study;
 pub mod transfer;
+
+pub use plot;

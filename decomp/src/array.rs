@@ -45,7 +45,7 @@ mod tests {
         let square = |i: usize| (i * i) as f64;
         assert_eq!(super::from_fn::<_, 5, _>(square), std::array::from_fn(square));
         assert_eq!(super::from_fn::<f64, 0, _>(|_| unreachable!()), []);
-        assert_eq!(super::map([3, 1, 2], |i| square(i)), [9.0, 1.0, 4.0]);
+        assert_eq!(super::map([3, 1, 2], square), [9.0, 1.0, 4.0]);
         let tenth = |i: usize| 0.1 * i as f64;
         assert_eq!(super::sum::<7>(tenth), (0..7).map(tenth).sum());
     }

@@ -5,6 +5,7 @@ use std::time::Instant;
 use decomp::Serial;
 use flyer_mpm::accuracy::plan::{Data, ErrorTarget, PlanError, Verdict, plan};
 use flyer_mpm::driver::output::summary::Summary;
+use flyer_mpm::driver::progress::ProgressChoice;
 use flyer_mpm::driver::{Beginning, Options, run};
 use flyer_mpm::input;
 use flyer_mpm::scene::PlannedQuantity;
@@ -95,6 +96,7 @@ fn once(
         output: home.path().join("run"),
         keep: false,
         quiet: true,
+        progress: ProgressChoice::Never,
         verbose: false,
         threads: 1,
         trace: None,

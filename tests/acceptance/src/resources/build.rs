@@ -1,28 +1,40 @@
 //! Time of a release build from clean and after a change, and of all tests.
 
-use std::fs::File;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::{Instant, SystemTime};
+use std::time::Instant;
 
 use crate::bounds::resources::build as bounds;
 use crate::program::{cargo, folder, profile_variables, root};
 use crate::table::Table;
 
-/// Builds in a target folder of its own, by the shipped profile.
+/// Builds the crates of the project in a copy of the sources, by the shipped profile; their
+/// dependencies are compiled before.
 pub fn check(table: &mut Table) {
     let target = folder().join("build");
     let _ = std::fs::remove_dir_all(&target);
-    let build = || seconds(cargo("build"), &target);
-    let Some(clean) = table.take("release build from clean", build()) else { return };
+    let copied = copy_sources(&folder().join("sources"));
+    let Some(sources) = table.take("copy of the sources", copied) else { return };
+    let build = || {
+        let mut command = cargo("build");
+        command.current_dir(&sources);
+        seconds(command, &target)
+    };
+    let remove = || {
+        let mut command = cargo("clean");
+        command.current_dir(&sources).args(["-p", "flyer-mpm", "-p", "decomp", "-p", "plot"]);
+        seconds(command, &target)
+    };
+    let clean = build().and_then(|_| remove()).and_then(|_| build());
+    let Some(clean) = table.take("release build from clean", clean) else { return };
     table.check("release build from clean", Some(clean), bounds::FROM_CLEAN);
     for (file, bound) in [
-        ("src/plot/mod.rs", bounds::AFTER_PLOT),
-        ("src/cli/mod.rs", bounds::AFTER_CLI),
+        ("crates/plot/src/layout.rs", bounds::AFTER_PLOT),
+        ("src/cli/materials.rs", bounds::AFTER_CLI),
         ("src/effects/erosion.rs", bounds::AFTER_EFFECT),
     ] {
         let figure = format!("release build after a change of {file}");
-        let time = touched(&root().join(file), build);
+        let time = change(&sources.join(file)).and_then(|()| build());
         if let Some(time) = table.take(&figure, time) {
             table.check(&figure, Some(time), bound);
         }
@@ -33,15 +45,30 @@ pub fn check(table: &mut Table) {
     }
 }
 
-/// Result of `build` while `file` looks changed; its time of change is restored.
-fn touched<T>(file: &Path, build: impl Fn() -> Result<T, String>) -> Result<T, String> {
-    let failed = |error| format!("{}: {error}", file.display());
-    let opened = File::options().append(true).open(file).map_err(failed)?;
-    let before = opened.metadata().and_then(|data| data.modified()).map_err(failed)?;
-    opened.set_modified(SystemTime::now()).map_err(failed)?;
-    let result = build();
-    opened.set_modified(before).map_err(failed)?;
-    result
+/// Copies the sources under version control to a new folder.
+fn copy_sources(folder: &Path) -> Result<PathBuf, String> {
+    let failed = |error: std::io::Error| format!("{}: {error}", folder.display());
+    let _ = std::fs::remove_dir_all(folder);
+    let list = Command::new("git").args(["ls-files", "-z"]).current_dir(root()).output();
+    let list = String::from_utf8_lossy(&list.map_err(failed)?.stdout).into_owned();
+    for name in list.split('\0').filter(|name| !name.is_empty()) {
+        let to = folder.join(name);
+        std::fs::create_dir_all(to.parent().unwrap_or(folder)).map_err(failed)?;
+        std::fs::copy(root().join(name), to).map_err(failed)?;
+    }
+    Ok(folder.into())
+}
+
+/// Changes the code of the first function of `file` that has a local variable: with incremental
+/// compilation, a later time of change alone compiles nothing.
+fn change(file: &Path) -> Result<(), String> {
+    let failed = |error: std::io::Error| format!("{}: {error}", file.display());
+    let text = std::fs::read_to_string(file).map_err(failed)?;
+    let changed = text.replacen(" let ", " let _changed = std::hint::black_box(1); let ", 1);
+    if changed == text {
+        return Err(format!("{}: no local variable to add one to", file.display()));
+    }
+    std::fs::write(file, changed).map_err(failed)
 }
 
 /// Wall time of a command \[s\] with a target folder and the profiles of Cargo.toml.
@@ -60,16 +87,16 @@ fn seconds(mut command: Command, target: &Path) -> Result<f64, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     #[test]
-    fn a_touched_file_looks_new_during_the_build_and_old_after_it() {
-        let file = tempfile::NamedTempFile::new().unwrap();
-        let old = SystemTime::UNIX_EPOCH + std::time::Duration::from_secs(1000);
-        file.as_file().set_modified(old).unwrap();
-        let modified = || file.path().metadata().unwrap().modified().unwrap();
-        let during = touched(file.path(), || Ok(modified())).unwrap();
-        assert!(during > old);
-        assert_eq!(modified(), old);
+    fn a_change_is_code_of_the_first_function() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.rs");
+        std::fs::write(&file, "fn f() {\n    let a = 1;\n    let b = a;\n}\n").unwrap();
+        super::change(&file).unwrap();
+        let changed = std::fs::read_to_string(&file).unwrap();
+        assert_eq!(changed.matches("black_box").count(), 1);
+        assert!(changed.contains("black_box(1); let a = 1;"), "{changed}");
+        std::fs::write(&file, "const A: i32 = 1;\n").unwrap();
+        assert!(super::change(&file).unwrap_err().contains("no local variable"));
     }
 }
