@@ -22,8 +22,19 @@ pub fn from_fn<T, const N: usize, F: FnMut(usize) -> T>(mut f: F) -> [T; N] {
 
 /// The array of `f(values[0])`, `f(values[1])`, ..., as the method `map` of arrays.
 #[inline(always)]
-pub fn map<T: Copy, U, const N: usize>(values: [T; N], mut f: impl FnMut(T) -> U) -> [U; N] {
+pub fn map<T: Copy, U, const N: usize>(values: &[T; N], mut f: impl FnMut(T) -> U) -> [U; N] {
     from_fn(|i| f(values[i]))
+}
+
+/// The first `length` numbers of each of `N` fields.
+///
+/// # Panics
+///
+/// If a field is shorter.
+#[inline(always)]
+pub fn parts_mut<const N: usize>(fields: &mut [Vec<f64>; N], length: usize) -> [&mut [f64]; N] {
+    let mut fields = fields.iter_mut();
+    from_fn(|_| &mut fields.next().expect("N fields")[..length])
 }
 
 /// The sum of `f(0)`, `f(1)`, ..., `f(N - 1)` in that order; -0 without terms.
@@ -45,7 +56,7 @@ mod tests {
         let square = |i: usize| (i * i) as f64;
         assert_eq!(super::from_fn::<_, 5, _>(square), std::array::from_fn(square));
         assert_eq!(super::from_fn::<f64, 0, _>(|_| unreachable!()), []);
-        assert_eq!(super::map([3, 1, 2], square), [9.0, 1.0, 4.0]);
+        assert_eq!(super::map(&[3, 1, 2], square), [9.0, 1.0, 4.0]);
         let tenth = |i: usize| 0.1 * i as f64;
         assert_eq!(super::sum::<7>(tenth), (0..7).map(tenth).sum());
     }

@@ -193,8 +193,8 @@ pub fn christensen<const D: usize>(nodes: &Nodes<'_, D>, node: usize) -> f64 {
     let along = |axis: usize, from: usize| {
         let step = nodes.steps[axis];
         let places = [from - step, from, from + step, from + 2 * step];
-        let v = map(places, |i| nodes.velocity(axis, i));
-        (map(v, |v| v.unwrap_or(0.0)), [v[0].is_some(), v[3].is_some()])
+        let v = map(&places, |i| nodes.velocity(axis, i));
+        (map(&v, |v| v.unwrap_or(0.0)), [v[0].is_some(), v[3].is_some()])
     };
     if D == 1 {
         let (v, ends) = along(0, node);

@@ -296,7 +296,7 @@ impl Band {
         range: Range<usize>,
         y: [&mut [f64]; V],
     ) {
-        let cut = |fields: [&'a [f64]; V]| map(fields, |field| &field[range.clone()]);
+        let cut = |fields: [&'a [f64]; V]| map(&fields, |field| &field[range.clone()]);
         let (x_here, d, t) = (cut(x), &d[range.clone()], cut(t));
         self.each_product(x, range, y, |product, v, i| t[v][i] + (x_here[v][i] - d[i] * product));
     }

@@ -252,20 +252,20 @@ impl<const D: usize> Scheme<D> {
         out: &mut [&mut [f64]; 4],
         at: usize,
     ) {
-        let mut f: [[f64; L]; 4] = map(from.deformation, |column| lanes(column, first));
+        let mut f: [[f64; L]; 4] = map(&from.deformation, |column| lanes(column, first));
         let mut ahead = 0.0;
         if let (true, Some((gradient, time))) = (AHEAD, from.ahead) {
-            let l = map(gradient, |column| lanes::<L>(column, first));
-            f = moved_by(&map(l, |l| map(l, |l| time * l)), &f);
+            let l = map(&gradient, |column| lanes::<L>(column, first));
+            f = moved_by(&map(&l, |l| map(&l, |l| time * l)), &f);
             ahead = time;
         }
-        let [volume0, jacobian] = map(from.volume, |column| lanes::<L>(column, first));
+        let [volume0, jacobian] = map(&from.volume, |column| lanes::<L>(column, first));
         let mut area: [f64; L] = each(|r| volume0[r] * jacobian[r]);
         if let (true, Some(radius)) = (AXIS, from.radius) {
-            let [x, v] = map(radius, |column| lanes::<L>(column, first));
+            let [x, v] = map(&radius, |column| lanes::<L>(column, first));
             area = each(|r| area[r] / (x[r] + ahead * v[r]));
         }
-        let half = map(from.half, |column| lanes::<L>(column, first));
+        let half = map(&from.half, |column| lanes::<L>(column, first));
         let [xx, xy, yx, yy] = f;
         let q: [f64; L] = each(|r| {
             let determinant = xx[r] * yy[r] - xy[r] * yx[r];
@@ -305,7 +305,7 @@ impl<const D: usize> Scheme<D> {
     pub(super) fn deform_forward(&self, patch: &mut Patch<D>, dt: f64) {
         #[inline(never)]
         fn go<const L: usize>(f: &mut [&mut [f64]; 4], l: [&[f64]; 4], dt: f64, first: usize) {
-            let l = map(l, |column| map(lanes::<L>(column, first), |l| dt * l));
+            let l = map(&l, |column| map(&lanes::<L>(column, first), |l| dt * l));
             let start: [[f64; L]; 4] = f.each_ref().map(|column| lanes(column, first));
             for (column, moved) in f.iter_mut().zip(moved_by(&l, &start)) {
                 column[first..first + L].copy_from_slice(&moved);

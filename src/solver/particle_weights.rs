@@ -87,8 +87,8 @@ impl<'a, const K: usize, const D: usize> ParticleWeights<'a, K, D> {
         for line in 0..self.lines() {
             let (at, weights) = (self.first + line * self.stride, &weights[line]);
             match weights.first_chunk::<NARROW>() {
-                Some(weights) if self.is_narrow() => add(field, at, map(*weights, &term)),
-                _ => add(field, at, map(*weights, &term)),
+                Some(weights) if self.is_narrow() => add(field, at, map(weights, &term)),
+                _ => add(field, at, map(weights, &term)),
             }
         }
     }

@@ -296,7 +296,7 @@ impl<const D: usize> Patch<D> {
             });
             let stride = stencils.stride as i32;
             for (particle, ((first, values), gradients)) in out.enumerate() {
-                let place = decomp::array::map(fractions, |f| f[particle]);
+                let place = decomp::array::map(&fractions, |f| f[particle]);
                 let domain = ParticleDomain::from_columns(S::EXTENT, &domains, particle);
                 let (gx, gy) = gradients.split_at_mut(nodes);
                 let mut lines = crate::shape::Plane {

@@ -1,6 +1,8 @@
 //! Particles to grid: each sum runs over own particles and ghosts in canonical order, so that all
 //! patches with a node get bitwise the same sums for it.
 
+use decomp::array;
+
 use super::scheme::Scheme;
 use crate::shape::{Shape, with_shape, with_width};
 use crate::solver::clock::timed;
@@ -119,18 +121,18 @@ impl<const D: usize> Scheme<D> {
         // fields are taken out while others are read and written
         let mut take = |k: usize| std::mem::take(&mut patch.nodes.fields[k]);
         let mut masses = take(f.mass);
-        let mut momenta: [Vec<f64>; D] = decomp::array::from_fn(|a| take(f.lumped_velocity + a));
-        let mut forces: [Vec<f64>; D] = decomp::array::from_fn(|a| take(f.acceleration + a));
+        let mut momenta: [Vec<f64>; D] = array::from_fn(|a| take(f.lumped_velocity + a));
+        let mut forces: [Vec<f64>; D] = array::from_fn(|a| take(f.acceleration + a));
         let mut volumes = self.edge_mask.map(|_| take(f.volume));
         // slices of equal length, so that the bounds of a window are checked only once
         let nodes = masses.len();
         let nodal_mass = &mut masses[..];
-        let momentum = &mut momenta.each_mut().map(|field| &mut field[..nodes]);
-        let nodal_force = &mut forces.each_mut().map(|field| &mut field[..nodes]);
+        let momentum = &mut array::parts_mut(&mut momenta, nodes);
+        let nodal_force = &mut array::parts_mut(&mut forces, nodes);
         let mut volume = volumes.as_mut().map(|field| &mut field[..nodes]);
         let particles = patch.block.particles();
         let column = |k: usize| &patch.block.columns[k][..particles];
-        let vector = |k: usize| -> [&[f64]; D] { decomp::array::from_fn(|a| column(k + a)) };
+        let vector = |k: usize| -> [&[f64]; D] { array::from_fn(|a| column(k + a)) };
         let (mass, velocity) = (column(c.mass), vector(c.velocity));
         let stress = column(c.stress_volume);
         let filled = c.fill_fraction.map_or(&[][..], column);
@@ -197,8 +199,7 @@ impl<const D: usize> Scheme<D> {
         let offset = self.offset(patch, r, weights.first);
         for a in 0..D {
             let mv = m * column(self.columns.velocity + a);
-            let mc: [f64; D] =
-                decomp::array::from_fn(|b| m * column(affine + D * a + b) * self.cell[b]);
+            let mc: [f64; D] = array::from_fn(|b| m * column(affine + D * a + b) * self.cell[b]);
             for line in 0..const { lines(K, D) } {
                 let across = match D {
                     1 => mv,
@@ -254,7 +255,7 @@ impl<const D: usize> Scheme<D> {
         let (nodes, cell) = (&patch.nodes.nodes, patch.block.cells[particle]);
         let stride = patch.stencils.stride;
         let first = if patch.nodes.layers > 1 { first % nodes.count() } else { first };
-        decomp::array::from_fn(|a| {
+        array::from_fn(|a| {
             let at = match (D, a) {
                 (1, _) => first,
                 (_, 0) => first % stride,

@@ -43,7 +43,7 @@ fn count(job: &Job, ends: [f64; 2]) -> Result<f64, String> {
 fn run(job: Job, end: f64) -> Result<[f64; 3], String> {
     let job = job
         .set(format!("time.end={end:e}"))
-        .set(format!("output={{\"profiles\":{{\"times\":[{end:e}]}}}}"))
+        .set(format!("output={{\"profiles\":{{\"times\":[{end:e}]}},\"pictures\":false}}"))
         .set("output.checkpoint.keep=0")
         .set("decomposition.skip_quiescent=false")
         .set("domain.patches=null")
