@@ -211,7 +211,7 @@ fn begin(args: &RunArgs, reading: &AtomicBool) -> Outcome<Begun> {
     let maker = Maker::with(origin, &checked);
     let output = match args.output.clone().or(restarted) {
         Some(output) => output,
-        None => results_folder(args, &maker),
+        None => results_folder(args.scene.as_deref(), &maker),
     };
     reading.store(false, Ordering::Relaxed);
     let lock = Lock::take(&output).map_err(bad)?;
@@ -225,15 +225,12 @@ fn begin(args: &RunArgs, reading: &AtomicBool) -> Outcome<Begun> {
 }
 
 /// The folder of the results of a scene without `--output`; prints why it has a number.
-fn results_folder(args: &RunArgs, maker: &Maker) -> PathBuf {
-    let scene = args.scene.as_deref().unwrap_or(Path::new(""));
-    let found = default_folder(scene, maker);
-    if let Some((avoided, theirs)) = found.avoided.filter(|_| !args.quiet) {
-        eprintln!(
-            "results go to {}, because {} holds {theirs}",
-            found.path.display(),
-            avoided.display()
-        );
+fn results_folder(scene: Option<&Path>, maker: &Maker) -> PathBuf {
+    let found = default_folder(scene.unwrap_or(Path::new("")), maker);
+    if let Some((avoided, theirs)) = found.avoided {
+        // a quiet run too: a script would read the results of the other scene
+        let [path, avoided] = [&found.path, &avoided].map(|path| path.display());
+        eprintln!("results go to {path}, because {avoided} holds {theirs}");
     }
     found.path
 }

@@ -6,7 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::driver::checkpoint::folder::check_owner;
+use crate::driver::checkpoint::folder::{check_owner, has_checkpoints};
 use crate::driver::output::OutputError;
 use crate::driver::output::origin::{ExistingResult, Maker};
 
@@ -23,39 +23,58 @@ pub struct DefaultFolder {
     pub avoided: Option<(PathBuf, String)>,
 }
 
-/// The first of `output/NAME`, `output/NAME-2`, ... that holds nothing of another scene or command;
-/// `NAME` is the name of the file `scene` without its ending.
+/// The first of `output/NAME`, `output/NAME-2`, ... that holds results or checkpoints of `maker`, else
+/// the first that holds nothing; `NAME` is the name of the file `scene` without its ending.
 pub fn default_folder(scene: &Path, maker: &Maker) -> DefaultFolder {
     let name = scene.file_stem().unwrap_or_else(|| "scene".as_ref());
     free_folder(&Path::new("output").join(name), maker)
 }
 
-/// The first of `base`, `base-2`, ... that holds nothing of another scene or command.
+/// What a folder of results and the checkpoints beside it hold.
+enum Contents {
+    Nothing,
+    /// Results or checkpoints that the maker may replace.
+    Own,
+    /// Those of another origin.
+    Foreign(String),
+}
+
+/// The first of `base`, `base-2`, ... that holds something of `maker`, else the first that holds
+/// nothing.
 fn free_folder(base: &Path, maker: &Maker) -> DefaultFolder {
-    let Some(origin) = other_origin(base, maker) else {
-        return DefaultFolder { path: base.into(), avoided: None };
-    };
     let numbered = |number: usize| {
         let mut name = base.file_name().unwrap_or_default().to_os_string();
         name.push(format!("-{number}"));
         base.with_file_name(name)
     };
-    let free = (2..=LARGEST_NUMBER).map(numbered).find(|path| other_origin(path, maker).is_none());
+    let avoided = match contents(base, maker) {
+        Contents::Foreign(origin) => Some((base.to_path_buf(), origin)),
+        Contents::Own => return DefaultFolder { path: base.into(), avoided: None },
+        Contents::Nothing => None,
+    };
+    let mut free = avoided.is_none().then(|| base.to_path_buf());
+    for path in (2..=LARGEST_NUMBER).map(numbered) {
+        match contents(&path, maker) {
+            Contents::Own => return DefaultFolder { path, avoided },
+            Contents::Nothing if free.is_none() => free = Some(path),
+            _ => {}
+        }
+    }
     // without a free number, the run is refused with the name of the other scene
-    let path = free.unwrap_or_else(|| base.into());
-    DefaultFolder { path, avoided: Some((base.into(), origin)) }
+    DefaultFolder { path: free.unwrap_or_else(|| base.into()), avoided }
 }
 
-/// Origin of the result or of the checkpoints at `folder` that `maker` may not replace.
-fn other_origin(folder: &Path, maker: &Maker) -> Option<String> {
-    match ExistingResult::read(folder) {
-        Some(made) if !maker.may_replace(&made.origin, &made.scene, folder) => {
-            Some(made.origin.to_string())
-        }
-        _ => match check_owner(folder, maker) {
-            Err(OutputError::Foreign { theirs, .. }) => Some(theirs),
-            _ => None,
-        },
+fn contents(folder: &Path, maker: &Maker) -> Contents {
+    let result = ExistingResult::read(folder);
+    if let Some(made) = &result
+        && !maker.may_replace(&made.origin, &made.scene, folder)
+    {
+        return Contents::Foreign(made.origin.to_string());
+    }
+    match check_owner(folder, maker) {
+        Err(OutputError::Foreign { theirs, .. }) => Contents::Foreign(theirs),
+        _ if result.is_some() || has_checkpoints(folder) => Contents::Own,
+        _ => Contents::Nothing,
     }
 }
 
@@ -98,5 +117,9 @@ mod tests {
                 write(path, maker);
             }
         }
+        // a number that has become free is taken by a new scene alone
+        fs::remove_dir_all(&expected[0]).unwrap();
+        assert_eq!(free_folder(&base, &makers[1]).path, expected[1]);
+        assert_eq!(free_folder(&base, &makers[0]).path, expected[0]);
     }
 }

@@ -159,12 +159,12 @@ where
             break;
         }
         if let Some(stop) = CheckpointSchedule::stops(asked) {
-            progress.finish();
+            drop(progress);
             return Err(stopped(stop, time, simulation.steps(), options, schedule));
         }
         simulation.ask(schedule.asks(first));
         if let Err(error) = simulation.advance(recorder.next_profile()) {
-            progress.finish();
+            drop(progress);
             if !error.is_known_to_all() {
                 return Err(error.into());
             }
@@ -174,7 +174,6 @@ where
         }
         progress.tell(simulation.time(), simulation.steps());
     }
-    progress.finish();
     Ok(())
 }
 

@@ -86,12 +86,14 @@ fn unit(text: &str) -> Option<ScaledUnit> {
                 let digits = |c: char| c.is_ascii_digit() || c == '-';
                 let length = after.find(|c: char| !digits(c)).unwrap_or(after.len());
                 let (power, after) = after.split_at(length);
-                let power = sign * if power.is_empty() { 1 } else { power.parse().ok()? };
+                let power: i32 = if power.is_empty() { 1 } else { power.parse().ok()? };
+                let power = power.checked_mul(sign)?;
                 let factor = symbol(name)?;
                 for (sum, exponent) in whole.dimensions.iter_mut().zip(factor.dimensions) {
-                    *sum += power * exponent;
+                    *sum = exponent.checked_mul(power).and_then(|of| sum.checked_add(of))?;
                 }
-                whole.ten += power * factor.ten;
+                whole.ten =
+                    factor.ten.checked_mul(power).and_then(|of| whole.ten.checked_add(of))?;
                 rest = after;
                 // a product below a fraction bar needs parentheses
                 sign = if in_parentheses { sign } else { 1 };

@@ -196,7 +196,13 @@ impl Conform<'_> {
             return texts.join(", or ");
         }
         if let Some(variants) = schema.get("oneOf").and_then(Value::as_array) {
-            let texts: Vec<_> = variants.iter().map(|variant| self.allowed(variant)).collect();
+            // the keys of each type would be too many for a line
+            let types: Vec<_> = variants.iter().filter_map(tag).collect();
+            let rest = variants.iter().filter(|variant| tag(variant).is_none());
+            let mut texts: Vec<_> = rest.map(|variant| self.allowed(variant)).collect();
+            if !types.is_empty() {
+                texts.push(format!("an object whose \"type\" is one of {}", types.join(", ")));
+            }
             return texts.join(", ");
         }
         if let Some(constant) = constant(schema) {

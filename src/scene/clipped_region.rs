@@ -15,7 +15,7 @@ impl Scene {
         let mut regions = body.regions();
         if self.domain.lower.len() == 2 && self.domain.upper.len() == 2 {
             for (_, region) in &mut regions {
-                if let Some(clipped) = self.clipped(region) {
+                if let Some(clipped) = self.clipped(region, body.velocity.as_deref()) {
                     *region = clipped;
                 }
             }
@@ -24,8 +24,9 @@ impl Scene {
     }
 
     /// The part of `region` inside of the planes of symmetry that it crosses; `None` if it crosses
-    /// none, or has no part inside. Faults of a region are found where it is filled.
-    fn clipped(&self, region: &Region) -> Option<Region> {
+    /// none, or has no part inside. A body that moves across a plane is not its own mirror image, and
+    /// is not clipped there. Faults of a region are found where it is filled.
+    fn clipped(&self, region: &Region, velocity: Option<&[f64]>) -> Option<Region> {
         let mirrors = self.mirrors();
         if mirrors.iter().flatten().all(|is_mirror| !is_mirror) {
             return None;
@@ -35,7 +36,8 @@ impl Scene {
         let crosses = |a: usize, end: usize| {
             let outwards = [-1.0, 1.0][end];
             let beyond = |corner: usize| outwards * (bounds[corner][a] - domain[end][a]);
-            mirrors[a][end] && beyond(end) > self.touching(a) && beyond(1 - end) < 0.0
+            let rests = velocity.and_then(|v| v.get(a)).is_none_or(|v| *v == 0.0);
+            mirrors[a][end] && rests && beyond(end) > self.touching(a) && beyond(1 - end) < 0.0
         };
         let crossed: Vec<(usize, usize)> = [(0, 0), (0, 1), (1, 0), (1, 1)]
             .into_iter()

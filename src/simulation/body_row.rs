@@ -48,15 +48,27 @@ where
             let gathered = self.comm.gather(&failed);
             let particles = gathered.iter().flat_map(|words| words.chunks_exact(2));
             all.extend(particles.map(|w| (f64::from_bits(w[0]), w[1] == 1)));
-            all.sort_by(|a, b| a.0.total_cmp(&b.0));
+            // particles at one place in an order that no layout changes
+            all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         }
         BodyRow { time: self.time, ends, failed: failed_parts(&all) }
     }
 }
 
-/// First and last position of each run of failed particles among particles sorted by position.
+/// A longer distance between failed particles, in median distances, is a gap of the material.
+const GAP: f64 = 6.0;
+
+/// First and last position of each run of failed particles without a gap among particles sorted by
+/// position.
 fn failed_parts(particles: &[(f64, bool)]) -> Vec<[f64; 2]> {
-    let runs = particles.chunk_by(|a, b| a.1 == b.1).filter(|run| run[0].1);
+    let mut distances: Vec<f64> = particles.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
+    let middle = distances.len() / 2;
+    let longest = match distances.is_empty() {
+        true => 0.0,
+        false => GAP * *distances.select_nth_unstable_by(middle, f64::total_cmp).1,
+    };
+    let together = |a: &(f64, bool), b: &(f64, bool)| a.1 == b.1 && b.0 - a.0 <= longest;
+    let runs = particles.chunk_by(together).filter(|run| run[0].1);
     runs.map(|run| [run[0].0, run[run.len() - 1].0]).collect()
 }
 
@@ -71,5 +83,8 @@ mod tests {
             failed.iter().enumerate().map(|(k, failed)| (k as f64, *failed)).collect();
         assert_eq!(failed_parts(&particles), [[1.0, 2.0], [4.0, 4.0], [7.0, 8.0]]);
         assert!(failed_parts(&particles[..1]).is_empty());
+        // the surfaces of a spall gap are two parts
+        let apart = [0.0, 1.0, 2.0, 3.0, 10.0, 11.0].map(|x| (x, (2.0..=10.0).contains(&x)));
+        assert_eq!(failed_parts(&apart), [[2.0, 3.0], [10.0, 10.0]]);
     }
 }

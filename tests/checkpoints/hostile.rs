@@ -90,7 +90,8 @@ fn changed(text: &str, seed: &mut u64) -> Vec<u8> {
     bytes
 }
 
-/// Asserts that a verdict is reached, and told in one line.
+/// Asserts that a verdict is reached, and that a refusal has one line, or one line for each of a few
+/// faults below a heading.
 #[track_caller]
 fn judged<T, E: ToString>(
     what: &dyn Fn() -> String,
@@ -100,7 +101,10 @@ fn judged<T, E: ToString>(
         Ok(Ok(_)) => true,
         Ok(Err(error)) => {
             let text = error.to_string();
-            assert!(!text.contains('\n') && text.len() < 4000, "{}: {text}", what());
+            let lines: Vec<&str> = text.lines().collect();
+            let faults = lines.iter().skip(1).all(|line| line.starts_with("  "));
+            assert!(faults && lines.len() <= 22, "{}: {text}", what());
+            assert!(lines.iter().all(|line| line.len() < 4000), "{}: {text}", what());
             false
         }
         Err(_) => panic!("it panics: {}", what()),

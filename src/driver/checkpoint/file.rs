@@ -270,6 +270,9 @@ fn read_root(file: &Group, length: u64) -> hdf5::Result<Checkpoint> {
         record.waves.push(PressureRow { time, points });
     }
     record.bodies = get.bodies(&file.group("bodies")?)?;
+    if record.bodies.len() != record.waves.len() {
+        return Err("as many rows of bodies as of pressure are needed".into());
+    }
     if books.has_histories {
         record.histories = Some(HistoryTable::of(get.columns(&file.group("histories")?)?));
     }
@@ -328,8 +331,11 @@ impl Reader {
             let counts: Vec<u64> = self.values(group, &format!("{name}_counts"))?;
             Ok(counts.into_iter().map(|n| ends.by_ref().take(n as usize).collect()).collect())
         };
-        let parts = parts("ends")?.into_iter().zip(parts("failed")?);
-        let rows = times.into_iter().zip(parts);
+        let (ends, failed) = (parts("ends")?, parts("failed")?);
+        if [ends.len(), failed.len()] != [times.len(); 2] {
+            return Err("rows of bodies of different numbers".into());
+        }
+        let rows = times.into_iter().zip(ends.into_iter().zip(failed));
         Ok(rows.map(|(time, (ends, failed))| BodyRow { time, ends, failed }).collect())
     }
 

@@ -145,26 +145,41 @@ pub fn open(path: &Path) -> Result<(Checkpoint, PathBuf, Vec<String>), Checkpoin
     Err(none(format!("no checkpoint is whole: {}", notes.join("; "))))
 }
 
+/// Whether there are checkpoints in the checkpoint folder of `target`.
+pub fn has_checkpoints(target: &Path) -> bool {
+    checkpoint_folder(target).is_ok_and(|folder| !list(&folder).is_empty())
+}
+
 /// Refuses a run whose checkpoints would replace those of another scene in the checkpoint folder of
 /// `target`. Damaged checkpoints are ignored.
 ///
 /// # Errors
 ///
-/// If the newest checkpoint is of another scene, or if the folder is itself a result.
+/// If the newest checkpoint is of another scene or cannot be read for another reason than damage, or
+/// if the folder is itself a result.
 pub fn check_owner(target: &Path, maker: &Maker) -> Result<(), OutputError> {
     let folder = checkpoint_folder(target)?;
     if ExistingResult::read(&folder).is_some() {
         let result = folder.clone();
         return Err(OutputError::Inside { path: folder, result });
     }
-    let newest = list(&folder).into_iter().find_map(|(_, path)| file::read(&path).ok());
-    let Some(checkpoint) = newest else { return Ok(()) };
-    let (theirs, scene) = (checkpoint.run_origin(), serde_json::from_str(&checkpoint.scene));
-    if maker.may_replace(&theirs, &scene.unwrap_or_default(), &folder) {
-        return Ok(());
+    let ours = maker.origin.to_string();
+    for (_, path) in list(&folder) {
+        let checkpoint = match file::read(&path) {
+            Ok(checkpoint) => checkpoint,
+            Err(CheckpointError::Damaged { .. }) => continue,
+            // a checkpoint of another format is a whole one of somebody
+            Err(error) => {
+                return Err(OutputError::Foreign { path: folder, theirs: error.to_string(), ours });
+            }
+        };
+        let (theirs, scene) = (checkpoint.run_origin(), serde_json::from_str(&checkpoint.scene));
+        if maker.may_replace(&theirs, &scene.unwrap_or_default(), &folder) {
+            return Ok(());
+        }
+        return Err(OutputError::Foreign { path: folder, theirs: theirs.to_string(), ours });
     }
-    let (theirs, ours) = (theirs.to_string(), maker.origin.to_string());
-    Err(OutputError::Foreign { path: folder, theirs, ours })
+    Ok(())
 }
 
 /// Whether a file looks like a JSON object or a comment before it, judged by its first characters.

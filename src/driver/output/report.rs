@@ -65,8 +65,13 @@ pub fn brief(summary: &Summary, folder: &Path) -> String {
         let rest = line.trim_start();
         rest.len() - rest.trim_start_matches(|c: char| !c.is_whitespace()).trim_start().len()
     });
-    let lines: Vec<String> =
-        lines.lines().map(|line| wrapped(line, indent + names) + "\n").collect();
+    // a path stays in one piece, so that it can be copied
+    let results = format!("{}{}", " ".repeat(indent), labels::RESULTS);
+    let fold = |line: &str| match line.starts_with(&results) {
+        true => format!("{line}\n"),
+        false => wrapped(line, indent + names) + "\n",
+    };
+    let lines: Vec<String> = lines.lines().map(fold).collect();
     let lines = lines.concat();
     // title and heading of the quantities
     let room = BRIEF_LINES.saturating_sub(2 + lines.lines().count()).max(1);
@@ -490,9 +495,10 @@ warning: linear shape functions ring across cells
         let line = "  failure       7 particles have failed, 11 are damaged; 1.500000e0 J/m2 of elastic \
                     energy is heat";
         assert!(text.lines().any(|l| l == line), "{text}");
-        assert!(text.lines().all(|line| line.len() <= 100), "{text}");
-        assert!(text.lines().last().unwrap().starts_with("                long name"), "{text}");
-        assert_eq!(text.matches("shock speed").count(), 2, "{text}");
+        let (last, others) = text.trim_end().rsplit_once('\n').unwrap();
+        assert!(others.lines().all(|line| line.len() <= 100), "{text}");
+        assert_eq!(last, format!("  results       {}", folder.trim()));
+        assert_eq!(text.matches("shock speed").count(), 3, "{text}");
     }
 
     #[test]

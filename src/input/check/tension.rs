@@ -78,12 +78,15 @@ fn unlimited(checked: &CheckedScene, speeds: &[f64]) -> Option<String> {
     let tension = pressure - (pressure * (behind - z) / (behind + z)).max(0.0);
     (tension > MOST_TENSION * z * speeds[own]).then(|| {
         format!(
-            "{}: {} would bear about {:.1} GPa in tension where the rarefactions from the rear faces \
+            "{}: {} would bear about {} in tension where the rarefactions from the rear faces \
              meet, and no material bears more than a few percent of its bulk modulus; give the \
              material a failure law or eos.tension_cutoff",
             join("bodies", &checked.scene.bodies[own].name),
             checked.scene.bodies[own].material,
-            tension * 1e-9
+            match tension < 1e8 {
+                true => format!("{:.1} MPa", tension * 1e-6),
+                false => format!("{:.1} GPa", tension * 1e-9),
+            }
         )
     })
 }

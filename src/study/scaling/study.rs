@@ -43,7 +43,12 @@ pub struct ScalingOptions {
 }
 
 /// Files that no run writes, because they are not measured.
-const WITHOUT: [&str; 3] = ["output.pictures=false", "output.hdf5=false", "output.histories=null"];
+const WITHOUT: [&str; 4] = [
+    "output.pictures=false",
+    "output.hdf5=false",
+    "output.histories=null",
+    "output.checkpoint=null",
+];
 
 /// The runs of a scaling study.
 pub struct ScalingPlan {
@@ -126,13 +131,19 @@ impl ScalingPlan {
         claim(&self.output, &Origin::new(kind.name(), scene))?;
         let folder = self.output.join(RUN_FOLDER);
         let mut measured: Vec<Vec<MeasuredRun>> = vec![Vec::new(); self.runs.len()];
-        for round in 0..*repeats {
-            tell(&format!("round {} of {repeats}: {} runs", round + 1, self.runs.len()));
-            for turn in turns(self.runs.len(), round) {
-                measured[turn].push(self.runs[turn].run(program, &folder)?);
+        let all_rounds = || -> Result<(), ScalingError> {
+            for round in 0..*repeats {
+                tell(&format!("round {} of {repeats}: {} runs", round + 1, self.runs.len()));
+                for turn in turns(self.runs.len(), round) {
+                    measured[turn].push(self.runs[turn].run(program, &folder)?);
+                }
             }
-        }
-        fs::remove_dir_all(&folder).map_err(ScalingError::io(&folder))?;
+            Ok(())
+        };
+        let ended = { all_rounds }();
+        // the results of a single run are of no use, those of a failed one neither
+        let removed = fs::remove_dir_all(&folder).map_err(ScalingError::io(&folder));
+        ended.and(removed)?;
         Ok(ScalingStudy {
             kind: *kind,
             title: self.title.clone(),
