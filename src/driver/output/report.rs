@@ -495,7 +495,7 @@ warning: linear shape functions ring across cells
         let line = "  failure       7 particles have failed, 11 are damaged; 1.500000e0 J/m2 of elastic \
                     energy is heat";
         assert!(text.lines().any(|l| l == line), "{text}");
-        let (last, others) = text.trim_end().rsplit_once('\n').unwrap();
+        let (others, last) = text.trim_end().rsplit_once('\n').unwrap();
         assert!(others.lines().all(|line| line.len() <= 100), "{text}");
         assert_eq!(last, format!("  results       {}", folder.trim()));
         assert_eq!(text.matches("shock speed").count(), 3, "{text}");
