@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Measures how well a run keeps its speed a worker when the work grows with the workers: cells and
-# end are divided by ranks x threads, so that particles a worker and the number of steps stay the
+# Measures how well a run keeps its speed per worker when the work grows with the workers: cells and
+# end are divided by ranks x threads, so that particles per worker and the number of steps stay the
 # same. Arguments and results as in strong_scaling.sh.
 #
 #   scripts/weak_scaling.sh inputs/flyer.json --ranks 1,2,4 --threads 1,2 --repeats 5

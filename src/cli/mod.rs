@@ -32,10 +32,10 @@ use flyer_mpm::scene::PlannedQuantity;
 /// leaves them unchanged. Another scene of the same name gets output/<name>-2/; with --output, a
 /// folder with results of another scene is refused.
 ///
-/// Checkpoints go to output/<name of the scene>.checkpoints/ (output.checkpoint of the scene;
-/// default: every ten minutes). SIGTERM, SIGINT, SIGUSR1 and time.wall_limit write one and end the
-/// run with code 4; flyer-mpm --restart output/<name of the scene>.checkpoints continues with the
-/// same bits.
+/// Checkpoints go to <folder of the results>.checkpoints/, beside the folder of the results
+/// (output.checkpoint of the scene; default: every ten minutes). SIGTERM, SIGINT, SIGUSR1 and
+/// time.wall_limit write one and end the run with code 4; flyer-mpm --restart <folder of the
+/// results>.checkpoints continues with the same bits.
 ///
 /// Exit codes: 0 done; 1 `compare` found a difference; 2 error in the command line, scene or
 /// folder; 3 the run failed; 4 the run was stopped and can be restarted; 7 a rank hangs.

@@ -14,11 +14,11 @@ use crate::simulation::ParticleTable;
 const SHOCKED: usize = 2;
 
 /// Difference from the exact pressure up to which a particle counts as behind the shock [-].
-const NEAR: f64 = 0.02;
+const PRESSURE_TOLERANCE: f64 = 0.02;
 
 /// Change of the velocity of a free surface in a plane above which the wave has reached it, over the
 /// impact speed [-].
-const MOVED: f64 = 0.1;
+const VELOCITY_CHANGE_TOLERANCE: f64 = 0.1;
 
 /// Change of a velocity that is no more than rounding, over the impact speed [-].
 const ROUNDING: f64 = 1e-6;
@@ -127,7 +127,7 @@ fn velocity_along(particles: &[AlongWave], pressure: f64) -> Option<f64> {
 
 /// Whether a pressure is close enough to `exact` to be behind the shock.
 fn is_near(pressure: f64, exact: f64) -> bool {
-    (pressure / exact - 1.0).abs() < NEAR
+    (pressure / exact - 1.0).abs() < PRESSURE_TOLERANCE
 }
 
 /// The upper one of the two middle values, if their number is even; `None` without values.
@@ -154,7 +154,7 @@ fn plane_free_surface(
         scene.cell_size[0],
     )?;
     let change = (velocity - impact.impact.target.velocity).abs();
-    (change > MOVED * impact.impact.speed).then(|| MeasuredQuantity {
+    (change > VELOCITY_CHANGE_TOLERANCE * impact.impact.speed).then(|| MeasuredQuantity {
         name: labels::FREE_SURFACE.into(),
         unit: "m/s".into(),
         time: table.time,
@@ -223,7 +223,7 @@ fn extent(table: &ParticleTable, a: usize) -> Option<[f64; 2]> {
     ends.reduce(|all, one| [all[0].min(one[0]), all[1].max(one[1])])
 }
 
-/// Largest pressure, tension and speed of a profile; a tension below [`NEAR`] of the pressure is
+/// Largest pressure, tension and speed of a profile; a tension below [`PRESSURE_TOLERANCE`] of the pressure is
 /// left out.
 fn extremes(table: &ParticleTable) -> Vec<MeasuredQuantity> {
     let largest = |column: &str, sign: fn(f64) -> f64| {
@@ -235,7 +235,7 @@ fn extremes(table: &ParticleTable) -> Vec<MeasuredQuantity> {
     };
     let pressure = largest("pressure", |p| p);
     let tension = largest("pressure", |p| -p);
-    let tension = tension.filter(|t| *t > 0.0 && *t > NEAR * pressure.unwrap_or(0.0));
+    let tension = tension.filter(|t| *t > 0.0 && *t > PRESSURE_TOLERANCE * pressure.unwrap_or(0.0));
     let speed = match table.dimension {
         1 => largest("velocity", f64::abs),
         _ => {
@@ -277,14 +277,14 @@ mod tests {
 
     /// A surface that moves at the start, is accelerated and slowed down again.
     #[test]
-    fn the_free_surface_is_told_at_its_largest_change() {
+    fn the_free_surface_is_measured_at_its_largest_change() {
         let columns = [("time", "s"), ("free_surface_velocity", "m/s")];
         let mut histories = HistoryTable::new(columns);
         for row in [[0.0, 300.0], [1e-6, 300.0 + 1e-9], [2e-6, -120.0], [3e-6, 250.0]] {
             histories.push(&row);
         }
-        let told = free_surface(&histories, 500.0).unwrap();
-        assert_eq!((told.time, told.value), (2e-6, -120.0));
+        let velocity = free_surface(&histories, 500.0).unwrap();
+        assert_eq!((velocity.time, velocity.value), (2e-6, -120.0));
         assert!(free_surface(&histories.first(2), 500.0).is_none());
     }
 
@@ -314,7 +314,7 @@ mod tests {
             errors_cell_averaged: None,
         };
         let noh = profile(serde_json::json!({"mean_density": 14.0, "mean_density_error": -0.125}));
-        let told = shock_density(&[noh, profile(serde_json::json!({"l1": 0.1}))]).unwrap();
-        assert_eq!((told.value, told.exact), (14.0, Some(16.0)));
+        let density = shock_density(&[noh, profile(serde_json::json!({"l1": 0.1}))]).unwrap();
+        assert_eq!((density.value, density.exact), (14.0, Some(16.0)));
     }
 }

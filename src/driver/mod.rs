@@ -172,7 +172,7 @@ where
                 save_last_good(simulation, comm, scene, options, (recorder, &mark), schedule);
             return Err(RunFailure::Alarm { error: Box::new(error), next });
         }
-        progress.tell(simulation.time(), simulation.steps());
+        progress.show(simulation.time(), simulation.steps());
     }
     Ok(())
 }

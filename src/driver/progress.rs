@@ -134,7 +134,7 @@ impl ForwardedTerminal {
     }
 
     /// Moves the cursor `count` places in the direction of a control sequence.
-    fn turn(&self, count: usize, direction: char) -> io::Result<()> {
+    fn move_cursor(&self, count: usize, direction: char) -> io::Result<()> {
         if count > 0 { self.put(&format!("\x1b[{count}{direction}")) } else { Ok(()) }
     }
 }
@@ -145,19 +145,19 @@ impl TermLike for ForwardedTerminal {
     }
 
     fn move_cursor_up(&self, n: usize) -> io::Result<()> {
-        self.turn(n, 'A')
+        self.move_cursor(n, 'A')
     }
 
     fn move_cursor_down(&self, n: usize) -> io::Result<()> {
-        self.turn(n, 'B')
+        self.move_cursor(n, 'B')
     }
 
     fn move_cursor_right(&self, n: usize) -> io::Result<()> {
-        self.turn(n, 'C')
+        self.move_cursor(n, 'C')
     }
 
     fn move_cursor_left(&self, n: usize) -> io::Result<()> {
-        self.turn(n, 'D')
+        self.move_cursor(n, 'D')
     }
 
     fn write_line(&self, text: &str) -> io::Result<()> {
@@ -189,7 +189,7 @@ pub struct Progress {
     bar: Option<ProgressBar>,
     /// Start and end time [s].
     span: [f64; 2],
-    told: Instant,
+    last_shown: Instant,
     started: Instant,
 }
 
@@ -212,16 +212,16 @@ impl Progress {
         if let (Some(bar), Ok(style)) = (&bar, style) {
             bar.set_style(style);
         }
-        Progress { form, bar, span, told: Instant::now(), started: Instant::now() }
+        Progress { form, bar, span, last_shown: Instant::now(), started: Instant::now() }
     }
 
     /// Shows the `time` [s] and number of steps that the run has reached, if it is due.
-    pub fn tell(&mut self, time: f64, step: u64) {
+    pub fn show(&mut self, time: f64, step: u64) {
         let every = if self.bar.is_some() { BAR_INTERVAL } else { LINE_INTERVAL };
-        if self.form == ProgressForm::Nothing || self.told.elapsed() < every {
+        if self.form == ProgressForm::Nothing || self.last_shown.elapsed() < every {
             return;
         }
-        self.told = Instant::now();
+        self.last_shown = Instant::now();
         let share = (time - self.span[0]) / (self.span[1] - self.span[0]);
         match &self.bar {
             Some(bar) => {

@@ -97,7 +97,7 @@ pub(super) struct SceneFault {
     value: String,
     reason: String,
     /// Path of the part that cannot be judged any further.
-    spoilt: String,
+    invalidated: String,
 }
 
 impl SceneFault {
@@ -124,12 +124,12 @@ impl SceneFault {
     /// Fault of a missing key.
     pub(super) fn missing(path: impl Into<String>, reason: impl Into<String>) -> Self {
         let path = path.into();
-        SceneFault { spoilt: path.clone(), path, value: String::new(), reason: reason.into() }
+        SceneFault { invalidated: path.clone(), path, value: String::new(), reason: reason.into() }
     }
 
     /// The same fault, after which nothing at `path` or below can be judged.
-    pub(super) fn spoils(self, path: impl Into<String>) -> Self {
-        SceneFault { spoilt: path.into(), ..self }
+    pub(super) fn invalidates(self, path: impl Into<String>) -> Self {
+        SceneFault { invalidated: path.into(), ..self }
     }
 
     /// Path of the key.
@@ -139,12 +139,12 @@ impl SceneFault {
 
     /// Whether `other` may be no more than a consequence of this fault.
     pub(super) fn explains(&self, other: &SceneFault) -> bool {
-        is_within(&other.path, &self.spoilt)
+        is_within(&other.path, &self.invalidated)
     }
 
     /// The same fault with `parent` prepended to its path.
     pub(super) fn below(mut self, parent: &str) -> Self {
-        for path in [&mut self.path, &mut self.spoilt] {
+        for path in [&mut self.path, &mut self.invalidated] {
             let dot = if path.is_empty() || path.starts_with('[') { "" } else { "." };
             *path = format!("{parent}{dot}{path}");
         }

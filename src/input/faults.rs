@@ -7,7 +7,7 @@ use super::errors::{SceneError, SceneFault, is_within, one_line};
 use super::overrides::split;
 
 /// Maximum number of faults in a message.
-const MOST: usize = 20;
+const MAX_FAULTS: usize = 20;
 
 /// Faults in the order in which they were found, without those that others explain.
 #[derive(Debug, Default)]
@@ -41,20 +41,21 @@ impl Faults {
     }
 
     /// `value` if there is no fault.
-    pub(super) fn or<T>(self, value: T) -> Result<T, Faults> {
+    pub(super) fn ok_or_faults<T>(self, value: T) -> Result<T, Faults> {
         if self.is_empty() { Ok(value) } else { Err(self) }
     }
 
     /// The error, in the order of `text` as far as it has the keys. There is at least one fault.
-    pub(super) fn within(mut self, file: &str, text: &str) -> SceneError {
+    pub(super) fn into_error(mut self, file: &str, text: &str) -> SceneError {
         if self.found.len() == 1 {
             return self.found.remove(0).within(file);
         }
         if let Ok(root) = CstRootNode::parse(text, &ParseOptions::default()) {
             self.found.sort_by_cached_key(|fault| place(&root, fault.path()));
         }
-        let more = self.found.len().saturating_sub(MOST);
-        let lines = self.found.into_iter().take(MOST).map(|fault| fault.within("").to_string());
+        let more = self.found.len().saturating_sub(MAX_FAULTS);
+        let lines =
+            self.found.into_iter().take(MAX_FAULTS).map(|fault| fault.within("").to_string());
         let faults = lines.map(|line| line.trim_start_matches(": ").to_string()).collect();
         SceneError::Several { file: one_line(file), faults, more }
     }

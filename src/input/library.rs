@@ -91,7 +91,7 @@ pub(super) fn resolve(scene: &mut Value) -> Vec<SceneFault> {
     for (key, material) in materials.into_iter().flatten() {
         let path = join("materials", key);
         // without its base, the material has no other keys to judge
-        faults.extend(resolve_one(material, &path).err().map(|fault| fault.spoils(path)));
+        faults.extend(resolve_one(material, &path).err().map(|fault| fault.invalidates(path)));
     }
     faults
 }

@@ -105,7 +105,7 @@ pub fn parse(bytes: &[u8], file: &str, sets: &[String]) -> Result<CheckedScene, 
     }
     judge(value, file).map_err(|faults| {
         let text = String::from_utf8_lossy(bytes);
-        faults.within(file, text.strip_prefix('\u{feff}').unwrap_or(&text))
+        faults.into_error(file, text.strip_prefix('\u{feff}').unwrap_or(&text))
     })
 }
 
@@ -162,7 +162,7 @@ pub fn check(scene: Scene, file: &str) -> Result<CheckedScene, SceneError> {
     // a number that is not finite becomes null here, and is rejected as such
     let value = serde_json::to_value(scene)
         .map_err(|e| SceneFault::missing("", e.to_string()).within(file))?;
-    judge(value, file).map_err(|faults| faults.within(file, ""))
+    judge(value, file).map_err(|faults| faults.into_error(file, ""))
 }
 
 fn judge(mut value: Value, file: &str) -> Result<CheckedScene, Faults> {
@@ -184,7 +184,7 @@ fn complete(value: &mut Value) -> Result<Option<MethodChoice>, Faults> {
     let choice = faults.take(preset::expand(value)).flatten();
     faults.extend(conform(value));
     faults.extend(unknown_materials(value));
-    faults.or(choice)
+    faults.ok_or_faults(choice)
 }
 
 /// Bodies of materials that the scene does not have.

@@ -181,7 +181,7 @@ pub(super) fn expand(scene: &mut Value) -> Result<Option<MethodChoice>, SceneFau
                 explicit.remove("preset");
                 // what the preset would give is not missing
                 let preset = Preset::of(name, "method.preset");
-                (preset.map_err(|fault| fault.spoils("method"))?, explicit)
+                (preset.map_err(|fault| fault.invalidates("method"))?, explicit)
             }
         },
         Some(name @ Value::String(_)) => (Preset::of(name, "method")?, Map::new()),

@@ -2,9 +2,10 @@
 //!
 //! The unit of a key stands in brackets in its description, such as `Density [kg/m3].`; keys without
 //! one take numbers only. A time function takes the unit of the quantity that it gives: in pairs, the
-//! first entry has the unit of the description and the second that of the quantity. Text becomes the number in SI units before anything else is checked. The
-//! decimal exponent is shifted in the text, so that the double is the one nearest to the decimal
-//! number: `"8.93 g/cm3"` and `8930` are the same double.
+//! first entry has the unit of the description and the second that of the quantity. Text becomes the
+//! number in SI units before anything else is checked. The decimal exponent is shifted in the text,
+//! so that the double is the one nearest to the decimal number: `"8.93 g/cm3"` and `8930` are the
+//! same double.
 
 use serde_json::{Map, Value};
 

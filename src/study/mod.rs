@@ -3,7 +3,8 @@
 //! A study is a JSON file ([`spec`]). Each of its cases ([`cases`]) is a run of the program in a
 //! process of its own ([`runner`]); its result is kept and reused ([`record`]). The rows of the
 //! table ([`row`], [`table`]) give the pictures ([`curves`], [`map`]) and the list of cheapest
-//! choices ([`choices`]). [`scaling`] varies ranks and threads instead. Depends on scenes and summaries, but not on particles or MPI.
+//! choices ([`choices`]). [`scaling`] varies ranks and threads instead. Depends on scenes and
+//! summaries, but not on particles or MPI.
 
 pub mod cases;
 pub mod choices;

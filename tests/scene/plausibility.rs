@@ -101,7 +101,7 @@ fn tension_that_no_material_bears() {
     // 2 P Z/(Z + Z')
     let told = plates("3e-6", "1000", "title=plates");
     assert!(
-        told.contains("bodies.target: aluminium would bear about 6.3 GPa in tension"),
+        told.contains("bodies.target: aluminium would reach a tension of about 6.3 GPa"),
         "{told}"
     );
     for (end, speed, more) in [

@@ -5,7 +5,7 @@ use super::axis::{Axis, AxisScale};
 /// Larger values are not drawn, because differences of such numbers overflow.
 const HUGE: f64 = 1e200;
 
-/// Fewest numbers on an axis: two do not tell a linear axis from a logarithmic one.
+/// Fewest numbers on an axis: two do not distinguish a linear axis from a logarithmic one.
 const FEWEST: usize = 3;
 
 /// Whether a value can be drawn on an axis of this scale.

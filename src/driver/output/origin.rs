@@ -4,7 +4,7 @@
 //! file, edited or not. If the original file is not known or no longer exists, a scene with the same
 //! values counts as the same, because the new result has the same bits, and so does a file at the
 //! same path relative to the result. Therefore a folder of scenes and results can be moved as a
-//! whole.
+//! whole. A scene in a copied folder counts as another one as long as the original file exists.
 
 use std::fmt;
 use std::fs;

@@ -41,7 +41,7 @@ pub(super) fn check(
         }
         checked.extend(faults.take(check_body(scene, body, &path, material, cell_size)));
     }
-    faults.or(())?;
+    faults.ok_or_faults(())?;
     check_overlap(scene, &checked, cell_size)?;
     let used: HashSet<_> = checked.iter().map(|body| body.material).collect();
     for (i, name) in materials.iter().enumerate() {

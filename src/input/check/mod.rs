@@ -30,8 +30,8 @@ use common::check_printable;
 pub(super) use memory::tiles;
 pub use memory::{BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, available_memory};
 
-/// Checks `scene`, read from `file`. Checks of one group do not depend on each other; a group is
-/// only judged if the one before has no fault.
+/// Checks `scene`, read from `file`. As far as possible, checks of one group do not depend on each
+/// other; a group is only judged if the one before has no fault.
 pub(super) fn check(scene: Scene, file: &str) -> Result<CheckedScene, Faults> {
     let mut checked = build(scene, file)?;
     check_whole(&mut checked)?;
@@ -65,7 +65,7 @@ fn build(scene: Scene, file: &str) -> Result<CheckedScene, Faults> {
     let (Some(bodies), Some(profile_times)) = (bodies, profile_times) else {
         return Err(faults);
     };
-    faults.or(CheckedScene {
+    faults.ok_or_faults(CheckedScene {
         dimension,
         cell_size,
         cells,
@@ -97,5 +97,5 @@ fn check_whole(checked: &mut CheckedScene) -> Result<(), Faults> {
         let fault = (key.check)(checked).map_err(|e| SceneFault::of_parameter(e, key.name));
         faults.take(fault);
     }
-    faults.or(())
+    faults.ok_or_faults(())
 }

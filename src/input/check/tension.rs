@@ -1,4 +1,4 @@
-//! Warnings about tension: more than a material is known to bear, and limits that are never reached.
+//! Warnings about tension: more than a material is known to withstand, and limits that are never reached.
 //!
 //! Where two plates with free rear faces strike each other, the rarefactions from these faces meet in
 //! the plate that waves take longer to cross, and leave it in tension. With the impedances Z = rho0 c0
@@ -18,9 +18,9 @@ use crate::input::paths::join;
 use crate::material::failure::PressureLimit;
 use crate::scene::{CheckedScene, Material};
 
-/// Tension that no solid or liquid bears in a spall, over its bulk modulus [-]. Metals bear 0.5 to
-/// 3 % (Antoun et al. 2003, Spall fracture).
-const MOST_TENSION: f64 = 0.04;
+/// Tension that no solid or liquid withstands in a spall, over its bulk modulus [-]. Metals withstand
+/// 0.5 to 3 % (Antoun et al. 2003, Spall fracture).
+const MAX_TENSION_RATIO: f64 = 0.04;
 
 /// Warnings of a scene; `speeds` are the sound speeds of the bodies [m/s].
 pub(super) fn warnings(checked: &CheckedScene, speeds: &[f64]) -> Vec<String> {
@@ -76,10 +76,10 @@ fn unlimited(checked: &CheckedScene, speeds: &[f64]) -> Option<String> {
     let (z, behind) = (impedance(own), impedance(other));
     let pressure = speed * z * behind / (z + behind);
     let tension = pressure - (pressure * (behind - z) / (behind + z)).max(0.0);
-    (tension > MOST_TENSION * z * speeds[own]).then(|| {
+    (tension > MAX_TENSION_RATIO * z * speeds[own]).then(|| {
         format!(
-            "{}: {} would bear about {} in tension where the rarefactions from the rear faces \
-             meet, and no material bears more than a few percent of its bulk modulus; give the \
+            "{}: {} would reach a tension of about {} where the rarefactions from the rear faces \
+             meet, and no material withstands more than a few percent of its bulk modulus; give the \
              material a failure law or eos.tension_cutoff",
             join("bodies", &checked.scene.bodies[own].name),
             checked.scene.bodies[own].material,

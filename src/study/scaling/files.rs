@@ -50,7 +50,7 @@ fn table(study: &ScalingStudy) -> Result<Vec<u8>, csv::Error> {
     let fixed = match study.kind {
         ScalingKind::Strong => "the same scene on every row",
         ScalingKind::Weak => {
-            "cell size and end divided by workers: particles a worker and steps are kept"
+            "cell size and end divided by workers: particles per worker and steps are kept"
         }
     };
     let head = format!(

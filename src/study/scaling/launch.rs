@@ -58,9 +58,9 @@ pub fn possible_binding(
     configuration: Configuration,
     cores: usize,
 ) -> Result<RankBinding, ScalingError> {
-    let wished = RankBinding::of(configuration, cores);
-    let output = started(mpirun(configuration.ranks, wished).arg("true"))?;
-    Ok(if output.status.success() { wished } else { RankBinding::None })
+    let preferred = RankBinding::of(configuration, cores);
+    let output = started(mpirun(configuration.ranks, preferred).arg("true"))?;
+    Ok(if output.status.success() { preferred } else { RankBinding::None })
 }
 
 fn mpirun(ranks: usize, binding: RankBinding) -> Command {
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_failed_run_is_told_by_its_own_line() {
+    fn a_failed_run_is_reported_by_its_own_line() {
         assert_eq!(
             first_words("warning: thin\nerror: a particle has left\n"),
             "a particle has left"

@@ -158,11 +158,11 @@ impl ScalingPlan {
 }
 
 /// The rows of all runs, each compared with 1 x 1 with the same skipping.
-fn rows(jobs: &[ScalingRun], runs: &[Vec<MeasuredRun>]) -> Vec<ScalingRow> {
+fn rows(runs: &[ScalingRun], measured: &[Vec<MeasuredRun>]) -> Vec<ScalingRow> {
     let mut rows: Vec<ScalingRow> = Vec::new();
-    for (job, runs) in jobs.iter().zip(runs) {
-        let base = |row: &&ScalingRow| row.workers == 1 && row.skip_quiescent == job.skip_quiescent;
-        let row = ScalingRow::new(job, runs, rows.iter().find(base));
+    for (run, measured) in runs.iter().zip(measured) {
+        let base = |row: &&ScalingRow| row.workers == 1 && row.skip_quiescent == run.skip_quiescent;
+        let row = ScalingRow::new(run, measured, rows.iter().find(base));
         rows.push(row);
     }
     rows
