@@ -22,6 +22,39 @@
 //!
 //! Beside them stand two crates: `decomp`, patches and messages, and [`plot`], pictures. They do not
 //! depend on this library.
+//!
+//! # Example
+//!
+//! The greatest pressure of an impact, without files:
+//!
+//! ```
+//! use decomp::Serial;
+//! use flyer_mpm::{input, simulation::Simulation};
+//!
+//! let text = r#"{
+//!     "title": "Copper on copper, 500 m/s",
+//!     "domain": {"lower": ["-0.3 mm"], "upper": ["0.3 mm"], "cell_size": "5 um"},
+//!     "time": {"end": "20 ns"},
+//!     "materials": {"copper": {"library": "copper"}},
+//!     "bodies": [
+//!         {"name": "flyer", "material": "copper", "velocity": ["500 m/s"],
+//!             "box": {"lower": ["-0.2 mm"], "upper": [0.0]}, "particles_per_cell": [2]},
+//!         {"name": "target", "material": "copper",
+//!             "box": {"lower": [0.0], "upper": ["0.2 mm"]}, "particles_per_cell": [2]}
+//!     ]
+//! }"#;
+//! let scene = input::parse(text.as_bytes(), "scene.json", &[])?;
+//! let mut simulation = Simulation::<1>::new(&scene, &Serial, 1)?;
+//! let end = scene.scene.time.end;
+//! while simulation.time() < end {
+//!     simulation.advance(end)?;
+//! }
+//! let (table, _) = simulation.gather().expect("a rank that runs alone is rank 0");
+//! let pressure = table.columns.iter().find(|column| column.name == "pressure").unwrap();
+//! let greatest = pressure.values.iter().copied().fold(0.0, f64::max);
+//! assert!((9.5e9..10e9).contains(&greatest), "{greatest}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod accuracy;
 pub mod balance;

@@ -104,6 +104,16 @@ pub struct Layout<const D: usize> {
 impl<const D: usize> Layout<D> {
     /// Cuts `domain` (a box of cells) into `parts` patches per direction, all on rank 0.
     /// `sides[axis]` holds the lower and the upper side.
+    ///
+    /// ```
+    /// use decomp::{IndexBox, Layout, SideKind::Open};
+    ///
+    /// let cells = IndexBox::new([0, 0], [8, 4]);
+    /// let layout = Layout::new(cells, [[Open; 2]; 2], [2, 2]);
+    /// assert_eq!(layout.patch_of([5, 1]), 1);
+    /// assert_eq!(layout.patch_of([5, 3]), 3);
+    /// assert_eq!(layout.wrap_cell([8, 0]), None);
+    /// ```
     pub fn new(domain: IndexBox<D>, sides: [[SideKind; 2]; D], parts: [usize; D]) -> Self {
         let cuts = std::array::from_fn(|a| {
             (0..=parts[a] as i64)

@@ -114,6 +114,17 @@ const FAN_PIECES: usize = 256;
 impl RiemannSolution {
     /// Solves the Riemann problem of the gases `left` and `right` of a diaphragm that bursts.
     ///
+    /// ```
+    /// use flyer_mpm::exact::riemann::{GasState, RiemannSolution};
+    ///
+    /// let left = GasState { rho: 1.0, u: 0.0, p: 1.0, gamma: 1.4 };
+    /// let right = GasState { rho: 0.125, u: 0.0, p: 0.1, gamma: 1.4 };
+    /// let sod = RiemannSolution::solve(left, right)?;
+    /// assert!((sod.p_star - 0.303130).abs() < 1e-6);
+    /// assert!((sod.u_star - 0.927453).abs() < 1e-6);
+    /// # Ok::<(), flyer_mpm::exact::ExactError>(())
+    /// ```
+    ///
     /// # Errors
     ///
     /// If a state is not that of a gas, or if the gases separate so fast that a vacuum opens.
