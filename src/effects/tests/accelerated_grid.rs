@@ -38,13 +38,3 @@ fn its_work_is_counted_in_the_frame_of_the_grid() {
     }
     assert_eq!(f.patch.boundary_work.len(), 2);
 }
-
-#[test]
-fn the_travel_of_the_grid_works_on_a_body_force() {
-    let mut f = piston(json!({"body_force": {"gravity": [3.0]}}));
-    f.act(Phase::Gathered, 0.1);
-    // the grid moves at 1 m/s in the middle of the step: 6 N x 0.1 m move to the body force, beside
-    // its own 6 N x 2 m/s x 0.1 s
-    close(&[f.patch.boundary_work[0].work], &[-1.6 - 0.6]);
-    close(&f.get("body_force_work"), &[1.2 + 0.6; 2]);
-}

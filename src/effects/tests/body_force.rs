@@ -50,3 +50,22 @@ fn a_force_that_depends_on_time_is_that_of_the_time_of_the_forces() {
     close(&force("midpoint", 0.2), &start);
     assert_ne!(force("leapfrog", 0.2), start);
 }
+
+#[test]
+fn the_travel_of_an_accelerated_grid_works_too() {
+    // a piston that is 4 t m/s fast, in the step from 0.2 to 0.3 s
+    let mut f = Fixture::<1>::new(json!({
+        "boundary": {"x_lower": {"velocity": [[0.0, 0.0], [1.0, 4.0]]}},
+        "bodies": [{"name": "body", "material": "fluid", "particles_per_cell": [1],
+            "box": {"lower": [0.0], "upper": [2.0]}}],
+        "body_force": {"gravity": [3.0]},
+    }));
+    f.time = 0.2;
+    f.act(Phase::ParticleForce, 0.1);
+    f.set_flow([(1.0, [0.0])], [(3.0, [0.0])]);
+    f.act(Phase::Gathered, 0.1);
+    // the grid moves at 1 m/s in the middle of the step: 6 N x 0.1 m move to the body force, beside
+    // its own 6 N x 2 m/s x 0.1 s
+    close(&[f.patch.boundary_work[0].work], &[-1.6 - 0.6]);
+    close(&f.get("body_force_work"), &[1.2 + 0.6; 2]);
+}
