@@ -13,8 +13,8 @@ use flyer_mpm::driver::output::origin::Maker;
 use flyer_mpm::effects::{ledger, ledger_lines, ledger_rest};
 use flyer_mpm::exact::{Accuracy, Chain, Impact, Plate, Release, Solution, WaveKind};
 use flyer_mpm::scene::{CheckedScene, Reference};
-use flyer_mpm::simulation::{RunError, Simulation};
-use flyer_mpm::solver::{Stepper, Steps};
+use flyer_mpm::simulation::{Compiled, RunError, Simulation};
+use flyer_mpm::solver::Stepper;
 use serde_json::json;
 
 use crate::{FAILED, Outcome, bad};
@@ -29,7 +29,7 @@ pub fn check(scene: &CheckedScene) -> Result<String, RunError> {
 
 fn check_in<const D: usize>(scene: &CheckedScene) -> Result<String, RunError>
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let simulation = Simulation::<D>::new(scene, &Serial, 1)?;
     let dt = simulation.time_step().min(scene.scene.time.end);

@@ -43,10 +43,10 @@ use crate::driver::recorder::{Mark, Recorder};
 use crate::effects::ledger;
 use crate::plot::PictureError;
 use crate::scene::{CheckedScene, SideProperties};
-use crate::simulation::ParticleTable;
 use crate::simulation::{BoundaryWork, Removed, RunError, Simulation, Totals};
+use crate::simulation::{Compiled, ParticleTable};
+use crate::solver::Stepper;
 use crate::solver::clock::{Activity, user_cpu_seconds};
-use crate::solver::{Stepper, Steps};
 
 /// Reason why a run has no result.
 #[derive(Debug, thiserror::Error)]
@@ -127,7 +127,7 @@ fn step_to_end<const D: usize>(
     schedule: &mut CheckpointSchedule,
 ) -> Result<(), RunFailure>
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let end = scene.scene.time.end;
     let first = comm.rank() == 0;
@@ -287,7 +287,7 @@ fn run_in<const D: usize>(
     beginning: Beginning,
 ) -> Result<Option<String>, RunFailure>
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     // coarse runs, from which the errors of this run are estimated
     let estimated = scene.estimated_body();

@@ -14,7 +14,6 @@ use crate::driver::probes::Probes;
 use crate::scene::CheckedScene;
 use crate::simulation::{BodyRow, ParticleTable};
 use crate::simulation::{Saved, Simulation};
-use crate::solver::{Stepper, Steps};
 
 /// Number of rows of the x-t diagram.
 const WAVE_ROWS: u64 = 120;
@@ -54,10 +53,7 @@ pub struct Mark {
 
 impl<'a> Recorder<'a> {
     /// Creates the recorder of a run at its start. Collective.
-    pub fn new<const D: usize>(scene: &'a CheckedScene, simulation: &Simulation<'_, D>) -> Self
-    where
-        Stepper<D>: Steps<D>,
-    {
+    pub fn new<const D: usize>(scene: &'a CheckedScene, simulation: &Simulation<'_, D>) -> Self {
         let needs_start = PlaneReference::needs_start(scene);
         Recorder {
             scene,
@@ -97,10 +93,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Records everything that is due at this time. Collective.
-    pub fn record<const D: usize>(&mut self, simulation: &Simulation<'_, D>, first: bool)
-    where
-        Stepper<D>: Steps<D>,
-    {
+    pub fn record<const D: usize>(&mut self, simulation: &Simulation<'_, D>, first: bool) {
         let (time, end) = (simulation.time(), self.scene.scene.time.end);
         if let Some(probes) = &mut self.probes {
             probes.sample(simulation);

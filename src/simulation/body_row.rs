@@ -1,7 +1,6 @@
 //! Surfaces and failed parts of the bodies of a run on a line, for the x-t diagram.
 
 use super::run::Simulation;
-use crate::solver::{Stepper, Steps};
 
 /// Surfaces and failed parts of all bodies at one time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -14,10 +13,7 @@ pub struct BodyRow {
     pub failed: Vec<[f64; 2]>,
 }
 
-impl<const D: usize> Simulation<'_, D>
-where
-    Stepper<D>: Steps<D>,
-{
+impl<const D: usize> Simulation<'_, D> {
     /// The bodies along x at rank 0; of the failed material every `stride`th particle by id is
     /// looked at. Other ranks get no failed parts. Collective.
     pub fn body_row(&self, stride: u64) -> BodyRow {

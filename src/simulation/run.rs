@@ -6,6 +6,7 @@ use std::time::Instant;
 use decomp::{Census, Comm, Layout, assign_patches, curve_order};
 
 use super::accounts::{CENSUS_EVERY, Counters, RemovedSums, SideBooks};
+use super::compiled::Compiled;
 use super::error::RunError;
 use super::exchange_plan::ExchangePlan;
 use super::expected_peaks::ExpectedPeaks;
@@ -21,7 +22,7 @@ use crate::solver::clock::{Activity, Clock, Event};
 use crate::solver::columns::Columns;
 use crate::solver::particles;
 use crate::solver::patch::Patch;
-use crate::solver::{Sleep, StencilRadius, Stepper, Steps, World};
+use crate::solver::{Sleep, StencilRadius, Stepper, World};
 
 /// A run in memory.
 pub struct Simulation<'a, const D: usize> {
@@ -97,7 +98,7 @@ fn longest_step<const D: usize>(scene: &CheckedScene, frame: &Frame<D>) -> f64 {
 
 impl<'a, const D: usize> Simulation<'a, D>
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     /// Creates the particles of `scene`, to be run by `threads` threads on each rank. Collective.
     ///
@@ -118,8 +119,29 @@ where
     /// # Errors
     ///
     /// As [`Simulation::new`], and if the scene cannot use a custom model.
-    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn with_models(
+        scene: &'a CheckedScene,
+        comm: &'a dyn Comm,
+        threads: usize,
+        outside: &dyn Fn(&str) -> Option<CustomModel>,
+    ) -> Result<Self, RunError> {
+        <Stepper<D> as Compiled<D>>::create(scene, comm, threads, outside)
+    }
+
+    /// Advances by one step. The last step before `until` [s] is shortened to end there exactly;
+    /// the next step has its usual length again. If a check of the monitor fails, the step is an
+    /// error, or is repeated with half the length if the scene asks for that. Collective.
+    ///
+    /// # Errors
+    ///
+    /// If a check of the state fails, if particles are lost, or if the run needs too many steps.
+    pub fn advance(&mut self, until: f64) -> Result<(), RunError> {
+        <Stepper<D> as Compiled<D>>::advance_run(self, until)
+    }
+}
+
+impl<'a, const D: usize> Simulation<'a, D> {
+    pub(super) fn create(
         scene: &'a CheckedScene,
         comm: &'a dyn Comm,
         threads: usize,
@@ -187,14 +209,7 @@ where
         Ok(simulation)
     }
 
-    /// Advances by one step. The last step before `until` [s] is shortened to end there exactly;
-    /// the next step has its usual length again. If a check of the monitor fails, the step is an
-    /// error, or is repeated with half the length if the scene asks for that. Collective.
-    ///
-    /// # Errors
-    ///
-    /// If a check of the state fails, if particles are lost, or if the run needs too many steps.
-    pub fn advance(&mut self, until: f64) -> Result<(), RunError> {
+    pub(super) fn advance_by_step(&mut self, until: f64) -> Result<(), RunError> {
         let left = until - self.time;
         let stable = self.dt;
         // a remainder below the rounding of the time is merged into this step

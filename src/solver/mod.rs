@@ -41,7 +41,7 @@ mod total_lagrangian;
 pub use exchange::{Nodal, Sleep, World};
 pub use reach::StencilRadius;
 pub use scheme::Scheme;
-pub use stepper::{Stepper, Steps};
+pub use stepper::Stepper;
 
 #[cfg(test)]
 pub(crate) mod tests;

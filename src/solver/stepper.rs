@@ -77,61 +77,39 @@ impl<const D: usize> Stepper<D> {
     }
 }
 
-/// Complete steps, compiled once in this crate for each dimension: they call functions that are
-/// generic over shape functions, widths and dimensions, which otherwise would be compiled again in
-/// every program that uses them.
-pub trait Steps<const D: usize> {
+impl<const D: usize> Stepper<D> {
     /// Completes the initial state: pressure, sound speed and, if the scheme needs it, the gradient
     /// of the initial velocity. Collective.
     ///
     /// # Errors
     ///
     /// If a particle has moved past the neighbours of its patch.
-    fn prime(&self, world: &mut World<'_, D>) -> Result<(), decomp::ParticleError>;
+    pub fn prime(&self, world: &mut World<'_, D>) -> Result<(), decomp::ParticleError> {
+        let jacobian = self.columns.jacobian;
+        let step = self.context([0.0, 0.0], 0.0, jacobian);
+        world.each("refresh", |patch| self.refresh(patch, &step));
+        if self.stepping == Stepping::Midpoint {
+            self.prime_gradient(world)?;
+            world.each("refresh", |patch| self.refresh(patch, &step));
+        }
+        Ok(())
+    }
 
     /// Advances all patches from `time` by `dt` [s]; `step` numbers the steps from 1. Collective.
     ///
     /// # Errors
     ///
     /// If a particle has moved past the neighbours of its patch.
-    fn advance(
+    pub fn advance(
         &self,
         world: &mut World<'_, D>,
         time: f64,
         dt: f64,
         step: u64,
-    ) -> Result<(), decomp::ParticleError>;
-}
-
-macro_rules! compile_steps {
-    ($($dimension:literal),*) => {$(
-        impl Steps<$dimension> for Stepper<$dimension> {
-            fn prime(&self, world: &mut World<'_, $dimension>) -> Result<(), decomp::ParticleError> {
-                let jacobian = self.columns.jacobian;
-                let step = self.context([0.0, 0.0], 0.0, jacobian);
-                world.each("refresh", |patch| self.refresh(patch, &step));
-                if self.stepping == Stepping::Midpoint {
-                    self.prime_gradient(world)?;
-                    world.each("refresh", |patch| self.refresh(patch, &step));
-                }
-                Ok(())
-            }
-
-            fn advance(
-                &self,
-                world: &mut World<'_, $dimension>,
-                time: f64,
-                dt: f64,
-                step: u64,
-            ) -> Result<(), decomp::ParticleError> {
-                match self.stepping {
-                    Stepping::Midpoint => {
-                        self.advance_midpoint(world, time, dt, self.relaxes(step))
-                    }
-                    Stepping::Leapfrog => self.advance_leapfrog(world, time, dt),
-                }
-            }
+    ) -> Result<(), decomp::ParticleError> {
+        match self.stepping {
+            Stepping::Midpoint => self.advance_midpoint(world, time, dt, self.relaxes(step)),
+            Stepping::Leapfrog => self.advance_leapfrog(world, time, dt),
         }
-    )*};
+    }
 }
-compile_steps!(1, 2);

@@ -17,7 +17,7 @@ fn main() {
     println!("cargo::rerun-if-changed=bounds.toml");
     let text = std::fs::read_to_string("bounds.toml").expect("bounds.toml is beside Cargo.toml");
     let groups: BTreeMap<String, Sections> =
-        toml::from_str(&text).unwrap_or_else(|error| panic!("bounds.toml: {error}"));
+        basic_toml::from_str(&text).unwrap_or_else(|error| panic!("bounds.toml: {error}"));
     let mut code = String::new();
     for (group, sections) in &groups {
         let _ = writeln!(code, "#[deny(dead_code)]\npub mod {group} {{");

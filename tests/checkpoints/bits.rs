@@ -4,8 +4,8 @@ use decomp::comm::local::run_ranks;
 use decomp::{Comm, Serial};
 use flyer_mpm::input;
 use flyer_mpm::scene::CheckedScene;
-use flyer_mpm::simulation::{Saved, Simulation};
-use flyer_mpm::solver::{Stepper, Steps};
+use flyer_mpm::simulation::{Compiled, Saved, Simulation};
+use flyer_mpm::solver::Stepper;
 use serde_json::{Value, json};
 
 use crate::scenes::{shipped, small, small_leapfrog, with};
@@ -20,7 +20,7 @@ fn checked(scene: &Value) -> CheckedScene {
 /// All that a run tells of its state.
 fn end_of<const D: usize>(run: &Simulation<'_, D>) -> String
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let (totals, left, given, force) = (run.totals(), run.ways(), run.given(), run.contact_force());
     let digest = run.gather().map(|(_, digest)| digest).unwrap_or_default();
@@ -31,7 +31,7 @@ where
 /// The end of a run that was never broken, and what it has saved after some steps.
 fn whole<const D: usize>(scene: &CheckedScene, cuts: &[u64]) -> (String, Vec<Saved>)
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let mut run = Simulation::<D>::new(scene, &Serial, 1).unwrap();
     let mut saved = Vec::new();
@@ -52,7 +52,7 @@ fn gone_on<const D: usize>(
     threads: usize,
 ) -> String
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let ends = run_ranks(ranks, |comm| {
         let mut run = Simulation::<D>::new(scene, comm, threads).unwrap();
@@ -71,7 +71,7 @@ where
 /// Holds runs of `scene` that were broken after `cuts` steps against one that was not.
 fn same_bits<const D: usize>(scene: &Value, cuts: &[u64], patches: &[&[usize]])
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let cut = |patches: &[usize]| checked(&with(scene, &json!({"domain": {"patches": patches}})));
     let (end, saved) = whole::<D>(&cut(patches[0]), cuts);

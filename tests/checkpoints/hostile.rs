@@ -10,8 +10,8 @@ use decomp::comm::local::run_ranks;
 use flyer_mpm::driver::checkpoint::file;
 use flyer_mpm::input;
 use flyer_mpm::scene::CheckedScene;
-use flyer_mpm::simulation::{RunError, Simulation};
-use flyer_mpm::solver::{Stepper, Steps};
+use flyer_mpm::simulation::{Compiled, RunError, Simulation};
+use flyer_mpm::solver::Stepper;
 
 use crate::damage::random;
 
@@ -203,11 +203,11 @@ fn too_much_is_told_before_it_is_taken() {
 /// Begins a run of a changed scene on ranks of this process; what ends it.
 fn begun<const D: usize>(scene: &CheckedScene, ranks: usize) -> Result<(), String>
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     fn of_rank<const D: usize>(scene: &CheckedScene, comm: &dyn Comm) -> Result<(), RunError>
     where
-        Stepper<D>: Steps<D>,
+        Stepper<D>: Compiled<D>,
     {
         let mut simulation = Simulation::<D>::new(scene, comm, 1)?;
         for _ in 0..3 {

@@ -5,8 +5,8 @@ use decomp::Comm;
 use decomp::comm::local::run_ranks;
 use flyer_mpm::effects::columns;
 use flyer_mpm::scene::CheckedScene;
-use flyer_mpm::simulation::Simulation;
-use flyer_mpm::solver::{Stepper, Steps};
+use flyer_mpm::simulation::{Compiled, Simulation};
+use flyer_mpm::solver::Stepper;
 use serde_json::{Value, json};
 
 use crate::tools::{Outcome, at_most, checked, midpoint, run, shipped};
@@ -165,7 +165,7 @@ fn what_is_not_reached_costs_nothing_and_changes_no_bit() {
 
 fn end_of<const D: usize>(scene: &CheckedScene, comm: &dyn Comm) -> Option<String>
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let mut simulation = Simulation::<D>::new(scene, comm, 1).unwrap();
     while simulation.time() < scene.scene.time.end {
@@ -177,7 +177,7 @@ where
 
 fn on<const D: usize>(scene: &Value, patches: &Value, ranks: usize) -> String
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let mut scene = scene.clone();
     scene["domain"]["patches"] = patches.clone();
@@ -189,7 +189,7 @@ where
 #[track_caller]
 fn same<const D: usize>(scene: &Value, layouts: &[(Value, usize)])
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let one = json!(vec![1; D]);
     let whole = on::<D>(scene, &one, 1);

@@ -3,8 +3,8 @@
 use decomp::Comm;
 use decomp::comm::local::run_ranks;
 use flyer_mpm::scene::CheckedScene;
-use flyer_mpm::simulation::Simulation;
-use flyer_mpm::solver::{Stepper, Steps};
+use flyer_mpm::simulation::{Compiled, Simulation};
+use flyer_mpm::solver::Stepper;
 use serde_json::{Value, json};
 
 use crate::metal::metal;
@@ -12,7 +12,7 @@ use crate::tools::{checked, midpoint, shipped};
 
 fn digest<const D: usize>(scene: &CheckedScene, comm: &dyn Comm) -> Option<String>
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let mut simulation = Simulation::<D>::new(scene, comm, 1).unwrap();
     while simulation.time() < scene.scene.time.end {
@@ -23,7 +23,7 @@ where
 
 fn on<const D: usize>(scene: &Value, patches: Value, ranks: usize) -> String
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let mut scene = scene.clone();
     scene["domain"]["patches"] = patches;

@@ -6,15 +6,15 @@ use decomp::Serial;
 use flyer_mpm::effects::{EffectUse, ledger};
 use flyer_mpm::input;
 use flyer_mpm::scene;
-use flyer_mpm::simulation::Simulation;
-use flyer_mpm::solver::{Stepper, Steps};
+use flyer_mpm::simulation::{Compiled, Simulation};
+use flyer_mpm::solver::Stepper;
 use serde_json::{Value, json};
 
 /// The ledger of a scene after its first step, the one that is timed.
 fn measured(scene: &Value) -> Result<Vec<EffectUse>, String> {
     fn of<const D: usize>(scene: &scene::CheckedScene) -> Vec<EffectUse>
     where
-        Stepper<D>: Steps<D>,
+        Stepper<D>: Compiled<D>,
     {
         let mut simulation = Simulation::<D>::new(scene, &Serial, 1).unwrap();
         simulation.advance(scene.scene.time.end).unwrap();

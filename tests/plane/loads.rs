@@ -2,7 +2,8 @@
 
 use flyer_mpm::input;
 use flyer_mpm::scene::{CheckedScene, Course, Side};
-use flyer_mpm::solver::{Stepper, Steps};
+use flyer_mpm::simulation::Compiled;
+use flyer_mpm::solver::Stepper;
 use serde_json::{Value, json};
 
 use crate::tools::{at_most, checked, default_method, metals, run, same_bits};
@@ -77,7 +78,7 @@ fn a_ramp_gives_the_impulse_under_it() {
 fn a_body_under_its_own_pressure_is_at_rest() {
     fn check<const D: usize>(method: Value)
     where
-        Stepper<D>: Steps<D>,
+        Stepper<D>: Compiled<D>,
     {
         let what = method.to_string();
         let mut scene = slab(json!(2e9), 5e-8);

@@ -2,7 +2,8 @@
 
 use flyer_mpm::input;
 use flyer_mpm::scene::{Course, Side};
-use flyer_mpm::solver::{Stepper, Steps};
+use flyer_mpm::simulation::Compiled;
+use flyer_mpm::solver::Stepper;
 use serde_json::{Value, json};
 
 use crate::tools::{Outcome, at_most, checked, default_method, metals, run, same_bits};
@@ -172,7 +173,7 @@ fn one_velocity_is_a_course_that_does_not_change() {
 
 fn order<const D: usize>(scene: &Value, coarse: f64) -> f64
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let error = |cell: f64| {
         let mut scene = scene.clone();

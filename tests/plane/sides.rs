@@ -1,7 +1,8 @@
 //! Sides that waves pass, and walls that hold what slides along them.
 
 use flyer_mpm::input;
-use flyer_mpm::solver::{Stepper, Steps};
+use flyer_mpm::simulation::Compiled;
+use flyer_mpm::solver::Stepper;
 use serde_json::{Value, json};
 
 use crate::tools::{Outcome, at_most, default_method, metals, run};
@@ -151,7 +152,7 @@ fn shear_waves_leave_too() {
 fn a_uniform_flow_stays_as_it_is() {
     fn check<const D: usize>(method: Value)
     where
-        Stepper<D>: Steps<D>,
+        Stepper<D>: Compiled<D>,
     {
         let both = |x: f64, y: f64| if D == 2 { json!([x, y]) } else { json!([x]) };
         let what = method.to_string();

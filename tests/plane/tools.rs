@@ -4,9 +4,9 @@ use decomp::comm::local::run_ranks;
 use decomp::{Comm, Serial};
 use flyer_mpm::input;
 use flyer_mpm::scene::CheckedScene;
-use flyer_mpm::simulation::ParticleTable;
 use flyer_mpm::simulation::{BoundaryWork, Removed, Simulation, Totals};
-use flyer_mpm::solver::{Stepper, Steps};
+use flyer_mpm::simulation::{Compiled, ParticleTable};
+use flyer_mpm::solver::Stepper;
 use serde_json::{Value, json};
 
 /// Makes a checked scene.
@@ -69,7 +69,7 @@ fn run_rank<const D: usize>(
     threads: usize,
 ) -> Option<Outcome<D>>
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let mut simulation = Simulation::<D>::new(scene, comm, threads).unwrap();
     let start = simulation.totals();
@@ -85,7 +85,7 @@ where
 /// Runs a scene on one rank.
 pub fn run<const D: usize>(scene: &Value) -> Outcome<D>
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     run_rank(&checked(scene), &Serial, 1).expect("rank 0")
 }

@@ -7,8 +7,8 @@ use decomp::Serial;
 use flyer_mpm::input;
 use flyer_mpm::input::parse;
 use flyer_mpm::scene::CheckedScene;
-use flyer_mpm::simulation::Simulation;
-use flyer_mpm::solver::{Stepper, Steps};
+use flyer_mpm::simulation::{Compiled, Simulation};
+use flyer_mpm::solver::Stepper;
 use serde_json::{Value, json};
 
 use super::{inputs, refused};
@@ -68,7 +68,7 @@ fn numbers(value: &Value, path: &str, found: &mut Vec<String>) {
 /// Some steps; what ends them, or what is not finite.
 fn steps<const D: usize>(scene: &CheckedScene) -> Result<(), String>
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let one_line = |error: flyer_mpm::simulation::RunError| {
         let text = error.to_string();

@@ -1,6 +1,7 @@
 //! Body forces, and what is booked of them.
 
-use flyer_mpm::solver::{Stepper, Steps};
+use flyer_mpm::simulation::Compiled;
+use flyer_mpm::solver::Stepper;
 use serde_json::{Value, json};
 
 use crate::tools::{at_most, midpoint, run, shipped};
@@ -33,7 +34,7 @@ fn falling(plane: bool, method: Value) -> Value {
 
 fn check<const D: usize>(method: Value, bound: f64)
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let what = method.to_string();
     let outcome = run::<D>(&falling(D == 2, method));

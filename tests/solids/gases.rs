@@ -7,7 +7,7 @@ use crate::tools::{Outcome, at_most, run, shipped};
 /// Noh's problem of `scene` with `cells` a metre.
 fn noh<const D: usize>(scene: &str, cells: f64) -> Outcome<D>
 where
-    flyer_mpm::solver::Stepper<D>: flyer_mpm::solver::Steps<D>,
+    flyer_mpm::solver::Stepper<D>: flyer_mpm::simulation::Compiled<D>,
 {
     let mut value = shipped(scene);
     value["domain"]["cell_size"] = json!(1.0 / cells);

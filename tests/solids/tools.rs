@@ -4,9 +4,9 @@ use decomp::Serial;
 use flyer_mpm::accuracy::reference::PlaneReference;
 use flyer_mpm::input;
 use flyer_mpm::scene::CheckedScene;
-use flyer_mpm::simulation::ParticleTable;
+use flyer_mpm::simulation::{Compiled, ParticleTable};
 use flyer_mpm::simulation::{RemovedByKind, Simulation, Totals};
-use flyer_mpm::solver::{Stepper, Steps};
+use flyer_mpm::solver::Stepper;
 use serde_json::{Value, json};
 
 /// A shipped scene, to be edited.
@@ -72,7 +72,7 @@ impl<const D: usize> Outcome<D> {
 #[track_caller]
 pub fn run<const D: usize>(value: &Value) -> Outcome<D>
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let scene = checked(value);
     assert_eq!(scene.dimension, D);

@@ -9,7 +9,7 @@ use crate::scene::{FilterHalo, Stepping};
 use crate::solver::clock::Clock;
 use crate::solver::effect::{Account, Phase, StepContext};
 use crate::solver::patch::Patch;
-use crate::solver::{Nodal, Stepper, Steps, World, particles};
+use crate::solver::{Nodal, Stepper, World, particles};
 
 /// A stepper and one patch.
 pub(crate) struct Fixture<const D: usize> {
@@ -63,10 +63,7 @@ fn merge(into: &mut Value, changes: Value) {
     }
 }
 
-impl<const D: usize> Fixture<D>
-where
-    Stepper<D>: Steps<D>,
-{
+impl<const D: usize> Fixture<D> {
     /// The plain scene with `changes`, with pressure, sound speed and gradients of its start.
     #[track_caller]
     pub(crate) fn new(changes: Value) -> Self {

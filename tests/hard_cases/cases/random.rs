@@ -3,9 +3,9 @@
 use decomp::comm::local::run_ranks;
 use flyer_mpm::input;
 use flyer_mpm::scene::{CheckedScene, ShapeKind};
-use flyer_mpm::simulation::Simulation;
 use flyer_mpm::simulation::monitor::keeps_energy;
-use flyer_mpm::solver::{Stepper, Steps};
+use flyer_mpm::simulation::{Compiled, Simulation};
+use flyer_mpm::solver::Stepper;
 use serde_json::Value;
 
 /// Growth of energy that no run may end with [-]: of a scheme that keeps it, of one that does not,
@@ -42,7 +42,7 @@ pub fn verdict(value: &Value, ranks: usize) -> Verdict {
 
 fn end_of<const D: usize>(scene: &CheckedScene, ranks: usize) -> Verdict
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let ends = run_ranks(ranks, |comm| {
         let mut simulation = match Simulation::<D>::new(scene, comm, 1) {

@@ -5,9 +5,9 @@ use flyer_mpm::accuracy::reference::ReferenceSolution;
 use flyer_mpm::exact::Errors;
 use flyer_mpm::input;
 use flyer_mpm::scene::CheckedScene;
-use flyer_mpm::simulation::ParticleTable;
+use flyer_mpm::simulation::{Compiled, ParticleTable};
 use flyer_mpm::simulation::{Simulation, Totals};
-use flyer_mpm::solver::{Stepper, Steps};
+use flyer_mpm::solver::Stepper;
 use serde_json::{Value, json};
 
 use super::scenes::{shipped, with};
@@ -50,7 +50,7 @@ pub fn checked(value: &Value) -> Result<CheckedScene, String> {
 /// Runs a scene on this rank of `comm`. Collective.
 pub fn run_on<const D: usize>(value: &Value, comm: &dyn Comm) -> Result<Ended<D>, String>
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let scene = checked(value)?;
     let mut simulation =
