@@ -68,7 +68,7 @@ fn what_was_not_fitted_is_named_and_makes_a_guess() {
         assert_eq!(errors_found["basis"], "guess", "{word}: {errors_found}");
         let outside = errors_found["outside"].to_string();
         assert!(outside.contains(word), "no {word} in {outside}");
-        assert!(text.contains("(guess)") && text.contains(word), "{text}");
+        assert!(text.contains("are guesses") && text.contains(word), "{text}");
         // the later profile of the last case is within the fitted range
         let late = if path == "/title" { "calibrated" } else { "guess" };
         let late = if path == "/error_estimate/arrivals" { "calibrated" } else { late };
