@@ -1,4 +1,4 @@
-//! What the document says of viscosity coefficients in words, held against the study's numbers.
+//! The statements of Burghardt (2010) on viscosity coefficients, compared with the study's numbers.
 //!
 //! Argument: the folder of the study `inputs/studies/viscosity.json`. Prints a table in Markdown
 //! and writes it there as `claims.md`.
@@ -8,7 +8,7 @@ use std::process::ExitCode;
 
 use flyer_mpm::driver::output::csv::{CsvTable, read_csv};
 
-/// Coefficients from the program's default down to none, on the document's straight line.
+/// Coefficients from the program's default down to none, on the straight line through those of Burghardt (2010).
 const PATH: [(f64, f64); 5] = [(0.2, 2.0), (0.15, 1.5), (0.1, 1.0), (0.06, 0.6), (0.03, 0.3)];
 
 /// The study's rows.
@@ -93,8 +93,8 @@ fn claims(sweep: &Sweep) -> Vec<Claim> {
             judged(chaos[0] > 0.1 && chaos[1] > 0.5),
         ),
         (
-            "decreasing the coefficients brings the amplitude towards the exact one",
-            format!("plateau's error from .2/2 down to .03/.3: {}", percent(&plateau)),
+            "with smaller coefficients the amplitude is closer to the exact one",
+            format!("error of the plateau from .2/2 down to .03/.3: {}", percent(&plateau)),
             judged(falling(&plateau)),
         ),
         (
@@ -104,7 +104,7 @@ fn claims(sweep: &Sweep) -> Vec<Claim> {
         ),
         (
             "the steps become visible with reduced viscosity",
-            format!("second plateau's error from .2/2 down to .03/.3: {}", percent(&second)),
+            format!("error of the second plateau from .2/2 down to .03/.3: {}", percent(&second)),
             judged(second[0].abs() > 2.0 * second[4].abs()),
         ),
         (
@@ -119,7 +119,7 @@ fn claims(sweep: &Sweep) -> Vec<Claim> {
         (
             "the first rarefaction begins to reach the shock and to attenuate it",
             "in the true solution its head catches the shock at 1.743 us, x = 11.0 mm".into(),
-            "does not hold: what is seen within 1 us is numerical",
+            "does not hold: attenuation within 1 us is numerical",
         ),
     ]
 }
@@ -131,7 +131,8 @@ fn run(folder: &Path) -> Result<String, String> {
     let linear = column("artificial_viscosity.linear")?;
     let quadratic = column("artificial_viscosity.quadratic")?;
     let sweep = Sweep { linear, quadratic, table };
-    let mut text = String::from("| the document | measured at 1 us | verdict |\n|---|---|---|\n");
+    let mut text =
+        String::from("| Burghardt (2010) | measured at 1 us | verdict |\n|---|---|---|\n");
     for (claim, measured, verdict) in claims(&sweep) {
         text += &format!("| {claim} | {measured} | {verdict} |\n");
     }

@@ -21,10 +21,10 @@ count() {
         sets+=(--set "$set")
     done
     valgrind --tool=callgrind --callgrind-out-file=/dev/null "$program" "inputs/$scene.json" \
-        --quiet --output "$work/$scene" "${sets[@]}" 2>"$work/told" >/dev/null ||
-        { cat "$work/told" >&2; exit 1; }
+        --quiet --output "$work/$scene" "${sets[@]}" 2>"$work/log" >/dev/null ||
+        { cat "$work/log" >&2; exit 1; }
     local instructions
-    instructions=$(sed -n 's/.*Collected : \([0-9]*\).*/\1/p' "$work/told")
+    instructions=$(sed -n 's/.*Collected : \([0-9]*\).*/\1/p' "$work/log")
     jq -r --arg i "$instructions" \
         '[$i, .steps, .particles, ([.effects[].bytes_per_particle] | add)] | @tsv' \
         "$work/$scene/summary.json"

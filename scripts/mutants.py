@@ -88,18 +88,18 @@ def write(tree):
 
 
 def binaries(messages):
-    """Test programs that cargo tells of: name, path, folder to run in."""
+    """Test programs that cargo names: name, path, folder to run in."""
     found = []
     with open(messages, encoding="utf-8") as file:
         for line in file:
-            told = json.loads(line) if line.startswith("{") else {}
-            if told.get("executable") and told.get("profile", {}).get("test"):
-                folder = os.path.dirname(told["manifest_path"])
-                crate, target = os.path.basename(folder), told["target"]["name"]
+            message = json.loads(line) if line.startswith("{") else {}
+            if message.get("executable") and message.get("profile", {}).get("test"):
+                folder = os.path.dirname(message["manifest_path"])
+                crate, target = os.path.basename(folder), message["target"]["name"]
                 kind = "unit tests" if target in ("decomp", "flyer_mpm") else target
                 name = f"decomp {kind}" if crate == "decomp" else kind
                 if target != "flyer-mpm":
-                    found.append({"name": name, "path": told["executable"], "folder": folder})
+                    found.append({"name": name, "path": message["executable"], "folder": folder})
     return found
 
 
@@ -153,7 +153,7 @@ def end(process):
 
 
 def reached(log):
-    """The mutants that a log tells of; the log is taken away."""
+    """The mutants that a log names; the log is removed."""
     if not os.path.exists(log):
         return []
     with open(log, encoding="utf-8") as file:
@@ -230,11 +230,11 @@ def table(folder):
     lines = [
         "# Mutants",
         "",
-        "Faults put into the sources by hand, and the test that finds each; written by",
-        "`scripts/mutants.sh` from `tests/data/mutants.json`. The tests of one program are run up to",
-        "the first that fails, programs from fast to slow, so others may find a fault too.",
+        "Faults that were put into the sources by hand, and the test that finds each. `scripts/mutants.sh` writes this page from",
+        "`tests/data/mutants.json`. Test programs run from fast to slow, each up to its first failure, so that other tests may",
+        "find a fault too.",
         "",
-        f"{len(mutants())} mutants, {caught} caught; those that survive are told why.",
+        f"{len(mutants())} mutants, {caught} caught; for those that survive, the reason is given.",
     ]
     for group, members in groups.items():
         lines += ["", f"## {group}", "", "| file | mutant | caught by |", "|---|---|---|"]

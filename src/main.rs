@@ -18,6 +18,7 @@ use decomp::{Comm, Serial};
 use flyer_mpm::driver::checkpoint::fit::CHANGEABLE;
 use flyer_mpm::driver::checkpoint::{Checkpoint, folder};
 use flyer_mpm::driver::default_folder::default_folder;
+use flyer_mpm::driver::output::OutputError;
 use flyer_mpm::driver::output::compare::compare;
 use flyer_mpm::driver::output::folder::check_writable;
 use flyer_mpm::driver::output::lock::Lock;
@@ -209,12 +210,14 @@ fn begin(args: &RunArgs, reading: &AtomicBool) -> Outcome<Begun> {
         checked.check_memory(input::available_memory()).map_err(bad)?;
     }
     let maker = Maker::with(origin, &checked);
-    let output = match args.output.clone().or(restarted) {
-        Some(output) => output,
-        None => results_folder(args.scene.as_deref(), &maker),
-    };
     reading.store(false, Ordering::Relaxed);
-    let lock = Lock::take(&output).map_err(bad)?;
+    let (output, lock) = match args.output.clone().or(restarted) {
+        Some(output) => {
+            let lock = Lock::take_for(&output, &maker.origin).map_err(bad)?;
+            (output, lock)
+        }
+        None => results_folder(args.scene.as_deref(), &maker).map_err(bad)?,
+    };
     check_writable(&output, args.keep, &maker).map_err(bad)?;
     folder::check_owner(&output, &maker).map_err(bad)?;
     if let Some(file) = &args.trace {
@@ -224,15 +227,15 @@ fn begin(args: &RunArgs, reading: &AtomicBool) -> Outcome<Begun> {
     Ok(Begun { bytes, checked, beginning, output, lock })
 }
 
-/// The folder of the results of a scene without `--output`; prints why it has a number.
-fn results_folder(scene: Option<&Path>, maker: &Maker) -> PathBuf {
-    let found = default_folder(scene.unwrap_or(Path::new("")), maker);
-    if let Some((avoided, theirs)) = found.avoided {
+/// The folder of the results of a scene without `--output`, locked; prints why it has a number.
+fn results_folder(scene: Option<&Path>, maker: &Maker) -> Result<(PathBuf, Lock), OutputError> {
+    let found = default_folder(scene.unwrap_or(Path::new("")), maker)?;
+    if let Some((avoided, reason)) = found.avoided {
         // a quiet run too: a script would read the results of the other scene
         let [path, avoided] = [&found.path, &avoided].map(|path| path.display());
-        eprintln!("results go to {path}, because {avoided} holds {theirs}");
+        eprintln!("results go to {path} instead of {avoided}, because {reason}");
     }
-    found.path
+    Ok((found.path, found.lock))
 }
 
 /// Prints the checkpoint from which a run restarts.
@@ -245,7 +248,7 @@ fn tell_restart(args: &RunArgs, checkpoint: &Checkpoint, file: &str) {
     }
     if !args.quiet {
         let saved = &checkpoint.saved;
-        eprintln!("goes on from {file}: time {:.6e} s, step {}", saved.time, saved.step);
+        eprintln!("continues from {file}: time {:.6e} s, step {}", saved.time, saved.step);
     }
 }
 
@@ -369,8 +372,7 @@ fn announce(comm: &dyn Comm, scene: &CheckedScene, threads: usize) {
     // without spaces, so that a line does not end within it
     let patches = patches.iter().map(usize::to_string).collect::<Vec<_>>().join(",");
     let size = format!(
-        "{}: {} particles, {} cells, patches [{patches}]{chosen}, ranks {}, threads {threads}",
-        scene.scene.title,
+        "{} particles, {} cells, patches [{patches}]{chosen}, ranks {}, threads {threads}",
         scene.particles,
         scene.cell_count(),
         comm.size(),

@@ -58,7 +58,7 @@ enum Taker {
 /// Exchange of ghosts and migrating particles between patches.
 ///
 /// One exchange does three things: it hands over own particles whose cell now belongs to another
-/// patch, copies particles to every patch within their reach, and tells patches near active cells
+/// patch, copies particles to every patch within their reach, and informs patches near active cells
 /// that they are stirred. Copies beyond a mirror or a joined side are images: they carry the cell
 /// of the image, and their columns change as declared.
 #[derive(Clone, Debug)]

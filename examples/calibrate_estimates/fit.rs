@@ -3,7 +3,7 @@
 use flyer_mpm::accuracy::estimate::error_model::{LEAST, Law};
 use nalgebra::{DMatrix, DVector};
 
-use crate::estimates::Told;
+use crate::estimates::CheckedEstimate;
 
 /// Errors below this are rounding \[in the evidence's unit\].
 const FLOOR: f64 = 1e-8;
@@ -11,9 +11,14 @@ const FLOOR: f64 = 1e-8;
 const ROUNDS: usize = 200;
 /// The law of this evidence, with intervals that hold `share` of the cases, times a margin;
 /// none where too few have it.
-pub fn law(told: &[Told], evidence: &[&str], share: f64, margin: f64) -> Option<Law> {
-    let usable: Vec<&Told> =
-        told.iter().filter(|t| evidence.iter().all(|e| t.evidence.contains_key(*e))).collect();
+pub fn law(
+    estimates: &[CheckedEstimate],
+    evidence: &[&str],
+    share: f64,
+    margin: f64,
+) -> Option<Law> {
+    let usable: Vec<&CheckedEstimate> =
+        estimates.iter().filter(|t| evidence.iter().all(|e| t.evidence.contains_key(*e))).collect();
     if usable.len() < 12 * (evidence.len() + 1) {
         return None;
     }
@@ -26,19 +31,19 @@ fn with_factor(weights: Vec<f64>, evidence: &[&str], factor: f64, cases: usize) 
 }
 
 /// True error in the evidence's unit.
-fn size(told: &Told) -> f64 {
-    (told.error / told.unit).max(FLOOR)
+fn size(one: &CheckedEstimate) -> f64 {
+    (one.error / one.unit).max(FLOOR)
 }
 
 /// Weights of the quantile `share`, by least squares reweighted and damped.
-fn weights(told: &[&Told], evidence: &[&str], share: f64) -> Vec<f64> {
-    let rows = told.len();
+fn weights(estimates: &[&CheckedEstimate], evidence: &[&str], share: f64) -> Vec<f64> {
+    let rows = estimates.len();
     let value = |row: usize, column: usize| match column {
         0 => 1.0,
-        k => told[row].evidence[evidence[k - 1]].max(LEAST).ln(),
+        k => estimates[row].evidence[evidence[k - 1]].max(LEAST).ln(),
     };
     let a = DMatrix::from_fn(rows, evidence.len() + 1, value);
-    let b = DVector::from_fn(rows, |row, _| size(told[row]).ln());
+    let b = DVector::from_fn(rows, |row, _| size(estimates[row]).ln());
     let mut x: DVector<f64> = DVector::zeros(evidence.len() + 1);
     for round in 0..ROUNDS {
         let rest = &b - &a * &x;

@@ -1,8 +1,8 @@
-//! Fits the laws by which runs tell their own errors, and holds them against other impacts.
+//! Fits the error models of runs, and compares them with other impacts.
 //!
 //! `scripts/calibrate_estimates.sh [CASES [THREADS]]`: runs random impacts of some materials, fits,
 //! writes `src/accuracy/estimate/laws.json`, runs impacts of other materials, draws
-//! `docs/error_estimate.png` and prints how often the intervals held the truth.
+//! `docs/error_estimate.png` and prints how often the intervals contained the true error.
 
 #[path = "../common/estimates.rs"]
 mod estimates;
@@ -13,14 +13,14 @@ mod random_impacts;
 
 use std::path::Path;
 
-use estimates::{QUANTITIES, Told, gather, judge};
+use estimates::{CheckedEstimate, QUANTITIES, gather, judge};
 use flyer_mpm::accuracy::estimate::Laws;
 use flyer_mpm::accuracy::estimate::error_model::QuantityLaws;
 use flyer_mpm::accuracy::plan::data::{SchemeAccuracy, Size};
 use flyer_mpm::accuracy::plan::{self, Data};
 use random_impacts::{FITTED, HELD_OUT};
 
-/// Seeds of the impacts that laws are fitted on, and of those that they are held against.
+/// Seeds of the impacts to which the error models are fitted, and of those with which they are compared.
 const SEEDS: [u64; 2] = [20_260_101, 20_260_202];
 
 /// The shares of the fitted cases that the intervals are to hold, before their margin.
@@ -41,8 +41,8 @@ const EVIDENCE: [&[&[&str]]; 3] = [
 ];
 
 /// What the planner knows of the schemes, by the same runs.
-fn write_data(told: &[Vec<Told>; 3], root: &Path) {
-    let sizes = |all: &[Told], scheme: &str| {
+fn write_data(estimates: &[Vec<CheckedEstimate>; 3], root: &Path) {
+    let sizes = |all: &[CheckedEstimate], scheme: &str| {
         let of = all.iter().filter(|t| t.name.split_once(" m/s, ").is_some_and(|n| n.1 == scheme));
         let mut of: Vec<f64> = of.map(|t| t.in_cells).filter(|v| v.is_finite()).collect();
         of.sort_by(f64::total_cmp);
@@ -57,7 +57,7 @@ fn write_data(told: &[Vec<Told>; 3], root: &Path) {
         SEEDS[0]
     );
     for scheme in plan::schemes() {
-        let [plateau, arrival, e1] = [0, 1, 2].map(|k| sizes(&told[k], &scheme.name));
+        let [plateau, arrival, e1] = [0, 1, 2].map(|k| sizes(&estimates[k], &scheme.name));
         if let (Some((plateau, _)), Some((arrival_cells, _)), Some((e1_cells, runs))) =
             (plateau, arrival, e1)
         {
@@ -103,13 +103,17 @@ fn main() {
         .expect("the laws can be written");
     write_data(&fitted, root);
     let held_out = gather(SEEDS[1], &HELD_OUT, count.min(280), threads);
-    let by_law = |all: &[Told], quantity: &QuantityLaws| -> Vec<Told> {
-        let told = all.iter().cloned();
-        told.map(|t| Told { half_width: quantity.half_width(&t.evidence).map(|w| w * t.unit), ..t })
+    let by_law = |all: &[CheckedEstimate], quantity: &QuantityLaws| -> Vec<CheckedEstimate> {
+        let estimates = all.iter().cloned();
+        estimates
+            .map(|t| CheckedEstimate {
+                half_width: quantity.half_width(&t.evidence).map(|w| w * t.unit),
+                ..t
+            })
             .collect()
     };
     let of = [&laws.plateau_pressure, &laws.arrival_time, &laws.l1];
-    let judged: Vec<[Vec<Told>; 2]> =
+    let judged: Vec<[Vec<CheckedEstimate>; 2]> =
         (0..3).map(|k| [by_law(&fitted[k], of[k]), by_law(&held_out[k], of[k])]).collect();
     for (name, [own, others]) in QUANTITIES.iter().zip(&judged) {
         for (what, all) in [("fitted", own), ("held out", others)] {
@@ -117,11 +121,11 @@ fn main() {
             let held = 100.0 * held;
             println!("{name}, {what}: {cases} cases, {held:.1} % held, median ratio {median:.2}");
         }
-        for told in others.iter().filter(|t| t.half_width.is_some_and(|w| t.error > w)) {
-            let ratio = told.error / told.half_width.unwrap_or(f64::NAN);
-            println!("  not held: {}, {ratio:.2} times the half-width", told.name);
+        for one in others.iter().filter(|t| t.half_width.is_some_and(|w| t.error > w)) {
+            let ratio = one.error / one.half_width.unwrap_or(f64::NAN);
+            println!("  not held: {}, {ratio:.2} times the half-width", one.name);
         }
     }
-    let others: Vec<Vec<Told>> = judged.into_iter().map(|[_, others]| others).collect();
+    let others: Vec<Vec<CheckedEstimate>> = judged.into_iter().map(|[_, others]| others).collect();
     picture::draw(&others, &root.join("docs/error_estimate")).expect("the picture can be drawn");
 }

@@ -6,22 +6,23 @@ use flyer_mpm::plot::{
     Axis, Color, Figure, Panel, PictureError, Points, Series, Stroke, Style, draw as draw_figure,
 };
 
-use crate::estimates::{QUANTITIES, Told, judge};
+use crate::estimates::{CheckedEstimate, QUANTITIES, judge};
 
 /// Draws a panel a quantity; cases whose interval does not hold the truth are red.
-pub fn draw(all: &[Vec<Told>], stem: &Path) -> Result<(), PictureError> {
+pub fn draw(all: &[Vec<CheckedEstimate>], stem: &Path) -> Result<(), PictureError> {
     let x = Axis::log("True error: fraction of the plateau, of the time through a cell, of L1", "");
-    let mut figure = Figure::new("What runs tell of their errors, on impacts not fitted on", x);
-    for (name, told) in QUANTITIES.iter().zip(all) {
+    let mut figure =
+        Figure::new("Estimated errors of runs, on impacts to which no law was fitted", x);
+    for (name, estimates) in QUANTITIES.iter().zip(all) {
         let points = |held: bool| {
-            let of = told.iter().filter_map(|t| {
+            let of = estimates.iter().filter_map(|t| {
                 let (error, width) = (t.error / t.unit, t.half_width? / t.unit);
                 ((error <= width) == held && error > 0.0).then_some((error, width))
             });
             let (x, y): (Vec<f64>, Vec<f64>) = of.unzip();
             Points::new(x, y)
         };
-        let (cases, held, median) = judge(told);
+        let (cases, held, median) = judge(estimates);
         let all: Vec<f64> = [points(true), points(false)].into_iter().flat_map(|p| p.x).collect();
         let low = all.iter().copied().fold(f64::INFINITY, f64::min);
         let high = all.iter().copied().fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! Runs random impacts and holds what they tell of their errors against the truth.
+//! Runs random impacts and compares their estimated errors with the true ones.
 
 use std::path::Path;
 use std::sync::Mutex;
@@ -12,13 +12,13 @@ use flyer_mpm::driver::{Beginning, Options, run};
 
 use super::random_impacts::{Random, RandomImpact, impact};
 
-/// What is told, in the order of [`Told::quantities`].
+/// Names of the estimated quantities.
 pub const QUANTITIES: [&str; 3] = ["plateau pressure", "arrival time", "L1"];
 
-/// What an impact has told of one quantity.
+/// The estimate of one quantity in one impact, with its true error.
 #[derive(Clone, Debug)]
 #[allow(dead_code, reason = "each program uses a part")]
-pub struct Told {
+pub struct CheckedEstimate {
     /// The impact, in words.
     pub name: String,
     /// The evidence.
@@ -33,9 +33,14 @@ pub struct Told {
     pub in_cells: f64,
 }
 
-/// Runs `count` impacts on `threads` threads; what each quantity was told by each of them. Impacts
-/// that cannot be run to their end are told of and left out.
-pub fn gather(seed: u64, materials: &[&str], count: usize, threads: usize) -> [Vec<Told>; 3] {
+/// Runs `count` impacts on `threads` threads; the estimates by quantity. Impacts
+/// that cannot be run to their end are reported and left out.
+pub fn gather(
+    seed: u64,
+    materials: &[&str],
+    count: usize,
+    threads: usize,
+) -> [Vec<CheckedEstimate>; 3] {
     let mut random = Random::new(seed);
     let impacts: Vec<RandomImpact> = (0..count).map(|_| impact(&mut random, materials)).collect();
     let (next, done) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
@@ -54,10 +59,10 @@ pub fn gather(seed: u64, materials: &[&str], count: usize, threads: usize) -> [V
     });
     let mut done = done.into_inner().expect("whole");
     done.sort_by_key(|(k, _)| *k);
-    let mut all: [Vec<Told>; 3] = Default::default();
+    let mut all: [Vec<CheckedEstimate>; 3] = Default::default();
     for (k, summary) in &done {
-        for (quantity, told) in told(&impacts[*k].name, summary) {
-            all[quantity].push(told);
+        for (quantity, one) in checked_estimates(&impacts[*k].name, summary) {
+            all[quantity].push(one);
         }
     }
     all
@@ -90,11 +95,11 @@ fn once(impact: &RandomImpact, folder: &Path) -> Result<Summary, String> {
     summary
 }
 
-/// What a run has told, by number of the quantity.
-fn told(name: &str, summary: &Summary) -> Vec<(usize, Told)> {
+/// The estimates of a run, by number of the quantity.
+fn checked_estimates(name: &str, summary: &Summary) -> Vec<(usize, CheckedEstimate)> {
     let mut all = Vec::new();
     let Some(estimate) = &summary.error_estimate else { return all };
-    let one = |evidence: &Evidence, error, half_width, unit, in_cells| Told {
+    let one = |evidence: &Evidence, error, half_width, unit, in_cells| CheckedEstimate {
         name: name.to_string(),
         evidence: evidence.clone(),
         error,
@@ -135,12 +140,13 @@ fn told(name: &str, summary: &Summary) -> Vec<(usize, Told)> {
     all
 }
 
-/// Of what was told: cases, the share that holds the truth, the median of half-width over error.
-pub fn judge(all: &[Told]) -> (usize, f64, f64) {
-    let told: Vec<(f64, f64)> = all.iter().filter_map(|t| Some((t.half_width?, t.error))).collect();
-    let held = told.iter().filter(|(width, error)| error <= width).count();
-    let mut ratios: Vec<f64> = told.iter().map(|(width, error)| width / error).collect();
+/// Number of estimates, share of intervals that contain the true error, the median of half-width over error.
+pub fn judge(all: &[CheckedEstimate]) -> (usize, f64, f64) {
+    let estimates: Vec<(f64, f64)> =
+        all.iter().filter_map(|t| Some((t.half_width?, t.error))).collect();
+    let held = estimates.iter().filter(|(width, error)| error <= width).count();
+    let mut ratios: Vec<f64> = estimates.iter().map(|(width, error)| width / error).collect();
     ratios.sort_by(f64::total_cmp);
     let median = ratios.get(ratios.len() / 2).copied().unwrap_or(f64::NAN);
-    (told.len(), held as f64 / told.len().max(1) as f64, median)
+    (estimates.len(), held as f64 / estimates.len().max(1) as f64, median)
 }

@@ -45,7 +45,7 @@ impl Random {
     }
 }
 
-/// Materials that laws are fitted on, and materials that they are held against.
+/// Materials to which laws are fitted, and materials with which they are compared.
 #[allow(dead_code, reason = "each program uses a part")]
 pub const FITTED: [&str; 7] =
     ["copper", "aluminium_2024", "tantalum", "steel_304", "lead", "pmma", "nickel"];

@@ -135,7 +135,7 @@ pub struct RunArgs {
 pub enum ProgressArg {
     /// A bar with the time left on a terminal, also under mpirun; otherwise a line every ten seconds
     Auto,
-    /// A bar, wherever the output goes
+    /// A bar also if the output is not a terminal
     Always,
     /// No progress
     Never,

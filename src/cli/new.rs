@@ -4,7 +4,7 @@ use std::fs::OpenOptions;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use serde_json::Value;
+use flyer_mpm::input;
 
 use crate::{Outcome, bad};
 
@@ -32,8 +32,8 @@ templates![
 /// Names and titles of all templates.
 pub fn list() -> String {
     let line = |(name, text): &(&str, &str)| {
-        let scene: Value = serde_json::from_str(text).expect("a template is JSON");
-        format!("{name:<14} {}\n", scene["title"].as_str().unwrap_or(""))
+        let checked = input::parse(text.as_bytes(), name, &[]).expect("a template is a scene");
+        format!("{name:<14} {}\n", checked.scene.title)
     };
     TEMPLATES.iter().map(line).collect::<String>() + "`flyer-mpm new NAME` writes NAME.json\n"
 }

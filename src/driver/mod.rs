@@ -28,11 +28,12 @@ use crate::driver::checkpoint::{
     Checkpoint, CheckpointError, CheckpointSchedule, StateColumn, folder,
 };
 use crate::driver::output::OutputError;
+use crate::driver::output::brief::brief;
 use crate::driver::output::csv::{profile_names, write_profile};
 use crate::driver::output::folder::{OutputFolder, checkpoint_folder};
 use crate::driver::output::histories::HISTORIES_FILE;
 use crate::driver::output::origin::Maker;
-use crate::driver::output::report;
+use crate::driver::output::report::full;
 use crate::driver::output::summary::{
     Energy, FailureSummary, Momentum, OutflowSummary, ProfileSummary, SUMMARY_FORMAT, Summary,
 };
@@ -203,7 +204,7 @@ fn save_last_good<const D: usize>(
         .and_then(|folder| folder::write(&folder, schedule.keep, &contents, &|| comm.heartbeat()));
     match written {
         Ok(path) => format!(
-            "the last good state, time {time:.6e} s, step {step}, is in {}: go on with --restart, \
+            "the last good state, time {time:.6e} s, step {step}, is in {}: continue with --restart, \
              and --set time or monitor",
             path.display()
         ),
@@ -256,7 +257,7 @@ fn stopped(
         Stop::Signal(signal) => format!("signal {signal} came"),
     };
     let next = match checkpoint_folder(&options.output) {
-        Ok(folder) if schedule.keep > 0 => format!("go on with --restart {}", folder.display()),
+        Ok(folder) if schedule.keep > 0 => format!("continue with --restart {}", folder.display()),
         _ => "no checkpoint was written, for output.checkpoint.keep is 0".to_string(),
     };
     RunFailure::Stopped { why, time, step, next }
@@ -379,11 +380,11 @@ where
         let (arrivals, steps) = (&recorder.arrivals, simulation.steps());
         let reference = reference.as_ref();
         let answer = Answer { scene, body, tables, arrivals, steps, reference };
-        let mut told = estimate::estimate(&answer, companions, &Laws::shipped());
-        for (told, profile) in told.profiles.iter_mut().zip(&profiles) {
-            told.l1.exact = profile.error("l1");
+        let mut estimates = estimate::estimate(&answer, companions, &Laws::shipped());
+        for (estimate, profile) in estimates.profiles.iter_mut().zip(&profiles) {
+            estimate.l1.exact = profile.error("l1");
         }
-        told
+        estimates
     });
     let plan = scene.scene.output.plan.as_ref().map(|planned| {
         let seconds = [loop_cpu, loop_wall_seconds];
@@ -440,7 +441,7 @@ where
     if schedule.passing {
         folder::clear(&checkpoint_folder(&options.output)?);
     }
-    let text = if options.verbose { report::full } else { report::brief };
+    let text = if options.verbose { full } else { brief };
     Ok(Some(text(&summary, &place)))
 }
 

@@ -17,7 +17,7 @@ pub enum ProgressChoice {
     /// A bar on a terminal in the foreground, otherwise a line every ten seconds.
     #[default]
     Auto,
-    /// A bar, wherever the output goes.
+    /// A bar also if the output is not a terminal.
     Always,
     /// Neither bar nor lines.
     Never,

@@ -72,10 +72,11 @@ impl<'a> Recorder<'a> {
     /// Continues at `time` [s] from the checkpoint that rank 0 holds. Collective.
     #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn resume(&mut self, comm: &dyn Comm, checkpoint: Option<Checkpoint>, time: f64) {
-        let told = checkpoint
+        let sent = checkpoint
             .as_ref()
             .map_or(Vec::new(), |c| serde_json::to_vec(&c.due).expect("what is due is plain data"));
-        let due: Due = serde_json::from_slice(&comm.broadcast(told)).expect("rank 0 has told");
+        let due: Due =
+            serde_json::from_slice(&comm.broadcast(sent)).expect("rank 0 sends valid JSON");
         let end = self.scene.scene.time.end;
         self.due_wave = if due.end == end { due.wave } else { wave_after(time, end) };
         self.due_profile = self.scene.profile_times.iter().filter(|&&t| t <= time).count();

@@ -199,7 +199,8 @@ fn trapezia(polygon: &[Point]) -> Vec<Trapezium> {
 /// Checks that the tiles cover the shape and that each has an area. A triangulation can omit points
 /// that almost coincide.
 fn check_cover(shape: &BoundedRegion, points: &[Point], tiles: &[Tile]) -> Result<(), PointFault> {
-    let reason = "its cell cannot be told from others; allowed: points that lie further apart";
+    let reason =
+        "its cell cannot be distinguished from others; allowed: points that lie further apart";
     if let Some(i) = tiles.iter().position(|tile| tile.area.is_nan() || tile.area <= 0.0) {
         return Err(PointFault::new(i, &points[i], reason));
     }

@@ -171,13 +171,16 @@ mod tests {
         std::fs::write(&path, "abc").unwrap();
         assert_eq!(read(&path, 3).unwrap(), b"abc");
         assert_eq!(read_text(&path, 3).unwrap(), "abc");
-        let told = |fault: InputFault| fault.to_string();
-        assert_eq!(told(read(&path, 2).unwrap_err()), "is 3 bytes long; allowed: at most 2 bytes");
+        let message = |fault: InputFault| fault.to_string();
+        assert_eq!(
+            message(read(&path, 2).unwrap_err()),
+            "is 3 bytes long; allowed: at most 2 bytes"
+        );
         std::fs::write(&path, b"a\xff").unwrap();
-        assert!(told(read_text(&path, 9).unwrap_err()).contains("not UTF-8 from byte 1"));
+        assert!(message(read_text(&path, 9).unwrap_err()).contains("not UTF-8 from byte 1"));
         File::create(&path).unwrap().set_len(1 << 40).unwrap();
-        assert!(told(read(&path, LARGEST_NUMBERS).unwrap_err()).contains("1099511627776 bytes"));
-        assert!(told(check(&path, LARGEST_JSON).unwrap_err()).contains("16777216"));
+        assert!(message(read(&path, LARGEST_NUMBERS).unwrap_err()).contains("1099511627776 bytes"));
+        assert!(message(check(&path, LARGEST_JSON).unwrap_err()).contains("16777216"));
         // the system reports a length of 0, but the file has contents
         assert!(matches!(read(Path::new("/proc/self/status"), 9), Err(InputFault::Length { .. })));
         assert!(!read(Path::new("/proc/self/status"), 1 << 20).unwrap().is_empty());
@@ -188,19 +191,19 @@ mod tests {
         let home = tempfile::tempdir().unwrap();
         let fifo = home.path().join("fifo");
         nix::unistd::mkfifo(&fifo, nix::sys::stat::Mode::S_IRWXU).unwrap();
-        let told = |path: &Path| read(path, 9).unwrap_err().to_string();
-        assert!(told(&fifo).contains("no regular file but a FIFO; allowed"));
+        let message = |path: &Path| read(path, 9).unwrap_err().to_string();
+        assert!(message(&fifo).contains("no regular file but a FIFO; allowed"));
         for device in ["/dev/zero", "/dev/null", "/dev/random", "/dev/full"] {
-            assert!(told(Path::new(device)).contains("no regular file but a device"));
+            assert!(message(Path::new(device)).contains("no regular file but a device"));
         }
-        assert!(told(home.path()).contains("is a directory"));
-        assert!(told(&home.path().join("none")).starts_with("cannot be read: No such file"));
+        assert!(message(home.path()).contains("is a directory"));
+        assert!(message(&home.path().join("none")).starts_with("cannot be read: No such file"));
         std::fs::write(home.path().join("file"), "").unwrap();
         let below = check_place(&home.path().join("file/x")).unwrap_err().to_string();
         assert!(below.starts_with("cannot be written: not a directory"), "{below}");
         assert!(check_place(&home.path().join("new/x")).is_ok());
         assert!(check_kind(&fifo).is_err() && check_kind(&home.path().join("none")).is_ok());
         std::os::unix::fs::symlink(&fifo, home.path().join("link")).unwrap();
-        assert!(told(&home.path().join("link")).contains("FIFO"));
+        assert!(message(&home.path().join("link")).contains("FIFO"));
     }
 }

@@ -251,18 +251,18 @@ mod tests {
         assert_eq!(law(json!("johnson_cook")).unwrap(), constants);
         let over = law(json!({"library": "johnson_cook", "d1": 0.6})).unwrap();
         assert_eq!((&over["d1"], &over["d2"]), (&json!(0.6), &json!(4.89)));
-        let told = law(json!("jonson_cook")).unwrap_err().within("s").to_string();
+        let message = law(json!("jonson_cook")).unwrap_err().within("s").to_string();
         assert!(
-            told.contains("materials.m.failure = \"jonson_cook\"")
-                && told.contains("did you mean johnson_cook?"),
-            "{told}"
+            message.contains("materials.m.failure = \"jonson_cook\"")
+                && message.contains("did you mean johnson_cook?"),
+            "{message}"
         );
         // none by itself, and none of another material
         assert!(resolved(json!({"library": "tantalum"})).unwrap()["failure"].is_null());
         let spall = resolved(json!({"library": "tantalum", "failure": "spall"})).unwrap();
         assert_eq!(spall["failure"], json!({"type": "tension_limit", "stress": 5.1e9}));
-        let told = resolved(json!({"library": "gold", "failure": "spall"})).unwrap_err();
-        assert!(told.within("s").to_string().contains("allowed: none, or a law"));
+        let message = resolved(json!({"library": "gold", "failure": "spall"})).unwrap_err();
+        assert!(message.within("s").to_string().contains("allowed: none, or a law"));
         let own = json!({"type": "tension_limit", "stress": 1e9});
         assert_eq!(resolved(json!({"library": "gold", "failure": own})).unwrap()["failure"], own);
     }
@@ -281,14 +281,14 @@ mod tests {
     }
 
     #[test]
-    fn unknown_names_are_told_with_the_known() {
-        let told = resolved(json!({"library": "coper"})).unwrap_err().within("s").to_string();
+    fn unknown_names_are_reported_with_the_known() {
+        let message = resolved(json!({"library": "coper"})).unwrap_err().within("s").to_string();
         assert!(
-            told.contains("did you mean copper?") && told.contains("aluminium_1100, "),
-            "{told}"
+            message.contains("did you mean copper?") && message.contains("aluminium_1100, "),
+            "{message}"
         );
-        let told = resolved(json!({"file": "x"})).unwrap_err().within("s").to_string();
-        assert!(told.contains("materials.m.file"), "{told}");
+        let message = resolved(json!({"file": "x"})).unwrap_err().within("s").to_string();
+        assert!(message.contains("materials.m.file"), "{message}");
     }
 
     #[test]

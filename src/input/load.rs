@@ -41,7 +41,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
     };
     if input_file::begins_with(path, input_file::CHECKPOINT_START) {
         return Err(fail(
-            "is a checkpoint; allowed: a scene, one JSON file, or --restart to go on \
+            "is a checkpoint; allowed: a scene, one JSON file, or --restart to continue \
                          from a checkpoint"
                 .into(),
         ));

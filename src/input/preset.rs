@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 use super::errors::{SceneFault, suggest};
 use crate::scene::{Material, MethodChoice, Preset, Transfer};
 
-/// What a scene contains, as far as the choice of a method depends on it.
+/// Contents of a scene on which the choice of a method depends.
 #[derive(Default)]
 struct SceneContents {
     plane: bool,
@@ -155,14 +155,19 @@ impl Preset {
                 merge(&mut base, changes);
                 "least error over all hard cases"
             }
-            Preset::Sharpest if contents.joined && acting(contents).next().is_none() => {
-                let relaxation = json!({"rate": 0.05, "interval": 1});
-                let method = json!({"frame": "total_lagrangian", "transfer": {"fmpm": 10},
-                    "edge_mask": 0.3, "pressure_relaxation": relaxation});
-                merge(&mut base, [method, json!({})]);
-                "least error of plane impacts; total-Lagrangian, for bodies that stay in contact"
+            Preset::Sharpest => {
+                let viscosity = json!({"linear": 0.035, "quadratic": 0.0});
+                merge(&mut base, [json!({"transfer": {"fmpm": 14}}), viscosity]);
+                if contents.joined && acting(contents).next().is_none() {
+                    let relaxation = json!({"rate": 0.05, "interval": 1});
+                    let method = json!({"frame": "total_lagrangian", "edge_mask": 0.3,
+                        "pressure_relaxation": relaxation});
+                    merge(&mut base, [method, json!({})]);
+                    "least mean E1 of plane impacts; total-Lagrangian, for bodies that stay in contact"
+                } else {
+                    "least mean E1 of plane impacts"
+                }
             }
-            Preset::Sharpest => "least error of plane impacts",
         };
         (base, reason)
     }
@@ -299,8 +304,8 @@ fn deforms(shape: &Value) -> bool {
 }
 
 impl SceneContents {
-    /// Reads the contents of a scene whose library names are resolved. What is not understood counts
-    /// as absent; the check of the scene reports it.
+    /// Reads the contents of a scene whose library names are resolved. An invalid part counts as
+    /// absent; the check of the scene reports it.
     fn of(scene: &Map<String, Value>) -> Self {
         let domain = scene.get("domain").unwrap_or(&Value::Null);
         let dimension = domain["lower"].as_array().map_or(1, Vec::len);

@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_told_apart_still_predicts() {
+    fn what_cannot_be_distinguished_still_predicts() {
         let twice = |k| sample([f64::from(k), 2.0 * f64::from(k)], 3.0 * f64::from(k));
         let samples: Vec<Sample<2>> = (1..9).map(twice).collect();
         assert!((dot(&[10.0, 20.0], &fit(&samples).coefficients) - 30.0).abs() < 1e-9);

@@ -12,8 +12,8 @@ pub enum Preset {
     /// From the shape function and transfer with the least error of those that pass every hard
     /// case, with a moderate viscosity.
     Robust,
-    /// From the method with the least error of plane impacts, in the total-Lagrangian frame if the
-    /// scene has nothing but fluids on a line that touch and stay in contact.
+    /// From the method with the least mean of E1 over ten plane impacts, in the total-Lagrangian
+    /// frame if the scene has nothing but fluids on a line that touch and stay in contact.
     Sharpest,
 }
 

@@ -47,7 +47,7 @@ impl Motion {
     ///
     /// If a constant is out of range, or if the material does not support the motion.
     pub fn new(field: &VelocityField, material: &Material) -> Result<Motion, String> {
-        let told = |error: crate::exact::ExactError| error.to_string();
+        let message = |error: crate::exact::ExactError| error.to_string();
         Ok(match field {
             VelocityField::Rotation(r) => Motion::Rotation(pair(&r.about), r.rate),
             VelocityField::Radial(r) => Motion::Radial(pair(&r.about), r.speed),
@@ -57,7 +57,7 @@ impl Motion {
                     ShearForm::Tanh => ShearProfile::Tanh,
                 };
                 let layer = ShearLayer::new(profile, s.speed, s.height, s.centre);
-                Motion::ShearLayer(layer.map_err(told)?)
+                Motion::ShearLayer(layer.map_err(message)?)
             }
             VelocityField::Gresho(g) => {
                 let Eos::IdealGas(IdealGasParameters { gamma }) = material.eos else {
@@ -71,13 +71,13 @@ impl Motion {
                     centre_pressure: g.centre_pressure,
                     gamma,
                 };
-                vortex.check().map_err(told)?;
+                vortex.check().map_err(message)?;
                 Motion::Gresho(vortex)
             }
             VelocityField::Vortex(ring) => {
                 let vortex = vortex_of(ring, material)
                     .ok_or("the generalized vortex is one of a neo-Hookean solid")?;
-                vortex.check().map_err(told)?;
+                vortex.check().map_err(message)?;
                 Motion::Vortex(vortex)
             }
         })

@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn files_are_read_or_told_by_line() {
+    fn files_are_read_or_reported_by_line() {
         let read = Course::read("time, pressure\n0,1e9\n\n 1e-6 ,0\n", "pressure");
         assert_eq!(read, Ok(vec![[0.0, 1e9], [1e-6, 0.0]]));
         for (text, line) in [
@@ -217,8 +217,8 @@ mod tests {
             ("time,pressure\n0,inf", "line 2"),
             ("time,pressure\n0", "line 2"),
         ] {
-            let told = Course::read(text, "pressure").unwrap_err();
-            assert!(told.contains(line) && told.contains("time,pressure"), "{told}");
+            let message = Course::read(text, "pressure").unwrap_err();
+            assert!(message.contains(line) && message.contains("time,pressure"), "{message}");
         }
     }
 }

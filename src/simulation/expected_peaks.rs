@@ -7,14 +7,20 @@ use crate::solver::Stepper;
 /// A particle counts as at the front for this many times the time in which the front passes it.
 pub(super) const FRONT_TIMES: f64 = 3.0;
 
+/// Change of velocity of a material that fails, over that in the shock of the impact [-]. A failure
+/// releases a tension of at most rho c up, which changes the velocity by up once more.
+const RELEASED: f64 = 2.0;
+
 /// Values that the particles of a body may reach.
 #[derive(Clone, Debug)]
 pub(super) struct ExpectedPeaks<const D: usize> {
     /// Initial specific internal energy [J/kg].
     pub(super) energy: f64,
-    /// Energy from one shock of the strongest impact [J/kg]; infinite where gases, explosives or
-    /// forces drive the bodies.
+    /// Energy from one shock of the strongest impact [J/kg], four times this where the material can
+    /// fail; infinite where gases, explosives or forces drive the bodies.
     pub(super) heat: f64,
+    /// Column of the plastic strain, whose work is heat too; `None` without strength.
+    pub(super) plastic_strain: Option<usize>,
     pub(super) front: Option<PeakFront>,
     /// Initial velocity [m/s].
     pub(super) velocity: [f64; D],
@@ -58,10 +64,12 @@ impl<const D: usize> ExpectedPeaks<D> {
                 pressure: stepper.impedance(i) * up[i],
             })
         };
+        let can_fail = |i: usize| scene.material_of(i).failure.is_some();
         bodies
             .map(|(i, body)| ExpectedPeaks {
                 energy: stepper.starting_energy(i, body.pressure, body.temperature),
-                heat: heat[i],
+                heat: heat[i] * if can_fail(i) { RELEASED * RELEASED } else { 1.0 },
+                plastic_strain: stepper.columns.find("plastic_strain"),
                 front: front(scene, i),
                 velocity: std::array::from_fn(|a| scene.bodies[i].velocity[a]),
                 ahead: ahead(i),

@@ -25,8 +25,10 @@ impl<const D: usize> Simulation<'_, D> {
         let column = |k: usize| block.columns[k][r];
         let expected = &self.expected[column(c.body) as usize];
         let energy = column(c.energy) - expected.energy;
+        let plastic = |strain| self.stepper.plastic_heat(block, r, strain);
+        let unexplained = energy - expected.plastic_strain.map_or(0.0, plastic);
         let mut peaks = Peaks {
-            heat: energy / expected.heat,
+            heat: unexplained / expected.heat,
             energy: if expected.heat.is_finite() { energy } else { 0.0 },
             ..Peaks::default()
         };

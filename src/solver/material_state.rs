@@ -32,6 +32,23 @@ impl<const D: usize> Scheme<D> {
         MaterialState { compression: 1.0 / jacobian, pressure, temperature }
     }
 
+    /// Plastic work per unit mass that the plastic strain of own particle `r`, in column `strain`,
+    /// needs at the present yield stress of the particle [J/kg]; 0 without strength.
+    pub fn plastic_heat(&self, block: &decomp::Block<D>, r: usize, strain: usize) -> f64 {
+        let c = &self.columns;
+        let column = |k: usize| block.columns[k][r];
+        let Some(strength) = &self.strengths[column(c.body) as usize] else { return 0.0 };
+        let (strain, jacobian) = (column(strain), column(c.jacobian));
+        let temperature = c.temperature.map_or(f64::NAN, column);
+        let at = MaterialState {
+            compression: 1.0 / jacobian,
+            pressure: column(c.pressure),
+            temperature,
+        };
+        let volume = column(c.volume0) * jacobian;
+        strength.yield_stress(strain, &at) * strain * volume / column(c.mass)
+    }
+
     /// Heat that own particle `r` lacks to reach absolute zero, per unit mass [J/kg]: cv max(0,
     /// -T); `None` without a temperature.
     pub fn heat_below_zero_kelvin(&self, block: &decomp::Block<D>, r: usize) -> Option<f64> {

@@ -78,7 +78,7 @@ impl StudyRunner {
                 }
                 job.record.write(&records, &key)?;
                 let name = job.case.labels.values().cloned().collect::<Vec<_>>().join(", ");
-                progress.tell(left(&jobs, 0), &name);
+                progress.report(left(&jobs, 0), &name);
             }
         }
         progress.finish();
@@ -215,7 +215,7 @@ struct StudyProgress {
     bar: Option<ProgressBar>,
     whole: f64,
     started: Instant,
-    told: Instant,
+    reported: Instant,
     speaks: bool,
 }
 
@@ -227,18 +227,18 @@ impl StudyProgress {
             bar.set_style(ProgressStyle::with_template(style).expect("the template is sound"));
             bar
         });
-        StudyProgress { bar, whole, started: Instant::now(), told: Instant::now(), speaks }
+        StudyProgress { bar, whole, started: Instant::now(), reported: Instant::now(), speaks }
     }
 
     /// Reports progress; `left` is the remaining part of the total weight.
-    fn tell(&mut self, left: f64, name: &str) {
+    fn report(&mut self, left: f64, name: &str) {
         let share = if self.whole > 0.0 { 1.0 - left / self.whole } else { 1.0 };
         let seconds = self.started.elapsed().as_secs_f64() * (1.0 / share.max(1e-9) - 1.0);
         if let Some(bar) = &self.bar {
             bar.set_position((1000.0 * share) as u64);
             bar.set_message(format!("{seconds:.0} s left  {name}"));
-        } else if self.speaks && self.told.elapsed() > Duration::from_secs(10) {
-            self.told = Instant::now();
+        } else if self.speaks && self.reported.elapsed() > Duration::from_secs(10) {
+            self.reported = Instant::now();
             eprintln!("{:5.1} %  {seconds:.0} s left  {name}", 100.0 * share);
         }
     }

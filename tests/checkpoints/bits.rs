@@ -17,7 +17,7 @@ fn checked(scene: &Value) -> CheckedScene {
     input::parse(scene.to_string().as_bytes(), "scene.json", &[]).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// All that a run tells of its state.
+/// All output of a run about its state.
 fn end_of<const D: usize>(run: &Simulation<'_, D>) -> String
 where
     Stepper<D>: Compiled<D>,

@@ -74,7 +74,7 @@ fn while_it_runs(home: &Home, what: impl FnOnce()) -> crate::program::Ended {
     run.end()
 }
 
-/// A folder that vanishes is made anew, and the results are whole.
+/// A folder that vanishes is made again, and the results are complete.
 #[test]
 fn a_folder_that_vanishes_is_made_anew() {
     let home = Home::with(&recorded(20));
@@ -93,7 +93,7 @@ fn a_folder_that_vanishes_is_made_anew() {
 /// Where nothing can be written any more the run says so, and leaves what is there as it is. A file
 /// in place of the folder is refused to everybody, as one without permission is to most.
 #[test]
-fn a_folder_that_cannot_be_written_any_more_is_told() {
+fn a_folder_that_cannot_be_written_any_more_is_reported() {
     let home = Home::with(&recorded(20));
     // the run may make the folder again before the file stands there
     let replaced = || {
@@ -110,7 +110,7 @@ fn a_folder_that_cannot_be_written_any_more_is_told() {
 /// Permission does not bind root, a disk mounted to be read only binds everybody. A mount of the
 /// test's own needs root or user namespaces; where neither is, the test says so and ends.
 #[test]
-fn a_folder_on_a_disk_that_is_read_only_is_told() {
+fn a_folder_on_a_disk_that_is_read_only_is_reported() {
     let home = Home::with(&recorded(20));
     fs::create_dir_all(home.at("disk/there")).unwrap();
     let mounted = r#"mount --bind disk disk && mount -o remount,bind,ro disk && exec "$0" "$@""#;

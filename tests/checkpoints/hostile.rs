@@ -117,8 +117,8 @@ fn changed_scenes() {
     let (mut seed, mut taken) = (3, 0);
     for round in 0..4000 {
         let text = changed(&corpus[round % corpus.len()], &mut seed);
-        let told = || String::from_utf8_lossy(&text).into_owned();
-        taken += usize::from(judged(&told, || input::parse(&text, "scene.json", &[])));
+        let printed = || String::from_utf8_lossy(&text).into_owned();
+        taken += usize::from(judged(&printed, || input::parse(&text, "scene.json", &[])));
     }
     // some changes are within what is allowed: the rest of the check is reached as well
     assert!((100..3000).contains(&taken), "{taken}");
@@ -138,10 +138,10 @@ fn changed_overrides() {
     for round in 0..3000 {
         let set =
             String::from_utf8_lossy(&changed(sets[round % sets.len()], &mut seed)).into_owned();
-        let told = || format!("--set {set}");
-        judged(&told, || input::parse(&text, "scene.json", std::slice::from_ref(&set)));
+        let printed = || format!("--set {set}");
+        judged(&printed, || input::parse(&text, "scene.json", std::slice::from_ref(&set)));
         let allowed = flyer_mpm::driver::checkpoint::fit::CHANGEABLE;
-        judged(&told, || input::parse_changed(&text, "c", std::slice::from_ref(&set), &allowed));
+        judged(&printed, || input::parse_changed(&text, "c", std::slice::from_ref(&set), &allowed));
     }
 }
 
@@ -171,12 +171,12 @@ fn changed_checkpoints() {
 
 /// What would not fit into the machine is refused before it is made.
 #[test]
-fn too_much_is_told_before_it_is_taken() {
+fn too_much_is_reported_before_it_is_taken() {
     const LEFT: Option<u64> = Some(8 << 30);
     let text = |name: &str| {
         fs::read(format!("{}/inputs/{name}.json", env!("CARGO_MANIFEST_DIR"))).unwrap()
     };
-    let told = |verdict: Result<(), input::SceneError>| {
+    let printed = |verdict: Result<(), input::SceneError>| {
         let error = verdict.unwrap_err().to_string();
         let words = ["need about ", "GiB of memory; allowed: 8.0 GiB", "--ignore-memory"];
         assert!(words.iter().all(|w| error.contains(w)), "{error}");
@@ -184,7 +184,7 @@ fn too_much_is_told_before_it_is_taken() {
     // disks are cut into particles one by one as the scene is read
     let size = |set: &str, left| input::check_size(&text("disks"), "s", &[set.to_string()], left);
     for set in ["domain.cell_size=5e-5", "bodies.lower.particles_per_cell=[300,300]"] {
-        told(size(set, LEFT));
+        printed(size(set, LEFT));
         size(set, None).unwrap();
         size(set, Some(1 << 40)).unwrap();
     }
@@ -195,7 +195,7 @@ fn too_much_is_told_before_it_is_taken() {
         ("flyer_2d", "domain.patches=[300,180]"),
     ] {
         let scene = input::parse(&text(name), "s", &[set.to_string()]).unwrap();
-        told(scene.check_memory(LEFT));
+        printed(scene.check_memory(LEFT));
         scene.check_memory(None).unwrap();
     }
 }
@@ -253,13 +253,13 @@ fn changed_scenes_on_two_ranks() {
             1 => begun::<1>(&scene, ranks),
             _ => begun::<2>(&scene, ranks),
         }));
-        let told = String::from_utf8_lossy(&text);
+        let printed = String::from_utf8_lossy(&text);
         match end {
             Ok(Ok(())) => {}
-            Ok(Err(error)) => assert_eq!(error.lines().count(), 1, "{error}: {told}"),
+            Ok(Err(error)) => assert_eq!(error.lines().count(), 1, "{error}: {printed}"),
             Err(fault) => {
                 let word = fault.downcast_ref::<String>().map_or("", String::as_str);
-                assert!(word.starts_with(LOST), "it panics, {word}: {told}");
+                assert!(word.starts_with(LOST), "it panics, {word}: {printed}");
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Checkpoints: a run goes on from one to the bits of a run that was never broken, on any layout;
+//! Checkpoints: a run continued from one gives the bits of an uninterrupted run, on any layout;
 //! damage is seen; faults leave what was good.
 
 #[path = "../contract/home.rs"]

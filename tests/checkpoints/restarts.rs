@@ -1,4 +1,4 @@
-//! The program goes on from its files: the same files as without a break.
+//! A run continued from its files writes the same files as an uninterrupted one.
 
 use serde_json::{Value, json};
 
@@ -26,7 +26,7 @@ pub fn same(a: &Results, b: &Results) {
         let same = name == "summary.json" || a.bytes(name) == b.bytes(name);
         assert!(same, "{name} is another");
     }
-    let told = |run: &Results| {
+    let message = |run: &Results| {
         let mut summary = run.summary.clone();
         let object = summary.as_object_mut().unwrap();
         object.retain(|key, _| {
@@ -41,7 +41,7 @@ pub fn same(a: &Results, b: &Results) {
         assert!(object.len() >= 10, "{summary}");
         summary
     };
-    assert_eq!(told(a), told(b));
+    assert_eq!(message(a), message(b));
 }
 
 #[test]

@@ -64,9 +64,9 @@ fn a_signal_writes_a_checkpoint_and_ends_the_run() {
         let out = run.end();
         assert_eq!(out.status.code(), Some(4), "{name}: {}", out.stderr);
         assert!(out.stderr.starts_with("stopped at time "), "{}", out.stderr);
-        assert!(out.stderr.contains("go on with --restart "), "{}", out.stderr);
+        assert!(out.stderr.contains("continue with --restart "), "{}", out.stderr);
         assert!(!home.at("run").exists() && !home.at(".run.flyer.lock").exists());
-        // it goes on from where it was
+        // it continues from where it was
         let step = |text: &str| -> u64 {
             let (_, after) = text.split_once(", step ").unwrap();
             after.split(':').next().unwrap().parse().unwrap()
@@ -90,7 +90,7 @@ fn a_second_signal_ends_it_at_once() {
     assert_eq!(run.end().status.signal(), Some(15));
 }
 
-/// Without a folder of checkpoints there is nothing to go on from, and it says so.
+/// Without a folder of checkpoints there is nothing to continue from, and the message says so.
 #[test]
 fn a_run_without_checkpoints_is_stopped_too() {
     let home = Home::with(&recorded(5));

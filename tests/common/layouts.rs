@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn a_layout_is_told_in_words() {
+    fn a_layout_is_reported_in_words() {
         let text = Layout { every: 7, skip_quiescent: true, ..Layout::WHOLE }.to_string();
         let words = "1 ranks x 1 patches x 1 threads, balanced every 7 by time, skipping, ";
         assert_eq!(text, format!("{words}halo exchange"));

@@ -115,13 +115,13 @@ fn a_run_tells_its_errors_and_changes_no_bit() {
     assert!(plain.get("error_estimate").is_none() && plain.get("plan").is_none());
     let summary = Home::with(&estimating()).run("run", &[]).summary;
     assert_eq!(summary["profiles"], plain["profiles"]);
-    let told = &summary["error_estimate"];
+    let message = &summary["error_estimate"];
     let size = summary["scene"]["domain"]["cell_size"].as_f64().unwrap();
-    assert_eq!(told["companions"], json!([4.0 * size, 2.0 * size]));
-    let l1 = &told["profiles"][0]["l1"];
+    assert_eq!(message["companions"], json!([4.0 * size, 2.0 * size]));
+    let l1 = &message["profiles"][0]["l1"];
     assert_eq!(l1["exact"], summary["profiles"][0]["errors"]["l1"]);
     assert!(l1["half_width"].as_f64().unwrap() > 0.0);
-    let arrival = &told["arrivals"][0]["time"];
+    let arrival = &message["arrivals"][0]["time"];
     let [value, width, exact] =
         ["value", "half_width", "exact"].map(|key| arrival[key].as_f64().unwrap());
     // within the transit time of a cell, and reported with that width

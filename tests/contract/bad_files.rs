@@ -236,7 +236,7 @@ fn files_of_another_kind() {
 }
 
 #[test]
-fn a_mistyped_command_is_told_the_nearest() {
+fn a_mistyped_command_is_reported_the_nearest() {
     let home = home();
     for (typed, meant) in [
         ("hugonoit", "hugoniot"),

@@ -80,7 +80,7 @@ fn what_cannot_be_understood_is_refused() {
 }
 
 #[test]
-fn help_and_version_are_told() {
+fn help_and_version_are_reported() {
     let home = Home::new();
     let help = home.call(["--help"]).end().succeeded();
     let options = ["--set", "--output", "--threads", "--stall-timeout", "--keep", "--quiet"];

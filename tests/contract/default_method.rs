@@ -1,4 +1,4 @@
-//! A scene without `method`: what the program tells of its choice, and how accurate it is.
+//! A scene without `method`: the printed choice of the program, and its accuracy.
 
 use serde_json::json;
 
@@ -27,8 +27,8 @@ fn an_impact_without_a_method_is_accurate() {
         "reference": {"flyer_impact": {"flyer": "tungsten", "target": "tantalum"}},
     });
     let home = Home::with(&scene);
-    let told = home.call(["check", "scene.json"]).end().succeeded();
-    assert!(told.contains("preset default") && told.contains("FMPM(8)"), "{told}");
+    let message = home.call(["check", "scene.json"]).end().succeeded();
+    assert!(message.contains("preset default") && message.contains("FMPM(8)"), "{message}");
     let said = home.call(["scene.json"]).end();
     assert!(said.stderr.contains("method default: FMPM(8)"), "{}", said.stderr);
     said.succeeded();

@@ -7,15 +7,21 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use flyer_mpm::input;
+use flyer_mpm::scene::CheckedScene;
 use serde_json::Value;
 
 use crate::home::Home;
 
 /// All shipped scenes.
 fn scenes() -> Vec<PathBuf> {
+    scenes_of(&["", "hard"])
+}
+
+/// The scenes in folders of `inputs`.
+fn scenes_of(folders: &[&str]) -> Vec<PathBuf> {
     let inputs = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs");
-    let folders = [inputs.clone(), inputs.join("hard")];
-    let entries = folders.iter().flat_map(|f| std::fs::read_dir(f).unwrap());
+    let entries = folders.iter().flat_map(|f| std::fs::read_dir(inputs.join(f)).unwrap());
     let mut all: Vec<PathBuf> = entries.map(|e| e.unwrap().path()).collect();
     all.retain(|path| path.extension().is_some_and(|end| end == "json"));
     all.sort();
@@ -25,6 +31,11 @@ fn scenes() -> Vec<PathBuf> {
 
 fn read(path: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+fn checked(path: &Path) -> CheckedScene {
+    let bytes = input::read(path).unwrap();
+    input::parse(&bytes, path.to_str().unwrap(), &[]).unwrap()
 }
 
 fn is_plane(scene: &Value) -> bool {
@@ -47,8 +58,8 @@ fn call(home: &Home, args: &[&str]) -> i32 {
     let code = end.status.code();
     assert!(!end.stderr.contains("panicked"), "{args:?}: {}", end.stderr);
     let errors = end.stderr.lines().filter(|l| l.starts_with("error:")).count();
-    let told = if code == Some(0) { 0 } else { 1 };
-    assert_eq!(errors, told, "{args:?}: {code:?} {}", end.stderr);
+    let text = if code == Some(0) { 0 } else { 1 };
+    assert_eq!(errors, text, "{args:?}: {code:?} {}", end.stderr);
     assert!(matches!(code, Some(0 | 2 | 3)), "{args:?}: {code:?} {}", end.stderr);
     code.unwrap()
 }
@@ -89,7 +100,7 @@ fn plan_of_every_scene() {
     let home = Home::new();
     for path in some(&["flyer_strength.json", "gap.json", "piston.json", "sod.json"]) {
         let (file, scene) = (path.to_str().unwrap(), read(&path));
-        let end = scene["time"]["end"].as_f64().unwrap();
+        let end = checked(&path).scene.time.end;
         let end = format!("time.end={}", if is_plane(&scene) { end } else { 0.1 * end });
         let sets = ["--set", &end, "--set", "output={}", "--set", "error_estimate=null"];
         let plan = ["plan", file, "--quantity", "l1", "--error", "30%", "--output", "p.json"];
@@ -97,5 +108,31 @@ fn plan_of_every_scene() {
         let code = call(&home, &args);
         assert!(!is_plane(&scene) || code == 2, "{file}: {code}");
         let _ = std::fs::remove_file(home.at("p.json"));
+    }
+}
+
+/// Whatever a scene contains, the lines of its run are at most 100 characters long, and the report
+/// has at most ten of them and the warnings. The title stands once.
+#[test]
+fn the_report_of_every_scene_is_short() {
+    let home = Home::new();
+    for path in scenes_of(&["", "hard", "templates"]) {
+        let (file, scene) = (path.to_str().unwrap(), checked(&path));
+        let end = scene.scene.time.end / 500.0;
+        let output = format!(
+            "output={{\"profiles\": {{\"times\": [{end:e}]}}, \"pictures\": false, \"hdf5\": false}}"
+        );
+        let sets = ["--set", &format!("time.end={end:e}"), "--set", &output];
+        let run = home.call([&[file, "--progress", "never"][..], &sets].concat()).end();
+        let all = format!("{}{}", run.stderr, run.stdout);
+        let report = run.succeeded();
+        assert!(all.lines().all(|line| line.chars().count() <= 100), "{file}: {all}");
+        let is_warning =
+            |line: &&str| line.starts_with("warning: ") || line.starts_with("         ");
+        let is_quantity = |line: &&str| line.contains("computed");
+        let lines = report.lines().filter(|line| !is_warning(line) || is_quantity(line)).count();
+        assert!((4..=10).contains(&lines), "{file}: {report}");
+        let title = scene.scene.title.as_str();
+        assert_eq!(all.lines().filter(|line| line.starts_with(title)).count(), 1, "{file}: {all}");
     }
 }

@@ -42,11 +42,11 @@ fn constants_are_measured_and_a_scene_is_predicted() {
 
     let before = home.contents();
     let predict = ["perf", "predict", "flyer.json", "--machine", "m.json"];
-    let told = |more: &[&str]| {
+    let message = |more: &[&str]| {
         let all = predict.into_iter().chain(more.to_vec());
         home.call(all).end().succeeded()
     };
-    let text = told(&["--ranks", "1,3", "--network", "slingshot11"]);
+    let text = message(&["--ranks", "1,3", "--network", "slingshot11"]);
     for word in ["1700 particles", "speed-up", "slingshot11 (2.00 us", "patches run out at 62"] {
         assert!(text.contains(word), "no {word} in: {text}");
     }

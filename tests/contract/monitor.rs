@@ -19,7 +19,7 @@ fn leaving() -> Value {
     scene
 }
 
-const TOLD: [&str; 6] = [
+const FRAGMENTS: [&str; 6] = [
     "leaves the domain",
     "cell [",
     "likely cause",
@@ -39,7 +39,7 @@ fn goes_on(ranks: Option<usize>) {
         ranks.map_or(call, |_| home.call(args.to_vec()).ranks(ranks.unwrap_or(1))).end()
     };
     let ended = call(&["scene.json", "--quiet", "--output", "run"]);
-    ended.failed(&TOLD);
+    ended.failed(&FRAGMENTS);
     assert!(ended.status.code().is_some_and(|code| code == 3));
     assert_eq!(names(&home.at("run.checkpoints")), ["checkpoint-000001.hdf5"]);
     let restart = ["--restart", "run.checkpoints", "--quiet", "--output", "on"];
@@ -73,7 +73,7 @@ fn nothing_is_written_where_nobody_wants_it() {
 
 /// If the state cannot be written, the message still contains the cause of the end.
 #[test]
-fn a_state_that_cannot_be_written_is_told_beside_the_cause() {
+fn a_state_that_cannot_be_written_is_reported_beside_the_cause() {
     let home = Home::with(&leaving());
     home.write("run.checkpoints", "a file in its place");
     let ended = home.call(["scene.json", "--quiet", "--output", "run"]).end();
@@ -82,7 +82,7 @@ fn a_state_that_cannot_be_written_is_told_beside_the_cause() {
 
 /// A run that is inaccurate but within the bounds continues with a warning.
 #[test]
-fn energy_that_drifts_is_told() {
+fn energy_that_drifts_is_reported() {
     let mut scene = short();
     scene["method"] = json!({"shape": "cpdi", "transfer": "pic"});
     scene["time"]["end"] = json!(3e-8);
@@ -99,7 +99,7 @@ fn energy_that_drifts_is_told() {
 
 /// Repeated steps are counted.
 #[test]
-fn redone_steps_are_told() {
+fn redone_steps_are_reported() {
     let mut scene = short();
     scene["monitor"] = json!({"courant": 0.401, "on_alarm": "redo"});
     scene["time"]["end"] = json!(3e-8);

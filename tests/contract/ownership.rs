@@ -4,6 +4,8 @@
 use std::fs;
 use std::path::Path;
 
+use flyer_mpm::driver::output::lock::Lock;
+use flyer_mpm::driver::output::origin::{Origin, RUN};
 use serde_json::{Value, json};
 
 use crate::home::Home;
@@ -57,7 +59,7 @@ fn two_scenes_of_one_name_do_not_share_a_result() {
         let out = home.call(["b/plate.json"]).end();
         let lines: Vec<&str> = out.stderr.lines().filter(|l| l.contains("results go")).collect();
         assert_eq!(lines.len(), 1, "{}", out.stderr);
-        for word in ["output/plate-2", "output/plate holds", "a/plate.json"] {
+        for word in ["output/plate-2", "instead of output/plate", "it holds", "a/plate.json"] {
             assert!(lines[0].contains(word), "no {word} in: {}", lines[0]);
         }
         assert!(out.succeeded().contains("output/plate-2"));
@@ -68,6 +70,26 @@ fn two_scenes_of_one_name_do_not_share_a_result() {
     assert_eq!(home.results("output/plate").summary["scene"]["bodies"][0]["velocity"][0], 1000.0);
     assert_eq!(home.results("output/plate-2").summary["scene"]["bodies"][0]["velocity"][0], 700.0);
     assert!(!home.at("output/plate-3").exists());
+}
+
+/// A run of another scene that has not ended yet is passed over; the same scene is refused.
+#[test]
+fn two_scenes_of_one_name_may_run_at_once() {
+    let home = home();
+    fs::remove_dir_all(home.at("output")).unwrap();
+    let running = Origin::new(RUN, &home.at("a/plate.json"));
+    let lock = Lock::take_for(&home.at("output/plate"), &running).unwrap();
+    let out = home.call(["b/plate.json"]).end();
+    for word in ["output/plate-2 instead of output/plate", "a/plate.json is writing there"] {
+        let text = out.stderr.replace("\n  ", " ");
+        assert!(text.contains(word), "no {word} in: {text}");
+    }
+    assert!(out.succeeded().contains("output/plate-2"));
+    let words = ["output/plate", "another --output"];
+    home.call(["a/plate.json", "--quiet"]).end().failed(&words);
+    drop(lock);
+    home.call(["a/plate.json", "--quiet"]).end().succeeded();
+    assert!(home.at("output/plate/summary.json").exists());
 }
 
 /// A run that was killed before its first result has checkpoints only.

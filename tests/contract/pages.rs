@@ -124,3 +124,22 @@ fn the_summary_has_every_page() {
         assert!(name == "SUMMARY.md" || listed.contains(name), "{name} is not in SUMMARY.md");
     }
 }
+
+/// `sharpest` is what its rule takes: the least mean of E1 within 1 %, then the smallest overshoot.
+#[test]
+fn the_table_of_the_presets_keeps_the_rule_of_sharpest() {
+    let page = fs::read_to_string(root().join("docs/methods.md")).unwrap();
+    let table = page.split("<!-- begin presets -->\n").nth(1).unwrap();
+    let table = table.split("<!-- end presets -->").next().unwrap();
+    let row = |line: &str| -> (String, f64, f64) {
+        let cells: Vec<&str> = line.trim_matches(['|', ' ']).split(" | ").collect();
+        let number = |k: usize| cells[k].trim_end_matches(" %").parse().unwrap();
+        (cells[0].trim_matches('`').into(), number(1), number(4))
+    };
+    let rows: Vec<(String, f64, f64)> = table.lines().skip(2).map(row).collect();
+    assert!(rows.len() > 12, "{rows:?}");
+    let least = rows.iter().map(|row| row.1).fold(f64::INFINITY, f64::min);
+    let equal = rows.iter().filter(|row| row.1 <= 1.01 * least);
+    let taken = equal.min_by(|a, b| a.2.total_cmp(&b.2)).unwrap();
+    assert_eq!(taken.0, "sharpest", "{rows:?}");
+}

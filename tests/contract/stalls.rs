@@ -43,8 +43,8 @@ fn names(run: Started, victim: usize, ranks: &[u32], seconds: u64) {
         std::thread::sleep(Duration::from_millis(20));
     }
     let out = run.end();
-    let told = format!("error: rank {victim} has made no progress for {seconds} s: it hangs");
-    out.failed(&[&told]);
+    let text = format!("error: rank {victim} has made no progress for {seconds} s: it hangs");
+    out.failed(&[&text]);
     assert_eq!(out.code(), Some(7));
 }
 
@@ -132,8 +132,8 @@ fn a_rank_of_a_calibration_that_is_stopped_is_named() {
         signal("-STOP", ranks[victim]);
         // the running rank notices the stop when it waits, at the end of its own part
         let out = run.end();
-        let told = format!("error: rank {victim} has made no progress for 2 s: it hangs");
-        out.failed(&[&told]);
+        let text = format!("error: rank {victim} has made no progress for 2 s: it hangs");
+        out.failed(&[&text]);
         assert_eq!(out.code(), Some(7));
     }
 }
@@ -222,9 +222,9 @@ fn stopped_rank_is_named(home: &Home, args: &[&str], victim: usize, delay: Durat
         return false;
     }
     // a rank that ends and a running one may both wait for it, and both report it
-    let told = format!("error: rank {victim} has made no progress for 4 s: it hangs");
+    let text = format!("error: rank {victim} has made no progress for 4 s: it hangs");
     let errors: Vec<&str> = out.stderr.lines().filter(|l| l.starts_with("error:")).collect();
-    assert!(!errors.is_empty() && errors.iter().all(|l| l.starts_with(&told)), "{errors:?}");
+    assert!(!errors.is_empty() && errors.iter().all(|l| l.starts_with(&text)), "{errors:?}");
     assert_eq!(out.code(), Some(7), "{}", out.stderr);
     true
 }

@@ -33,8 +33,8 @@ fn the_step_after_an_output_is_as_long_as_without() {
     let after = cut_times[half + 2] - at;
     assert!((after / length - 1.0).abs() < 0.02, "{after} after, {length} before");
     // dt is the length of the next step
-    let told = cut.history("dt")[half + 1];
-    assert!((after / told - 1.0).abs() < 1e-9, "{after}, {told}");
+    let message = cut.history("dt")[half + 1];
+    assert!((after / message - 1.0).abs() < 1e-9, "{after}, {message}");
 }
 
 #[test]
@@ -54,13 +54,13 @@ fn an_output_at_a_steps_end_adds_no_step() {
 fn outputs_closer_than_a_step_are_all_met() {
     let close = [3e-9, 3e-9 * (1.0 + 1e-14), 3.000001e-9, 1e-8];
     let run = Home::with(&every_step(&close)).run("run", &[]);
-    let told: Vec<f64> = run.summary["profiles"]
+    let message: Vec<f64> = run.summary["profiles"]
         .as_array()
         .unwrap()
         .iter()
         .map(|p| p["time"].as_f64().unwrap())
         .collect();
-    assert_eq!(told, close);
+    assert_eq!(message, close);
     let mut files: Vec<_> =
         (0..4).map(|k| run.summary["profiles"][k]["file"].to_string()).collect();
     files.dedup();

@@ -14,12 +14,13 @@ fn every_template_runs() {
         let file = format!("{name}.json");
         assert!(home.call(["new", name]).end().succeeded().contains(&file));
         // those in two dimensions on coarser cells and for a shorter time
-        let scene: serde_json::Value =
-            serde_json::from_slice(&std::fs::read(home.at(&file)).unwrap()).unwrap();
+        let bytes = std::fs::read(home.at(&file)).unwrap();
+        let checked = flyer_mpm::input::parse(&bytes, name, &[]).unwrap();
+        assert!(checked.warnings.is_empty(), "{name}: {:?}", checked.warnings);
         let mut args = vec![file.clone(), "--quiet".to_string()];
-        if scene["domain"]["lower"].as_array().unwrap().len() > 1 {
-            let end = scene["time"]["end"].as_f64().unwrap() / 8.0;
-            let cell = scene["domain"]["cell_size"].as_f64().unwrap() * 2.0;
+        if checked.dimension > 1 {
+            let end = checked.scene.time.end / 8.0;
+            let cell = checked.cell_size[0] * 2.0;
             args.extend(["--set".into(), format!("time.end={end:e}")]);
             args.extend(["--set".into(), format!("domain.cell_size={cell:e}")]);
             args.extend(["--set".into(), format!("output.profiles.times=[{end:e}]")]);

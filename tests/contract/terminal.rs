@@ -38,9 +38,9 @@ fn the_page_has_the_lines_of_a_run() {
 fn the_lines_of_a_run_are_few_and_short() {
     for (command, lines) in blocks() {
         assert!(lines.lines().all(|line| line.chars().count() <= 100), "{command}: {lines}");
-        // from the title on, which follows the lines of the start
-        let start = lines.lines().next().unwrap();
-        let report = lines.lines().skip(1).skip_while(|line| !start.starts_with(line));
+        // after the lines of the start
+        let method = |line: &&str| line.starts_with("method ") || line.starts_with("  ");
+        let report = lines.lines().skip(1).skip_while(method);
         let is_warning =
             |line: &&str| line.starts_with("warning: ") || line.starts_with("         ");
         let report: Vec<&str> =

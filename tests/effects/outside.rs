@@ -40,8 +40,8 @@ fn a_model_of_the_library_from_outside_changes_no_bit() {
 
 #[test]
 fn what_the_scene_has_no_place_for_is_refused() {
-    let told = |sets: &[(&str, serde_json::Value)],
-                models: &dyn Fn(&str) -> Option<CustomModel>| {
+    let message = |sets: &[(&str, serde_json::Value)],
+                   models: &dyn Fn(&str) -> Option<CustomModel>| {
         let mut scene = shipped("piston_elastic_plastic.json");
         let material = scene["materials"]["aluminium"].as_object_mut().unwrap();
         for (key, value) in sets {
@@ -57,10 +57,10 @@ fn what_the_scene_has_no_place_for_is_refused() {
         "full_compaction_pressure": 1e9});
     let gas = |rho0: f64| move |_: &str| Some(CustomModel::fluid(IdealGas { rho0, gamma: 1.4 }));
     let strength = VonMises { shear_modulus: 1e9, yield_stress: 1e8, hardening: 0.0 };
-    let error = told(std::slice::from_ref(&none), &|_| Some(CustomModel::strength(strength)));
+    let error = message(std::slice::from_ref(&none), &|_| Some(CustomModel::strength(strength)));
     assert!(error.contains("materials.aluminium: it names no strength"), "{error}");
-    let error = told(&[], &gas(1.0));
+    let error = message(&[], &gas(1.0));
     assert!(error.contains("density = 2790.0") && error.contains("1.0;"), "{error}");
-    let error = told(&[none, ("eos", porous)], &gas(2790.0));
+    let error = message(&[none, ("eos", porous)], &gas(2790.0));
     assert!(error.contains("bears shear or has a history"), "{error}");
 }

@@ -40,7 +40,7 @@ fn with(eos: &Value, key: &str, value: Value) -> Value {
     eos
 }
 
-/// Each key out of its range, or not there, is told with its path.
+/// For each key that is missing or out of its range, the message has the path.
 #[track_caller]
 fn each_key(density: f64, eos: &Value, needed: &[&str], bad: &[(&str, Value, &str)]) {
     for key in needed {

@@ -208,9 +208,9 @@ fn a_courant_number_above_the_limit() {
     let mut value = short(1e-8);
     value["method"] = json!({"shape": "gimp", "transfer": {"fmpm": 6}});
     value["time"]["courant"] = json!(1.0);
-    let told = checked(&value).unwrap_err();
+    let message = checked(&value).unwrap_err();
     for word in ["time.courant = 1", "measured to be stable", "monitor.on_courant_exceeded"] {
-        assert!(told.contains(word), "{told}");
+        assert!(message.contains(word), "{message}");
     }
     value["monitor"] = json!({"on_courant_exceeded": "reduce"});
     let reduced = checked(&value).unwrap();

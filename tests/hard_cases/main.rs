@@ -1,5 +1,5 @@
 //! Cases that strain the scheme, each with the bounds that it must keep; and scenes drawn at
-//! random, none of which may end in NaN, a hang, a panic, or with energy that nobody told of.
+//! random, none of which may end in NaN, a hang, a panic, or with a change of energy that no message reports.
 //!
 //! Cases that take long run where `HARD_CASES=all` is set, as `.ci/run` does;
 //! `PROPTEST_CASES=100000 cargo test --release --test hard_cases search` searches further, and

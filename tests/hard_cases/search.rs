@@ -45,7 +45,7 @@ proptest! {
     })]
 
     #[test]
-    fn search_for_what_is_not_told(scene in hard_scene(), ranks in 1usize..=4) {
+    fn search_for_faults_without_a_message(scene in hard_scene(), ranks in 1usize..=4) {
         let end = verdict(&scene, 1);
         if let Verdict::Wrong(what) = &end {
             prop_assert!(false, "{what}\n{scene}");

@@ -260,7 +260,7 @@ fn compressed_gases_a_hair_apart_press_on_each_other() {
 /// A patch that moves to another rank at a step's end takes nothing away from the force of that
 /// step.
 #[test]
-fn a_force_is_told_whole_when_patches_move() {
+fn a_force_is_reported_whole_when_patches_move() {
     let mut value = cut("soft_flyer.json", 2e-8);
     value["domain"]["patches"] = json!([16]);
     value["decomposition"] = json!({"balance": {"every": 3, "cost": "particles"}});

@@ -102,7 +102,8 @@ fn every_scheme_keeps_energy_and_momentum() {
     }
 }
 
-/// What material stands at when the run begins stays its wall; what it meets later is told.
+/// A side that the material touches at the start stays its wall; contact with another side later is
+/// reported.
 #[test]
 fn walls_are_those_that_bodies_touch() {
     let (outcome, errors) = scored(&total(&shipped("piston.json")));
@@ -117,8 +118,8 @@ fn walls_are_those_that_bodies_touch() {
     for body in 0..2 {
         apart["bodies"][body]["velocity"] = json!([-5000.0]);
     }
-    let told = run_scene(&checked(&apart), 1).err().expect("it runs into the wall");
-    assert!(told.contains("did not touch at the start"), "{told}");
+    let message = run_scene(&checked(&apart), 1).err().expect("it runs into the wall");
+    assert!(message.contains("did not touch at the start"), "{message}");
 }
 
 #[test]

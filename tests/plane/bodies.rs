@@ -99,8 +99,8 @@ fn a_body_across_planes_of_symmetry_is_clipped() {
     // a wall is no plane of symmetry
     scene["boundary"]["y_lower"] = json!("wall");
     let error = input::parse(scene.to_string().as_bytes(), "scene.json", &[]).unwrap_err();
-    let told = error.to_string();
-    assert!(told.contains("outside of the domain: it reaches from -0.00033 to"), "{told}");
+    let message = error.to_string();
+    assert!(message.contains("outside of the domain: it reaches from -0.00033 to"), "{message}");
     // nor has a body beyond the plane a part inside
     scene["boundary"]["y_lower"] = json!("symmetry");
     scene["bodies"][0]["disk"]["centre"] = json!([0.0, -5e-4]);

@@ -79,7 +79,7 @@ fn coulombs_friction_slows_a_block() {
 }
 
 #[test]
-fn the_force_told_is_that_of_pressure_and_friction() {
+fn the_reported_force_is_that_of_pressure_and_friction() {
     let friction = json!({"type": "friction", "coefficient": 0.1});
     for (sides, contact, speed, share) in
         [("periodic", friction, 200.0, 0.1), ("wall", json!({"type": "frictionless"}), 0.0, 0.0)]

@@ -137,11 +137,11 @@ fn a_file_beside_the_scene_is_read() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("scene.json");
     std::fs::write(&file, slab(json!("ramp.csv"), 1e-8).to_string()).unwrap();
-    let told = input::read(&file).unwrap_err().to_string();
-    assert!(told.contains("ramp.csv") && told.contains("cannot be read"), "{told}");
+    let message = input::read(&file).unwrap_err().to_string();
+    assert!(message.contains("ramp.csv") && message.contains("cannot be read"), "{message}");
     std::fs::write(folder.path().join("ramp.csv"), "time,pressure\n0,1e9\n1e-8,x\n").unwrap();
-    let told = input::read(&file).unwrap_err().to_string();
-    assert!(told.contains("ramp.csv") && told.contains("line 3"), "{told}");
+    let message = input::read(&file).unwrap_err().to_string();
+    assert!(message.contains("ramp.csv") && message.contains("line 3"), "{message}");
     std::fs::write(folder.path().join("ramp.csv"), "time,pressure\n0,1e9\n1e-8,2e9\n").unwrap();
     let read = input::parse(&input::read(&file).unwrap(), "scene.json", &[]).unwrap();
     let points = vec![[0.0, 1e9], [1e-8, 2e9]];
@@ -154,9 +154,9 @@ fn what_cannot_press_is_refused() {
     fn refused(load: Value, sets: &[&str], fragments: &[&str]) {
         let sets: Vec<String> = sets.iter().map(|set| set.to_string()).collect();
         let text = slab(load, 1e-8).to_string();
-        let told = input::parse(text.as_bytes(), "s.json", &sets).unwrap_err().to_string();
+        let message = input::parse(text.as_bytes(), "s.json", &sets).unwrap_err().to_string();
         for fragment in fragments {
-            assert!(told.contains(fragment), "{told}\nhas no {fragment}");
+            assert!(message.contains(fragment), "{message}\nhas no {fragment}");
         }
     }
     let path = "boundary.x_lower.pressure";

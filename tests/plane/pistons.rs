@@ -224,8 +224,8 @@ fn a_file_beside_the_scene_is_read() {
     let file = folder.path().join("scene.json");
     std::fs::write(&file, slab(json!("drive.csv"), 1e-8).to_string()).unwrap();
     std::fs::write(folder.path().join("drive.csv"), "time,pressure\n0,10\n1e-8,20\n").unwrap();
-    let told = input::read(&file).unwrap_err().to_string();
-    assert!(told.contains("drive.csv") && told.contains("time,velocity"), "{told}");
+    let message = input::read(&file).unwrap_err().to_string();
+    assert!(message.contains("drive.csv") && message.contains("time,velocity"), "{message}");
     std::fs::write(folder.path().join("drive.csv"), "time,velocity\n0,10\n1e-8,20\n").unwrap();
     let read = input::parse(&input::read(&file).unwrap(), "scene.json", &[]).unwrap();
     let points = vec![[0.0, 10.0], [1e-8, 20.0]];
@@ -234,7 +234,7 @@ fn a_file_beside_the_scene_is_read() {
 
 #[test]
 fn what_makes_no_piston_is_refused() {
-    let told = |edit: &dyn Fn(&mut Value)| {
+    let message = |edit: &dyn Fn(&mut Value)| {
         let mut scene = slab(ramp(300.0, 1e-7), 1e-7);
         edit(&mut scene);
         match input::parse(scene.to_string().as_bytes(), "scene.json", &[]) {
@@ -242,7 +242,8 @@ fn what_makes_no_piston_is_refused() {
             Err(error) => error.to_string(),
         }
     };
-    let velocity = |v: Value| told(&|scene| scene["boundary"]["x_lower"]["velocity"] = v.clone());
+    let velocity =
+        |v: Value| message(&|scene| scene["boundary"]["x_lower"]["velocity"] = v.clone());
     for (v, words) in [
         (json!([[1e-7, 0.0], [1e-7, 5.0]]), "boundary.x_lower.velocity[1]"),
         (json!("drive.csv"), "with the scene's own file alone"),
@@ -250,23 +251,23 @@ fn what_makes_no_piston_is_refused() {
         (json!({"to": 5.0, "duration": 0.0}), "boundary.x_lower"),
         (json!([]), "boundary.x_lower"),
     ] {
-        let told = velocity(v);
-        assert!(told.contains(words), "{told}");
+        let message = velocity(v);
+        assert!(message.contains(words), "{message}");
     }
-    let opposite = told(&|scene| scene["boundary"]["x_upper"] = json!("wall"));
+    let opposite = message(&|scene| scene["boundary"]["x_upper"] = json!("wall"));
     assert!(opposite.contains("the grid travels with a piston"), "{opposite}");
     let wave = json!({"simple_wave": {"body": "slab"}});
-    let fast = told(&|scene| {
+    let fast = message(&|scene| {
         scene["reference"] = wave.clone();
         scene["bodies"][0]["velocity"] = json!([-10.0]);
     });
     assert!(fast.contains("which is a shock"), "{fast}");
-    let still = told(&|scene| {
+    let still = message(&|scene| {
         scene["reference"] = wave.clone();
         scene["boundary"]["x_lower"] = json!("free");
     });
     assert!(still.contains("touches no piston"), "{still}");
-    let steady = told(&|scene| {
+    let steady = message(&|scene| {
         scene["reference"] = json!({"wall_impact": {"body": "slab"}});
         scene["bodies"][0]["velocity"] = json!([-10.0]);
     });

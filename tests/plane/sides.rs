@@ -437,7 +437,7 @@ fn a_gas_within_a_round_wall_stays_at_rest() {
 
 #[test]
 fn sides_that_are_refused() {
-    let told = |scene: &Value, fragments: &[&str]| {
+    let message = |scene: &Value, fragments: &[&str]| {
         let text = scene.to_string();
         let error = input::parse(text.as_bytes(), "s", &[]).unwrap_err().to_string();
         for fragment in fragments {
@@ -447,19 +447,19 @@ fn sides_that_are_refused() {
     let mut line = plates("copper", 1e-3, 1000.0, None);
     for side in [json!("no_slip"), json!({"friction": 0.3})] {
         line["boundary"]["x_upper"] = side;
-        told(&line, &["boundary.x_upper = ", "1 number", "allowed: \"wall\""]);
+        message(&line, &["boundary.x_upper = ", "1 number", "allowed: \"wall\""]);
     }
     line["boundary"] = json!({"x_lower": "transmitting"});
-    told(&line, &["boundary.x_lower = \"transmitting\"", "no body does", "\"outflow\""]);
+    message(&line, &["boundary.x_lower = \"transmitting\"", "no body does", "\"outflow\""]);
     let plane = |side: Value| column(0.01, default_solid(), side, [0.0, -10.0]);
-    told(&plane(json!({"friction": -0.1})), &["y_lower.friction = -0.1", "at least 0"]);
-    told(&plane(json!({"friction": "rough"})), &["y_lower.friction = \"rough\"", "a number"]);
-    told(&plane(json!("no-slip")), &["y_lower = \"no-slip\"", "did you mean \"no_slip\"?"]);
-    told(&plane(json!("transmitting")), &["body_force", "\"transmitting\" is not booked"]);
+    message(&plane(json!({"friction": -0.1})), &["y_lower.friction = -0.1", "at least 0"]);
+    message(&plane(json!({"friction": "rough"})), &["y_lower.friction = \"rough\"", "a number"]);
+    message(&plane(json!("no-slip")), &["y_lower = \"no-slip\"", "did you mean \"no_slip\"?"]);
+    message(&plane(json!("transmitting")), &["body_force", "\"transmitting\" is not booked"]);
     let mut axis = plane(json!("wall"));
     axis["domain"]["geometry"] = json!("axisymmetric");
     for side in [json!("no_slip"), json!({"friction": 0.3}), json!("transmitting")] {
         axis["boundary"] = json!({"x_lower": side});
-        told(&axis, &["boundary.x_lower = ", "axis", "allowed: \"symmetry\""]);
+        message(&axis, &["boundary.x_lower = ", "axis", "allowed: \"symmetry\""]);
     }
 }

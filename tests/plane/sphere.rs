@@ -1,7 +1,12 @@
 //! A sphere that strikes a block: hot edges of the contact are warned of.
 
+use std::path::Path;
+
 use decomp::Serial;
+use flyer_mpm::input;
+use flyer_mpm::scene::CheckedScene;
 use flyer_mpm::simulation::Simulation;
+use flyer_mpm::solver::{Stepper, Steps};
 use serde_json::{Value, json};
 
 use crate::tools::checked;
@@ -40,12 +45,38 @@ fn warnings(shape: &Value) -> Vec<String> {
         ],
         "artificial_viscosity": {"linear": 0.1, "quadratic": 1.25, "limiter": "christensen"},
     });
-    let scene = checked(&value);
-    let mut simulation = Simulation::<2>::new(&scene, &Serial, 1).unwrap();
+    warnings_of::<2>(&checked(&value))
+}
+
+/// Warnings of a run to its end.
+fn warnings_of<const D: usize>(scene: &CheckedScene) -> Vec<String>
+where
+    Stepper<D>: Steps<D>,
+{
+    let mut simulation = Simulation::<D>::new(scene, &Serial, 1).unwrap();
     while simulation.time() < scene.scene.time.end {
         simulation.advance(scene.scene.time.end).unwrap();
     }
     simulation.peaks().warnings()
+}
+
+/// A template of `flyer-mpm new` with changed values.
+fn template(name: &str, sets: &[&str]) -> CheckedScene {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/templates");
+    let bytes = input::read(&folder.join(name)).unwrap();
+    let sets: Vec<String> = sets.iter().map(|set| set.to_string()).collect();
+    input::parse(&bytes, name, &sets).unwrap()
+}
+
+/// Seven times the heat of the shock is plastic work in the foot of a bar; four times this heat is
+/// that of the tension which a spall releases.
+#[test]
+fn heat_of_plastic_work_and_of_failure_is_not_warned_of() {
+    let coarse = ["domain.cell_size=8e-4", "time.end=2e-5", "output={}"];
+    let bar = template("taylor_bar.json", &coarse);
+    assert_eq!(warnings_of::<2>(&bar), Vec::<String>::new());
+    let spall = template("spall.json", &[]);
+    assert_eq!(warnings_of::<1>(&spall), Vec::<String>::new());
 }
 
 /// The edge of the contact of a sphere outruns the shock, so that its pressure is some times that

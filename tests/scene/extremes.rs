@@ -93,8 +93,8 @@ where
 
 /// Checks a scene, and runs it if it passes and is small; whether it ran.
 fn judged(text: &str) -> bool {
-    let (available, told) = (Some(64 << 20), |error: input::SceneError| {
-        assert!(super::is_told_well(&error.to_string()), "{error}");
+    let (available, message) = (Some(64 << 20), |error: input::SceneError| {
+        assert!(super::is_clear(&error.to_string()), "{error}");
     });
     if input::check_size(text.as_bytes(), "scene.json", &[], available).is_err() {
         return false;
@@ -102,7 +102,7 @@ fn judged(text: &str) -> bool {
     let checked = match parse(text.as_bytes(), "scene.json", &[]) {
         Ok(checked) => checked,
         Err(error) => {
-            told(error);
+            message(error);
             return false;
         }
     };
@@ -167,7 +167,7 @@ fn numbers_beyond_all_scenes_are_refused_by_their_key() {
     refused("taylor_bar.json", &["materials.42CrMo4.strength.c=1e308"], &["strength.c = 1e+308"]);
     let set = "materials.42CrMo4.thermal.specific_heat=1e-308";
     refused("taylor_bar.json", &[set], &["thermal.specific_heat = 1e-308", "at least 1e-150"]);
-    // one that has bounds of its own is told those
+    // for one that has bounds of its own, the message has those
     refused("flyer.json", &["time.courant=1e308"], &["a number above 0 and at most 1"]);
     refused(
         "flyer.json",

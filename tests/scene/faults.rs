@@ -36,7 +36,7 @@ fn holds(lines: &[String], paths: &[&str]) {
 }
 
 #[test]
-fn six_missing_keys_are_told_at_once() {
+fn six_missing_keys_are_reported_at_once() {
     let lines = reply(|scene| {
         remove(scene, "", "title");
         remove(scene, "/domain", "upper");
@@ -59,7 +59,7 @@ fn six_missing_keys_are_told_at_once() {
 }
 
 #[test]
-fn units_and_names_are_told_with_them() {
+fn units_and_names_are_reported_with_them() {
     let lines = reply(|scene| {
         scene["materials"]["copper"]["density"] = json!("8.93 GPa");
         scene["time"]["end"] = json!("3 parsec");
@@ -103,7 +103,7 @@ fn the_order_is_that_of_the_file_and_not_of_the_alphabet() {
 }
 
 #[test]
-fn a_consequence_of_a_fault_is_not_told() {
+fn a_consequence_of_a_fault_is_not_reported() {
     // a misspelt key is not missing as well
     refused_edit(
         |scene| {
@@ -130,7 +130,7 @@ fn a_consequence_of_a_fault_is_not_told() {
 }
 
 #[test]
-fn checks_that_do_not_depend_on_each_other_are_all_told() {
+fn checks_that_do_not_depend_on_each_other_are_all_reported() {
     let lines = reply(|scene| {
         scene["bodies"][0]["velocity"] = json!([1.0, 2.0]);
         scene["bodies"][1]["box"]["upper"] = json!([1.0]);
@@ -149,7 +149,7 @@ fn checks_that_do_not_depend_on_each_other_are_all_told() {
 }
 
 #[test]
-fn of_many_faults_the_first_twenty_are_told() {
+fn of_many_faults_the_first_twenty_are_reported() {
     let lines = reply(|scene| {
         let keys = (0..23).map(|k| (format!("zz{k:02}"), json!(1)));
         scene.as_object_mut().unwrap().extend(keys);

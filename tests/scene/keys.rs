@@ -1,24 +1,25 @@
 //! Files, text, keys and single numbers that are refused on reading.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use flyer_mpm::input;
 use flyer_mpm::input::parse;
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use super::{refused, refused_edit, refused_text, tells, tells_all, with};
+use super::{inputs, mentions, mentions_all, refused, refused_edit, refused_text, with};
 
 #[test]
 fn files_that_are_no_scene() {
     let folder = tempfile::tempdir().unwrap();
     let message = |path: &Path| input::read(path).unwrap_err().to_string();
     let missing = folder.path().join("missing.json");
-    tells(&message(&missing), &["missing.json", "cannot be read", "No such file"]);
-    tells(&message(folder.path()), &["is a directory"]);
-    tells(&message(&folder.path().join("a\nb.json")), &["a\\nb.json", "cannot be read"]);
+    mentions(&message(&missing), &["missing.json", "cannot be read", "No such file"]);
+    mentions(&message(folder.path()), &["is a directory"]);
+    mentions(&message(&folder.path().join("a\nb.json")), &["a\\nb.json", "cannot be read"]);
     let long = folder.path().join("long.json");
     std::fs::File::create(&long).unwrap().set_len(input::LARGEST_FILE + 1).unwrap();
-    tells(&message(&long), &["long.json", "16777217 bytes", "at most 16777216 bytes"]);
+    mentions(&message(&long), &["long.json", "16777217 bytes", "at most 16777216 bytes"]);
 
     refused_text("", &["bad.json: is empty", "allowed"]);
     refused_text(" \n\t", &["is empty"]);
@@ -30,7 +31,7 @@ fn files_that_are_no_scene() {
     refused_text(&"[".repeat(1_000_000), &["nested too deep", "127 levels"]);
     refused_text(&"{\"a\":".repeat(1_000_000), &["nested too deep"]);
     let error = parse(b"{\"title\": \"\xff\"}", "bad.json", &[]).unwrap_err().to_string();
-    tells(&error, &["bad.json", "not UTF-8 from byte 11"]);
+    mentions(&error, &["bad.json", "not UTF-8 from byte 11"]);
 }
 
 /// Comments, trailing commas and the name of a schema change nothing, and faults keep their place.
@@ -49,7 +50,7 @@ fn comments_trailing_commas_and_a_schema() {
     let value = |text: &str| serde_json::to_value(read(text).unwrap().scene).unwrap();
     assert_eq!(value(&noted), value(&plain));
     let error = read("{\n /* two\n lines */ \"title\" 1,\n}").unwrap_err().to_string();
-    tells(&error, &["line 3 column", "expected `:`"]);
+    mentions(&error, &["line 3 column", "expected `:`"]);
     refused_text("{/* open", &["line 1 column"]);
 }
 
@@ -100,11 +101,11 @@ fn units_give_the_same_doubles() {
         parse(text.as_bytes(), "units.json", &[]).unwrap_err().to_string()
     };
     let error = refuse("\"end\": 1e-6", r#""end": "1 mm""#);
-    tells(&error, &["units.json: time.end = \"1 mm\"", "another dimension", "s"]);
+    mentions(&error, &["units.json: time.end = \"1 mm\"", "another dimension", "s"]);
     let error = refuse("8930.0", r#""8.93 lb/ft3""#);
-    tells(&error, &["materials.copper.density = \"8.93 lb/ft3\"", "unknown unit"]);
+    mentions(&error, &["materials.copper.density = \"8.93 lb/ft3\"", "unknown unit"]);
     let error = refuse("1.489", r#""1.489 m""#);
-    tells(&error, &["materials.copper.eos.s = \"1.489 m\"", "a number"]);
+    mentions(&error, &["materials.copper.eos.s = \"1.489 m\"", "a number"]);
 }
 
 #[test]
@@ -126,7 +127,7 @@ fn numbers_that_are_none() {
     let mut checked = with("flyer.json", &[]).unwrap().scene;
     checked.bodies[0].velocity = Some(vec![f64::NAN]);
     let error = input::check(checked, "made").unwrap_err().to_string();
-    tells(&error, &["made: bodies.flyer.velocity[0] = null", "a number"]);
+    mentions(&error, &["made: bodies.flyer.velocity[0] = null", "a number"]);
 }
 
 #[test]
@@ -150,8 +151,11 @@ fn unknown_keys_and_names() {
         &["materials.copper.eos.type = \"mie_gruneissen\"", "did you mean mie_gruneisen?"],
     );
     edit("materials.copper.eos.type=3", &["materials.copper.eos.type = 3", "ideal_gas"]);
-    let told = with("flyer.json", &["materials.copper.eos.type=ideal_gas"]).unwrap_err();
-    tells_all(&told, &["materials.copper.eos.c0", "materials.copper.eos.s", "allowed: gamma"]);
+    let printed = with("flyer.json", &["materials.copper.eos.type=ideal_gas"]).unwrap_err();
+    mentions_all(
+        &printed,
+        &["materials.copper.eos.c0", "materials.copper.eos.s", "allowed: gamma"],
+    );
     edit("materials.copper.eos={}", &["materials.copper.eos.type", "missing", "mie_gruneisen"]);
     edit(
         "method.shape=bspline_quadratik",
@@ -293,8 +297,8 @@ fn huge_files_get_a_short_verdict_soon() {
         for i in 0..50_000 {
             let lower = f64::from(i) * 1.6e-7;
             scene["bodies"][i as usize]["box"] =
-                serde_json::json!({"lower": [lower], "upper": [lower + 1.5e-7]});
-            scene["bodies"][i as usize]["particles_per_cell"] = serde_json::json!([100]);
+                json!({"lower": [lower], "upper": [lower + 1.5e-7]});
+            scene["bodies"][i as usize]["particles_per_cell"] = json!([100]);
         }
     };
     refused_edit(nobody, &["reference.flyer_impact.flyer", "no such body", "and 49980 more"]);
@@ -349,7 +353,7 @@ fn units_of_time_functions_give_the_same_doubles() {
             ],
         ),
     ] {
-        tells_all(&side(text).unwrap_err(), &fragments);
+        mentions_all(&side(text).unwrap_err(), &fragments);
     }
     // the published schema takes them too
     let validator = jsonschema::validator_for(&input::schema()).unwrap();
@@ -359,8 +363,7 @@ fn units_of_time_functions_give_the_same_doubles() {
         (r#"{"velocity": {"from": "1 m/s", "to": "0.7 km/s", "duration": "1 ms"}}"#, true),
         (r#"{"velocity": {"to": "fast", "duration": "1 ms"}}"#, false),
     ] {
-        scene["boundary"] =
-            serde_json::json!({"x_lower": serde_json::from_str::<Value>(text).unwrap()});
+        scene["boundary"] = json!({"x_lower": serde_json::from_str::<Value>(text).unwrap()});
         assert_eq!(validator.is_valid(&scene), valid, "{text}");
     }
 }
@@ -380,3 +383,103 @@ fn units_of_vertices_are_lengths() {
     let text = r#"[["0 mm", "0 mm"], ["8 mm", 0], [0, "6 mm"]]"#;
     assert_eq!(polygon(text), polygon("[[0, 0], [8e-3, 0], [0, 6e-3]]"));
 }
+
+/// Units of the keys of scenes.
+const UNITS: [&str; 17] = [
+    "m", "s", "m/s", "Pa", "kg/m3", "K", "J/kg", "J/(kg K)", "W/(m K)", "1/s", "m/s2", "1/Pa",
+    "Pa s", "J/m3", "Pa/K", "1/m", "m3/kg",
+];
+
+/// Numbers of a scene with the paths of their keys, without the names and numbers of members.
+fn numbers(value: &Value, pointer: &str, key: &str, found: &mut Vec<(String, String)>) {
+    match value {
+        Value::Number(_) => found.push((pointer.to_string(), key.to_string())),
+        Value::Array(all) => all.iter().enumerate().for_each(|(k, entry)| {
+            numbers(entry, &format!("{pointer}/{k}"), key, found);
+        }),
+        Value::Object(all) => all.iter().for_each(|(name, entry)| {
+            let key = match key {
+                "materials" => format!("{key}.NAME"),
+                "" => name.clone(),
+                _ => format!("{key}.{name}"),
+            };
+            numbers(entry, &format!("{pointer}/{name}"), &key, found);
+        }),
+        _ => {}
+    }
+}
+
+/// Every number of the shipped scenes takes a unit, and then the scene is the same; the keys that
+/// take none have no dimension.
+#[test]
+fn every_key_with_a_dimension_takes_units() {
+    let mut seen = BTreeSet::new();
+    let mut plain = BTreeSet::new();
+    for file in inputs() {
+        let scene: Value = serde_json::from_slice(&std::fs::read(&file).unwrap()).unwrap();
+        let read = |scene: &Value| {
+            let checked = parse(scene.to_string().as_bytes(), "units.json", &[]).ok()?;
+            Some(serde_json::to_value(checked.scene).unwrap())
+        };
+        let Some(same) = read(&scene) else { continue };
+        let mut found = Vec::new();
+        numbers(&scene, "", "", &mut found);
+        for (pointer, key) in found {
+            if !seen.insert(key.clone()) {
+                continue;
+            }
+            let takes = |unit: &&str| {
+                let mut scene = scene.clone();
+                let number = scene.pointer_mut(&pointer).unwrap();
+                *number = json!(format!("{number} {unit}"));
+                read(&scene).is_some_and(|read| {
+                    assert_eq!(read, same, "{pointer}");
+                    true
+                })
+            };
+            if !UNITS.iter().any(takes) {
+                plain.insert(key);
+            }
+        }
+    }
+    assert!(seen.len() > 90, "{seen:?}");
+    let listed: BTreeSet<String> = PLAIN.iter().map(|key| key.to_string()).collect();
+    assert_eq!(plain, listed);
+}
+
+/// Keys of the shipped scenes without a dimension.
+const PLAIN: [&str; 33] = [
+    "artificial_viscosity.growth.max",
+    "artificial_viscosity.growth.rate",
+    "artificial_viscosity.linear",
+    "artificial_viscosity.quadratic",
+    "bodies.intersection.half_plane.normal",
+    "bodies.particles_per_cell",
+    "bodies.rotation.angle",
+    "bodies.velocity_field.vortex.amplitude",
+    "body_force.vortex.amplitude",
+    "boundary.y_lower.friction",
+    "domain.patches",
+    "format",
+    "materials.NAME.eos.burn.plane.normal",
+    "materials.NAME.eos.exponent",
+    "materials.NAME.eos.gamma",
+    "materials.NAME.eos.gamma0",
+    "materials.NAME.eos.poissons_ratio",
+    "materials.NAME.eos.s",
+    "materials.NAME.eos.solid.gamma0",
+    "materials.NAME.eos.solid.s",
+    "materials.NAME.strength.c",
+    "materials.NAME.strength.n",
+    "materials.NAME.strength.softening.m",
+    "materials.NAME.thermal.taylor_quinney",
+    "method.domain_limit",
+    "method.edge_mask",
+    "method.pressure_relaxation.interval",
+    "method.pressure_relaxation.rate",
+    "method.transfer.fmpm",
+    "method.volume_relaxation",
+    "reference.flyer_impact.front.angle",
+    "reference.riemann.front.angle",
+    "time.courant",
+];

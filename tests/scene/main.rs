@@ -35,7 +35,7 @@ fn with(name: &str, sets: &[&str]) -> Result<CheckedScene, String> {
 }
 
 /// Whether a message is one line, or a number of faults and then that many lines or the longest list.
-fn is_told_well(message: &str) -> bool {
+fn is_clear(message: &str) -> bool {
     let mut lines = message.lines();
     let (Some(first), rest) = (lines.next(), lines.collect::<Vec<_>>()) else { return false };
     if rest.is_empty() {
@@ -49,8 +49,8 @@ fn is_told_well(message: &str) -> bool {
 
 /// The message holds every fragment in a list of several faults.
 #[track_caller]
-fn tells_all(message: &str, fragments: &[&str]) {
-    assert!(message.lines().count() > 2 && is_told_well(message), "{message}");
+fn mentions_all(message: &str, fragments: &[&str]) {
+    assert!(message.lines().count() > 2 && is_clear(message), "{message}");
     for fragment in fragments {
         assert!(message.contains(fragment), "no `{fragment}` in: {message}");
     }
@@ -58,7 +58,7 @@ fn tells_all(message: &str, fragments: &[&str]) {
 
 /// The message is one line that holds every fragment.
 #[track_caller]
-fn tells(message: &str, fragments: &[&str]) {
+fn mentions(message: &str, fragments: &[&str]) {
     assert_eq!(message.lines().count(), 1, "{message}");
     assert!(message.len() < 2000, "{message}");
     for fragment in fragments {
@@ -70,7 +70,7 @@ fn tells(message: &str, fragments: &[&str]) {
 fn refused(name: &str, sets: &[&str], fragments: &[&str]) {
     match with(name, sets) {
         Ok(_) => panic!("{sets:?} passed"),
-        Err(message) => tells(&message, fragments),
+        Err(message) => mentions(&message, fragments),
     }
 }
 
@@ -78,7 +78,7 @@ fn refused(name: &str, sets: &[&str], fragments: &[&str]) {
 fn refused_text(text: &str, fragments: &[&str]) {
     match parse(text.as_bytes(), "bad.json", &[]) {
         Ok(_) => panic!("{text:.200} passed"),
-        Err(error) => tells(&error.to_string(), fragments),
+        Err(error) => mentions(&error.to_string(), fragments),
     }
 }
 

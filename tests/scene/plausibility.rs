@@ -58,8 +58,8 @@ fn runs_that_end_too_early_or_too_late() {
         with("flyer.json", &all.iter().map(String::as_str).collect::<Vec<_>>()).unwrap().warnings
     };
     assert!(warnings(&short).iter().any(|w| w.contains("crosses only 0.07 % of the longest")));
-    let told = warnings(&long);
-    assert!(told.iter().any(|w| w.contains("steps") && w.contains("hours")), "{told:?}");
+    let message = warnings(&long);
+    assert!(message.iter().any(|w| w.contains("steps") && w.contains("hours")), "{message:?}");
     assert!(warnings(&right).is_empty(), "{:?}", warnings(&right));
 }
 
@@ -72,14 +72,14 @@ fn lengths_in_other_units() {
             format!("domain={{\"lower\":[{lower}],\"upper\":[{upper}],\"cell_size\":{cell}}}");
         vec![flyer, target, domain]
     };
-    let told = |sets: Vec<String>| {
+    let message = |sets: Vec<String>| {
         let sets: Vec<&str> = sets.iter().map(String::as_str).chain(["reference=null"]).collect();
         with("flyer.json", &sets).unwrap().warnings.join("; ")
     };
-    assert!(told(sizes("-1e-9", "1e-9", "2e-11")).contains("smaller than an atom"));
-    assert!(!told(sizes("-1e-7", "1e-7", "2e-9")).contains("the unit is m"));
-    assert!(told(sizes("-1e7", "1e7", "1e5")).contains("domain is 2e7 m long"));
-    assert!(!told(sizes("-1e6", "1e6", "1e4")).contains("the unit is m"));
+    assert!(message(sizes("-1e-9", "1e-9", "2e-11")).contains("smaller than an atom"));
+    assert!(!message(sizes("-1e-7", "1e-7", "2e-9")).contains("the unit is m"));
+    assert!(message(sizes("-1e7", "1e7", "1e5")).contains("domain is 2e7 m long"));
+    assert!(!message(sizes("-1e6", "1e6", "1e4")).contains("the unit is m"));
 }
 
 /// Rarefactions meet after (0.5 + 8) mm over the sound speeds, 1.6 us.
@@ -99,10 +99,10 @@ fn tension_that_no_material_bears() {
     };
     // P = v Z Z'/(Z + Z') with Z = 2785*5386 and Z' = 8930*3940 kg/(m2 s), less what copper keeps up:
     // 2 P Z/(Z + Z')
-    let told = plates("3e-6", "1000", "title=plates");
+    let message = plates("3e-6", "1000", "title=plates");
     assert!(
-        told.contains("bodies.target: aluminium would reach a tension of about 6.3 GPa"),
-        "{told}"
+        message.contains("bodies.target: aluminium would reach a tension of about 6.3 GPa"),
+        "{message}"
     );
     for (end, speed, more) in [
         ("1e-6", "1000", "title=too short for the waves to meet"),
@@ -115,8 +115,8 @@ fn tension_that_no_material_bears() {
             "materials.aluminium.failure={\"type\": \"tension_limit\", \"stress\": 1e9}",
         ),
     ] {
-        let told = plates(end, speed, more);
-        assert!(!told.contains("in tension"), "{more}: {told}");
+        let message = plates(end, speed, more);
+        assert!(!message.contains("in tension"), "{more}: {message}");
     }
 }
 

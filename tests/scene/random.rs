@@ -3,7 +3,7 @@
 use flyer_mpm::input::parse;
 use proptest::prelude::*;
 
-use super::{is_told_well, shipped};
+use super::{is_clear, shipped};
 
 proptest! {
     #![proptest_config(ProptestConfig {
@@ -19,7 +19,7 @@ proptest! {
         let at = at % bytes.len();
         if cut { bytes.truncate(at) } else { bytes[at] = byte }
         if let Err(error) = parse(&bytes, "flyer.json", &[]) {
-            prop_assert!(is_told_well(&error.to_string()), "{error}");
+            prop_assert!(is_clear(&error.to_string()), "{error}");
         }
     }
 
@@ -28,7 +28,7 @@ proptest! {
         set in "(bodies|time|domain|[a-z]{0,3})[.\\[\\]a-z0-9=\"-]{0,20}=.{0,10}",
     ) {
         if let Err(error) = parse(&shipped("flyer.json"), "flyer.json", &[set]) {
-            prop_assert!(is_told_well(&error.to_string()), "{error}");
+            prop_assert!(is_clear(&error.to_string()), "{error}");
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use flyer_mpm::input;
 
-use super::{refused, tells, tells_all, with};
+use super::{mentions, mentions_all, refused, with};
 
 #[test]
 fn domains_that_do_not_fit() {
@@ -20,9 +20,9 @@ fn domains_that_do_not_fit() {
     let far = ["domain.lower=[1e9]", "domain.upper=[1.000000001e9]", "domain.cell_size=1e-3"];
     refused("flyer.json", &far, &["domain.cell_size = 0.001", "too small for doubles"]);
     let plane = ["domain.lower=[0, 0]", "domain.upper=[1, 1]"];
-    let told = with("flyer.json", &plane).unwrap_err();
-    tells_all(
-        &told,
+    let message = with("flyer.json", &plane).unwrap_err();
+    mentions_all(
+        &message,
         &["bodies.flyer.box.lower = [-0.0005]", "domain.lower has 2", "allowed: 2 numbers"],
     );
     edit("boundary={\"y_upper\": \"wall\"}", &["boundary.y_upper = \"wall\"", "a side along y"]);
@@ -62,12 +62,15 @@ fn bodies_that_do_not_fit() {
 }
 
 #[test]
-fn memory_is_told_before_it_is_taken() {
+fn memory_is_reported_before_it_is_taken() {
     let sets = ["bodies.flyer.particles_per_cell=[1000000000]"];
     let checked = with("flyer.json", &sets).unwrap();
     assert_eq!(checked.particles, 50_000_001_600);
     let error = checked.check_memory(Some(1 << 33)).unwrap_err().to_string();
-    tells(&error, &["flyer.json", "50000001600 particles", "TiB", "allowed: 8.0 GiB", "cell_size"]);
+    mentions(
+        &error,
+        &["flyer.json", "50000001600 particles", "TiB", "allowed: 8.0 GiB", "cell_size"],
+    );
     assert!(checked.check_memory(None).is_ok());
     let small = with("flyer.json", &[]).unwrap();
     assert!(small.check_memory(input::available_memory()).is_ok());
@@ -163,11 +166,11 @@ fn contact_that_says_nothing_or_too_much() {
     edit("contact.normals=volume", &["contact", "volume"]);
     let warned = |name: &str, sets: &[&str]| with(name, sets).unwrap().warnings.join("; ");
     let friction = "contact={\"type\": \"friction\", \"coefficient\": 0.1}";
-    tells(&warned("soft_flyer.json", &[friction]), &["contact.type", "nothing slides"]);
+    mentions(&warned("soft_flyer.json", &[friction]), &["contact.type", "nothing slides"]);
     let sets = ["contact={\"type\": \"frictionless\"}"];
-    tells(&warned("piston.json", &sets), &["one body"]);
+    mentions(&warned("piston.json", &sets), &["one body"]);
     // a softer flyer is held together without contact alone
-    tells(&warned("soft_flyer.json", &["contact={\"type\": \"stick\"}"]), &["would separate"]);
+    mentions(&warned("soft_flyer.json", &["contact={\"type\": \"stick\"}"]), &["would separate"]);
     assert_eq!(warned("soft_flyer.json", &[]), "");
 }
 
@@ -177,16 +180,20 @@ fn sides_that_cannot_face_each_other() {
         let sets = [format!("boundary.x_lower={lower}"), format!("boundary.x_upper={upper}")];
         with("flyer.json", &[&sets[0], &sets[1]])
     };
-    let told = |lower: &str, upper: &str, fragments: &[&str]| {
-        tells(&pair(lower, upper).unwrap_err(), fragments);
+    let message = |lower: &str, upper: &str, fragments: &[&str]| {
+        mentions(&pair(lower, upper).unwrap_err(), fragments);
     };
     let piston = "{\"velocity\": 10.0}";
-    told("periodic", "free", &["boundary.x_lower = \"periodic\"", "x_upper = \"free\"", "both"]);
-    told("wall", "periodic", &["boundary.x_lower = \"wall\"", "x_upper = \"periodic\""]);
+    message("periodic", "free", &["boundary.x_lower = \"periodic\"", "x_upper = \"free\"", "both"]);
+    message("wall", "periodic", &["boundary.x_lower = \"wall\"", "x_upper = \"periodic\""]);
     // the one that lacks its partner is named first
-    told("symmetry", "periodic", &["json: boundary.x_upper = \"periodic\": cannot stand opposite"]);
-    told(piston, "wall", &["boundary.x_lower = {\"velocity\":10.0}", "x_upper = \"wall\""]);
-    told("symmetry", piston, &["boundary.x_lower = \"symmetry\"", "the same velocity"]);
+    message(
+        "symmetry",
+        "periodic",
+        &["json: boundary.x_upper = \"periodic\": cannot stand opposite"],
+    );
+    message(piston, "wall", &["boundary.x_lower = {\"velocity\":10.0}", "x_upper = \"wall\""]);
+    message("symmetry", piston, &["boundary.x_lower = \"symmetry\"", "the same velocity"]);
     for (lower, upper) in [
         ("periodic", "periodic"),
         (piston, piston),

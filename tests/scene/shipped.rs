@@ -5,7 +5,7 @@ use flyer_mpm::input::parse;
 use flyer_mpm::scene::{Side, Transfer};
 use serde_json::{Value, json};
 
-use super::{inputs, refused, shipped, tells, with};
+use super::{inputs, mentions, refused, shipped, with};
 
 #[test]
 fn shipped_scenes_pass() {
@@ -92,7 +92,7 @@ fn a_checked_scene_counts_cells_and_particles() {
 }
 
 #[test]
-fn walls_are_told_with_their_velocity() {
+fn walls_are_reported_with_their_velocity() {
     let checked = with("piston.json", &[]).unwrap();
     let wall = checked.wall_struck_by(0).unwrap();
     assert_eq!((wall.upper, wall.position, wall.velocity), (false, 0.0, 0.0));
@@ -138,7 +138,7 @@ fn overrides_reach_every_place() {
 }
 
 #[test]
-fn overrides_that_fail_are_told() {
+fn overrides_that_fail_are_reported() {
     refused("flyer.json", &["time.end"], &["--set time.end", "no `=`", "PATH=VALUE"]);
     refused("flyer.json", &["bodies.flier.velocity=[1]"], &["did you mean flyer?", "0 to 1"]);
     refused("flyer.json", &["method.shape.x=1"], &["method.shape is \"cpdi_bspline_quadratic\""]);
@@ -152,7 +152,7 @@ fn what_is_inaccurate_is_warned_of() {
     let warned = |sets: &[&str], fragment: &str| {
         let checked = with("flyer.json", sets).unwrap();
         assert_eq!(checked.warnings.len(), 1, "{:?}", checked.warnings);
-        tells(&checked.warnings[0], &[fragment]);
+        mentions(&checked.warnings[0], &[fragment]);
     };
     warned(&["method.shape=linear"], "method.shape = \"linear\"");
     let above = ["method.shape=gimp", "time.courant=0.95", "monitor.on_courant_exceeded=allow"];

@@ -233,7 +233,7 @@ struct Inquiry {
     /// The answers of the previous round.
     before: BTreeMap<usize, Asked>,
     /// Time and text of a verdict that was sent to another rank for reporting.
-    told: Option<(Duration, String)>,
+    reported: Option<(Duration, String)>,
 }
 
 impl Inquiry {
@@ -243,7 +243,7 @@ impl Inquiry {
             seen: start,
             asked: BTreeMap::new(),
             before: BTreeMap::new(),
-            told: None,
+            reported: None,
         }
     }
 
@@ -253,7 +253,7 @@ impl Inquiry {
         self.clock += (now - self.seen).min(grace / 4);
         self.seen = now;
         watch.answer(&mut self.asked);
-        if let Some((at, why)) = &self.told {
+        if let Some((at, why)) = &self.reported {
             if self.clock - *at >= grace {
                 watch.control.end(why);
             }
@@ -277,12 +277,12 @@ impl Inquiry {
         let silent: Vec<usize> = silent.map(|(&rank, _)| rank).collect();
         if !silent.is_empty() {
             let why = hanging(&silent, timeout, watch.control.rank());
-            self.tell(watch, &silent, why);
+            self.report(watch, &silent, why);
         } else if self.asked.values().all(|a| a.answer.is_some() && due(a)) {
             if self.asked.iter().all(|(rank, now)| stuck(self.before.get(rank), now)) {
                 let ranks: Vec<usize> = self.asked.keys().copied().collect();
                 let why = deadlocked(&ranks, 2 * timeout);
-                self.tell(watch, &[], why);
+                self.report(watch, &[], why);
                 return;
             }
             self.clock = Duration::ZERO;
@@ -314,7 +314,7 @@ impl Inquiry {
     }
 
     /// Lets the lowest rank that does not hang report the verdict and end the run.
-    fn tell<C: Control>(&mut self, watch: &StallWatch<C>, hanging: &[usize], why: String) {
+    fn report<C: Control>(&mut self, watch: &StallWatch<C>, hanging: &[usize], why: String) {
         let me = watch.control.rank();
         let speaker = (0..me).find(|rank| !hanging.contains(rank)).unwrap_or(me);
         if speaker == me {
@@ -322,7 +322,7 @@ impl Inquiry {
         }
         let words: Vec<u64> = std::iter::once(SPEAK).chain(why.bytes().map(u64::from)).collect();
         watch.control.send(speaker, &words);
-        self.told = Some((self.clock, why));
+        self.reported = Some((self.clock, why));
     }
 }
 

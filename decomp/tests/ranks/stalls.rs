@@ -48,8 +48,8 @@ fn a_rank_missing_in_a_reduction_is_named() {
             }
             comm.min(&mut [0.0]);
         });
-        let told = format!("rank {victim} has made no progress for 0.5 s: it hangs");
-        assert!(fault.contains(&told), "{fault}");
+        let message = format!("rank {victim} has made no progress for 0.5 s: it hangs");
+        assert!(fault.contains(&message), "{fault}");
     }
 }
 
@@ -107,7 +107,7 @@ fn a_rank_that_works_with_another_is_waited_for() {
 }
 
 #[test]
-fn ranks_that_wait_for_each_other_are_told() {
+fn ranks_that_wait_for_each_other_are_reported() {
     let fault = fault(3, |comm| {
         comm.set_stall_timeout(Duration::from_secs_f64(0.5));
         receive(comm, [1, 0, 1][comm.rank()]);

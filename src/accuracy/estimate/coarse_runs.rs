@@ -140,7 +140,7 @@ pub fn run(
     let start = user_cpu_seconds();
     let places = scene.scene.error_estimate.as_ref().map_or(Vec::new(), |e| e.arrivals.clone());
     let mut all = Companions::default();
-    let mut told: Vec<(f64, f64, Vec<Polyline>, CoarsePeaks)> = Vec::new();
+    let mut finished: Vec<(f64, f64, Vec<Polyline>, CoarsePeaks)> = Vec::new();
     let mut least = 0.0;
     for factor in FACTORS {
         let coarse = match coarser(scene, factor) {
@@ -156,7 +156,7 @@ pub fn run(
         match one(comm, &coarse, body, threads, &mut peaks) {
             Ok(profiles) => {
                 least = peaks.least;
-                told.push((factor as f64, coarse.cell_size[0], profiles, peaks));
+                finished.push((factor as f64, coarse.cell_size[0], profiles, peaks));
             }
             // all ranks get these errors alike
             Err(
@@ -168,10 +168,10 @@ pub fn run(
             Err(error) => return Err(error),
         }
     }
-    let finest = told.last();
+    let finest = finished.last();
     let levels = |k| finest.and_then(|(_, _, _, peaks)| peaks.levels(k, least));
     all.levels = (0..places.len()).map(levels).collect();
-    all.done = told
+    all.done = finished
         .into_iter()
         .map(|(factor, cell_size, profiles, peaks)| Companion {
             factor,
@@ -223,6 +223,6 @@ pub fn arrivals(
     let places = scene.scene.error_estimate.as_ref().map_or(&[][..], |e| &e.arrivals);
     let between = places.iter().map(|&at| Between::new(scene, body, at)).collect();
     let levels = serde_json::to_vec(&companions.levels).expect("levels are plain data");
-    let levels = serde_json::from_slice(&comm.broadcast(levels)).expect("rank 0 has told");
+    let levels = serde_json::from_slice(&comm.broadcast(levels)).expect("rank 0 sends valid JSON");
     Arrivals::new(between, levels)
 }

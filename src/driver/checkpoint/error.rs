@@ -27,7 +27,7 @@ pub enum CheckpointError {
     /// The checkpoint has another format.
     #[error(
         "{}: is a checkpoint of format {found}, written by version {version}; this program reads \
-         format {known}: go on with the version that wrote it",
+         format {known}: continue with the version that wrote it",
         path.display()
     )]
     Format {

@@ -107,7 +107,7 @@ pub fn write_as(
         file.close()
     };
     write().map_err(|e| refused(path, e))?;
-    seal(path, contents.saved.step, contents.saved.time, format)
+    seal(path, contents, format)
 }
 
 fn refused(path: &Path, error: hdf5::Error) -> CheckpointError {
@@ -316,8 +316,8 @@ impl Reader {
             return Err(format!("{name} is longer than the file").into());
         }
         let values: Vec<T> = dataset.read_raw()?;
-        let told: FixedAscii<64> = dataset.attr("sha256")?.read_scalar()?;
-        match told.as_str() == digest(&values) {
+        let recorded: FixedAscii<64> = dataset.attr("sha256")?.read_scalar()?;
+        match recorded.as_str() == digest(&values) {
             true => Ok(values),
             false => Err(format!("the values of {name} are not those that were written").into()),
         }

@@ -32,7 +32,7 @@ impl Checkpoint {
         if !self.columns.iter().map(|c| c.name.as_str()).eq(state.iter().map(named)) {
             let theirs: Vec<&str> = self.columns.iter().map(|c| c.name.as_str()).collect();
             return Some(format!(
-                "its particles have the columns {}, not those of the scene; go on with version {}, \
+                "its particles have the columns {}, not those of the scene; continue with version {}, \
                  which wrote it",
                 theirs.join(", "),
                 self.version

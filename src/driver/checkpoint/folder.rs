@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 
 use nix::sys::statvfs::statvfs;
 
-use super::{Checkpoint, CheckpointContents, CheckpointError, file};
+use super::seal::{SealedOwner, scene_digest};
+use super::{Checkpoint, CheckpointContents, CheckpointError, file, seal};
 use crate::driver::output::OutputError;
 use crate::driver::output::folder::{CHECKPOINTS, checkpoint_folder};
 use crate::driver::output::origin::{ExistingResult, Maker};
@@ -35,7 +36,7 @@ pub fn write(
     try_write(folder, keep, contents, alive).map_err(|source| {
         let last = match list(folder).first() {
             Some((_, last)) => format!(
-                "the last good checkpoint is {}: go on with --restart {}",
+                "the last good checkpoint is {}: continue with --restart {}",
                 last.display(),
                 folder.display()
             ),
@@ -151,7 +152,7 @@ pub fn has_checkpoints(target: &Path) -> bool {
 }
 
 /// Refuses a run whose checkpoints would replace those of another scene in the checkpoint folder of
-/// `target`. Damaged checkpoints are ignored.
+/// `target`. Checkpoints with a damaged head are ignored.
 ///
 /// # Errors
 ///
@@ -165,21 +166,32 @@ pub fn check_owner(target: &Path, maker: &Maker) -> Result<(), OutputError> {
     }
     let ours = maker.origin.to_string();
     for (_, path) in list(&folder) {
-        let checkpoint = match file::read(&path) {
-            Ok(checkpoint) => checkpoint,
+        let owner = match owner(&path) {
+            Ok(owner) => owner,
             Err(CheckpointError::Damaged { .. }) => continue,
             // a checkpoint of another format is a whole one of somebody
             Err(error) => {
                 return Err(OutputError::Foreign { path: folder, theirs: error.to_string(), ours });
             }
         };
-        let (theirs, scene) = (checkpoint.run_origin(), serde_json::from_str(&checkpoint.scene));
-        if maker.may_replace(&theirs, &scene.unwrap_or_default(), &folder) {
+        let same_scene = owner.scene == scene_digest(&maker.scene);
+        if maker.may_replace_made(&owner.origin, same_scene, &folder) {
             return Ok(());
         }
-        return Err(OutputError::Foreign { path: folder, theirs: theirs.to_string(), ours });
+        let theirs = owner.origin.to_string();
+        return Err(OutputError::Foreign { path: folder, theirs, ours });
     }
     Ok(())
+}
+
+/// The maker of a checkpoint. Reads no more than the head if that names the maker.
+fn owner(path: &Path) -> Result<SealedOwner, CheckpointError> {
+    if let Some(owner) = seal::owner(path)? {
+        return Ok(owner);
+    }
+    let checkpoint = file::read(path)?;
+    let scene = serde_json::from_str(&checkpoint.scene).unwrap_or_default();
+    Ok(SealedOwner { origin: checkpoint.run_origin(), scene: scene_digest(&scene) })
 }
 
 /// Whether a file looks like a JSON object or a comment before it, judged by its first characters.

@@ -115,9 +115,13 @@ pub struct CheckpointContents<'a> {
 impl Checkpoint {
     /// The origin of the run; if not recorded, only the command.
     pub fn run_origin(&self) -> Origin {
-        let unknown = || Origin { command: RUN.into(), ..Origin::default() };
-        self.origin.clone().unwrap_or_else(unknown)
+        self.origin.clone().unwrap_or_else(unknown_origin)
     }
+}
+
+/// The origin of a run that did not record it.
+fn unknown_origin() -> Origin {
+    Origin { command: RUN.into(), ..Origin::default() }
 }
 
 impl CheckpointContents<'_> {

@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn the_end_of_the_exact_lines_is_told() {
+    fn the_end_of_the_exact_lines_is_reported() {
         let text = include_bytes!("../../../inputs/flyer.json");
         let scene = crate::input::parse(text, "flyer.json", &[]).unwrap();
         let Some(Reference::FlyerImpact(named)) = &scene.scene.reference else { panic!() };

@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn other_shapes_and_missing_files_are_told() {
+    fn other_shapes_and_missing_files_are_reported() {
         let home = tempfile::tempdir().unwrap();
         let a = run(home.path(), "a", ["0.0,3.0,cu,\n", ""]);
         let b = run(home.path(), "b", ["0.0,3.0,cu,\n1.0,3.0,cu,\n", ""]);

@@ -24,11 +24,11 @@ pub fn profile_names(times: &[f64]) -> Vec<String> {
     let texts = |decimals: usize| -> Vec<String> {
         times.iter().map(|t| format!("{:.decimals$}", t * scale)).collect()
     };
-    let told_apart = |texts: &[String]| {
+    let distinct = |texts: &[String]| {
         let zeros = texts.iter().zip(times).any(|(s, t)| *t != 0.0 && s.parse() == Ok(0.0_f64));
         !zeros && (1..texts.len()).all(|i| !texts[..i].contains(&texts[i]))
     };
-    let decimals = (3..=24).find(|&d| told_apart(&texts(d))).unwrap_or(3);
+    let decimals = (3..=24).find(|&d| distinct(&texts(d))).unwrap_or(3);
     let mut names: Vec<String> = Vec::with_capacity(times.len());
     for text in texts(decimals) {
         let mut name = format!("profile_{text}{unit}.csv");

@@ -54,12 +54,8 @@ labels! {
     ERRORS: "errors", explained by "profile";
     /// Line of the drifts of energy and momentum.
     CONSERVATION: "conservation", explained by "drift";
-    /// Line of the particles that have left the domain.
-    OUTFLOW: "outflow", explained by "outflow";
-    /// Line of the eroded particles.
-    EROSION: "erosion", explained by "erosion";
-    /// Line of the failed and damaged particles.
-    FAILURE: "failure", explained by "damage, failed particle";
+    /// Line of the numbers of particles that have failed, were removed, or have left the domain.
+    PARTICLES: "particles", explained by "damage, failed particle";
     /// Line of the estimated errors.
     ESTIMATE: "estimate", explained by "error estimate";
     /// Line of the predicted and actual values of a plan.

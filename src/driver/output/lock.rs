@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::OutputError;
 use super::folder::{aside_prefix, check_folder, host, is_dead, within};
+use super::origin::Origin;
 use super::paths::resolve;
 
 /// Time between two signs of life.
@@ -25,11 +26,18 @@ const TOUCHED: Duration = Duration::from_secs(15);
 /// A run on another machine without a sign of life for this time is taken to have ended.
 const STALE: Duration = Duration::from_secs(90);
 
+/// Attempts to read the owner of a file that was just locked, and the pause between two of them.
+const WRITTEN_TRIES: usize = 100;
+const WRITTEN_PAUSE: Duration = Duration::from_millis(10);
+
 /// Process that writes.
 #[derive(Debug, Serialize, Deserialize)]
 struct Owner {
     pid: u32,
     host: String,
+    /// The command and the scene of a run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    origin: Option<Origin>,
 }
 
 /// Exclusive right to write results at a path, until dropped.
@@ -53,14 +61,29 @@ impl Lock {
     ///
     /// If another process holds the lock, or if the path cannot be used.
     pub fn take(target: &Path) -> Result<Lock, OutputError> {
+        Lock::take_with(target, None)
+    }
+
+    /// As [`Lock::take`], with the command and the scene for which the path is locked; [`holder`]
+    /// reads them.
+    ///
+    /// # Errors
+    ///
+    /// As [`Lock::take`].
+    pub fn take_for(target: &Path, origin: &Origin) -> Result<Lock, OutputError> {
+        Lock::take_with(target, Some(origin))
+    }
+
+    fn take_with(target: &Path, origin: Option<&Origin>) -> Result<Lock, OutputError> {
         let place = resolve(target)?;
         let Some(parent) = place.parent() else {
             return Err(OutputError::Fixed { path: target.into(), why: "the root folder" });
         };
         check_folder(target, &place)?;
-        let path = parent.join(format!("{}lock", aside_prefix(&place)));
+        let path = lock_file(&place, parent);
+        let owner = Owner { pid: std::process::id(), host: host(), origin: origin.cloned() };
         let mut made = Vec::new();
-        match Lock::open(target, parent, &path, &mut made) {
+        match Lock::open(target, (parent, &path), &mut made, &owner) {
             Ok(file) => Ok(Lock::keep(path, file, made)),
             Err(error) => {
                 made.iter().rev().for_each(|parent| drop(fs::remove_dir(parent)));
@@ -69,13 +92,13 @@ impl Lock {
         }
     }
 
-    /// Opens and locks the file at `path` in `parent`. Parent folders that are created are added to
-    /// `made`.
+    /// Opens and locks the file at `path` in `parent`, and writes the owner. Parent folders that are
+    /// created are added to `made`.
     fn open(
         target: &Path,
-        parent: &Path,
-        path: &Path,
+        (parent, path): (&Path, &Path),
         made: &mut Vec<PathBuf>,
+        mine: &Owner,
     ) -> Result<File, OutputError> {
         let mut options = OpenOptions::new();
         options.read(true).write(true).create(true).truncate(false);
@@ -109,8 +132,7 @@ impl Lock {
             if !same {
                 continue;
             }
-            let owner = Owner { pid: std::process::id(), host: host() };
-            let text = serde_json::to_string(&owner).expect("an owner is plain data");
+            let text = serde_json::to_string(mine).expect("an owner is plain data");
             file.set_len(0)
                 .and_then(|()| std::io::Seek::rewind(&mut file))
                 .and_then(|()| file.write_all(text.as_bytes()))
@@ -148,10 +170,32 @@ impl Drop for Lock {
     }
 }
 
+/// Path of the lock file for results at `place` in `parent`.
+fn lock_file(place: &Path, parent: &Path) -> PathBuf {
+    parent.join(format!("{}lock", aside_prefix(place)))
+}
+
+/// The command and the scene for which a live process has locked the path `target`; `None` if it has
+/// not named them. Waits a moment for a process that has just locked the path.
+pub fn holder(target: &Path) -> Option<Origin> {
+    let place = resolve(target).ok()?;
+    let path = lock_file(&place, place.parent()?);
+    for _ in 0..WRITTEN_TRIES {
+        let mut file = File::open(&path).ok()?;
+        // text of a process that has ended is about to be replaced
+        let owner = read_owner(&mut file);
+        match owner.filter(|owner| owner.host != host() || !is_dead(&owner.pid.to_string())) {
+            Some(owner) => return owner.origin,
+            None => std::thread::sleep(WRITTEN_PAUSE),
+        }
+    }
+    None
+}
+
 fn read_owner(file: &mut File) -> Option<Owner> {
     let mut text = String::new();
     std::io::Seek::rewind(file).ok()?;
-    file.take(4096).read_to_string(&mut text).ok()?;
+    file.take(1 << 14).read_to_string(&mut text).ok()?;
     serde_json::from_str(&text).ok()
 }
 

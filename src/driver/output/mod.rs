@@ -1,6 +1,7 @@
 //! Output of a run: tables, histories, pictures and a summary, in a folder that is put in place as
 //! a whole. Called on one rank; independent of MPI and of the grid.
 
+pub mod brief;
 pub mod compare;
 pub mod csv;
 pub mod decomposition;

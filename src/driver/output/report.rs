@@ -1,4 +1,5 @@
-//! The report that a run prints at its end, brief or full.
+//! The full report that a run prints at its end with `--verbose`; `brief` has the report of other
+//! runs.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -6,7 +7,7 @@ use std::path::Path;
 use super::decomposition::DecompositionSummary;
 use super::labels;
 use super::summary::{FailureSummary, MeasuredQuantity, OutflowSummary, ProfileSummary, Summary};
-use super::wrap::{warning, wrapped};
+use super::wrap::warning;
 use crate::accuracy::estimate::{Bounded, EstimateBasis, EstimatedErrors};
 use crate::accuracy::plan::Verdict;
 use crate::effects::{ledger_lines, ledger_rest};
@@ -38,75 +39,6 @@ const ERRORS: [(&str, &str, bool); 22] = [
     ("mean_density_error", "density error %", true),
 ];
 
-/// Errors in the brief report: key, label, unit.
-const BRIEF_ERRORS: [(&str, &str, &str); 9] = [
-    ("l1", labels::MEAN_PRESSURE_ERROR, " %"),
-    ("rise_cells", labels::SHOCK_WIDTH, " cells"),
-    ("overshoot", labels::OVERSHOOT, " %"),
-    ("density_l1", labels::MEAN_DENSITY_ERROR, " %"),
-    ("mean_density_error", labels::SHOCK_DENSITY_ERROR, " %"),
-    ("displacement_l2", labels::DISPLACEMENT_ERROR, " %"),
-    ("angular_momentum_loss", labels::LOST_ANGULAR_MOMENTUM, " %"),
-    ("velocity_rms", labels::VELOCITY_ERROR, " %"),
-    ("pressure_rms", labels::PRESSURE_ERROR, " %"),
-];
-
-/// Lines of a brief report, warnings aside, if the facts leave room for a quantity.
-const BRIEF_LINES: usize = 10;
-
-/// The brief report: physical quantities, errors of the last profile, conservation, size, time and
-/// the folder of the files.
-pub fn brief(summary: &Summary, folder: &Path) -> String {
-    let facts = brief_facts(summary, folder);
-    let lines = table(&named(facts));
-    // names have a column of their own, below which the lines go on
-    let indent = lines.len() - lines.trim_start().len();
-    let names = lines.lines().next().map_or(0, |line| {
-        let rest = line.trim_start();
-        rest.len() - rest.trim_start_matches(|c: char| !c.is_whitespace()).trim_start().len()
-    });
-    // a path stays in one piece, so that it can be copied
-    let results = format!("{}{}", " ".repeat(indent), labels::RESULTS);
-    let fold = |line: &str| match line.starts_with(&results) {
-        true => format!("{line}\n"),
-        false => wrapped(line, indent + names) + "\n",
-    };
-    let lines: Vec<String> = lines.lines().map(fold).collect();
-    let lines = lines.concat();
-    // title and heading of the quantities
-    let room = BRIEF_LINES.saturating_sub(2 + lines.lines().count()).max(1);
-    let shown = &summary.measured[..summary.measured.len().min(room)];
-    let quantities = if shown.is_empty() { String::new() } else { table(&measured(shown)) };
-    heading(summary) + &quantities + &lines
-}
-
-/// Facts of the brief report: label and text.
-fn brief_facts(summary: &Summary, folder: &Path) -> Vec<(&'static str, String)> {
-    let mut facts = Vec::new();
-    facts.extend(last_errors(&summary.profiles).map(|text| (labels::ERRORS, text)));
-    let drifts = [("energy", summary.energy.drift), ("momentum", summary.momentum.drift)];
-    let kept = drifts.iter().filter_map(|(of, d)| Some(format!("{of} {:.1e}", d.as_ref()?.abs())));
-    let kept: Vec<String> = kept.collect();
-    if !kept.is_empty() {
-        facts.push((labels::CONSERVATION, format!("relative errors: {}", kept.join(", "))));
-    }
-    facts.extend(events(summary));
-    let plural = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
-    facts.push((
-        labels::RUN,
-        format!(
-            "{} particles, {} steps, {}, {}: {} s",
-            summary.particles,
-            summary.steps,
-            plural(summary.ranks, "rank"),
-            plural(summary.threads, "thread"),
-            significant(summary.wall_seconds)
-        ),
-    ));
-    facts.push((labels::RESULTS, folder.display().to_string()));
-    facts
-}
-
 /// Title and warnings.
 fn heading(summary: &Summary) -> String {
     let warnings = summary.warnings.iter().map(|text| warning(text) + "\n");
@@ -118,7 +50,7 @@ fn named(facts: Vec<(&str, String)>) -> Vec<Vec<String>> {
 }
 
 /// One line per quantity; the columns of exact values only if one is known.
-fn measured(all: &[MeasuredQuantity]) -> Vec<Vec<String>> {
+pub(super) fn measured(all: &[MeasuredQuantity]) -> Vec<Vec<String>> {
     let known = all.iter().any(|quantity| quantity.exact.is_some());
     let mut lines = vec![["", "time", "computed"].map(String::from).to_vec()];
     lines[0].extend(["exact", "difference"].into_iter().filter(|_| known).map(String::from));
@@ -150,17 +82,6 @@ fn measured(all: &[MeasuredQuantity]) -> Vec<Vec<String>> {
 fn five_digits(value: f64) -> String {
     let whole = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
     format!("{value:.*}", (4 - whole).clamp(0, 12) as usize)
-}
-
-/// Errors of the last profile that has any, in words.
-fn last_errors(profiles: &[ProfileSummary]) -> Option<String> {
-    let last = profiles.iter().rfind(|profile| profile.errors.is_some())?;
-    let words = |(key, before, after): &(&str, &str, &str)| {
-        let scale = if after.contains('%') { 100.0 } else { 1.0 };
-        Some(format!("{before} {}{after}", significant(scale * last.error(key)?)))
-    };
-    let all: Vec<String> = BRIEF_ERRORS.iter().filter_map(words).collect();
-    (!all.is_empty()).then(|| format!("{}, at {}", all.join(", "), seconds(last.time)))
 }
 
 /// The full report: errors of each profile, ranks, effects, energy, momentum, steps, times and the
@@ -310,15 +231,12 @@ fn events(summary: &Summary) -> Vec<(&'static str, String)> {
     let per = per_extent(summary.momentum.start.len());
     let mut facts = Vec::new();
     if let Some(out) = &summary.outflow {
-        facts.push((
-            labels::OUTFLOW,
-            format!("{} particles, {:.6e} kg{per}", out.particles, out.mass),
-        ));
+        facts.push(("outflow", format!("{} particles, {:.6e} kg{per}", out.particles, out.mass)));
     }
     if let Some(out) = &summary.erosion {
         let OutflowSummary { particles, mass, energy, .. } = out;
         let what = format!("{particles} particles, {mass:.6e} kg{per}, {energy:.6e} J{per}");
-        facts.push((labels::EROSION, format!("{what} taken out")));
+        facts.push(("erosion", format!("{what} taken out")));
     }
     if let Some(failure) = &summary.failure {
         let FailureSummary { particles, damaged, released_energy } = failure;
@@ -326,7 +244,7 @@ fn events(summary: &Summary) -> Vec<(&'static str, String)> {
             "{particles} particles have failed, {damaged} are damaged; {released_energy:.6e} J{per} \
              of elastic energy is heat"
         );
-        facts.push((labels::FAILURE, text));
+        facts.push(("failure", text));
     }
     if let Some(estimate) = &summary.error_estimate {
         facts.extend(estimate_facts(estimate));
@@ -361,7 +279,7 @@ fn estimate_facts(estimate: &EstimatedErrors) -> Vec<(&'static str, String)> {
     let within = |b: &Bounded, scale: f64, unit: &str| match b.half_width {
         Some(width) => {
             let exact = b.exact.map_or(String::new(), |e| {
-                format!(", in truth {}", significant_to((e * scale, width * scale)))
+                format!(", exact {}", significant_to((e * scale, width * scale)))
             });
             let value = significant_to((b.value * scale, width * scale));
             format!("{value} +- {} {unit}{exact}", significant(width * scale))
@@ -381,8 +299,7 @@ fn estimate_facts(estimate: &EstimatedErrors) -> Vec<(&'static str, String)> {
             None => "L1 not known".into(),
         };
         let exact = profile.l1.exact;
-        let exact =
-            exact.map_or(String::new(), |e| format!(", in truth {}", significant(100.0 * e)));
+        let exact = exact.map_or(String::new(), |e| format!(", exact {}", significant(100.0 * e)));
         facts.push((
             labels::ESTIMATE,
             format!("{}: {plateau}; {l1}{exact}{guess}", seconds(profile.time)),
@@ -409,13 +326,13 @@ fn estimate_facts(estimate: &EstimatedErrors) -> Vec<(&'static str, String)> {
 }
 
 /// A value with as many digits as its half width justifies.
-fn significant_to((value, width): (f64, f64)) -> String {
+pub(super) fn significant_to((value, width): (f64, f64)) -> String {
     let digits = (1 - width.abs().max(1e-12).log10().floor() as i32).clamp(0, 12) as usize;
     format!("{value:.digits$}")
 }
 
 /// Cells as aligned columns: the first column left-aligned, the others right-aligned.
-fn table(lines: &[Vec<String>]) -> String {
+pub(super) fn table(lines: &[Vec<String>]) -> String {
     let columns = lines.iter().map(Vec::len).max().unwrap_or(0);
     let length = |s: &String| s.chars().count();
     let width = |i: usize| lines.iter().filter_map(|l| l.get(i)).map(length).max().unwrap_or(0);
@@ -438,7 +355,7 @@ fn table(lines: &[Vec<String>]) -> String {
 }
 
 /// A number with three significant digits.
-fn significant(value: f64) -> String {
+pub(super) fn significant(value: f64) -> String {
     let size = value.abs();
     match size {
         _ if value == 0.0 => "0".into(),
@@ -448,7 +365,7 @@ fn significant(value: f64) -> String {
 }
 
 /// A time with a suitable unit.
-fn seconds(time: f64) -> String {
+pub(super) fn seconds(time: f64) -> String {
     let (unit, scale) = match time {
         t if t >= 0.1 => ("s", 1.0),
         t if t >= 1e-3 => ("ms", 1e3),
@@ -464,51 +381,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn brief_report_has_the_physics_and_the_last_errors() {
-        let expected = "\
-flyer
-warning: linear shape functions ring across cells
-               time    computed       exact  difference
-  shock speed  1 us  6343.5 m/s  6343.0 m/s   0.00788 %
-  errors        mean pressure error 0.890 %, at 0.5 us
-  conservation  relative errors: energy 5.0e-2, momentum 0.0e0
-  run           1700 particles, 2612 steps, 2 ranks, 1 thread: 1.25 s
-  results       output/flyer
-";
-        let text = brief(&example(), Path::new("output/flyer"));
-        assert_eq!(text, expected);
-        assert!(text.lines().all(|line| line.len() <= 100));
-    }
-
-    #[test]
-    fn a_brief_report_has_ten_short_lines_and_names_the_damaged() {
-        let mut summary = example();
-        summary.warnings.clear();
-        let quantity = summary.measured[0].clone();
-        summary.measured = vec![quantity; 9];
-        let released_energy = 1.5;
-        let failure = FailureSummary { particles: 7, damaged: 11, released_energy };
-        summary.failure = Some(failure);
-        let folder = format!("output/{}", "a long name ".repeat(10));
-        let text = brief(&summary, Path::new(folder.trim()));
-        assert_eq!(text.lines().count(), BRIEF_LINES, "{text}");
-        let line = "  failure       7 particles have failed, 11 are damaged; 1.500000e0 J/m2 of elastic \
-                    energy is heat";
-        assert!(text.lines().any(|l| l == line), "{text}");
-        let (others, last) = text.trim_end().rsplit_once('\n').unwrap();
-        assert!(others.lines().all(|line| line.len() <= 100), "{text}");
-        assert_eq!(last, format!("  results       {}", folder.trim()));
-        assert_eq!(text.matches("shock speed").count(), 3, "{text}");
-    }
-
-    #[test]
     fn five_digits_are_kept() {
         let texts = [0.0, 29.80695, 6343.512, 0.012345678, 123456.7].map(five_digits);
         assert_eq!(texts, ["0.0000", "29.807", "6343.5", "0.012346", "123457"]);
     }
 
     #[test]
-    fn tells_every_figure() {
+    fn the_full_report_has_every_figure() {
         let mut summary = example();
         summary.profiles[1].errors = Some(serde_json::json!({"l1": 0.01, "density_l1": 0.5}));
         let text = full(&summary, Path::new("output/flyer"));
@@ -544,7 +423,7 @@ warning: linear shape functions ring across cells
     }
 
     #[test]
-    fn what_was_eroded_is_told() {
+    fn eroded_particles_are_counted() {
         let mut summary = example();
         let momentum = vec![0.25];
         summary.erosion = Some(OutflowSummary { particles: 7, mass: 0.5, momentum, energy: 2.0 });

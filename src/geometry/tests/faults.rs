@@ -85,7 +85,7 @@ fn each_fault_tells_its_place_and_what_is_allowed() {
 }
 
 #[test]
-fn numbers_that_are_none_are_told() {
+fn numbers_that_are_none_are_reported() {
     let mut disk = region(json!({"disk": {"centre": [0.0, 0.0], "radius": 1.0}}));
     for value in [f64::NAN, f64::INFINITY] {
         if let crate::scene::Region::Disk(disk) = &mut disk {

@@ -64,7 +64,7 @@ fn points_outside_or_doubled_are_named() {
     assert!(fault(&[a, b, [-0.5, 1e-9], [0.0, -0.6]]).starts_with("point 3 at"));
     // so close that the triangulation omits one of them
     let near = fault(&[a, b, [-0.5, 1e-17], [0.0, -0.6]]);
-    assert!(near.contains("cannot be told from others; allowed: "), "{near}");
+    assert!(near.contains("cannot be distinguished from others; allowed: "), "{near}");
     assert!(fault(&[a, [f64::NAN, 0.0]]).starts_with("point 2"));
 }
 

@@ -134,7 +134,7 @@ fn viscosity(checked: &CheckedScene, speeds: &[f64]) -> Option<String> {
 }
 
 /// Largest speed at which two bodies approach each other along an axis on which they stand apart or
-/// touch [m/s]. Elastic solids are left out: in the rubbers that they stand for, no shock forms.
+/// touch [m/s]. Elastic solids are left out, since no shock forms in rubber.
 fn closing_speed(checked: &CheckedScene) -> f64 {
     let bodies: Vec<_> = fluids(checked).map(|i| &checked.bodies[i]).collect();
     let mut fastest = 0.0_f64;

@@ -223,14 +223,17 @@ pub(super) mod tests {
                 p(j + dj, e - middle * dj / rho0)
             };
             let c2 = -j * j / rho0 * (along(h) - along(-h)) / (2.0 * h);
-            let told = point.sound_speed_squared;
-            assert!((told - c2).abs() <= tolerance * c2.abs(), "J {j}, e {e}: c2 {told} {c2}");
+            let returned = point.sound_speed_squared;
+            assert!(
+                (returned - c2).abs() <= tolerance * c2.abs(),
+                "J {j}, e {e}: c2 {returned} {c2}"
+            );
             let k = 1e-5 * (e.abs() + point.pressure.abs() / rho0).max(1.0);
             let slope = (p(j, e + k) - p(j, e - k)) / (2.0 * k);
-            let told = point.energy_slope;
+            let returned = point.energy_slope;
             assert!(
-                (told - slope).abs() <= tolerance * slope.abs().max(1e-3 * rho0),
-                "{told} {slope}"
+                (returned - slope).abs() <= tolerance * slope.abs().max(1e-3 * rho0),
+                "{returned} {slope}"
             );
         }
     }

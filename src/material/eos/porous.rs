@@ -311,8 +311,8 @@ mod tests {
     fn the_energy_slope_on_the_curve_is_that_of_the_pressure() {
         let p = |e: f64| COPPER.at(0.88, e, 1.25).0.pressure;
         let slope = (p(1e4 + 10.0) - p(1e4 - 10.0)) / 20.0;
-        let told = COPPER.at(0.88, 1e4, 1.25).0.energy_slope;
-        assert!((told / slope - 1.0).abs() < 1e-5, "{told} {slope}");
+        let returned = COPPER.at(0.88, 1e4, 1.25).0.energy_slope;
+        assert!((returned / slope - 1.0).abs() < 1e-5, "{returned} {slope}");
     }
 
     #[test]

@@ -361,17 +361,17 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn faults_of_tables_are_told_with_their_place() {
-        let told = |text: &str, words: &[&str]| {
+    fn faults_of_tables_are_reported_with_their_place() {
+        let refused = |text: &str, words: &[&str]| {
             let message = Table::read(text).unwrap_err();
             words.iter().for_each(|w| assert!(message.contains(w), "{message}"));
         };
-        told("", &["empty", "density"]);
-        told("density,pressure\n1,2", &["line 1", "specific_internal_energy"]);
+        refused("", &["empty", "density"]);
+        refused("density,pressure\n1,2", &["line 1", "specific_internal_energy"]);
         let head = "density,specific_internal_energy,pressure\n";
-        told(&format!("{head}1,2,x"), &["line 2", "pressure \"x\""]);
-        told(&format!("{head}1,2,3\n1,2,4"), &["line 3", "second node at density 1, energy 2"]);
-        told(&format!("{head}1,1,3\n1,2,4\n2,1,3"), &["hole", "density 2, energy 2"]);
+        refused(&format!("{head}1,2,x"), &["line 2", "pressure \"x\""]);
+        refused(&format!("{head}1,2,3\n1,2,4"), &["line 3", "second node at density 1, energy 2"]);
+        refused(&format!("{head}1,1,3\n1,2,4\n2,1,3"), &["hole", "density 2, energy 2"]);
         let refused = |edit: &dyn Fn(&mut Table), words: &[&str]| {
             let mut bad = table([5, 4]);
             edit(&mut bad);

@@ -70,11 +70,11 @@ pub fn calibrate(
         return Err(CalibrateError::Plane(scene.file.clone()));
     }
     // the other ranks must not use memory or cores while rank 0 computes alone
-    let mut told = Vec::new();
+    let mut received = Vec::new();
     if comm.rank() != 0 {
         let pause = Duration::from_secs_f64(seconds * SHARES.iter().sum::<f64>());
-        comm.exchange(&[], &[0], &mut told, &mut || sleep(comm, pause));
-        if told[0] == [0] {
+        comm.exchange(&[], &[0], &mut received, &mut || sleep(comm, pause));
+        if received[0] == [0] {
             return Ok(None);
         }
         messages::measure(comm);
@@ -83,7 +83,7 @@ pub fn calibrate(
     let computed = compute(scene, seconds, &|| comm.heartbeat());
     let word = [u64::from(computed.is_ok())];
     let sends: Vec<(usize, &[u64])> = (1..comm.size()).map(|r| (r, &word[..])).collect();
-    comm.exchange(&sends, &[], &mut told, &mut || {});
+    comm.exchange(&sends, &[], &mut received, &mut || {});
     let (mut machine, residuals) = computed?;
     machine.ranks = comm.size();
     if let Some(network) = messages::measure(comm) {

@@ -260,19 +260,19 @@ pub struct Boundary {
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SideTemperatures {
-    /// At the lower end of x.
+    /// Temperature at the lower end of x [K].
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub x_lower: Option<f64>,
-    /// At the upper end of x.
+    /// Temperature at the upper end of x [K].
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub x_upper: Option<f64>,
-    /// At the lower end of y, in a plane.
+    /// Temperature at the lower end of y, in a plane [K].
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub y_lower: Option<f64>,
-    /// At the upper end of y, in a plane.
+    /// Temperature at the upper end of y, in a plane [K].
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub y_upper: Option<f64>,

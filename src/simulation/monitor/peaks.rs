@@ -24,8 +24,8 @@ const RINGS: f64 = 0.15;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Peaks {
-    /// Increase of specific internal energy since the start, over the energy from one shock of the
-    /// strongest impact of the body.
+    /// Increase of specific internal energy since the start, less plastic work, over the energy from
+    /// one shock of the strongest impact of the body.
     pub heat: f64,
     /// Increase of specific internal energy of that particle since the start [J/kg].
     pub energy: f64,
@@ -65,43 +65,42 @@ impl Peaks {
         let mut all = Vec::new();
         if self.heat > HOT {
             all.push(format!(
-                "particles have been heated far beyond the Hugoniot: up to {:.3e} J/kg, {:.1} \
-                 times the energy that one shock of the scene's strongest impact gives. The edge \
-                 of a growing contact and jets heat so in nature (Lesser 1981); the start of an \
-                 impact and schemes that ring add to it. Look where these particles are before \
-                 their temperature is used",
+                "particles have been heated far beyond the Hugoniot, up to {:.3e} J/kg. Without \
+                 plastic work this is up to {:.1} times the energy of one shock of the strongest \
+                 impact. Jets and the edge of a growing contact become as hot in nature (Lesser \
+                 1981); the start of an impact and oscillations add numerical heat. Find these \
+                 particles before you use their temperature",
                 self.energy, self.heat
             ));
         }
         if self.front > FRONT {
             all.push(format!(
                 "the pressure just behind a burning front has reached {:.2} times the \
-                 Chapman-Jouguet pressure: where no other body reflects it or drives it, the \
-                 front is not stable; method.transfer {{\"fmpm\": 2}} or \"flip\" is",
+                 Chapman-Jouguet pressure. If no other body reflects or drives the front, it is \
+                 not stable. Use method.transfer {{\"fmpm\": 2}} or \"flip\"",
                 self.front
             ));
         }
         if self.ahead > AHEAD {
             all.push(format!(
-                "unburnt explosive has moved at {:.2} of the velocity behind the front, ahead of \
-                 which nothing moves it: the front is not stable; method.transfer {{\"fmpm\": 2}} \
-                 or \"flip\" is",
+                "unburnt explosive has moved ahead of the front, at {:.2} of the velocity behind \
+                 it. The front is not stable. Use method.transfer {{\"fmpm\": 2}} or \"flip\"",
                 self.ahead
             ));
         }
         if self.frozen > 0.0 {
             all.push(format!(
-                "particles have been colder than absolute zero, down to -{:.3e} K: more \
-                 artificial_viscosity or finer cells, and no use of their temperature",
+                "particles have been colder than absolute zero, down to -{:.3e} K. Use \
+                 more artificial_viscosity or finer cells, and do not use their temperature",
                 self.frozen
             ));
         }
         if self.tension > RINGS || self.against > RINGS {
             all.push(format!(
                 "particles ahead of the first wave, where nothing can have moved them yet, have \
-                 been in tension up to {:.2} of the pressure of the scene's strongest impact and \
-                 have moved against the wave at up to {:.2} of its velocity: the scheme rings \
-                 ahead of the shock; more artificial_viscosity, its linear term above all, or \
+                 been in tension up to {:.2} of the pressure of the strongest impact and have moved \
+                 against the wave at up to {:.2} of its velocity. The scheme oscillates ahead of \
+                 the shock. Use more artificial_viscosity, mainly a larger linear term, or \
                  method.transfer {{\"fmpm\": 2}}",
                 self.tension, self.against
             ));

@@ -49,7 +49,7 @@ use crate::solver::patch::Patch;
 
 impl<const D: usize> Scheme<D> {
     /// Finds the pairs of bodies in contact at the nodes that the patch computes, after masses and
-    /// momenta have been summed, in a step of `dt`; `forces` tells whether nodal forces are known.
+    /// momenta have been summed, in a step of `dt`; `forces` says whether nodal forces are known.
     pub(super) fn find_contact(
         &self,
         patch: &mut Patch<D>,

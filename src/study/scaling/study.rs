@@ -120,12 +120,12 @@ impl ScalingPlan {
         Ok(ScalingPlan { title: unchanged.scene.title, cores, runs, output, options })
     }
 
-    /// Runs all configurations in rounds. `tell` gets a line at the start of each round.
+    /// Runs all configurations in rounds. `report` gets a line at the start of each round.
     ///
     /// # Errors
     ///
     /// If the folder of the results cannot be used, or if a run fails.
-    pub fn measure(&self, tell: impl Fn(&str)) -> Result<ScalingStudy, ScalingError> {
+    pub fn measure(&self, report: impl Fn(&str)) -> Result<ScalingStudy, ScalingError> {
         let ScalingOptions { kind, program, scene, sets, repeats, .. } = &self.options;
         let _lock = Lock::take(&self.output)?;
         claim(&self.output, &Origin::new(kind.name(), scene))?;
@@ -133,7 +133,7 @@ impl ScalingPlan {
         let mut measured: Vec<Vec<MeasuredRun>> = vec![Vec::new(); self.runs.len()];
         let all_rounds = || -> Result<(), ScalingError> {
             for round in 0..*repeats {
-                tell(&format!("round {} of {repeats}: {} runs", round + 1, self.runs.len()));
+                report(&format!("round {} of {repeats}: {} runs", round + 1, self.runs.len()));
                 for turn in turns(self.runs.len(), round) {
                     measured[turn].push(self.runs[turn].run(program, &folder)?);
                 }

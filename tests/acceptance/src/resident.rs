@@ -1,4 +1,4 @@
-//! Looks at the memory of running processes, as Linux tells it in `/proc`.
+//! Memory of running processes, from `/proc` of Linux.
 
 use std::fs;
 use std::sync::Arc;

@@ -186,7 +186,7 @@ pub struct Outcome {
     pub instructions: Option<u64>,
 }
 
-/// The number that callgrind tells at its end.
+/// The number that callgrind prints at its end.
 fn collected(stderr: &str) -> Option<u64> {
     stderr.lines().find_map(|line| line.split_once("Collected : ")?.1.trim().parse().ok())
 }

@@ -74,7 +74,7 @@ pub fn select<'a>(
     for name in names {
         let known = |group: &Group| group.sections.iter().any(|s| is_named(name, group, s));
         if !is_group(name) && !groups.iter().any(known) {
-            return Err(format!("{name}: no such group or section; --list tells what there is"));
+            return Err(format!("{name}: no such group or section; --list prints all"));
         }
     }
     let chosen = |group: &Group, section: &Section| {

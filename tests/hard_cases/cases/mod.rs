@@ -42,7 +42,7 @@ pub fn figure(what: impl Into<String>, value: f64, bound: f64) -> Figure {
 /// A case: its name, what it measures, and whether it takes long.
 pub type Case = (&'static str, fn() -> Vec<Figure>, bool);
 
-/// All cases, in the order in which they are told.
+/// All cases, in the order of the report.
 pub const CASES: [Case; 25] = [
     ("viscosity", impacts::viscosity, false),
     ("particles_a_cell", particles::counts, true),

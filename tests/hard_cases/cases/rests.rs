@@ -136,7 +136,7 @@ pub fn denormals() -> Vec<Figure> {
     };
     figures.push(figure("densities of 2^-500: velocity, from the usual", off, 1e-12));
     // where squares of pressures fall below the least number the scene is refused
-    let told = lighter(-950).is_err_and(|e| e.contains("no finite stiffness"));
-    figures.push(figure("densities of 2^-950: not refused", f64::from(!told), 0.0));
+    let text = lighter(-950).is_err_and(|e| e.contains("no finite stiffness"));
+    figures.push(figure("densities of 2^-950: not refused", f64::from(!text), 0.0));
     figures
 }

@@ -175,6 +175,6 @@ pub fn failed(what: &str, message: &str) -> f64 {
     f64::NAN
 }
 
-/// Columns of state that two runs are held against each other by.
+/// Columns of state that are compared between two runs.
 pub const FIELDS: [&str; 5] =
     ["pressure", "velocity", "density", "specific_internal_energy", "artificial_viscosity"];

@@ -1,4 +1,4 @@
-//! What runs tell of their own errors, on impacts that no law was fitted on.
+//! Estimated errors of runs, on impacts to which no law was fitted.
 
 use super::estimates::{QUANTITIES, gather, judge};
 use super::random_impacts::HELD_OUT;

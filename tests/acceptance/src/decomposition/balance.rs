@@ -22,7 +22,7 @@ pub fn check(table: &mut Table) {
             let moved = Some(summary.patches_moved as f64);
             table.check("  patches moved", moved, bounds::balance::PATCHES_MOVED);
         }
-        // what time tells depends on the machine and what else it does
+        // times depend on the machine and on its other work
         for (what, every) in [("by measured time", 20), ("without balance", 0)] {
             if let Some(summary) = table.take(&name, run(every, "time")) {
                 table.beside(&format!("  {what}"), even(&summary), "", Unit::One);

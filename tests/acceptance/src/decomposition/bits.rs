@@ -56,7 +56,7 @@ struct Left {
     digests: Vec<String>,
     /// Profiles and histories as they stand in their files.
     files: Vec<(String, Vec<u8>)>,
-    /// Lines printed, but those that tell of the layout, and times.
+    /// Printed lines without those about the layout, and without times.
     lines: Vec<String>,
 }
 
@@ -72,7 +72,7 @@ fn left_by(job: &Job, layout: &Layout) -> Result<Left, String> {
         Err(error) => Err(format!("{name}: {error}")),
     });
     let of_layout = ["run", "seconds", "sharing", "results", "ranks", "rank"];
-    let tells = |line: &&str| {
+    let independent = |line: &&str| {
         line.split_whitespace().next().is_some_and(|first| !of_layout.contains(&first))
     };
     // an effect's share of the step, last in its line, is measured
@@ -83,7 +83,7 @@ fn left_by(job: &Job, layout: &Layout) -> Result<Left, String> {
     Ok(Left {
         digests: summary.profiles.iter().map(|p| p.state_sha256.clone()).collect(),
         files: files.collect::<Result<_, _>>()?,
-        lines: said.lines().filter(tells).map(unmeasured).collect(),
+        lines: said.lines().filter(independent).map(unmeasured).collect(),
     })
 }
 

@@ -12,19 +12,25 @@ use crate::table::Table;
 
 const HEAD: &str = "# Schemes in hard cases
 
-Written by `cargo run --release -p acceptance -- hard_cases/schemes`: every shape function with every
-transfer. Mid-point steps with all of the options of `inputs/flyer.json` that the transfer allows, its
-viscosity, a Courant number of 0.4 unless a column says another. A number is the error: L1 of the pressure
-in per cent of the exact profile's, at 0.2 us, in `e` columns the drift of energy in per cent. **monitor**
-and a word is how the monitor ended the run before its answer was wrong, **refused** what the scene's check
-says; both leave with a code that is not 0. A transfer in italics has energy that is not exact.
+Every shape function with every transfer, measured by `cargo run --release -p acceptance -- hard_cases/schemes`. All
+runs have mid-point steps, the viscosity of `inputs/flyer.json`, those of its options that the transfer allows, and a
+Courant number of 0.4 unless the column has another.
 
-- state: a particle's state is outside of its model, mostly tension that grows; courant: a step turned
-  out too long; speed: a particle faster than any wave; energy: it grew; cold: internal energy fell
-  below none; crowd: particles clumped; step: the stable time step collapsed.
-- The Courant numbers up to which schemes are stable are in `src/input/check/courant.rs`, measured by
-  `cargo run --release --example courant_limits`; above them a scene is refused unless
-  `monitor.on_courant_exceeded` says otherwise.
+A number is an error. It is the relative L1 norm of the pressure at 0.2 us in per cent; in columns marked `e` it is the
+drift of the energy in per cent. **monitor** means that the run-time checks ended the run before its result was wrong;
+the word after it is the reason. **refused** means that the check of the scene refused it. In both cases the exit code
+is not 0. The energy of a transfer in italics is not exact.
+
+- state: the state of a particle is outside of its model, mostly by growing tension
+- courant: a time step was too long
+- speed: a particle was faster than any wave
+- energy: the total energy grew
+- cold: the internal energy fell below its minimum
+- crowd: too many particles in one cell
+- step: the stable time step became too small
+
+`src/input/check/courant.rs` has the Courant numbers up to which schemes are stable, as measured by `cargo run --release
+--example courant_limits`. Scenes above them are refused unless `monitor.on_courant_exceeded` allows them.
 
 ";
 

@@ -45,7 +45,7 @@ pub fn vortex(table: &mut Table) {
                 // a run that a scheme does not survive is listed, not counted as missed
                 let run = job.run();
                 let found = run.as_ref().ok().and_then(error);
-                table.beside(&name, found, if run.is_ok() { "" } else { "dies" }, Unit::Fraction);
+                table.beside(&name, found, if run.is_ok() { "" } else { "ends early" }, Unit::Fraction);
                 best = match (best, found) {
                     (Some(best), Some(found)) => Some(f64::min(best, found)),
                     (best, found) => best.or(found),
@@ -75,7 +75,7 @@ pub fn disk(table: &mut Table) {
             let name = format!("disk: {}", name(shape, transfer));
             let run = scheme(Job::new("spinning_disk"), shape, transfer).run();
             let Ok(run) = run else {
-                table.beside(&name, None, "dies", Unit::Fraction);
+                table.beside(&name, None, "ends early", Unit::Fraction);
                 continue;
             };
             let energy = loss(&run, "energy_loss")

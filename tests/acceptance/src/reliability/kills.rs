@@ -126,7 +126,7 @@ pub fn check(table: &mut Table) {
     let whole = whole.and_then(|()| left(&home.join("whole")));
     let Some(whole) = table.take("kills: a whole run", whole) else { return };
     let all = steps(&home.join("whole")) / EVERY;
-    let (mut same, mut longest, mut hits, mut anew, mut clean) = (0, 0.0f64, 0, 0, 0);
+    let (mut same, mut longest, mut hits, mut restarted, mut clean) = (0, 0.0f64, 0, 0, 0);
     let mut ends = [0; 3];
     let (mut k, mut tries) = (0, 0);
     while k < KILLS && tries < 3 * KILLS {
@@ -155,9 +155,9 @@ pub fn check(table: &mut Table) {
         ends[kind as usize] += 1;
         hits += u64::from(hit);
         longest = longest.max(seconds);
-        // a user goes on if there is something to go on from
+        // a user continues if there is a checkpoint
         let again = list(&checkpoints).is_empty();
-        anew += u64::from(again);
+        restarted += u64::from(again);
         let on = if again { run } else { with(&[], &["--restart", &output]) };
         let outcome = good(2, &on).and_then(|()| left(&home.join("run")));
         match outcome.map(|left| left.differs(&whole)) {
@@ -181,5 +181,5 @@ pub fn check(table: &mut Table) {
         table.beside(&format!("kills of {what}"), Some(f64::from(count)), "", Unit::Count);
     }
     table.beside("kills while a checkpoint was written", Some(hits as f64), "", Unit::Count);
-    table.beside("kills before the first checkpoint", Some(anew as f64), "", Unit::Count);
+    table.beside("kills before the first checkpoint", Some(restarted as f64), "", Unit::Count);
 }

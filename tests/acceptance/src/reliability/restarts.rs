@@ -1,4 +1,4 @@
-//! Runs that go on from a random step, with other ranks, threads and patches before and after.
+//! Runs that continue from a random step, with other ranks, threads and patches before and after.
 
 use super::metal::metal;
 use super::runs::{folder, good, left, scene, steps, with};

@@ -99,7 +99,7 @@ pub fn left(folder: &Path) -> Result<Left, String> {
         let name = entry.file_name().to_string_lossy().into_owned();
         files.insert(name, fs::read(entry.path()).map_err(|e| e.to_string())?);
     }
-    // the scene that stands in it tells of the layout
+    // the scene in it has the layout
     if let Some(of_fields) = files.get_mut(RESULTS_FILE) {
         let file = hdf5::File::open(folder.join(RESULTS_FILE)).map_err(|e| e.to_string())?;
         of_fields.clear();

@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+"""Writes the table of the presets in docs/methods.md: their errors over ten impacts, beside those of
+other schemes.
+
+    cargo build --release && scripts/presets.py
+
+The impacts are those of inputs/studies/impacts.json, each with two profiles. The preset `sharpest` is
+the scheme with the least mean of E1; schemes within 1 % of the least count as equal, and the one of
+them with the smallest median overshoot is taken. The script fails if another scheme than `sharpest`
+wins. A test (tests/contract/pages.rs) holds the table to the same rule.
+"""
+
+import csv
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PROGRAM = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "release" / "flyer-mpm"
+PAGE = ROOT / "docs" / "methods.md"
+BEGIN, END = "<!-- begin presets -->\n", "<!-- end presets -->"
+
+PRESETS = ["sharpest", "robust", "default"]
+# frame, order of FMPM, rate of the pressure relaxation, linear and quadratic viscosity
+OTHERS = [
+    ("total_lagrangian", 10, 0.05, 0.05, 0.5),
+    ("total_lagrangian", 10, 0.05, 0.035, 0),
+    ("total_lagrangian", 14, 0, 0.035, 0),
+    ("total_lagrangian", 14, 0.05, 0.01, 0),
+    ("total_lagrangian", 14, 0.05, 0.02, 0),
+    ("total_lagrangian", 14, 0.05, 0.02, 0.3),
+    ("total_lagrangian", 14, 0.05, 0.035, 0.3),
+    ("total_lagrangian", 14, 0.05, 0.05, 0),
+    ("total_lagrangian", 14, 0.05, 0.05, 0.5),
+    ("total_lagrangian", 18, 0.05, 0.035, 0),
+    ("updated_lagrangian", 8, 0.1, 0.05, 0.5),
+    ("updated_lagrangian", 8, 0.1, 0.03, 0),
+    ("updated_lagrangian", 14, 0.1, 0.03, 0),
+]
+
+
+def name_of(scheme):
+    """A scheme in words."""
+    frame, order, rate, linear, quadratic = scheme
+    relaxation = f"relaxation {rate}" if rate else "no relaxation"
+    return f"{frame.replace('_', ' ')}, FMPM({order}), {relaxation}, {linear}/{quadratic}"
+
+
+def method_of(scheme):
+    """Method and viscosity of a scheme: those of `sharpest` with its values."""
+    frame, order, rate, linear, quadratic = scheme
+    method = {
+        "frame": frame,
+        "shape": "cpdi_bspline_quadratic",
+        "transfer": {"fmpm": order},
+        "stepping": "midpoint",
+        "energy": "compatible",
+        "filter_heat": True,
+        "edge_mask": 0.4 if frame == "updated_lagrangian" else 0.3,
+    }
+    if rate:
+        method["pressure_relaxation"] = {"rate": rate, "interval": 1}
+    viscosity = {
+        "linear": linear,
+        "quadratic": quadratic,
+        "growth": {"rate": 6.0, "max": 2.0},
+        "limiter": "christensen",
+        "limited": "linear",
+    }
+    return {"method": method, "artificial_viscosity": viscosity}
+
+
+def study():
+    """The study of all schemes over the impacts."""
+    impacts = json.loads((ROOT / "inputs/studies/impacts.json").read_text())
+    axis = next(axis for axis in impacts["sweep"] if axis.get("name") == "impact")
+    schemes = [{"name": name, "set": {"method": name}} for name in PRESETS]
+    schemes += [{"name": name_of(scheme), "set": method_of(scheme)} for scheme in OTHERS]
+    return {
+        "title": "Presets over ten impacts",
+        # a scene without a method
+        "scene": str(ROOT / "inputs/templates/plate_impact.json"),
+        "set": impacts["set"],
+        "sweep": [{"name": "scheme", "cases": schemes}, axis],
+    }
+
+
+def errors(row, error):
+    """The values of an error in all profiles of a run."""
+    return [float(row[key]) for key in row if key.startswith(error + "@") and row[key]]
+
+
+def lines(rows):
+    """The table, and the mean of E1 and the median overshoot of each scheme."""
+    schemes = {}
+    for row in rows:
+        if row["status"] != "done":
+            sys.exit(f"{row['scheme']}, {row['impact']}: {row['status']}")
+        e1, overshoot = schemes.setdefault(row["scheme"], ([], []))
+        e1 += errors(row, "e1_cells")
+        overshoot += [100 * value for value in errors(row, "overshoot")]
+    table = ["| scheme | mean E1 | median E1 | worst E1 | median overshoot | worst overshoot |"]
+    table.append("|---|---|---|---|---|---|")
+    measured = {}
+    for scheme, (e1, overshoot) in schemes.items():
+        values = [statistics.mean(e1), statistics.median(e1), max(e1)]
+        percents = [statistics.median(overshoot), max(overshoot)]
+        shown = [f"{value:.3f}" for value in values] + [f"{value:.2f} %" for value in percents]
+        label = f"`{scheme}`" if scheme in PRESETS else scheme
+        table.append(f"| {label} | {' | '.join(shown)} |")
+        measured[scheme] = (values[0], percents[0])
+    return table, measured
+
+
+def best(measured):
+    """The scheme that the rule takes."""
+    least = min(e1 for e1, _ in measured.values())
+    equal = {name: values for name, values in measured.items() if values[0] <= 1.01 * least}
+    return min(equal, key=lambda name: equal[name][1])
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        file, results = Path(folder) / "presets.json", Path(folder) / "results"
+        file.write_text(json.dumps(study()))
+        subprocess.run([PROGRAM, "study", file, "--output", results, "--quiet"], check=True)
+        with open(results / "study.csv", encoding="utf-8") as table:
+            rows = list(csv.DictReader(line for line in table if not line.startswith("#")))
+    table, measured = lines(rows)
+    before, rest = PAGE.read_text().split(BEGIN)
+    after = rest.split(END)[1]
+    PAGE.write_text(before + BEGIN + "\n".join(table) + "\n" + END + after)
+    winner = best(measured)
+    if winner != "sharpest":
+        sys.exit(f"the rule takes {winner}, not sharpest")
+
+
+if __name__ == "__main__":
+    main()
