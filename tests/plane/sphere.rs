@@ -5,8 +5,8 @@ use std::path::Path;
 use decomp::Serial;
 use flyer_mpm::input;
 use flyer_mpm::scene::CheckedScene;
-use flyer_mpm::simulation::Simulation;
-use flyer_mpm::solver::{Stepper, Steps};
+use flyer_mpm::simulation::{Compiled, Simulation};
+use flyer_mpm::solver::Stepper;
 use serde_json::{Value, json};
 
 use crate::tools::checked;
@@ -51,7 +51,7 @@ fn warnings(shape: &Value) -> Vec<String> {
 /// Warnings of a run to its end.
 fn warnings_of<const D: usize>(scene: &CheckedScene) -> Vec<String>
 where
-    Stepper<D>: Steps<D>,
+    Stepper<D>: Compiled<D>,
 {
     let mut simulation = Simulation::<D>::new(scene, &Serial, 1).unwrap();
     while simulation.time() < scene.scene.time.end {
