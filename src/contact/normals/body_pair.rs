@@ -1,5 +1,7 @@
 //! Two bodies at a node: their particles, and the gap between them along a direction.
 
+use smallvec::SmallVec;
+
 /// Two bodies at a node.
 pub struct BodyPair<'a, const D: usize> {
     /// Filled volumes V = sum V_p N [cells].
@@ -36,6 +38,9 @@ pub struct ContactPlane<const D: usize> {
     /// Gap between the bodies, negative if they overlap [cells].
     pub gap: f64,
 }
+
+/// Contact planes of two bodies at a node.
+pub type ContactPlanes<const D: usize> = SmallVec<[ContactPlane<D>; 2]>;
 
 /// A particle corner: its position relative to the node [cells], and whether it belongs to the
 /// second body.

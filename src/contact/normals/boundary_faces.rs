@@ -4,20 +4,23 @@
 //! its points nearest to the particle. They deform with the particle: with the outward normal N0
 //! and the distance delta0 from its centre, a face has the normal n ~ F^-T N0 and the distance
 //! d = delta0/|F^-T N0|. At a node, faces p of the first body and q of the second face each other
-//! with c = -n_p.n_q > 1/2, and
+//! with c = -n_p.n_q > 1/2 if they overlap along the contact plane, and
 //!
 //! ```text
 //! S_a = sum_pq c^4 w_p w_q n_p,   S_b = sum_pq c^4 w_p w_q n_q,   w = V N
 //! ```
 //!
 //! are sums over such pairs. The normal is the direction with the widest gap among the mean of both,
-//! S_a alone and -S_b alone; the gap is that of the faces. A corner adds nothing: each of its faces
-//! faces only what is opposite to it.
+//! S_a alone and -S_b alone; the gap is that of the faces. A convex corner adds nothing: each of its
+//! faces faces only what is opposite to it. In a concave corner that both bodies fill, the pairs
+//! form two families more than 45 degrees apart, each with its own plane. Where faces face each other
+//! but none overlap, bodies pass each other; they touch if the particles overlap widely, as at
+//! surfaces of fracture, which carry no faces.
 
 use smallvec::SmallVec;
 
 use super::body_pair::{
-    BodyPair, BoundaryPoint, ContactParticle, ContactPlane, direction, dot, unit,
+    BodyPair, BoundaryPoint, ContactParticle, ContactPlanes, direction, dot, unit,
 };
 use super::widest_gap::{self, mean, widest};
 
@@ -39,44 +42,112 @@ struct Face<const D: usize> {
     foot: [f64; D],
     /// Weight of the particle [cells].
     weight: f64,
+    /// Half edges of the particle [m].
+    half_edges: [[f64; D]; 2],
 }
 
-pub(super) fn plane<const D: usize>(
+/// Least cosine between the normals of two pairs of the same family.
+const SAME_FAMILY: f64 = 0.7;
+
+pub(super) fn planes<const D: usize>(
     pair: &BodyPair<'_, D>,
     corners: &mut Vec<BoundaryPoint<D>>,
-) -> Option<ContactPlane<D>> {
-    let met = if D == 2 { faces_plane(pair) } else { None };
-    met.or_else(|| widest_gap::plane(pair, corners))
+) -> ContactPlanes<D> {
+    let (faces, passing) = match D {
+        2 => faces_planes(pair),
+        _ => (ContactPlanes::new(), false),
+    };
+    if !faces.is_empty() {
+        return faces;
+    }
+    let mut planes = widest_gap::planes(pair, corners);
+    if passing {
+        planes.iter_mut().for_each(|plane| plane.gap += PASSING);
+    }
+    planes
 }
 
-/// Contact plane of faces that face each other; `None` if there are none.
-fn faces_plane<const D: usize>(pair: &BodyPair<'_, D>) -> Option<ContactPlane<D>> {
+/// Overlap of particles below which bodies pass each other, if faces face each other beside each
+/// other [cells].
+const PASSING: f64 = 0.25;
+
+/// Least overlap of two faces that face each other, as a fraction of the smaller one.
+const OVERLAP: f64 = 0.25;
+
+/// Two faces that face each other.
+struct FacePair<const D: usize> {
+    /// Indices of the faces of the first and the second body.
+    faces: [usize; 2],
+    weight: f64,
+    /// Unit vector between the normal of the first and the reverse of that of the second.
+    normal: [f64; D],
+}
+
+/// Contact planes of faces that face each other; empty if there are none, and whether some face
+/// each other without an overlap.
+fn faces_planes<const D: usize>(pair: &BodyPair<'_, D>) -> (ContactPlanes<D>, bool) {
     let [first, second] = pair.particles.map(faces);
-    let (mut sums, mut met) = ([[0.0; D]; 2], false);
-    for p in &first {
-        for q in &second {
+    let mut passing = false;
+    let mut left: SmallVec<[FacePair<D>; 64]> = SmallVec::new();
+    for (i, p) in first.iter().enumerate() {
+        for (k, q) in second.iter().enumerate() {
             let facing = -dot(&p.normal, &q.normal);
             if facing > FACING {
-                let square = facing * facing;
-                let weight = square * square * (p.weight * q.weight);
-                for a in 0..D {
-                    sums[0][a] += weight * p.normal[a];
-                    sums[1][a] += weight * q.normal[a];
+                let normal = unit(std::array::from_fn(|a| p.normal[a] - q.normal[a]));
+                let overlap = overlap(p, q, &normal);
+                if overlap < OVERLAP {
+                    passing = true;
+                    continue;
                 }
-                met = true;
+                let square = facing * facing;
+                let weight = square * square * (p.weight * q.weight) * overlap;
+                left.push(FacePair { faces: [i, k], weight, normal });
             }
         }
     }
-    if !met {
-        return None;
-    }
-    let outward = sums.map(direction);
-    let candidates = [mean(outward), outward[0], outward[1].map(|n| n.map(|x| -x))];
     let cell = pair.shortest_edge();
-    widest(candidates.into_iter().flatten(), |normal| {
-        let second = extent(&second, &normal.map(|n| -n))?;
-        Some(-(extent(&first, normal)? + second) / cell)
-    })
+    let mut planes = ContactPlanes::new();
+    while let Some(heaviest) = heaviest(&left).filter(|_| planes.len() < MOST_PLANES) {
+        let mut sums = [[0.0; D]; 2];
+        left.retain(|pair| {
+            let other = dot(&pair.normal, &heaviest) <= SAME_FAMILY;
+            if !other {
+                let normals = [&first[pair.faces[0]].normal, &second[pair.faces[1]].normal];
+                for (sum, normal) in sums.iter_mut().zip(normals) {
+                    (0..D).for_each(|a| sum[a] += pair.weight * normal[a]);
+                }
+            }
+            other
+        });
+        let outward = sums.map(direction);
+        let candidates = [mean(outward), outward[0], outward[1].map(|n| n.map(|x| -x))];
+        planes.extend(widest(candidates.into_iter().flatten(), |normal| {
+            let second = extent(&second, &normal.map(|n| -n))?;
+            Some(-(extent(&first, normal)? + second) / cell)
+        }));
+    }
+    (planes, passing)
+}
+
+/// Overlap of two faces along the line normal to `normal`, as a fraction of the smaller one; negative
+/// if they are apart.
+fn overlap<const D: usize>(p: &Face<D>, q: &Face<D>, normal: &[f64; D]) -> f64 {
+    let along = |v: &[f64; D]| v[D - 1] * normal[0] - v[0] * normal[D - 1];
+    let half = |face: &Face<D>| face.half_edges.iter().map(|edge| along(edge).abs()).sum::<f64>();
+    let (first, second) = (half(p), half(q));
+    let apart = (along(&p.foot) - along(&q.foot)).abs();
+    ((first + second - apart) / (2.0 * first.min(second))).min(1.0)
+}
+
+/// Greatest number of planes at a node.
+const MOST_PLANES: usize = 2;
+
+/// Normal of the first of the pairs with the greatest weight.
+fn heaviest<const D: usize>(pairs: &[FacePair<D>]) -> Option<[f64; D]> {
+    let first = pairs.first()?;
+    let heavier = |a, b: &'_ FacePair<D>| if b.weight > a { b.weight } else { a };
+    let most = pairs.iter().fold(first.weight, heavier);
+    pairs.iter().find(|pair| pair.weight == most).map(|pair| pair.normal)
 }
 
 /// Faces of particles near a node.
@@ -94,7 +165,8 @@ fn faces<const D: usize>(particles: &[ContactParticle<D>]) -> SmallVec<[Face<D>;
             let square = m[0] * m[0] + m[1] * m[1];
             let normal = unit(std::array::from_fn(|a| m[a]));
             let foot = std::array::from_fn(|a| particle.place[a] + m[a] / square);
-            faces.push(Face { normal, foot, weight: particle.volume });
+            let (weight, half_edges) = (particle.volume, particle.half_edges);
+            faces.push(Face { normal, foot, weight, half_edges });
         }
     }
     faces
@@ -121,16 +193,17 @@ mod tests {
         }
     }
 
-    fn pair_plane(
+    fn planes_between(
         first: &[ContactParticle<2>],
         second: &[ContactParticle<2>],
-    ) -> Option<ContactPlane<2>> {
-        faces_plane(&BodyPair {
+    ) -> ContactPlanes<2> {
+        faces_planes(&BodyPair {
             volume: [0.5; 2],
             gradient: [&[0.0; 2]; 2],
             particles: [first, second],
             cell: &[1.0; 2],
         })
+        .0
     }
 
     #[test]
@@ -153,10 +226,10 @@ mod tests {
         let flat = [-0.75, -0.25, 0.25, 0.75].map(|x| particle([x, -0.25], [0.0, 1.0], 0.25));
         let mut corner = particle([0.25, 0.3], [0.0, -1.0], 0.25);
         corner.faces[1] = [-1.0, 0.0];
-        let plane = pair_plane(&flat, &[corner]).unwrap();
+        let plane = planes_between(&flat, &[corner])[0];
         assert_eq!(plane.normal, [0.0, 1.0]);
         assert!((plane.gap - 0.05).abs() < 1e-15);
-        let back = pair_plane(&[corner], &flat).unwrap();
+        let back = planes_between(&[corner], &flat)[0];
         assert_eq!(back.normal, [0.0, -1.0]);
     }
 
@@ -164,7 +237,28 @@ mod tests {
     fn faces_that_look_away_have_no_plane() {
         let left = particle([-0.25, 0.0], [-1.0, 0.0], 0.25);
         let right = particle([0.25, 0.0], [1.0, 0.0], 0.25);
-        assert_eq!(pair_plane(&[left], &[right]), None);
-        assert!(pair_plane(&[right], &[left]).is_some());
+        assert!(planes_between(&[left], &[right]).is_empty());
+        assert_eq!(planes_between(&[right], &[left]).len(), 1);
+    }
+
+    #[test]
+    fn faces_beside_each_other_have_no_plane() {
+        let left = particle([-0.25, 0.25], [1.0, 0.0], 0.25);
+        let right = particle([0.25, -0.25], [-1.0, 0.0], 0.25);
+        assert!(planes_between(&[left], &[right]).is_empty());
+        let lower = particle([-0.25, 0.0], [1.0, 0.0], 0.25);
+        assert_eq!(planes_between(&[lower], &[right]).len(), 1);
+    }
+
+    #[test]
+    fn a_corner_that_both_fill_has_two_planes() {
+        let floor = particle([0.25, -0.25], [0.0, 1.0], 0.25);
+        let wall = particle([-0.25, 0.25], [1.0, 0.0], 0.25);
+        let mut corner = particle([0.3, 0.25], [0.0, -1.0], 0.25);
+        corner.faces[1] = [-1.0, 0.0];
+        let planes = planes_between(&[floor, wall], &[corner]);
+        let normals: Vec<_> = planes.iter().map(|plane| plane.normal).collect();
+        assert_eq!(normals, [[0.0, 1.0], [1.0, 0.0]]);
+        assert!(planes[0].gap.abs() < 1e-15 && (planes[1].gap - 0.05).abs() < 1e-15);
     }
 }

@@ -1,6 +1,6 @@
 //! Normals by logistic regression on particle corners (Nairn, Hammerquist & Smith 2020).
 
-use super::body_pair::{BodyPair, BoundaryPoint, ContactPlane, unit};
+use super::body_pair::{BodyPair, BoundaryPoint, ContactPlanes, unit};
 
 pub(super) const PLANE_ONLY: bool = true;
 
@@ -10,10 +10,10 @@ pub(super) const USES_FACES: bool = false;
 /// separated.
 const INSET: f64 = 0.9;
 
-pub(super) fn plane<const D: usize>(
+pub(super) fn planes<const D: usize>(
     pair: &BodyPair<'_, D>,
     corners: &mut Vec<BoundaryPoint<D>>,
-) -> Option<ContactPlane<D>> {
+) -> ContactPlanes<D> {
     corners.clear();
     for (particles, second) in pair.particles.into_iter().zip([false, true]) {
         for particle in particles {
@@ -24,7 +24,8 @@ pub(super) fn plane<const D: usize>(
             }
         }
     }
-    pair.plane(logistic_regression(corners, pair.cell)?)
+    let normal = logistic_regression(corners, pair.cell);
+    normal.and_then(|normal| pair.plane(normal)).into_iter().collect()
 }
 
 /// Weight of |w|^2/2 (ridge term), relative to a total weight of 1 for the points of each body.

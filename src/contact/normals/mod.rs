@@ -5,10 +5,10 @@ mod body_pair;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use body_pair::{BodyPair, BoundaryPoint, ContactParticle, ContactPlane, reach};
+pub use body_pair::{BodyPair, BoundaryPoint, ContactParticle, ContactPlane, ContactPlanes, reach};
 
 /// Defines the sources of normals from a list of `module::Name,`. The module name is the name in
-/// scenes; the module has the constants `PLANE_ONLY` and `USES_FACES` and the function `plane`.
+/// scenes; the module has the constants `PLANE_ONLY` and `USES_FACES` and the function `planes`.
 macro_rules! normals {
     ($($(#[$attribute:meta])+ $module:ident::$name:ident,)+) => {
         $(mod $module;)+
@@ -31,13 +31,14 @@ macro_rules! normals {
                 match self { $(Normals::$name => $module::USES_FACES,)+ }
             }
 
-            /// Contact plane of two bodies at a node; `None` if undefined. `corners` is scratch.
-            pub fn plane<const D: usize>(
+            /// Contact planes of two bodies at a node: two in a corner that both fill. `corners`
+            /// is scratch.
+            pub fn planes<const D: usize>(
                 self,
                 pair: &BodyPair<'_, D>,
                 corners: &mut Vec<BoundaryPoint<D>>,
-            ) -> Option<ContactPlane<D>> {
-                match self { $(Normals::$name => $module::plane(pair, corners),)+ }
+            ) -> ContactPlanes<D> {
+                match self { $(Normals::$name => $module::planes(pair, corners),)+ }
             }
         }
     };

@@ -1,16 +1,17 @@
 //! Normals by the gradients of the filled volumes (Lemiale, Hurmane & Nairn 2010).
 
-use super::body_pair::{BodyPair, BoundaryPoint, ContactPlane, unit};
+use super::body_pair::{BodyPair, BoundaryPoint, ContactPlanes, unit};
 
 pub(super) const PLANE_ONLY: bool = false;
 
 pub(super) const USES_FACES: bool = false;
 
-pub(super) fn plane<const D: usize>(
+pub(super) fn planes<const D: usize>(
     pair: &BodyPair<'_, D>,
     _: &mut Vec<BoundaryPoint<D>>,
-) -> Option<ContactPlane<D>> {
-    pair.plane(volume_gradient(pair.volume, pair.gradient)?)
+) -> ContactPlanes<D> {
+    let normal = volume_gradient(pair.volume, pair.gradient);
+    normal.and_then(|normal| pair.plane(normal)).into_iter().collect()
 }
 
 /// Unit normal from the first of two bodies to the second, by the gradient of the first body's

@@ -6,7 +6,7 @@
 //! them the bodies seem to overlap; the gradient of one body alone often is the normal of the
 //! face in contact.
 
-use super::body_pair::{BodyPair, BoundaryPoint, ContactPlane, axes, direction};
+use super::body_pair::{BodyPair, BoundaryPoint, ContactPlane, ContactPlanes, axes, direction};
 use super::volume_gradient::volume_gradient;
 
 pub(super) const PLANE_ONLY: bool = false;
@@ -17,10 +17,14 @@ pub(super) const USES_FACES: bool = false;
 /// [cells]: rounding and the unevenness of particles choose no direction.
 const MARGIN: f64 = 0.01;
 
-pub(super) fn plane<const D: usize>(
+pub(super) fn planes<const D: usize>(
     pair: &BodyPair<'_, D>,
     _: &mut Vec<BoundaryPoint<D>>,
-) -> Option<ContactPlane<D>> {
+) -> ContactPlanes<D> {
+    plane(pair).into_iter().collect()
+}
+
+fn plane<const D: usize>(pair: &BodyPair<'_, D>) -> Option<ContactPlane<D>> {
     let difference = volume_gradient(pair.volume, pair.gradient);
     if D == 1 {
         return pair.plane(difference?);

@@ -26,8 +26,9 @@ const HOLDS: f64 = 1e-3;
 /// of a cut body.
 const AT_START: f64 = 0.1;
 
-/// Fraction of u at which bodies with only their initial contact impulse separate: an oscillation
-/// opens an interface slowly, while bodies that really separate do so at once.
+/// Fraction of u at which bodies with only their initial contact impulse separate, and above which
+/// bodies that slide do not adhere: an oscillation opens an interface slowly, while bodies that
+/// really separate do so at once.
 const PARTS: f64 = 0.05;
 
 /// Edge of a body at a node with several bodies.
@@ -70,7 +71,9 @@ impl<const D: usize> Scheme<D> {
         if gap >= CLOSED + strain.clamp(0.0, HELD) {
             return false;
         }
-        let closing = (0..D).map(|k| (a.velocity[k] - b.velocity[k]) * normal[k]).sum::<f64>();
+        let apart: [f64; D] = decomp::array::from_fn(|k| a.velocity[k] - b.velocity[k]);
+        let closing = (0..D).map(|k| apart[k] * normal[k]).sum::<f64>();
+        let slip: [f64; D] = decomp::array::from_fn(|k| apart[k] - closing * normal[k]);
         // both carry the same force: noise may have reduced the impulse of one of them
         let contact_impulse = first.contact_impulse.max(second.contact_impulse);
         let least =
@@ -80,7 +83,8 @@ impl<const D: usize> Scheme<D> {
         let slow = -PARTS * self.impact;
         let mass = a.mass * b.mass / (a.mass + b.mass);
         mass * closing + self.area(index, [a, b]) * dt * stress > 0.0
-            || (contact_impulse > least
+            || (norm(&slip) <= PARTS * self.impact
+                && contact_impulse > least
                 && contact_impulse + dt * stress > 0.0
                 && (contact_impulse > start || closing > slow))
     }

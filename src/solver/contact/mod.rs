@@ -44,7 +44,7 @@ use smallvec::SmallVec;
 
 use super::scheme::Scheme;
 use super::series::ProductSeries;
-use crate::contact::{BodyPair, ContactCondition, ContactParticle};
+use crate::contact::{BodyPair, ContactCondition, ContactParticle, ContactPlane};
 use crate::shape::with_width;
 use crate::solver::clock::timed;
 use crate::solver::patch::Patch;
@@ -52,12 +52,7 @@ use crate::solver::patch::Patch;
 impl<const D: usize> Scheme<D> {
     /// Finds the pairs of bodies in contact at the nodes that the patch computes, after masses and
     /// momenta have been summed, in a step of `dt`.
-    pub(super) fn find_contact(
-        &self,
-        patch: &mut Patch<D>,
-        contact: &ContactCondition,
-        dt: f64,
-    ) {
+    pub(super) fn find_contact(&self, patch: &mut Patch<D>, contact: &ContactCondition, dt: f64) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
             s: &Scheme<D>,
@@ -105,7 +100,13 @@ impl<const D: usize> Scheme<D> {
         let node = nodes.node(contact_node);
         let index = self.index_of(patch, node);
         let particles = &mut found.particles;
-        self.find_particles::<K>(patch, index, nodes.touches(contact_node), &mut members, particles);
+        self.find_particles::<K>(
+            patch,
+            index,
+            nodes.touches(contact_node),
+            &mut members,
+            particles,
+        );
         let first = found.constraints.len();
         let share = self.share_of(patch, index);
         let count = patch.nodes.nodes.count();
@@ -118,14 +119,14 @@ impl<const D: usize> Scheme<D> {
                     particles: [&found.particles[i], &found.particles[k]],
                     cell: &self.cell,
                 };
-                let plane = contact.normals.plane(&body_pair, &mut found.corners);
-                let Some(plane) = plane else { continue };
-                let normal = plane.normal;
-                if self.touch(patch, index, &body_pair, pair, &plane, dt) {
+                let planes = contact.normals.planes(&body_pair, &mut found.corners);
+                let touch =
+                    |plane: &ContactPlane<D>| self.touch(patch, index, &body_pair, pair, plane, dt);
+                for plane in planes.into_iter().filter(touch) {
                     found.constraints.push(ContactConstraint {
                         at: pair.map(|m| m.layer * count + node),
                         mass: pair.map(|m| m.mass),
-                        normal,
+                        normal: plane.normal,
                         low: [false; 2],
                         share,
                         given: [[0.0; D]; 2],
@@ -207,9 +208,9 @@ impl<const D: usize> Scheme<D> {
                 |v: [f64; D]| -> [f64; D] { decomp::array::from_fn(|a| v[a] * self.cell[a]) };
             let half_edges = match c.half_edges {
                 None => [metres([0.5 * filled[r]; D]), [0.0; D]],
-                Some(first) => [0, 1].map(|k| {
-                    metres(decomp::array::from_fn(|a| column(first + 2 * k + a)[r]))
-                }),
+                Some(first) => {
+                    [0, 1].map(|k| metres(decomp::array::from_fn(|a| column(first + 2 * k + a)[r])))
+                }
             };
             let faces = c.faces.map_or([[0.0; 2]; 2], |first| {
                 [0, 1].map(|k| [0, 1].map(|a| column(first + 2 * k + a)[r]))

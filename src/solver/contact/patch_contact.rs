@@ -112,8 +112,7 @@ mod tests {
 
     #[test]
     fn the_jump_is_recorded_on_request() {
-        let mut patch =
-            PatchContact { constraints: vec![constraint([1.0])], ..Default::default() };
+        let mut patch = PatchContact { constraints: vec![constraint([1.0])], ..Default::default() };
         let mut fields = vec![vec![0.0, 4.0, 0.0, 0.0, 0.0]];
         patch.join(&mut fields, None);
         assert_eq!((fields[0][1], fields[0][4]), (1.0, 1.0));
