@@ -42,8 +42,9 @@ struct Face<const D: usize> {
     foot: [f64; D],
     /// Weight of the particle [cells].
     weight: f64,
-    /// Half edges of the particle [m].
-    half_edges: [[f64; D]; 2],
+    /// Extents against and along its tangent from there, to the edge of the particle or to its other
+    /// face [m].
+    extent: [f64; 2],
 }
 
 /// Least cosine between the normals of two pairs of the same family.
@@ -129,14 +130,20 @@ fn faces_planes<const D: usize>(pair: &BodyPair<'_, D>) -> (ContactPlanes<D>, bo
     (planes, passing)
 }
 
-/// Overlap of two faces along the line normal to `normal`, as a fraction of the smaller one; negative
+/// Component of `v` along the tangent of a line with the normal `normal`.
+fn across<const D: usize>(v: &[f64; D], normal: &[f64; D]) -> f64 {
+    v[D - 1] * normal[0] - v[0] * normal[D - 1]
+}
+
+/// Overlap of two faces along the line normal to `normal`, as a fraction of the shorter one; negative
 /// if they are apart.
 fn overlap<const D: usize>(p: &Face<D>, q: &Face<D>, normal: &[f64; D]) -> f64 {
-    let along = |v: &[f64; D]| v[D - 1] * normal[0] - v[0] * normal[D - 1];
-    let half = |face: &Face<D>| face.half_edges.iter().map(|edge| along(edge).abs()).sum::<f64>();
-    let (first, second) = (half(p), half(q));
-    let apart = (along(&p.foot) - along(&q.foot)).abs();
-    ((first + second - apart) / (2.0 * first.min(second))).min(1.0)
+    let (first, second) = (across(&p.foot, normal), across(&q.foot, normal));
+    // the tangents of faces that face each other are opposite
+    let lower = (first - p.extent[0]).max(second - q.extent[1]);
+    let upper = (first + p.extent[1]).min(second + q.extent[0]);
+    let length = |face: &Face<D>| face.extent[0] + face.extent[1];
+    (upper - lower) / length(p).min(length(q))
 }
 
 /// Greatest number of planes at a node.
@@ -156,17 +163,26 @@ fn faces<const D: usize>(particles: &[ContactParticle<D>]) -> SmallVec<[Face<D>;
     for particle in particles {
         let [[ax, ay], [bx, by]] = particle.half_edges.map(|edge| [edge[0], edge[D - 1]]);
         let inverse = 1.0 / (ax * by - ay * bx);
-        for [s, t] in particle.faces {
-            if s == 0.0 && t == 0.0 {
-                continue;
-            }
-            // m with m.a = s and m.b = t; the face is m.x = 1
-            let m = [(s * by - t * ay) * inverse, (t * ax - s * bx) * inverse];
+        // m with m.a = s and m.b = t; the face is m.x = 1
+        let line = |[s, t]: [f64; 2]| [(s * by - t * ay) * inverse, (t * ax - s * bx) * inverse];
+        let lines = particle.faces.map(line);
+        for (k, m) in lines.into_iter().enumerate().filter(|(_, m)| *m != [0.0; 2]) {
             let square = m[0] * m[0] + m[1] * m[1];
-            let normal = unit(std::array::from_fn(|a| m[a]));
-            let foot = std::array::from_fn(|a| particle.place[a] + m[a] / square);
-            let (weight, half_edges) = (particle.volume, particle.half_edges);
-            faces.push(Face { normal, foot, weight, half_edges });
+            let normal: [f64; D] = unit(std::array::from_fn(|a| m[a]));
+            let from_centre: [f64; D] = std::array::from_fn(|a| m[a] / square);
+            let edges = particle.half_edges.iter();
+            let half: f64 = edges.map(|edge| across(edge, &normal).abs()).sum();
+            let mut extent = [half; 2];
+            // the other face: o.x = 1 where the tangent crosses it
+            let other: [f64; D] = std::array::from_fn(|a| lines[1 - k][a]);
+            let slope = across(&other, &normal);
+            let crossing = (1.0 - dot(&other, &from_centre)) / slope.abs();
+            let side = usize::from(slope > 0.0);
+            if crossing >= 0.0 && crossing < half {
+                extent[side] = crossing;
+            }
+            let foot = std::array::from_fn(|a| particle.place[a] + from_centre[a]);
+            faces.push(Face { normal, foot, weight: particle.volume, extent });
         }
     }
     faces
