@@ -8,7 +8,7 @@ mod normals;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use normals::{BodyPair, BoundaryPoint, INSET, Normals};
+pub use normals::{BodyPair, BoundaryPoint, ContactParticle, ContactPlane, Normals, reach};
 
 /// Defines the contact laws from a list of `module::Parameters,`. The module name is the name of
 /// the law in scenes; the struct has the method `condition`.
@@ -50,10 +50,11 @@ contact_laws! {
     friction::Friction,
 }
 
-/// Greatest adhesion impulse of bodies that were pressed together, as a fraction of rho h u [-],
-/// with the impact speed u of the scene and the cell edge h: oscillations run ahead of a shock, and
-/// an interface that opened at each of them would reflect a part of the shock. Bodies never return
-/// more impulse than their contact impulse, initial value included, so adhesion does not last.
+/// Greatest adhesion impulse of bodies that have not been pressed together yet, as a fraction of
+/// rho h u [-], with the impact speed u of the scene and the cell edge h: oscillations run ahead of
+/// a shock, and an interface that opened at each of them would reflect a part of the shock. Bodies
+/// never return more impulse than their contact impulse, initial value included. Bodies with a
+/// greater contact impulse have been pressed together, and separate at the first tension.
 pub const MAX_ADHESION: f64 = 0.02;
 
 /// Condition at the contact plane between bodies with separate velocity fields.

@@ -123,6 +123,9 @@ pub struct Columns {
     pub stress_volumes: usize,
     /// Impulse of contact pressure on the particle, up to a maximum [Pa s], with contact.
     pub contact_impulse: Option<usize>,
+    /// Faces of the body at a particle [-]: for each of up to two faces, its components in the
+    /// coordinates along the half edges, in a plane for normals that use them; zeros: none.
+    pub faces: Option<usize>,
     /// J at the middle of the step, scratch, with mid-point stepping.
     pub jacobian_mid: Option<usize>,
     /// Pressure at the middle of the step [Pa], scratch, with pressure relaxation.

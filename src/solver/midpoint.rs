@@ -55,6 +55,7 @@ impl<const D: usize> Stepper<D> {
                 self.effects.act(Phase::NodalStart, &step, patch);
             });
             self.solve_velocity(nodal, &self.effects, dt, relax.is_some());
+            self.solve_friction(nodal, &step);
             if self.compatible {
                 self.solve_work(nodal, &self.effects);
             }

@@ -6,7 +6,7 @@ use super::columns::Columns;
 use super::declare::{Declare, Role, symmetric_mirror};
 use super::effect::Registry;
 use super::parts::StepPart;
-use crate::scene::{CheckedScene, FrameKind, Stepping};
+use crate::scene::{CheckedScene, FrameKind, Normals, Stepping};
 use crate::shape::DomainExtent;
 
 use Role::{GhostScratch, GhostState, Scratch, State};
@@ -20,6 +20,8 @@ struct Needs {
     extent: DomainExtent,
     /// Whether bodies have separate velocity fields.
     touching: bool,
+    /// Whether particles carry the faces of their bodies.
+    carries_faces: bool,
     total_lagrangian: bool,
     /// Whether the shape function depends on the parallelogram of a particle.
     parallelograms: bool,
@@ -36,10 +38,13 @@ impl Needs {
         let touching = scene.velocity_fields() > 1;
         let total_lagrangian = method.frame == FrameKind::TotalLagrangian;
         let parallelograms = plane && extent == DomainExtent::Current;
+        let condition = scene.scene.contact.and_then(|contact| contact.condition());
+        let normals = condition.map(|condition| condition.normals);
         Needs {
             plane,
             extent,
             touching,
+            carries_faces: plane && touching && normals.is_some_and(Normals::uses_faces),
             total_lagrangian,
             parallelograms,
             deforms: (parallelograms && !total_lagrangian) || (plane && touching),
@@ -132,6 +137,11 @@ fn declare_contact(d: &mut Declare<'_>, needs: &Needs) {
     }
     d.set_owner(Some(StepPart::Contact as usize));
     d.columns.contact_impulse = Some(d.scalar("contact_impulse", "Pa s", GhostState));
+    if needs.carries_faces {
+        // the half edges turn in a mirror, their coordinates do not
+        let names = ["face1_first", "face1_second", "face2_first", "face2_second"];
+        d.columns.faces = Some(d.add(&names, "", GhostState, |_| Mirror::Same));
+    }
     if needs.total_lagrangian {
         d.columns.current_volume = Some(d.scalar("current_volume", "", GhostScratch));
         let names = ["displacement", "displacement_x", "displacement_y"];

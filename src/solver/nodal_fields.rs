@@ -32,6 +32,9 @@ pub struct Fields {
     pub work: usize,
     /// Last term of the filter's series, K^(k-1) vL [m/s], a vector; only with a filter.
     pub filter_residual: Option<usize>,
+    /// Last term of the series of the force, which is applied to the nodes [m/s2], a vector; with a
+    /// filter and a wall with friction.
+    pub force_residual: Option<usize>,
     /// Scratch for products: as many consecutive fields as vectors are multiplied at a time.
     pub scratch: usize,
     /// Number of scratch fields.
@@ -60,12 +63,14 @@ pub struct Wanted {
     pub relaxed: bool,
     /// Friction.
     pub has_friction: bool,
+    /// A wall with friction.
+    pub has_wall_friction: bool,
 }
 
 impl Fields {
     /// Indices of the fields in `dimension` directions.
     pub fn new(dimension: usize, wanted: Wanted) -> Self {
-        let Wanted { series, masked, relaxed, has_friction: rubs } = wanted;
+        let Wanted { series, masked, relaxed, has_friction: rubs, has_wall_friction } = wanted;
         let filtered = series > 0;
         let mut count = 0;
         let mut add = |n: usize, wanted: bool| {
@@ -80,6 +85,7 @@ impl Fields {
             [dimension; 5].map(|n| add(n, true));
         let velocity = if filtered { add(dimension, true) } else { lumped };
         let remainder = filtered.then(|| add(dimension, true));
+        let force_residual = (filtered && has_wall_friction).then(|| add(dimension, true));
         let volume = add(1, masked);
         let r = add(4, relaxed);
         let heat = rubs.then(|| add(1, true));
@@ -92,6 +98,7 @@ impl Fields {
             acceleration,
             work,
             filter_residual: remainder,
+            force_residual,
             scratch,
             scratches,
             first,
@@ -100,6 +107,11 @@ impl Fields {
             heat,
             count,
         }
+    }
+
+    /// Last terms of the series of a filter, vectors.
+    pub fn residuals(&self) -> impl Iterator<Item = usize> {
+        self.filter_residual.into_iter().chain(self.force_residual)
     }
 
     /// Adds consecutive fields, and returns the index of the first.

@@ -23,7 +23,7 @@ impl<const D: usize> Scheme<D> {
         }
         if let Some(contact) = &self.contact {
             timed(StepPart::Contact as usize, patch, |patch| {
-                self.find_contact(patch, contact, step.dt, force);
+                self.find_contact(patch, contact, step.dt);
             });
         }
         self.divide_by_mass(patch);
@@ -218,7 +218,7 @@ impl<const D: usize> Scheme<D> {
     fn clear_sums<const K: usize, const MATRIX: bool>(&self, patch: &mut Patch<D>) {
         let f = &self.fields;
         let scalars = [f.mass].into_iter().chain(f.scratch..f.scratch + f.scratches);
-        let vectors = [f.lumped_velocity, f.acceleration].into_iter().chain(f.filter_residual);
+        let vectors = [f.lumped_velocity, f.acceleration].into_iter().chain(f.residuals());
         let components = vectors.flat_map(|v| v..v + D);
         let volume = self.edge_mask.map(|_| f.volume);
         for field in scalars.chain(components).chain(volume) {

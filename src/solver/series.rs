@@ -295,7 +295,7 @@ impl<const D: usize> Scheme<D> {
         let force = ProductSeries {
             sum: f.acceleration,
             first: f.first,
-            last: None,
+            last: f.force_residual,
             order: force_order,
             mask: Mask::Before,
             ..velocity
@@ -365,13 +365,21 @@ impl<const D: usize> Scheme<D> {
                     }
                 }
             }
-            if self.compatible {
-                (0..D).for_each(|axis| self.start_work(patch, axis));
-                if self.contact.is_some() {
-                    self.join_work(patch);
-                }
+            // friction still changes the velocity at the end of the step
+            if self.fields.heat.is_none() {
+                self.begin_work(patch);
             }
         });
+    }
+
+    /// First term of the velocity that does the work, if the scheme needs it.
+    pub(super) fn begin_work(&self, patch: &mut Patch<D>) {
+        if self.compatible {
+            (0..D).for_each(|axis| self.start_work(patch, axis));
+            if self.contact.is_some() {
+                self.join_work(patch);
+            }
+        }
     }
 
     /// Start of [`solve_work`](Self::solve_work) on the nodes that the patch computes: (vL + A

@@ -6,6 +6,7 @@
 mod bodies;
 mod column;
 mod contact;
+mod edges;
 mod frame;
 mod layouts;
 mod loads;

@@ -116,7 +116,7 @@ pub(super) fn check_positions(checked: &CheckedScene) -> Result<(), SceneFault> 
 fn check_contact(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), SceneFault> {
     let Some(contact) = scene.contact else { return Ok(()) };
     let on_line = contact.condition().filter(|_| scene.domain.lower.len() == 1);
-    if let Some(normals) = on_line.map(|c| c.normals).filter(|normals| normals.uses_corners()) {
+    if let Some(normals) = on_line.map(|c| c.normals).filter(|normals| normals.is_plane_only()) {
         let reason = "says nothing: on a line every normal is along it; allowed: to leave it out, \
                       or two dimensions";
         return Err(SceneFault::new("contact.normals", normals, reason));

@@ -351,6 +351,7 @@ pub(crate) fn solve<const D: usize>(
     nodal: &mut Nodal<'_, D>,
 ) {
     s.solve_velocity(nodal, step.effects, step.dt, s.relaxation.is_some());
+    s.solve_friction(nodal, step);
     if s.compatible {
         s.solve_work(nodal, step.effects);
     }
