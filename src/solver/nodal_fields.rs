@@ -43,9 +43,13 @@ pub struct Fields {
     pub first: usize,
     /// Fraction of the node's volume filled with material [-], with an edge mask.
     pub volume: usize,
-    /// Relaxation: summed compliance and its inverse, projected pressure, and the first term of its
+    /// 1 at nodes that the edge mask removes, 0 elsewhere, with an edge mask.
+    pub edge: usize,
+    /// Relaxation: summed weights and their inverse, projected pressure, and the first term of its
     /// series, which later holds the last term.
     pub relaxation: [usize; 4],
+    /// Mean volume ratio of the relaxation, if its weights are relative to the current volume.
+    pub relaxed_ratio: Option<usize>,
     /// Heat of friction [J/kg], with frictional contact or a wall with friction.
     pub heat: Option<usize>,
     /// Number of fields.
@@ -61,6 +65,8 @@ pub struct Wanted {
     pub masked: bool,
     /// Pressure relaxation.
     pub relaxed: bool,
+    /// Pressure relaxation with weights relative to the current volume.
+    pub relaxes_ratio: bool,
     /// Friction.
     pub has_friction: bool,
     /// A wall with friction.
@@ -70,7 +76,14 @@ pub struct Wanted {
 impl Fields {
     /// Indices of the fields in `dimension` directions.
     pub fn new(dimension: usize, wanted: Wanted) -> Self {
-        let Wanted { series, masked, relaxed, has_friction: rubs, has_wall_friction } = wanted;
+        let Wanted {
+            series,
+            masked,
+            relaxed,
+            relaxes_ratio,
+            has_friction: rubs,
+            has_wall_friction,
+        } = wanted;
         let filtered = series > 0;
         let mut count = 0;
         let mut add = |n: usize, wanted: bool| {
@@ -87,7 +100,9 @@ impl Fields {
         let remainder = filtered.then(|| add(dimension, true));
         let force_residual = (filtered && has_wall_friction).then(|| add(dimension, true));
         let volume = add(1, masked);
+        let edge = add(1, masked);
         let r = add(4, relaxed);
+        let relaxed_ratio = relaxes_ratio.then(|| add(1, true));
         let heat = rubs.then(|| add(1, true));
         Fields {
             mass,
@@ -103,6 +118,8 @@ impl Fields {
             scratches,
             first,
             volume,
+            edge,
+            relaxed_ratio,
             relaxation: [r, r + 1, r + 2, r + 3],
             heat,
             count,
@@ -296,6 +313,22 @@ impl Band {
     /// ends.
     pub fn product(&self, x: &[f64], range: Range<usize>, y: &mut [f64]) {
         self.each_product([x], range, [y], |product, _, _| product);
+    }
+
+    /// Distances from a node to the others with which it may have an entry, in the patch's arrays.
+    pub fn distances(&self) -> impl Iterator<Item = isize> + Clone + '_ {
+        let later = self.offsets.iter().skip(1).map(|&o| o as isize);
+        later.clone().chain(later.map(|o| -o))
+    }
+
+    /// (M x)_i at node `i`, which must be at least the width of the band away from the ends.
+    pub fn product_at(&self, x: &[f64], i: usize) -> f64 {
+        let mut sum = self.diagonal(0, i..i + 1)[0] * x[i];
+        for (d, &o) in self.offsets.iter().enumerate().skip(1) {
+            sum += self.diagonal(d, i..i + 1)[0] * x[i + o];
+            sum += self.diagonal(d, i - o..i - o + 1)[0] * x[i - o];
+        }
+        sum
     }
 
     /// y = t + x - d M x on the nodes `range` for several vectors at a time, with a diagonal matrix

@@ -98,6 +98,9 @@ fn set_initial_values<const D: usize>(
         values[columns.position + a] = centre[a];
         values[columns.velocity + a] = checked.velocity[a] - grid_velocity[a];
     }
+    if D == 1 {
+        values[columns.velocity] = scene.graded_velocity(number, centre[0]) - grid_velocity[0];
+    }
     let mut pressure = body.pressure;
     if let Some(motion) = &checked.motion {
         let place = std::array::from_fn(|a| if a < D { centre[a] } else { 0.0 });

@@ -114,7 +114,15 @@ impl<const D: usize> Scheme<D> {
         let f = &self.fields;
         Sleep {
             needed: 1 + self.relaxation.map_or(0, |r| r.interval),
-            kept: [f.mass, f.inverse, f.volume, f.relaxation[0], f.relaxation[1]],
+            kept: [
+                f.mass,
+                f.inverse,
+                f.volume,
+                f.edge,
+                f.relaxation[0],
+                f.relaxation[1],
+                f.relaxed_ratio.unwrap_or(usize::MAX),
+            ],
         }
     }
 

@@ -29,7 +29,8 @@ pub(super) struct ProductSeries {
     last: Option<usize>,
     order: u32,
     matrix: Matrix,
-    mask: Mask,
+    /// Whether the edge mask applies.
+    masked: bool,
 }
 
 /// Matrix in K.
@@ -78,15 +79,6 @@ impl ProductSeries {
         let parity = move |axis| if scalar { Parity::Even } else { Parity::Odd(axis) };
         (0..if scalar { 1 } else { D }).map(move |axis| (self.component(axis), parity(axis)))
     }
-}
-
-/// Position of the edge mask chi, which removes nodes with little material: t_l = K chi t_(l-1), or
-/// chi K t_(l-1). The patch that computes a node masks it before other patches receive its value.
-#[derive(Clone, Copy, PartialEq)]
-enum Mask {
-    No,
-    Before,
-    After,
 }
 
 /// Series with the same matrix whose next terms are computed in one pass over the matrix.
@@ -142,30 +134,66 @@ fn copy<const D: usize>(patch: &mut Patch<D>, from: usize, to: usize) {
 
 impl<const D: usize> Scheme<D> {
     /// Lists the computed nodes that the edge mask removes, so that later passes need not search
-    /// the fields: chi = 0 where the filled fraction of the node's volume is below the edge mask.
-    /// Nodes without material hold zeros anyway.
+    /// the fields: those of which the filled fraction of the volume is below the edge mask. Nodes
+    /// without material hold zeros anyway.
     pub(super) fn find_edge(&self, patch: &mut Patch<D>) {
         let Some(least) = self.edge_mask else { return };
-        let [volume, inverse] = patch.nodes.fields_mut([self.fields.volume, self.fields.inverse]);
+        let f = &self.fields;
+        let [volume, inverse, edge] = patch.nodes.fields_mut([f.volume, f.inverse, f.edge]);
         let nodes = patch.active_lines.iter().cloned().flatten();
         patch.edge.clear();
         patch.edge.extend(nodes.filter(|&i| volume[i] < least && inverse[i] > 0.0));
+        edge.fill(0.0);
+        patch.edge.iter().for_each(|&i| edge[i] = 1.0);
     }
 
-    /// Masks nodes with little material in a sum: resets the new value there to t_0, or to 0.
-    fn mask(&self, patch: &mut Patch<D>, series: &ProductSeries) {
+    /// Lists the nodes beside the edge, once the values of `edge` beyond the patch are known.
+    fn find_beside_edge(&self, patch: &mut Patch<D>) {
+        let fields = &patch.nodes.fields;
+        let (edge, inverse) = (&fields[self.fields.edge], &fields[self.fields.inverse]);
+        let beside = &mut patch.beside_edge;
+        beside.clear();
+        for i in patch.span_lines.iter().cloned().flatten().filter(|&i| edge[i] != 0.0) {
+            let others = patch.band.distances().map(|o| i.wrapping_add_signed(o));
+            beside.extend(others.map(|other| (other, 0.0)));
+        }
+        beside.sort_unstable_by_key(|(i, _)| *i);
+        beside.dedup_by_key(|(i, _)| *i);
+        let mut lines = patch.active_lines.iter().peekable();
+        beside.retain_mut(|(i, share)| {
+            while lines.next_if(|line| line.end <= *i).is_some() {}
+            if lines.peek().is_none_or(|line| *i < line.start) || edge[*i] != 0.0 {
+                return false;
+            }
+            *share = patch.band.product_at(edge, *i) * inverse[*i];
+            *share > 0.0
+        });
+    }
+
+    /// Sets the nodes that the edge mask removes to 0 in a sum, so that the next product leaves them
+    /// out, or in the final sum to t_0.
+    fn mask(&self, patch: &mut Patch<D>, series: &ProductSeries, ends: bool) {
         if self.edge_mask.is_none() {
             return;
         }
         for (series, _) in series.components::<D>() {
             let [sum, first] = patch.nodes.fields_mut([series.sum, series.first]);
             for &i in &patch.edge {
-                sum[i] = if series.mask == Mask::After { first[i] } else { 0.0 };
+                sum[i] = if ends { first[i] } else { 0.0 };
             }
         }
         if self.contact.is_some() {
-            let first = (series.mask == Mask::After).then_some(series.first);
+            let first = ends.then_some(series.first);
             patch.contact.mask(&mut patch.nodes.fields, first, series.sum);
+        }
+    }
+
+    /// Takes the pairs with a node that the edge mask removes out of a new sum; `before` holds the
+    /// previous one.
+    fn leave_edge_out(patch: &mut Patch<D>, sum: usize, before: usize) {
+        let [sum, before] = patch.nodes.fields_mut([sum, before]);
+        for &(i, share) in &patch.beside_edge {
+            sum[i] -= share * before[i];
         }
     }
 
@@ -181,6 +209,9 @@ impl<const D: usize> Scheme<D> {
         for (vector, scratch) in together.vectors.iter().zip(self.fields.scratch..) {
             // nodes without material hold zeros in both fields
             patch.nodes.fields.swap(vector.sum, scratch);
+            if vector.masked {
+                Self::leave_edge_out(patch, vector.sum, scratch);
+            }
             if let (true, Some(last)) = (together.ends(vector), vector.last) {
                 patch.nodes.fields.swap(scratch, last);
             }
@@ -190,10 +221,8 @@ impl<const D: usize> Scheme<D> {
             if self.contact.is_some() && !matches!(series.matrix, Matrix::Effect(..)) {
                 self.join_series(patch, series, together.ends(series));
             }
-            // the final sum is not masked, only the input of the next product
-            let goes_on = !together.ends(series);
-            if series.mask == Mask::After || (series.mask == Mask::Before && goes_on) {
-                self.mask(patch, series);
+            if series.masked {
+                self.mask(patch, series, together.ends(series));
             }
         }
     }
@@ -244,6 +273,9 @@ impl<const D: usize> Scheme<D> {
                 .collect();
             let next = Together::all::<D>(all, l + 2);
             nodal.each(name, |patch| {
+                if l == 0 && others.contains(&(self.fields.edge, Parity::Even)) {
+                    self.find_beside_edge(patch);
+                }
                 self.apply_no_slip(patch, &fields);
                 effects.set_boundary(self, patch, &fields);
                 for vector in &finished {
@@ -274,12 +306,12 @@ impl<const D: usize> Scheme<D> {
     ) {
         let ScalarSeries { sum, first, order, matrix, inverse } = series;
         let matrix = Matrix::Effect(matrix, inverse);
-        let series = ProductSeries { sum, first, last: None, order, matrix, mask: Mask::No };
+        let series = ProductSeries { sum, first, last: None, order, matrix, masked: false };
         self.sum_series(nodal, effects, name, others, &[series], last);
     }
 
-    /// Series of velocity and force: v = sum_(l<k) K^l vL; b = sum_(l<k) t_l with t_0 = f/m and t_l
-    /// = K chi t_(l-1), or b = f/m if the scheme lumps the force.
+    /// Series of velocity and force: v = sum_(l<k) K^l vL; b = sum_(l<k) K'^l f/m with the edge mask
+    /// in K', or b = f/m if the scheme lumps the force.
     fn velocity_series(&self) -> [ProductSeries; 2] {
         let f = &self.fields;
         let (order, force_order) = (self.transfer.order, self.transfer.force_order());
@@ -290,14 +322,14 @@ impl<const D: usize> Scheme<D> {
             last: f.filter_residual,
             order,
             matrix: Matrix::Mass,
-            mask: Mask::No,
+            masked: false,
         };
         let force = ProductSeries {
             sum: f.acceleration,
             first: f.first,
             last: f.force_residual,
             order: force_order,
-            mask: Mask::Before,
+            masked: true,
             ..velocity
         };
         [velocity, force]
@@ -314,7 +346,7 @@ impl<const D: usize> Scheme<D> {
             }
         }
         if force.order > 1 {
-            self.mask(patch, &force);
+            self.mask(patch, &force, false);
         }
     }
 
@@ -338,11 +370,15 @@ impl<const D: usize> Scheme<D> {
                 last: Some(first),
                 order: relaxation::ORDER,
                 matrix: Matrix::Compliance,
-                mask: Mask::No,
+                masked: false,
             });
         }
-        let mut others: SmallVec<[(usize, Parity); 2]> = SmallVec::new();
+        let mut others: SmallVec<[(usize, Parity); 4]> = SmallVec::new();
         others.push((f.inverse, Parity::Even));
+        if self.edge_mask.is_some() && self.transfer.force_order() > 1 {
+            others.push((f.edge, Parity::Even));
+        }
+        others.extend(f.relaxed_ratio.filter(|_| relax).map(|ratio| (ratio, Parity::Even)));
         // particles compare their volumes with the space at all their nodes
         if self.volume_relaxation.is_some() {
             others.push((f.volume, Parity::Even));
@@ -378,6 +414,10 @@ impl<const D: usize> Scheme<D> {
             (0..D).for_each(|axis| self.start_work(patch, axis));
             if self.contact.is_some() {
                 self.join_work(patch);
+            }
+            let work = self.work_series();
+            if work.order > 1 {
+                self.mask(patch, &work, false);
             }
         }
     }
@@ -428,21 +468,25 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Velocity w for which f.w is the exact change of kinetic energy, so that the work on the
-    /// particles and this change add up to rounding. Collective between neighbours.
-    ///
-    /// Series: w = sum_(l<k) (chi K)^l (vL + A v')/2 (only l = 0 if the force is lumped);
-    /// blend: w = a vL + A ((1 - a) vL + dt b/2); A = m^-1 M.
-    pub(super) fn solve_work(&self, nodal: &mut Nodal<'_, D>, effects: &Effects<D>) {
-        let order = self.transfer.force_order();
-        let series = ProductSeries {
+    /// The series of w.
+    fn work_series(&self) -> ProductSeries {
+        ProductSeries {
             sum: self.fields.work,
             first: self.fields.first,
             last: None,
-            order,
+            order: self.transfer.force_order(),
             matrix: Matrix::Mass,
-            mask: Mask::After,
-        };
+            masked: true,
+        }
+    }
+
+    /// Velocity w for which f.w is the exact change of kinetic energy, so that the work on the
+    /// particles and this change add up to rounding. Collective between neighbours.
+    ///
+    /// Series: w = sum_(l<k) K'^l (vL + A v')/2 (only l = 0 if the force is lumped);
+    /// blend: w = a vL + A ((1 - a) vL + dt b/2); A = m^-1 M.
+    pub(super) fn solve_work(&self, nodal: &mut Nodal<'_, D>, effects: &Effects<D>) {
+        let series = self.work_series();
         self.sum_series(nodal, effects, "work", &[], &[series], |_| {});
     }
 }

@@ -49,7 +49,10 @@ fn transfer_is(edits: &[(&str, Value)], transfer: &Value, reason: &str) {
 #[test]
 fn a_scene_without_a_method_has_that_of_the_flyer() {
     let [own, flyer] = [edited(&[]), with("flyer.json", &[]).unwrap()];
-    assert_eq!(json!(own.scene.method), json!(flyer.scene.method));
+    // the plates stay in contact
+    let mut method = json!(flyer.scene.method);
+    method["frame"] = json!("total_lagrangian");
+    assert_eq!(json!(own.scene.method), method);
     assert_eq!(own.scene.artificial_viscosity.unwrap().linear, 0.15);
     assert_eq!(choice(&own).preset, Preset::Default);
     assert_eq!(flyer.method_choice, None);
@@ -116,6 +119,30 @@ fn presets_differ() {
     let rubber = json!({"metal": {"density": 1000.0, "eos": eos}});
     let elastic = edited(&[("/method", json!("sharpest")), ("/materials", rubber)]);
     assert!(elastic.scene.method.pressure_relaxation.is_none());
+}
+
+#[test]
+fn plates_that_stay_in_contact_get_the_total_lagrangian_frame() {
+    let frame = |edits: &[(&str, Value)]| json!(edited(edits).scene.method)["frame"].clone();
+    assert_eq!(frame(&[]), "total_lagrangian");
+    let apart = ("/bodies/1/box", json!({"lower": [0.00002], "upper": [0.002]}));
+    assert_eq!(frame(&[apart]), Value::Null, "plates apart");
+    assert_eq!(frame(&[("/contact", json!({"type": "stick"}))]), Value::Null, "contact");
+    // an option that the frame excludes
+    let limit = json!({"preset": "default", "domain_limit": 2.0});
+    assert_eq!(frame(&[("/method", limit)]), Value::Null);
+    // the release of the softer plate parts them before the end
+    let soft = json!({"metal": {"library": "copper"}, "soft": {"library": "pmma"}});
+    let parted = |flyer: &str, target: &str| {
+        frame(&[
+            ("/time/end", json!(5e-7)),
+            ("/materials", soft.clone()),
+            ("/bodies/0/material", json!(flyer)),
+            ("/bodies/1/material", json!(target)),
+        ])
+    };
+    assert_eq!(parted("soft", "metal"), Value::Null);
+    assert_eq!(parted("metal", "soft"), "total_lagrangian");
 }
 
 #[test]

@@ -40,7 +40,8 @@ pub struct Method {
     #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0.0))]
     pub volume_relaxation: Option<f64>,
     /// Smallest filled fraction of a node's volume at which the inverse of the filter acts on the
-    /// nodal force [-]; absent: no mask.
+    /// nodal force, between pairs of such nodes; a uniform acceleration stays uniform [-]; absent: no
+    /// mask.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0), extend("exclusiveMaximum" = 1.0))]
     pub edge_mask: Option<f64>,
@@ -115,7 +116,8 @@ pub enum EnergyUpdate {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PressureRelaxation {
-    /// Fraction of the deviation that one relaxation removes [-].
+    /// Fraction of the deviation that a relaxation removes in a step of Courant number 0.4 [-]; in
+    /// other steps the fraction is in proportion to the Courant number.
     #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0.0))]
     pub rate: f64,
     /// Number of steps between relaxations.

@@ -246,6 +246,7 @@ fn bodies_in_contact_share_pressure_and_room() {
     let mut f = Fixture::<1>::new(json!({"bodies": bodies, "method": method,
         "contact": {"type": "frictionless"}}));
     f.set("pressure_mid", &[30.0, 10.0]).set("compliance", &[1.0, 3.0]);
+    f.set("jacobian_mid", &[1.0, 1.0]);
     f.nodal(0.1, |s, step, nodal| {
         nodal.each("scatter", |patch| {
             s.scatter(patch, true, step);
