@@ -101,7 +101,7 @@ fn turned(
     let scene = input::parse(text.as_bytes(), "block", &[]).map_err(|e| e.to_string())?;
     let mut run = Simulation::<2>::new(&scene, &Serial, 1).map_err(|e| e.to_string())?;
     let saved = strained(&run, stretch, start);
-    run.restore(Some(&saved)).map_err(|e| e.to_string())?;
+    run.restore(&saved).map_err(|e| e.to_string())?;
     while run.time() < TIME {
         run.advance(TIME).map_err(|e| e.to_string())?;
     }
