@@ -84,6 +84,10 @@ impl<'a> FieldSeries<'a> {
     /// # Errors
     ///
     /// If a file cannot be written; all ranks return an error.
+    ///
+    /// # Panics
+    ///
+    /// If the files have not been [opened](FieldSeries::open).
     pub fn record<const D: usize>(
         &mut self,
         simulation: &Simulation<'_, D>,

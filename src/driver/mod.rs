@@ -490,7 +490,20 @@ where
         folder::clear(&checkpoint_folder(&options.output)?);
     }
     let text = if options.verbose { report::full } else { report::brief };
-    Ok(Some(text(&summary, &place) + &gauges::report(&summary.gauges)))
+    let told = told_readings(scene, &summary.gauges, options.verbose);
+    Ok(Some(text(&summary, &place) + &gauges::report(&told)))
+}
+
+/// The readings of the report: those of the gauges that the scene names, and in the long report of all
+/// probes.
+fn told_readings(scene: &CheckedScene, all: &[GaugeReading], verbose: bool) -> Vec<GaugeReading> {
+    let Some(histories) = &scene.scene.output.histories else { return Vec::new() };
+    let stations = histories.stations.iter().map(|gauge| &gauge.name);
+    let planes = histories.planes.iter().map(|gauge| &gauge.name);
+    let named = histories.velocimeters.iter().map(|gauge| &gauge.name);
+    let named: Vec<&String> = named.chain(stations).chain(planes).collect();
+    let told = all.iter().filter(|reading| verbose || named.contains(&&reading.gauge));
+    told.cloned().collect()
 }
 
 /// Readings of all gauges and probes.
@@ -654,7 +667,7 @@ fn draw(
             let name = stem.to_string_lossy();
             figures::draw_fields(scene, table, &notes, &name, folder)?;
             if let Some(reference) = reference {
-                let along = folder.join(&name.replace("profile", "along"));
+                let along = folder.join(name.replace("profile", "along"));
                 figures::draw_along(scene, reference, k, table, notes, &along)?;
             }
             comm.heartbeat();

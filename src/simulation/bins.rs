@@ -200,7 +200,8 @@ mod tests {
             half_edges: Vec::new(),
         };
         // equal volumes, masses of 1 and 3
-        let values: Vec<f64> = means(&table, &[0..2]).iter().map(|c| c.values[0]).collect();
+        let values: Vec<f64> =
+            means(&table, std::slice::from_ref(&(0..2))).iter().map(|c| c.values[0]).collect();
         assert_eq!(values, [3.0, 4.0, 2.5, 2.0, 4.0]);
     }
 }

@@ -61,6 +61,9 @@ pub(super) enum RowOrder {
     Share,
 }
 
+/// Adds a column: its name, its unit, and the function of its values.
+type PutColumn<'a> = dyn FnMut(&str, &str, &dyn Fn() -> Vec<f64>) + 'a;
+
 /// Name by which the parallelograms of the particles are wanted.
 pub const HALF_EDGES: &str = "half_edges";
 
@@ -300,7 +303,7 @@ impl<const D: usize> Simulation<'_, D> {
         &self,
         order: &[usize],
         column: &impl Fn(usize) -> &'b Vec<f64>,
-        put: &mut dyn FnMut(&str, &str, &dyn Fn() -> Vec<f64>),
+        put: &mut PutColumn<'_>,
     ) {
         let c = &self.stepper.columns;
         if D == 1 {

@@ -56,6 +56,7 @@ pub fn quantity_of(column: &str) -> &str {
 
 impl FieldArray {
     /// The arrays of a table, without its coordinates.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn of(table: &ParticleTable) -> Vec<FieldArray> {
         let mut arrays: Vec<FieldArray> = Vec::new();
         for (k, column) in table.columns.iter().enumerate().skip(table.dimension) {

@@ -137,6 +137,7 @@ impl FieldFiles {
     /// # Errors
     ///
     /// If the disk is full or a file cannot be written; all ranks return an error.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn add(
         &mut self,
         comm: &dyn Comm,

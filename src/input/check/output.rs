@@ -108,35 +108,28 @@ pub(super) fn check_tracers(checked: &CheckedScene) -> Result<(), SceneFault> {
     let names = checked.scene.bodies.iter().map(|body| body.name.as_str());
     let bodies: HashMap<_, _> = names.zip(0..).collect();
     let mut names = HashSet::new();
-    let material = [
-        ("tracers", histories.tracers.iter().map(|t| (&t.name, &t.body, &t.at)).collect()),
-        (
-            "velocimeters",
-            histories.velocimeters.iter().map(|t| (&t.name, &t.body, &t.at)).collect(),
-        ),
-    ];
-    let material: [(&str, Vec<(&String, &String, &Vec<f64>)>); 2] = material;
-    for (list, points) in material {
-        for (i, (name, body, at)) in points.into_iter().enumerate() {
-            let path = check_name(list, i, name, &mut names)?;
-            let Some(&number) = bodies.get(body.as_str()) else {
-                let known = checked.scene.bodies.iter().map(|body| body.name.as_str());
-                let reason = format!("no such body{}", suggest(body, known));
-                return Err(SceneFault::new(join(&path, "body"), body, reason));
-            };
-            let path = join(&path, "at");
-            check_length(&path, at, checked.dimension)?;
-            for (d, x) in at.iter().enumerate() {
-                let tolerance = checked.tolerance(d);
-                let bounds = &checked.bodies[number];
-                let (lower, upper) = (bounds.lower[d], bounds.upper[d]);
-                if *x < lower - tolerance || *x > upper + tolerance {
-                    let reason = format!(
-                        "outside of its body; allowed: {lower} to {upper} ({})",
-                        join("bodies", body)
-                    );
-                    return Err(SceneFault::new(path, at, reason));
-                }
+    let tracers = histories.tracers.iter().map(|t| ("tracers", &t.name, &t.body, &t.at));
+    let meters = histories.velocimeters.iter().map(|t| ("velocimeters", &t.name, &t.body, &t.at));
+    let points = tracers.enumerate().chain(meters.enumerate());
+    for (i, (list, name, body, at)) in points {
+        let path = check_name(list, i, name, &mut names)?;
+        let Some(&number) = bodies.get(body.as_str()) else {
+            let known = checked.scene.bodies.iter().map(|body| body.name.as_str());
+            let reason = format!("no such body{}", suggest(body, known));
+            return Err(SceneFault::new(join(&path, "body"), body, reason));
+        };
+        let path = join(&path, "at");
+        check_length(&path, at, checked.dimension)?;
+        for (d, x) in at.iter().enumerate() {
+            let tolerance = checked.tolerance(d);
+            let bounds = &checked.bodies[number];
+            let (lower, upper) = (bounds.lower[d], bounds.upper[d]);
+            if *x < lower - tolerance || *x > upper + tolerance {
+                let reason = format!(
+                    "outside of its body; allowed: {lower} to {upper} ({})",
+                    join("bodies", body)
+                );
+                return Err(SceneFault::new(path, at, reason));
             }
         }
     }
