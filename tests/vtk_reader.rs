@@ -68,8 +68,15 @@ fn write_run(folder: &Path, tables: &[ParticleTable]) {
             errors_cell_averaged: None,
         });
     }
-    let info = RunInfo { title: "test", scene: &scene, bodies: &["plate".into()] };
-    write_vtkhdf(&folder.join(RESULTS_FILE), tables, &info).unwrap();
+    let info = RunInfo {
+        title: "test",
+        scene: &scene,
+        materials: &["aluminium".into(), "copper, hard".into()],
+        bodies: &["plate".into()],
+        axisymmetric: false,
+    };
+    let tables: Vec<&ParticleTable> = tables.iter().collect();
+    write_vtkhdf(&folder.join(RESULTS_FILE), &tables, &info).unwrap();
     let summary = Summary {
         format: flyer_mpm::driver::output::summary::SUMMARY_FORMAT,
         title: "test".into(),
@@ -104,6 +111,7 @@ fn write_run(folder: &Path, tables: &[ParticleTable]) {
         erosion: None,
         method_choice: None,
         measured: Vec::new(),
+        gauges: Vec::new(),
         profiles,
         error_estimate: None,
         plan: None,

@@ -61,7 +61,7 @@ pub struct Simulation<'a, const D: usize> {
     pub(super) expected: Vec<ExpectedPeaks<D>>,
     pub(super) peaks: Peaks,
     pub(super) start: Start<D>,
-    pub(super) held: LastGoodState<D>,
+    pub(super) held: LastGoodState,
     pub(super) frame: Frame<D>,
     /// Longest step if the frame accelerates [s].
     pub(super) longest_step: f64,

@@ -96,12 +96,7 @@ impl Maker {
 
     /// Whether this maker may replace the result at `place` with origin `theirs` and `scene`.
     pub fn may_replace(&self, theirs: &Origin, scene: &Value, place: &Path) -> bool {
-        self.may_replace_made(theirs, self.scene == *scene, place)
-    }
-
-    /// As [`Maker::may_replace`], for a result whose scene is known to have the same values or not.
-    pub fn may_replace_made(&self, theirs: &Origin, same_scene: bool, place: &Path) -> bool {
-        let same_values = self.origin.command == theirs.command && same_scene;
+        let same_values = self.origin.command == theirs.command && self.scene == *scene;
         let other_file = self.origin.file != theirs.file
             && theirs.file.as_ref().is_some_and(|file| Path::new(file).exists());
         (same_values && !other_file) || self.origin.is(theirs, place)
