@@ -261,12 +261,17 @@ fn override_keys(method: &mut Map<String, Value>, explicit: Map<String, Value>) 
     let plan = plan.map(|transfer| transfer.plan());
     let mut excluded: Vec<&str> = Vec::new();
     if is("stepping", "leapfrog") {
-        excluded.extend(["energy", "filter_heat", "pressure_relaxation", "edge_mask"]);
+        excluded.extend(["energy", "filter_heat", "pressure_relaxation", "edge_mask", "spin"]);
     }
     if let Some(plan) = plan {
         excluded.extend((!plan.filters).then_some("filter_heat"));
-        excluded.extend((!plan.full_mass_matrix).then_some("edge_mask"));
+        if !plan.full_mass_matrix {
+            excluded.extend(["edge_mask", "spin"]);
+        }
         excluded.extend(plan.is_affine().then_some("energy"));
+    }
+    if is("frame", "total_lagrangian") || is("shape", "linear") {
+        excluded.push("spin");
     }
     if is("frame", "total_lagrangian") || explicit.get("shape").is_some_and(|s| !deforms(s)) {
         excluded.push("domain_limit");

@@ -64,6 +64,7 @@ impl<const D: usize> Stepper<D> {
                 self.effects.act(Phase::Gather, &step, patch);
                 self.gather_contact(patch, dt);
                 self.gather_midpoint(patch, dt);
+                self.gather_spin(patch, false);
                 self.effects.act(Phase::Gathered, &step, patch);
                 self.accumulate_side_forces(patch, dt);
                 self.relax(patch, relax);
@@ -93,6 +94,7 @@ impl<const D: usize> Stepper<D> {
             self.solve_velocity(nodal, &self.effects, 0.0, false);
             nodal.each("gather", |patch| {
                 self.gather_gradient(patch);
+                self.gather_spin(patch, true);
             });
         })
     }

@@ -34,6 +34,7 @@ pub mod series;
 pub mod shape_weights;
 pub mod sides;
 mod solid;
+mod spin;
 mod stepper;
 mod tension_free;
 mod total_lagrangian;

@@ -366,7 +366,7 @@ impl<const D: usize> Scheme<D> {
                 }
             }
             if self.compatible {
-                (0..D).for_each(|axis| self.start_work(patch, axis));
+                self.start_work(patch);
                 if self.contact.is_some() {
                     self.join_work(patch);
                 }
@@ -376,46 +376,58 @@ impl<const D: usize> Scheme<D> {
 
     /// Start of [`solve_work`](Self::solve_work) on the nodes that the patch computes: (vL + A
     /// v')/2 with A = m^-1 M, or for a blend w itself.
-    fn start_work(&self, patch: &mut Patch<D>, axis: usize) {
-        let f = &self.fields;
-        let (star, lumped) = (f.velocity_star + axis, f.lumped_velocity + axis);
-        let (work, first) = (f.work + axis, f.first + axis);
-        let lines = &patch.active_lines;
+    fn start_work(&self, patch: &mut Patch<D>) {
         match self.transfer.update {
-            VelocityUpdate::Filtered => {
-                let [inverse, star, lumped, w, first] =
-                    patch.nodes.fields_mut([f.inverse, star, lumped, work, first]);
-                w.fill(0.0);
-                for line in lines {
-                    patch.band.product(star, line.clone(), w);
-                    for i in line.clone() {
-                        w[i] = 0.5 * (lumped[i] + inverse[i] * w[i]);
-                        first[i] = w[i];
-                    }
-                }
-            }
-            VelocityUpdate::Blend(a) => {
-                let [lumped, star, x] = patch.nodes.fields_mut([lumped, star, first]);
-                for i in 0..x.len() {
-                    x[i] = (1.0 - a) * lumped[i] + 0.5 * (star[i] - lumped[i]);
-                }
-                let [inverse, lumped, x, y, w] = patch.nodes.fields_mut([
-                    f.inverse,
-                    f.lumped_velocity + axis,
-                    f.first + axis,
-                    f.scratch,
-                    work,
-                ]);
-                w.fill(0.0);
-                for line in lines {
-                    patch.band.product(x, line.clone(), y);
-                    for i in line.clone() {
-                        w[i] = a * lumped[i] + inverse[i] * y[i];
-                    }
-                }
+            VelocityUpdate::Filtered => self.start_filtered_work(patch),
+            VelocityUpdate::Blend(share) => {
+                (0..D).for_each(|axis| self.blended_work(patch, axis, share));
             }
             VelocityUpdate::Affine => {
                 unreachable!("the scene check refuses compatible energy with APIC")
+            }
+        }
+    }
+
+    fn start_filtered_work(&self, patch: &mut Patch<D>) {
+        let f = &self.fields;
+        let fields = &mut patch.nodes.fields;
+        let mut work: [Vec<f64>; D] =
+            decomp::array::from_fn(|a| std::mem::take(&mut fields[f.work + a]));
+        work.iter_mut().for_each(|w| w.fill(0.0));
+        let star: [&[f64]; D] = decomp::array::from_fn(|a| &fields[f.velocity_star + a][..]);
+        for line in &patch.active_lines {
+            patch.band.product(star, line.clone(), work.each_mut().map(|w| &mut w[..]));
+        }
+        for (a, work) in work.into_iter().enumerate() {
+            patch.nodes.fields[f.work + a] = work;
+            let [inverse, lumped, w, first] =
+                patch.nodes.fields_mut([f.inverse, f.lumped_velocity + a, f.work + a, f.first + a]);
+            for i in patch.active_lines.iter().cloned().flatten() {
+                w[i] = 0.5 * (lumped[i] + inverse[i] * w[i]);
+                first[i] = w[i];
+            }
+        }
+    }
+
+    fn blended_work(&self, patch: &mut Patch<D>, axis: usize, a: f64) {
+        let f = &self.fields;
+        let (star, lumped) = (f.velocity_star + axis, f.lumped_velocity + axis);
+        let [lumped, star, x] = patch.nodes.fields_mut([lumped, star, f.first + axis]);
+        for i in 0..x.len() {
+            x[i] = (1.0 - a) * lumped[i] + 0.5 * (star[i] - lumped[i]);
+        }
+        let [inverse, lumped, x, y, w] = patch.nodes.fields_mut([
+            f.inverse,
+            f.lumped_velocity + axis,
+            f.first + axis,
+            f.scratch,
+            f.work + axis,
+        ]);
+        w.fill(0.0);
+        for line in &patch.active_lines {
+            patch.band.product([&*x], line.clone(), [&mut *y]);
+            for i in line.clone() {
+                w[i] = a * lumped[i] + inverse[i] * y[i];
             }
         }
     }

@@ -30,6 +30,11 @@ pub struct Method {
     /// same particle, as heat; default false.
     #[serde(default)]
     pub filter_heat: bool,
+    /// Each particle carries the angular momentum of its own rotation, which takes part in the mass
+    /// matrix: angular momentum is then conserved to rounding by FMPM of any order; default false.
+    /// Requires a plane without axial symmetry, `midpoint` stepping and a transfer `fmpm`.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub spin: bool,
     /// Relaxation of the particle pressure towards its projection on the grid; absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure_relaxation: Option<PressureRelaxation>,
