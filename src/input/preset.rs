@@ -261,12 +261,19 @@ fn override_keys(method: &mut Map<String, Value>, explicit: Map<String, Value>) 
     let plan = plan.map(|transfer| transfer.plan());
     let mut excluded: Vec<&str> = Vec::new();
     if is("stepping", "leapfrog") {
-        excluded.extend(["energy", "filter_heat", "pressure_relaxation", "edge_mask", "spin"]);
+        excluded.extend([
+            "energy",
+            "filter_heat",
+            "pressure_relaxation",
+            "edge_mask",
+            "spin",
+            "flux_limiter",
+        ]);
     }
     if let Some(plan) = plan {
         excluded.extend((!plan.filters).then_some("filter_heat"));
         if !plan.full_mass_matrix {
-            excluded.extend(["edge_mask", "spin"]);
+            excluded.extend(["edge_mask", "spin", "flux_limiter"]);
         }
         excluded.extend(plan.is_affine().then_some("energy"));
     }

@@ -12,6 +12,7 @@ mod contact;
 pub mod declare;
 pub mod effect;
 pub mod exchange;
+mod flux_limiter;
 pub mod gather;
 mod gather_midpoint;
 mod initial_state;

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use decomp::array::map;
 
-use crate::shape::add_product;
+use crate::shape::{MOST_NODES_IN_PLANE, add_product};
 use crate::solver::particle_weights::{NARROW, ParticleWeights, lines};
 
 /// Indices of the nodal fields in a patch's arrays. A vector takes D consecutive fields; its index
@@ -45,8 +45,28 @@ pub struct Fields {
     pub relaxation: [usize; 4],
     /// Heat of friction [J/kg], with frictional contact or a wall with friction.
     pub heat: Option<usize>,
+    /// Fields of the flux limiter, if the scene has it.
+    pub limiter: Option<LimiterFields>,
     /// Number of fields.
     pub count: usize,
+}
+
+/// Fields of the flux limiter on a line.
+#[derive(Clone, Debug)]
+pub struct LimiterFields {
+    /// Number of nodes on each side whose values bound a node's.
+    pub neighbours: usize,
+    /// Last term of the series of the force, then the series without its last term [m/s2].
+    pub series: usize,
+    /// Mean of the stress p + q [Pa].
+    pub stress: usize,
+    /// 1 at nodes near a free surface, else 0.
+    pub edge: usize,
+    /// First term of the series of the work [m/s].
+    pub work: usize,
+    /// Mean and half difference of the shares of positive and negative fluxes, of force and
+    /// velocity [-].
+    pub shares: [[usize; 2]; 2],
 }
 
 /// Nodal fields that a scheme needs.
@@ -60,12 +80,14 @@ pub struct Wanted {
     pub relaxed: bool,
     /// Friction.
     pub has_friction: bool,
+    /// Flux limiter: number of nodes on each side whose values bound a node's.
+    pub limiter: Option<usize>,
 }
 
 impl Fields {
     /// Indices of the fields in `dimension` directions.
     pub fn new(dimension: usize, wanted: Wanted) -> Self {
-        let Wanted { series, masked, relaxed, has_friction: rubs } = wanted;
+        let Wanted { series, masked, relaxed, has_friction: rubs, limiter } = wanted;
         let filtered = series > 0;
         let mut count = 0;
         let mut add = |n: usize, wanted: bool| {
@@ -83,6 +105,14 @@ impl Fields {
         let volume = add(1, masked);
         let r = add(4, relaxed);
         let heat = rubs.then(|| add(1, true));
+        let limiter = limiter.map(|neighbours| LimiterFields {
+            neighbours,
+            series: add(1, true),
+            stress: add(1, true),
+            edge: add(1, true),
+            work: add(1, true),
+            shares: [[0; 2]; 2].map(|pair| pair.map(|_| add(1, true))),
+        });
         Fields {
             mass,
             inverse,
@@ -98,6 +128,7 @@ impl Fields {
             volume,
             relaxation: [r, r + 1, r + 2, r + 3],
             heat,
+            limiter,
             count,
         }
     }
@@ -122,6 +153,33 @@ const APART: usize = 24;
 
 /// Number of entries of a block of two by two: xx, yy, xy, yx.
 const BLOCK_ENTRIES: usize = 4;
+
+/// Adds the blocks of a node and a line of `M` nodes to the node's entries xx, yy, xy and yx, each
+/// `count` long, from `first` on. `terms` are the node's value, and its products with the distances
+/// along x and y over I, `line` those of the other nodes.
+#[inline(always)]
+fn add_blocks<const M: usize>(
+    row: &mut [f64],
+    count: usize,
+    first: usize,
+    [term, x, y]: [f64; 3],
+    [values, along, across]: &[[f64; M]; 3],
+) {
+    // no closures over the loops: compilers would not vectorize them
+    macro_rules! add {
+        ($entry:literal, $k:ident => $value:expr) => {
+            let at = $entry * count + first;
+            let sums: &mut [f64; M] = (&mut row[at..at + M]).try_into().expect("M numbers");
+            for $k in 0..M {
+                sums[$k] += $value;
+            }
+        };
+    }
+    add!(0, k => term * values[k] + y * across[k]);
+    add!(1, k => term * values[k] + x * along[k]);
+    add!(2, k => -(y * along[k]));
+    add!(3, k => -(x * across[k]));
+}
 
 /// Symmetric matrix M_ij = sum_p m_p N_ip N_jp over the nodes of a patch, stored by diagonals: a
 /// diagonal holds M_(i,i+offset) at i, for offsets to later nodes. With spin an entry is a block of
@@ -308,48 +366,37 @@ impl Band {
             let values: [f64; M] = *weights.values[line].first_chunk().expect("as many nodes");
             let across = first[1] + line as f64 * cell[1];
             for k in 0..M {
-                let along = first[0] + k as f64 * cell[0];
                 parts[0][line][k] = values[k];
-                parts[1][line][k] = values[k] * along;
+                parts[1][line][k] = values[k] * (first[0] + k as f64 * cell[0]);
                 parts[2][line][k] = values[k] * across;
             }
         }
-        let [values, along, across] = &parts;
+        let turn = mass * inverse;
         for line in 0..const { lines(M, D) } {
             let from = weights.first + line * weights.stride;
             for node in [from, from + M - 1] {
                 let touched = &mut self.touched[node / BLOCK];
                 *touched = (*touched).max(if M < K { Touched::Near } else { Touched::All });
             }
+            let here = parts.each_ref().map(|part| part[line]);
+            // zeros after the last node, so that all nodes of the line add as many terms
+            let mut padded = [[0.0; 2 * MOST_NODES_IN_PLANE]; 3];
+            for (padded, here) in padded.iter_mut().zip(&here) {
+                padded[..M].copy_from_slice(here);
+            }
             let rows = &mut self.rows[from * BLOCK_ENTRIES * count..]
                 [..const { K * BLOCK_ENTRIES * diagonals(K, D) }];
             for i in 0..M {
-                let term = mass * values[line][i];
-                let turn = mass * inverse;
-                let (x, y) = (turn * along[line][i], turn * across[line][i]);
+                let [term, x, y] = [mass * here[0][i], turn * here[1][i], turn * here[2][i]];
                 let row = &mut rows[i * BLOCK_ENTRIES * count..][..BLOCK_ENTRIES * count];
-                let (xx, rest) = row.split_at_mut(count);
-                let (yy, rest) = rest.split_at_mut(count);
-                let (xy, yx) = rest.split_at_mut(count);
-                for k in i..M {
-                    xx[k - i] += term * values[line][k] + y * across[line][k];
-                    yy[k - i] += term * values[line][k] + x * along[line][k];
-                    xy[k - i] -= y * along[line][k];
-                    yx[k - i] -= x * across[line][k];
-                }
+                let shifted = padded
+                    .each_ref()
+                    .map(|p| -> [f64; M] { *p[i..].first_chunk().expect("room for zeros") });
+                add_blocks(row, count, 0, [term, x, y], &shifted);
                 for later in line + 1..const { lines(M, D) } {
                     let first = K + (later - line - 1) * (2 * K - 1) + K - 1 - i;
-                    let (n, e, f) = (&values[later], &along[later], &across[later]);
-                    let at = first..first + M;
-                    let (xx, yy) = (&mut xx[at.clone()], &mut yy[at.clone()]);
-                    let (xy, yx) = (&mut xy[at.clone()], &mut yx[at]);
-                    for k in 0..M {
-                        let scalar = term * n[k];
-                        xx[k] += scalar + y * f[k];
-                        yy[k] += scalar + x * e[k];
-                        xy[k] -= y * e[k];
-                        yx[k] -= x * f[k];
-                    }
+                    let there = parts.each_ref().map(|part| part[later]);
+                    add_blocks(row, count, first, [term, x, y], &there);
                 }
             }
         }
@@ -384,6 +431,16 @@ impl Band {
             if touched != Touched::No {
                 rows.fill(0.0);
             }
+        }
+    }
+
+    /// Calls `act` with each other node of a line that shares particles with node `i`, and the entry
+    /// of both.
+    #[inline(always)]
+    pub fn each_neighbour(&self, i: usize, mut act: impl FnMut(usize, f64)) {
+        for (d, &o) in self.offsets.iter().enumerate().skip(1) {
+            act(i + o, self.diagonals[d * self.stride + i]);
+            act(i - o, self.diagonals[d * self.stride + i - o]);
         }
     }
 

@@ -295,7 +295,7 @@ impl<const D: usize> Scheme<D> {
         let force = ProductSeries {
             sum: f.acceleration,
             first: f.first,
-            last: None,
+            last: f.limiter.as_ref().map(|limiter| limiter.series),
             order: force_order,
             mask: Mask::Before,
             ..velocity
@@ -341,37 +341,49 @@ impl<const D: usize> Scheme<D> {
                 mask: Mask::No,
             });
         }
-        let mut others: SmallVec<[(usize, Parity); 2]> = SmallVec::new();
+        let mut others: SmallVec<[(usize, Parity); 8]> = SmallVec::new();
         others.push((f.inverse, Parity::Even));
         // particles compare their volumes with the space at all their nodes
         if self.volume_relaxation.is_some() {
             others.push((f.volume, Parity::Even));
         }
-        // the pressure series may have more terms than the velocity series
-        self.sum_series(nodal, effects, "series", &others, &all, |patch| {
-            let still = self.quiescent_speed;
-            for span in &patch.span_lines {
-                for a in 0..D {
-                    let [v, b, star] = patch.nodes.fields_mut([
-                        f.velocity + a,
-                        f.acceleration + a,
-                        f.velocity_star + a,
-                    ]);
-                    let (v, b, star) =
-                        (&mut v[span.clone()], &b[span.clone()], &mut star[span.clone()]);
-                    for i in 0..v.len() {
-                        v[i] = cut(v[i], still);
-                        star[i] = cut(v[i] + dt * b[i], still);
-                    }
+        others.extend(self.limiter_halos());
+        let finish = |patch: &mut Patch<D>| self.finish_velocity(patch, dt);
+        if f.limiter.is_none() {
+            // the pressure series may have more terms than the velocity series
+            return self.sum_series(nodal, effects, "series", &others, &all, finish);
+        }
+        self.sum_series(nodal, effects, "series", &others, &all, |_| {});
+        self.limit_fluxes(nodal, effects, dt);
+        nodal.each("limiter", finish);
+    }
+
+    /// Velocity at the end of the step from velocity and acceleration, and the start of the series of
+    /// the work.
+    fn finish_velocity(&self, patch: &mut Patch<D>, dt: f64) {
+        let f = &self.fields;
+        let still = self.quiescent_speed;
+        for span in &patch.span_lines {
+            for a in 0..D {
+                let [v, b, star] = patch.nodes.fields_mut([
+                    f.velocity + a,
+                    f.acceleration + a,
+                    f.velocity_star + a,
+                ]);
+                let (v, b, star) =
+                    (&mut v[span.clone()], &b[span.clone()], &mut star[span.clone()]);
+                for i in 0..v.len() {
+                    v[i] = cut(v[i], still);
+                    star[i] = cut(v[i] + dt * b[i], still);
                 }
             }
-            if self.compatible {
-                self.start_work(patch);
-                if self.contact.is_some() {
-                    self.join_work(patch);
-                }
+        }
+        if self.compatible {
+            self.start_work(patch);
+            if self.contact.is_some() {
+                self.join_work(patch);
             }
-        });
+        }
     }
 
     /// Start of [`solve_work`](Self::solve_work) on the nodes that the patch computes: (vL + A
@@ -438,15 +450,28 @@ impl<const D: usize> Scheme<D> {
     /// Series: w = sum_(l<k) (chi K)^l (vL + A v')/2 (only l = 0 if the force is lumped);
     /// blend: w = a vL + A ((1 - a) vL + dt b/2); A = m^-1 M.
     pub(super) fn solve_work(&self, nodal: &mut Nodal<'_, D>, effects: &Effects<D>) {
-        let order = self.transfer.force_order();
+        let f = &self.fields;
         let series = ProductSeries {
-            sum: self.fields.work,
-            first: self.fields.first,
+            sum: f.work,
+            first: f.first,
             last: None,
-            order,
+            order: self.transfer.force_order(),
             matrix: Matrix::Mass,
             mask: Mask::After,
         };
-        self.sum_series(nodal, effects, "work", &[], &[series], |_| {});
+        let Some(limiter) = &f.limiter else {
+            return self.sum_series(nodal, effects, "work", &[], &[series], |_| {});
+        };
+        nodal.refresh(&[(f.work, Parity::Odd(0))]);
+        nodal.each("work", |patch| self.start_limited_work(patch, limiter));
+        let rest = ProductSeries { order: series.order - 1, ..series };
+        self.sum_series(nodal, effects, "work", &[], &[rest], |patch| {
+            for span in patch.span_lines.clone() {
+                let [work, first] = patch.nodes.fields_mut([f.work, limiter.work]);
+                for i in span {
+                    work[i] += first[i];
+                }
+            }
+        });
     }
 }

@@ -6,7 +6,8 @@ use super::super::errors::SceneFault;
 use super::super::paths::join;
 use crate::scene::CheckedScene;
 use crate::scene::{
-    EnergyUpdate, FrameKind, Geometry, LimitedTerms, Method, Scene, Stepping, StressUpdate,
+    EnergyUpdate, FluxLimiter, FrameKind, Geometry, LimitedTerms, Method, Scene, Stepping,
+    StressUpdate,
 };
 use crate::shape::{DomainExtent, most_nodes};
 
@@ -51,6 +52,9 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Sce
     }
     if method.spin {
         check_spin(scene)?;
+    }
+    if let Some(limiter) = method.flux_limiter {
+        check_limiter(scene, limiter)?;
     }
     check_contact(scene, warnings)?;
     if method.shape.has_jumps() {
@@ -112,6 +116,30 @@ fn check_spin(scene: &Scene) -> Result<(), SceneFault> {
         let allowed = "to leave it out, or another method.shape: a particle at a node has no moment \
                        of inertia";
         return Err(conflict(spin, ("method.shape", method.shape), allowed));
+    }
+    Ok(())
+}
+
+/// Checks the options that the flux limiter needs.
+fn check_limiter(scene: &Scene, limiter: FluxLimiter) -> Result<(), SceneFault> {
+    let method = &scene.method;
+    let key = ("method.flux_limiter", limiter);
+    if scene.domain.lower.len() != 1 {
+        let reason = "acts on a line alone; allowed: to leave it out, or one dimension";
+        return Err(SceneFault::new(key.0, limiter, reason));
+    }
+    if method.stepping != Stepping::Midpoint {
+        let allowed = format!("to leave it out, or {MIDPOINT}");
+        return Err(conflict(key, ("method.stepping", method.stepping), &allowed));
+    }
+    let plan = method.transfer.plan();
+    if !plan.full_mass_matrix || plan.order < 2 {
+        let allowed = "to leave it out, or method.transfer {\"fmpm\": m} with m of 2 or more";
+        return Err(conflict(key, ("method.transfer", method.transfer), allowed));
+    }
+    if let Some(contact) = scene.contact.filter(|contact| contact.condition().is_some()) {
+        let allowed = "to leave one of them out";
+        return Err(conflict(key, ("contact.type", contact.name()), allowed));
     }
     Ok(())
 }
