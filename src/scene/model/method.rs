@@ -137,7 +137,7 @@ pub struct PressureRelaxation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FluxLimiter {
-    /// Number of nodes on each side whose values bound those of a node: 1, or 2 for gases.
+    /// Number of nodes on each side whose values bound those of a node: 1, or 2 for looser limits.
     #[schemars(range(min = 1, max = 2))]
     pub neighbours: u32,
 }
