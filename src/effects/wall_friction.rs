@@ -110,7 +110,8 @@ impl WallFriction {
         let field = |k: usize| &patch.nodes.fields[k + axis][..];
         match (f.filter_residual, f.force_residual) {
             (Some(velocity), Some(force)) => {
-                let (star, velocity, force) = (field(f.velocity_star), field(velocity), field(force));
+                let (star, velocity, force) =
+                    (field(f.velocity_star), field(velocity), field(force));
                 for span in patch.span_lines.iter().cloned().flatten() {
                     inner[span] = star[span] - velocity[span] - dt * force[span];
                 }

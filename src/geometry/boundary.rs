@@ -70,7 +70,8 @@ impl Boundary {
         }
         faces.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let Some(&first) = faces.first() else { return SmallVec::new() };
-        let cosine = |f: &BoundaryFace| f.normal[0] * first.normal[0] + f.normal[1] * first.normal[1];
+        let cosine =
+            |f: &BoundaryFace| f.normal[0] * first.normal[0] + f.normal[1] * first.normal[1];
         let second = faces.iter().skip(1).find(|face| cosine(face) < DISTINCT);
         std::iter::once(first).chain(second.copied()).collect()
     }
@@ -150,9 +151,11 @@ mod tests {
 
     #[test]
     fn borders_within_a_union_are_no_faces() {
-        let union = json!({"union": [square([0.0, 0.0], [1.0, 1.0]), square([1.0, 0.0], [2.0, 1.0])]});
+        let union =
+            json!({"union": [square([0.0, 0.0], [1.0, 1.0]), square([1.0, 0.0], [2.0, 1.0])]});
         assert_eq!(faces(union, [0.875, 0.5], 0.25), []);
-        let hole = json!({"difference": [square([0.0, 0.0], [4.0, 4.0]), square([1.0, 1.0], [2.0, 2.0])]});
+        let hole =
+            json!({"difference": [square([0.0, 0.0], [4.0, 4.0]), square([1.0, 1.0], [2.0, 2.0])]});
         assert_eq!(faces(hole, [0.875, 1.5], 0.25), [([1.0, 0.0], 0.125)]);
     }
 

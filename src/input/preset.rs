@@ -14,6 +14,8 @@ use crate::scene::{Material, MethodChoice, Preset, Transfer};
 #[derive(Default)]
 struct SceneContents {
     plane: bool,
+    /// In two dimensions, x is a radius.
+    axisymmetric: bool,
     contact: bool,
     /// Bodies on a line touch each other without a contact law, and no side lets particles out.
     joined: bool,
@@ -58,6 +60,16 @@ const RULES: &[Rule] = &[
         reason: "a stronger viscosity, since elastic precursors are more accurate with it",
     },
     Rule {
+        applies: |c| c.strength && !(c.plane || c.contact || c.failure || c.gas || c.porous),
+        changes: || {
+            let method = json!({"transfer": {"fmpm": 12}, "edge_mask": 0.4,
+                "flux_limiter": {"neighbours": 1}});
+            let growth = json!({"rate": 6.0, "max": 2.0});
+            [method, json!({"linear": 0.03, "quadratic": 0.4, "growth": growth})]
+        },
+        reason: "a flux limiter with a weak viscosity, since no wave separates bodies",
+    },
+    Rule {
         applies: |c| c.plane,
         changes: || {
             let relaxation = json!({"rate": 0.2, "interval": 1});
@@ -66,6 +78,11 @@ const RULES: &[Rule] = &[
             [method, json!({"linear": 0.1, "quadratic": 0.75, "growth": null})]
         },
         reason: "a lower transfer order and a domain limit, since the scene has two dimensions",
+    },
+    Rule {
+        applies: |c| c.plane && !(c.axisymmetric || c.gas || c.contact),
+        changes: || [json!({"spin": true, "domain_limit": 0.7}), json!({})],
+        reason: "spin, since bodies may turn, with a shorter domain limit",
     },
     Rule {
         applies: |c| c.plane && c.strength,
@@ -274,12 +291,24 @@ fn override_keys(method: &mut Map<String, Value>, explicit: Map<String, Value>) 
     let plan = plan.map(|transfer| transfer.plan());
     let mut excluded: Vec<&str> = Vec::new();
     if is("stepping", "leapfrog") {
-        excluded.extend(["energy", "filter_heat", "pressure_relaxation", "edge_mask"]);
+        excluded.extend([
+            "energy",
+            "filter_heat",
+            "pressure_relaxation",
+            "edge_mask",
+            "spin",
+            "flux_limiter",
+        ]);
     }
     if let Some(plan) = plan {
         excluded.extend((!plan.filters).then_some("filter_heat"));
-        excluded.extend((!plan.full_mass_matrix).then_some("edge_mask"));
+        if !plan.full_mass_matrix {
+            excluded.extend(["edge_mask", "spin", "flux_limiter"]);
+        }
         excluded.extend(plan.is_affine().then_some("energy"));
+    }
+    if is("frame", "total_lagrangian") || is("shape", "linear") {
+        excluded.push("spin");
     }
     if is("frame", "total_lagrangian") || explicit.get("shape").is_some_and(|s| !deforms(s)) {
         excluded.push("domain_limit");
@@ -332,6 +361,7 @@ impl SceneContents {
         let any = |such: fn(&Material, bool) -> bool| used.iter().any(|(m, burns)| such(m, *burns));
         SceneContents {
             plane: dimension > 1,
+            axisymmetric: domain["geometry"] == "axisymmetric",
             contact: scene.get("contact").is_some_and(|contact| !contact.is_null()),
             joined: dimension == 1 && are_joined(scene),
             pressed: dimension == 1 && are_joined(scene) && stay_pressed(scene),
@@ -395,7 +425,7 @@ mod tests {
 
     /// Every combination of contents.
     fn all() -> impl Iterator<Item = SceneContents> {
-        (0..1024_u32).map(|bits| {
+        (0..2048_u32).map(|bits| {
             let has = |k: u32| bits >> k & 1 == 1;
             SceneContents {
                 plane: has(0),
@@ -408,6 +438,7 @@ mod tests {
                 burn: has(7),
                 porous: has(8),
                 pressed: has(9),
+                axisymmetric: has(10),
             }
         })
     }
@@ -420,6 +451,8 @@ mod tests {
             assert!(!has(&viscosity, "limited") || has(&viscosity, "limiter"), "{viscosity}");
             let total = has(&method, "frame");
             assert!(!total || !has(&method, "domain_limit"), "{method}");
+            assert!(!has(&method, "spin") || (c.plane && !c.axisymmetric && !total), "{method}");
+            assert!(!has(&method, "flux_limiter") || !(c.plane || c.contact), "{method}");
             assert_eq!(has(&method, "pressure_relaxation"), c.fluid);
             if c.porous {
                 assert_eq!([&viscosity["linear"], &viscosity["quadratic"]], [0.5, 2.0]);

@@ -17,6 +17,15 @@ pub struct OutputColumn {
     pub column: &'static str,
 }
 
+/// Columns of the spin of particles.
+#[derive(Clone, Copy, Debug)]
+pub struct SpinColumns {
+    /// Angular momentum per unit mass, counter-clockwise, B [m2/s].
+    pub angular_momentum: usize,
+    /// Moment of inertia per unit mass at the time of the last forces, I [m2].
+    pub inertia: usize,
+}
+
 /// Indices of the columns in a block. Vectors take D consecutive columns, tensors D^2, row by row;
 /// their index is that of the first.
 #[derive(Clone, Debug, Default)]
@@ -87,6 +96,8 @@ pub struct Columns {
     pub limiter: Option<usize>,
     /// Affine part of the velocity [1/s], a tensor, with APIC.
     pub affine: Option<usize>,
+    /// Spin, in a plane with `method.spin`.
+    pub spin: Option<SpinColumns>,
     /// Initial half lengths of the particle along each direction [m], a vector, in a plane for
     /// shape functions that depend on its domain.
     pub half_lengths: Option<usize>,

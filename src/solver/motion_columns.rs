@@ -2,7 +2,7 @@
 
 use decomp::Mirror;
 
-use super::columns::Columns;
+use super::columns::{Columns, SpinColumns};
 use super::declare::{Declare, Role, symmetric_mirror};
 use super::effect::Registry;
 use super::parts::StepPart;
@@ -66,6 +66,7 @@ impl Columns {
         declare_stress(&mut d, &needs);
         declare_contact(&mut d, &needs);
         declare_affine(&mut d, &needs);
+        declare_spin(&mut d);
         declare_domains(&mut d, &needs);
         declare_places(&mut d, &needs);
         declare_gradients(&mut d, &needs);
@@ -163,6 +164,20 @@ fn declare_affine(d: &mut Declare<'_>, needs: &Needs) {
         };
         d.columns.affine = Some(d.tensor(names, "1/s", GhostState));
     }
+}
+
+fn declare_spin(d: &mut Declare<'_>) {
+    if !d.scene.scene.method.spin {
+        return;
+    }
+    d.set_owner(Some(StepPart::Spin as usize));
+    let pseudoscalar = |_| Mirror::NegatePair(0, 1);
+    let angular_momentum = d.add(&["spin"], "m2/s", GhostState, pseudoscalar);
+    let inertia = d.scalar("spin_inertia", "m2", State);
+    d.columns.spin = Some(SpinColumns { angular_momentum, inertia });
+    d.zero_at_rest(angular_momentum);
+    d.output("spin", "m2/s", "spin");
+    d.output("spin_inertia", "m2", "spin_inertia");
 }
 
 fn declare_domains(d: &mut Declare<'_>, needs: &Needs) {

@@ -157,7 +157,8 @@ fn set_faces<const D: usize>(
     let is_inner = |foot: [f64; 2]| {
         (0..2).all(|a| {
             let side = ON_SIDE * scene.cell_size[a];
-            let [lower, upper] = [domain.lower[a], domain.lower[a] + scene.cells[a] as f64 * scene.cell_size[a]];
+            let [lower, upper] =
+                [domain.lower[a], domain.lower[a] + scene.cells[a] as f64 * scene.cell_size[a]];
             foot[a] > lower + side && foot[a] < upper - side
         })
     };

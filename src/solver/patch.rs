@@ -69,7 +69,7 @@ pub struct RemovedParticle<const D: usize> {
     pub mass: f64,
     /// Velocity [m/s].
     pub velocity: [f64; D],
-    /// Specific internal energy [J/kg].
+    /// Specific internal energy, with that of its spin [J/kg].
     pub energy: f64,
     /// Whether it was eroded.
     pub eroded: bool,

@@ -29,8 +29,17 @@ pub(super) struct ProductSeries {
     last: Option<usize>,
     order: u32,
     matrix: Matrix,
-    /// Whether the edge mask applies.
-    masked: bool,
+    mask: Mask,
+}
+
+/// Edge mask of a series.
+#[derive(Clone, Copy, PartialEq)]
+enum Mask {
+    No,
+    /// That of the force.
+    Force,
+    /// That of the work: the adjoint of the mask of the force.
+    Work,
 }
 
 /// Matrix in K.
@@ -170,27 +179,50 @@ impl<const D: usize> Scheme<D> {
         });
     }
 
-    /// Sets the nodes that the edge mask removes to 0 in a sum, so that the next product leaves them
-    /// out, or in the final sum to t_0.
-    fn mask(&self, patch: &mut Patch<D>, series: &ProductSeries, ends: bool) {
-        if self.edge_mask.is_none() {
+    /// Whether the edge mask leaves pairs of nodes out of the matrix. With spin, a pair has a block of
+    /// two by two, and momentum is not that of pairs: the mask acts on the nodes alone, before each
+    /// product of the force and after each product of the work.
+    fn masks_pairs(&self) -> bool {
+        self.columns.spin.is_none()
+    }
+
+    /// Masks the first term of a series.
+    fn mask_first(&self, patch: &mut Patch<D>, series: &ProductSeries) {
+        if series.order > 1 && (self.masks_pairs() || series.mask == Mask::Force) {
+            self.mask(patch, series, false);
+        }
+    }
+
+    /// Masks a new sum of a series, the final one if it `ends`.
+    fn mask_sum(&self, patch: &mut Patch<D>, series: &ProductSeries, ends: bool) {
+        match (self.masks_pairs(), series.mask) {
+            (true, _) => self.mask(patch, series, ends),
+            (false, Mask::Force) if ends => {}
+            (false, mask) => self.mask(patch, series, mask == Mask::Work),
+        }
+    }
+
+    /// Sets the nodes that the edge mask removes to t_0 in a sum if `keeps_first`, else to 0, so that
+    /// the next product leaves them out.
+    fn mask(&self, patch: &mut Patch<D>, series: &ProductSeries, keeps_first: bool) {
+        if self.edge_mask.is_none() || series.mask == Mask::No {
             return;
         }
         for (series, _) in series.components::<D>() {
             let [sum, first] = patch.nodes.fields_mut([series.sum, series.first]);
             for &i in &patch.edge {
-                sum[i] = if ends { first[i] } else { 0.0 };
+                sum[i] = if keeps_first { first[i] } else { 0.0 };
             }
         }
         if self.contact.is_some() {
-            let first = ends.then_some(series.first);
+            let first = keeps_first.then_some(series.first);
             patch.contact.mask(&mut patch.nodes.fields, first, series.sum);
         }
     }
 
     /// Takes the pairs with a node that the edge mask removes out of a new sum; `before` holds the
     /// previous one.
-    fn leave_edge_out(patch: &mut Patch<D>, sum: usize, before: usize) {
+    pub(super) fn leave_edge_out(patch: &mut Patch<D>, sum: usize, before: usize) {
         let [sum, before] = patch.nodes.fields_mut([sum, before]);
         for &(i, share) in &patch.beside_edge {
             sum[i] -= share * before[i];
@@ -209,7 +241,7 @@ impl<const D: usize> Scheme<D> {
         for (vector, scratch) in together.vectors.iter().zip(self.fields.scratch..) {
             // nodes without material hold zeros in both fields
             patch.nodes.fields.swap(vector.sum, scratch);
-            if vector.masked {
+            if vector.mask != Mask::No && self.masks_pairs() {
                 Self::leave_edge_out(patch, vector.sum, scratch);
             }
             if let (true, Some(last)) = (together.ends(vector), vector.last) {
@@ -221,9 +253,7 @@ impl<const D: usize> Scheme<D> {
             if self.contact.is_some() && !matches!(series.matrix, Matrix::Effect(..)) {
                 self.join_series(patch, series, together.ends(series));
             }
-            if series.masked {
-                self.mask(patch, series, together.ends(series));
-            }
+            self.mask_sum(patch, series, together.ends(series));
         }
     }
 
@@ -306,7 +336,7 @@ impl<const D: usize> Scheme<D> {
     ) {
         let ScalarSeries { sum, first, order, matrix, inverse } = series;
         let matrix = Matrix::Effect(matrix, inverse);
-        let series = ProductSeries { sum, first, last: None, order, matrix, masked: false };
+        let series = ProductSeries { sum, first, last: None, order, matrix, mask: Mask::No };
         self.sum_series(nodal, effects, name, others, &[series], last);
     }
 
@@ -322,14 +352,15 @@ impl<const D: usize> Scheme<D> {
             last: f.filter_residual,
             order,
             matrix: Matrix::Mass,
-            masked: false,
+            mask: Mask::No,
         };
         let force = ProductSeries {
             sum: f.acceleration,
             first: f.first,
-            last: f.force_residual,
+            // a flux limiter acts on a line, friction of walls in a plane
+            last: f.limiter.as_ref().map(|limiter| limiter.series).or(f.force_residual),
             order: force_order,
-            masked: true,
+            mask: Mask::Force,
             ..velocity
         };
         [velocity, force]
@@ -345,9 +376,7 @@ impl<const D: usize> Scheme<D> {
                 copy(patch, force.sum, force.first);
             }
         }
-        if force.order > 1 {
-            self.mask(patch, &force, false);
-        }
+        self.mask_first(patch, &force);
     }
 
     /// From the first terms of the series, computes velocity, acceleration and the velocity at the
@@ -370,12 +399,12 @@ impl<const D: usize> Scheme<D> {
                 last: Some(first),
                 order: relaxation::ORDER,
                 matrix: Matrix::Compliance,
-                masked: false,
+                mask: Mask::No,
             });
         }
-        let mut others: SmallVec<[(usize, Parity); 4]> = SmallVec::new();
+        let mut others: SmallVec<[(usize, Parity); 8]> = SmallVec::new();
         others.push((f.inverse, Parity::Even));
-        if self.edge_mask.is_some() && self.transfer.force_order() > 1 {
+        if self.edge_mask.is_some() && self.transfer.force_order() > 1 && self.masks_pairs() {
             others.push((f.edge, Parity::Even));
         }
         others.extend(f.relaxed_ratio.filter(|_| relax).map(|ratio| (ratio, Parity::Even)));
@@ -383,87 +412,108 @@ impl<const D: usize> Scheme<D> {
         if self.volume_relaxation.is_some() {
             others.push((f.volume, Parity::Even));
         }
-        // the pressure series may have more terms than the velocity series
-        self.sum_series(nodal, effects, "series", &others, &all, |patch| {
-            let still = self.quiescent_speed;
-            for span in &patch.span_lines {
-                for a in 0..D {
-                    let [v, b, star] = patch.nodes.fields_mut([
-                        f.velocity + a,
-                        f.acceleration + a,
-                        f.velocity_star + a,
-                    ]);
-                    let (v, b, star) =
-                        (&mut v[span.clone()], &b[span.clone()], &mut star[span.clone()]);
-                    for i in 0..v.len() {
-                        v[i] = cut(v[i], still);
-                        star[i] = cut(v[i] + dt * b[i], still);
-                    }
+        others.extend(self.limiter_halos());
+        let finish = |patch: &mut Patch<D>| self.finish_velocity(patch, dt);
+        if f.limiter.is_none() {
+            // the pressure series may have more terms than the velocity series
+            return self.sum_series(nodal, effects, "series", &others, &all, finish);
+        }
+        self.sum_series(nodal, effects, "series", &others, &all, |_| {});
+        self.limit_fluxes(nodal, effects, dt);
+        nodal.each("limiter", finish);
+    }
+
+    /// Velocity at the end of the step from velocity and acceleration, and the start of the series of
+    /// the work.
+    fn finish_velocity(&self, patch: &mut Patch<D>, dt: f64) {
+        let f = &self.fields;
+        let still = self.quiescent_speed;
+        for span in &patch.span_lines {
+            for a in 0..D {
+                let [v, b, star] = patch.nodes.fields_mut([
+                    f.velocity + a,
+                    f.acceleration + a,
+                    f.velocity_star + a,
+                ]);
+                let (v, b, star) =
+                    (&mut v[span.clone()], &b[span.clone()], &mut star[span.clone()]);
+                for i in 0..v.len() {
+                    v[i] = cut(v[i], still);
+                    star[i] = cut(v[i] + dt * b[i], still);
                 }
             }
-            // friction still changes the velocity at the end of the step
-            if self.fields.heat.is_none() {
-                self.begin_work(patch);
-            }
-        });
+        }
+        // friction still changes the velocity at the end of the step
+        if f.heat.is_none() {
+            self.begin_work(patch);
+        }
     }
 
     /// First term of the velocity that does the work, if the scheme needs it.
     pub(super) fn begin_work(&self, patch: &mut Patch<D>) {
         if self.compatible {
-            (0..D).for_each(|axis| self.start_work(patch, axis));
+            self.start_work(patch);
             if self.contact.is_some() {
                 self.join_work(patch);
             }
-            let work = self.work_series();
-            if work.order > 1 {
-                self.mask(patch, &work, false);
-            }
+            self.mask_first(patch, &self.work_series());
         }
     }
 
     /// Start of [`solve_work`](Self::solve_work) on the nodes that the patch computes: (vL + A
     /// v')/2 with A = m^-1 M, or for a blend w itself.
-    fn start_work(&self, patch: &mut Patch<D>, axis: usize) {
-        let f = &self.fields;
-        let (star, lumped) = (f.velocity_star + axis, f.lumped_velocity + axis);
-        let (work, first) = (f.work + axis, f.first + axis);
-        let lines = &patch.active_lines;
+    fn start_work(&self, patch: &mut Patch<D>) {
         match self.transfer.update {
-            VelocityUpdate::Filtered => {
-                let [inverse, star, lumped, w, first] =
-                    patch.nodes.fields_mut([f.inverse, star, lumped, work, first]);
-                w.fill(0.0);
-                for line in lines {
-                    patch.band.product(star, line.clone(), w);
-                    for i in line.clone() {
-                        w[i] = 0.5 * (lumped[i] + inverse[i] * w[i]);
-                        first[i] = w[i];
-                    }
-                }
-            }
-            VelocityUpdate::Blend(a) => {
-                let [lumped, star, x] = patch.nodes.fields_mut([lumped, star, first]);
-                for i in 0..x.len() {
-                    x[i] = (1.0 - a) * lumped[i] + 0.5 * (star[i] - lumped[i]);
-                }
-                let [inverse, lumped, x, y, w] = patch.nodes.fields_mut([
-                    f.inverse,
-                    f.lumped_velocity + axis,
-                    f.first + axis,
-                    f.scratch,
-                    work,
-                ]);
-                w.fill(0.0);
-                for line in lines {
-                    patch.band.product(x, line.clone(), y);
-                    for i in line.clone() {
-                        w[i] = a * lumped[i] + inverse[i] * y[i];
-                    }
-                }
+            VelocityUpdate::Filtered => self.start_filtered_work(patch),
+            VelocityUpdate::Blend(share) => {
+                (0..D).for_each(|axis| self.blended_work(patch, axis, share));
             }
             VelocityUpdate::Affine => {
                 unreachable!("the scene check refuses compatible energy with APIC")
+            }
+        }
+    }
+
+    fn start_filtered_work(&self, patch: &mut Patch<D>) {
+        let f = &self.fields;
+        let fields = &mut patch.nodes.fields;
+        let mut work: [Vec<f64>; D] =
+            decomp::array::from_fn(|a| std::mem::take(&mut fields[f.work + a]));
+        work.iter_mut().for_each(|w| w.fill(0.0));
+        let star: [&[f64]; D] = decomp::array::from_fn(|a| &fields[f.velocity_star + a][..]);
+        for line in &patch.active_lines {
+            patch.band.product(star, line.clone(), work.each_mut().map(|w| &mut w[..]));
+        }
+        for (a, work) in work.into_iter().enumerate() {
+            patch.nodes.fields[f.work + a] = work;
+            let [inverse, lumped, w, first] =
+                patch.nodes.fields_mut([f.inverse, f.lumped_velocity + a, f.work + a, f.first + a]);
+            for i in patch.active_lines.iter().cloned().flatten() {
+                w[i] = 0.5 * (lumped[i] + inverse[i] * w[i]);
+                first[i] = w[i];
+            }
+        }
+    }
+
+    fn blended_work(&self, patch: &mut Patch<D>, axis: usize, a: f64) {
+        let f = &self.fields;
+        let (star, lumped) = (f.velocity_star + axis, f.lumped_velocity + axis);
+        let [lumped, star, x] = patch.nodes.fields_mut([lumped, star, f.first + axis]);
+        for i in 0..x.len() {
+            x[i] = (1.0 - a) * lumped[i] + 0.5 * (star[i] - lumped[i]);
+        }
+        let [inverse, lumped, x, y, w] = patch.nodes.fields_mut([
+            f.inverse,
+            f.lumped_velocity + axis,
+            f.first + axis,
+            f.scratch,
+            f.work + axis,
+        ]);
+        w.fill(0.0);
+        for line in &patch.active_lines {
+            patch.band.product([&*x], line.clone(), [&mut *y]);
+            for i in line.clone() {
+                w[i] = a * lumped[i] + inverse[i] * y[i];
             }
         }
     }
@@ -476,7 +526,7 @@ impl<const D: usize> Scheme<D> {
             last: None,
             order: self.transfer.force_order(),
             matrix: Matrix::Mass,
-            masked: true,
+            mask: Mask::Work,
         }
     }
 
@@ -487,6 +537,19 @@ impl<const D: usize> Scheme<D> {
     /// blend: w = a vL + A ((1 - a) vL + dt b/2); A = m^-1 M.
     pub(super) fn solve_work(&self, nodal: &mut Nodal<'_, D>, effects: &Effects<D>) {
         let series = self.work_series();
-        self.sum_series(nodal, effects, "work", &[], &[series], |_| {});
+        let Some(limiter) = &self.fields.limiter else {
+            return self.sum_series(nodal, effects, "work", &[], &[series], |_| {});
+        };
+        nodal.refresh(&[(series.sum, Parity::Odd(0))]);
+        nodal.each("work", |patch| self.start_limited_work(patch, limiter));
+        let rest = ProductSeries { order: series.order - 1, ..series };
+        self.sum_series(nodal, effects, "work", &[], &[rest], |patch| {
+            for span in patch.span_lines.clone() {
+                let [work, first] = patch.nodes.fields_mut([series.sum, limiter.work]);
+                for i in span {
+                    work[i] += first[i];
+                }
+            }
+        });
     }
 }

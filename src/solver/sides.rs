@@ -61,13 +61,7 @@ impl<const D: usize> Scheme<D> {
     }
 
     /// Adds the force of a side to the force on a node, and records it.
-    pub(crate) fn push(
-        &self,
-        patch: &mut Patch<D>,
-        at: usize,
-        index: [i64; D],
-        force: [f64; D],
-    ) {
+    pub(crate) fn push(&self, patch: &mut Patch<D>, at: usize, index: [i64; D], force: [f64; D]) {
         for (a, force) in force.iter().enumerate() {
             patch.nodes.fields[self.fields.acceleration + a][at] += force;
         }

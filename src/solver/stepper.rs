@@ -53,6 +53,7 @@ impl<const D: usize> Stepper<D> {
             relaxes_ratio: method.pressure_relaxation.is_some() && volumes_multiply(method, D),
             has_friction: rubs::<D>(contact_condition(scene)) || columns.friction_heat.is_some(),
             has_wall_friction: columns.friction_heat.is_some(),
+            limiter: method.flux_limiter.map(|limiter| limiter.neighbours as usize),
         };
         let mut fields = Fields::new(D, wanted);
         let mut setup = Setup { scene, columns: &columns, fields: &mut fields, matrices: 0 };

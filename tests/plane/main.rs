@@ -13,6 +13,7 @@ mod loads;
 mod pistons;
 mod sides;
 mod sphere;
+mod spin;
 mod symmetry;
 mod tools;
 mod waves;
