@@ -49,9 +49,9 @@ impl<const D: usize> Scheme<D> {
     /// m u + A s dt > 0,
     /// ```
     ///
-    /// or if they have been pressed together and s > 0: within a fan the bodies recede from each
-    /// other at the distance of a node, before their edges do. Bodies that have not been pressed
-    /// together yet adhere: see [`MAX_ADHESION`](crate::contact::MAX_ADHESION).
+    /// or if they do not slide and have been pressed together, and s > 0: within a fan the bodies
+    /// recede from each other at the distance of a node, before their edges do. Bodies that have not
+    /// been pressed together yet adhere: see [`MAX_ADHESION`](crate::contact::MAX_ADHESION).
     pub(super) fn touch(
         &self,
         patch: &Patch<D>,
@@ -85,14 +85,21 @@ impl<const D: usize> Scheme<D> {
         let slow = -PARTS * self.impact;
         let mass = a.mass * b.mass / (a.mass + b.mass);
         let most = self.max_adhesion_impulse[a.layer].max(self.max_adhesion_impulse[b.layer]);
-        let pressed = contact_impulse >= most;
+        let held = match contact_impulse >= most {
+            true => stress > 0.0,
+            false => {
+                contact_impulse > least
+                    && contact_impulse + dt * stress > 0.0
+                    && (contact_impulse > start || closing > slow)
+            }
+        };
         mass * closing + self.area(index, [a, b]) * dt * stress > 0.0
-            || (pressed && stress > 0.0)
-            || (norm(&slip) <= PARTS * self.impact
-                && !pressed
-                && contact_impulse > least
-                && contact_impulse + dt * stress > 0.0
-                && (contact_impulse > start || closing > slow))
+            || (held && !self.slides(norm(&slip)))
+    }
+
+    /// Whether bodies with a slip of `speed` [m/s] slide, so that they do not adhere.
+    pub(super) fn slides(&self, speed: f64) -> bool {
+        speed > PARTS * self.impact
     }
 
     /// Initial contact impulse of a body, before any pressure [Pa s].

@@ -10,7 +10,8 @@
 //! ```
 //!
 //! on the first body, and -J on the second (after Bardenhagen, Brackbill & Sulsky 2000): Coulomb's
-//! law holds to rounding. As an impulse on lumped masses, J changes v' by J/m_i, and its work is
+//! law holds to rounding. If N is negative at a node between bodies that slide, J has the sign of N,
+//! so that the law holds for the sum over the nodes. As an impulse on lumped masses, J changes v' by J/m_i, and its work is
 //! J.(vL + A v')/2, the first term of the velocity that does the work, so that energy stays exact.
 
 use decomp::Parity;
@@ -71,11 +72,14 @@ impl<const D: usize> Scheme<D> {
             let along = dot(&apart, normal);
             let slip: [f64; D] = decomp::array::from_fn(|a| apart[a] - along * normal[a]);
             let speed = norm(&slip);
-            if most <= 0.0 || speed <= 0.0 {
+            // where a filter or the lumped masses let a node pull, its neighbours press too much:
+            // what slides there gets the difference back
+            if speed <= 0.0 || (most <= 0.0 && !self.slides(speed)) {
                 continue;
             }
             let [a, b] = constraint.mass;
-            let scale = -(most / speed).min(a * b / (a + b));
+            let (reduced, most) = (a * b / (a + b), most / speed);
+            let scale = -most.clamp(-reduced, reduced);
             for (k, slip) in slip.into_iter().enumerate() {
                 fields[k][i] += scale * slip / a;
                 fields[k][j] -= scale * slip / b;

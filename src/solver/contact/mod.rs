@@ -308,7 +308,8 @@ impl<const D: usize> Scheme<D> {
             let normal: f64 = along.iter().sum();
             let rest = |a: usize| force[a] - normal * constraint.normal[a];
             let across = (0..D).map(|a| rest(a) * rest(a)).sum::<f64>().sqrt();
-            [-normal, across]
+            // friction on a node that pulls has the sign of its normal force
+            [-normal, if normal > 0.0 { -across } else { across }]
         }));
     }
 }
