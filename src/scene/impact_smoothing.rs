@@ -21,7 +21,7 @@ impl CheckedScene {
         let velocity = own.velocity[0];
         let Some(cells) = self.scene.impact_smoothing else { return velocity };
         let struck = (0..self.bodies.len()).filter(|&other| self.strikes(body, other));
-        let graded = struck.filter_map(|other| {
+        let mut graded = struck.filter_map(|other| {
             let beside = &self.bodies[other];
             // not beyond the middle of the thinner body, which may be struck from both sides
             let thinner = (own.upper[0] - own.lower[0]).min(beside.upper[0] - beside.lower[0]);
@@ -35,7 +35,7 @@ impl CheckedScene {
             let common = (rho * velocity + rho_beside * beside.velocity[0]) / (rho + rho_beside);
             (away < 1.0).then(|| common + (velocity - common) * away)
         });
-        graded.last().unwrap_or(velocity)
+        graded.next().unwrap_or(velocity)
     }
 
     /// Whether two bodies on a line touch at the start and approach each other.

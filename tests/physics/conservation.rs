@@ -172,3 +172,17 @@ fn a_block_in_free_fall_carries_no_stress() {
         }
     }
 }
+
+#[test]
+fn a_smoothed_impact_has_the_same_momentum() {
+    let base = short("flyer.json", 2e-8);
+    let sharp = run(&base);
+    for cells in [1.0, 2.0] {
+        let smooth = run(&with(&base, &json!({"impact_smoothing": cells})));
+        let momentum = smooth.start.momentum[0] / sharp.start.momentum[0] - 1.0;
+        at_most(&format!("{cells} cells: change of momentum"), momentum, 1e-13);
+        let kinetic = 1.0 - smooth.start.kinetic / sharp.start.kinetic;
+        assert!(kinetic > 1e-3 * cells, "{cells} cells: loss of kinetic energy {kinetic}");
+        at_most("energy", smooth.energy_drift(), 1e-12);
+    }
+}
