@@ -29,6 +29,10 @@ const ROUNDING: f64 = 1e-9;
 /// Share of the pull-back by which the velocity must rise again [-]; a smaller rise is noise.
 const REBOUND: f64 = 0.05;
 
+/// Distance from the peak, over the greatest change of velocity, up to which a velocity belongs to the
+/// plateau that the peak is part of [-].
+const PLATEAU: f64 = 0.05;
+
 /// The state from which the velocity of a free surface is interpreted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceMaterial {
@@ -40,9 +44,10 @@ pub struct SurfaceMaterial {
 
 /// Readings of a point: the greatest pressure and tension, the greatest change of velocity, and the
 /// arrival of the first wave, at which the velocity along x has changed by half of that, interpolated
-/// between rows. For a free surface of a material also the pull-back, the fall of the velocity between
-/// its peak and the minimum before it rises again, and the spall strength 1/2 rho0 c0 times that
-/// (Novikov, Divnov & Ivanov 1966).
+/// between rows; the plateau, the median of the velocities around the peak that differ from it by less
+/// than 5 % of the change. For a free surface of a material also the pull-back, the fall of the velocity
+/// between its plateau and the minimum before it rises again, and the spall strength 1/2 rho0 c0 times
+/// that (Novikov, Divnov & Ivanov 1966).
 pub fn point_readings(
     histories: &HistoryTable,
     gauge: &str,
@@ -83,7 +88,10 @@ pub fn point_readings(
         };
         reading("arrival", "s", time, None)
     }));
-    if let Some((surface, (at, fall))) = surface.zip(pull_back(velocity, start, peak)) {
+    let plateau = plateau(velocity, change, peak);
+    all.push(reading("plateau velocity", "m/s", plateau, None));
+    if let Some((surface, at)) = surface.zip(pull_back(velocity, start, peak)) {
+        let fall = (plateau - velocity[at]).abs();
         all.push(reading("pull-back", "m/s", fall, Some(times[at])));
         let strength = 0.5 * surface.density * surface.sound_speed * fall;
         all.push(reading("spall strength", "Pa", strength, None));
@@ -98,9 +106,19 @@ fn greatest(times: &[f64], values: &[f64], of: impl Fn(f64) -> f64) -> Option<(u
     known.filter(|(_, v)| !v.is_nan()).reduce(|best, one| if one.1 > best.1 { one } else { best })
 }
 
-/// Row of the minimum after the peak in row `peak` before the velocity rises again, and the fall until
-/// then [m/s]; velocities count from `start` in the direction of the peak.
-fn pull_back(velocity: &[f64], start: f64, peak: usize) -> Option<(usize, f64)> {
+/// Median of the velocities around row `peak` [m/s]; `change` is the change of velocity there [m/s].
+fn plateau(velocity: &[f64], change: f64, peak: usize) -> f64 {
+    let near = |u: &f64| (u - velocity[peak]).abs() < PLATEAU * change;
+    let before = velocity[..peak].iter().rev().take_while(|u| near(u));
+    let mut all: Vec<f64> =
+        before.chain(velocity[peak..].iter().take_while(|u| near(u))).copied().collect();
+    all.sort_by(f64::total_cmp);
+    all[all.len() / 2]
+}
+
+/// Row of the minimum after the peak in row `peak` before the velocity rises again; velocities count
+/// from `start` in the direction of the peak.
+fn pull_back(velocity: &[f64], start: f64, peak: usize) -> Option<usize> {
     let sign = (velocity[peak] - start).signum();
     let along = |k: usize| sign * (velocity[k] - start);
     let mut lowest = peak;
@@ -110,7 +128,7 @@ fn pull_back(velocity: &[f64], start: f64, peak: usize) -> Option<(usize, f64)> 
         }
         let fall = along(peak) - along(lowest);
         if fall > REBOUND * along(peak) && along(k) - along(lowest) > REBOUND * fall {
-            return Some((lowest, fall));
+            return Some(lowest);
         }
     }
     None
@@ -166,6 +184,7 @@ mod tests {
         assert_eq!(of("peak velocity"), (180.0, Some(3.0)));
         // half of the change of 200 m/s is reached at 80 m/s, a third of the way from row 2 to 3
         assert!((of("arrival").0 - (2.0 + 1.0 / 3.0)).abs() < 1e-12);
+        assert_eq!(of("plateau velocity"), (180.0, None));
         assert_eq!(of("pull-back"), (80.0, Some(6.0)));
         assert_eq!(of("spall strength"), (0.5 * 2700.0 * 5000.0 * 80.0, None));
         assert_eq!(of("peak pressure"), (1e9, Some(0.0)));

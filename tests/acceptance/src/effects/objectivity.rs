@@ -65,6 +65,8 @@ fn block(material: &Value, method: &Value, courant: f64) -> Value {
 /// Strains the block by `stretch`, and gives it the deviator `start`.
 fn strained(run: &Simulation<'_, 2>, stretch: f64, start: Option<Symmetric>) -> Saved {
     let mut saved = run.save();
+    // the particles are changed below
+    saved.digest.clear();
     let columns = run.columns();
     let state = columns.state();
     let mut set = |column: usize, value: &dyn Fn(f64) -> f64| {
