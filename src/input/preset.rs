@@ -16,6 +16,8 @@ struct SceneContents {
     plane: bool,
     /// In two dimensions, x is a radius.
     axisymmetric: bool,
+    /// A body force acts.
+    body_force: bool,
     contact: bool,
     /// Bodies on a line touch each other without a contact law, and no side lets particles out.
     joined: bool,
@@ -80,7 +82,7 @@ const RULES: &[Rule] = &[
         reason: "a lower transfer order and a domain limit, since the scene has two dimensions",
     },
     Rule {
-        applies: |c| c.plane && !(c.axisymmetric || c.gas || c.contact),
+        applies: |c| c.plane && !(c.axisymmetric || c.gas || c.contact || c.body_force),
         changes: || [json!({"spin": true, "domain_limit": 0.7}), json!({})],
         reason: "spin, since bodies may turn, with a shorter domain limit",
     },
@@ -362,6 +364,7 @@ impl SceneContents {
         SceneContents {
             plane: dimension > 1,
             axisymmetric: domain["geometry"] == "axisymmetric",
+            body_force: scene.get("body_force").is_some_and(|force| !force.is_null()),
             contact: scene.get("contact").is_some_and(|contact| !contact.is_null()),
             joined: dimension == 1 && are_joined(scene),
             pressed: dimension == 1 && are_joined(scene) && stay_pressed(scene),
@@ -425,7 +428,7 @@ mod tests {
 
     /// Every combination of contents.
     fn all() -> impl Iterator<Item = SceneContents> {
-        (0..2048_u32).map(|bits| {
+        (0..4096_u32).map(|bits| {
             let has = |k: u32| bits >> k & 1 == 1;
             SceneContents {
                 plane: has(0),
@@ -439,6 +442,7 @@ mod tests {
                 porous: has(8),
                 pressed: has(9),
                 axisymmetric: has(10),
+                body_force: has(11),
             }
         })
     }
