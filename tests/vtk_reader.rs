@@ -180,7 +180,9 @@ fn vtk_reads_the_fields_of_a_run() {
         let fields = format!(r#"output={{"fields":{{"every":{every},"format":"both"}}}}"#);
         let mut run = Command::new(env!("CARGO_BIN_EXE_flyer-mpm"));
         run.arg(inputs.join(scene)).args(["--quiet", "--output", "run", "--set", &fields]);
-        run.args(sets.iter().flat_map(|set| ["--set", set]));
+        for set in sets {
+            run.args(["--set", set]);
+        }
         let output = run.current_dir(home.path()).output().unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let read = read_with("read_fields.py", &home.path().join("run"));
