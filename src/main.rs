@@ -235,7 +235,8 @@ fn results_folder(scene: Option<&Path>, maker: &Maker) -> Result<(PathBuf, Lock)
     if let Some((avoided, reason)) = found.avoided {
         // a quiet run too: a script would read the results of the other scene
         let [path, avoided] = [&found.path, &avoided].map(|path| path.display());
-        eprintln!("results go to {path} instead of {avoided}, because {reason}");
+        let text = format!("results go to {path} instead of {avoided}, because {reason}");
+        eprintln!("{}", wrapped(&text, 2));
     }
     Ok((found.path, found.lock))
 }

@@ -9,12 +9,12 @@ use super::output::csv::write_frame;
 use super::output::field_arrays::quantity_of;
 use super::output::field_files::{FIELDS_FOLDER, FieldFiles};
 use super::output::vtkhdf::RunInfo;
-use crate::scene::{CheckedScene, Fields, FieldsFormat};
+use crate::scene::{CheckedScene, FieldOutput, FieldsFormat};
 use crate::simulation::Simulation;
 
 /// The fields of a run; on all ranks.
 pub struct FieldSeries<'a> {
-    options: &'a Fields,
+    options: &'a FieldOutput,
     end: f64,
     /// Number of the next frame in the schedule.
     due: u64,

@@ -11,7 +11,7 @@ use super::region::Region;
 use super::solid::{Edge, Outline, Solid};
 
 /// Boundary of a region.
-pub struct Boundary {
+pub struct BodyBoundary {
     solid: Solid,
 }
 
@@ -34,10 +34,10 @@ const LEAST: f64 = 1e-3;
 /// Cosine of the least angle between the two faces of a point, if there are more than two.
 const DISTINCT: f64 = 0.9;
 
-impl Boundary {
-    /// Boundary of a region; `None` if the region is invalid.
+impl BodyBoundary {
+    /// BodyBoundary of a region; `None` if the region is invalid.
     pub fn new(region: &Region) -> Option<Self> {
-        build::solid(region).ok().map(|solid| Boundary { solid })
+        build::solid(region).ok().map(|solid| BodyBoundary { solid })
     }
 
     /// Up to two faces of the boundary within `near` [m] of a point of the region, the nearest
@@ -131,7 +131,7 @@ mod tests {
 
     fn faces(region: Value, at: [f64; 2], near: f64) -> Vec<([f64; 2], f64)> {
         let region: Region = serde_json::from_value(region).unwrap();
-        let boundary = Boundary::new(&region).unwrap();
+        let boundary = BodyBoundary::new(&region).unwrap();
         let found = boundary.faces(at, near, |_| true);
         found.iter().map(|face| (face.normal, face.distance)).collect()
     }

@@ -28,7 +28,7 @@ mod solid;
 mod tests;
 mod voronoi;
 
-pub use boundary::{Boundary, BoundaryFace};
+pub use boundary::{BodyBoundary, BoundaryFace};
 pub use build::RegionFault;
 pub use fill::{Tile, fill};
 pub use moments::Moments;

@@ -53,6 +53,8 @@ pub struct Columns {
     pub tension_free: Vec<Option<usize>>,
     /// Burnt fraction [-] and lighting time [s], if a body burns.
     pub burn: Option<[usize; 2]>,
+    /// Equivalent plastic strain [-], with strength.
+    pub plastic_strain: Option<usize>,
     /// Temperature [K]; 0 in bodies without thermal properties.
     pub temperature: Option<usize>,
     /// Plastic work that is stored and does not heat [J/kg], if any.

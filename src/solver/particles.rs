@@ -5,7 +5,7 @@ use nalgebra::SVector;
 
 use super::effect::NewParticle;
 use super::stepper::Stepper;
-use crate::geometry::Boundary;
+use crate::geometry::BodyBoundary;
 use crate::scene::CheckedScene;
 
 /// Centres of the equal boxes that result from cutting a box into `counts` parts along each
@@ -45,7 +45,7 @@ pub fn fill<const D: usize>(
     let mut id = 0u64;
     for (number, checked) in scene.bodies.iter().enumerate() {
         let region = scene.scene.bodies[number].regions().pop().map(|(_, region)| region);
-        let boundary = columns.faces.and(region).and_then(|region| Boundary::new(&region));
+        let boundary = columns.faces.and(region).and_then(|region| BodyBoundary::new(&region));
         let mut add = |centre: [f64; D], size: [f64; D], volume: f64| {
             let cell = cell_of(scene, centre);
             let patch = layout.wrap_cell(cell).map(|c| layout.patch_of(c));
@@ -146,7 +146,7 @@ const ON_SIDE: f64 = 1e-6;
 /// Writes the faces of a particle, in the coordinates of its half edges. Faces on the sides of the
 /// domain meet no body.
 fn set_faces<const D: usize>(
-    boundary: &Boundary,
+    boundary: &BodyBoundary,
     particle: &NewParticle<'_, D>,
     values: &mut [f64],
 ) {

@@ -23,8 +23,9 @@
 //! Only on a line in the total-Lagrangian frame volumes grow by sums: there s is 1 and the sum of dV
 //! is conserved.
 //!
-//! r is `rate` in a step of Courant number 0.4 and in proportion to the length of other steps, so
-//! that a result does not depend on the number of steps in which a shock crosses a cell.
+//! r is `rate` in a step of Courant number 0.4 and in proportion to the length of shorter steps, so
+//! that a result does not depend on the number of steps in which a shock crosses a cell. In longer
+//! steps, which are less accurate, a larger r would only add to the error.
 //!
 //! In a smooth flow w_p is -dV/dp of an isentrope. The term (h D)^2, with the divergence D and the
 //! cell edge h, keeps it bounded at the foot of a strong shock in a cold gas, where neighbouring

@@ -120,6 +120,9 @@ fn on_base(transfer: &Value, gravity: [f64; 2], speed: f64) -> Value {
     scene["body_force"] = json!({"gravity": gravity});
     scene["method"]["transfer"] = transfer.clone();
     scene["method"]["filter_heat"] = json!(transfer != "flip");
+    if transfer.get("fmpm").is_none() {
+        scene["method"]["edge_mask"] = Value::Null;
+    }
     scene["time"]["end"] = json!(0.03);
     scene
 }

@@ -69,7 +69,7 @@ fn contents_change_the_default() {
         "surfaces may separate",
     );
     let strong = json!({"metal": {"library": "copper_johnson_cook"}});
-    transfer_is(&[("/materials", strong)], &json!({"fmpm": 6}), "precursors");
+    transfer_is(&[("/materials", strong)], &json!({"fmpm": 12}), "flux limiter");
     let explosive = with("detonation.json", &["method=default"]).unwrap();
     assert_eq!(json!(explosive.scene.method.transfer), json!({"fmpm": 2}));
     assert!(choice(&explosive).reasons.join("; ").contains("burn fronts"));
@@ -77,7 +77,7 @@ fn contents_change_the_default() {
     let contact = edited(&[("/contact", json!({"type": "stick"}))]);
     let quadratic = |scene: CheckedScene| scene.scene.artificial_viscosity.unwrap().quadratic;
     assert_eq!(quadratic(contact), 1.25);
-    assert_eq!(quadratic(edited(&[("/materials", strong)])), 2.0);
+    assert_eq!(quadratic(edited(&[("/materials", strong)])), 0.4);
     let gas = json!({"metal": {"density": 1.0, "eos": {"type": "ideal_gas", "gamma": 1.4}}});
     let warm = json!([{"name": "gas", "material": "metal", "pressure": 1e5, "velocity": [0.0],
         "box": {"lower": [0.0], "upper": [0.002]}, "particles_per_cell": [2]}]);
@@ -90,7 +90,7 @@ fn contents_change_the_default() {
 #[test]
 fn bodies_in_two_dimensions_get_a_domain_limit_and_elastic_ones_no_relaxation() {
     let plane = with("disks.json", &["method=default"]).unwrap();
-    assert_eq!(plane.scene.method.domain_limit, Some(1.0));
+    assert_eq!(plane.scene.method.domain_limit, Some(0.7));
     assert!(plane.scene.method.pressure_relaxation.is_none());
     let fluid = with("oblique_impact.json", &["method=default"]).unwrap();
     assert!(fluid.scene.method.pressure_relaxation.is_some());
@@ -110,7 +110,7 @@ fn presets_differ() {
     ]);
     assert_eq!(json!(apart.scene.method)["frame"], Value::Null);
     // what the frame does not suit
-    for (material, transfer) in [("copper_johnson_cook", 6), ("copper", 14)] {
+    for (material, transfer) in [("copper_johnson_cook", 12), ("copper", 14)] {
         let materials = json!({"metal": {"library": material}});
         let scene = edited(&[("/method", json!("sharpest")), ("/materials", materials)]);
         assert_eq!(json!(scene.scene.method.transfer), json!({"fmpm": transfer}), "{material}");

@@ -108,7 +108,7 @@ struct Rows {
 
 /// A file that rank 0 has laid out.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-struct Plan {
+struct FileLayout {
     rows: Rows,
     /// Number of the first particle of each rank.
     firsts: Vec<u64>,
@@ -144,7 +144,7 @@ pub fn write_as(
     let counts = comm.gather(&[contents.saved.particles.ids.len() as u64]).concat();
     let laid_out = match comm.rank() {
         0 => lay_out(path, contents, &counts, &|| comm.heartbeat()).map_err(|e| refused(path, e)),
-        _ => Ok(Plan::default()),
+        _ => Ok(FileLayout::default()),
     };
     let plan = from_first(comm, agree(comm, laid_out)?);
     let share = || -> io::Result<()> {
@@ -190,7 +190,7 @@ fn lay_out(
     contents: &CheckpointContents,
     counts: &[u64],
     alive: &dyn Fn(),
-) -> hdf5::Result<Plan> {
+) -> hdf5::Result<FileLayout> {
     let file = File::with_options().with_fcpl(|plist| plist.userblock(HEAD)).create(path)?;
     let writer = Writer { extents: RefCell::default(), alive };
     let rows = writer.rows(&file, contents, counts.iter().sum::<u64>() as usize)?;
@@ -203,7 +203,7 @@ fn lay_out(
         next - count
     };
     let firsts = counts.iter().map(first).collect();
-    Ok(Plan { rows, firsts, extents: writer.extents.into_inner() })
+    Ok(FileLayout { rows, firsts, extents: writer.extents.into_inner() })
 }
 
 /// Writes datasets and notes their places.

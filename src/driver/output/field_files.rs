@@ -46,7 +46,7 @@ struct DataFile {
 
 /// A frame that is complete.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Frame {
+struct FieldFrame {
     /// Time [s].
     time: f64,
     particles: usize,
@@ -59,7 +59,7 @@ pub struct FieldFiles {
     /// Rows of a frame in a data file: particles at the start.
     rows: usize,
     files: Vec<DataFile>,
-    frames: Vec<Frame>,
+    frames: Vec<FieldFrame>,
 }
 
 impl FieldFiles {
@@ -96,7 +96,7 @@ impl FieldFiles {
         );
         if let Some((data, frames)) = found {
             files.files = data;
-            let frame = |(time, particles)| Frame { time: f64::from_bits(time), particles };
+            let frame = |(time, particles)| FieldFrame { time: f64::from_bits(time), particles };
             files.frames = frames.into_iter().map(frame).collect();
         }
         Ok(files)
@@ -114,12 +114,12 @@ impl FieldFiles {
 
     /// The first `keep` frames of an earlier run and their data files; `None` if they are not all
     /// there.
-    fn earlier(&self, keep: usize) -> Option<(Vec<DataFile>, Vec<Frame>)> {
-        let read = || -> hdf5::Result<(Vec<DataFile>, Vec<Frame>)> {
+    fn earlier(&self, keep: usize) -> Option<(Vec<DataFile>, Vec<FieldFrame>)> {
+        let read = || -> hdf5::Result<(Vec<DataFile>, Vec<FieldFrame>)> {
             let root = File::open(self.folder.join(FIELDS_FILE))?.group("VTKHDF")?;
             let times = root.dataset("Steps/Values")?.read_raw::<f64>()?;
             let counts = root.dataset("NumberOfPoints")?.read_raw::<i64>()?;
-            let frame = |(time, n): (f64, i64)| Frame { time, particles: n as usize };
+            let frame = |(time, n): (f64, i64)| FieldFrame { time, particles: n as usize };
             let frames = times.into_iter().zip(counts).map(frame).take(keep).collect();
             let text = root.attr("data_files")?.read_scalar::<VarLenUnicode>()?.to_string();
             let files: Vec<DataFile> = serde_json::from_str(&text).map_err(|e| e.to_string())?;
@@ -179,7 +179,7 @@ impl FieldFiles {
             Ok(())
         };
         agree(comm, write().map_err(OutputError::io("write the fields", &path)))?;
-        self.frames.push(Frame { time: share.time, particles });
+        self.frames.push(FieldFrame { time: share.time, particles });
         let index = match comm.rank() {
             0 => self.write_index(&arrays, share.dimension, info),
             _ => Ok(()),

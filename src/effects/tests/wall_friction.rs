@@ -66,7 +66,7 @@ fn friction_is_that_of_the_impulse_that_acts() {
         json!({"transfer": "pic"}),
         json!({"transfer": {"xpic": 2}}),
         json!({"transfer": {"fmpm": 4}}),
-        json!({"transfer": {"fmpm": 3}, "shape": "gimp", "edge_mask": 0.3}),
+        json!({"transfer": {"fmpm": 3}, "shape": "gimp"}),
     ] {
         let mut f = above(0.3, method.clone(), [3.5, 0.375]);
         f.set("stress_volume", &[4.0, 0.0]).solve(0.1);

@@ -28,8 +28,14 @@ pub(super) fn profile_times(scene: &Scene) -> Result<Vec<f64>, SceneFault> {
     }
     check_count(path, every, end, MOST_PROFILES)?;
     // a multiple next to the end is the end
-    let multiples = (1..).map(|k| f64::from(k) * every).take_while(|&t| t < end * (1.0 - 1e-9));
+    let multiples = (1..).map(|k| decimal(f64::from(k) * every));
+    let multiples = multiples.take_while(|&t| t < end * (1.0 - 1e-9));
     Ok(multiples.chain([end]).collect())
+}
+
+/// The double nearest to `x` rounded to 15 digits: 3 times 3e-8 is 9e-8.
+fn decimal(x: f64) -> f64 {
+    format!("{x:.14e}").parse().expect("a number")
 }
 
 /// Largest number of profiles, which a run holds until its end.

@@ -126,8 +126,8 @@ pub enum EnergyUpdate {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PressureRelaxation {
-    /// Fraction of the deviation that a relaxation removes in a step of Courant number 0.4 [-]; in
-    /// other steps the fraction is in proportion to the Courant number.
+    /// Fraction of the deviation that a relaxation removes in a step of Courant number 0.4 or more
+    /// [-]; in shorter steps the fraction is in proportion to the Courant number.
     #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0.0))]
     pub rate: f64,
     /// Number of steps between relaxations.

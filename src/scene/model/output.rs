@@ -13,7 +13,7 @@ pub struct Output {
     pub profiles: Profiles,
     /// Fields: quantities of all particles at many times, for pictures and films; absent: none.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub fields: Option<Fields>,
+    pub fields: Option<FieldOutput>,
     /// Histories of faces, tracers, energies and momentum; absent: none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub histories: Option<Histories>,
@@ -78,7 +78,7 @@ impl Default for Output {
 /// is needed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct Fields {
+pub struct FieldOutput {
     /// Time between frames [s], from 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]

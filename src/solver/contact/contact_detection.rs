@@ -49,9 +49,8 @@ impl<const D: usize> Scheme<D> {
     /// m u + A s dt > 0,
     /// ```
     ///
-    /// or if they do not slide and have been pressed together, and s > 0: within a fan the bodies
-    /// recede from each other at the distance of a node, before their edges do. Bodies that have not
-    /// been pressed together yet adhere: see [`MAX_ADHESION`](crate::contact::MAX_ADHESION).
+    /// or if they do not slide, were pressed together and adhere: see
+    /// [`MAX_ADHESION`](crate::contact::MAX_ADHESION).
     pub(super) fn touch(
         &self,
         patch: &Patch<D>,
@@ -84,15 +83,9 @@ impl<const D: usize> Scheme<D> {
         let start = 2.0 * self.starting_pull(a.layer).max(self.starting_pull(b.layer));
         let slow = -PARTS * self.impact;
         let mass = a.mass * b.mass / (a.mass + b.mass);
-        let most = self.max_adhesion_impulse[a.layer].max(self.max_adhesion_impulse[b.layer]);
-        let held = match contact_impulse >= most {
-            true => stress > 0.0,
-            false => {
-                contact_impulse > least
-                    && contact_impulse + dt * stress > 0.0
-                    && (contact_impulse > start || closing > slow)
-            }
-        };
+        let held = contact_impulse > least
+            && contact_impulse + dt * stress > 0.0
+            && (contact_impulse > start || closing > slow);
         mass * closing + self.area(index, [a, b]) * dt * stress > 0.0
             || (held && !self.slides(norm(&slip)))
     }
@@ -119,8 +112,7 @@ impl<const D: usize> Scheme<D> {
     }
 
     /// Updates the contact impulse of the own particles: the time integral of the mean p + q over a
-    /// step of `dt`, not less than 0, until it reaches the greatest adhesion impulse, where it stays:
-    /// the particle has been pressed.
+    /// step of `dt`, limited to the range from 0 to the greatest adhesion impulse.
     pub(in crate::solver) fn find_contact_impulse(
         &self,
         patch: &mut Patch<D>,
@@ -151,9 +143,7 @@ impl<const D: usize> Scheme<D> {
         for r in 0..n {
             let stress = 0.5 * (xx[r] + yy[r]) / (volume0[r] * j[r]);
             let most = self.max_adhesion_impulse[body[r] as usize];
-            if impulse[r] < most {
-                impulse[r] = (impulse[r] + dt * stress).clamp(0.0, most);
-            }
+            impulse[r] = (impulse[r] + dt * stress).clamp(0.0, most);
         }
         patch.block.columns[contact_impulse] = impulse;
     }
