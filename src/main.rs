@@ -177,12 +177,14 @@ fn input(args: &RunArgs) -> String {
     path.map_or(String::new(), |path| path.display().to_string())
 }
 
+/// A checkpoint with its path, and lines about damaged ones.
+type Found = (Checkpoint, PathBuf, Vec<String>);
+
 /// Checks all inputs and targets that could make a run fail, before the scene is sent to the other
 /// ranks.
-fn begin(args: &RunArgs, reading: &AtomicBool) -> Outcome<Begun> {
-    let (bytes, checked, beginning, restarted, origin) = match (&args.restart, &args.scene) {
-        (Some(path), _) => {
-            let (mut checkpoint, file, notes) = folder::open(path).map_err(bad)?;
+fn begin(args: &RunArgs, found: Option<Found>, reading: &AtomicBool) -> Outcome<Begun> {
+    let (bytes, checked, beginning, restarted, origin) = match (found, &args.scene) {
+        (Some((mut checkpoint, file, notes)), _) => {
             notes.iter().for_each(|note| {
                 eprintln!("{}", warning(&format!("{note}; taking the one before")))
             });
@@ -196,7 +198,7 @@ fn begin(args: &RunArgs, reading: &AtomicBool) -> Outcome<Begun> {
             let output = folder::results_of(&file)
                 .unwrap_or_else(|| Path::new("output").join(file.file_stem().unwrap_or_default()));
             let origin = checkpoint.run_origin();
-            let beginning = Beginning::Checkpoint(Some(Box::new(checkpoint)));
+            let beginning = Beginning::Checkpoint(Box::new(checkpoint));
             (bytes, checked, beginning, Some(output), origin)
         }
         (None, Some(path)) => {
@@ -233,7 +235,8 @@ fn results_folder(scene: Option<&Path>, maker: &Maker) -> Result<(PathBuf, Lock)
     if let Some((avoided, reason)) = found.avoided {
         // a quiet run too: a script would read the results of the other scene
         let [path, avoided] = [&found.path, &avoided].map(|path| path.display());
-        eprintln!("results go to {path} instead of {avoided}, because {reason}");
+        let text = format!("results go to {path} instead of {avoided}, because {reason}");
+        eprintln!("{}", wrapped(&text, 2));
     }
     Ok((found.path, found.lock))
 }
@@ -280,9 +283,13 @@ fn run_scene(comm: &dyn Comm, args: &RunArgs, started: Instant) -> Outcome<()> {
     // until its files have been read, a run has no state that is worth saving
     let reading = Arc::new(AtomicBool::new(true));
     let signal = watch_signals(reading.clone());
-    let mine = match comm.rank() {
-        0 => begin(args, &reading),
-        _ => Err((BAD_INPUT, String::new())),
+    let first = comm.rank() == 0;
+    let by_first = |text: String| if first { text } else { String::new() };
+    let opened = args.restart.as_ref().map(|path| folder::open(comm, path)).transpose();
+    let mut found = opened.map_err(|error| (BAD_INPUT, by_first(error.to_string())))?;
+    let mine = match first {
+        true => begin(args, found.take(), &reading),
+        false => Err((BAD_INPUT, String::new())),
     };
     let text = mine.as_ref().map_or(Vec::new(), |begun| begun.bytes.clone());
     let text = comm.broadcast(text);
@@ -292,10 +299,9 @@ fn run_scene(comm: &dyn Comm, args: &RunArgs, started: Instant) -> Outcome<()> {
         Err(error) if text.is_empty() => return Err(error),
         Err(_) => {
             let checked = input::parse(&text, &input(args), &args.set).map_err(bad)?;
-            let beginning = match args.restart {
-                Some(_) => Beginning::Checkpoint(None),
-                None => Beginning::Scene,
-            };
+            let beginning = found.map_or(Beginning::Scene, |(checkpoint, ..)| {
+                Beginning::Checkpoint(Box::new(checkpoint))
+            });
             // only rank 0 writes
             (checked, beginning, PathBuf::new(), None)
         }
@@ -316,21 +322,24 @@ fn run_scene(comm: &dyn Comm, args: &RunArgs, started: Instant) -> Outcome<()> {
         signal,
     };
     // all ranks know the error, and rank 0 prints it
-    let by_first = |text: String| if comm.rank() == 0 { text } else { String::new() };
     match run(comm, &checked, &options, beginning) {
         Ok(Some(report)) if !args.quiet => {
             say(&report);
             Ok(())
         }
         Ok(_) => Ok(()),
-        Err(RunFailure::Run(RunError::Elsewhere)) => Err((FAILED, String::new())),
+        Err(RunFailure::Run(RunError::Elsewhere) | RunFailure::Output(OutputError::Elsewhere)) => {
+            Err((FAILED, String::new()))
+        }
         Err(stopped @ RunFailure::Stopped { .. }) => {
             if comm.rank() == 0 {
                 eprintln!("{stopped}");
             }
             Err((STOPPED, String::new()))
         }
-        Err(error @ RunFailure::Alarm { .. }) => Err((FAILED, by_first(error.to_string()))),
+        Err(error @ (RunFailure::Alarm { .. } | RunFailure::Checkpoint(_))) => {
+            Err((FAILED, by_first(error.to_string())))
+        }
         Err(
             error @ RunFailure::Run(
                 RunError::Particle { .. }

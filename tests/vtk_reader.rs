@@ -68,8 +68,15 @@ fn write_run(folder: &Path, tables: &[ParticleTable]) {
             errors_cell_averaged: None,
         });
     }
-    let info = RunInfo { title: "test", scene: &scene, bodies: &["plate".into()] };
-    write_vtkhdf(&folder.join(RESULTS_FILE), tables, &info).unwrap();
+    let info = RunInfo {
+        title: "test",
+        scene: &scene,
+        materials: &["aluminium".into(), "copper, hard".into()],
+        bodies: &["plate".into()],
+        axisymmetric: false,
+    };
+    let tables: Vec<&ParticleTable> = tables.iter().collect();
+    write_vtkhdf(&folder.join(RESULTS_FILE), &tables, &info).unwrap();
     let summary = Summary {
         format: flyer_mpm::driver::output::summary::SUMMARY_FORMAT,
         title: "test".into(),
@@ -104,6 +111,7 @@ fn write_run(folder: &Path, tables: &[ParticleTable]) {
         erosion: None,
         method_choice: None,
         measured: Vec::new(),
+        gauges: Vec::new(),
         profiles,
         error_estimate: None,
         plan: None,
@@ -112,13 +120,18 @@ fn write_run(folder: &Path, tables: &[ParticleTable]) {
     summary.write(folder).unwrap();
 }
 
-/// Runs the script on a folder; none where there is no VTK.
+/// Runs the script for profiles on a folder; none where there is no VTK.
 fn read_with_vtk(folder: &Path) -> Option<(bool, String)> {
+    read_with("read_vtkhdf.py", folder)
+}
+
+/// Runs a script on a folder; none where there is no VTK.
+fn read_with(script: &str, folder: &Path) -> Option<(bool, String)> {
     let Some(python) = std::env::var_os("FLYER_MPM_VTK_PYTHON") else {
         eprintln!("skipped: FLYER_MPM_VTK_PYTHON names no Python with vtk (see scripts/test.sh)");
         return None;
     };
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/read_vtkhdf.py");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(script);
     let output = Command::new(python).arg(script).arg(folder).output().unwrap();
     let text = [output.stdout, output.stderr].concat();
     Some((output.status.success(), String::from_utf8_lossy(&text).into_owned()))
@@ -151,4 +164,29 @@ fn the_script_sees_a_wrong_bit() {
     let Some((passed, text)) = read_with_vtk(home.path()) else { return };
     assert!(!passed, "{text}");
     assert!(text.contains("profile_1.000us.csv: velocity of row 7"), "{text}");
+}
+
+/// Frames that a run has written, on a line with strength of materials and in an axisymmetric domain.
+#[test]
+fn vtk_reads_the_fields_of_a_run() {
+    let _alone = ALONE.lock();
+    let inputs = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs");
+    let runs = [
+        ("flyer_strength.json", ["domain.cell_size=2e-5", "time.end=1e-7"], "1e-8"),
+        ("taylor_bar.json", ["domain.cell_size=8e-4", "time.end=4e-6"], "1e-6"),
+    ];
+    for (scene, sets, every) in runs {
+        let home = tempfile::tempdir().unwrap();
+        let fields = format!(r#"output={{"fields":{{"every":{every},"format":"both"}}}}"#);
+        let mut run = Command::new(env!("CARGO_BIN_EXE_flyer-mpm"));
+        run.arg(inputs.join(scene)).args(["--quiet", "--output", "run", "--set", &fields]);
+        for set in sets {
+            run.args(["--set", set]);
+        }
+        let output = run.current_dir(home.path()).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let read = read_with("read_fields.py", &home.path().join("run"));
+        let Some((passed, text)) = read else { return };
+        assert!(passed && text.contains("frames read"), "{scene}: {text}");
+    }
 }

@@ -11,8 +11,8 @@
 //!
 //! Both let the caller compute while messages are on their way. [`assign_patches`] assigns patches
 //! to ranks along a space-filling curve, by weight, and [`patch_migration`] moves whole patches.
-//! [`StoredParticles`] holds the particles of all ranks for a file, and [`deal_particles`]
-//! distributes them to the patches of any layout.
+//! [`Shares`] deals the particles to ranks for files and tables, [`StoredParticles`] holds a share of
+//! them, and [`deal_particles`] hands shares to the patches of any layout.
 //!
 //! Particles are kept in canonical order, by global cell and then by id. Every patch that sums
 //! particle terms into a node thus adds the same terms in the same order: the result is bitwise the
@@ -26,7 +26,6 @@ pub mod array;
 mod balance;
 mod bytes;
 pub mod comm;
-mod gather_scatter;
 mod ghost_exchange;
 mod hilbert;
 mod index_box;
@@ -36,11 +35,11 @@ mod packing;
 mod particle_block;
 mod patch_migration;
 mod reduce;
+mod shares;
 
 pub use balance::{assign_patches, busiest_share, choose_cuts, even_cuts};
 pub use bytes::{bytes_of, words_of};
 pub use comm::{Comm, Serial, Traffic};
-pub use gather_scatter::{StoredParticles, deal_particles, gather_particles};
 pub use ghost_exchange::{GhostExchange, GhostReach, ParticleError};
 pub use hilbert::curve_order;
 pub use index_box::IndexBox;
@@ -49,3 +48,4 @@ pub use nodes::{NodeArrays, NodeExchange, Parity, fold_mirrors};
 pub use particle_block::{Block, ColumnSpec, Mirror};
 pub use patch_migration::{Census, Moved, relocate};
 pub use reduce::{ExactSum, exact_sums};
+pub use shares::{Shares, StoredParticles, deal_particles};

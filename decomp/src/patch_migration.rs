@@ -60,7 +60,8 @@ pub fn relocate<const D: usize, P: AsMut<Block<D>>>(
     for words in received {
         let mut words = &words[..];
         while let Some((&patch, rest)) = words.split_first() {
-            let (block, rest) = unpack(specs, rest);
+            let mut block = Block::new(specs);
+            let rest = unpack_into(&mut block, rest);
             here.push((patch as usize, make(patch as usize, block)));
             words = rest;
         }
@@ -82,10 +83,10 @@ pub(crate) fn pack<const D: usize>(out: &mut Vec<u64>, patch: usize, block: &Blo
     }
 }
 
-pub(crate) fn unpack<'a, const D: usize>(
-    specs: &[crate::ColumnSpec],
-    words: &'a [u64],
-) -> (Block<D>, &'a [u64]) {
+/// Adds the particles of a packed patch, without its number, to `block`; returns the words after
+/// them.
+pub(crate) fn unpack_into<'a, const D: usize>(block: &mut Block<D>, words: &'a [u64]) -> &'a [u64] {
+    let specs = block.specs().to_vec();
     let particles = words[0] as usize;
     let (ids, words) = words[1..].split_at(particles);
     let (cells, mut words) = words.split_at(particles * D);
@@ -95,7 +96,6 @@ pub(crate) fn unpack<'a, const D: usize>(
         columns.push(column);
         words = rest;
     }
-    let mut block = Block::new(specs);
     let mut particle = vec![0.0; specs.len()];
     for r in 0..particles {
         let state = specs.iter().zip(&mut particle).filter(|(s, _)| s.state);
@@ -105,7 +105,7 @@ pub(crate) fn unpack<'a, const D: usize>(
         let cell = std::array::from_fn(|a| cells[r * D + a] as i64 as i32);
         block.push(ids[r], cell, &particle);
     }
-    (block, words)
+    words
 }
 
 /// Checksum of particles that reveals lost, duplicated or wrongly changed particles: the number of
@@ -172,12 +172,15 @@ mod tests {
         let mut words = Vec::new();
         pack(&mut words, 4, &block);
         pack(&mut words, 5, &Block::<2>::new(&SPECS));
-        let (out, rest) = unpack::<2>(&SPECS, &words[1..]);
+        let mut out = Block::<2>::new(&SPECS);
+        let rest = unpack_into(&mut out, &words[1..]);
         assert_eq!((&out.ids, &out.cells), (&block.ids, &block.cells));
         assert_eq!(out.columns[0], [7.0, 3.5]);
         assert_eq!(out.columns[1], [0.0, 0.0]);
         assert_eq!(out.columns[2][1].to_bits(), (-0.0f64).to_bits());
-        assert_eq!(unpack::<2>(&SPECS, &rest[1..]).0.own(), 0);
+        let mut empty = Block::<2>::new(&SPECS);
+        assert!(unpack_into(&mut empty, &rest[1..]).is_empty());
+        assert_eq!(empty.own(), 0);
     }
 
     #[test]

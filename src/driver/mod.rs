@@ -4,6 +4,7 @@
 
 pub mod checkpoint;
 pub mod default_folder;
+pub mod fields;
 pub mod figures;
 mod measured;
 pub mod output;
@@ -18,7 +19,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicU8;
 use std::time::Instant;
 
-use decomp::Comm;
+use decomp::{Comm, StoredParticles};
 
 use crate::accuracy::estimate::{self, Answer, Laws, coarse_runs};
 use crate::accuracy::plan;
@@ -30,17 +31,24 @@ use crate::driver::checkpoint::{
 use crate::driver::output::OutputError;
 use crate::driver::output::brief::brief;
 use crate::driver::output::csv::{profile_names, write_profile};
+use crate::driver::output::field_files::{FIELDS_FILE, FIELDS_FOLDER};
 use crate::driver::output::folder::{OutputFolder, checkpoint_folder};
+use crate::driver::output::gauges::{
+    self, GaugeReading, SurfaceMaterial, plane_readings, point_readings,
+};
 use crate::driver::output::histories::HISTORIES_FILE;
 use crate::driver::output::origin::Maker;
 use crate::driver::output::report::full;
+use crate::driver::output::shared_file::agree;
 use crate::driver::output::summary::{
     Energy, FailureSummary, Momentum, OutflowSummary, ProfileSummary, SUMMARY_FORMAT, Summary,
 };
 use crate::driver::output::trace::write_trace;
+use crate::driver::output::unfinished::{self, unfinished_folder};
 use crate::driver::output::vtkhdf::{RESULTS_FILE, RunInfo, write_vtkhdf};
+use crate::driver::probes::GaugeKind;
 use crate::driver::progress::{Progress, ProgressChoice};
-use crate::driver::recorder::{Mark, Recorder};
+use crate::driver::recorder::{Mark, Recorder, most_particles};
 use crate::effects::ledger;
 use crate::plot::PictureError;
 use crate::scene::{CheckedScene, SideProperties};
@@ -91,8 +99,8 @@ pub enum RunFailure {
 pub enum Beginning {
     /// The initial state of its scene.
     Scene,
-    /// A checkpoint that fits the scene; `Some` on rank 0 only.
-    Checkpoint(Option<Box<Checkpoint>>),
+    /// A checkpoint that fits the scene.
+    Checkpoint(Box<Checkpoint>),
 }
 
 /// Options of a run.
@@ -126,6 +134,7 @@ fn step_to_end<const D: usize>(
     options: &Options,
     recorder: &mut Recorder<'_>,
     schedule: &mut CheckpointSchedule,
+    unfinished: &Path,
 ) -> Result<(), RunFailure>
 where
     Stepper<D>: Compiled<D>,
@@ -144,6 +153,7 @@ where
         let resumed = fresh && simulation.steps() > 0;
         if !resumed {
             recorder.record(simulation, first);
+            recorder.record_fields(simulation, comm, unfinished)?;
         }
         if simulation.held_at().1 == simulation.steps() {
             mark = recorder.mark();
@@ -194,15 +204,13 @@ fn save_last_good<const D: usize>(
     if schedule.keep == 0 {
         return "no state was written, for output.checkpoint.keep is 0".into();
     }
-    let Some(saved) = simulation.last_good() else { return String::new() };
+    let saved = simulation.last_good();
     let text = serde_json::to_string(&scene.scene).expect("a scene is plain data");
     let columns = state_columns(simulation);
     let histories = recorder.histories_at(mark);
     let contents = recorder.contents_at(mark, histories.as_ref(), &text, &saved, &columns);
-    let written = checkpoint_folder(&options.output).map_err(CheckpointError::from);
-    let written = written
-        .and_then(|folder| folder::write(&folder, schedule.keep, &contents, &|| comm.heartbeat()));
-    match written {
+    let folder = checkpoints_of(comm, options).map_err(CheckpointError::from);
+    match folder.and_then(|folder| folder::write(comm, &folder, schedule.keep, &contents)) {
         Ok(path) => format!(
             "the last good state, time {time:.6e} s, step {step}, is in {}: continue with --restart, \
              and --set time or monitor",
@@ -232,16 +240,20 @@ fn write_checkpoint<const D: usize>(
     schedule: &mut CheckpointSchedule,
 ) -> Result<(), RunFailure> {
     let start = Instant::now();
-    if let Some(saved) = simulation.save() {
-        let text = serde_json::to_string(&scene.scene).expect("a scene is plain data");
-        let columns = state_columns(simulation);
-        let contents = recorder.contents(&text, &saved, &columns);
-        let folder = checkpoint_folder(&options.output)?;
-        // the other ranks wait for this rank
-        folder::write(&folder, schedule.keep, &contents, &|| comm.heartbeat())?;
-    }
+    let saved = simulation.save();
+    let text = serde_json::to_string(&scene.scene).expect("a scene is plain data");
+    let columns = state_columns(simulation);
+    let contents = recorder.contents(&text, &saved, &columns);
+    let folder = checkpoints_of(comm, options)?;
+    folder::write(comm, &folder, schedule.keep, &contents)?;
     schedule.written(start.elapsed());
     Ok(())
+}
+
+/// The folder of the checkpoints, which rank 0 knows. Collective.
+fn checkpoints_of(comm: &dyn Comm, options: &Options) -> Result<PathBuf, OutputError> {
+    let first = comm.rank() == 0;
+    agree(comm, if first { checkpoint_folder(&options.output) } else { Ok(PathBuf::new()) })
 }
 
 /// The failure that describes an early end.
@@ -305,15 +317,36 @@ where
     if let Some((body, companions)) = estimated.zip(companions.as_ref()) {
         recorder.arrivals = coarse_runs::arrivals(comm, scene, body, companions);
     }
-    if let Beginning::Checkpoint(checkpoint) = beginning {
-        simulation.restore(checkpoint.as_ref().map(|c| &c.saved))?;
-        recorder.resume(comm, checkpoint.map(|c| *c), simulation.time());
+    let continues = matches!(beginning, Beginning::Checkpoint(_));
+    if let Beginning::Checkpoint(mut checkpoint) = beginning {
+        agree(comm, checkpoint.fit_share(scene))?;
+        simulation.restore(&checkpoint.saved)?;
+        checkpoint.saved.particles = StoredParticles::default();
+        recorder.resume(*checkpoint, simulation.time());
     }
+    let unfinished = match recorder.fields.is_some() && comm.rank() == 0 {
+        true => unfinished::begin(&options.output, &recorder.origin, continues),
+        false => Ok(PathBuf::new()),
+    };
+    let unfinished = agree(comm, unfinished)?;
+    recorder.open_fields(comm, &unfinished, continues.then_some(simulation.time()))?;
     let (now, signal) = (simulation.time(), options.signal.clone());
     let mut schedule = CheckpointSchedule::new(scene, now, options.started, signal);
     let before = comm.traffic();
     let (loop_start, loop_cpu) = (Instant::now(), user_cpu_seconds());
-    step_to_end(&mut simulation, scene, comm, options, &mut recorder, &mut schedule)?;
+    let stepped = step_to_end(
+        &mut simulation,
+        scene,
+        comm,
+        options,
+        &mut recorder,
+        &mut schedule,
+        &unfinished,
+    );
+    if let Err(failure) = stepped {
+        let recorded = (&mut recorder, &simulation);
+        return Err(leave_records(comm, scene, options, recorded, failure));
+    }
     let loop_wall_seconds = loop_start.elapsed().as_secs_f64();
     let loop_cpu = user_cpu_seconds() - loop_cpu;
     let (end, ways, given) = (simulation.totals(), simulation.ways(), simulation.given());
@@ -357,12 +390,18 @@ where
     comm.heartbeat();
     let maker = Maker::with(recorder.origin.clone(), scene);
     let folder = OutputFolder::create(&options.output, options.keep, &maker)?;
-    let profiles = write_profiles(comm, scene, reference.as_ref(), &recorder, &folder)?;
+    let profiles = write_profiles(comm, scene, reference.as_ref(), &recorder, folder.path())?;
     let as_run = serde_json::to_value(&scene.scene).expect("a scene is plain data");
     if scene.scene.output.hdf5 {
         let bodies: Vec<String> = scene.scene.bodies.iter().map(|b| b.name.clone()).collect();
-        let info = RunInfo { title: &scene.scene.title, scene: &as_run, bodies: &bodies };
-        let tables: Vec<ParticleTable> = recorder.tables.iter().map(|t| t.0.clone()).collect();
+        let tables: Vec<&ParticleTable> = recorder.tables.iter().map(|t| &t.0).collect();
+        let info = RunInfo {
+            title: &scene.scene.title,
+            scene: &as_run,
+            materials: tables.first().map_or(&[], |t| &t.materials),
+            bodies: &bodies,
+            axisymmetric: scene.axisymmetric(),
+        };
         write_vtkhdf(&folder.file(RESULTS_FILE), &tables, &info)?;
         comm.heartbeat();
     }
@@ -370,11 +409,12 @@ where
         histories.write(&folder.file(HISTORIES_FILE))?;
     }
     if scene.scene.output.pictures {
-        draw(comm, scene, reference.as_ref(), &recorder, &profiles, &folder)?;
+        draw(comm, scene, reference.as_ref(), &recorder, &profiles, folder.path())?;
     }
     let tables: Vec<&ParticleTable> = recorder.tables.iter().map(|t| &t.0).collect();
     let histories = recorder.histories();
     let measured = measured::quantities(scene, reference.as_ref(), &profiles, &tables, histories);
+    let gauges = gauge_readings(scene, &recorder, &simulation);
     let error_estimate = estimated.zip(companions.as_ref()).map(|(body, companions)| {
         let tables = recorder.tables.iter().map(|t| &t.0).collect();
         let (arrivals, steps) = (&recorder.arrivals, simulation.steps());
@@ -398,6 +438,12 @@ where
     let lets_out = scene.has_side(|side| side.lets_out);
     warnings.extend(inaccurate(energy_change, stretched, simulation.tally().redone_steps));
     warnings.extend(simulation.peaks().warnings());
+    warnings.extend(simulation.profile_block(most_particles(scene)).map(|edge| {
+        format!(
+            "the profiles hold means over blocks of {edge} cells along each edge, for the scene has \
+             more particles than output.profiles.max_particles"
+        )
+    }));
     let particle_steps = scene.particles as f64 * simulation.steps_made() as f64;
     let layout = simulation.layout();
     let summary = Summary {
@@ -431,18 +477,102 @@ where
             released_energy: end.released,
         }),
         measured,
+        gauges,
         profiles,
         error_estimate,
         plan,
         warnings,
     };
     summary.write(folder.path())?;
+    let unfinished = unfinished_folder(&options.output)?;
+    unfinished::finish(&unfinished, folder.path(), &[FIELDS_FILE, FIELDS_FOLDER])?;
     let place = folder.commit()?;
     if schedule.passing {
         folder::clear(&checkpoint_folder(&options.output)?);
     }
     let text = if options.verbose { full } else { brief };
-    Ok(Some(text(&summary, &place)))
+    let told = told_readings(scene, &summary.gauges, options.verbose);
+    Ok(Some(text(&summary, &place) + &gauges::report(&told)))
+}
+
+/// The readings of the report: those of the gauges that the scene names, and in the long report of all
+/// probes.
+fn told_readings(scene: &CheckedScene, all: &[GaugeReading], verbose: bool) -> Vec<GaugeReading> {
+    let Some(histories) = &scene.scene.output.histories else { return Vec::new() };
+    let stations = histories.stations.iter().map(|gauge| &gauge.name);
+    let planes = histories.planes.iter().map(|gauge| &gauge.name);
+    let named = histories.velocimeters.iter().map(|gauge| &gauge.name);
+    let named: Vec<&String> = named.chain(stations).chain(planes).collect();
+    let told = all.iter().filter(|reading| verbose || named.contains(&&reading.gauge));
+    told.cloned().collect()
+}
+
+/// Readings of all gauges and probes.
+fn gauge_readings<const D: usize>(
+    scene: &CheckedScene,
+    recorder: &Recorder<'_>,
+    simulation: &Simulation<'_, D>,
+) -> Vec<GaugeReading> {
+    let Some((histories, gauges)) = recorder.histories().zip(recorder.gauges()) else {
+        return Vec::new();
+    };
+    let readings = gauges.into_iter().flat_map(|(name, kind)| match kind {
+        GaugeKind::Plane => plane_readings(histories, name),
+        GaugeKind::Station => point_readings(histories, name, None),
+        GaugeKind::Material { body, free } => {
+            let surface = SurfaceMaterial {
+                density: scene.material_of(body).density,
+                sound_speed: simulation.sound_speed_at_rest(body),
+            };
+            point_readings(histories, name, free.then_some(surface))
+        }
+    });
+    readings.collect()
+}
+
+/// Leaves the profiles and histories of a run that has failed or was stopped, with a picture of its
+/// last profile, in the folder of the unfinished run; a run that was stopped adds its last state. The
+/// failure names the folder. Collective.
+fn leave_records<const D: usize>(
+    comm: &dyn Comm,
+    scene: &CheckedScene,
+    options: &Options,
+    (recorder, simulation): (&mut Recorder<'_>, &Simulation<'_, D>),
+    failure: RunFailure,
+) -> RunFailure
+where
+    Stepper<D>: Compiled<D>,
+{
+    match &failure {
+        RunFailure::Stopped { .. } => recorder.add_profile(simulation),
+        RunFailure::Alarm { .. } => {}
+        _ => return failure,
+    }
+    if comm.rank() != 0 || recorder.tables.is_empty() {
+        return failure;
+    }
+    let write = || -> Result<PathBuf, RunFailure> {
+        let folder = unfinished::begin(&options.output, &recorder.origin, true)?;
+        let profiles = write_profiles(comm, scene, None, recorder, &folder)?;
+        if let Some(histories) = recorder.histories() {
+            histories.write(&folder.join(HISTORIES_FILE))?;
+        }
+        if scene.scene.output.pictures {
+            draw(comm, scene, None, recorder, &profiles, &folder)?;
+        }
+        Ok(folder)
+    };
+    let left = match write() {
+        Ok(folder) => format!("; what it has written is in {}", folder.display()),
+        Err(error) => format!("; its profiles could not be written: {error}"),
+    };
+    match failure {
+        RunFailure::Stopped { why, time, step, next } => {
+            RunFailure::Stopped { why, time, step, next: next + &left }
+        }
+        RunFailure::Alarm { error, next } => RunFailure::Alarm { error, next: next + &left },
+        other => other,
+    }
 }
 
 /// Drift of energy above which a run reports that it is inaccurate [-].
@@ -479,12 +609,17 @@ fn write_profiles(
     scene: &CheckedScene,
     reference: Option<&ReferenceSolution>,
     recorded: &Recorder<'_>,
-    folder: &OutputFolder,
+    folder: &Path,
 ) -> Result<Vec<ProfileSummary>, RunFailure> {
-    let names = profile_names(&scene.profile_times);
+    let times: Vec<f64> = recorded.tables.iter().map(|(table, _)| table.time).collect();
+    let names = match times.iter().all(|time| scene.profile_times.contains(time)) {
+        // the same names whether or not the run has ended
+        true => profile_names(&scene.profile_times),
+        false => profile_names(&times),
+    };
     let mut profiles = Vec::new();
     for (k, ((table, digest), file)) in recorded.tables.iter().zip(names).enumerate() {
-        write_profile(&folder.file(&file), table)?;
+        write_profile(&folder.join(&file), table)?;
         let as_json = |e| serde_json::to_value(e).expect("errors are plain data");
         let (errors, errors_cell_averaged) = match reference {
             Some(ReferenceSolution::Plane(plane)) => {
@@ -514,11 +649,11 @@ fn draw(
     reference: Option<&ReferenceSolution>,
     recorded: &Recorder<'_>,
     profiles: &[ProfileSummary],
-    folder: &OutputFolder,
+    folder: &Path,
 ) -> Result<(), PictureError> {
     if let (1, Some(ReferenceSolution::Impact(all))) = (scene.dimension, reference) {
         let bodies = [all.flyer, all.target];
-        figures::draw_hugoniots(scene, bodies, &all.impact, &all.chain, folder.path())?;
+        figures::draw_hugoniots(scene, bodies, &all.impact, &all.chain, folder)?;
     }
     for (k, ((table, _), profile)) in recorded.tables.iter().zip(profiles).enumerate() {
         let mut notes = Vec::new();
@@ -531,28 +666,28 @@ fn draw(
         let stem = Path::new(&profile.file).with_extension("");
         if scene.dimension > 1 {
             let name = stem.to_string_lossy();
-            figures::draw_fields(scene, table, &notes, &name, folder.path())?;
+            figures::draw_fields(scene, table, &notes, &name, folder)?;
             if let Some(reference) = reference {
-                let along = folder.file(&name.replace("profile", "along"));
+                let along = folder.join(name.replace("profile", "along"));
                 figures::draw_along(scene, reference, k, table, notes, &along)?;
             }
             comm.heartbeat();
             continue;
         }
         let stem = stem.to_string_lossy();
-        let place = (folder.path(), stem.trim_start_matches("profile_"));
+        let place = (folder, stem.trim_start_matches("profile_"));
         figures::draw_profile(scene, reference, k, table, notes, place)?;
         comm.heartbeat();
     }
     if scene.dimension > 1 {
         return Ok(());
     }
-    let stem = folder.file("x_t_diagram");
+    let stem = folder.join("x_t_diagram");
     let (rows, bodies) = (&recorded.waves, &recorded.bodies);
     figures::draw_run_waves(scene, rows, bodies, reference, &stem)?;
     comm.heartbeat();
     if let Some(histories) = recorded.histories() {
-        figures::draw_histories(scene, histories, reference, &folder.file("histories"))?;
+        figures::draw_histories(scene, histories, reference, &folder.join("histories"))?;
     }
     Ok(())
 }

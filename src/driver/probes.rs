@@ -1,8 +1,8 @@
 //! Probes for histories: interface, free surfaces, tracers, energies.
 
 use crate::driver::output::histories::HistoryTable;
-use crate::scene::{CheckedScene, Reference};
-use crate::simulation::{Followed, Simulation};
+use crate::scene::{CheckedScene, GaugeAxis, GaugePlane, Reference, Station};
+use crate::simulation::{Around, Followed, Simulation};
 
 /// The part of a particle at which a probe is placed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,11 +20,33 @@ enum ProbePart {
 struct Probe {
     name: String,
     parts: Vec<(u64, ProbePart)>,
+    /// Body of the first part.
+    body: usize,
+    /// Fringes per velocity [s/m], if it counts them.
+    fringes: Option<f64>,
+}
+
+/// A probe or gauge, and its columns in the histories.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GaugeKind {
+    /// A point of a body: its number, and whether it is a free surface.
+    Material {
+        /// Number of the body.
+        body: usize,
+        /// Whether it is a free surface.
+        free: bool,
+    },
+    /// A point fixed in space.
+    Station,
+    /// A plane.
+    Plane,
 }
 
 /// The probes of a run and their recorded values.
 pub struct Probes {
     probes: Vec<Probe>,
+    stations: Vec<Station>,
+    planes: Vec<GaugePlane>,
     wanted: Vec<u64>,
     /// Number of columns for the contact force.
     forces: usize,
@@ -65,8 +87,11 @@ impl Probes {
         };
         let bodies = &scene.scene.bodies;
         let mut probes = Vec::new();
+        let body_of =
+            |id: u64| ranges.iter().position(|&(first, last)| (first..=last).contains(&id));
         let mut add = |name: &str, parts: Vec<(u64, ProbePart)>| {
-            probes.push(Probe { name: name.to_string(), parts });
+            let body = parts.first().and_then(|part| body_of(part.0)).unwrap_or(0);
+            probes.push(Probe { name: name.to_string(), parts, body, fringes: None });
         };
         match &scene.scene.reference {
             Some(Reference::FlyerImpact(named)) if scene.dimension == 1 => {
@@ -90,6 +115,21 @@ impl Probes {
             let number = bodies.iter().position(|b| b.name == tracer.body)?;
             let k = scene.bodies[number].nearest(&tracer.at);
             add(&tracer.name, vec![(ranges[number].0 + k, ProbePart::Centre)]);
+        }
+        for meter in &histories.velocimeters {
+            let number = bodies.iter().position(|b| b.name == meter.body)?;
+            let (body, tolerance) = (&scene.bodies[number], scene.tolerance(0));
+            let is_at = |x: f64| scene.dimension == 1 && (meter.at[0] - x).abs() <= tolerance;
+            let part = match (is_at(body.lower[0]), is_at(body.upper[0])) {
+                (true, _) => end(number, false),
+                (_, true) => end(number, true),
+                _ => (ranges[number].0 + body.nearest(&meter.at), ProbePart::Centre),
+            };
+            add(&meter.name, vec![part]);
+        }
+        let first = probes.len() - histories.velocimeters.len();
+        for (probe, meter) in probes[first..].iter_mut().zip(&histories.velocimeters) {
+            probe.fringes = meter.fringe.map(|fringe| (1.0 + meter.window_correction) / fringe);
         }
         let mut columns: Vec<(String, String)> = [
             ("time", "s"),
@@ -117,12 +157,31 @@ impl Probes {
                 let of_probe = |what| (format!("{}_{what}", probe.name), unit.to_string());
                 columns.extend(names.iter().map(of_probe));
             }
+            if probe.fringes.is_some() {
+                columns.push((format!("{}_fringes", probe.name), "-".to_string()));
+            }
+        }
+        for station in &histories.stations {
+            let units = [(velocities, "m/s"), (&["pressure"], "Pa"), (&["density"], "kg/m3")];
+            for (names, unit) in units {
+                let of_station = |what| (format!("{}_{what}", station.name), unit.to_string());
+                columns.extend(names.iter().map(of_station));
+            }
+        }
+        for plane in &histories.planes {
+            for (what, unit) in [("mass", "kg"), ("momentum", "kg m/s")] {
+                columns.push((format!("{}_{what}", plane.name), unit.to_string()));
+            }
         }
         let mut wanted: Vec<u64> = probes.iter().flat_map(|p| &p.parts).map(|p| p.0).collect();
         wanted.sort_unstable();
         wanted.dedup();
         let (forces, histories) = (forces.len(), HistoryTable::new(columns));
-        Some(Probes { probes, wanted, forces, interval, due: 0, histories })
+        let (stations, planes) = {
+            let asked = scene.scene.output.histories.as_ref()?;
+            (asked.stations.clone(), asked.planes.clone())
+        };
+        Some(Probes { probes, stations, planes, wanted, forces, interval, due: 0, histories })
     }
 
     /// Records a row if one is due, at the end of the first step after each interval. Collective.
@@ -135,6 +194,13 @@ impl Probes {
         self.due = self.after(time);
         let totals = simulation.totals();
         let forces = if self.forces > 0 { simulation.contact_force() } else { [0.0; 2] };
+        let beyond: Vec<[f64; 2]> = self
+            .planes
+            .iter()
+            .map(|plane| simulation.beyond(usize::from(plane.axis == GaugeAxis::Y), plane.at))
+            .collect();
+        let around: Vec<Option<Around<D>>> =
+            self.stations.iter().map(|station| simulation.around(&station.at)).collect();
         let followed = simulation.follow(&self.wanted);
         // only rank 0 has the values
         if followed.is_empty() && !self.wanted.is_empty() {
@@ -158,8 +224,30 @@ impl Probes {
                 None => f64::NAN,
             };
             row.extend((0..2 * D + 1).map(mean));
+            // an interferometer looks along x
+            row.extend(probe.fringes.map(|fringes| fringes * mean(D)));
         }
+        for around in around {
+            let values = around.map(|a| {
+                a.velocity.into_iter().chain([a.pressure, a.density]).collect::<Vec<f64>>()
+            });
+            row.extend(values.unwrap_or(vec![f64::NAN; D + 2]));
+        }
+        row.extend(beyond.into_iter().flatten());
         self.histories.push(&row);
+    }
+
+    /// All probes and gauges, with the names of their columns.
+    pub fn gauges(&self) -> Vec<(&str, GaugeKind)> {
+        let is_free =
+            |part: &ProbePart| matches!(part, ProbePart::FreeLower | ProbePart::FreeUpper);
+        let probes = self.probes.iter().map(|probe| {
+            let free = probe.parts.iter().all(|(_, part)| is_free(part));
+            (&probe.name[..], GaugeKind::Material { body: probe.body, free })
+        });
+        let stations = self.stations.iter().map(|s| (&s.name[..], GaugeKind::Station));
+        let planes = self.planes.iter().map(|p| (&p.name[..], GaugeKind::Plane));
+        probes.chain(stations).chain(planes).collect()
     }
 
     /// The number of the first interval that ends after `time`.

@@ -6,11 +6,13 @@ use decomp::Comm;
 
 use crate::accuracy::estimate::Arrivals;
 use crate::accuracy::reference::PlaneReference;
-use crate::driver::checkpoint::{Checkpoint, CheckpointContents, Due, Record, StateColumn};
+use crate::driver::checkpoint::{Checkpoint, CheckpointContents, Due, StateColumn};
+use crate::driver::fields::FieldSeries;
 use crate::driver::figures::PressureRow;
+use crate::driver::output::OutputError;
 use crate::driver::output::histories::HistoryTable;
 use crate::driver::output::origin::{Origin, RUN};
-use crate::driver::probes::Probes;
+use crate::driver::probes::{GaugeKind, Probes};
 use crate::scene::CheckedScene;
 use crate::simulation::{BodyRow, ParticleTable};
 use crate::simulation::{Saved, Simulation};
@@ -27,6 +29,10 @@ pub struct Recorder<'a> {
     /// The command and the file of the original run, before any restart.
     pub origin: Origin,
     probes: Option<Probes>,
+    /// Fields, if the scene asks for them; on all ranks.
+    pub fields: Option<FieldSeries<'a>>,
+    /// Frames of the fields that the run had written before a restart.
+    kept_frames: Option<u64>,
     /// Profiles and the digests of their states.
     pub tables: Vec<(ParticleTable, String)>,
     /// Particles at the start, if the error evaluation needs them.
@@ -49,6 +55,7 @@ pub struct Mark {
     histories: usize,
     due_history: u64,
     due_wave: u64,
+    frames: u64,
 }
 
 impl<'a> Recorder<'a> {
@@ -59,6 +66,8 @@ impl<'a> Recorder<'a> {
             scene,
             origin: Origin::new(RUN, Path::new(&scene.file)),
             probes: Probes::new(scene),
+            fields: FieldSeries::new(scene),
+            kept_frames: None,
             tables: Vec::new(),
             start: if needs_start { simulation.gather().map(|(table, _)| table) } else { None },
             waves: Vec::new(),
@@ -69,27 +78,19 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Continues at `time` [s] from the checkpoint that rank 0 holds. Collective.
-    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
-    pub fn resume(&mut self, comm: &dyn Comm, checkpoint: Option<Checkpoint>, time: f64) {
-        let sent = checkpoint
-            .as_ref()
-            .map_or(Vec::new(), |c| serde_json::to_vec(&c.due).expect("what is due is plain data"));
-        let due: Due =
-            serde_json::from_slice(&comm.broadcast(sent)).expect("rank 0 sends valid JSON");
+    /// Continues at `time` [s] from a checkpoint.
+    pub fn resume(&mut self, checkpoint: Checkpoint, time: f64) {
+        self.origin = checkpoint.run_origin();
+        let Checkpoint { due, record, .. } = checkpoint;
         let end = self.scene.scene.time.end;
         self.due_wave = if due.end == end { due.wave } else { wave_after(time, end) };
         self.due_profile = self.scene.profile_times.iter().filter(|&&t| t <= time).count();
         self.arrivals.resume(due.arrivals);
-        if let Some(checkpoint) = &checkpoint {
-            self.origin = checkpoint.run_origin();
-        }
-        let Record { tables, waves, bodies, histories } =
-            checkpoint.map_or_else(Record::default, |c| c.record);
-        (self.tables, self.waves, self.bodies) = (tables, waves, bodies);
+        self.kept_frames = Some(due.frames);
+        (self.tables, self.waves, self.bodies) = (record.tables, record.waves, record.bodies);
         if let Some(probes) = &mut self.probes {
             let same = due.history_interval == self.scene.history_interval;
-            probes.resume(time, same.then_some(due.history), histories);
+            probes.resume(time, same.then_some(due.history), record.histories);
         }
     }
 
@@ -113,7 +114,53 @@ impl<'a> Recorder<'a> {
         }
         if self.scene.profile_times.get(self.due_profile) == Some(&time) {
             self.due_profile += 1;
-            self.tables.extend(simulation.gather());
+            self.tables.extend(simulation.profile(most_particles(self.scene)));
+        }
+    }
+
+    /// Opens the files of the fields in `folder`; `restarted` is the time of a restart [s]. Collective.
+    ///
+    /// # Errors
+    ///
+    /// If they cannot be written; all ranks return an error.
+    pub fn open_fields(
+        &mut self,
+        comm: &dyn Comm,
+        folder: &Path,
+        restarted: Option<f64>,
+    ) -> Result<(), OutputError> {
+        let kept = self.kept_frames.zip(restarted);
+        match &mut self.fields {
+            Some(fields) => fields.open(comm, self.scene, folder, kept),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes a frame of the fields into `folder` if one is due. Collective.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be written; all ranks return an error.
+    pub fn record_fields<const D: usize>(
+        &mut self,
+        simulation: &Simulation<'_, D>,
+        comm: &dyn Comm,
+        folder: &Path,
+    ) -> Result<(), OutputError> {
+        match &mut self.fields {
+            Some(fields) => fields.record(simulation, comm, self.scene, folder),
+            None => Ok(()),
+        }
+    }
+
+    /// Adds a profile of the present time, unless it has one. Collective.
+    pub fn add_profile<const D: usize>(&mut self, simulation: &Simulation<'_, D>) {
+        let time = simulation.time();
+        // the same on all ranks
+        let recorded =
+            self.due_profile.checked_sub(1).and_then(|k| self.scene.profile_times.get(k));
+        if recorded != Some(&time) {
+            self.tables.extend(simulation.profile(most_particles(self.scene)));
         }
     }
 
@@ -125,6 +172,11 @@ impl<'a> Recorder<'a> {
     /// The histories so far, if the scene asks for them.
     pub fn histories(&self) -> Option<&HistoryTable> {
         self.probes.as_ref().map(Probes::histories)
+    }
+
+    /// All probes and gauges, if the scene asks for histories.
+    pub fn gauges(&self) -> Option<Vec<(&str, GaugeKind)>> {
+        self.probes.as_ref().map(Probes::gauges)
     }
 
     /// The contents of a checkpoint of the present state.
@@ -145,6 +197,7 @@ impl<'a> Recorder<'a> {
             histories: self.histories().map_or(0, HistoryTable::len),
             due_history: self.probes.as_ref().map_or(0, Probes::due),
             due_wave: self.due_wave,
+            frames: self.fields.as_ref().map_or(0, FieldSeries::written),
         }
     }
 
@@ -168,6 +221,7 @@ impl<'a> Recorder<'a> {
             wave: mark.due_wave,
             end: self.scene.scene.time.end,
             arrivals: self.arrivals.state(),
+            frames: mark.frames,
         };
         CheckpointContents {
             origin: Some(&self.origin),
@@ -183,6 +237,19 @@ impl<'a> Recorder<'a> {
             histories,
         }
     }
+}
+
+/// Largest number of particles of which a profile holds each, on a line and in a plane.
+const MOST_PARTICLES: [u64; 2] = [1_000_000, 200_000];
+
+/// Largest number of particles of which a profile of the scene holds each.
+pub fn most_particles(scene: &CheckedScene) -> u64 {
+    if PlaneReference::needs_start(scene) {
+        // each particle is compared with its own start
+        return u64::MAX;
+    }
+    let most = scene.scene.output.profiles.max_particles;
+    most.unwrap_or(MOST_PARTICLES[scene.dimension - 1])
 }
 
 /// The number of the first row of the x-t diagram that is due after `time`.

@@ -52,7 +52,8 @@ impl Package for StrengthEffect {
         let names = ["deviator_xx", "deviator_yy", "deviator_xy"];
         let deviator = d.symmetric(names, "Pa", Role::State);
         d.deviator(deviator);
-        d.scalar("plastic_strain", "", Role::State);
+        let plastic_strain = d.scalar("plastic_strain", "", Role::State);
+        d.plastic_strain(plastic_strain);
         d.tensor(["rate_xx", "rate_xy", "rate_yx", "rate_yy"], "1/s", Role::Scratch);
         if scene.axisymmetric() {
             d.scalar("rate_divergence", "1/s", Role::Scratch);

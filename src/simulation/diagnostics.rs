@@ -1,9 +1,11 @@
 //! Diagnostics of the particles: sums, tables, followed particles.
 
-use decomp::{exact_sums, gather_particles};
-use sha2::{Digest, Sha256};
+use std::cell::OnceCell;
+
+use decomp::{Shares, exact_sums};
 
 use super::run::Simulation;
+use super::state_digest::StateDigest;
 use crate::simulation::{ParticleTable, TableColumn};
 use crate::solver::effect::Account;
 
@@ -49,6 +51,21 @@ pub struct Followed<const D: usize> {
     /// Half of its length [m]; in a plane half the edge of a square of its volume.
     pub half_length: f64,
 }
+
+/// Order of the particles of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum RowOrder {
+    /// By x, ties by id.
+    Position,
+    /// As in the share.
+    Share,
+}
+
+/// Adds a column: its name, its unit, and the function of its values.
+type PutColumn<'a> = dyn FnMut(&str, &str, &dyn Fn() -> Vec<f64>) + 'a;
+
+/// Name by which the parallelograms of the particles are wanted.
+pub const HALF_EDGES: &str = "half_edges";
 
 impl<const D: usize> Simulation<'_, D> {
     /// Sums over all particles in the frame of the scene. Collective.
@@ -124,89 +141,142 @@ impl<const D: usize> Simulation<'_, D> {
         })
     }
 
-    /// All particles, and the digest of every bit of the whole state in order of id, at rank 0;
+    /// All particles, sorted by x, and the [digest](Simulation::digest) of the state, at rank 0;
     /// `None` on other ranks. Collective.
     pub fn gather(&self) -> Option<(ParticleTable, String)> {
+        let digest = self.digest();
+        let table = self.table(&self.shares(1), RowOrder::Position, &|_| true);
+        (self.comm.rank() == 0).then_some((table, digest))
+    }
+
+    /// This rank's share of all particles, by id: the shares of the ranks, one after the other, are
+    /// all particles in order of id. It has the columns that `wanted` names. Collective.
+    pub fn share(&self, wanted: &dyn Fn(&str) -> bool) -> ParticleTable {
+        self.table(&self.shares(self.comm.size()), RowOrder::Share, wanted)
+    }
+
+    fn shares(&self, ranks: usize) -> Shares<'_, D> {
+        let blocks = self.patches.iter().map(|p| &p.block);
+        Shares::by_id(self.comm, blocks, self.scene.particles, ranks)
+    }
+
+    /// Digest of every bit of the whole state of all particles, in hexadecimal. Collective.
+    pub fn digest(&self) -> String {
         let c = &self.stepper.columns;
-        let state = c.state();
-        let (ids, columns) =
-            gather_particles(self.comm, self.patches.iter().map(|p| &p.block), &state);
-        if self.comm.rank() != 0 {
-            return None;
+        let mut digest = StateDigest::default();
+        for block in self.patches.iter().map(|p| &p.block) {
+            let columns = c.state().into_iter().map(|k| &block.columns[k][..block.own()]).collect();
+            digest.add(&block.ids[..block.own()], &self.by_name(columns));
         }
-        let digest = digest(&ids, &self.by_name(&state, &columns));
-        let mut places = vec![usize::MAX; self.stepper.columns.specs.len()];
-        state.iter().enumerate().for_each(|(place, &k)| places[k] = place);
-        Some((self.table(&ids, |k| &columns[places[k]]), digest))
+        digest.over_ranks(self.comm).to_hexadecimal()
     }
 
-    /// Columns of the `state` sorted by name, so that the digest does not depend on the order of
+    /// The columns of the state sorted by name, so that the digest does not depend on the order of
     /// declaration.
-    fn by_name<'b>(&self, state: &[usize], columns: &'b [Vec<f64>]) -> Vec<&'b [f64]> {
-        let name = |k: &usize| self.stepper.columns.specs[state[*k]].name;
-        let mut order: Vec<usize> = (0..state.len()).collect();
-        order.sort_by_key(name);
-        order.into_iter().map(|k| &columns[k][..]).collect()
+    pub(super) fn by_name<'b>(&self, columns: Vec<&'b [f64]>) -> Vec<&'b [f64]> {
+        let c = &self.stepper.columns;
+        let names = c.state().into_iter().map(|k| c.specs[k].name);
+        let mut named: Vec<(&str, &[f64])> = names.zip(columns).collect();
+        named.sort_by_key(|(name, _)| *name);
+        named.into_iter().map(|(_, column)| column).collect()
     }
 
-    fn table<'b>(&self, ids: &[u64], column: impl Fn(usize) -> &'b Vec<f64>) -> ParticleTable {
+    /// The table of this rank's share of the particles, with the columns that `wanted` names, the
+    /// coordinates always. Collective.
+    pub(super) fn table(
+        &self,
+        shares: &Shares<'_, D>,
+        rows: RowOrder,
+        wanted: &dyn Fn(&str) -> bool,
+    ) -> ParticleTable {
         let c = &self.stepper.columns;
+        let fetched: Vec<OnceCell<Vec<f64>>> = c.specs.iter().map(|_| OnceCell::new()).collect();
+        // all ranks ask for the same columns in the same order
+        let column = |k: usize| fetched[k].get_or_init(|| shares.column(k));
+        let ids = &shares.ids;
         let (grid, travel) = (self.frame.velocity(self.time), self.frame.travel(self.time));
         let moved = |a: usize| -> Vec<f64> {
             column(c.position + a).iter().map(|x| x + travel[a]).collect()
         };
         let place: [Vec<f64>; D] = std::array::from_fn(moved);
-        // particles are in order of id
-        let mut order: Vec<(f64, usize)> = place[0].iter().copied().zip(0..).collect();
-        order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let order: Vec<usize> = order.into_iter().map(|(_, particle)| particle).collect();
-        let taken = |values: &Vec<f64>| pick(&order, |r| values[r]);
-        let named = |name: &str, unit: &str, values| TableColumn {
-            name: name.into(),
-            unit: unit.into(),
-            values,
+        let mut order: Vec<usize> = (0..ids.len()).collect();
+        if rows == RowOrder::Position {
+            // particles are in order of id
+            let mut places: Vec<(f64, usize)> = place[0].iter().copied().zip(0..).collect();
+            places.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            order = places.into_iter().map(|(_, particle)| particle).collect();
+        }
+        let taken = |values: &[f64]| pick(&order, |r| values[r]);
+        let mut columns: Vec<TableColumn> = Vec::new();
+        let mut put = |name: &str, unit: &str, values: &dyn Fn() -> Vec<f64>| {
+            if wanted(name) {
+                columns.push(TableColumn {
+                    name: name.into(),
+                    unit: unit.into(),
+                    values: values(),
+                });
+            }
         };
-        let (m, v0, j) = (column(c.mass), column(c.volume0), column(c.jacobian));
-        let q = c.viscosity.map(&column);
-        let coordinates = ["x", "y"].into_iter().zip(&place);
-        let mut columns: Vec<TableColumn> =
-            coordinates.map(|(name, x)| named(name, "m", taken(x))).collect();
-        columns.push(named("pressure", "Pa", taken(column(c.pressure))));
+        for (name, x) in ["x", "y"].into_iter().zip(&place) {
+            put(name, "m", &|| taken(x));
+        }
+        put("pressure", "Pa", &|| taken(column(c.pressure)));
         let names = if D == 1 { ["velocity", ""] } else { ["velocity_x", "velocity_y"] };
         for (a, name) in names.into_iter().enumerate().take(D) {
-            let v = column(c.velocity + a);
-            columns.push(named(name, "m/s", pick(&order, |r| v[r] + grid[a])));
+            put(name, "m/s", &|| {
+                let v = column(c.velocity + a);
+                pick(&order, |r| v[r] + grid[a])
+            });
         }
-        columns.extend([
-            named("density", "kg/m3", pick(&order, |r| m[r] / (v0[r] * j[r]))),
-            named("specific_internal_energy", "J/kg", taken(column(c.energy))),
-            named("artificial_viscosity", "Pa", q.map_or_else(|| vec![0.0; ids.len()], taken)),
-        ]);
+        put("density", "kg/m3", &|| {
+            let (m, v0, j) = (column(c.mass), column(c.volume0), column(c.jacobian));
+            pick(&order, |r| m[r] / (v0[r] * j[r]))
+        });
+        put("specific_internal_energy", "J/kg", &|| taken(column(c.energy)));
+        put("artificial_viscosity", "Pa", &|| match c.viscosity {
+            Some(q) => taken(column(q)),
+            None => vec![0.0; ids.len()],
+        });
         if let Some(reference) = c.initial_position.filter(|_| c.shows_initial_position) {
             for (a, name) in ["reference_x", "reference_y"].into_iter().enumerate() {
-                columns.push(named(name, "m", taken(column(reference + a))));
+                put(name, "m", &|| taken(column(reference + a)));
             }
         }
         if let Some(stress) = c.stress {
             let names = ["stress_xx", "stress_yy", "stress_xy"];
             let count = if D == 1 { 1 } else { 3 };
             for (k, name) in names.into_iter().enumerate().take(count) {
-                columns.push(named(name, "Pa", taken(column(stress + k))));
+                put(name, "Pa", &|| taken(column(stress + k)));
             }
             // out of plane the component follows from the zero trace; on a line each takes half
-            let (p, xx) = (column(c.pressure), column(stress));
-            let yy = (D > 1).then(|| column(stress + 1));
-            let across = |r: usize| {
-                let rest = -3.0 * p[r] - xx[r];
-                yy.map_or(0.5 * rest, |yy| rest - yy[r])
-            };
-            columns.push(named("stress_zz", "Pa", pick(&order, across)));
+            put("stress_zz", "Pa", &|| {
+                let (p, xx) = (column(c.pressure), column(stress));
+                let yy = (D > 1).then(|| column(stress + 1));
+                pick(&order, |r| {
+                    let rest = -3.0 * p[r] - xx[r];
+                    yy.map_or(0.5 * rest, |yy| rest - yy[r])
+                })
+            });
         }
         for output in &c.outputs {
-            columns.push(named(output.name, output.unit, taken(column(c.get(output.column)))));
+            put(output.name, output.unit, &|| taken(column(c.get(output.column))));
         }
         if D > 1 {
-            columns.push(named("volume", "m3", pick(&order, |r| v0[r] * j[r])));
+            put("volume", "m3", &|| {
+                let (v0, j) = (column(c.volume0), column(c.jacobian));
+                pick(&order, |r| v0[r] * j[r])
+            });
+        }
+        if rows == RowOrder::Share {
+            put("mass", "kg", &|| taken(column(c.mass)));
+            if c.tension_free.iter().any(Option::is_some) {
+                let failed = |r: usize| match c.tension_free[column(c.body)[r] as usize] {
+                    Some(k) if column(k)[r] >= 1.0 => 1.0,
+                    _ => 0.0,
+                };
+                put("failed", "-", &|| pick(&order, failed));
+            }
+            self.put_strain(&order, &column, &mut put);
         }
         let bodies = column(c.body);
         let body: Vec<u32> = order.iter().map(|&r| bodies[r] as u32).collect();
@@ -218,7 +288,49 @@ impl<const D: usize> Simulation<'_, D> {
             materials: self.scene.scene.materials.keys().cloned().collect(),
             body,
             columns,
-            half_edges: self.half_edges(&order, &column),
+            half_edges: if wanted(HALF_EDGES) {
+                self.half_edges(&order, &column)
+            } else {
+                Vec::new()
+            },
+        }
+    }
+
+    /// Adds the components of the Green-Lagrange strain E = (F^T F - 1)/2 [-], if the particles carry
+    /// a deformation gradient F; on a line F is the volume ratio. The component zz of an axisymmetric
+    /// domain is that of the hoops, F_zz = J / det F; in a plane it is 0.
+    fn put_strain<'b>(
+        &self,
+        order: &[usize],
+        column: &impl Fn(usize) -> &'b Vec<f64>,
+        put: &mut PutColumn<'_>,
+    ) {
+        let c = &self.stepper.columns;
+        if D == 1 {
+            put("strain_xx", "-", &|| {
+                let j = column(c.jacobian);
+                pick(order, |r| 0.5 * (j[r] * j[r] - 1.0))
+            });
+            return;
+        }
+        let Some(first) = c.deformation else { return };
+        let component = |a: usize, b: usize| {
+            // xx, xy, yx, yy: column a of F is F_xa, F_ya
+            let of = |a: usize| [column(first + a), column(first + 2 + a)];
+            let ([xa, ya], [xb, yb]) = (of(a), of(b));
+            let unit = if a == b { 1.0 } else { 0.0 };
+            pick(order, |r| 0.5 * (xa[r] * xb[r] + ya[r] * yb[r] - unit))
+        };
+        put("strain_xx", "-", &|| component(0, 0));
+        put("strain_yy", "-", &|| component(1, 1));
+        put("strain_xy", "-", &|| component(0, 1));
+        if self.scene.axisymmetric() {
+            put("strain_zz", "-", &|| {
+                let f: [&Vec<f64>; 4] = std::array::from_fn(|k| column(first + k));
+                let j = column(c.jacobian);
+                let hoop = |r: usize| j[r] / (f[0][r] * f[3][r] - f[1][r] * f[2][r]);
+                pick(order, |r| 0.5 * (hoop(r) * hoop(r) - 1.0))
+            });
         }
     }
 
@@ -359,48 +471,4 @@ impl Terms<'_> {
 /// Values `of` each particle, in the order of a table.
 fn pick(order: &[usize], of: impl Fn(usize) -> f64) -> Vec<f64> {
     order.iter().map(|&r| of(r)).collect()
-}
-
-/// SHA-256 of particles: id and columns of each, as little-endian bytes.
-fn digest(ids: &[u64], columns: &[&[f64]]) -> String {
-    // many particles at a time, so that the digest processes long blocks
-    const PARTICLES_AT_ONCE: usize = 256;
-    let width = 1 + columns.len();
-    let mut words = vec![[0; 8]; PARTICLES_AT_ONCE * width];
-    let mut digest = Sha256::new();
-    for from in (0..ids.len()).step_by(PARTICLES_AT_ONCE) {
-        let particles = from..ids.len().min(from + PARTICLES_AT_ONCE);
-        let words = &mut words[..particles.len() * width];
-        let places = words.iter_mut().step_by(width);
-        places.zip(&ids[particles.clone()]).for_each(|(word, id)| *word = id.to_le_bytes());
-        for (k, column) in columns.iter().enumerate() {
-            let places = words[1 + k..].iter_mut().step_by(width);
-            places.zip(&column[particles.clone()]).for_each(|(word, v)| *word = v.to_le_bytes());
-        }
-        digest.update(words.as_flattened());
-    }
-    digest.finalize().iter().map(|b| format!("{b:02x}")).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_digest_is_that_of_particles_one_after_the_other() {
-        // more particles than one block, and not a multiple of it
-        let ids: Vec<u64> = (0..700).map(|k| 3 * k).collect();
-        let column = |c: usize| (0..700).map(|r| 0.1 * (c as f64 + 2.0) * f64::from(r)).collect();
-        let columns: Vec<Vec<f64>> = (0..3).map(column).collect();
-        let mut bytes = Vec::new();
-        for (particle, id) in ids.iter().enumerate() {
-            bytes.extend(id.to_le_bytes());
-            columns.iter().for_each(|c| bytes.extend(c[particle].to_le_bytes()));
-        }
-        let whole = Sha256::digest(&bytes);
-        assert_eq!(
-            digest(&ids, &columns.iter().map(|c| &c[..]).collect::<Vec<_>>()),
-            whole.iter().map(|b| format!("{b:02x}")).collect::<String>()
-        );
-    }
 }

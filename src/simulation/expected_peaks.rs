@@ -19,8 +19,6 @@ pub(super) struct ExpectedPeaks<const D: usize> {
     /// Energy from one shock of the strongest impact [J/kg], four times this where the material can
     /// fail; infinite where gases, explosives or forces drive the bodies.
     pub(super) heat: f64,
-    /// Column of the plastic strain, whose work is heat too; `None` without strength.
-    pub(super) plastic_strain: Option<usize>,
     pub(super) front: Option<PeakFront>,
     /// Initial velocity [m/s].
     pub(super) velocity: [f64; D],
@@ -69,7 +67,6 @@ impl<const D: usize> ExpectedPeaks<D> {
             .map(|(i, body)| ExpectedPeaks {
                 energy: stepper.starting_energy(i, body.pressure, body.temperature),
                 heat: heat[i] * if can_fail(i) { RELEASED * RELEASED } else { 1.0 },
-                plastic_strain: stepper.columns.find("plastic_strain"),
                 front: front(scene, i),
                 velocity: std::array::from_fn(|a| scene.bodies[i].velocity[a]),
                 ahead: ahead(i),

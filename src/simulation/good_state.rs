@@ -1,16 +1,14 @@
 //! The last good state of a run, and the initial sums.
 
-use decomp::{Census, ExactSum};
+use decomp::{Census, ExactSum, StoredParticles};
 
 use super::monitor::Energies;
 
 /// State columns of this rank's particles after the last step that passed the checks. The memory is
 /// reused from step to step.
 #[derive(Debug, Default)]
-pub(super) struct LastGoodState<const D: usize> {
-    pub(super) ids: Vec<u64>,
-    pub(super) cells: Vec<[i32; D]>,
-    pub(super) columns: Vec<Vec<f64>>,
+pub(super) struct LastGoodState {
+    pub(super) particles: StoredParticles,
     pub(super) sums: Vec<ExactSum>,
     pub(super) left: Census,
     pub(super) time: f64,

@@ -6,7 +6,6 @@ use std::time::Instant;
 use decomp::{Census, Comm, Layout, assign_patches, curve_order};
 
 use super::accounts::{CENSUS_EVERY, Counters, RemovedSums, SideBooks};
-use super::compiled::Compiled;
 use super::error::RunError;
 use super::exchange_plan::ExchangePlan;
 use super::expected_peaks::ExpectedPeaks;
@@ -61,7 +60,7 @@ pub struct Simulation<'a, const D: usize> {
     pub(super) expected: Vec<ExpectedPeaks<D>>,
     pub(super) peaks: Peaks,
     pub(super) start: Start<D>,
-    pub(super) held: LastGoodState<D>,
+    pub(super) held: LastGoodState,
     pub(super) frame: Frame<D>,
     /// Longest step if the frame accelerates [s].
     pub(super) longest_step: f64,
@@ -450,3 +449,50 @@ impl<const D: usize> Simulation<'_, D> {
         self.particle_error(Alarm::State, w[KEYS - 1], w[KEYS] as usize, cell, place, what)
     }
 }
+
+/// Set-up and step of a run, compiled once in this crate for each dimension: both call most of the
+/// solver and of the effects, which every program that uses the library would compile again.
+pub trait Compiled<const D: usize> {
+    /// Compiled form of [`Simulation::with_models`]. Collective.
+    ///
+    /// # Errors
+    ///
+    /// As [`Simulation::with_models`].
+    fn create<'a>(
+        scene: &'a CheckedScene,
+        comm: &'a dyn Comm,
+        threads: usize,
+        outside: &dyn Fn(&str) -> Option<CustomModel>,
+    ) -> Result<Simulation<'a, D>, RunError>;
+
+    /// Compiled form of [`Simulation::advance`]. Collective.
+    ///
+    /// # Errors
+    ///
+    /// As [`Simulation::advance`].
+    fn advance_run(run: &mut Simulation<'_, D>, until: f64) -> Result<(), RunError>;
+}
+
+macro_rules! compile_runs {
+    ($($dimension:literal),*) => {$(
+        impl Compiled<$dimension> for Stepper<$dimension> {
+            fn create<'a>(
+                scene: &'a CheckedScene,
+                comm: &'a dyn Comm,
+                threads: usize,
+                outside: &dyn Fn(&str) -> Option<CustomModel>,
+            ) -> Result<Simulation<'a, $dimension>, RunError> {
+                Simulation::create(scene, comm, threads, outside)
+            }
+
+            fn advance_run(
+                run: &mut Simulation<'_, $dimension>,
+                until: f64,
+            ) -> Result<(), RunError> {
+                run.advance_by_step(until)
+            }
+        }
+    )*};
+}
+
+compile_runs!(1, 2);

@@ -4,14 +4,14 @@
 //! are checked periodically. The state is copied when these checks pass, so that the last good
 //! state can be written if the run fails later. All ranks reach the same verdict, for any layout.
 
-use decomp::{Block, ExactSum, StoredParticles, exact_sums};
+use decomp::{Block, exact_sums};
 
 use super::accounts::Removed;
 use super::diagnostics::Totals;
 use super::error::RunError;
 use super::good_state::Start;
 use super::run::Simulation;
-use super::snapshot::Saved;
+use super::snapshot::{Moment, Saved};
 use crate::scene::OnAlarm;
 use crate::simulation::monitor::{Alarm, Energies, likely_cause};
 use crate::solver::Stepper;
@@ -308,18 +308,19 @@ impl<const D: usize> Simulation<'_, D> {
         let held = &mut self.held;
         let specs = &self.stepper.columns.specs;
         let count = specs.iter().filter(|s| s.state).count();
-        held.columns.resize_with(count, Vec::new);
-        held.ids.clear();
-        held.cells.clear();
-        held.columns.iter_mut().for_each(Vec::clear);
+        let stored = &mut held.particles;
+        stored.columns.resize_with(count, Vec::new);
+        stored.ids.clear();
+        stored.cells.clear();
+        stored.columns.iter_mut().for_each(Vec::clear);
         let particles: usize = self.patches.iter().map(|p| p.block.own()).sum();
         for patch in &self.patches {
             let block = &patch.block;
             let n = block.own();
-            extend(&mut held.ids, &block.ids[..n], particles);
-            extend(&mut held.cells, &block.cells[..n], particles);
+            extend(&mut stored.ids, &block.ids[..n], particles);
+            extend(&mut stored.cells, block.cells[..n].as_flattened(), D * particles);
             let state = specs.iter().zip(&block.columns).filter(|(s, _)| s.state);
-            for ((_, from), to) in state.zip(&mut held.columns) {
+            for ((_, from), to) in state.zip(&mut stored.columns) {
                 extend(to, &from[..n], particles);
             }
         }
@@ -340,38 +341,27 @@ impl<const D: usize> Simulation<'_, D> {
         self.scene.scene.monitor.on_alarm == OnAlarm::Redo
     }
 
-    /// The last good state, at rank 0; `None` on other ranks. Collective.
-    pub fn last_good(&self) -> Option<Saved> {
+    /// The last good state, with the particles of this rank. Collective.
+    pub fn last_good(&self) -> Saved {
         let held = &self.held;
-        let mut sums = held.sums.clone();
-        ExactSum::over_ranks(self.comm, &mut sums);
-        let left = held.left.over_ranks(self.comm);
-        let specs = &self.stepper.columns.specs;
-        let mut block = Block::new(specs);
-        (0..held.ids.len()).for_each(|r| self.push_held(&mut block, r));
-        let particles = StoredParticles::gather(self.comm, specs, std::iter::once(&block));
-        (self.comm.rank() == 0).then(|| Saved {
-            time: held.time,
-            step: held.step,
-            stable: held.stable,
-            longest: held.longest,
-            redone_steps: self.tally.redone_steps,
-            left,
-            sums: sums.iter().map(ExactSum::total).collect(),
-            peaks: self.peaks,
-            particles,
-        })
+        let moment = Moment { time: held.time, step: held.step, stable: held.stable };
+        self.saved(moment, held.longest, held.left, held.sums.clone(), held.particles.clone())
     }
 
     fn push_held(&self, block: &mut Block<D>, r: usize) {
-        let mut state = self.held.columns.iter();
+        let held = &self.held.particles;
+        let mut state = held.columns.iter();
         let specs = self.stepper.columns.specs.iter();
         let value = |spec: &decomp::ColumnSpec| match spec.state {
             true => state.next().expect("a column of state")[r],
             false => 0.0,
         };
         let particle: Vec<f64> = specs.map(value).collect();
-        block.push(self.held.ids[r], self.held.cells[r], &particle);
+        block.push(held.ids[r], self.held_cell(r), &particle);
+    }
+
+    fn held_cell(&self, r: usize) -> [i32; D] {
+        std::array::from_fn(|a| self.held.particles.cells[D * r + a])
     }
 
     /// Restores the last good state, on the same layout.
@@ -379,8 +369,8 @@ impl<const D: usize> Simulation<'_, D> {
         let mine = self.layout.patches_of(self.comm.rank());
         let specs = &self.stepper.columns.specs;
         let mut blocks: Vec<Block<D>> = mine.iter().map(|_| Block::new(specs)).collect();
-        for r in 0..self.held.ids.len() {
-            let patch = self.layout.patch_of(self.held.cells[r].map(i64::from));
+        for r in 0..self.held.particles.ids.len() {
+            let patch = self.layout.patch_of(self.held_cell(r).map(i64::from));
             let k = mine.iter().position(|&p| p == patch).expect("a patch of this rank");
             self.push_held(&mut blocks[k], r);
         }

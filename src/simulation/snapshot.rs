@@ -5,18 +5,20 @@
 //! each step, as it is for a patch that has moved to another rank. The sums over removed particles
 //! and over the work of sides are exact, so that one rank can continue with the sums of all ranks.
 
-use decomp::{Census, ExactSum, StoredParticles, deal_particles, words_of};
+use decomp::{Census, ExactSum, StoredParticles, deal_particles};
 
 use super::accounts::Counters;
 use super::accounts::left_sums;
 use super::error::RunError;
 use super::run::Simulation;
+use super::state_digest::StateDigest;
 use crate::scene::CheckedScene;
 use crate::simulation::monitor::Peaks;
 use crate::solver::clock::Clock;
 use crate::solver::patch::Patch;
 
-/// State from which a run continues.
+/// State from which a run continues: of the particles a share of all, everything else is the same on
+/// all ranks.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Saved {
     /// Time [s].
@@ -35,8 +37,26 @@ pub struct Saved {
     pub sums: Vec<i128>,
     /// Greatest values so far.
     pub peaks: Peaks,
-    /// All particles.
+    /// [Digest](Simulation::digest) of the particles of all ranks; empty if they were changed on
+    /// purpose.
+    pub digest: String,
+    /// This rank's share of the particles.
     pub particles: StoredParticles,
+}
+
+impl Saved {
+    /// The same without particles, for a rank whose share is empty.
+    pub fn without_particles(&self) -> Saved {
+        let (digest, sums) = (self.digest.clone(), self.sums.clone());
+        Saved { digest, sums, particles: StoredParticles::default(), ..*self }
+    }
+
+    /// The state of the shares of all ranks, as one share; `None` without shares.
+    pub fn joined(shares: Vec<Saved>) -> Option<Saved> {
+        let head = shares.first()?.without_particles();
+        let particles = StoredParticles::joined(shares.into_iter().map(|share| share.particles));
+        Some(Saved { particles, ..head })
+    }
 }
 
 /// Number of [`Saved::sums`] of a run of `scene`.
@@ -49,79 +69,90 @@ pub fn saved_sums(scene: &CheckedScene) -> usize {
 }
 
 impl<const D: usize> Simulation<'_, D> {
-    /// The state for the next step, at rank 0; `None` on other ranks. Collective.
-    pub fn save(&self) -> Option<Saved> {
-        let books = self.outflow.sums.iter().chain(&self.side_books.sums);
-        let mut sums: Vec<ExactSum> = books.cloned().collect();
-        ExactSum::over_ranks(self.comm, &mut sums);
-        let left = self.outflow.census.over_ranks(self.comm);
+    /// The state for the next step, with the particles of this rank. Collective.
+    pub fn save(&self) -> Saved {
         let blocks = self.patches.iter().map(|p| &p.block);
-        let particles = StoredParticles::gather(self.comm, &self.stepper.columns.specs, blocks);
-        (self.comm.rank() == 0).then(|| Saved {
-            time: self.time,
-            step: self.step,
-            stable: self.stable,
-            longest: self.longest,
-            redone_steps: self.tally.redone_steps,
-            left,
-            sums: sums.iter().map(ExactSum::total).collect(),
-            peaks: self.peaks,
-            particles,
-        })
+        let particles = StoredParticles::of(&self.stepper.columns.specs, blocks);
+        let sums = self.outflow.sums.iter().chain(&self.side_books.sums).cloned().collect();
+        let moment = Moment { time: self.time, step: self.step, stable: self.stable };
+        self.saved(moment, self.longest, self.outflow.census, sums, particles)
     }
 
-    /// Continues from the state that rank 0 passes; other ranks pass `None`. This run must be of
-    /// the same scene and at its start. Collective.
+    /// The state at a moment from the parts that this rank holds. Collective.
+    pub(super) fn saved(
+        &self,
+        Moment { time, step, stable }: Moment,
+        longest: f64,
+        left: Census,
+        mut sums: Vec<ExactSum>,
+        particles: StoredParticles,
+    ) -> Saved {
+        ExactSum::over_ranks(self.comm, &mut sums);
+        let mut digest = StateDigest::default();
+        let columns = particles.columns.iter().map(|c| &c[..]).collect();
+        digest.add(&particles.ids, &self.by_name(columns));
+        Saved {
+            time,
+            step,
+            stable,
+            longest,
+            redone_steps: self.tally.redone_steps,
+            left: left.over_ranks(self.comm),
+            sums: sums.iter().map(ExactSum::total).collect(),
+            peaks: self.peaks,
+            digest: digest.over_ranks(self.comm).to_hexadecimal(),
+            particles,
+        }
+    }
+
+    /// Continues from a state, of which each rank gives any share of the particles. This run must be
+    /// of the same scene and at its start. Collective.
     ///
     /// # Errors
     ///
-    /// If the particles are not those of the scene.
+    /// If the particles are not those of the scene, or not those that were saved.
     ///
     /// # Panics
     /// If the number of columns or sums differs, or a cell is outside the domain.
-    pub fn restore(&mut self, saved: Option<&Saved>) -> Result<(), RunError> {
-        let head = saved.map_or(Vec::new(), |s| {
-            let floats = [s.time, s.stable, s.longest].map(f64::to_bits);
-            let peaks = s.peaks.values().map(f64::to_bits);
-            [&floats[..], &[s.step, s.redone_steps], &peaks]
-                .concat()
-                .iter()
-                .flat_map(|w| w.to_le_bytes())
-                .collect()
-        });
-        let head = self.comm.broadcast(head);
-        let words = &words_of(&head)[1..];
-        let float = |k: usize| f64::from_bits(words[k]);
+    pub fn restore(&mut self, saved: &Saved) -> Result<(), RunError> {
         (self.time, self.stable, self.longest, self.step) =
-            (float(0), float(1), float(2), words[3]);
-        self.peaks = Peaks::of(std::array::from_fn(|k| float(5 + k)));
+            (saved.time, saved.stable, saved.longest, saved.step);
+        self.peaks = saved.peaks;
         self.dt = self.scene.scene.time.courant * self.stable;
         self.first_step = self.step;
-        let books = self.outflow.sums.iter_mut().chain(&mut self.side_books.sums);
-        match saved {
-            None => {}
-            Some(saved) => {
-                self.outflow.census = saved.left;
-                let mut totals = saved.sums.iter();
-                books.for_each(|sum| sum.carry_on(*totals.next().expect("as many sums")));
-            }
+        if self.comm.rank() == 0 {
+            // one rank continues with the sums of all
+            let books = self.outflow.sums.iter_mut().chain(&mut self.side_books.sums);
+            books.zip(&saved.sums).for_each(|(sum, total)| sum.carry_on(*total));
+            self.outflow.census = saved.left;
         }
         let specs = &self.stepper.columns.specs;
-        let particles = saved.map(|s| &s.particles);
         let (layout, blocks) =
-            deal_particles(self.comm, self.layout.clone(), &self.order, specs, particles);
+            deal_particles(self.comm, self.layout.clone(), &self.order, specs, &saved.particles);
         let mine = layout.patches_of(self.comm.rank()).into_iter().zip(blocks);
         self.patches = mine.map(|(p, block)| Patch::new(&layout, p, block)).collect();
         self.layout = layout;
         self.reach = None;
         self.follow_reach(self.longest);
         self.plan.particles.take_migrated();
-        self.tally = Counters { redone_steps: words[4], ..Counters::default() };
+        self.tally = Counters { redone_steps: saved.redone_steps, ..Counters::default() };
         self.clock = Clock::new();
         self.keep_good_state();
-        match self.count() == self.census {
+        let same = saved.digest.is_empty() || self.digest() == saved.digest;
+        match self.count() == self.census && same {
             true => Ok(()),
             false => Err(RunError::Foreign),
         }
     }
+}
+
+/// A moment of a run.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moment {
+    /// Time [s].
+    pub time: f64,
+    /// Number of steps.
+    pub step: u64,
+    /// Longest stable next step at a Courant number of 1 [s].
+    pub stable: f64,
 }

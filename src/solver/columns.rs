@@ -44,6 +44,8 @@ pub struct Columns {
     pub tension_free: Vec<Option<usize>>,
     /// Burnt fraction [-] and lighting time [s], if a body burns.
     pub burn: Option<[usize; 2]>,
+    /// Equivalent plastic strain [-], with strength.
+    pub plastic_strain: Option<usize>,
     /// Temperature [K]; 0 in bodies without thermal properties.
     pub temperature: Option<usize>,
     /// Plastic work that is stored and does not heat [J/kg], if any.
@@ -149,6 +151,28 @@ impl Columns {
     /// If there is no such column.
     pub fn get(&self, name: &str) -> usize {
         self.find(name).unwrap_or_else(|| panic!("no column {name} is declared"))
+    }
+
+    /// Quantities of the particles that fields may have, by dimension.
+    pub fn quantities(&self, dimension: usize) -> Vec<&'static str> {
+        let always = [
+            "pressure",
+            "velocity",
+            "density",
+            "specific_internal_energy",
+            "artificial_viscosity",
+            "mass",
+        ];
+        let some = [
+            ("initial_position", self.shows_initial_position && self.initial_position.is_some()),
+            ("stress", self.stress.is_some()),
+            ("strain", dimension == 1 || self.deformation.is_some()),
+            ("failed", self.tension_free.iter().any(Option::is_some)),
+            ("volume", dimension > 1),
+        ];
+        let some = some.into_iter().filter(|(_, has)| *has).map(|(name, _)| name);
+        let outputs = self.outputs.iter().map(|output| output.name);
+        always.into_iter().chain(some).chain(outputs).collect()
     }
 
     /// Columns that are part of the state.

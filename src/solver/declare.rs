@@ -164,6 +164,11 @@ impl<'a> Declare<'a> {
         self.columns.burn = Some([fraction, lighting_time]);
     }
 
+    /// Sets [`Columns::plastic_strain`].
+    pub fn plastic_strain(&mut self, column: usize) {
+        self.columns.plastic_strain = Some(column);
+    }
+
     /// Sets [`Columns::temperature`].
     pub fn temperature(&mut self, column: usize) {
         self.columns.temperature = Some(column);

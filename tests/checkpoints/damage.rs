@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use decomp::{Census, StoredParticles};
+use decomp::comm::local::run_ranks;
+use decomp::{Census, Comm, Serial, StoredParticles};
 use flyer_mpm::driver::checkpoint::seal::HEAD;
 use flyer_mpm::driver::checkpoint::{
     Checkpoint, CheckpointContents, CheckpointError, Due, StateColumn, file, folder,
@@ -53,6 +54,7 @@ fn example() -> Checkpoint {
             redone_steps: 5,
             left: Census { particles: 3, marks: u64::MAX - 5 },
             sums: vec![i128::MIN, -1, 0, i128::MAX],
+            digest: "0123".into(),
             peaks: Peaks::of([1.5, 2e6, 0.1 + 0.2, 1.0 / 3.0, 0.0, 0.7 / 3.0, 1e-3]),
             particles: StoredParticles {
                 ids: vec![0, 3, u64::MAX],
@@ -68,6 +70,7 @@ fn example() -> Checkpoint {
             history_interval: Some(0.1),
             wave: 9,
             end: 1e-6,
+            frames: 4,
             arrivals: Vec::new(),
         },
         record: Default::default(),
@@ -102,7 +105,7 @@ fn contents(c: &Checkpoint) -> CheckpointContents<'_> {
 }
 
 pub fn written(path: &Path) -> Vec<u8> {
-    file::write(path, &contents(&example()), &|| {}).unwrap();
+    file::write(&Serial, path, &contents(&example())).unwrap();
     fs::read(path).unwrap()
 }
 
@@ -112,7 +115,7 @@ fn all_comes_back() {
     let path = home.path().join("c.hdf5");
     let bytes = written(&path);
     // NaN has no place in it, so equal is equal to the bit but for the sign of zero
-    let back = file::read(&path).unwrap();
+    let back = file::read(&Serial, &path).unwrap();
     assert_eq!(back, example());
     let bits = |c: &Checkpoint| -> Vec<u64> {
         c.saved.particles.columns.iter().flatten().map(|v| v.to_bits()).collect()
@@ -123,15 +126,97 @@ fn all_comes_back() {
     let mut empty = example();
     empty.record = Default::default();
     empty.saved.particles = StoredParticles { columns: vec![vec![]; 2], ..Default::default() };
-    file::write(&path, &contents(&empty), &|| {}).unwrap();
-    assert_eq!(file::read(&path).unwrap(), empty);
+    file::write(&Serial, &path, &contents(&empty)).unwrap();
+    assert_eq!(file::read(&Serial, &path).unwrap(), empty);
 }
 
 #[track_caller]
 fn is_damaged(path: &Path, what: &str) {
-    match file::read(path) {
+    match file::read(&Serial, path) {
         Err(CheckpointError::Damaged { .. }) => {}
         other => panic!("{what}: {other:?}"),
+    }
+}
+
+/// The particles of each rank, in any shares, come back as those of all ranks.
+#[test]
+fn ranks_write_and_read_their_shares() {
+    let home = tempfile::tempdir().unwrap();
+    let whole = example();
+    let part = |rank: usize, ranks: usize| {
+        let particles = &whole.saved.particles;
+        let mine = |r: &usize| r * ranks / 3 == rank;
+        let which: Vec<usize> = (0..3).filter(mine).collect();
+        StoredParticles {
+            ids: which.iter().map(|&r| particles.ids[r]).collect(),
+            cells: which
+                .iter()
+                .flat_map(|&r| [particles.cells[2 * r], particles.cells[2 * r + 1]])
+                .collect(),
+            columns: particles
+                .columns
+                .iter()
+                .map(|c| which.iter().map(|&r| c[r]).collect())
+                .collect(),
+        }
+    };
+    for (writers, readers) in [(1, 3), (2, 1), (3, 5), (5, 2)] {
+        let path = home.path().join(format!("{writers}.hdf5"));
+        run_ranks(writers, |comm| {
+            let mut mine = whole.clone();
+            mine.saved.particles = part(comm.rank(), writers);
+            if comm.rank() > 0 {
+                mine.record = Default::default();
+            }
+            file::write(comm, &path, &contents(&mine)).unwrap();
+        });
+        let back = run_ranks(readers, |comm| file::read(comm, &path).unwrap());
+        let first = back[0].clone();
+        let shares = back.into_iter().map(|c| c.saved);
+        let saved = Saved::joined(shares.collect()).unwrap();
+        assert_eq!(Checkpoint { saved, ..first }, whole, "{writers} and {readers} ranks");
+    }
+}
+
+/// A share that cannot be written is an error on all ranks, with the message at rank 0.
+#[test]
+fn a_share_that_is_not_written_fails_on_all_ranks() {
+    let errors = run_ranks(3, |comm| {
+        let place = if comm.rank() == 0 { "/proc/none" } else { "" };
+        let error = folder::write(comm, Path::new(place), 2, &contents(&example())).unwrap_err();
+        error.to_string()
+    });
+    assert!(errors[0].contains("/proc/none"), "{errors:?}");
+    assert!(errors[1..].iter().all(|e| e.contains("another rank")), "{errors:?}");
+}
+
+/// The message names the damaged column, on any number of ranks.
+#[test]
+fn the_damaged_part_is_named() {
+    let home = tempfile::tempdir().unwrap();
+    let path = home.path().join("c.hdf5");
+    let bytes = written(&path);
+    // the second value of the first column, and one of a profile
+    for (value, name) in
+        [(5e-324, "particles: mass"), (f64::MIN_POSITIVE, "profiles/0000/columns/0001")]
+    {
+        let mut bytes = bytes.clone();
+        // the bytes of the tiny number stand in the structure of the file too
+        let at = match value {
+            5e-324 => {
+                let two = [-0.0f64, value].map(f64::to_ne_bytes).concat();
+                bytes.windows(16).position(|w| w == two).unwrap() + 8
+            }
+            _ => bytes.windows(8).position(|w| w == value.to_ne_bytes()).unwrap(),
+        };
+        bytes[at] ^= 1;
+        fs::write(&path, &bytes).unwrap();
+        for ranks in [1, 3] {
+            let errors = run_ranks(ranks, |comm| file::read(comm, &path).unwrap_err().to_string());
+            assert!(errors[0].contains(name) && errors[0].contains("(bytes "), "{errors:?}");
+        }
+        let head = file::read_without_particles(&path);
+        assert_eq!(head.is_ok(), name.starts_with("particles"), "{head:?}");
     }
 }
 
@@ -159,7 +244,7 @@ fn every_loss_is_seen() {
     fs::write(&path, [&bytes[..], b"\0"].concat()).unwrap();
     is_damaged(&path, "a byte more");
     fs::write(&path, &bytes).unwrap();
-    file::read(&path).unwrap();
+    file::read(&Serial, &path).unwrap();
 }
 
 /// Every bit of the head, and many of the rest.
@@ -183,10 +268,10 @@ fn every_changed_bit_is_seen() {
 fn another_format_is_refused_in_words() {
     let home = tempfile::tempdir().unwrap();
     let path = home.path().join("c.hdf5");
-    file::write_as(&path, &contents(&example()), &|| {}, 7).unwrap();
-    let error = file::read(&path).unwrap_err().to_string();
+    file::write_as(&Serial, &path, &contents(&example()), 7).unwrap();
+    let error = file::read(&Serial, &path).unwrap_err().to_string();
     let version = env!("CARGO_PKG_VERSION");
-    for words in ["format 7", &format!("version {version}"), "reads format 3", "c.hdf5"] {
+    for words in ["format 7", &format!("version {version}"), "reads format 4", "c.hdf5"] {
         assert!(error.contains(words), "{error}");
     }
     assert!(!error.contains('\n'));
@@ -199,13 +284,13 @@ fn the_last_few_stay_and_the_newest_whole_one_is_taken() {
     let mut checkpoint = example();
     for step in 1..=5 {
         checkpoint.saved.step = step;
-        folder::write(&place, 3, &contents(&checkpoint), &|| {}).unwrap();
+        folder::write(&Serial, &place, 3, &contents(&checkpoint)).unwrap();
     }
     let found = folder::list(&place);
     assert_eq!(found.iter().map(|f| f.0).collect::<Vec<_>>(), [5, 4, 3]);
     assert_eq!(fs::read_dir(&place).unwrap().count(), 3);
     let step = |path: &Path| {
-        let (checkpoint, _, notes) = folder::open(path).unwrap();
+        let (checkpoint, _, notes) = folder::open(&Serial, path).unwrap();
         (checkpoint.saved.step, notes.len())
     };
     assert_eq!(step(&place), (5, 0));
@@ -216,16 +301,16 @@ fn the_last_few_stay_and_the_newest_whole_one_is_taken() {
     fs::write(&found[0].1, b"torn").unwrap();
     assert_eq!(step(&place), (4, 1));
     // the one that is next takes a number of its own
-    folder::write(&place, 2, &contents(&checkpoint), &|| {}).unwrap();
+    folder::write(&Serial, &place, 2, &contents(&checkpoint)).unwrap();
     assert_eq!(folder::list(&place)[0].0, 6);
     for (_, path) in folder::list(&place) {
         fs::write(path, b"").unwrap();
     }
-    let error = folder::open(&place).unwrap_err().to_string();
+    let error = folder::open(&Serial, &place).unwrap_err().to_string();
     assert!(error.contains("no checkpoint is whole"), "{error}");
     folder::clear(&place);
     assert!(!place.exists());
-    let error = folder::open(&place).unwrap_err().to_string();
+    let error = folder::open(&Serial, &place).unwrap_err().to_string();
     assert!(error.contains("No such file") && error.contains("allowed: a checkpoint"), "{error}");
 }
 
@@ -233,16 +318,16 @@ fn the_last_few_stay_and_the_newest_whole_one_is_taken() {
 fn what_cannot_be_written_leaves_the_last_good_one() {
     let home = tempfile::tempdir().unwrap();
     let place = home.path().join("run.checkpoints");
-    folder::write(&place, 2, &contents(&example()), &|| {}).unwrap();
+    folder::write(&Serial, &place, 2, &contents(&example())).unwrap();
     // no file can be made where a folder of its name stands in the way
     fs::create_dir_all(place.join(".checkpoint-000002/x")).unwrap();
-    let error = folder::write(&place, 2, &contents(&example()), &|| {}).unwrap_err().to_string();
+    let error = folder::write(&Serial, &place, 2, &contents(&example())).unwrap_err().to_string();
     assert!(
         error.contains("the last good checkpoint is") && error.contains("--restart"),
         "{error}"
     );
-    assert_eq!(folder::open(&place).unwrap().0, example());
-    let none = folder::write(Path::new("/proc/none"), 2, &contents(&example()), &|| {});
+    assert_eq!(folder::open(&Serial, &place).unwrap().0, example());
+    let none = folder::write(&Serial, Path::new("/proc/none"), 2, &contents(&example()));
     let error = none.unwrap_err().to_string();
     assert!(error.contains("/proc/none") && error.contains("no earlier checkpoint"), "{error}");
 }

@@ -5,8 +5,8 @@ use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use decomp::Comm;
 use decomp::comm::local::run_ranks;
+use decomp::{Comm, Serial};
 use flyer_mpm::driver::checkpoint::file;
 use flyer_mpm::input;
 use flyer_mpm::scene::CheckedScene;
@@ -165,7 +165,7 @@ fn changed_checkpoints() {
             continue;
         }
         fs::write(&path, &bytes).unwrap();
-        assert!(!judged(&|| format!("at {at} to {to}"), || file::read(&path)));
+        assert!(!judged(&|| format!("at {at} to {to}"), || file::read(&Serial, &path)));
     }
 }
 

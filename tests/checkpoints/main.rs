@@ -14,6 +14,7 @@ mod scenes;
 mod bits;
 mod damage;
 mod faults;
+mod fields;
 mod hostile;
 mod restarts;
 mod stops;

@@ -16,9 +16,9 @@ fn peaks(value: &Value, threads: usize, halves: &[f64]) -> Peaks {
         while simulation.time() < half * end {
             simulation.advance(end).unwrap();
         }
-        let saved = simulation.save().unwrap();
+        let saved = simulation.save();
         simulation = Simulation::new(&scene, &Serial, threads).unwrap();
-        simulation.restore(Some(&saved)).unwrap();
+        simulation.restore(&saved).unwrap();
     }
     *simulation.peaks()
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use decomp::comm::local::run_ranks;
 use decomp::{
     Block, ColumnSpec, Comm, GhostExchange, GhostReach, IndexBox, Layout, Mirror, NodeArrays,
-    NodeExchange, Parity, Serial, SideKind, exact_sums, gather_particles, relocate,
+    NodeExchange, Parity, Serial, SideKind, exact_sums, relocate,
 };
 use proptest::prelude::*;
 
@@ -242,19 +242,4 @@ fn patches_move_with_all_their_particles() {
         assert_eq!(held.iter().map(|h| h.0.len()).sum::<usize>(), 7);
         assert_eq!(held.iter().any(|h| h.1 > 0), size > 1);
     }
-}
-
-#[test]
-fn particles_are_gathered_at_rank_0_by_id() {
-    let gathered = run_ranks(3, |comm| {
-        let mut block = Block::<1>::new(&SPECS);
-        for id in (0..10).filter(|id| id % 3 == 2 - comm.rank() as u64) {
-            block.push(id, [id as i32], &[id as f64, 0.5 * id as f64]);
-        }
-        gather_particles(comm, std::iter::once(&block), &[1])
-    });
-    let (ids, columns) = &gathered[0];
-    assert_eq!(*ids, (0..10).collect::<Vec<u64>>());
-    assert_eq!(columns[0], (0..10).map(|id| 0.5 * id as f64).collect::<Vec<_>>());
-    assert!(gathered[1..].iter().all(|(ids, _)| ids.is_empty()));
 }

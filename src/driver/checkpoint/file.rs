@@ -1,14 +1,19 @@
 //! Format of a checkpoint on disk: HDF5 data behind a sealed head.
 //!
-//! `rows` holds id, cell and each state column of every particle; `profiles`, `histories` and
-//! `waves` hold the records; `scene` and `books` are JSON text. Each dataset carries the SHA-256 of
-//! its values, computed before they are passed to HDF5.
+//! `rows` holds id, cell and each state column of every particle, rank after rank: each rank writes
+//! those of its patches. `profiles`, `histories` and `waves` hold the records; `scene` and `books` are
+//! JSON text. Rank 0 writes these; each of their datasets carries the SHA-256 of its values, computed
+//! before they are passed to HDF5. The particles have the digest in `books`, which a restart compares
+//! with that of its patches.
 
+use std::cell::RefCell;
+use std::fs;
+use std::io;
 use std::path::Path;
 
-use decomp::{Census, StoredParticles};
+use decomp::{Census, Comm, Serial, StoredParticles};
 use hdf5::types::{FixedAscii, VarLenUnicode};
-use hdf5::{Dataset, File, Group, H5Type};
+use hdf5::{Dataset, File, Group};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -18,6 +23,9 @@ use crate::driver::figures::PressureRow;
 use crate::driver::output::OutputError;
 use crate::driver::output::histories::HistoryTable;
 use crate::driver::output::origin::Origin;
+use crate::driver::output::shared_file::{
+    Extent, Plain, SharedFile, agree, from_first, read_values, reserve,
+};
 use crate::scene::MethodChoice;
 use crate::simulation::monitor::Peaks;
 use crate::simulation::{BodyRow, ParticleTable, Saved, TableColumn};
@@ -43,27 +51,41 @@ struct Books {
     sums: Vec<String>,
     #[serde(default)]
     peaks: Peaks,
+    /// Digest of the particles.
+    state_sha256: String,
     due: Due,
     materials: Vec<String>,
     profiles: usize,
     has_histories: bool,
 }
 
-/// A type of value that a dataset may hold.
-trait Plain: H5Type + Copy {
-    fn bytes(self) -> impl AsRef<[u8]>;
+impl Books {
+    fn of(contents: &CheckpointContents) -> Books {
+        let CheckpointContents { saved, tables, .. } = contents;
+        Books {
+            version: env!("CARGO_PKG_VERSION").into(),
+            origin: contents.origin.cloned(),
+            method_choice: contents.method_choice.cloned(),
+            dimension: contents.dimension,
+            time: saved.time,
+            step: saved.step,
+            stable: saved.stable.is_finite().then_some(saved.stable),
+            longest: saved.longest,
+            redone_steps: saved.redone_steps,
+            left: [saved.left.particles, saved.left.marks],
+            sums: saved.sums.iter().map(i128::to_string).collect(),
+            peaks: saved.peaks,
+            state_sha256: saved.digest.clone(),
+            due: contents.due.clone(),
+            materials: tables.first().map_or(Vec::new(), |t| t.0.materials.clone()),
+            profiles: tables.len(),
+            has_histories: contents.histories.is_some(),
+        }
+    }
 }
 
-macro_rules! plain {
-    ($($kind:ty),*) => {$(
-        impl Plain for $kind {
-            fn bytes(self) -> impl AsRef<[u8]> {
-                self.to_le_bytes()
-            }
-        }
-    )*};
-}
-plain!(u8, u32, i32, u64, f64);
+/// First word of the names of the parts of a file with particles.
+const PARTICLES: &str = "particles:";
 
 fn digest<T: Plain>(values: &[T]) -> String {
     let mut digest = Sha256::new();
@@ -76,38 +98,79 @@ fn digest<T: Plain>(values: &[T]) -> String {
     hexadecimal(digest)
 }
 
-/// Writes a checkpoint at `path`, sealed and flushed to disk; `alive` is called regularly.
+/// Places of the particles in a file.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Rows {
+    ids: Extent,
+    cells: Extent,
+    columns: Vec<Extent>,
+}
+
+/// A file that rank 0 has laid out.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct FileLayout {
+    rows: Rows,
+    /// Number of the first particle of each rank.
+    firsts: Vec<u64>,
+    /// Places of all datasets.
+    extents: Vec<Extent>,
+}
+
+/// Writes a checkpoint at `path`, sealed and flushed to disk: the particles of each rank by that
+/// rank, the rest by rank 0. Collective.
 ///
 /// # Errors
 ///
-/// If the file cannot be written.
+/// If the file cannot be written; all ranks return an error.
 pub fn write(
+    comm: &dyn Comm,
     path: &Path,
     contents: &CheckpointContents,
-    alive: &dyn Fn(),
 ) -> Result<(), CheckpointError> {
-    write_as(path, contents, alive, FORMAT)
+    write_as(comm, path, contents, FORMAT)
 }
 
 /// As `write`, with any format number.
 ///
 /// # Errors
 ///
-/// If the file cannot be written.
+/// If the file cannot be written; all ranks return an error.
 pub fn write_as(
+    comm: &dyn Comm,
     path: &Path,
     contents: &CheckpointContents,
-    alive: &dyn Fn(),
     format: u32,
 ) -> Result<(), CheckpointError> {
-    let write = || -> hdf5::Result<()> {
-        let file = File::with_options().with_fcpl(|plist| plist.userblock(HEAD)).create(path)?;
-        write_root(&file, contents, alive)?;
-        file.flush()?;
-        file.close()
+    let counts = comm.gather(&[contents.saved.particles.ids.len() as u64]).concat();
+    let laid_out = match comm.rank() {
+        0 => lay_out(path, contents, &counts, &|| comm.heartbeat()).map_err(|e| refused(path, e)),
+        _ => Ok(FileLayout::default()),
     };
-    write().map_err(|e| refused(path, e))?;
-    seal(path, contents, format)
+    let plan = from_first(comm, agree(comm, laid_out)?);
+    let share = || -> io::Result<()> {
+        let (file, particles) = (SharedFile::open(comm, path)?, &contents.saved.particles);
+        let first = plan.firsts[comm.rank()];
+        file.put(&plan.rows.ids, first, particles.ids.iter().copied())?;
+        let first_cell = first * contents.dimension as u64;
+        file.put(&plan.rows.cells, first_cell, particles.cells.iter().copied())?;
+        for (extent, column) in plan.rows.columns.iter().zip(&particles.columns) {
+            file.put(extent, first, column.iter().copied())?;
+        }
+        file.flush()
+    };
+    agree(comm, share().map_err(|e| unwritten(path, e)))?;
+    seal(comm, path, &plan.extents, (contents.saved.step, contents.saved.time), format)
+}
+
+/// The error that a share could not be written.
+fn unwritten(path: &Path, error: io::Error) -> CheckpointError {
+    match error.kind() {
+        io::ErrorKind::StorageFull => {
+            let message = format!("{error}: make room, or choose another --output");
+            OutputError::Hdf5 { path: path.into(), message }.into()
+        }
+        _ => OutputError::io("write the checkpoint", path)(error).into(),
+    }
 }
 
 fn refused(path: &Path, error: hdf5::Error) -> CheckpointError {
@@ -121,107 +184,144 @@ fn refused(path: &Path, error: hdf5::Error) -> CheckpointError {
     OutputError::Hdf5 { path: path.into(), message }.into()
 }
 
-fn write_root(file: &Group, contents: &CheckpointContents, alive: &dyn Fn()) -> hdf5::Result<()> {
-    let CheckpointContents { saved, tables, .. } = contents;
-    let books = Books {
-        version: env!("CARGO_PKG_VERSION").into(),
-        origin: contents.origin.cloned(),
-        method_choice: contents.method_choice.cloned(),
-        dimension: contents.dimension,
-        time: saved.time,
-        step: saved.step,
-        stable: saved.stable.is_finite().then_some(saved.stable),
-        longest: saved.longest,
-        redone_steps: saved.redone_steps,
-        left: [saved.left.particles, saved.left.marks],
-        sums: saved.sums.iter().map(i128::to_string).collect(),
-        peaks: saved.peaks,
-        due: contents.due.clone(),
-        materials: tables.first().map_or(Vec::new(), |t| t.0.materials.clone()),
-        profiles: tables.len(),
-        has_histories: contents.histories.is_some(),
+/// Writes all but the particles, and makes room for these; rank number k has `counts[k]` of them.
+fn lay_out(
+    path: &Path,
+    contents: &CheckpointContents,
+    counts: &[u64],
+    alive: &dyn Fn(),
+) -> hdf5::Result<FileLayout> {
+    let file = File::with_options().with_fcpl(|plist| plist.userblock(HEAD)).create(path)?;
+    let writer = Writer { extents: RefCell::default(), alive };
+    let rows = writer.rows(&file, contents, counts.iter().sum::<u64>() as usize)?;
+    writer.root(&file, contents)?;
+    file.flush()?;
+    file.close()?;
+    let mut next = 0;
+    let first = |count: &u64| {
+        next += count;
+        next - count
     };
-    let books = serde_json::to_string(&books).map_err(|e| e.to_string())?;
-    put(file, "scene", contents.scene.as_bytes())?;
-    put(file, "books", books.as_bytes())?;
-    let rows = file.create_group("rows")?;
-    put(&rows, "id", &saved.particles.ids)?;
-    put(&rows, "cell", &saved.particles.cells)?;
-    let state = rows.create_group("state")?;
-    for (k, (column, values)) in contents.columns.iter().zip(&saved.particles.columns).enumerate() {
-        put_column(&state, k, &column.name, &column.unit, values)?;
-        alive();
-    }
-    let profiles = file.create_group("profiles")?;
-    for (k, (table, state)) in tables.iter().enumerate() {
-        write_table(&profiles.create_group(&format!("{k:04}"))?, table, state)?;
-        alive();
-    }
-    let waves = file.create_group("waves")?;
-    let times: Vec<f64> = contents.waves.iter().map(|w| w.time).collect();
-    let counts: Vec<u64> = contents.waves.iter().map(|w| w.points.len() as u64).collect();
-    let points = contents.waves.iter().flat_map(|w| &w.points);
-    let points: Vec<f64> = points.flat_map(|p| [p.0, p.1]).collect();
-    put(&waves, "time", &times)?;
-    put(&waves, "points", &counts)?;
-    put(&waves, "x_and_pressure", &points)?;
-    put_bodies(&file.create_group("bodies")?, contents.bodies)?;
-    let histories = file.create_group("histories")?;
-    let columns = contents.histories.map_or(&[][..], |h| h.columns());
-    for (k, column) in columns.iter().enumerate() {
-        put_column(&histories, k, &column.name, &column.unit, &column.values)?;
-    }
-    alive();
-    Ok(())
+    let firsts = counts.iter().map(first).collect();
+    Ok(FileLayout { rows, firsts, extents: writer.extents.into_inner() })
 }
 
-/// Writes the surfaces and the failed parts of bodies: ends in pairs, with their numbers per row.
-fn put_bodies(group: &Group, rows: &[BodyRow]) -> hdf5::Result<()> {
-    put(group, "time", &rows.iter().map(|row| row.time).collect::<Vec<f64>>())?;
-    let put_parts = |name: &str, parts: Vec<&Vec<[f64; 2]>>| -> hdf5::Result<()> {
-        let counts: Vec<u64> = parts.iter().map(|parts| parts.len() as u64).collect();
-        let ends: Vec<f64> = parts.into_iter().flatten().flatten().copied().collect();
-        put(group, &format!("{name}_counts"), &counts)?;
-        put(group, name, &ends)?;
+/// Writes datasets and notes their places.
+struct Writer<'a> {
+    extents: RefCell<Vec<Extent>>,
+    /// Called regularly.
+    alive: &'a dyn Fn(),
+}
+
+impl Writer<'_> {
+    /// Makes room for `count` particles.
+    fn rows(
+        &self,
+        file: &Group,
+        contents: &CheckpointContents,
+        count: usize,
+    ) -> hdf5::Result<Rows> {
+        let rows = file.create_group("rows")?;
+        let note = |dataset: &Dataset, name: &str| {
+            let extent = Extent::of(format!("{PARTICLES} {name}"), dataset);
+            self.extents.borrow_mut().push(extent.clone());
+            extent
+        };
+        let ids = note(&reserve::<u64>(&rows, "id", count)?, "id");
+        let cells = note(&reserve::<i32>(&rows, "cell", contents.dimension * count)?, "cell");
+        let state = rows.create_group("state")?;
+        let mut columns = Vec::new();
+        for (k, column) in contents.columns.iter().enumerate() {
+            let dataset = reserve::<f64>(&state, &format!("{k:04}"), count)?;
+            name_column(&dataset, &column.name, &column.unit)?;
+            columns.push(note(&dataset, &column.name));
+        }
+        Ok(Rows { ids, cells, columns })
+    }
+
+    /// Writes the scene, all scalar values and the records.
+    fn root(&self, file: &Group, contents: &CheckpointContents) -> hdf5::Result<()> {
+        let books = serde_json::to_string(&Books::of(contents)).map_err(|e| e.to_string())?;
+        self.put(file, "scene", contents.scene.as_bytes())?;
+        self.put(file, "books", books.as_bytes())?;
+        let profiles = file.create_group("profiles")?;
+        for (k, (table, state)) in contents.tables.iter().enumerate() {
+            self.table(&profiles.create_group(&format!("{k:04}"))?, table, state)?;
+            (self.alive)();
+        }
+        let waves = file.create_group("waves")?;
+        let times: Vec<f64> = contents.waves.iter().map(|w| w.time).collect();
+        let counts: Vec<u64> = contents.waves.iter().map(|w| w.points.len() as u64).collect();
+        let points = contents.waves.iter().flat_map(|w| &w.points);
+        let points: Vec<f64> = points.flat_map(|p| [p.0, p.1]).collect();
+        self.put(&waves, "time", &times)?;
+        self.put(&waves, "points", &counts)?;
+        self.put(&waves, "x_and_pressure", &points)?;
+        self.bodies(&file.create_group("bodies")?, contents.bodies)?;
+        let histories = file.create_group("histories")?;
+        let columns = contents.histories.map_or(&[][..], |h| h.columns());
+        for (k, column) in columns.iter().enumerate() {
+            self.column(&histories, k, &column.name, &column.unit, &column.values)?;
+        }
+        (self.alive)();
         Ok(())
-    };
-    put_parts("ends", rows.iter().map(|row| &row.ends).collect())?;
-    put_parts("failed", rows.iter().map(|row| &row.failed).collect())
-}
-
-fn write_table(group: &Group, table: &ParticleTable, state: &str) -> hdf5::Result<()> {
-    put(group, "time", &[table.time])?;
-    put(group, "state_sha256", state.as_bytes())?;
-    put(group, "id", &table.ids)?;
-    put(group, "material", &table.material)?;
-    put(group, "body", &table.body)?;
-    let edges: Vec<f64> = table.half_edges.iter().flatten().flatten().copied().collect();
-    put(group, "half_edges", &edges)?;
-    let columns = group.create_group("columns")?;
-    for (k, column) in table.columns.iter().enumerate() {
-        put_column(&columns, k, &column.name, &column.unit, &column.values)?;
     }
-    Ok(())
+
+    /// Writes the surfaces and the failed parts of bodies: ends in pairs, with their numbers per row.
+    fn bodies(&self, group: &Group, rows: &[BodyRow]) -> hdf5::Result<()> {
+        self.put(group, "time", &rows.iter().map(|row| row.time).collect::<Vec<f64>>())?;
+        let put_parts = |name: &str, parts: Vec<&Vec<[f64; 2]>>| -> hdf5::Result<()> {
+            let counts: Vec<u64> = parts.iter().map(|parts| parts.len() as u64).collect();
+            let ends: Vec<f64> = parts.into_iter().flatten().flatten().copied().collect();
+            self.put(group, &format!("{name}_counts"), &counts)?;
+            self.put(group, name, &ends)?;
+            Ok(())
+        };
+        put_parts("ends", rows.iter().map(|row| &row.ends).collect())?;
+        put_parts("failed", rows.iter().map(|row| &row.failed).collect())
+    }
+
+    fn table(&self, group: &Group, table: &ParticleTable, state: &str) -> hdf5::Result<()> {
+        self.put(group, "time", &[table.time])?;
+        self.put(group, "state_sha256", state.as_bytes())?;
+        self.put(group, "id", &table.ids)?;
+        self.put(group, "material", &table.material)?;
+        self.put(group, "body", &table.body)?;
+        let edges: Vec<f64> = table.half_edges.iter().flatten().flatten().copied().collect();
+        self.put(group, "half_edges", &edges)?;
+        let columns = group.create_group("columns")?;
+        for (k, column) in table.columns.iter().enumerate() {
+            self.column(&columns, k, &column.name, &column.unit, &column.values)?;
+        }
+        Ok(())
+    }
+
+    fn put<T: Plain>(&self, group: &Group, name: &str, values: &[T]) -> hdf5::Result<Dataset> {
+        let dataset =
+            group.new_dataset::<T>().shape(values.len()).obj_track_times(false).create(name)?;
+        dataset.write_raw(values)?;
+        let digest = FixedAscii::<64>::from_ascii(&digest(values)).map_err(|e| e.to_string())?;
+        dataset.new_attr::<FixedAscii<64>>().create("sha256")?.write_scalar(&digest)?;
+        let path = dataset.name();
+        self.extents.borrow_mut().push(Extent::of(path.trim_start_matches('/').into(), &dataset));
+        Ok(dataset)
+    }
+
+    /// Writes a column with name and unit under its index, by which it is found.
+    fn column(
+        &self,
+        group: &Group,
+        place: usize,
+        name: &str,
+        unit: &str,
+        values: &[f64],
+    ) -> hdf5::Result<()> {
+        name_column(&self.put(group, &format!("{place:04}"), values)?, name, unit)
+    }
 }
 
-fn put<T: Plain>(group: &Group, name: &str, values: &[T]) -> hdf5::Result<Dataset> {
-    let dataset =
-        group.new_dataset::<T>().shape(values.len()).obj_track_times(false).create(name)?;
-    dataset.write_raw(values)?;
-    let digest = FixedAscii::<64>::from_ascii(&digest(values)).map_err(|e| e.to_string())?;
-    dataset.new_attr::<FixedAscii<64>>().create("sha256")?.write_scalar(&digest)?;
-    Ok(dataset)
-}
-
-/// Writes a column with name and unit under its index, by which it is found.
-fn put_column(
-    group: &Group,
-    place: usize,
-    name: &str,
-    unit: &str,
-    values: &[f64],
-) -> hdf5::Result<()> {
-    let dataset = put(group, &format!("{place:04}"), values)?;
+/// Adds the name and the unit of a column.
+fn name_column(dataset: &Dataset, name: &str, unit: &str) -> hdf5::Result<()> {
     for (key, text) in [("name", name), ("units", unit)] {
         let text: VarLenUnicode = text.parse().map_err(|_| format!("text of {key}"))?;
         dataset.new_attr::<VarLenUnicode>().create(key)?.write_scalar(&text)?;
@@ -229,17 +329,55 @@ fn put_column(
     Ok(())
 }
 
-/// Reads a checkpoint after verifying its seal.
+/// Reads a checkpoint after verifying its seal: on each rank a share of the particles, on rank 0 the
+/// records. Collective.
 ///
 /// # Errors
 ///
-/// If the file cannot be read, is damaged, or has another format.
-pub fn read(path: &Path) -> Result<Checkpoint, CheckpointError> {
-    verify(path)?;
-    let length = std::fs::metadata(path).map_or(0, |m| m.len());
-    let read = || -> hdf5::Result<Checkpoint> {
+/// If the file cannot be read, is damaged, or has another format; all ranks return an error.
+pub fn read(comm: &dyn Comm, path: &Path) -> Result<Checkpoint, CheckpointError> {
+    verify(comm, path, &|_| true)?;
+    agree(comm, read_verified(comm, path))
+}
+
+/// Reads a checkpoint without its particles, of which no part is looked at. Called on one rank.
+///
+/// # Errors
+///
+/// As [`read`].
+pub fn read_without_particles(path: &Path) -> Result<Checkpoint, CheckpointError> {
+    verify(&Serial, path, &|name| !name.starts_with(PARTICLES))?;
+    read_head(path, true).map(|(checkpoint, _)| checkpoint)
+}
+
+fn read_verified(comm: &dyn Comm, path: &Path) -> Result<Checkpoint, CheckpointError> {
+    let (mut checkpoint, rows) = read_head(path, comm.rank() == 0)?;
+    let share = || -> io::Result<StoredParticles> {
+        let file = fs::File::open(path)?;
+        let count = rows.ids.bytes / size_of::<u64>() as u64;
+        let bound = |rank: usize| count * rank as u64 / comm.size() as u64;
+        let (first, end) = (bound(comm.rank()), bound(comm.rank() + 1));
+        let (n, dimension) = ((end - first) as usize, checkpoint.dimension);
+        let cells = read_values(comm, &file, &rows.cells, first * dimension as u64, n * dimension)?;
+        let column = |extent: &Extent| read_values(comm, &file, extent, first, n);
+        Ok(StoredParticles {
+            ids: read_values(comm, &file, &rows.ids, first, n)?,
+            cells,
+            columns: rows.columns.iter().map(column).collect::<io::Result<_>>()?,
+        })
+    };
+    checkpoint.saved.particles =
+        share().map_err(OutputError::io("read the particles of the checkpoint", path))?;
+    Ok(checkpoint)
+}
+
+/// Reads all but the particles, with the records if they are `wanted`, and the places of the
+/// particles.
+fn read_head(path: &Path, wanted: bool) -> Result<(Checkpoint, Rows), CheckpointError> {
+    let length = fs::metadata(path).map_or(0, |m| m.len());
+    let read = || -> hdf5::Result<(Checkpoint, Rows)> {
         let file = File::open(path)?;
-        read_root(&file, length)
+        read_root(&file, length, wanted)
     };
     read().map_err(|e| CheckpointError::Damaged {
         path: path.into(),
@@ -247,37 +385,29 @@ pub fn read(path: &Path) -> Result<Checkpoint, CheckpointError> {
     })
 }
 
-fn read_root(file: &Group, length: u64) -> hdf5::Result<Checkpoint> {
+fn read_root(file: &Group, length: u64, wanted: bool) -> hdf5::Result<(Checkpoint, Rows)> {
     let get = Reader { length };
     let books: Books = serde_json::from_slice(&get.values::<u8>(file, "books")?)
         .map_err(|e| format!("books: {e}"))?;
     let sums = books.sums.iter().map(|s| s.parse::<i128>().map_err(|e| format!("sums: {e}")));
     let rows = file.group("rows")?;
-    let state = get.columns(&rows.group("state")?)?;
-    let names = state.iter().map(|c| StateColumn { name: c.name.clone(), unit: c.unit.clone() });
-    let columns: Vec<StateColumn> = names.collect();
-    let mut record = Record::default();
-    for k in 0..books.profiles {
-        let group = file.group(&format!("profiles/{k:04}"))?;
-        record.tables.push(get.table(&group, &books)?);
+    let state = rows.group("state")?;
+    let (mut columns, mut extents) = (Vec::new(), Vec::new());
+    for k in 0..state.len() {
+        let dataset = state.dataset(&format!("{k:04}"))?;
+        let [name, unit] = ["name", "units"].map(|key| text(&dataset, key));
+        columns.push(StateColumn { name: name?, unit: unit? });
+        extents.push(Extent::of(columns[columns.len() - 1].name.clone(), &dataset));
     }
-    let waves = file.group("waves")?;
-    let points: Vec<f64> = get.values(&waves, "x_and_pressure")?;
-    let mut points = points.chunks_exact(2).map(|p| (p[0], p[1]));
-    let counts: Vec<u64> = get.values(&waves, "points")?;
-    for (time, count) in get.values::<f64>(&waves, "time")?.into_iter().zip(counts) {
-        let points = points.by_ref().take(count as usize).collect();
-        record.waves.push(PressureRow { time, points });
-    }
-    record.bodies = get.bodies(&file.group("bodies")?)?;
-    if record.bodies.len() != record.waves.len() {
-        return Err("as many rows of bodies as of pressure are needed".into());
-    }
-    if books.has_histories {
-        record.histories = Some(HistoryTable::of(get.columns(&file.group("histories")?)?));
-    }
+    let [ids, cells] = ["id", "cell"].map(|name| rows.dataset(name));
+    let rows = Rows {
+        ids: Extent::of("id".into(), &ids?),
+        cells: Extent::of("cell".into(), &cells?),
+        columns: extents,
+    };
+    let record = if wanted { get.record(file, &books)? } else { Record::default() };
     let scene = String::from_utf8(get.values(file, "scene")?).map_err(|e| e.to_string())?;
-    Ok(Checkpoint {
+    let checkpoint = Checkpoint {
         version: books.version,
         origin: books.origin,
         method_choice: books.method_choice,
@@ -292,16 +422,19 @@ fn read_root(file: &Group, length: u64) -> hdf5::Result<Checkpoint> {
             left: Census { particles: books.left[0], marks: books.left[1] },
             sums: sums.collect::<Result<_, _>>()?,
             peaks: books.peaks,
-            particles: StoredParticles {
-                ids: get.values(&rows, "id")?,
-                cells: get.values(&rows, "cell")?,
-                columns: state.into_iter().map(|c| c.values).collect(),
-            },
+            digest: books.state_sha256,
+            particles: StoredParticles::default(),
         },
         columns,
         due: books.due,
         record,
-    })
+    };
+    Ok((checkpoint, rows))
+}
+
+/// Text of an attribute.
+fn text(dataset: &Dataset, key: &str) -> hdf5::Result<String> {
+    Ok(dataset.attr(key)?.read_scalar::<VarLenUnicode>()?.to_string())
 }
 
 /// Reads datasets of a file of `length` bytes, which no dataset can exceed.
@@ -316,11 +449,35 @@ impl Reader {
             return Err(format!("{name} is longer than the file").into());
         }
         let values: Vec<T> = dataset.read_raw()?;
-        let recorded: FixedAscii<64> = dataset.attr("sha256")?.read_scalar()?;
-        match recorded.as_str() == digest(&values) {
+        let told: FixedAscii<64> = dataset.attr("sha256")?.read_scalar()?;
+        match told.as_str() == digest(&values) {
             true => Ok(values),
             false => Err(format!("the values of {name} are not those that were written").into()),
         }
+    }
+
+    fn record(&self, file: &Group, books: &Books) -> hdf5::Result<Record> {
+        let mut record = Record::default();
+        for k in 0..books.profiles {
+            let group = file.group(&format!("profiles/{k:04}"))?;
+            record.tables.push(self.table(&group, books)?);
+        }
+        let waves = file.group("waves")?;
+        let points: Vec<f64> = self.values(&waves, "x_and_pressure")?;
+        let mut points = points.chunks_exact(2).map(|p| (p[0], p[1]));
+        let counts: Vec<u64> = self.values(&waves, "points")?;
+        for (time, count) in self.values::<f64>(&waves, "time")?.into_iter().zip(counts) {
+            let points = points.by_ref().take(count as usize).collect();
+            record.waves.push(PressureRow { time, points });
+        }
+        record.bodies = self.bodies(&file.group("bodies")?)?;
+        if record.bodies.len() != record.waves.len() {
+            return Err("as many rows of bodies as of pressure are needed".into());
+        }
+        if books.has_histories {
+            record.histories = Some(HistoryTable::of(self.columns(&file.group("histories")?)?));
+        }
+        Ok(record)
     }
 
     fn bodies(&self, group: &Group) -> hdf5::Result<Vec<BodyRow>> {
@@ -344,10 +501,11 @@ impl Reader {
             let name = format!("{k:04}");
             let values = self.values(group, &name)?;
             let dataset = group.dataset(&name)?;
-            let text = |key: &str| -> hdf5::Result<String> {
-                Ok(dataset.attr(key)?.read_scalar::<VarLenUnicode>()?.to_string())
-            };
-            Ok(TableColumn { name: text("name")?, unit: text("units")?, values })
+            Ok(TableColumn {
+                name: text(&dataset, "name")?,
+                unit: text(&dataset, "units")?,
+                values,
+            })
         };
         (0..group.len()).map(column).collect()
     }

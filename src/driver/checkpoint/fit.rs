@@ -13,20 +13,36 @@ use crate::simulation::saved_sums;
 pub const CHANGEABLE: [&str; 5] = ["time", "monitor", "output", "domain.patches", "decomposition"];
 
 impl Checkpoint {
-    /// Refuses a scene with which a run cannot restart from this checkpoint. Drops records that the
-    /// scene no longer asks for.
+    /// Refuses a scene with which a run cannot restart from this checkpoint, whatever its particles
+    /// ([`Checkpoint::fit_share`]). Drops records that the scene no longer asks for. Called on rank 0.
     ///
     /// # Errors
     ///
     /// The first difference between the scene and the checkpoint that prevents a restart.
     pub fn fit(&mut self, scene: &CheckedScene, path: &Path) -> Result<(), CheckpointError> {
-        let why = self.check_rows(scene).or_else(|| self.check_record(scene));
+        let why = self.check_columns(scene).or_else(|| self.check_record(scene));
         why.map_or(Ok(()), |why| Err(CheckpointError::Unfit { path: path.into(), why }))
     }
 
-    /// An error in the particles, if any.
-    fn check_rows(&self, scene: &CheckedScene) -> Option<String> {
-        let (columns, rows) = (effects::columns(scene), &self.saved.particles);
+    /// Refuses particles of this rank's share that cannot be those of the scene; whether all are there
+    /// is known when all ranks have theirs.
+    ///
+    /// # Errors
+    ///
+    /// If a particle is not one of the scene.
+    pub fn fit_share(&self, scene: &CheckedScene) -> Result<(), CheckpointError> {
+        match self.check_rows(scene) {
+            true => Ok(()),
+            false => Err(CheckpointError::Unfit {
+                path: "the checkpoint".into(),
+                why: "its particles are not those of its scene".into(),
+            }),
+        }
+    }
+
+    /// An error in the columns of the particles or in the scalar values, if any.
+    fn check_columns(&self, scene: &CheckedScene) -> Option<String> {
+        let columns = effects::columns(scene);
         let state = columns.state();
         let named = |k: &usize| columns.specs[*k].name;
         if !self.columns.iter().map(|c| c.name.as_str()).eq(state.iter().map(named)) {
@@ -38,10 +54,22 @@ impl Checkpoint {
                 self.version
             ));
         }
+        if self.saved.sums.len() != saved_sums(scene) || self.dimension != scene.dimension {
+            return Some("its sums are not those of its scene".into());
+        }
+        let saved = &self.saved;
+        let numbers =
+            saved.time >= 0.0 && saved.stable > 0.0 && (0.0..1e3).contains(&saved.longest);
+        (!numbers).then(|| "its time or its steps are none".into())
+    }
+
+    /// Whether each particle may be one of the scene.
+    fn check_rows(&self, scene: &CheckedScene) -> bool {
+        let (columns, rows) = (effects::columns(scene), &self.saved.particles);
+        let state = columns.state();
         let (count, dimension) = (rows.ids.len(), scene.dimension);
-        let counts = rows.ids.is_sorted_by(|a, b| a < b)
-            && rows.ids.last().is_none_or(|&id| id < scene.particles)
-            && self.saved.left.particles.checked_add(count as u64) == Some(scene.particles)
+        let counts = rows.ids.iter().all(|&id| id < scene.particles)
+            && rows.columns.len() == state.len()
             && rows.columns.iter().all(|c| c.len() == count);
         let cells = rows.cells.len() == dimension * count
             && rows.cells.chunks_exact(dimension).all(|cell| {
@@ -51,16 +79,9 @@ impl Checkpoint {
         let bodies = body.is_some_and(|k| {
             let known =
                 |b: &f64| *b >= 0.0 && b.fract() == 0.0 && (*b as usize) < scene.bodies.len();
-            rows.columns[k].iter().all(known)
+            rows.columns.get(k).is_some_and(|column| column.iter().all(known))
         });
-        let sums = self.saved.sums.len() == saved_sums(scene);
-        if !(counts && cells && bodies && sums && self.dimension == dimension) {
-            return Some("its particles are not those of its scene".into());
-        }
-        let saved = &self.saved;
-        let numbers =
-            saved.time >= 0.0 && saved.stable > 0.0 && (0.0..1e3).contains(&saved.longest);
-        (!numbers).then(|| "its time or its steps are none".into())
+        counts && cells && bodies
     }
 
     /// An error in the records, if any; drops records that the scene no longer asks for.

@@ -6,13 +6,14 @@
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
+use decomp::Comm;
 use nix::sys::statvfs::statvfs;
 
-use super::seal::{SealedOwner, scene_digest};
-use super::{Checkpoint, CheckpointContents, CheckpointError, file, seal};
+use super::{Checkpoint, CheckpointContents, CheckpointError, file};
 use crate::driver::output::OutputError;
 use crate::driver::output::folder::{CHECKPOINTS, checkpoint_folder};
 use crate::driver::output::origin::{ExistingResult, Maker};
+use crate::driver::output::shared_file::{agree, from_first};
 use crate::input::input_file;
 
 const BEFORE: &str = "checkpoint-";
@@ -21,19 +22,23 @@ const AFTER: &str = ".hdf5";
 /// Prefix of the hidden name of a file during writing.
 const PARTIAL: &str = ".checkpoint-";
 
-/// Writes a checkpoint into `folder`, which is created if missing, and keeps the last `keep` files;
-/// returns the path of the new one. `alive` is called regularly.
+/// Writes a checkpoint into `folder`, which rank 0 names and creates if missing, and keeps the last
+/// `keep` files; returns the path of the new one. Collective.
 ///
 /// # Errors
 ///
-/// If the file cannot be written; the message names the last good checkpoint.
+/// If the file cannot be written; all ranks return an error, and the message at rank 0 names the last
+/// good checkpoint.
 pub fn write(
+    comm: &dyn Comm,
     folder: &Path,
     keep: u64,
     contents: &CheckpointContents,
-    alive: &dyn Fn(),
 ) -> Result<PathBuf, CheckpointError> {
-    try_write(folder, keep, contents, alive).map_err(|source| {
+    try_write(comm, folder, keep, contents).map_err(|source| {
+        if comm.rank() != 0 {
+            return source;
+        }
         let last = match list(folder).first() {
             Some((_, last)) => format!(
                 "the last good checkpoint is {}: continue with --restart {}",
@@ -46,12 +51,46 @@ pub fn write(
     })
 }
 
+/// Name of a checkpoint during writing, its final name, and earlier checkpoints.
+type Names = (PathBuf, PathBuf, Vec<PathBuf>);
+
 fn try_write(
+    comm: &dyn Comm,
     folder: &Path,
     keep: u64,
     contents: &CheckpointContents,
-    alive: &dyn Fn(),
 ) -> Result<PathBuf, CheckpointError> {
+    let mut needed = [contents.bytes() as i64];
+    comm.sum(&mut needed);
+    let first = comm.rank() == 0;
+    let names = if first { make_room(folder, needed[0] as u64) } else { Ok(Names::default()) };
+    let (partial, path, earlier) = from_first(comm, agree(comm, names)?);
+    let written = file::write(comm, &partial, contents).and_then(|()| {
+        let place = || {
+            fs::rename(&partial, &path)
+                .and_then(|()| File::open(folder)?.sync_all())
+                .map_err(|e| OutputError::io("put the checkpoint in place", &path)(e).into())
+        };
+        agree(comm, if first { place() } else { Ok(()) })
+    });
+    if let Err(error) = written {
+        if first {
+            let _ = fs::remove_file(&partial);
+        }
+        return Err(error);
+    }
+    if first {
+        // best effort: one file too many does no harm
+        for old in earlier.iter().skip(keep.max(1) as usize - 1) {
+            let _ = fs::remove_file(old);
+        }
+    }
+    Ok(path)
+}
+
+/// Creates the folder if missing, and chooses the names of the next checkpoint; refuses a disk with
+/// less space than is `needed` [bytes].
+fn make_room(folder: &Path, needed: u64) -> Result<Names, CheckpointError> {
     fs::create_dir_all(folder).map_err(OutputError::io("make the folder", folder))?;
     let entries = list(folder);
     let number = entries.first().map_or(1, |(number, _)| number + 1);
@@ -61,26 +100,12 @@ fn try_write(
     if let Ok(disk) = statvfs(folder) {
         #[allow(clippy::unnecessary_cast, reason = "the types differ between systems")]
         let left = disk.blocks_available() as u64 * disk.fragment_size() as u64;
-        let needed = contents.bytes();
         if left < needed {
             return Err(CheckpointError::Space { path: folder.into(), needed, left });
         }
     }
     let path = folder.join(format!("{BEFORE}{number:06}{AFTER}"));
-    let written = file::write(&partial, contents, alive).and_then(|()| {
-        fs::rename(&partial, &path)
-            .and_then(|()| File::open(folder)?.sync_all())
-            .map_err(|e| OutputError::io("put the checkpoint in place", &path)(e).into())
-    });
-    if let Err(error) = written {
-        let _ = fs::remove_file(&partial);
-        return Err(error);
-    }
-    // best effort: one file too many does no harm
-    for (_, old) in entries.iter().skip(keep.max(1) as usize - 1) {
-        let _ = fs::remove_file(old);
-    }
-    Ok(path)
+    Ok((partial, path, entries.into_iter().map(|(_, path)| path).collect()))
 }
 
 /// The checkpoints of a folder with their numbers, newest first; empty for an unreadable folder.
@@ -108,24 +133,51 @@ pub fn clear(folder: &Path) {
 }
 
 /// Reads the checkpoint at `path`, or the newest undamaged one if `path` is a folder of checkpoints
-/// or of results. Returns it with its path and one line for each damaged file.
+/// or of results. Returns it with its path and one line for each damaged file. Collective.
 ///
 /// # Errors
 ///
-/// If the file cannot be read or is damaged, or if the folder has no undamaged checkpoint.
-pub fn open(path: &Path) -> Result<(Checkpoint, PathBuf, Vec<String>), CheckpointError> {
+/// If the file cannot be read or is damaged, or if the folder has no undamaged checkpoint; all ranks
+/// return an error.
+pub fn open(
+    comm: &dyn Comm,
+    path: &Path,
+) -> Result<(Checkpoint, PathBuf, Vec<String>), CheckpointError> {
+    let first = comm.rank() == 0;
+    let found = if first { candidates(path) } else { Ok((Vec::new(), false)) };
+    let (found, is_file) = from_first(comm, agree(comm, found)?);
+    let mut notes = Vec::new();
+    for path in &found {
+        match file::read(comm, path) {
+            Ok(checkpoint) => return Ok((checkpoint, path.clone(), notes)),
+            Err(error) => {
+                let damaged = matches!(error, CheckpointError::Damaged { .. });
+                // a file that was named alone has its own message
+                if !from_first(comm, damaged) || is_file {
+                    return Err(error);
+                }
+                notes.push(error.to_string());
+            }
+        }
+    }
+    let why = format!("no checkpoint is whole: {}", notes.join("; "));
+    Err(CheckpointError::None { path: path.into(), why })
+}
+
+/// The file at `path`, or the checkpoints of the folder at `path`, newest first; and whether it is a
+/// file.
+fn candidates(path: &Path) -> Result<(Vec<PathBuf>, bool), CheckpointError> {
     let none = |why: String| CheckpointError::None { path: path.into(), why };
     let kind = fs::metadata(path);
     if kind.as_ref().is_ok_and(|m| !m.is_dir()) {
-        return match file::read(path) {
-            Ok(checkpoint) => Ok((checkpoint, path.into(), Vec::new())),
-            Err(CheckpointError::Damaged { .. }) if is_json(path) => Err(none(format!(
+        if is_json(path) {
+            return Err(none(format!(
                 "is JSON text such as a scene, not a checkpoint; flyer-mpm {} without --restart \
                  runs a scene",
                 path.display()
-            ))),
-            Err(error) => Err(error),
-        };
+            )));
+        }
+        return Ok((vec![path.into()], true));
     }
     let beside = checkpoint_folder(path)?;
     let found = [path.to_path_buf(), beside].map(|folder| list(&folder));
@@ -135,15 +187,7 @@ pub fn open(path: &Path) -> Result<(Checkpoint, PathBuf, Vec<String>), Checkpoin
             Err(e) => format!("cannot be read: {e}"),
         }));
     };
-    let mut notes = Vec::new();
-    for (_, path) in &found {
-        match file::read(path) {
-            Ok(checkpoint) => return Ok((checkpoint, path.clone(), notes)),
-            Err(error @ CheckpointError::Damaged { .. }) => notes.push(error.to_string()),
-            Err(error) => return Err(error),
-        }
-    }
-    Err(none(format!("no checkpoint is whole: {}", notes.join("; "))))
+    Ok((found.into_iter().map(|(_, path)| path).collect(), false))
 }
 
 /// Whether there are checkpoints in the checkpoint folder of `target`.
@@ -152,7 +196,7 @@ pub fn has_checkpoints(target: &Path) -> bool {
 }
 
 /// Refuses a run whose checkpoints would replace those of another scene in the checkpoint folder of
-/// `target`. Checkpoints with a damaged head are ignored.
+/// `target`. Damaged checkpoints are ignored.
 ///
 /// # Errors
 ///
@@ -166,32 +210,21 @@ pub fn check_owner(target: &Path, maker: &Maker) -> Result<(), OutputError> {
     }
     let ours = maker.origin.to_string();
     for (_, path) in list(&folder) {
-        let owner = match owner(&path) {
-            Ok(owner) => owner,
+        let checkpoint = match file::read_without_particles(&path) {
+            Ok(checkpoint) => checkpoint,
             Err(CheckpointError::Damaged { .. }) => continue,
             // a checkpoint of another format is a whole one of somebody
             Err(error) => {
                 return Err(OutputError::Foreign { path: folder, theirs: error.to_string(), ours });
             }
         };
-        let same_scene = owner.scene == scene_digest(&maker.scene);
-        if maker.may_replace_made(&owner.origin, same_scene, &folder) {
+        let (theirs, scene) = (checkpoint.run_origin(), serde_json::from_str(&checkpoint.scene));
+        if maker.may_replace(&theirs, &scene.unwrap_or_default(), &folder) {
             return Ok(());
         }
-        let theirs = owner.origin.to_string();
-        return Err(OutputError::Foreign { path: folder, theirs, ours });
+        return Err(OutputError::Foreign { path: folder, theirs: theirs.to_string(), ours });
     }
     Ok(())
-}
-
-/// The maker of a checkpoint. Reads no more than the head if that names the maker.
-fn owner(path: &Path) -> Result<SealedOwner, CheckpointError> {
-    if let Some(owner) = seal::owner(path)? {
-        return Ok(owner);
-    }
-    let checkpoint = file::read(path)?;
-    let scene = serde_json::from_str(&checkpoint.scene).unwrap_or_default();
-    Ok(SealedOwner { origin: checkpoint.run_origin(), scene: scene_digest(&scene) })
 }
 
 /// Whether a file looks like a JSON object or a comment before it, judged by its first characters.

@@ -3,7 +3,7 @@
 //! A checkpoint is itself an input: it holds the whole scene, the state that the next step needs
 //! ([`Saved`]), and all records so far. [`folder`] writes, flushes and renames the files, [`seal`]
 //! detects any changed bit, [`mod@file`] defines the format on disk, [`schedule`] decides when a
-//! checkpoint is due. Called on one rank; independent of MPI.
+//! checkpoint is due. All ranks write and read their shares of the particles; independent of MPI.
 
 pub mod error;
 pub mod file;
@@ -44,6 +44,9 @@ pub struct Due {
     pub wave: u64,
     /// End time of the run, which the rows of the x-t diagram divide [s].
     pub end: f64,
+    /// Frames of the fields written so far.
+    #[serde(default)]
+    pub frames: u64,
     /// State of the wave arrivals that the run reports.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub arrivals: Vec<[Passing; 2]>,
@@ -62,7 +65,7 @@ pub struct Record {
     pub histories: Option<HistoryTable>,
 }
 
-/// A checkpoint in memory.
+/// A checkpoint in memory: on each rank a share of the particles, on rank 0 the records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint {
     /// Version of the program that wrote it.
@@ -85,7 +88,8 @@ pub struct Checkpoint {
     pub record: Record,
 }
 
-/// Contents of a checkpoint to be written: those of [`Checkpoint`], borrowed.
+/// Contents of a checkpoint to be written: those of [`Checkpoint`], borrowed. Each rank has its
+/// particles, rank 0 the records.
 #[derive(Clone, Debug)]
 pub struct CheckpointContents<'a> {
     /// The command and the scene file of the run.
@@ -115,17 +119,13 @@ pub struct CheckpointContents<'a> {
 impl Checkpoint {
     /// The origin of the run; if not recorded, only the command.
     pub fn run_origin(&self) -> Origin {
-        self.origin.clone().unwrap_or_else(unknown_origin)
+        let unknown = || Origin { command: RUN.into(), ..Origin::default() };
+        self.origin.clone().unwrap_or_else(unknown)
     }
 }
 
-/// The origin of a run that did not record it.
-fn unknown_origin() -> Origin {
-    Origin { command: RUN.into(), ..Origin::default() }
-}
-
 impl CheckpointContents<'_> {
-    /// Approximate size of the file [bytes].
+    /// Approximate size of this rank's share of the file [bytes].
     pub fn bytes(&self) -> u64 {
         let rows = self.saved.particles.ids.len() * (16 + 8 * self.columns.len());
         let table = |t: &ParticleTable| t.len() * (16 + 8 * (t.columns.len() + 4));

@@ -3,13 +3,17 @@
 //! Numbers are the shortest decimals that read back as the same double, so that files can be
 //! compared bitwise; NaN is an empty field. Text is quoted only where RFC 4180 requires it.
 
-use std::fs::File;
+use std::fs::{self, File, OpenOptions};
 use std::io::{BufWriter, Write};
+use std::os::unix::fs::FileExt;
 use std::path::Path;
 
+use decomp::Comm;
+
 use super::error::{OutputError, read_text};
+use super::shared_file::{agree, from_first};
 use crate::input::input_file::LARGEST_RESULT;
-use crate::simulation::ParticleTable;
+use crate::simulation::{ParticleTable, TableColumn};
 
 /// Names of the profile files, one per time \[s\], such as `profile_0.500us.csv`. They are unique
 /// and depend only on the times.
@@ -50,27 +54,84 @@ pub fn profile_names(times: &[f64]) -> Vec<String> {
 ///
 /// If the file cannot be written.
 pub fn write_profile(path: &Path, table: &ParticleTable) -> Result<(), OutputError> {
-    let split = table
-        .columns
-        .iter()
-        .position(|c| c.name == "artificial_viscosity")
-        .map_or(table.columns.len(), |i| i + 1);
-    let (before, after) = table.columns.split_at(split);
-    let materials: Vec<String> = table.materials.iter().map(|name| field(name)).collect();
-    let mut header: Vec<String> = before.iter().map(|c| field(&c.name)).collect();
-    header.push("material".to_owned());
-    header.extend(after.iter().map(|c| field(&c.name)));
-    write_rows(path, &header, table.len(), |text, row| {
-        for column in before {
+    let lines = Lines::of(table);
+    write_rows(path, &lines.header(), table.len(), |text, row| lines.push(text, row))
+}
+
+/// Writes a table of which each rank has a share, in the order of the ranks, as [`write_profile`] does.
+/// The file is written aside and renamed. Collective.
+///
+/// # Errors
+///
+/// If the file cannot be written; all ranks return an error.
+pub fn write_frame(comm: &dyn Comm, path: &Path, share: &ParticleTable) -> Result<(), OutputError> {
+    let aside = path.with_extension("partial");
+    let (path, aside) = from_first(comm, (path.to_path_buf(), aside));
+    let lines = Lines::of(share);
+    let mut text = Vec::new();
+    if comm.rank() == 0 {
+        text.extend(lines.header().join(",").into_bytes());
+        text.push(b'\n');
+    }
+    for row in 0..share.len() {
+        lines.push(&mut text, row);
+        text.push(b'\n');
+        if row.is_multiple_of(1 << 14) {
+            comm.heartbeat();
+        }
+    }
+    let mut lengths = vec![0; comm.size()];
+    lengths[comm.rank()] = text.len() as i64;
+    comm.sum(&mut lengths);
+    let start = lengths[..comm.rank()].iter().sum::<i64>() as u64;
+    let fail = |e| OutputError::io("write the fields", &path)(e);
+    let made = if comm.rank() == 0 { File::create(&aside).map(drop) } else { Ok(()) };
+    agree(comm, made.map_err(fail))?;
+    let write = || OpenOptions::new().write(true).open(&aside)?.write_all_at(&text, start);
+    agree(comm, write().map_err(fail))?;
+    let renamed = if comm.rank() == 0 { fs::rename(&aside, &path) } else { Ok(()) };
+    agree(comm, renamed.map_err(fail))
+}
+
+/// The lines of a table of particles.
+struct Lines<'a> {
+    before: &'a [TableColumn],
+    after: &'a [TableColumn],
+    table: &'a ParticleTable,
+    materials: Vec<String>,
+}
+
+impl<'a> Lines<'a> {
+    fn of(table: &'a ParticleTable) -> Lines<'a> {
+        let split = table
+            .columns
+            .iter()
+            .position(|c| c.name == "artificial_viscosity")
+            .map_or(table.columns.len(), |i| i + 1);
+        let (before, after) = table.columns.split_at(split);
+        let materials = table.materials.iter().map(|name| field(name)).collect();
+        Lines { before, after, table, materials }
+    }
+
+    fn header(&self) -> Vec<String> {
+        let named = |columns: &[TableColumn]| -> Vec<String> {
+            columns.iter().map(|c| field(&c.name)).collect()
+        };
+        [named(self.before), vec!["material".to_owned()], named(self.after)].concat()
+    }
+
+    /// Appends the line of a particle, without its end.
+    fn push(&self, text: &mut Vec<u8>, row: usize) {
+        for column in self.before {
             push_number(text, column.values[row]);
             text.push(b',');
         }
-        text.extend_from_slice(materials[table.material[row] as usize].as_bytes());
-        for column in after {
+        text.extend_from_slice(self.materials[self.table.material[row] as usize].as_bytes());
+        for column in self.after {
             text.push(b',');
             push_number(text, column.values[row]);
         }
-    })
+    }
 }
 
 /// Writes a header and `rows` lines; `fill` appends the fields of a line, separated by commas.

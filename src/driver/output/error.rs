@@ -139,6 +139,17 @@ pub enum OutputError {
         /// The error and its position.
         source: serde_json::Error,
     },
+    /// Error of another rank, at rank 0.
+    #[error("rank {rank}: {text}")]
+    OnRank {
+        /// The other rank.
+        rank: usize,
+        /// Its message.
+        text: String,
+    },
+    /// Error of another rank; rank 0 has the message.
+    #[error("another rank has failed")]
+    Elsewhere,
     /// The file is not the expected CSV.
     #[error("{}: line {line}: {message}", path.display())]
     Csv {

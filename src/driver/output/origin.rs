@@ -22,6 +22,9 @@ use crate::scene::CheckedScene;
 /// Name of the file that records the origin of a folder without a summary.
 pub const ORIGIN_FILE: &str = "origin.json";
 
+/// Name of this file while it is written.
+const ORIGIN_ASIDE: &str = ".origin.json.partial";
+
 /// The command that runs a scene.
 pub const RUN: &str = "run";
 
@@ -96,12 +99,7 @@ impl Maker {
 
     /// Whether this maker may replace the result at `place` with origin `theirs` and `scene`.
     pub fn may_replace(&self, theirs: &Origin, scene: &Value, place: &Path) -> bool {
-        self.may_replace_made(theirs, self.scene == *scene, place)
-    }
-
-    /// As [`Maker::may_replace`], for a result whose scene is known to have the same values or not.
-    pub fn may_replace_made(&self, theirs: &Origin, same_scene: bool, place: &Path) -> bool {
-        let same_values = self.origin.command == theirs.command && same_scene;
+        let same_values = self.origin.command == theirs.command && self.scene == *scene;
         let other_file = self.origin.file != theirs.file
             && theirs.file.as_ref().is_some_and(|file| Path::new(file).exists());
         (same_values && !other_file) || self.origin.is(theirs, place)
@@ -184,6 +182,7 @@ pub fn check_target(
 pub fn claim(folder: &Path, origin: &Origin) -> Result<(), OutputError> {
     check_outside_results(folder)?;
     let (place, file) = (resolve(folder)?, folder.join(ORIGIN_FILE));
+    let is_foreign = |entry: fs::DirEntry| entry.file_name() != ORIGIN_ASIDE;
     let foreign = |theirs: String| OutputError::Foreign {
         path: folder.into(),
         theirs,
@@ -197,12 +196,16 @@ pub fn claim(folder: &Path, origin: &Origin) -> Result<(), OutputError> {
         }
     } else if let Some(made) = ExistingResult::read(folder) {
         return Err(foreign(made.origin.to_string()));
-    } else if fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some()) {
+    } else if fs::read_dir(folder).is_ok_and(|entries| entries.flatten().any(is_foreign)) {
         return Err(foreign("another program or of an older version".into()));
     }
     fs::create_dir_all(folder).map_err(OutputError::io("create the folder", folder))?;
     let text = serde_json::to_string_pretty(&origin.seen_from(&place)).expect("plain data") + "\n";
-    fs::write(&file, text).map_err(OutputError::io("write the file", &file))
+    // whole or not at all, so that a run that is killed here does not lock itself out
+    let aside = folder.join(ORIGIN_ASIDE);
+    fs::write(&aside, text)
+        .and_then(|()| fs::rename(&aside, &file))
+        .map_err(OutputError::io("write the file", &file))
 }
 
 /// The absolute path of a file, with links in its folder resolved; `None` if there is no file.

@@ -10,6 +10,7 @@ use serde_json::Value;
 use super::decomposition::DecompositionSummary;
 use super::error::{OutputError, read_text};
 use super::file_names::SUMMARY_FILE;
+use super::gauges::GaugeReading;
 use super::origin::Origin;
 use crate::accuracy::estimate::EstimatedErrors;
 use crate::accuracy::plan::Verdict;
@@ -83,6 +84,9 @@ pub struct Summary {
     /// Physical quantities beside their exact values, if these are known.
     #[serde(default)]
     pub measured: Vec<MeasuredQuantity>,
+    /// Readings of the gauges and probes of the histories.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gauges: Vec<GaugeReading>,
     /// One entry per profile, in order of time.
     pub profiles: Vec<ProfileSummary>,
     /// The run's own estimate of its errors; absent unless the scene asks for it.
@@ -392,6 +396,13 @@ pub(super) mod tests {
                 time: 1e-6,
                 value: 6343.5,
                 exact: Some(6343.0),
+            }],
+            gauges: vec![GaugeReading {
+                gauge: "rear".into(),
+                quantity: "arrival".into(),
+                unit: "s".into(),
+                value: 3e-7,
+                time: None,
             }],
             profiles: vec![
                 profile(5e-7, Some(json!({"l1": 0.0089, "plateau": -1e-5, "noise": null}))),

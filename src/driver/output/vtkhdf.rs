@@ -24,8 +24,12 @@ pub struct RunInfo<'a> {
     pub title: &'a str,
     /// The scene as run.
     pub scene: &'a Value,
+    /// Names of the materials; the column `material` holds indices into them.
+    pub materials: &'a [String],
     /// Names of the bodies; the column `body` holds indices into them.
     pub bodies: &'a [String],
+    /// Whether x is the radius, and y runs along the axis.
+    pub axisymmetric: bool,
 }
 
 /// Writes the tables in their order, one time step each.
@@ -37,7 +41,7 @@ pub struct RunInfo<'a> {
 /// If the file cannot be written.
 pub fn write_vtkhdf(
     path: &Path,
-    tables: &[ParticleTable],
+    tables: &[&ParticleTable],
     info: &RunInfo,
 ) -> Result<(), OutputError> {
     let write = || -> hdf5::Result<()> {
@@ -51,20 +55,19 @@ pub fn write_vtkhdf(
     })
 }
 
-fn write_root(root: &Group, tables: &[ParticleTable], info: &RunInfo) -> hdf5::Result<()> {
+fn write_root(root: &Group, tables: &[&ParticleTable], info: &RunInfo) -> hdf5::Result<()> {
     let kind = FixedAscii::<8>::from_ascii("PolyData").map_err(|e| e.to_string())?;
     root.new_attr::<FixedAscii<8>>().create("Type")?.write_scalar(&kind)?;
     root.new_attr_builder().with_data(&[2_i64, 0]).create("Version")?;
     text_attribute(root, "title", info.title)?;
     text_attribute(root, "scene", &info.scene.to_string())?;
-    let materials = tables.first().map_or(&[][..], |t| &t.materials);
-    text_attribute(root, "materials", &Value::from(materials).to_string())?;
+    text_attribute(root, "materials", &Value::from(info.materials).to_string())?;
     text_attribute(root, "bodies", &Value::from(info.bodies).to_string())?;
 
     let counts: Vec<i64> = tables.iter().map(|t| t.len() as i64).collect();
     let starts = starts(&counts);
     vector(root, "NumberOfPoints", &counts)?;
-    let points: Vec<f64> = tables.iter().flat_map(points).collect();
+    let points: Vec<f64> = tables.iter().flat_map(|table| points(table)).collect();
     let points = matrix(root, "Points", &points, 3)?;
     text_attribute(&points, "units", "m")?;
     write_topology(root, &counts)?;
@@ -108,7 +111,7 @@ fn write_topology(root: &Group, counts: &[i64]) -> hdf5::Result<()> {
 }
 
 /// Writes every column and index of the particles; returns their names.
-fn write_point_data(data: &Group, tables: &[ParticleTable]) -> hdf5::Result<Vec<String>> {
+fn write_point_data(data: &Group, tables: &[&ParticleTable]) -> hdf5::Result<Vec<String>> {
     let mut columns: Vec<(&str, &str)> = Vec::new();
     for column in tables.iter().flat_map(|t| &t.columns) {
         if !columns.iter().any(|(name, _)| *name == column.name) {
@@ -116,7 +119,7 @@ fn write_point_data(data: &Group, tables: &[ParticleTable]) -> hdf5::Result<Vec<
         }
     }
     for (name, unit) in &columns {
-        let mut values = Vec::with_capacity(tables.iter().map(ParticleTable::len).sum());
+        let mut values = Vec::with_capacity(tables.iter().map(|t| t.len()).sum());
         for table in tables {
             match table.column(name) {
                 Some(column) => values.extend_from_slice(column),
@@ -157,7 +160,8 @@ fn starts(counts: &[i64]) -> Vec<i64> {
     counts.iter().map(next).collect()
 }
 
-fn vector<T: H5Type>(group: &Group, name: &str, values: &[T]) -> hdf5::Result<Dataset> {
+/// Writes a dataset of numbers or texts.
+pub(super) fn vector<T: H5Type>(group: &Group, name: &str, values: &[T]) -> hdf5::Result<Dataset> {
     let dataset =
         group.new_dataset::<T>().shape(values.len()).obj_track_times(false).create(name)?;
     dataset.write_raw(values)?;
@@ -177,7 +181,7 @@ fn matrix<T: H5Type>(
 }
 
 /// Writes text of any length. A NUL is replaced, because HDF5 ends text at it.
-fn text_attribute(location: &Location, name: &str, text: &str) -> hdf5::Result<()> {
+pub(super) fn text_attribute(location: &Location, name: &str, text: &str) -> hdf5::Result<()> {
     let text: VarLenUnicode =
         text.replace('\0', "\u{fffd}").parse().map_err(|_| format!("text of {name}"))?;
     location.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&text)
@@ -189,6 +193,10 @@ mod tests {
 
     use super::*;
     use crate::simulation::TableColumn;
+
+    fn info(scene: &Value) -> RunInfo<'_> {
+        RunInfo { title: "t", scene, materials: &[], bodies: &[], axisymmetric: false }
+    }
 
     fn table(time: f64, rows: usize, extra: bool) -> ParticleTable {
         let column = |name: &str, unit: &str, scale: f64| TableColumn {
@@ -218,9 +226,11 @@ mod tests {
         let path = home.path().join(RESULTS_FILE);
         // more than the 64 KiB that an attribute can store inline
         let scene = json!({ "description": "x".repeat(100_000) });
-        let info = RunInfo { title: "nul \0", scene: &scene, bodies: &["flyer".into()] };
+        let materials = ["copper".into(), "aluminium".into()];
+        let info = RunInfo { materials: &materials, bodies: &["flyer".into()], ..info(&scene) };
+        let info = RunInfo { title: "nul \0", ..info };
         let tables = [table(0.0, 5, false), table(1.0, 3, true), table(2.0, 0, true)];
-        write_vtkhdf(&path, &tables, &info).unwrap();
+        write_vtkhdf(&path, &tables.each_ref(), &info).unwrap();
         let root = File::open(&path).unwrap().group("VTKHDF").unwrap();
         let read = |name: &str| root.dataset(name).unwrap().read_raw::<f64>().unwrap();
         let starts = root.dataset("Steps/PointDataOffsets/pressure").unwrap();
@@ -244,10 +254,10 @@ mod tests {
     fn bytes_do_not_depend_on_the_clock() {
         let home = tempfile::tempdir().unwrap();
         let scene = json!({});
-        let info = RunInfo { title: "t", scene: &scene, bodies: &[] };
+        let info = info(&scene);
         let bytes = |name: &str| {
             let path = home.path().join(name);
-            write_vtkhdf(&path, &[table(0.0, 5, true)], &info).unwrap();
+            write_vtkhdf(&path, &[&table(0.0, 5, true)], &info).unwrap();
             std::fs::read(path).unwrap()
         };
         let first = bytes("a");
@@ -259,7 +269,7 @@ mod tests {
     #[test]
     fn a_fault_is_one_line_with_the_path() {
         let scene = json!({});
-        let info = RunInfo { title: "t", scene: &scene, bodies: &[] };
+        let info = info(&scene);
         let error = write_vtkhdf(Path::new("/nowhere/results.hdf5"), &[], &info).unwrap_err();
         let text = error.to_string();
         assert!(text.starts_with("/nowhere/results.hdf5: cannot write HDF5: "), "{text}");

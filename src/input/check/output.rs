@@ -5,7 +5,9 @@ use std::collections::{HashMap, HashSet};
 use super::super::errors::{SceneFault, suggest};
 use super::super::paths::join;
 use super::common::check_length;
+use crate::effects;
 use crate::scene::CheckedScene;
+use crate::scene::GaugeAxis;
 use crate::scene::Scene;
 
 /// Number of rows of the histories if the scene gives no interval.
@@ -16,7 +18,64 @@ pub(super) fn profile_times(scene: &Scene) -> Result<Vec<f64>, SceneFault> {
     let times = &scene.output.profiles.times;
     let end = scene.time.end;
     check_times("output.profiles.times", times, end)?;
-    Ok(if times.is_empty() { vec![end] } else { times.clone() })
+    let Some(every) = scene.output.profiles.every else {
+        return Ok(if times.is_empty() { vec![end] } else { times.clone() });
+    };
+    let path = "output.profiles.every";
+    if !times.is_empty() {
+        let reason = "output.profiles.times is given as well; allowed: one of both";
+        return Err(SceneFault::new(path, every, reason));
+    }
+    check_count(path, every, end, MOST_PROFILES)?;
+    // a multiple next to the end is the end
+    let multiples = (1..).map(|k| decimal(f64::from(k) * every));
+    let multiples = multiples.take_while(|&t| t < end * (1.0 - 1e-9));
+    Ok(multiples.chain([end]).collect())
+}
+
+/// The double nearest to `x` rounded to 15 digits: 3 times 3e-8 is 9e-8.
+fn decimal(x: f64) -> f64 {
+    format!("{x:.14e}").parse().expect("a number")
+}
+
+/// Largest number of profiles, which a run holds until its end.
+const MOST_PROFILES: f64 = 1e4;
+
+/// Largest number of frames.
+const MOST_FRAMES: f64 = 1e6;
+
+/// Checks that an interval does not ask for more than `most` outputs.
+fn check_count(path: &str, every: f64, end: f64, most: f64) -> Result<(), SceneFault> {
+    if every * most >= end {
+        return Ok(());
+    }
+    let least = end / most;
+    let reason = format!("more than {most:e} until time.end; allowed: at least {least:e}");
+    Err(SceneFault::new(path, every, reason))
+}
+
+/// Checks times and quantities of the fields.
+pub(super) fn check_fields(checked: &CheckedScene) -> Result<(), SceneFault> {
+    let Some(fields) = &checked.scene.output.fields else { return Ok(()) };
+    let (path, end) = ("output.fields", checked.scene.time.end);
+    match (fields.every, &fields.times[..]) {
+        (None, []) => return Err(SceneFault::missing(path, "every or times")),
+        (Some(every), []) => check_count("output.fields.every", every, end, MOST_FRAMES)?,
+        (None, times) => check_times("output.fields.times", times, end)?,
+        (Some(every), _) => {
+            let reason = "output.fields.times is given as well; allowed: one of both";
+            return Err(SceneFault::new("output.fields.every", every, reason));
+        }
+    }
+    let known = effects::columns(checked).quantities(checked.dimension);
+    for (k, name) in fields.quantities.iter().flatten().enumerate() {
+        if !known.contains(&name.as_str()) {
+            let all = known.join(", ");
+            let reason = format!("this scene has no such quantity; allowed: {all}");
+            return Err(SceneFault::new(format!("output.fields.quantities[{k}]"), name, reason));
+        }
+    }
+    Ok(())
 }
 
 /// Checks that times are strictly increasing and not beyond the end.
@@ -55,37 +114,63 @@ pub(super) fn check_tracers(checked: &CheckedScene) -> Result<(), SceneFault> {
     let names = checked.scene.bodies.iter().map(|body| body.name.as_str());
     let bodies: HashMap<_, _> = names.zip(0..).collect();
     let mut names = HashSet::new();
-    for (i, tracer) in histories.tracers.iter().enumerate() {
-        let path = format!("output.histories.tracers[{i}].name");
-        let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-        if tracer.name.is_empty() || !tracer.name.chars().all(plain) {
-            let reason = "no name of a column; allowed: letters, digits, _ and -";
-            return Err(SceneFault::new(path, &tracer.name, reason));
-        }
-        if !names.insert(tracer.name.as_str()) {
-            let reason = "another tracer has this name; allowed: a name of its own";
-            return Err(SceneFault::new(path, &tracer.name, reason));
-        }
-        let path = join("output.histories.tracers", &tracer.name);
-        let Some(&number) = bodies.get(tracer.body.as_str()) else {
+    let tracers = histories.tracers.iter().map(|t| ("tracers", &t.name, &t.body, &t.at));
+    let meters = histories.velocimeters.iter().map(|t| ("velocimeters", &t.name, &t.body, &t.at));
+    let points = tracers.enumerate().chain(meters.enumerate());
+    for (i, (list, name, body, at)) in points {
+        let path = check_name(list, i, name, &mut names)?;
+        let Some(&number) = bodies.get(body.as_str()) else {
             let known = checked.scene.bodies.iter().map(|body| body.name.as_str());
-            let reason = format!("no such body{}", suggest(&tracer.body, known));
-            return Err(SceneFault::new(join(&path, "body"), &tracer.body, reason));
+            let reason = format!("no such body{}", suggest(body, known));
+            return Err(SceneFault::new(join(&path, "body"), body, reason));
         };
         let path = join(&path, "at");
-        check_length(&path, &tracer.at, checked.dimension)?;
-        for (d, at) in tracer.at.iter().enumerate() {
+        check_length(&path, at, checked.dimension)?;
+        for (d, x) in at.iter().enumerate() {
             let tolerance = checked.tolerance(d);
             let bounds = &checked.bodies[number];
             let (lower, upper) = (bounds.lower[d], bounds.upper[d]);
-            if *at < lower - tolerance || *at > upper + tolerance {
+            if *x < lower - tolerance || *x > upper + tolerance {
                 let reason = format!(
                     "outside of its body; allowed: {lower} to {upper} ({})",
-                    join("bodies", &tracer.body)
+                    join("bodies", body)
                 );
-                return Err(SceneFault::new(path, &tracer.at, reason));
+                return Err(SceneFault::new(path, at, reason));
             }
         }
     }
+    for (i, station) in histories.stations.iter().enumerate() {
+        let path = check_name("stations", i, &station.name, &mut names)?;
+        check_length(&join(&path, "at"), &station.at, checked.dimension)?;
+    }
+    for (i, plane) in histories.planes.iter().enumerate() {
+        let path = check_name("planes", i, &plane.name, &mut names)?;
+        if plane.axis == GaugeAxis::Y && checked.dimension == 1 {
+            let reason = "a line has no y axis; allowed: \"x\"";
+            return Err(SceneFault::new(join(&path, "axis"), "y", reason));
+        }
+    }
     Ok(())
+}
+
+/// Checks the name of number `i` of a list of probes or gauges, which becomes part of the names of
+/// columns; returns its path.
+fn check_name<'a>(
+    list: &str,
+    i: usize,
+    name: &'a str,
+    names: &mut HashSet<&'a str>,
+) -> Result<String, SceneFault> {
+    let path = format!("output.histories.{list}[{i}].name");
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    if name.is_empty() || !name.chars().all(plain) {
+        let reason = "no name of a column; allowed: letters, digits, _ and -";
+        return Err(SceneFault::new(path, name, reason));
+    }
+    if !names.insert(name) {
+        let what = list.trim_end_matches('s');
+        let reason = format!("another {what} has this name; allowed: a name of its own");
+        return Err(SceneFault::new(path, name, reason));
+    }
+    Ok(join(&format!("output.histories.{list}"), name))
 }

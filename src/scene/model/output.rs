@@ -11,6 +11,9 @@ use super::planned_quantity::PlannedQuantity;
 pub struct Output {
     /// Profiles: the state of every particle at given times.
     pub profiles: Profiles,
+    /// Fields: quantities of all particles at many times, for pictures and films; absent: none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fields: Option<FieldOutput>,
     /// Histories of faces, tracers, energies and momentum; absent: none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub histories: Option<Histories>,
@@ -59,6 +62,7 @@ impl Default for Output {
     fn default() -> Self {
         Output {
             profiles: Profiles::default(),
+            fields: None,
             histories: None,
             checkpoint: None,
             hdf5: true,
@@ -66,6 +70,43 @@ impl Default for Output {
             plan: None,
         }
     }
+}
+
+/// Fields of all particles at many times. A frame is written at the end of the first step past its
+/// time, as the run goes, so that a run that fails, stops or is killed leaves all frames until then in
+/// `<folder of the results>.unfinished`. Frames change no bit of the results. Either `every` or `times`
+/// is needed.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct FieldOutput {
+    /// Time between frames [s], from 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub every: Option<f64>,
+    /// Times of the frames [s], increasing.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("items" = {"type": "number", "minimum": 0.0}))]
+    pub times: Vec<f64>,
+    /// Quantities, such as `velocity`, `pressure`, `density`, `specific_internal_energy`, `stress`,
+    /// `strain`, `mass`, `failed`; absent: all that the scene has. Position, `particle_id`, `material`
+    /// and `body` are always there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub quantities: Option<Vec<String>>,
+    /// Format of the files; default `vtkhdf`.
+    pub format: FieldsFormat,
+}
+
+/// Format of fields.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FieldsFormat {
+    /// `fields.vtkhdf` with all frames, for ParaView and VTK; its data are in the folder `fields`.
+    #[default]
+    Vtkhdf,
+    /// A table for each frame in the folder `fields`, in order of the particles' numbers.
+    Csv,
+    /// Both.
+    Both,
 }
 
 /// Checkpoint schedule. A checkpoint is written at the end of the first step past its time, to
@@ -111,6 +152,16 @@ impl Default for Checkpoints {
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Profiles {
+    /// Largest number of particles of which a profile holds each; of more it holds means over blocks
+    /// of cells, about as many. Scenes whose reference follows particles have all of them. Default: 1e6
+    /// on a line, 2e5 in a plane.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1))]
+    pub max_particles: Option<u64>,
+    /// Time between profiles [s], in place of `times`; the end of the run has a profile as well.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub every: Option<f64>,
     /// Times [s], increasing; time steps end exactly at them. Empty (default): only the end of the
     /// run.
     #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0.0}))]
@@ -131,6 +182,73 @@ pub struct Histories {
     /// Particles whose history is recorded; default: none.
     #[serde(default)]
     pub tracers: Vec<Tracer>,
+    /// Gauges at points fixed in space; default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stations: Vec<Station>,
+    /// Velocities of surfaces as an interferometer records them; default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub velocimeters: Vec<Velocimeter>,
+    /// Planes across which mass, momentum and impulse are counted; default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub planes: Vec<GaugePlane>,
+}
+
+/// A gauge at a point fixed in space. Its velocity, pressure and density are means over the particles
+/// within one cell of the point, weighted by their mass and by 1 - |distance| / cell in each direction;
+/// empty where there is no particle.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Station {
+    /// Name used for its columns.
+    pub name: String,
+    /// Position [m].
+    pub at: Vec<f64>,
+}
+
+/// An interferometer (VISAR) at a surface of a body, free or behind a window.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Velocimeter {
+    /// Name used for its columns.
+    pub name: String,
+    /// Name of the body whose surface is measured.
+    pub body: String,
+    /// Initial position on the surface [m]; the nearest particle is followed, on a line at a face its
+    /// edge.
+    pub at: Vec<f64>,
+    /// Velocity per fringe [m/s] (Barker & Hollenbach 1972); adds a column with the number of fringes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub fringe: Option<f64>,
+    /// Relative change of the Doppler shift by a window [-] (Wackerle, Stacy & Dallman 1987): the
+    /// fringes are those of a velocity 1 + `window_correction` times as large; default 0.
+    #[serde(default)]
+    pub window_correction: f64,
+}
+
+/// A plane normal to an axis, fixed in space. The momentum of the material beyond it changes by the
+/// impulse that crosses the plane, as long as no side acts beyond it.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GaugePlane {
+    /// Name used for its columns.
+    pub name: String,
+    /// Axis to which the plane is normal; default x.
+    #[serde(default)]
+    pub axis: GaugeAxis,
+    /// Position along the axis [m].
+    pub at: f64,
+}
+
+/// Axis of a plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GaugeAxis {
+    /// Along x.
+    #[default]
+    X,
+    /// Along y.
+    Y,
 }
 
 /// A particle whose history is recorded.

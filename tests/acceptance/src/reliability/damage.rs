@@ -1,8 +1,9 @@
-//! A checkpoint that was cut or in which single bits have changed is never gone on with.
+//! A checkpoint that was cut or in which single bits have changed is never continued.
 
 use std::fs;
 use std::panic::catch_unwind;
 
+use decomp::Serial;
 use flyer_mpm::driver::checkpoint::{CheckpointError, file};
 
 use super::runs::{end, folder, scene, with};
@@ -30,13 +31,17 @@ pub fn check(table: &mut Table) {
     let path = home.join("run.checkpoints/checkpoint-000001.hdf5");
     let bytes = table.take("damage: a checkpoint", fs::read(&path).map_err(|e| e.to_string()));
     let Some(bytes) = bytes else { return };
-    let whole = table.take("damage: it is whole", file::read(&path).map_err(|e| e.to_string()));
+    let whole =
+        table.take("damage: it is whole", file::read(&Serial, &path).map_err(|e| e.to_string()));
     if whole.is_none() {
         return;
     }
     let seen = |damaged: &[u8]| {
         let _ = fs::write(&path, damaged);
-        matches!(catch_unwind(|| file::read(&path)), Ok(Err(CheckpointError::Damaged { .. })))
+        matches!(
+            catch_unwind(|| file::read(&Serial, &path)),
+            Ok(Err(CheckpointError::Damaged { .. }))
+        )
     };
     let mut random = Random::new(3);
     let size = bytes.len() as u64;
