@@ -9,7 +9,6 @@
 //!
 //! This module knows no particles, no grid and no MPI.
 
-mod boundary;
 mod build;
 mod curve;
 mod ellipse;
@@ -28,7 +27,6 @@ mod solid;
 mod tests;
 mod voronoi;
 
-pub use boundary::{BodyBoundary, BoundaryFace};
 pub use build::RegionFault;
 pub use fill::{Tile, fill};
 pub use moments::Moments;

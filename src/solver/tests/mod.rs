@@ -6,7 +6,6 @@ pub(crate) mod fixture;
 
 mod cells;
 mod contact;
-mod flux_limiter;
 mod gather;
 mod particle_domains;
 mod particle_update;
@@ -15,6 +14,5 @@ mod scatter;
 mod series;
 mod sides;
 mod solid;
-mod spin;
 mod steps;
 mod total_lagrangian;
