@@ -45,7 +45,12 @@ pub fn vortex(table: &mut Table) {
                 // a run that a scheme does not survive is listed, not counted as missed
                 let run = job.run();
                 let found = run.as_ref().ok().and_then(error);
-                table.beside(&name, found, if run.is_ok() { "" } else { "ends early" }, Unit::Fraction);
+                table.beside(
+                    &name,
+                    found,
+                    if run.is_ok() { "" } else { "ends early" },
+                    Unit::Fraction,
+                );
                 best = match (best, found) {
                     (Some(best), Some(found)) => Some(f64::min(best, found)),
                     (best, found) => best.or(found),
