@@ -196,19 +196,14 @@ fn the_damaged_part_is_named() {
     let home = tempfile::tempdir().unwrap();
     let path = home.path().join("c.hdf5");
     let bytes = written(&path);
-    // the second value of the first column, and one of a profile
-    for (value, name) in
-        [(5e-324, "particles: mass"), (f64::MIN_POSITIVE, "profiles/0000/columns/0001")]
+    // the last value of the first column, and one of a profile, each with the value before it: the
+    // bytes of such small numbers alone stand in the structure of the file too
+    for (before, value, name) in
+        [(-0.0, 5e-324, "particles: mass"), (1.0, f64::MIN_POSITIVE, "profiles/0000/columns/0001")]
     {
         let mut bytes = bytes.clone();
-        // the bytes of the tiny number stand in the structure of the file too
-        let at = match value {
-            5e-324 => {
-                let two = [-0.0f64, value].map(f64::to_ne_bytes).concat();
-                bytes.windows(16).position(|w| w == two).unwrap() + 8
-            }
-            _ => bytes.windows(8).position(|w| w == value.to_ne_bytes()).unwrap(),
-        };
+        let two = [before, value].map(f64::to_ne_bytes).concat();
+        let at = bytes.windows(16).position(|w| w == two).unwrap() + 8;
         bytes[at] ^= 1;
         fs::write(&path, &bytes).unwrap();
         for ranks in [1, 3] {

@@ -107,6 +107,10 @@ fn a_stopped_run_leaves_what_it_has_and_goes_on_without_a_seam() {
         let args = ["--restart", "run", "--quiet", "--set", "time.wall_limit=0.05"];
         let code = home.call(args).end().status.code();
         assert!(matches!(code, Some(0 | 4)), "{code:?}");
+        // a run that has ended would be continued from its last checkpoint
+        if code == Some(0) {
+            break;
+        }
     }
     if !home.at("run").exists() {
         let args = ["--restart", "run", "--quiet", "--set", "time.wall_limit=null"];

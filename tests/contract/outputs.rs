@@ -162,7 +162,10 @@ fn profiles_at_an_interval_and_of_blocks_of_cells() {
     let few = home.run("few", &["--set", "output.profiles.max_particles=50"]);
     let warnings = few.summary["warnings"].to_string();
     assert!(warnings.contains("blocks of 8 cells"), "{warnings}");
-    assert_eq!(few.states(), run.states());
+    let digests = |run: &Results| -> Vec<String> {
+        run.states().iter().map(|(digest, _)| digest.to_string()).collect()
+    };
+    assert_eq!(digests(&few), digests(&run));
     let (x, all) = (column(few.profile(3), "x"), column(run.profile(3), "x"));
     assert!((20..=52).contains(&x.len()) && all.len() == 400, "{}", x.len());
     assert!(x.windows(2).all(|pair| pair[0] < pair[1]));

@@ -88,7 +88,7 @@ fn every_shipped_scene_runs() {
         if value["domain"]["lower"].as_array().unwrap().len() > 1 {
             continue;
         }
-        let end = value["time"]["end"].as_f64().unwrap();
+        let end = checked(&value).scene.time.end;
         ending(&mut value, 0.01 * end);
         let outcome = run(&value);
         let table = outcome.last();
