@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::home::{Home, column, names};
+use crate::home::{Home, Results, column, names};
 use crate::scenes::{short, whole};
 
 const HEADER: &str = "x,pressure,velocity,density,specific_internal_energy,\
