@@ -491,20 +491,20 @@ where
         folder::clear(&checkpoint_folder(&options.output)?);
     }
     let text = if options.verbose { full } else { brief };
-    let told = told_readings(scene, &summary.gauges, options.verbose);
-    Ok(Some(text(&summary, &place) + &gauges::report(&told)))
+    let shown = report_readings(scene, &summary.gauges, options.verbose);
+    Ok(Some(text(&summary, &place) + &gauges::report(&shown)))
 }
 
 /// The readings of the report: those of the gauges that the scene names, and in the long report of all
 /// probes.
-fn told_readings(scene: &CheckedScene, all: &[GaugeReading], verbose: bool) -> Vec<GaugeReading> {
+fn report_readings(scene: &CheckedScene, all: &[GaugeReading], verbose: bool) -> Vec<GaugeReading> {
     let Some(histories) = &scene.scene.output.histories else { return Vec::new() };
     let stations = histories.stations.iter().map(|gauge| &gauge.name);
     let planes = histories.planes.iter().map(|gauge| &gauge.name);
     let named = histories.velocimeters.iter().map(|gauge| &gauge.name);
     let named: Vec<&String> = named.chain(stations).chain(planes).collect();
-    let told = all.iter().filter(|reading| verbose || named.contains(&&reading.gauge));
-    told.cloned().collect()
+    let shown = all.iter().filter(|reading| verbose || named.contains(&&reading.gauge));
+    shown.cloned().collect()
 }
 
 /// Readings of all gauges and probes.

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use crate::home::{Home, Results, names};
-use crate::restarts::{recorded, same};
+use crate::restarts::recorded;
 use crate::scenes::with;
 
 /// A small scene with frames in both formats, gauges, and checkpoints every so many steps.
@@ -144,7 +144,7 @@ fn ranks_write_the_same_frames() {
     again.files.retain(|name, _| !name.starts_with("fields") && name != Path::new("fields.vtkhdf"));
     let mut whole = whole;
     whole.files.retain(|name, _| !name.starts_with("fields") && name != Path::new("fields.vtkhdf"));
-    same(&again, &whole);
+    crate::restarts::same(&again, &whole);
 }
 
 /// Frames of another scene are not replaced.
