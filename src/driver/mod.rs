@@ -11,6 +11,7 @@ pub mod output;
 pub mod probes;
 pub mod progress;
 pub mod rank_statistics;
+mod readings;
 pub mod recorder;
 
 use std::ops::Range;
@@ -33,9 +34,7 @@ use crate::driver::output::brief::brief;
 use crate::driver::output::csv::{profile_names, write_profile};
 use crate::driver::output::field_files::{FIELDS_FILE, FIELDS_FOLDER};
 use crate::driver::output::folder::{OutputFolder, checkpoint_folder};
-use crate::driver::output::gauges::{
-    self, GaugeReading, SurfaceMaterial, plane_readings, point_readings,
-};
+use crate::driver::output::gauges;
 use crate::driver::output::histories::HISTORIES_FILE;
 use crate::driver::output::origin::Maker;
 use crate::driver::output::report::full;
@@ -46,8 +45,8 @@ use crate::driver::output::summary::{
 use crate::driver::output::trace::write_trace;
 use crate::driver::output::unfinished::{self, unfinished_folder};
 use crate::driver::output::vtkhdf::{RESULTS_FILE, RunInfo, write_vtkhdf};
-use crate::driver::probes::GaugeKind;
 use crate::driver::progress::{Progress, ProgressChoice};
+use crate::driver::readings::{gauge_readings, report_readings};
 use crate::driver::recorder::{Mark, Recorder, most_particles};
 use crate::effects::ledger;
 use crate::plot::PictureError;
@@ -495,41 +494,6 @@ where
     Ok(Some(text(&summary, &place) + &gauges::report(&shown)))
 }
 
-/// The readings of the report: those of the gauges that the scene names, and in the long report of all
-/// probes.
-fn report_readings(scene: &CheckedScene, all: &[GaugeReading], verbose: bool) -> Vec<GaugeReading> {
-    let Some(histories) = &scene.scene.output.histories else { return Vec::new() };
-    let stations = histories.stations.iter().map(|gauge| &gauge.name);
-    let planes = histories.planes.iter().map(|gauge| &gauge.name);
-    let named = histories.velocimeters.iter().map(|gauge| &gauge.name);
-    let named: Vec<&String> = named.chain(stations).chain(planes).collect();
-    let shown = all.iter().filter(|reading| verbose || named.contains(&&reading.gauge));
-    shown.cloned().collect()
-}
-
-/// Readings of all gauges and probes.
-fn gauge_readings<const D: usize>(
-    scene: &CheckedScene,
-    recorder: &Recorder<'_>,
-    simulation: &Simulation<'_, D>,
-) -> Vec<GaugeReading> {
-    let Some((histories, gauges)) = recorder.histories().zip(recorder.gauges()) else {
-        return Vec::new();
-    };
-    let readings = gauges.into_iter().flat_map(|(name, kind)| match kind {
-        GaugeKind::Plane => plane_readings(histories, name),
-        GaugeKind::Station => point_readings(histories, name, None),
-        GaugeKind::Material { body, free } => {
-            let surface = SurfaceMaterial {
-                density: scene.material_of(body).density,
-                sound_speed: simulation.sound_speed_at_rest(body),
-            };
-            point_readings(histories, name, free.then_some(surface))
-        }
-    });
-    readings.collect()
-}
-
 /// Leaves the profiles and histories of a run that has failed or was stopped, with a picture of its
 /// last profile, in the folder of the unfinished run; a run that was stopped adds its last state. The
 /// failure names the folder. Collective.
@@ -563,7 +527,7 @@ where
         Ok(folder)
     };
     let left = match write() {
-        Ok(folder) => format!("; what it has written is in {}", folder.display()),
+        Ok(folder) => format!("; its records are in {}", folder.display()),
         Err(error) => format!("; its profiles could not be written: {error}"),
     };
     match failure {

@@ -64,15 +64,15 @@ fn what_was_not_fitted_is_named_and_makes_a_guess() {
         scene.pointer_mut(parent).unwrap()[key] = value;
         let home = Home::with(&scene);
         let text = one_line(&home.call(["scene.json"]).end().succeeded());
-        let errors_found = home.results("output/scene").summary["error_estimate"].clone();
-        assert_eq!(errors_found["basis"], "guess", "{word}: {errors_found}");
-        let outside = errors_found["outside"].to_string();
+        let estimate = home.results("output/scene").summary["error_estimate"].clone();
+        assert_eq!(estimate["basis"], "guess", "{word}: {estimate}");
+        let outside = estimate["outside"].to_string();
         assert!(outside.contains(word), "no {word} in {outside}");
         assert!(text.contains("are guesses") && text.contains(word), "{text}");
         // the later profile of the last case is within the fitted range
         let late = if path == "/title" { "calibrated" } else { "guess" };
         let late = if path == "/error_estimate/arrivals" { "calibrated" } else { late };
-        assert_eq!(errors_found["profiles"][1]["basis"], late, "{word}");
+        assert_eq!(estimate["profiles"][1]["basis"], late, "{word}");
     }
 }
 
@@ -87,12 +87,9 @@ fn a_body_has_to_be_named_where_none_stands_out() {
     home.call(plan).end().failed(&words);
     for body in ["flyer", "target"] {
         let set = format!("error_estimate.body={body}");
-        let errors_found = home.run("run", &["--set", &set]).summary["error_estimate"].clone();
-        assert_eq!(errors_found["body"], body);
-        assert!(
-            errors_found["profiles"][0]["l1"]["half_width"].as_f64().unwrap() > 0.0,
-            "{errors_found}"
-        );
+        let estimate = home.run("run", &["--set", &set]).summary["error_estimate"].clone();
+        assert_eq!(estimate["body"], body);
+        assert!(estimate["profiles"][0]["l1"]["half_width"].as_f64().unwrap() > 0.0, "{estimate}");
     }
 }
 
@@ -118,10 +115,10 @@ fn nothing_is_estimated_that_is_not_there() {
     let mut plate = scene(json!({"arrivals": [5e-4]}));
     plate["bodies"][0]["velocity"] = json!([0.0]);
     plate["error_estimate"]["body"] = json!("target");
-    let errors_found = Home::with(&plate).run("run", &[]).summary["error_estimate"].clone();
-    assert_eq!(errors_found["profiles"][0]["plateau_pressure"], Value::Null, "{errors_found}");
-    assert_eq!(errors_found["profiles"][0]["l1"]["half_width"], Value::Null, "{errors_found}");
-    assert_eq!(errors_found["arrivals"][0]["time"], Value::Null, "{errors_found}");
+    let estimate = Home::with(&plate).run("run", &[]).summary["error_estimate"].clone();
+    assert_eq!(estimate["profiles"][0]["plateau_pressure"], Value::Null, "{estimate}");
+    assert_eq!(estimate["profiles"][0]["l1"]["half_width"], Value::Null, "{estimate}");
+    assert_eq!(estimate["arrivals"][0]["time"], Value::Null, "{estimate}");
 }
 
 #[test]
@@ -140,12 +137,12 @@ fn a_pressure_at_the_start_is_no_arrival() {
     scene["domain"]["lower"] = json!([-5e-4]);
     scene["bodies"][1]["box"]["upper"] = json!([2e-3]);
     scene["boundary"] = json!({"x_lower": "wall", "x_upper": "wall"});
-    let errors_found = Home::with(&scene).run("run", &[]).summary["error_estimate"].clone();
-    let time = errors_found["arrivals"][0]["time"]["value"].as_f64().unwrap();
+    let estimate = Home::with(&scene).run("run", &[]).summary["error_estimate"].clone();
+    let time = estimate["arrivals"][0]["time"]["value"].as_f64().unwrap();
     // a sound wave takes 0.18 us
-    assert!((1.4e-7..2e-7).contains(&time), "{errors_found}");
-    let plateau = errors_found["profiles"][0]["plateau_pressure"]["value"].as_f64().unwrap();
-    assert!((1.05e8..1.3e8).contains(&plateau), "{errors_found}");
+    assert!((1.4e-7..2e-7).contains(&time), "{estimate}");
+    let plateau = estimate["profiles"][0]["plateau_pressure"]["value"].as_f64().unwrap();
+    assert!((1.05e8..1.3e8).contains(&plateau), "{estimate}");
 }
 
 #[test]
@@ -191,9 +188,8 @@ fn a_mirrored_scene_has_the_mirrored_estimate() {
     };
     let both = [estimate(false), estimate(true)];
     for path in ["/arrivals/0/time", "/profiles/0/l1", "/profiles/0/plateau_pressure"] {
-        let [a, b] = both
-            .each_ref()
-            .map(|errors_found| errors_found.pointer(path).unwrap()["half_width"].as_f64());
+        let [a, b] =
+            both.each_ref().map(|estimate| estimate.pointer(path).unwrap()["half_width"].as_f64());
         let (a, b) = (a.unwrap(), b.unwrap());
         assert!((a / b - 1.0).abs() < 1e-3, "{path}: {a:e} {b:e}");
     }
@@ -206,12 +202,9 @@ fn a_body_with_positions_of_its_own_has_companions() {
     target.as_object_mut().unwrap().remove("particles_per_cell");
     let at = |k: usize| 5e-6 * (k as f64 + 0.4 + 0.2 * (k % 2) as f64);
     target["positions"] = json!((0..300).map(|k| [at(k)]).collect::<Vec<_>>());
-    let errors_found = Home::with(&scene).run("run", &[]).summary["error_estimate"].clone();
-    assert_eq!(errors_found["companions"].as_array().unwrap().len(), 2, "{errors_found}");
-    assert!(
-        errors_found["arrivals"][0]["time"]["half_width"].as_f64().unwrap() < 5e-9,
-        "{errors_found}"
-    );
+    let estimate = Home::with(&scene).run("run", &[]).summary["error_estimate"].clone();
+    assert_eq!(estimate["companions"].as_array().unwrap().len(), 2, "{estimate}");
+    assert!(estimate["arrivals"][0]["time"]["half_width"].as_f64().unwrap() < 5e-9, "{estimate}");
 }
 
 /// A report without the ends of its lines, which may be within a fact.

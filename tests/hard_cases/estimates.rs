@@ -124,10 +124,10 @@ fn ends(value: &Value, folder: &Path) -> Option<Result<Summary, String>> {
 
 /// What is wrong with an estimate.
 fn fault(summary: &Summary) -> Option<String> {
-    let errors_found = summary.error_estimate.as_ref()?;
-    let l1 = errors_found.profiles.iter().map(|p| &p.l1);
-    let plateaus = errors_found.profiles.iter().filter_map(|p| p.plateau_pressure.as_ref());
-    let times = errors_found.arrivals.iter().filter_map(|a| a.time.as_ref());
+    let estimate = summary.error_estimate.as_ref()?;
+    let l1 = estimate.profiles.iter().map(|p| &p.l1);
+    let plateaus = estimate.profiles.iter().filter_map(|p| p.plateau_pressure.as_ref());
+    let times = estimate.arrivals.iter().filter_map(|a| a.time.as_ref());
     let sound = |b: &flyer_mpm::accuracy::estimate::Bounded| {
         let width = b.half_width.is_none_or(|w| w.is_finite() && w > 0.0);
         b.value.is_finite() && width && b.evidence.values().all(|v| v.is_finite())
@@ -136,12 +136,12 @@ fn fault(summary: &Summary) -> Option<String> {
         return Some(format!("{wrong:?}"));
     }
     let end = summary.scene["time"]["end"].as_f64().expect("a number");
-    let mut times = errors_found.arrivals.iter().filter_map(|a| a.time.as_ref());
+    let mut times = estimate.arrivals.iter().filter_map(|a| a.time.as_ref());
     if let Some(wrong) = times.find(|b| !(0.0..=end).contains(&b.value)) {
         return Some(format!("an arrival outside of the run: {wrong:?}"));
     }
     // these materials, lengths and schemes are not those of the fit
-    (errors_found.basis != EstimateBasis::Guess || errors_found.outside.is_empty())
+    (estimate.basis != EstimateBasis::Guess || estimate.outside.is_empty())
         .then(|| "no guess".into())
 }
 
@@ -159,11 +159,11 @@ fn random_scenes_on_a_line_are_estimated_without_a_reference() {
             None => refused += 1,
             Some(Ok(summary)) => {
                 well += 1;
-                let errors_found = summary.error_estimate.as_ref().expect("an estimate");
-                companions += errors_found.companions.len();
+                let estimate = summary.error_estimate.as_ref().expect("an estimate");
+                companions += estimate.companions.len();
                 plateaus +=
-                    errors_found.profiles.iter().filter(|p| p.plateau_pressure.is_some()).count();
-                arrivals += errors_found.arrivals.iter().filter(|a| a.time.is_some()).count();
+                    estimate.profiles.iter().filter(|p| p.plateau_pressure.is_some()).count();
+                arrivals += estimate.arrivals.iter().filter(|a| a.time.is_some()).count();
                 if let Some(fault) = fault(&summary) {
                     wrong.push(format!("{fault}\n{value}"));
                 }

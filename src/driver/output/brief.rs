@@ -4,11 +4,10 @@
 use std::path::Path;
 
 use super::labels;
-use super::report::{measured, seconds, significant, significant_to, table};
+use super::report::{measured, planned, seconds, significant, significant_to, table};
 use super::summary::{ProfileSummary, Summary};
 use super::wrap::{WIDTH, warning, wrapped};
 use crate::accuracy::estimate::{Bounded, EstimateBasis, EstimatedErrors};
-use crate::accuracy::plan::Verdict;
 
 /// Errors in the brief report: key, label, unit.
 const ERRORS: [(&str, &str, &str); 9] = [
@@ -171,28 +170,13 @@ fn estimates(estimate: &EstimatedErrors) -> Vec<String> {
     last.into_iter().chain(arrivals).collect()
 }
 
-/// Predicted and actual error of a plan.
-fn planned(plan: &Verdict) -> String {
-    let percent = |v: f64| format!("{} %", significant(100.0 * v));
-    let actual = match (plan.actual, plan.is_true) {
-        (Some(error), true) => percent(error),
-        (Some(bound), false) => format!("at most {} by its own bound", percent(bound)),
-        (None, _) => "not known".into(),
-    };
-    format!(
-        "target {}, predicted {}{}, actual {actual}",
-        percent(plan.wanted),
-        percent(plan.predicted),
-        if plan.guess { " (guess)" } else { "" },
-    )
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::summary::tests::example;
     use super::super::summary::{FailureSummary, OutflowSummary};
     use super::*;
     use crate::accuracy::estimate::{ArrivalEstimate, ProfileEstimate};
+    use crate::accuracy::plan::Verdict;
     use crate::scene::PlannedQuantity;
 
     #[test]

@@ -253,8 +253,8 @@ fn events(summary: &Summary) -> Vec<(&'static str, String)> {
     facts
 }
 
-/// Predicted and actual values of a plan.
-fn plan_fact(plan: &Verdict) -> String {
+/// Predicted and actual error of a plan.
+pub(super) fn planned(plan: &Verdict) -> String {
     let percent = |v: f64| format!("{} %", significant(100.0 * v));
     let actual = match (plan.actual, plan.is_true) {
         (Some(error), true) => percent(error),
@@ -262,11 +262,18 @@ fn plan_fact(plan: &Verdict) -> String {
         (None, _) => "not known".into(),
     };
     format!(
-        "error wanted {}, predicted {}{}, actual {actual}; CPU seconds of the time loop predicted \
-         {:.3}, actual {:.3}; wall {:.3}, {:.3}",
+        "target {}, predicted {}{}, actual {actual}",
         percent(plan.wanted),
         percent(plan.predicted),
         if plan.guess { " (guess)" } else { "" },
+    )
+}
+
+/// Predicted and actual values of a plan.
+fn plan_fact(plan: &Verdict) -> String {
+    format!(
+        "{}; CPU seconds of the time loop predicted {:.3}, actual {:.3}; wall {:.3}, {:.3}",
+        planned(plan),
         plan.predicted_cpu_seconds,
         plan.cpu_seconds,
         plan.predicted_wall_seconds,
