@@ -12,7 +12,7 @@ pub struct Friction {
     /// Coulomb friction coefficient [-].
     #[schemars(range(min = 0.0))]
     pub coefficient: f64,
-    /// Source of the normals of the contact plane; default `volume_gradient`.
+    /// Source of the normals of the contact plane; default `boundary_faces`.
     #[serde(default)]
     pub normals: Normals,
 }

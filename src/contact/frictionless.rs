@@ -9,7 +9,7 @@ use super::{ContactCondition, Normals};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Frictionless {
-    /// Source of the normals of the contact plane; default `volume_gradient`.
+    /// Source of the normals of the contact plane; default `boundary_faces`.
     #[serde(default)]
     pub normals: Normals,
 }

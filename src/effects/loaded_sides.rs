@@ -139,7 +139,7 @@ impl LoadedSides {
                     }
                     let along = -outward * pressure * area;
                     let force = std::array::from_fn(|a| if a == axis { along } else { 0.0 });
-                    s.push(patch, at, index, force, false);
+                    s.push(patch, at, index, force);
                 }
             }
         }

@@ -293,7 +293,7 @@ impl<const D: usize> TransmittingSides<D> {
             let mean = (momentum + 0.5 * dt * pushed) / (mass + 0.5 * dt * area * z);
             -area * (still + z * mean)
         });
-        s.push(patch, at, index, force, false);
+        s.push(patch, at, index, force);
     }
 }
 

@@ -1,11 +1,20 @@
 //! Walls with friction.
 //!
 //! At each of its nodes, a wall with friction removes at most the tangential momentum of the node,
-//! and at most the friction coefficient times the normal impulse of the wall (Coulomb). It uses
-//! lumped masses, so that the law holds to rounding for FLIP, PIC and APIC. XPIC and FMPM remove
-//! less momentum from a body that strikes the wall than lumped masses would in a step: the friction
-//! is up to 1.9 times that of Coulomb in the first steps of an impact, and 1.1 to 1.3 times over
-//! the whole impact.
+//! and at most the friction coefficient times the normal impulse of the wall (Coulomb). It acts on
+//! the velocity v' at the end of the step, when the normal impulse is known. With the lumped masses
+//! m and the mass matrix M of the particles themselves (not their images), their momentum p and
+//! force f, and r the last term of the series of v + dt b (see [`Fields`]),
+//!
+//! ```text
+//! P = sum (m r + M (v' - r) - p - dt f)
+//! ```
+//!
+//! over the nodes on the normal through a node of the wall is the impulse that the particles get
+//! there: beyond the reach of images each term vanishes, and the sum over all nodes is the change of
+//! the particles' momentum, for any filter and order.
+//!
+//! [`Fields`]: crate::solver::nodal_fields::Fields
 
 use crate::scene::CheckedScene;
 use crate::shape::with_width;
@@ -38,14 +47,14 @@ impl Package for WallFriction {
     fn build<const D: usize>(setup: &mut Setup<'_, D>) -> Box<dyn Effect<D>> {
         Box::new(WallFriction {
             walls: sides_of::<D, _>(setup.scene, |side| side.friction),
-            sums: setup.fields.add(2),
+            sums: setup.fields.add(3),
         })
     }
 }
 
 impl<const D: usize> Effect<D> for WallFriction {
     fn phases(&self) -> &'static [Phase] {
-        &[Phase::NodalForce]
+        &[Phase::EndVelocity]
     }
 
     fn act(&self, _: Phase, step: &StepContext<'_, D>, patch: &mut Patch<D>) {
@@ -71,13 +80,15 @@ impl WallFriction {
             dt: f64,
         ) {
             let wall = if end == 0 { 0 } else { s.cells[axis] };
-            let Some(boxes) = s.start_side(patch, axis, wall, wall + 1, e.sums..e.sums + 2) else {
+            let Some(boxes) = s.start_side(patch, axis, wall, wall + 1, e.sums..e.sums + 3) else {
                 return;
             };
+            e.find_inner_sums(s, patch, axis, dt);
             e.sum_impulse::<K, D>(s, patch, axis, wall, dt);
+            e.leave_contact_out(s, patch, axis, dt);
             for (layer, part) in boxes.into_iter().enumerate().filter(|(_, p)| !p.is_empty()) {
                 for index in part.iter() {
-                    let impulse = e.wall_impulse(s, patch, layer, index, axis, end, dt, K);
+                    let impulse = e.wall_impulse(s, patch, layer, index, axis, end, K);
                     e.apply_at(s, patch, layer, index, axis, coefficient * impulse, dt);
                 }
             }
@@ -85,8 +96,36 @@ impl WallFriction {
         with_width!(patch.stencils.width, go(patch, (s, self), (axis, end, coefficient), dt));
     }
 
-    /// Sums of mass, and of the normal impulse that would result without the wall, over the
-    /// particles near a wall that are not images in it.
+    /// Normal component of v' - r, the sums of the series of v + dt b before their last terms.
+    /// Without a filter r = v' - a vL, with the share a of their velocity that particles keep.
+    fn find_inner_sums<const D: usize>(
+        &self,
+        s: &Scheme<D>,
+        patch: &mut Patch<D>,
+        axis: usize,
+        dt: f64,
+    ) {
+        let f = &s.fields;
+        let mut inner = std::mem::take(&mut patch.nodes.fields[self.sums + 2]);
+        let field = |k: usize| &patch.nodes.fields[k + axis][..];
+        match (f.filter_residual, f.force_residual) {
+            (Some(velocity), Some(force)) => {
+                let (star, velocity, force) =
+                    (field(f.velocity_star), field(velocity), field(force));
+                for span in patch.span_lines.iter().cloned().flatten() {
+                    inner[span] = star[span] - velocity[span] - dt * force[span];
+                }
+            }
+            _ => {
+                let lumped = field(f.lumped_velocity);
+                inner.iter_mut().zip(lumped).for_each(|(x, v)| *x = (1.0 - s.moved()) * v);
+            }
+        }
+        patch.nodes.fields[self.sums + 2] = inner;
+    }
+
+    /// Sums over the particles near a wall that are not images in it: mass, and the impulse of the
+    /// wall's nodes without the part of the last terms, M (v' - r) - p - dt f.
     fn sum_impulse<const K: usize, const D: usize>(
         &self,
         s: &Scheme<D>,
@@ -96,9 +135,9 @@ impl WallFriction {
         dt: f64,
     ) {
         let (c, first) = (&s.columns, self.sums);
-        let [mut masses, mut impulses] =
-            [0, 1].map(|k| std::mem::take(&mut patch.nodes.fields[first + k]));
-        let moved = s.moved();
+        let [mut masses, mut impulses, inner] =
+            [0, 1, 2].map(|k| std::mem::take(&mut patch.nodes.fields[first + k]));
+        let (moved, filtered) = (s.moved(), s.fields.force_residual.is_some());
         for r in patch.runs.iter().cloned().flatten() {
             let cell = i64::from(patch.block.cells[r][axis]);
             if !(0..s.cells[axis]).contains(&cell) || (cell - wall).abs() > K as i64 {
@@ -108,14 +147,15 @@ impl WallFriction {
             let column = |k: usize| patch.block.columns[k][r];
             let m = column(c.mass);
             let pulled = c.forces.iter().map(|k| column(k + axis)).fold(0.0, |sum, f| sum + f);
-            let impulse = moved * m * column(c.velocity + axis) + dt * pulled;
+            let kept = if filtered { m * weights.dot(weights.values, &inner) } else { 0.0 };
+            let impulse = kept - moved * m * column(c.velocity + axis) - dt * pulled;
             weights.add(&mut masses, weights.values, |n| n * m);
             weights.add(&mut impulses, weights.values, |n| n * impulse);
             if let Some(affine) = c.affine {
                 // APIC: m N C (x_i - x_p), as in the momentum sum
                 let offset = s.offset(patch, r, weights.first);
                 let mc: [f64; D] =
-                    std::array::from_fn(|b| m * column(affine + D * axis + b) * s.cell[b]);
+                    std::array::from_fn(|b| -m * column(affine + D * axis + b) * s.cell[b]);
                 for line in 0..ParticleWeights::<K, D>::LINES {
                     let across =
                         if D == 1 { 0.0 } else { mc[D - 1] * (offset[D - 1] + line as f64) };
@@ -125,16 +165,34 @@ impl WallFriction {
                     add::<K>(&mut impulses, weights.first + line * weights.stride, terms);
                 }
             }
-            s.add_stress(patch, &weights, r, axis, dt, &mut impulses);
+            s.add_stress(patch, &weights, r, axis, -dt, &mut impulses);
         }
-        patch.nodes.fields[first] = masses;
-        patch.nodes.fields[first + 1] = impulses;
+        for (k, field) in [masses, impulses, inner].into_iter().enumerate() {
+            patch.nodes.fields[first + k] = field;
+        }
     }
 
-    /// Normal impulse of a wall in `dt` at one of its nodes on real particles (not images) [N s],
-    /// with lumped masses: each node and its image share their impulse.
-    // the arguments locate one node; a struct for them would be used only once
-    #[expect(clippy::too_many_arguments)]
+    /// Takes the impulse of other bodies out of the sums of the wall.
+    fn leave_contact_out<const D: usize>(
+        &self,
+        s: &Scheme<D>,
+        patch: &mut Patch<D>,
+        axis: usize,
+        dt: f64,
+    ) {
+        let [masses, impulses] = patch.nodes.fields_mut([self.sums, self.sums + 1]);
+        for constraint in &patch.contact.constraints {
+            let impulse = constraint.impulse(s.moved(), dt)[axis];
+            for ((at, mass), impulse) in
+                constraint.at.into_iter().zip(constraint.mass).zip([impulse, -impulse])
+            {
+                impulses[at] -= masses[at] / mass * impulse;
+            }
+        }
+    }
+
+    /// Impulse of a wall towards the domain at one of its nodes [N s].
+    #[expect(clippy::too_many_arguments, reason = "the arguments locate one node")]
     fn wall_impulse<const D: usize>(
         &self,
         s: &Scheme<D>,
@@ -143,10 +201,9 @@ impl WallFriction {
         index: [i64; D],
         axis: usize,
         end: usize,
-        dt: f64,
         width: usize,
     ) -> f64 {
-        let (f, nodes) = (&s.fields, &patch.nodes.nodes);
+        let nodes = &patch.nodes.nodes;
         let outward = if end == 0 { -1 } else { 1 };
         let place = |k: i64| {
             let mut at = index;
@@ -154,26 +211,25 @@ impl WallFriction {
             nodes.contains(at).then(|| layer * nodes.count() + nodes.flat(at))
         };
         let value = |k: usize, at: usize| patch.nodes.fields[k][at];
-        let own = |at: usize| value(self.sums + 1, at);
+        let own = |at: usize| {
+            let last = value(s.fields.velocity_star + axis, at) - value(self.sums + 2, at);
+            value(self.sums, at) * last + value(self.sums + 1, at)
+        };
         let mut sum = place(0).map_or(0.0, own);
         for k in 1..=width as i64 {
             let (Some(beyond), Some(before)) = (place(k), place(-k)) else { break };
-            let (m, both) = (value(self.sums, beyond), value(f.mass, before));
-            if both > s.empty_mass {
-                let all = s.moved() * value(f.lumped_velocity + axis, before)
-                    + dt * value(f.acceleration + axis, before);
-                // the image's part is the reflected value of the node beyond
-                let inner = all + own(beyond);
-                sum += 2.0 * (m * inner + (both - m) * own(beyond)) / both;
+            // where no image reaches, nothing is added
+            if value(self.sums, beyond) == 0.0 {
+                break;
             }
+            sum += own(beyond) + own(before);
         }
-        (outward as f64 * sum).max(0.0)
+        (-outward as f64 * sum).max(0.0)
     }
 
-    // as above
-    #[expect(clippy::too_many_arguments)]
     /// Applies friction to a node of a wall; removes at most the momentum `most` [N s] from real
     /// particles (not images).
+    #[expect(clippy::too_many_arguments, reason = "the arguments locate one node")]
     fn apply_at<const D: usize>(
         &self,
         s: &Scheme<D>,
@@ -186,16 +242,19 @@ impl WallFriction {
     ) {
         let f = &s.fields;
         let at = layer * patch.nodes.nodes.count() + patch.nodes.nodes.flat(index);
-        if patch.nodes.fields[f.mass][at] <= s.empty_mass {
+        let mass = patch.nodes.fields[f.mass][at];
+        if mass <= s.empty_mass {
             return;
         }
-        let force = std::array::from_fn(|a| {
-            let value = |k: usize| patch.nodes.fields[k + a][at];
+        let mut force = [0.0; D];
+        for a in (0..D).filter(|&a| a != axis) {
             // the sums count each particle twice, as itself and as its image
-            let held = value(f.lumped_velocity) + dt * value(f.acceleration);
-            if a == axis { 0.0 } else { -held.clamp(-2.0 * most, 2.0 * most) / dt }
-        });
-        s.push(patch, at, index, force, true);
+            let star = &mut patch.nodes.fields[f.velocity_star + a][at];
+            let impulse = -(mass * *star).clamp(-2.0 * most, 2.0 * most);
+            *star += impulse / mass;
+            force[a] = impulse / dt;
+        }
+        s.record_side_force(patch, at, index, force, true);
     }
 }
 

@@ -27,6 +27,9 @@ pub(super) struct EllipseCurve {
 /// between the two halves of the circle.
 const BEYOND: f64 = 1e-3;
 
+/// Number of Newton steps to the nearest point; a few are enough for points near the ellipse.
+const NEWTON_STEPS: usize = 12;
+
 impl EllipseCurve {
     /// The ellipse with half axes `radii` [m] along x and y.
     pub fn upright(centre: Point, radii: [f64; 2]) -> Self {
@@ -56,6 +59,34 @@ impl EllipseCurve {
     /// Half extent in y [m].
     pub fn half_extent_y(&self) -> f64 {
         self.half_height.hypot(self.skew * self.half_width)
+    }
+
+    /// Point nearest to another point `at`, and the unit normal there, out of the ellipse.
+    ///
+    /// Newton's method for (P(t) - at).P'(t) = 0 with the points P(t) of the ellipse, from the
+    /// point in the same direction after the ellipse has been mapped to a circle: exact for circles
+    /// and close for points near the ellipse.
+    pub fn nearest(&self, at: Point) -> (Point, [f64; 2]) {
+        let (w, h, k) = (self.half_width, self.half_height, self.skew);
+        let [x, y] = [0, 1].map(|d| at[d] - self.centre[d]);
+        let mut t = ((y - k * x) / h).atan2(x / w);
+        let point = |t: f64| {
+            let (sin, cos) = t.sin_cos();
+            let place = [w * cos, k * w * cos + h * sin];
+            (place, [-w * sin, -k * w * sin + h * cos])
+        };
+        for _ in 0..NEWTON_STEPS {
+            let (place, along) = point(t);
+            let away = [place[0] - x, place[1] - y];
+            let slope = away[0] * along[0] + away[1] * along[1];
+            // P'' = -P; where the distance is not convex, its convex part gives the step
+            let square = along[0] * along[0] + along[1] * along[1];
+            let curvature = square - (away[0] * place[0] + away[1] * place[1]);
+            t -= slope / if curvature > 0.0 { curvature } else { square };
+        }
+        let (place, [dx, dy]) = point(t);
+        let length = dx.hypot(dy);
+        ([0, 1].map(|d| self.centre[d] + place[d]), [dy / length, -dx / length])
     }
 
     /// Positions x [m] of the least and the greatest x and y.

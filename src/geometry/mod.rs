@@ -9,6 +9,7 @@
 //!
 //! This module knows no particles, no grid and no MPI.
 
+mod boundary;
 mod build;
 mod curve;
 mod ellipse;
@@ -27,6 +28,7 @@ mod solid;
 mod tests;
 mod voronoi;
 
+pub use boundary::{BodyBoundary, BoundaryFace};
 pub use build::RegionFault;
 pub use fill::{Tile, fill};
 pub use moments::Moments;

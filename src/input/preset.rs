@@ -14,9 +14,15 @@ use crate::scene::{Material, MethodChoice, Preset, Transfer};
 #[derive(Default)]
 struct SceneContents {
     plane: bool,
+    /// In two dimensions, x is a radius.
+    axisymmetric: bool,
+    /// A body force acts.
+    body_force: bool,
     contact: bool,
     /// Bodies on a line touch each other without a contact law, and no side lets particles out.
     joined: bool,
+    /// The same of two plates that press on each other until the end of the run.
+    pressed: bool,
     /// Some body is a fluid, or a solid whose pressure follows an equation of state of fluids.
     fluid: bool,
     strength: bool,
@@ -56,6 +62,16 @@ const RULES: &[Rule] = &[
         reason: "a stronger viscosity, since elastic precursors are more accurate with it",
     },
     Rule {
+        applies: |c| c.strength && !(c.plane || c.contact || c.failure || c.gas || c.porous),
+        changes: || {
+            let method = json!({"transfer": {"fmpm": 12}, "edge_mask": 0.4,
+                "flux_limiter": {"neighbours": 1}});
+            let growth = json!({"rate": 6.0, "max": 2.0});
+            [method, json!({"linear": 0.03, "quadratic": 0.4, "growth": growth})]
+        },
+        reason: "a flux limiter with a weak viscosity, since no wave separates bodies",
+    },
+    Rule {
         applies: |c| c.plane,
         changes: || {
             let relaxation = json!({"rate": 0.2, "interval": 1});
@@ -64,6 +80,11 @@ const RULES: &[Rule] = &[
             [method, json!({"linear": 0.1, "quadratic": 0.75, "growth": null})]
         },
         reason: "a lower transfer order and a domain limit, since the scene has two dimensions",
+    },
+    Rule {
+        applies: |c| c.plane && !(c.axisymmetric || c.gas || c.contact || c.body_force),
+        changes: || [json!({"spin": true, "domain_limit": 0.7}), json!({})],
+        reason: "spin, since bodies may turn, with a shorter domain limit",
     },
     Rule {
         applies: |c| c.plane && c.strength,
@@ -148,7 +169,13 @@ impl Preset {
         let reason = match self {
             Preset::Default => {
                 merge(&mut base, [json!({}), json!({"linear": 0.15})]);
-                "least error of plane impacts whose peak pressure is within 0.5 %"
+                if contents.pressed && acting(contents).next().is_none() {
+                    merge(&mut base, [json!({"frame": "total_lagrangian"}), json!({})]);
+                    "least error of plane impacts whose peak pressure is within 0.5 %; \
+                     total-Lagrangian, for plates that stay in contact"
+                } else {
+                    "least error of plane impacts whose peak pressure is within 0.5 %"
+                }
             }
             Preset::Robust => {
                 let changes = [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), moderate()];
@@ -266,15 +293,31 @@ fn override_keys(method: &mut Map<String, Value>, explicit: Map<String, Value>) 
     let plan = plan.map(|transfer| transfer.plan());
     let mut excluded: Vec<&str> = Vec::new();
     if is("stepping", "leapfrog") {
-        excluded.extend(["energy", "filter_heat", "pressure_relaxation", "edge_mask"]);
+        excluded.extend([
+            "energy",
+            "filter_heat",
+            "pressure_relaxation",
+            "edge_mask",
+            "spin",
+            "flux_limiter",
+        ]);
     }
     if let Some(plan) = plan {
         excluded.extend((!plan.filters).then_some("filter_heat"));
-        excluded.extend((!plan.full_mass_matrix).then_some("edge_mask"));
+        if !plan.full_mass_matrix {
+            excluded.extend(["edge_mask", "spin", "flux_limiter"]);
+        }
         excluded.extend(plan.is_affine().then_some("energy"));
+    }
+    if is("frame", "total_lagrangian") || is("shape", "linear") {
+        excluded.push("spin");
     }
     if is("frame", "total_lagrangian") || explicit.get("shape").is_some_and(|s| !deforms(s)) {
         excluded.push("domain_limit");
+    }
+    // options of the updated-Lagrangian frame
+    if ["domain_limit", "volume_relaxation"].iter().any(|key| explicit.contains_key(*key)) {
+        excluded.push("frame");
     }
     let excluded: Vec<&str> =
         excluded.into_iter().filter(|key| method.remove(*key).is_some()).collect();
@@ -320,8 +363,11 @@ impl SceneContents {
         let any = |such: fn(&Material, bool) -> bool| used.iter().any(|(m, burns)| such(m, *burns));
         SceneContents {
             plane: dimension > 1,
+            axisymmetric: domain["geometry"] == "axisymmetric",
+            body_force: scene.get("body_force").is_some_and(|force| !force.is_null()),
             contact: scene.get("contact").is_some_and(|contact| !contact.is_null()),
             joined: dimension == 1 && are_joined(scene),
+            pressed: dimension == 1 && are_joined(scene) && stay_pressed(scene),
             fluid: any(|m, _| !m.eos.is_solid()),
             strength: any(|m, _| m.strength.is_some()),
             failure: any(|m, _| m.failure.is_some()),
@@ -346,13 +392,43 @@ fn are_joined(scene: &Map<String, Value>) -> bool {
     touch && !open && !contact
 }
 
+/// Whether two plates of Mie-Grueneisen materials, which touch, press on each other until the end of
+/// the run. The release from the free surface of the plate with the higher impedance leaves some
+/// pressure at the interface; that of the other plate parts them. No wave is faster than c0 + 2 s v
+/// in the initial coordinates, with the impact speed v.
+fn stay_pressed(scene: &Map<String, Value>) -> bool {
+    let plate = |body: &Value| {
+        let material = scene.get("materials")?.get(body["material"].as_str()?)?;
+        let eos = &material["eos"];
+        let [lower, upper] = ["lower", "upper"].map(|end| body["box"][end][0].as_f64());
+        let velocity = body["velocity"].get(0).map_or(Some(0.0), Value::as_f64);
+        (eos["type"] == "mie_gruneisen").then_some(())?;
+        let [density, c0, s] =
+            [&material["density"], &eos["c0"], &eos["s"]].map(|value| value.as_f64());
+        Some(([lower?, upper?], velocity?, density? * c0?, c0?, s?))
+    };
+    let bodies = scene.get("bodies").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    let plates: Option<Vec<_>> = bodies.iter().map(plate).collect();
+    let Some(mut plates) = plates.filter(|plates| plates.len() == 2) else { return false };
+    plates.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]));
+    let speed = plates[0].1 - plates[1].1;
+    let end = scene.get("time").and_then(|time| time["end"].as_f64()).unwrap_or(f64::INFINITY);
+    let parts = |one: usize| {
+        let ([lower, upper], _, impedance, c0, s) = plates[one];
+        let back = 2.0 * (upper - lower) / (c0 + 2.0 * s * speed);
+        impedance < plates[1 - one].2 && back < end
+    };
+    let free = scene.get("boundary").is_none_or(Value::is_null);
+    free && speed > 0.0 && !parts(0) && !parts(1)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     /// Every combination of contents.
     fn all() -> impl Iterator<Item = SceneContents> {
-        (0..512_u32).map(|bits| {
+        (0..4096_u32).map(|bits| {
             let has = |k: u32| bits >> k & 1 == 1;
             SceneContents {
                 plane: has(0),
@@ -364,6 +440,9 @@ mod tests {
                 gas: has(6),
                 burn: has(7),
                 porous: has(8),
+                pressed: has(9),
+                axisymmetric: has(10),
+                body_force: has(11),
             }
         })
     }
@@ -376,6 +455,8 @@ mod tests {
             assert!(!has(&viscosity, "limited") || has(&viscosity, "limiter"), "{viscosity}");
             let total = has(&method, "frame");
             assert!(!total || !has(&method, "domain_limit"), "{method}");
+            assert!(!has(&method, "spin") || (c.plane && !c.axisymmetric && !total), "{method}");
+            assert!(!has(&method, "flux_limiter") || !(c.plane || c.contact), "{method}");
             assert_eq!(has(&method, "pressure_relaxation"), c.fluid);
             if c.porous {
                 assert_eq!([&viscosity["linear"], &viscosity["quadratic"]], [0.5, 2.0]);

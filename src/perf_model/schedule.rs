@@ -3,7 +3,7 @@
 //! The order is that of the phases in [`crate::solver`], so that the two can be compared side by
 //! side; a test compares the counts with the timeline of a real run.
 
-use crate::scene::{EnergyUpdate, FilterHalo, Method, Stepping, StressUpdate};
+use crate::scene::{EnergyUpdate, FilterHalo, FrameKind, Method, Stepping, StressUpdate};
 use crate::solver::relaxation;
 use crate::transfer::TransferPlan;
 
@@ -79,6 +79,8 @@ impl StepCounts {
 struct ScheduleRecorder {
     transfer: TransferPlan,
     masked: bool,
+    /// Whether the relaxation needs the mean volume ratio.
+    ratio: bool,
     counted: StepCounts,
     /// Number of fields of the requested exchange; `None`: no request.
     pending: Option<usize>,
@@ -89,6 +91,8 @@ impl ScheduleRecorder {
         let mut step = ScheduleRecorder {
             transfer: method.transfer.plan(),
             masked: method.edge_mask.is_some(),
+            ratio: method.pressure_relaxation.is_some()
+                && method.frame == FrameKind::UpdatedLagrangian,
             counted: StepCounts::default(),
             pending: None,
         };
@@ -126,7 +130,8 @@ impl ScheduleRecorder {
     fn solve_velocity(&mut self, relaxes: bool) {
         let (order, force) = (self.transfer.order, self.transfer.force_order());
         let pressure = if relaxes { relaxation::ORDER } else { 0 };
-        let others = if self.masked { 2 } else { 1 };
+        let edge = self.masked && force > 1;
+        let others = 1 + usize::from(edge) + usize::from(relaxes && self.ratio);
         self.sum_series(&[order, force, pressure], others);
     }
 

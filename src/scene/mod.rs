@@ -8,6 +8,7 @@ mod clipped_region;
 mod effect_options;
 mod estimated_body;
 mod faces;
+mod impact_smoothing;
 mod method_choice;
 mod model;
 pub mod motion;

@@ -19,7 +19,7 @@ pub use function::{Basis, CourantLimits, Shape, Weights};
 pub(crate) use knots::{floor, integer};
 pub use line_products::{add_product, fours};
 pub use plane::Plane;
-pub use widths::{MOST_NODES, most_nodes, padded_width};
+pub use widths::{MOST_NODES, MOST_NODES_IN_PLANE, most_nodes, padded_width};
 pub(crate) use widths::{with_shape_width, with_width};
 
 /// Defines the shape functions from a list of `module::Type [width],`: their names in scenes, their

@@ -18,7 +18,7 @@ pub struct Totals<const D: usize> {
     pub momentum: [f64; D],
     /// Sum of m |v| [kg m/s].
     pub absolute_momentum: f64,
-    /// Kinetic energy [J].
+    /// Kinetic energy, with that of the spin of particles [J].
     pub kinetic: f64,
     /// Internal energy [J].
     pub internal: f64,
@@ -101,6 +101,11 @@ impl<const D: usize> Simulation<'_, D> {
                     terms.each(0, |r| m[r]);
                     terms.each(1, |r| m[r] * speed(r));
                     terms.each(2, |r| 0.5 * m[r] * squared(r));
+                    if c.spin.is_some() {
+                        let from = particles.start;
+                        let of = |r| self.stepper.spin_energy(&block.columns, from + r);
+                        terms.each(2, |r| m[r] * of(r));
+                    }
                     terms.each(3, |r| m[r] * e[r]);
                     for a in 0..D {
                         terms.each(4 + a, |r| m[r] * v(a, r));

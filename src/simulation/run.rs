@@ -253,11 +253,11 @@ impl<'a, const D: usize> Simulation<'a, D> {
     fn step_by(&mut self, dt: f64, meets: Option<f64>) -> Result<(), RunError> {
         self.step += 1;
         self.given_contact.clear();
-        let (step, time) = (self.step, self.time);
+        let (step, time, stable) = (self.step, self.time, self.stable);
         let sampled = self.samples(step);
         let timed = sampled || step % EFFECTS_EVERY == 1;
         self.clock.start_step(step, self.traced.contains(&step), timed);
-        self.with_world(|stepper, world| stepper.advance(world, time, dt, step))?;
+        self.with_world(|stepper, world| stepper.advance(world, time, dt, stable, step))?;
         if sampled {
             self.patches.iter_mut().for_each(|p| p.stopwatch.end_step());
         } else if timed {

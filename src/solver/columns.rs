@@ -17,6 +17,15 @@ pub struct OutputColumn {
     pub column: &'static str,
 }
 
+/// Columns of the spin of particles.
+#[derive(Clone, Copy, Debug)]
+pub struct SpinColumns {
+    /// Angular momentum per unit mass, counter-clockwise, B [m2/s].
+    pub angular_momentum: usize,
+    /// Moment of inertia per unit mass at the time of the last forces, I [m2].
+    pub inertia: usize,
+}
+
 /// Indices of the columns in a block. Vectors take D consecutive columns, tensors D^2, row by row;
 /// their index is that of the first.
 #[derive(Clone, Debug, Default)]
@@ -89,6 +98,8 @@ pub struct Columns {
     pub limiter: Option<usize>,
     /// Affine part of the velocity [1/s], a tensor, with APIC.
     pub affine: Option<usize>,
+    /// Spin, in a plane with `method.spin`.
+    pub spin: Option<SpinColumns>,
     /// Initial half lengths of the particle along each direction [m], a vector, in a plane for
     /// shape functions that depend on its domain.
     pub half_lengths: Option<usize>,
@@ -125,6 +136,9 @@ pub struct Columns {
     pub stress_volumes: usize,
     /// Impulse of contact pressure on the particle, up to a maximum [Pa s], with contact.
     pub contact_impulse: Option<usize>,
+    /// Faces of the body at a particle [-]: for each of up to two faces, its components in the
+    /// coordinates along the half edges, in a plane for normals that use them; zeros: none.
+    pub faces: Option<usize>,
     /// J at the middle of the step, scratch, with mid-point stepping.
     pub jacobian_mid: Option<usize>,
     /// Pressure at the middle of the step [Pa], scratch, with pressure relaxation.

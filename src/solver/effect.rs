@@ -35,6 +35,8 @@ pub enum Phase {
     /// Nodes, after velocity and acceleration on the nodes that a patch computes: further nodal
     /// sums.
     NodalStart,
+    /// Nodes, after the velocity at the end of the step: impulses of friction on nodes.
+    EndVelocity,
     /// Nodes, after all nodal velocities; exchanges of nodal values are possible.
     Solve,
     /// Own particles, before velocity, position, volume and energy are updated from the grid.

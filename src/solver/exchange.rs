@@ -46,7 +46,7 @@ pub struct Sleep {
     /// Steps without motion nearby after which a step computes nothing new.
     pub needed: u32,
     /// Nodal fields that are not zero at rest.
-    pub kept: [usize; 5],
+    pub kept: [usize; 7],
 }
 
 /// Patches on which a phase runs.

@@ -43,7 +43,7 @@ impl<const D: usize> Scheme<D> {
     /// Updates the own particles at the end of a leapfrog step: velocity by the transfer scheme,
     /// its affine part, and position x += dt N v'; with `strain` also the results of
     /// [`Self::gather_gradient`].
-    pub(super) fn gather_leapfrog(&self, patch: &mut Patch<D>, dt: f64, strain: bool) {
+    pub(crate) fn gather_leapfrog(&self, patch: &mut Patch<D>, dt: f64, strain: bool) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
             s: &Scheme<D>,

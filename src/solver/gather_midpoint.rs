@@ -112,6 +112,11 @@ impl<const D: usize> Scheme<D> {
             own_j[r] += dt * j_mid[r] * divergence;
             own_e[r] += heat - work_done / mass[r];
             own_d[r] = self.with_hoop(patch, &weights, r, end, |l| star[0][l]);
+            if !self.total_lagrangian {
+                // relative to the volume at the end of the step, so that the volume at the middle
+                // of the next one fills the space to second order in time
+                own_d[r] *= j_mid[r] / own_j[r];
+            }
         }
         let columns = &mut patch.block.columns;
         put_back(columns, c.position, x);

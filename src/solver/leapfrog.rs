@@ -50,6 +50,7 @@ impl<const D: usize> Stepper<D> {
                 self.effects.act(Phase::NodalStart, &step, patch);
             });
             self.solve_velocity(nodal, &self.effects, dt, false);
+            self.solve_friction(nodal, &step);
             self.effects.solve(&step, nodal);
             self.solve_friction_heat(nodal, dt);
             nodal.each("gather", |patch| {

@@ -49,12 +49,14 @@ impl<const D: usize> Stepper<D> {
         world.exchange_particles(|nodal| {
             nodal.each("scatter", |patch| {
                 self.scatter(patch, true, &step);
+                self.start_limiter(patch);
                 if relax.is_some() {
                     timed(StepPart::Relaxation as usize, patch, |patch| self.start_pressure(patch));
                 }
                 self.effects.act(Phase::NodalStart, &step, patch);
             });
             self.solve_velocity(nodal, &self.effects, dt, relax.is_some());
+            self.solve_friction(nodal, &step);
             if self.compatible {
                 self.solve_work(nodal, &self.effects);
             }
@@ -64,6 +66,8 @@ impl<const D: usize> Stepper<D> {
                 self.effects.act(Phase::Gather, &step, patch);
                 self.gather_contact(patch, dt);
                 self.gather_midpoint(patch, dt);
+                self.gather_spin(patch, false);
+                self.gather_limiter_heat(patch);
                 self.effects.act(Phase::Gathered, &step, patch);
                 self.accumulate_side_forces(patch, dt);
                 self.relax(patch, relax);
@@ -93,6 +97,7 @@ impl<const D: usize> Stepper<D> {
             self.solve_velocity(nodal, &self.effects, 0.0, false);
             nodal.each("gather", |patch| {
                 self.gather_gradient(patch);
+                self.gather_spin(patch, true);
             });
         })
     }

@@ -2,11 +2,12 @@
 
 use decomp::Mirror;
 
-use super::columns::Columns;
+use super::columns::{Columns, SpinColumns};
 use super::declare::{Declare, Role, symmetric_mirror};
 use super::effect::Registry;
 use super::parts::StepPart;
-use crate::scene::{CheckedScene, FrameKind, Stepping};
+use super::scheme::volumes_multiply;
+use crate::scene::{CheckedScene, FrameKind, Normals, Stepping};
 use crate::shape::DomainExtent;
 
 use Role::{GhostScratch, GhostState, Scratch, State};
@@ -20,6 +21,8 @@ struct Needs {
     extent: DomainExtent,
     /// Whether bodies have separate velocity fields.
     touching: bool,
+    /// Whether particles carry the faces of their bodies.
+    carries_faces: bool,
     total_lagrangian: bool,
     /// Whether the shape function depends on the parallelogram of a particle.
     parallelograms: bool,
@@ -36,10 +39,13 @@ impl Needs {
         let touching = scene.velocity_fields() > 1;
         let total_lagrangian = method.frame == FrameKind::TotalLagrangian;
         let parallelograms = plane && extent == DomainExtent::Current;
+        let condition = scene.scene.contact.and_then(|contact| contact.condition());
+        let normals = condition.map(|condition| condition.normals);
         Needs {
             plane,
             extent,
             touching,
+            carries_faces: plane && touching && normals.is_some_and(Normals::uses_faces),
             total_lagrangian,
             parallelograms,
             deforms: (parallelograms && !total_lagrangian) || (plane && touching),
@@ -60,6 +66,7 @@ impl Columns {
         declare_stress(&mut d, &needs);
         declare_contact(&mut d, &needs);
         declare_affine(&mut d, &needs);
+        declare_spin(&mut d);
         declare_domains(&mut d, &needs);
         declare_places(&mut d, &needs);
         declare_gradients(&mut d, &needs);
@@ -80,7 +87,11 @@ fn declare_state(d: &mut Declare<'_>, needs: &Needs) {
     d.columns.sound_speed = d.scalar("sound_speed", "m/s", State);
     d.columns.pressure = d.scalar("pressure", "Pa", State);
     if d.scene.scene.method.stepping == Stepping::Midpoint {
-        d.columns.jacobian_mid = Some(d.scalar("jacobian_mid", "", Scratch));
+        let method = &d.scene.scene.method;
+        let relaxed = method.pressure_relaxation.is_some();
+        let of_ghosts = relaxed && volumes_multiply(method, d.scene.dimension);
+        let role = if of_ghosts { GhostScratch } else { Scratch };
+        d.columns.jacobian_mid = Some(d.scalar("jacobian_mid", "", role));
     }
 }
 
@@ -132,6 +143,11 @@ fn declare_contact(d: &mut Declare<'_>, needs: &Needs) {
     }
     d.set_owner(Some(StepPart::Contact as usize));
     d.columns.contact_impulse = Some(d.scalar("contact_impulse", "Pa s", GhostState));
+    if needs.carries_faces {
+        // the half edges turn in a mirror, their coordinates do not
+        let names = ["face1_first", "face1_second", "face2_first", "face2_second"];
+        d.columns.faces = Some(d.add(&names, "", GhostState, |_| Mirror::Same));
+    }
     if needs.total_lagrangian {
         d.columns.current_volume = Some(d.scalar("current_volume", "", GhostScratch));
         let names = ["displacement", "displacement_x", "displacement_y"];
@@ -148,6 +164,20 @@ fn declare_affine(d: &mut Declare<'_>, needs: &Needs) {
         };
         d.columns.affine = Some(d.tensor(names, "1/s", GhostState));
     }
+}
+
+fn declare_spin(d: &mut Declare<'_>) {
+    if !d.scene.scene.method.spin {
+        return;
+    }
+    d.set_owner(Some(StepPart::Spin as usize));
+    let pseudoscalar = |_| Mirror::NegatePair(0, 1);
+    let angular_momentum = d.add(&["spin"], "m2/s", GhostState, pseudoscalar);
+    let inertia = d.scalar("spin_inertia", "m2", State);
+    d.columns.spin = Some(SpinColumns { angular_momentum, inertia });
+    d.zero_at_rest(angular_momentum);
+    d.output("spin", "m2/s", "spin");
+    d.output("spin_inertia", "m2", "spin_inertia");
 }
 
 fn declare_domains(d: &mut Declare<'_>, needs: &Needs) {

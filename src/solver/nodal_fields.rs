@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use decomp::array::map;
 
-use crate::shape::add_product;
+use crate::shape::{MOST_NODES_IN_PLANE, add_product};
 use crate::solver::particle_weights::{NARROW, ParticleWeights, lines};
 
 /// Indices of the nodal fields in a patch's arrays. A vector takes D consecutive fields; its index
@@ -32,6 +32,9 @@ pub struct Fields {
     pub work: usize,
     /// Last term of the filter's series, K^(k-1) vL [m/s], a vector; only with a filter.
     pub filter_residual: Option<usize>,
+    /// Last term of the series of the force, which is applied to the nodes [m/s2], a vector; with a
+    /// filter and a wall with friction.
+    pub force_residual: Option<usize>,
     /// Scratch for products: as many consecutive fields as vectors are multiplied at a time.
     pub scratch: usize,
     /// Number of scratch fields.
@@ -40,13 +43,37 @@ pub struct Fields {
     pub first: usize,
     /// Fraction of the node's volume filled with material [-], with an edge mask.
     pub volume: usize,
-    /// Relaxation: summed compliance and its inverse, projected pressure, and the first term of its
+    /// 1 at nodes that the edge mask removes, 0 elsewhere, with an edge mask.
+    pub edge: usize,
+    /// Relaxation: summed weights and their inverse, projected pressure, and the first term of its
     /// series, which later holds the last term.
     pub relaxation: [usize; 4],
+    /// Mean volume ratio of the relaxation, if its weights are relative to the current volume.
+    pub relaxed_ratio: Option<usize>,
     /// Heat of friction [J/kg], with frictional contact or a wall with friction.
     pub heat: Option<usize>,
+    /// Fields of the flux limiter, if the scene has it.
+    pub limiter: Option<LimiterFields>,
     /// Number of fields.
     pub count: usize,
+}
+
+/// Fields of the flux limiter on a line.
+#[derive(Clone, Debug)]
+pub struct LimiterFields {
+    /// Number of nodes on each side whose values bound a node's.
+    pub neighbours: usize,
+    /// Last term of the series of the force, then the series without its last term [m/s2].
+    pub series: usize,
+    /// Mean of the stress p + q [Pa].
+    pub stress: usize,
+    /// 1 at nodes near a free surface, else 0.
+    pub edge: usize,
+    /// First term of the series of the work [m/s].
+    pub work: usize,
+    /// Mean and half difference of the shares of positive and negative fluxes, of force and
+    /// velocity [-].
+    pub shares: [[usize; 2]; 2],
 }
 
 /// Nodal fields that a scheme needs.
@@ -58,14 +85,28 @@ pub struct Wanted {
     pub masked: bool,
     /// Pressure relaxation.
     pub relaxed: bool,
+    /// Pressure relaxation with weights relative to the current volume.
+    pub relaxes_ratio: bool,
     /// Friction.
     pub has_friction: bool,
+    /// A wall with friction.
+    pub has_wall_friction: bool,
+    /// Flux limiter: number of nodes on each side whose values bound a node's.
+    pub limiter: Option<usize>,
 }
 
 impl Fields {
     /// Indices of the fields in `dimension` directions.
     pub fn new(dimension: usize, wanted: Wanted) -> Self {
-        let Wanted { series, masked, relaxed, has_friction: rubs } = wanted;
+        let Wanted {
+            series,
+            masked,
+            relaxed,
+            relaxes_ratio,
+            has_friction: rubs,
+            has_wall_friction,
+            limiter,
+        } = wanted;
         let filtered = series > 0;
         let mut count = 0;
         let mut add = |n: usize, wanted: bool| {
@@ -80,9 +121,20 @@ impl Fields {
             [dimension; 5].map(|n| add(n, true));
         let velocity = if filtered { add(dimension, true) } else { lumped };
         let remainder = filtered.then(|| add(dimension, true));
+        let force_residual = (filtered && has_wall_friction).then(|| add(dimension, true));
         let volume = add(1, masked);
+        let edge = add(1, masked);
         let r = add(4, relaxed);
+        let relaxed_ratio = relaxes_ratio.then(|| add(1, true));
         let heat = rubs.then(|| add(1, true));
+        let limiter = limiter.map(|neighbours| LimiterFields {
+            neighbours,
+            series: add(1, true),
+            stress: add(1, true),
+            edge: add(1, true),
+            work: add(1, true),
+            shares: [[0; 2]; 2].map(|pair| pair.map(|_| add(1, true))),
+        });
         Fields {
             mass,
             inverse,
@@ -92,14 +144,23 @@ impl Fields {
             acceleration,
             work,
             filter_residual: remainder,
+            force_residual,
             scratch,
             scratches,
             first,
             volume,
+            edge,
+            relaxed_ratio,
             relaxation: [r, r + 1, r + 2, r + 3],
             heat,
+            limiter,
             count,
         }
+    }
+
+    /// Last terms of the series of a filter, vectors.
+    pub fn residuals(&self) -> impl Iterator<Item = usize> {
+        self.filter_residual.into_iter().chain(self.force_residual)
     }
 
     /// Adds consecutive fields, and returns the index of the first.
@@ -120,8 +181,39 @@ const PAGE: usize = 512;
 /// ... so the entries of a node on successive diagonals are shifted by this many doubles.
 const APART: usize = 24;
 
+/// Number of entries of a block of two by two: xx, yy, xy, yx.
+const BLOCK_ENTRIES: usize = 4;
+
+/// Adds the blocks of a node and a line of `M` nodes to the node's entries xx, yy, xy and yx, each
+/// `count` long, from `first` on. `terms` are the node's value, and its products with the distances
+/// along x and y over I, `line` those of the other nodes.
+#[inline(always)]
+fn add_blocks<const M: usize>(
+    row: &mut [f64],
+    count: usize,
+    first: usize,
+    [term, x, y]: [f64; 3],
+    [values, along, across]: &[[f64; M]; 3],
+) {
+    // no closures over the loops: compilers would not vectorize them
+    macro_rules! add {
+        ($entry:literal, $k:ident => $value:expr) => {
+            let at = $entry * count + first;
+            let sums: &mut [f64; M] = (&mut row[at..at + M]).try_into().expect("M numbers");
+            for $k in 0..M {
+                sums[$k] += $value;
+            }
+        };
+    }
+    add!(0, k => term * values[k] + y * across[k]);
+    add!(1, k => term * values[k] + x * along[k]);
+    add!(2, k => -(y * along[k]));
+    add!(3, k => -(x * across[k]));
+}
+
 /// Symmetric matrix M_ij = sum_p m_p N_ip N_jp over the nodes of a patch, stored by diagonals: a
-/// diagonal holds M_(i,i+offset) at i, for offsets to later nodes.
+/// diagonal holds M_(i,i+offset) at i, for offsets to later nodes. With spin an entry is a block of
+/// two by two, and the diagonals of its entries follow each other.
 #[derive(Clone, Debug, Default)]
 pub struct Band {
     /// The matrix stored by nodes, while particles are added; otherwise zeros.
@@ -135,6 +227,8 @@ pub struct Band {
     filled: Vec<bool>,
     /// Distance from a node to the other node of each diagonal, in the patch's arrays.
     offsets: Vec<usize>,
+    /// Number of entries per pair of nodes: 1, or 4 for blocks of two by two.
+    entries: usize,
     /// Whether narrow particles contribute to each diagonal.
     near: Vec<bool>,
 }
@@ -160,7 +254,24 @@ impl Band {
     /// Prepares a sum over particles with `width` nodes along each of `dimension` directions, on
     /// `nodes` nodes, in arrays with lines of length `stride`.
     pub fn clear(&mut self, nodes: usize, width: usize, dimension: usize, stride: usize) {
-        let count = diagonals(width, dimension);
+        self.clear_entries(nodes, width, dimension, stride, 1);
+    }
+
+    /// Prepares a sum of blocks of two by two over particles with [`Band::add_spin`], with the
+    /// arguments of [`Band::clear`] in a plane.
+    pub fn clear_blocks(&mut self, nodes: usize, width: usize, stride: usize) {
+        self.clear_entries(nodes, width, 2, stride, BLOCK_ENTRIES);
+    }
+
+    fn clear_entries(
+        &mut self,
+        nodes: usize,
+        width: usize,
+        dimension: usize,
+        stride: usize,
+        entries: usize,
+    ) {
+        let count = entries * diagonals(width, dimension);
         let across = if dimension == 1 { 1 } else { width };
         let place = |line: usize, k: usize| match line {
             0 => k,
@@ -173,15 +284,17 @@ impl Band {
             // the last sum has left zeros
             return;
         }
+        self.entries = entries;
         self.offsets.clear();
         self.offsets.extend(offsets);
-        debug_assert_eq!(self.offsets.len(), count);
+        debug_assert_eq!(entries * self.offsets.len(), count);
         let is_near = |(line, k): (usize, usize)| match line {
             0 => k < NARROW,
             _ => line < NARROW && (k + 1).abs_diff(width) < NARROW,
         };
         self.near.clear();
-        self.near.extend(places.map(is_near));
+        let near = places.map(is_near);
+        (0..entries).for_each(|_| self.near.extend(near.clone()));
         let blocks = nodes.div_ceil(BLOCK);
         self.touched.clear();
         self.touched.resize(blocks, Touched::No);
@@ -248,9 +361,80 @@ impl Band {
         }
     }
 
+    /// Adds a particle of mass `mass` with spin: m (N_i N_j + phi_i phi_j), a block of two by two
+    /// for each pair of nodes, with the feature of a rotation phi_i = N_i (-e_y, e_x)/sqrt(I) at
+    /// the distance e of node i from the particle. `first` is the distance of the first node of
+    /// the window [m], `cell` the distance between nodes [m], `inverse` is 1/I [1/m2].
+    #[inline(always)]
+    pub fn add_spin<const K: usize, const D: usize>(
+        &mut self,
+        weights: &ParticleWeights<'_, K, D>,
+        mass: f64,
+        (first, cell): ([f64; 2], [f64; 2]),
+        inverse: f64,
+    ) {
+        if weights.is_narrow() {
+            self.add_spin_part::<K, D, NARROW>(weights, mass, (first, cell), inverse);
+        } else {
+            self.add_spin_part::<K, D, K>(weights, mass, (first, cell), inverse);
+        }
+    }
+
+    /// Adds the blocks of the first `M` nodes along each direction.
+    #[inline(always)]
+    fn add_spin_part<const K: usize, const D: usize, const M: usize>(
+        &mut self,
+        weights: &ParticleWeights<'_, K, D>,
+        mass: f64,
+        (first, cell): ([f64; 2], [f64; 2]),
+        inverse: f64,
+    ) {
+        let count = const { diagonals(K, D) };
+        // values, and their products with the distances along x and y
+        let mut parts = [[[0.0; M]; K]; 3];
+        for line in 0..const { lines(M, D) } {
+            let values: [f64; M] = *weights.values[line].first_chunk().expect("as many nodes");
+            let across = first[1] + line as f64 * cell[1];
+            for k in 0..M {
+                parts[0][line][k] = values[k];
+                parts[1][line][k] = values[k] * (first[0] + k as f64 * cell[0]);
+                parts[2][line][k] = values[k] * across;
+            }
+        }
+        let turn = mass * inverse;
+        for line in 0..const { lines(M, D) } {
+            let from = weights.first + line * weights.stride;
+            for node in [from, from + M - 1] {
+                let touched = &mut self.touched[node / BLOCK];
+                *touched = (*touched).max(if M < K { Touched::Near } else { Touched::All });
+            }
+            let here = parts.each_ref().map(|part| part[line]);
+            // zeros after the last node, so that all nodes of the line add as many terms
+            let mut padded = [[0.0; 2 * MOST_NODES_IN_PLANE]; 3];
+            for (padded, here) in padded.iter_mut().zip(&here) {
+                padded[..M].copy_from_slice(here);
+            }
+            let rows = &mut self.rows[from * BLOCK_ENTRIES * count..]
+                [..const { K * BLOCK_ENTRIES * diagonals(K, D) }];
+            for i in 0..M {
+                let [term, x, y] = [mass * here[0][i], turn * here[1][i], turn * here[2][i]];
+                let row = &mut rows[i * BLOCK_ENTRIES * count..][..BLOCK_ENTRIES * count];
+                let shifted = padded
+                    .each_ref()
+                    .map(|p| -> [f64; M] { *p[i..].first_chunk().expect("room for zeros") });
+                add_blocks(row, count, 0, [term, x, y], &shifted);
+                for later in line + 1..const { lines(M, D) } {
+                    let first = K + (later - line - 1) * (2 * K - 1) + K - 1 - i;
+                    let there = parts.each_ref().map(|part| part[later]);
+                    add_blocks(row, count, first, [term, x, y], &there);
+                }
+            }
+        }
+    }
+
     /// Completes the matrix after all particles have been added.
     pub fn finish(&mut self) {
-        let count = self.offsets.len();
+        let count = self.entries * self.offsets.len();
         let nodes = self.rows.len() / count;
         let blocks = self.touched.iter_mut().zip(self.filled.chunks_exact_mut(count));
         for (block, (touched, filled)) in blocks.enumerate() {
@@ -280,10 +464,37 @@ impl Band {
         }
     }
 
+    /// Calls `act` with each other node of a line that shares particles with node `i`, and the entry
+    /// of both.
+    #[inline(always)]
+    pub fn each_neighbour(&self, i: usize, mut act: impl FnMut(usize, f64)) {
+        for (d, &o) in self.offsets.iter().enumerate().skip(1) {
+            act(i + o, self.diagonals[d * self.stride + i]);
+            act(i - o, self.diagonals[d * self.stride + i - o]);
+        }
+    }
+
     /// y = M x on the nodes `range`, which must be at least the width of the band away from the
-    /// ends.
-    pub fn product(&self, x: &[f64], range: Range<usize>, y: &mut [f64]) {
-        self.each_product([x], range, [y], |product, _, _| product);
+    /// ends, for several vectors at a time; with blocks of two by two, x and y are the two
+    /// components of vectors.
+    pub fn product<const V: usize>(&self, x: [&[f64]; V], range: Range<usize>, y: [&mut [f64]; V]) {
+        self.each_product(x, range, y, |product, _, _| product);
+    }
+
+    /// Distances from a node to the others with which it may have an entry, in the patch's arrays.
+    pub fn distances(&self) -> impl Iterator<Item = isize> + Clone + '_ {
+        let later = self.offsets.iter().skip(1).map(|&o| o as isize);
+        later.clone().chain(later.map(|o| -o))
+    }
+
+    /// (M x)_i at node `i`, which must be at least the width of the band away from the ends.
+    pub fn product_at(&self, x: &[f64], i: usize) -> f64 {
+        let mut sum = self.diagonal(0, i..i + 1)[0] * x[i];
+        for (d, &o) in self.offsets.iter().enumerate().skip(1) {
+            sum += self.diagonal(d, i..i + 1)[0] * x[i + o];
+            sum += self.diagonal(d, i - o..i - o + 1)[0] * x[i - o];
+        }
+        sum
     }
 
     /// y = t + x - d M x on the nodes `range` for several vectors at a time, with a diagonal matrix
@@ -310,6 +521,9 @@ impl Band {
         y: [&mut [f64]; V],
         f: impl Fn(f64, usize, usize) -> f64,
     ) {
+        if self.entries == BLOCK_ENTRIES {
+            return self.products_of_blocks(x, range, y, f);
+        }
         match self.offsets.len() {
             3 => self.products_of::<3, V>(x, range, y, f),
             4 => self.products_of::<4, V>(x, range, y, f),
@@ -353,6 +567,66 @@ impl Band {
                     for i in 0..n {
                         sums[i] += above[i] * x_above[i];
                         sums[i] += below[i] * x_below[i];
+                    }
+                }
+            }
+            for v in 0..V {
+                let y = &mut y[v][from..to];
+                for i in 0..n {
+                    y[i] = f(sums[v][i], v, from - range.start + i);
+                }
+            }
+            from = to;
+        }
+    }
+
+    /// The sums of blocks of two by two for vectors in a plane, each two consecutive fields, diagonal
+    /// by diagonal.
+    #[inline(always)]
+    fn products_of_blocks<const V: usize>(
+        &self,
+        x: [&[f64]; V],
+        range: Range<usize>,
+        y: [&mut [f64]; V],
+        f: impl Fn(f64, usize, usize) -> f64,
+    ) {
+        let count = self.offsets.len();
+        let mut from = range.start;
+        while from < range.end {
+            let to = range.end.min((from / BLOCK + 1) * BLOCK);
+            let n = to - from;
+            let mut sums = [[0.0; BLOCK]; V];
+            let blocks = |d: usize, nodes: Range<usize>| -> [&[f64]; BLOCK_ENTRIES] {
+                decomp::array::from_fn(|k| self.diagonal(k * count + d, nodes.clone()))
+            };
+            let [xx, yy, xy, yx] = blocks(0, from..to);
+            for (sums, x) in sums.as_chunks_mut::<2>().0.iter_mut().zip(x.as_chunks::<2>().0) {
+                let ([sum_x, sum_y], [ux, uy]) = (sums, x.map(|x| &x[from..to]));
+                for i in 0..n {
+                    sum_x[i] += xx[i] * ux[i] + xy[i] * uy[i];
+                    sum_y[i] += yx[i] * ux[i] + yy[i] * uy[i];
+                }
+            }
+            for (d, &o) in self.offsets.iter().enumerate().skip(1) {
+                let is_filled = |node: usize| {
+                    let entry = |k: usize| node / BLOCK * BLOCK_ENTRIES * count + k * count + d;
+                    (0..BLOCK_ENTRIES).any(|k| self.filled[entry(k)])
+                };
+                if !(is_filled(from) || is_filled(from - o) || is_filled(to - 1 - o)) {
+                    continue;
+                }
+                let (above, below) = (blocks(d, from..to), blocks(d, from - o..to - o));
+                for (sums, x) in sums.as_chunks_mut::<2>().0.iter_mut().zip(x.as_chunks::<2>().0) {
+                    let [sum_x, sum_y] = sums;
+                    let [ux, uy] = x.map(|x| &x[from + o..to + o]);
+                    let [wx, wy] = x.map(|x| &x[from - o..to - o]);
+                    let ([xx, yy, xy, yx], [zxx, zyy, zxy, zyx]) = (above, below);
+                    for i in 0..n {
+                        sum_x[i] += xx[i] * ux[i] + xy[i] * uy[i];
+                        sum_y[i] += yx[i] * ux[i] + yy[i] * uy[i];
+                        // transposed blocks below the diagonal
+                        sum_x[i] += zxx[i] * wx[i] + zyx[i] * wy[i];
+                        sum_y[i] += zxy[i] * wx[i] + zyy[i] * wy[i];
                     }
                 }
             }
@@ -443,7 +717,7 @@ mod tests {
         let of = |i: usize, x: &[f64]| (0..nodes).map(|j| full[i][j] * x[j]).sum::<f64>();
         let is_close = |y: f64, exact: f64| (y - exact).abs() < 1e-12 * exact.abs().max(1.0);
         let mut y = vec![0.0; nodes];
-        band.product(&x[0], inner.clone(), &mut y);
+        band.product([&x[0]], inner.clone(), [&mut y]);
         assert!(particles.is_empty() || inner.clone().any(|i| y[i] != 0.0));
         for i in inner.clone() {
             assert!(is_close(y[i], of(i, &x[0])), "node {i}: {} {}", y[i], of(i, &x[0]));

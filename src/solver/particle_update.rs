@@ -143,7 +143,7 @@ impl<const D: usize> Scheme<D> {
                 id: patch.block.ids[particle],
                 mass: column(c.mass),
                 velocity: decomp::array::from_fn(|a| column(c.velocity + a)),
-                energy: column(c.energy),
+                energy: column(c.energy) + self.spin_energy(&patch.block.columns, particle),
                 eroded,
             });
         }

@@ -5,6 +5,7 @@ use nalgebra::SVector;
 
 use super::effect::NewParticle;
 use super::stepper::Stepper;
+use crate::geometry::BodyBoundary;
 use crate::scene::CheckedScene;
 
 /// Centres of the equal boxes that result from cutting a box into `counts` parts along each
@@ -43,6 +44,8 @@ pub fn fill<const D: usize>(
     let mut values = vec![0.0; columns.specs.len()];
     let mut id = 0u64;
     for (number, checked) in scene.bodies.iter().enumerate() {
+        let region = scene.scene.bodies[number].regions().pop().map(|(_, region)| region);
+        let boundary = columns.faces.and(region).and_then(|region| BodyBoundary::new(&region));
         let mut add = |centre: [f64; D], size: [f64; D], volume: f64| {
             let cell = cell_of(scene, centre);
             let patch = layout.wrap_cell(cell).map(|c| layout.patch_of(c));
@@ -50,6 +53,9 @@ pub fn fill<const D: usize>(
             let Some(block) = patch.and_then(|p| place[p]) else { return };
             let particle = NewParticle { scene, body: number, centre, size };
             set_initial_values(stepper, &particle, volume, grid_velocity, &mut values);
+            if let (Some(first), Some(boundary)) = (columns.faces, &boundary) {
+                set_faces(boundary, &particle, &mut values[first..first + 4]);
+            }
             blocks[block].push(id - 1, cell.map(|c| c as i32), &values);
         };
         match &checked.tiles {
@@ -92,6 +98,9 @@ fn set_initial_values<const D: usize>(
         values[columns.position + a] = centre[a];
         values[columns.velocity + a] = checked.velocity[a] - grid_velocity[a];
     }
+    if D == 1 {
+        values[columns.velocity] = scene.graded_velocity(number, centre[0]) - grid_velocity[0];
+    }
     let mut pressure = body.pressure;
     if let Some(motion) = &checked.motion {
         let place = std::array::from_fn(|a| if a < D { centre[a] } else { 0.0 });
@@ -124,6 +133,39 @@ fn set_initial_values<const D: usize>(
     }
     if let Some(deformation) = columns.deformation {
         (0..D).for_each(|a| values[deformation + (D + 1) * a] = 1.0);
+    }
+}
+
+/// Greatest distance of the face of a particle from its centre [edges of its box]: a face beyond the
+/// particle next to a boundary belongs to that particle.
+const NEAR: f64 = 1.1;
+
+/// Tolerance within which a face lies on a side of the domain [cells].
+const ON_SIDE: f64 = 1e-6;
+
+/// Writes the faces of a particle, in the coordinates of its half edges. Faces on the sides of the
+/// domain meet no body.
+fn set_faces<const D: usize>(
+    boundary: &BodyBoundary,
+    particle: &NewParticle<'_, D>,
+    values: &mut [f64],
+) {
+    let NewParticle { scene, centre, size, .. } = particle;
+    let (centre, size) = ([centre[0], centre[D - 1]], [size[0], size[D - 1]]);
+    let near = NEAR * size[0].max(size[1]);
+    let domain = &scene.scene.domain;
+    let is_inner = |foot: [f64; 2]| {
+        (0..2).all(|a| {
+            let side = ON_SIDE * scene.cell_size[a];
+            let [lower, upper] =
+                [domain.lower[a], domain.lower[a] + scene.cells[a] as f64 * scene.cell_size[a]];
+            foot[a] > lower + side && foot[a] < upper - side
+        })
+    };
+    for (k, face) in boundary.faces(centre, near, is_inner).into_iter().enumerate() {
+        for a in 0..2 {
+            values[2 * k + a] = face.normal[a] * 0.5 * size[a] / face.distance;
+        }
     }
 }
 

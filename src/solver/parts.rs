@@ -13,6 +13,8 @@ pub enum StepPart {
     Relaxation,
     /// Affine part of the velocity in APIC.
     Affine,
+    /// Spin of particles.
+    Spin,
     /// Stress tensor of solids and of fluids with strength.
     StressTensor,
     /// Contact between bodies with separate velocity fields.
@@ -24,13 +26,20 @@ impl StepPart {
     pub const COUNT: usize = Self::NAMES.len();
 
     /// Names of all parts, in order.
-    pub const NAMES: [&'static str; 5] =
-        ["artificial viscosity", "relaxation", "affine velocity", "stress tensor", "contact"];
+    pub const NAMES: [&'static str; 6] = [
+        "artificial viscosity",
+        "relaxation",
+        "affine velocity",
+        "spin",
+        "stress tensor",
+        "contact",
+    ];
 
     pub(super) const ALL: [StepPart; Self::COUNT] = [
         StepPart::Viscosity,
         StepPart::Relaxation,
         StepPart::Affine,
+        StepPart::Spin,
         StepPart::StressTensor,
         StepPart::Contact,
     ];
@@ -43,6 +52,7 @@ impl StepPart {
                 method.pressure_relaxation.is_some() || method.volume_relaxation.is_some()
             }
             StepPart::Affine => method.transfer.plan().is_affine(),
+            StepPart::Spin => method.spin,
             StepPart::StressTensor => scene.has_solids(),
             StepPart::Contact => scene.velocity_fields() > 1,
         }

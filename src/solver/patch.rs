@@ -69,7 +69,7 @@ pub struct RemovedParticle<const D: usize> {
     pub mass: f64,
     /// Velocity [m/s].
     pub velocity: [f64; D],
-    /// Specific internal energy [J/kg].
+    /// Specific internal energy, with that of its spin [J/kg].
     pub energy: f64,
     /// Whether it was eroded.
     pub eroded: bool,
@@ -124,6 +124,9 @@ pub struct Patch<const D: usize> {
     pub span_lines: Vec<Range<usize>>,
     /// Computed nodes with little material, which filters leave out.
     pub edge: Vec<usize>,
+    /// Other computed nodes that share particles with such nodes, and the fraction of their mass
+    /// that belongs to these pairs [-].
+    pub beside_edge: Vec<(usize, f64)>,
     /// Nodes where velocity fields of bodies meet, with contact.
     pub contact: PatchContact<D>,
     /// Layers of nodes that the patch computes beyond its own.
@@ -193,6 +196,7 @@ impl<const D: usize> Patch<D> {
             active_lines: Vec::new(),
             span_lines: Vec::new(),
             edge: Vec::new(),
+            beside_edge: Vec::new(),
             contact: PatchContact::default(),
             extra_ghost_layers: 0,
             report: StepReport::default(),

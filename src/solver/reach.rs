@@ -48,6 +48,10 @@ impl StencilRadius {
 /// Fraction of its own cells that a patch may compute redundantly before messages are cheaper.
 const WORTH: f64 = 0.35;
 
+/// Number of passes of the flux limiter over neighbouring nodes, each as far as a product: edges,
+/// shares and corrections of force and velocity.
+const LIMITER_PRODUCTS: u32 = 6;
+
 impl FilterHalo {
     /// Cheaper method for patches of at least `narrowest` cells on `workers` ranks times threads.
     pub fn choose(reach: StencilRadius, narrowest: usize, workers: usize) -> Self {
@@ -92,7 +96,8 @@ impl<const D: usize> Scheme<D> {
     fn products(&self) -> usize {
         let own = self.transfer.products(self.compatible);
         let relaxed = self.relaxation.map_or(0, |_| relaxation::ORDER - 1);
-        own.max(relaxed).max(self.of_effects.products) as usize
+        let limited = if self.fields.limiter.is_some() { LIMITER_PRODUCTS } else { 0 };
+        (own + limited).max(relaxed).max(self.of_effects.products) as usize
     }
 
     /// Distance from moving material within which a step may change a particle, for a stencil
@@ -100,7 +105,9 @@ impl<const D: usize> Scheme<D> {
     /// pressure in each pass of a step over the grid. The velocity that does the work spreads
     /// further, but it does no work on material without stress.
     pub fn influence_radius(&self, reach: StencilRadius) -> i64 {
-        let order = self.transfer.order.max(self.relaxation.map_or(0, |_| relaxation::ORDER));
+        let limited = if self.fields.limiter.is_some() { LIMITER_PRODUCTS } else { 0 };
+        let filter = self.transfer.order + limited;
+        let order = filter.max(self.relaxation.map_or(0, |_| relaxation::ORDER));
         let pass = reach.cells() + i64::from(order) * (reach.nodes as i64 - 1) + 2;
         match (self.stepping, self.stress_update) {
             (Stepping::Midpoint, _) | (_, StressUpdate::Last) => pass,
@@ -114,7 +121,15 @@ impl<const D: usize> Scheme<D> {
         let f = &self.fields;
         Sleep {
             needed: 1 + self.relaxation.map_or(0, |r| r.interval),
-            kept: [f.mass, f.inverse, f.volume, f.relaxation[0], f.relaxation[1]],
+            kept: [
+                f.mass,
+                f.inverse,
+                f.volume,
+                f.edge,
+                f.relaxation[0],
+                f.relaxation[1],
+                f.relaxed_ratio.unwrap_or(usize::MAX),
+            ],
         }
     }
 

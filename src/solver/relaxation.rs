@@ -3,21 +3,34 @@
 //!
 //! Updated-Lagrangian schemes have a null space of stress: patterns of pressure that cause no nodal
 //! force and so are never damped. Each relaxation removes the fraction r of the part that the grid
-//! cannot represent. With the compliance w_p = V^2/(m (c^2 + (h D)^2) + S V) as the weight,
-//! P = sum_(l<4) K^l P_L the nodal pressure by the series of four terms, u = K^3 P_L its last term
-//! and Pbar = N P,
+//! cannot represent. With the compliance w_p = V^2/(m (c^2 + (h D)^2) + S V), a reference ratio s_p
+//! and the weights w_p/s_p, P = sum_(l<4) K^l P_L is the nodal pressure by the series of four
+//! terms, u = K^3 P_L its last term and Pbar = N P; with the mean s_i of s_p on the grid and Y_i = s_i P_i
 //!
 //! ```text
-//! dV = r w_p (p - Pbar),  J += dV/V0
-//! e += (-Pbar dV + r w_p (N(u P) - (N u) Pbar))/m
+//! dV = r w_p (p - Pbar)
+//! e += (-(N Y) dV/s + r w_p/s (N(u Y) - (N u)(N Y)))/m
 //! ```
 //!
-//! Volume and energy are conserved exactly, and a material interface needs no special treatment. p
-//! is the pressure at the middle of the step. In a smooth flow w_p is -dV/dp of an isentrope. The
-//! term (h D)^2, with the divergence D and the cell edge h, keeps it bounded at the foot of a
-//! strong shock in a cold gas, where neighbouring pressures differ by orders of magnitude and c^2
-//! alone would change volumes without bound. S, 2^-30 of the stiffness of the scene, keeps it
-//! bounded where pressures are only rounding errors.
+//! p is the pressure at the middle of the step. Energy is conserved exactly, and so is the sum of
+//! dV/s; a material interface needs no special treatment.
+//!
+//! s is J: the volume of a particle grows by a factor, as the space around it does, so that a change
+//! of ln J stays while a shock compresses both. The sum of V0 dln J is conserved, J multiplied by
+//! exp(dV/V) to third order. Were the sum of dV conserved, the volume taken from a compressed
+//! particle and given to one ahead would shrink in the shock, and particles would no longer tile the
+//! space behind it: their pressure would be wrong by an amount that does not fall with the cells.
+//! Only on a line in the total-Lagrangian frame volumes grow by sums: there s is 1 and the sum of dV
+//! is conserved.
+//!
+//! r is `rate` in a step of Courant number 0.4 and in proportion to the length of shorter steps, so
+//! that a result does not depend on the number of steps in which a shock crosses a cell. In longer
+//! steps, which are less accurate, a larger r would only add to the error.
+//!
+//! In a smooth flow w_p is -dV/dp of an isentrope. The term (h D)^2, with the divergence D and the
+//! cell edge h, keeps it bounded at the foot of a strong shock in a cold gas, where neighbouring
+//! pressures differ by orders of magnitude and c^2 alone would change volumes without bound. S,
+//! 2^-30 of the stiffness of the scene, keeps it bounded where pressures are only rounding errors.
 //!
 //! Nothing ties the volume of a strongly sheared particle to the space around it: J is the integral
 //! of divergences that cancel only on average. In an ideal gas the product p V in the nodal force
@@ -64,7 +77,14 @@ impl<const D: usize> Scheme<D> {
         let (Some(p), Some(w)) = (self.columns.pressure_mid, self.columns.compliance) else {
             return;
         };
-        let (p, w) = (&patch.block.columns[p][..particles], &patch.block.columns[w][..particles]);
+        let column = |k: usize| &patch.block.columns[k][..particles];
+        let (p, w) = (column(p), column(w));
+        let mut ratio =
+            self.fields.relaxed_ratio.zip(self.columns.jacobian_mid).map(|(field, j)| {
+                let mut ratio = std::mem::take(&mut patch.nodes.fields[field]);
+                ratio.fill(0.0);
+                (ratio, column(j))
+            });
         let (nodes, stride) =
             (patch.nodes.layers * patch.nodes.nodes.count(), patch.nodes.nodes.extent(0));
         patch.compliance_band.clear(nodes, K, D, stride);
@@ -74,21 +94,35 @@ impl<const D: usize> Scheme<D> {
         term.fill(0.0);
         for run in &patch.runs {
             for (r, weights) in run.clone().zip(patch.stencils.particles::<K, D>(run.clone())) {
-                let wp = w[r] * p[r];
-                weights.add(weight, weights.values, |n| n * w[r]);
-                weights.add(term, weights.values, |n| n * wp);
-                patch.compliance_band.add(&weights, w[r]);
+                let mut share = w[r];
+                if let Some((ratio, j)) = &mut ratio {
+                    weights.add(ratio, weights.values, |n| n * w[r]);
+                    share /= j[r];
+                }
+                let pressure = share * p[r];
+                weights.add(weight, weights.values, |n| n * share);
+                weights.add(term, weights.values, |n| n * pressure);
+                patch.compliance_band.add(&weights, share);
             }
         }
         patch.compliance_band.finish();
         for i in patch.active_lines.iter().cloned().flatten() {
             inverse[i] = if weight[i] > 0.0 { 1.0 / weight[i] } else { 0.0 };
             term[i] = cut(term[i] * inverse[i], self.still_pressure);
+            if let Some((ratio, _)) = &mut ratio {
+                ratio[i] *= inverse[i];
+            }
         }
         if self.contact.is_some() {
             patch.contact.join_scalar(weight, term);
+            if let Some((ratio, _)) = &mut ratio {
+                patch.contact.join_scalar(weight, ratio);
+            }
         }
         sum.copy_from_slice(term);
+        if let (Some((ratio, _)), Some(field)) = (ratio, self.fields.relaxed_ratio) {
+            patch.nodes.fields[field] = ratio;
+        }
     }
 
     /// Relaxes the pressure of the own particles at the rate `pressure`, if this step relaxes, then
@@ -110,27 +144,58 @@ impl<const D: usize> Scheme<D> {
     /// Relaxes volume and energy of the own particles.
     fn relax_pressure(&self, patch: &mut Patch<D>, rate: f64) {
         fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>, rate: f64) {
-            let [_, _, sum, term] = s.fields.relaxation;
-            let c = &s.columns;
-            let (Some(p), Some(w)) = (c.pressure_mid, c.compliance) else { return };
-            let (projected, last) = (&patch.nodes.fields[sum][..], &patch.nodes.fields[term][..]);
-            let n = patch.block.own();
-            let [j, e, mass, volume0, p, w] =
-                patch.block.columns_mut([c.jacobian, c.energy, c.mass, c.volume0, p, w]);
-            for (r, weights) in patch.stencils.particles::<K, D>(0..n).enumerate() {
-                let mean = weights.dot(weights.values, projected);
-                let product = weights.sum(weights.values, |line| {
-                    let (u, nodal) = (weights.line(last, line), weights.line(projected, line));
-                    decomp::array::from_fn(|k| u[k] * nodal[k])
-                });
-                let share = rate * w[r];
-                let dv = share * (p[r] - mean);
-                j[r] += dv / volume0[r];
-                e[r] += (share * (product - weights.dot(weights.values, last) * mean) - mean * dv)
-                    / mass[r];
+            match s.fields.relaxed_ratio {
+                Some(ratio) => s.relax_particles::<K, true>(patch, rate, ratio),
+                None => s.relax_particles::<K, false>(patch, rate, s.fields.relaxation[2]),
             }
         }
         with_width!(patch.stencils.width, go(patch, self, rate));
+    }
+
+    /// The same with the nodal field `ratio` of s, or without `RATIO` with s = 1.
+    fn relax_particles<const K: usize, const RATIO: bool>(
+        &self,
+        patch: &mut Patch<D>,
+        rate: f64,
+        ratio: usize,
+    ) {
+        let [_, _, sum, term] = self.fields.relaxation;
+        let c = &self.columns;
+        let (Some(p), Some(w), Some(mid)) = (c.pressure_mid, c.compliance, c.jacobian_mid) else {
+            return;
+        };
+        let fields = &patch.nodes.fields;
+        let (projected, last, ratio) = (&fields[sum][..], &fields[term][..], &fields[ratio][..]);
+        let n = patch.block.own();
+        let [j, e, mass, volume0, p, w, mid] =
+            patch.block.columns_mut([c.jacobian, c.energy, c.mass, c.volume0, p, w, mid]);
+        for (r, weights) in patch.stencils.particles::<K, D>(0..n).enumerate() {
+            let mean = weights.dot(weights.values, projected);
+            // work of a change of volume: P, or the product of P and s
+            let work = |line: usize| -> [f64; K] {
+                let nodal = weights.line(projected, line);
+                if !RATIO {
+                    return *nodal;
+                }
+                let ratio = weights.line(ratio, line);
+                decomp::array::from_fn(|k| ratio[k] * nodal[k])
+            };
+            let product = weights.sum(weights.values, |line| {
+                let (u, work) = (weights.line(last, line), work(line));
+                decomp::array::from_fn(|k| u[k] * work[k])
+            });
+            let share = if RATIO { rate * w[r] / mid[r] } else { rate * w[r] };
+            let change = share * (p[r] - mean) / volume0[r];
+            let mean_work = weights.sum(weights.values, work);
+            if RATIO {
+                j[r] *= (1.0 + 0.5 * change) / (1.0 - 0.5 * change);
+            } else {
+                j[r] += change;
+            }
+            e[r] += (share * (product - weights.dot(weights.values, last) * mean_work)
+                - mean_work * change * volume0[r])
+                / mass[r];
+        }
     }
 
     /// Relaxes the volumes of the own particles of fluids towards the space available to them.

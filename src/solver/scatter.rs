@@ -4,6 +4,7 @@
 use decomp::array;
 
 use super::scheme::Scheme;
+use super::spin::{spin_gradient, spin_inertia};
 use crate::shape::{Shape, with_shape, with_width};
 use crate::solver::clock::timed;
 use crate::solver::effect::{Phase, StepContext};
@@ -23,7 +24,7 @@ impl<const D: usize> Scheme<D> {
         }
         if let Some(contact) = &self.contact {
             timed(StepPart::Contact as usize, patch, |patch| {
-                self.find_contact(patch, contact, step.dt, force);
+                self.find_contact(patch, contact, step.dt);
             });
         }
         self.divide_by_mass(patch);
@@ -73,11 +74,14 @@ impl<const D: usize> Scheme<D> {
             if !recomputed && s.columns.affine.is_none() && s.contact.is_none() {
                 return s.scatter_moving::<K>(patch, force);
             }
+            if const { D > 1 } && s.columns.spin.is_some() {
+                return s.scatter_width::<K, true, false, true>(patch, force);
+            }
             match (s.needs_matrix(), s.columns.affine) {
-                (true, None) => s.scatter_width::<K, true, false>(patch, force),
-                (false, None) => s.scatter_width::<K, false, false>(patch, force),
-                (true, Some(_)) => s.scatter_width::<K, true, true>(patch, force),
-                (false, Some(_)) => s.scatter_width::<K, false, true>(patch, force),
+                (true, None) => s.scatter_width::<K, true, false, false>(patch, force),
+                (false, None) => s.scatter_width::<K, false, false, false>(patch, force),
+                (true, Some(_)) => s.scatter_width::<K, true, true, false>(patch, force),
+                (false, Some(_)) => s.scatter_width::<K, false, true, false>(patch, force),
             }
         }
         self.reflect_ghosts(patch);
@@ -111,13 +115,13 @@ impl<const D: usize> Scheme<D> {
         with_width!(patch.stencils.width, go(patch, self, from));
     }
 
-    fn scatter_width<const K: usize, const MATRIX: bool, const AFFINE: bool>(
+    fn scatter_width<const K: usize, const MATRIX: bool, const AFFINE: bool, const SPIN: bool>(
         &self,
         patch: &mut Patch<D>,
         force: bool,
     ) {
         let (c, f) = (&self.columns, &self.fields);
-        self.clear_sums::<K, MATRIX>(patch);
+        self.clear_sums::<K, MATRIX, SPIN>(patch);
         // fields are taken out while others are read and written
         let mut take = |k: usize| std::mem::take(&mut patch.nodes.fields[k]);
         let mut masses = take(f.mass);
@@ -137,20 +141,28 @@ impl<const D: usize> Scheme<D> {
         let stress = column(c.stress_volume);
         let filled = c.fill_fraction.map_or(&[][..], column);
         let affine = c.affine.filter(|_| AFFINE);
+        let spin = c.spin.filter(|_| SPIN).map(|spin| column(spin.angular_momentum));
         for run in &patch.runs {
             for (r, weights) in run.clone().zip(patch.stencils.particles::<K, D>(run.clone())) {
                 let m = mass[r];
                 weights.add(nodal_mass, weights.values, |n| n * m);
-                match affine {
-                    None => {
-                        for a in 0..D {
-                            let mv = m * velocity[a][r];
-                            weights.add(momentum[a], weights.values, |n| n * mv);
-                        }
+                if let Some(spin) = spin {
+                    let place = self.place_of(patch, &weights, r);
+                    let inverse = 1.0 / spin_inertia(&weights, place);
+                    let turn = spin_gradient(spin[r] * inverse);
+                    self.add_affine_momentum(patch, &weights, r, turn, momentum);
+                    patch.band.add_spin(&weights, m, place, inverse);
+                } else if let Some(affine) = affine {
+                    let at = |k: usize| patch.block.columns[affine + k][r];
+                    let slope = array::from_fn(|a| array::from_fn(|b| at(D * a + b)));
+                    self.add_affine_momentum(patch, &weights, r, slope, momentum);
+                } else {
+                    for a in 0..D {
+                        let mv = m * velocity[a][r];
+                        weights.add(momentum[a], weights.values, |n| n * mv);
                     }
-                    Some(affine) => self.add_affine_momentum(patch, &weights, r, affine, momentum),
                 }
-                if MATRIX {
+                if MATRIX && !SPIN {
                     patch.band.add(&weights, m);
                 }
                 if let Some(volume) = &mut volume {
@@ -184,14 +196,15 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Adds the momentum m N (v + C (x_i - x_p)) of a particle with an affine velocity to the nodes.
+    /// Adds the momentum m N (v + C (x_i - x_p)) of a particle with the velocity gradient C,
+    /// `slope`, to the nodes.
     #[inline(always)]
     fn add_affine_momentum<const K: usize>(
         &self,
         patch: &Patch<D>,
         weights: &ParticleWeights<'_, K, D>,
         r: usize,
-        affine: usize,
+        slope: [[f64; D]; D],
         momentum: &mut [&mut [f64]; D],
     ) {
         let column = |k: usize| patch.block.columns[k][r];
@@ -199,7 +212,7 @@ impl<const D: usize> Scheme<D> {
         let offset = self.offset(patch, r, weights.first);
         for a in 0..D {
             let mv = m * column(self.columns.velocity + a);
-            let mc: [f64; D] = array::from_fn(|b| m * column(affine + D * a + b) * self.cell[b]);
+            let mc: [f64; D] = array::from_fn(|b| m * slope[a][b] * self.cell[b]);
             for line in 0..const { lines(K, D) } {
                 let across = match D {
                     1 => mv,
@@ -214,11 +227,14 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Clears the sums over particles, and the mass matrix with `MATRIX`.
-    fn clear_sums<const K: usize, const MATRIX: bool>(&self, patch: &mut Patch<D>) {
+    /// Clears the sums over particles, and the mass matrix with `MATRIX`, of blocks with `SPIN`.
+    fn clear_sums<const K: usize, const MATRIX: bool, const SPIN: bool>(
+        &self,
+        patch: &mut Patch<D>,
+    ) {
         let f = &self.fields;
         let scalars = [f.mass].into_iter().chain(f.scratch..f.scratch + f.scratches);
-        let vectors = [f.lumped_velocity, f.acceleration].into_iter().chain(f.filter_residual);
+        let vectors = [f.lumped_velocity, f.acceleration].into_iter().chain(f.residuals());
         let components = vectors.flat_map(|v| v..v + D);
         let volume = self.edge_mask.map(|_| f.volume);
         for field in scalars.chain(components).chain(volume) {
@@ -226,7 +242,11 @@ impl<const D: usize> Scheme<D> {
         }
         if MATRIX {
             let nodes = patch.nodes.layers * patch.nodes.nodes.count();
-            patch.band.clear(nodes, K, D, patch.nodes.nodes.extent(0));
+            let stride = patch.nodes.nodes.extent(0);
+            match SPIN {
+                true => patch.band.clear_blocks(nodes, K, stride),
+                false => patch.band.clear(nodes, K, D, stride),
+            }
         }
     }
 

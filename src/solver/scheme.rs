@@ -7,8 +7,8 @@ use super::parts::StepPart;
 use crate::contact::ContactCondition;
 use crate::material::constitutive::{ConstitutiveModel, FailureModel, StrengthModel, ThermalModel};
 use crate::scene::{
-    CheckedScene, EnergyUpdate, FrameKind, PressureRelaxation, ShapeKind, SideProperties, Stepping,
-    StressUpdate,
+    CheckedScene, EnergyUpdate, FrameKind, Method, PressureRelaxation, ShapeKind, SideProperties,
+    Stepping, StressUpdate,
 };
 use crate::shape::DomainExtent;
 use crate::solver::artificial_viscosity::Viscosity;
@@ -109,6 +109,9 @@ const STILL: f64 = 1.0 / (1u64 << 50) as f64;
 /// Smallest stiffness of a gas in pressure relaxation, over the pressure that counts as zero: 2^-30
 /// of the stiffness of the scene. Rounding errors of pressure then change no volume.
 const COLD: f64 = (1u64 << 20) as f64;
+
+/// Courant number of a step in which the pressure relaxes by its rate.
+const RELAXATION_COURANT: f64 = 0.4;
 
 impl<const D: usize> Scheme<D> {
     /// Scheme of `scene` with the `models` of its bodies, and the columns and nodal fields that the
@@ -217,10 +220,18 @@ impl<const D: usize> Scheme<D> {
         COLD * self.still_pressure
     }
 
-    /// Whether step number `step` (from 1) relaxes the pressure.
-    pub(super) fn relaxes(&self, step: u64) -> Option<f64> {
-        self.relaxation.filter(|r| step.is_multiple_of(r.interval as u64)).map(|r| r.rate)
+    /// Fraction of the deviation that step number `step` (from 1) with the Courant number `courant`
+    /// relaxes, if it relaxes the pressure.
+    pub(super) fn relaxes(&self, step: u64, courant: f64) -> Option<f64> {
+        let relaxation = self.relaxation.filter(|r| step.is_multiple_of(r.interval as u64))?;
+        Some(relaxation.rate * (courant / RELAXATION_COURANT).min(1.0))
     }
+}
+
+/// Whether the volume ratio of a particle grows by its divergence times itself, as the size of the
+/// space around it does. On a line the total-Lagrangian frame adds volume instead.
+pub(super) fn volumes_multiply(method: &Method, dimension: usize) -> bool {
+    dimension > 1 || method.frame == FrameKind::UpdatedLagrangian
 }
 
 /// Condition at the contact plane, if bodies of `scene` have separate velocity fields.

@@ -32,6 +32,16 @@ pub(super) struct ProductSeries {
     mask: Mask,
 }
 
+/// Edge mask of a series.
+#[derive(Clone, Copy, PartialEq)]
+enum Mask {
+    No,
+    /// That of the force.
+    Force,
+    /// That of the work: the adjoint of the mask of the force.
+    Work,
+}
+
 /// Matrix in K.
 #[derive(Clone, Copy, PartialEq)]
 enum Matrix {
@@ -78,15 +88,6 @@ impl ProductSeries {
         let parity = move |axis| if scalar { Parity::Even } else { Parity::Odd(axis) };
         (0..if scalar { 1 } else { D }).map(move |axis| (self.component(axis), parity(axis)))
     }
-}
-
-/// Position of the edge mask chi, which removes nodes with little material: t_l = K chi t_(l-1), or
-/// chi K t_(l-1). The patch that computes a node masks it before other patches receive its value.
-#[derive(Clone, Copy, PartialEq)]
-enum Mask {
-    No,
-    Before,
-    After,
 }
 
 /// Series with the same matrix whose next terms are computed in one pass over the matrix.
@@ -142,30 +143,90 @@ fn copy<const D: usize>(patch: &mut Patch<D>, from: usize, to: usize) {
 
 impl<const D: usize> Scheme<D> {
     /// Lists the computed nodes that the edge mask removes, so that later passes need not search
-    /// the fields: chi = 0 where the filled fraction of the node's volume is below the edge mask.
-    /// Nodes without material hold zeros anyway.
+    /// the fields: those of which the filled fraction of the volume is below the edge mask. Nodes
+    /// without material hold zeros anyway.
     pub(super) fn find_edge(&self, patch: &mut Patch<D>) {
         let Some(least) = self.edge_mask else { return };
-        let [volume, inverse] = patch.nodes.fields_mut([self.fields.volume, self.fields.inverse]);
+        let f = &self.fields;
+        let [volume, inverse, edge] = patch.nodes.fields_mut([f.volume, f.inverse, f.edge]);
         let nodes = patch.active_lines.iter().cloned().flatten();
         patch.edge.clear();
         patch.edge.extend(nodes.filter(|&i| volume[i] < least && inverse[i] > 0.0));
+        edge.fill(0.0);
+        patch.edge.iter().for_each(|&i| edge[i] = 1.0);
     }
 
-    /// Masks nodes with little material in a sum: resets the new value there to t_0, or to 0.
-    fn mask(&self, patch: &mut Patch<D>, series: &ProductSeries) {
-        if self.edge_mask.is_none() {
+    /// Lists the nodes beside the edge, once the values of `edge` beyond the patch are known.
+    fn find_beside_edge(&self, patch: &mut Patch<D>) {
+        let fields = &patch.nodes.fields;
+        let (edge, inverse) = (&fields[self.fields.edge], &fields[self.fields.inverse]);
+        let beside = &mut patch.beside_edge;
+        beside.clear();
+        for i in patch.span_lines.iter().cloned().flatten().filter(|&i| edge[i] != 0.0) {
+            let others = patch.band.distances().map(|o| i.wrapping_add_signed(o));
+            beside.extend(others.map(|other| (other, 0.0)));
+        }
+        beside.sort_unstable_by_key(|(i, _)| *i);
+        beside.dedup_by_key(|(i, _)| *i);
+        let mut lines = patch.active_lines.iter().peekable();
+        beside.retain_mut(|(i, share)| {
+            while lines.next_if(|line| line.end <= *i).is_some() {}
+            if lines.peek().is_none_or(|line| *i < line.start) || edge[*i] != 0.0 {
+                return false;
+            }
+            *share = patch.band.product_at(edge, *i) * inverse[*i];
+            *share > 0.0
+        });
+    }
+
+    /// Whether the edge mask leaves pairs of nodes out of the matrix. With spin, a pair has a block of
+    /// two by two, and momentum is not that of pairs; with contact, the nodes of a pair may belong to
+    /// several bodies. There the mask acts on the nodes alone, before each product of the force and
+    /// after each product of the work.
+    fn masks_pairs(&self) -> bool {
+        self.columns.spin.is_none() && self.contact.is_none()
+    }
+
+    /// Masks the first term of a series.
+    fn mask_first(&self, patch: &mut Patch<D>, series: &ProductSeries) {
+        if series.order > 1 && (self.masks_pairs() || series.mask == Mask::Force) {
+            self.mask(patch, series, false);
+        }
+    }
+
+    /// Masks a new sum of a series, the final one if it `ends`.
+    fn mask_sum(&self, patch: &mut Patch<D>, series: &ProductSeries, ends: bool) {
+        match (self.masks_pairs(), series.mask) {
+            (true, _) => self.mask(patch, series, ends),
+            (false, Mask::Force) if ends => {}
+            (false, mask) => self.mask(patch, series, mask == Mask::Work),
+        }
+    }
+
+    /// Sets the nodes that the edge mask removes to t_0 in a sum if `keeps_first`, else to 0, so that
+    /// the next product leaves them out.
+    fn mask(&self, patch: &mut Patch<D>, series: &ProductSeries, keeps_first: bool) {
+        if self.edge_mask.is_none() || series.mask == Mask::No {
             return;
         }
         for (series, _) in series.components::<D>() {
             let [sum, first] = patch.nodes.fields_mut([series.sum, series.first]);
             for &i in &patch.edge {
-                sum[i] = if series.mask == Mask::After { first[i] } else { 0.0 };
+                sum[i] = if keeps_first { first[i] } else { 0.0 };
             }
         }
         if self.contact.is_some() {
-            let first = (series.mask == Mask::After).then_some(series.first);
+            let first = keeps_first.then_some(series.first);
             patch.contact.mask(&mut patch.nodes.fields, first, series.sum);
+        }
+    }
+
+    /// Takes the pairs with a node that the edge mask removes out of a new sum; `before` holds the
+    /// previous one.
+    pub(super) fn leave_edge_out(patch: &mut Patch<D>, sum: usize, before: usize) {
+        let [sum, before] = patch.nodes.fields_mut([sum, before]);
+        for &(i, share) in &patch.beside_edge {
+            sum[i] -= share * before[i];
         }
     }
 
@@ -181,6 +242,9 @@ impl<const D: usize> Scheme<D> {
         for (vector, scratch) in together.vectors.iter().zip(self.fields.scratch..) {
             // nodes without material hold zeros in both fields
             patch.nodes.fields.swap(vector.sum, scratch);
+            if vector.mask != Mask::No && self.masks_pairs() {
+                Self::leave_edge_out(patch, vector.sum, scratch);
+            }
             if let (true, Some(last)) = (together.ends(vector), vector.last) {
                 patch.nodes.fields.swap(scratch, last);
             }
@@ -190,11 +254,7 @@ impl<const D: usize> Scheme<D> {
             if self.contact.is_some() && !matches!(series.matrix, Matrix::Effect(..)) {
                 self.join_series(patch, series, together.ends(series));
             }
-            // the final sum is not masked, only the input of the next product
-            let goes_on = !together.ends(series);
-            if series.mask == Mask::After || (series.mask == Mask::Before && goes_on) {
-                self.mask(patch, series);
-            }
+            self.mask_sum(patch, series, together.ends(series));
         }
     }
 
@@ -244,6 +304,9 @@ impl<const D: usize> Scheme<D> {
                 .collect();
             let next = Together::all::<D>(all, l + 2);
             nodal.each(name, |patch| {
+                if l == 0 && others.contains(&(self.fields.edge, Parity::Even)) {
+                    self.find_beside_edge(patch);
+                }
                 self.apply_no_slip(patch, &fields);
                 effects.set_boundary(self, patch, &fields);
                 for vector in &finished {
@@ -278,8 +341,8 @@ impl<const D: usize> Scheme<D> {
         self.sum_series(nodal, effects, name, others, &[series], last);
     }
 
-    /// Series of velocity and force: v = sum_(l<k) K^l vL; b = sum_(l<k) t_l with t_0 = f/m and t_l
-    /// = K chi t_(l-1), or b = f/m if the scheme lumps the force.
+    /// Series of velocity and force: v = sum_(l<k) K^l vL; b = sum_(l<k) K'^l f/m with the edge mask
+    /// in K', or b = f/m if the scheme lumps the force.
     fn velocity_series(&self) -> [ProductSeries; 2] {
         let f = &self.fields;
         let (order, force_order) = (self.transfer.order, self.transfer.force_order());
@@ -295,9 +358,10 @@ impl<const D: usize> Scheme<D> {
         let force = ProductSeries {
             sum: f.acceleration,
             first: f.first,
-            last: None,
+            // a flux limiter acts on a line, friction of walls in a plane
+            last: f.limiter.as_ref().map(|limiter| limiter.series).or(f.force_residual),
             order: force_order,
-            mask: Mask::Before,
+            mask: Mask::Force,
             ..velocity
         };
         [velocity, force]
@@ -313,9 +377,7 @@ impl<const D: usize> Scheme<D> {
                 copy(patch, force.sum, force.first);
             }
         }
-        if force.order > 1 {
-            self.mask(patch, &force);
-        }
+        self.mask_first(patch, &force);
     }
 
     /// From the first terms of the series, computes velocity, acceleration and the velocity at the
@@ -341,78 +403,71 @@ impl<const D: usize> Scheme<D> {
                 mask: Mask::No,
             });
         }
-        let mut others: SmallVec<[(usize, Parity); 2]> = SmallVec::new();
+        let mut others: SmallVec<[(usize, Parity); 8]> = SmallVec::new();
         others.push((f.inverse, Parity::Even));
+        if self.edge_mask.is_some() && self.transfer.force_order() > 1 && self.masks_pairs() {
+            others.push((f.edge, Parity::Even));
+        }
+        others.extend(f.relaxed_ratio.filter(|_| relax).map(|ratio| (ratio, Parity::Even)));
         // particles compare their volumes with the space at all their nodes
         if self.volume_relaxation.is_some() {
             others.push((f.volume, Parity::Even));
         }
-        // the pressure series may have more terms than the velocity series
-        self.sum_series(nodal, effects, "series", &others, &all, |patch| {
-            let still = self.quiescent_speed;
-            for span in &patch.span_lines {
-                for a in 0..D {
-                    let [v, b, star] = patch.nodes.fields_mut([
-                        f.velocity + a,
-                        f.acceleration + a,
-                        f.velocity_star + a,
-                    ]);
-                    let (v, b, star) =
-                        (&mut v[span.clone()], &b[span.clone()], &mut star[span.clone()]);
-                    for i in 0..v.len() {
-                        v[i] = cut(v[i], still);
-                        star[i] = cut(v[i] + dt * b[i], still);
-                    }
+        others.extend(self.limiter_halos());
+        let finish = |patch: &mut Patch<D>| self.finish_velocity(patch, dt);
+        if f.limiter.is_none() {
+            // the pressure series may have more terms than the velocity series
+            return self.sum_series(nodal, effects, "series", &others, &all, finish);
+        }
+        self.sum_series(nodal, effects, "series", &others, &all, |_| {});
+        self.limit_fluxes(nodal, effects, dt);
+        nodal.each("limiter", finish);
+    }
+
+    /// Velocity at the end of the step from velocity and acceleration, and the start of the series of
+    /// the work.
+    fn finish_velocity(&self, patch: &mut Patch<D>, dt: f64) {
+        let f = &self.fields;
+        let still = self.quiescent_speed;
+        for span in &patch.span_lines {
+            for a in 0..D {
+                let [v, b, star] = patch.nodes.fields_mut([
+                    f.velocity + a,
+                    f.acceleration + a,
+                    f.velocity_star + a,
+                ]);
+                let (v, b, star) =
+                    (&mut v[span.clone()], &b[span.clone()], &mut star[span.clone()]);
+                for i in 0..v.len() {
+                    v[i] = cut(v[i], still);
+                    star[i] = cut(v[i] + dt * b[i], still);
                 }
             }
-            if self.compatible {
-                (0..D).for_each(|axis| self.start_work(patch, axis));
-                if self.contact.is_some() {
-                    self.join_work(patch);
-                }
+        }
+        // friction still changes the velocity at the end of the step
+        if f.heat.is_none() {
+            self.begin_work(patch);
+        }
+    }
+
+    /// First term of the velocity that does the work, if the scheme needs it.
+    pub(super) fn begin_work(&self, patch: &mut Patch<D>) {
+        if self.compatible {
+            self.start_work(patch);
+            if self.contact.is_some() {
+                self.join_work(patch);
             }
-        });
+            self.mask_first(patch, &self.work_series());
+        }
     }
 
     /// Start of [`solve_work`](Self::solve_work) on the nodes that the patch computes: (vL + A
     /// v')/2 with A = m^-1 M, or for a blend w itself.
-    fn start_work(&self, patch: &mut Patch<D>, axis: usize) {
-        let f = &self.fields;
-        let (star, lumped) = (f.velocity_star + axis, f.lumped_velocity + axis);
-        let (work, first) = (f.work + axis, f.first + axis);
-        let lines = &patch.active_lines;
+    fn start_work(&self, patch: &mut Patch<D>) {
         match self.transfer.update {
-            VelocityUpdate::Filtered => {
-                let [inverse, star, lumped, w, first] =
-                    patch.nodes.fields_mut([f.inverse, star, lumped, work, first]);
-                w.fill(0.0);
-                for line in lines {
-                    patch.band.product(star, line.clone(), w);
-                    for i in line.clone() {
-                        w[i] = 0.5 * (lumped[i] + inverse[i] * w[i]);
-                        first[i] = w[i];
-                    }
-                }
-            }
-            VelocityUpdate::Blend(a) => {
-                let [lumped, star, x] = patch.nodes.fields_mut([lumped, star, first]);
-                for i in 0..x.len() {
-                    x[i] = (1.0 - a) * lumped[i] + 0.5 * (star[i] - lumped[i]);
-                }
-                let [inverse, lumped, x, y, w] = patch.nodes.fields_mut([
-                    f.inverse,
-                    f.lumped_velocity + axis,
-                    f.first + axis,
-                    f.scratch,
-                    work,
-                ]);
-                w.fill(0.0);
-                for line in lines {
-                    patch.band.product(x, line.clone(), y);
-                    for i in line.clone() {
-                        w[i] = a * lumped[i] + inverse[i] * y[i];
-                    }
-                }
+            VelocityUpdate::Filtered => self.start_filtered_work(patch),
+            VelocityUpdate::Blend(share) => {
+                (0..D).for_each(|axis| self.blended_work(patch, axis, share));
             }
             VelocityUpdate::Affine => {
                 unreachable!("the scene check refuses compatible energy with APIC")
@@ -420,21 +475,82 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Velocity w for which f.w is the exact change of kinetic energy, so that the work on the
-    /// particles and this change add up to rounding. Collective between neighbours.
-    ///
-    /// Series: w = sum_(l<k) (chi K)^l (vL + A v')/2 (only l = 0 if the force is lumped);
-    /// blend: w = a vL + A ((1 - a) vL + dt b/2); A = m^-1 M.
-    pub(super) fn solve_work(&self, nodal: &mut Nodal<'_, D>, effects: &Effects<D>) {
-        let order = self.transfer.force_order();
-        let series = ProductSeries {
+    fn start_filtered_work(&self, patch: &mut Patch<D>) {
+        let f = &self.fields;
+        let fields = &mut patch.nodes.fields;
+        let mut work: [Vec<f64>; D] =
+            decomp::array::from_fn(|a| std::mem::take(&mut fields[f.work + a]));
+        work.iter_mut().for_each(|w| w.fill(0.0));
+        let star: [&[f64]; D] = decomp::array::from_fn(|a| &fields[f.velocity_star + a][..]);
+        for line in &patch.active_lines {
+            patch.band.product(star, line.clone(), work.each_mut().map(|w| &mut w[..]));
+        }
+        for (a, work) in work.into_iter().enumerate() {
+            patch.nodes.fields[f.work + a] = work;
+            let [inverse, lumped, w, first] =
+                patch.nodes.fields_mut([f.inverse, f.lumped_velocity + a, f.work + a, f.first + a]);
+            for i in patch.active_lines.iter().cloned().flatten() {
+                w[i] = 0.5 * (lumped[i] + inverse[i] * w[i]);
+                first[i] = w[i];
+            }
+        }
+    }
+
+    fn blended_work(&self, patch: &mut Patch<D>, axis: usize, a: f64) {
+        let f = &self.fields;
+        let (star, lumped) = (f.velocity_star + axis, f.lumped_velocity + axis);
+        let [lumped, star, x] = patch.nodes.fields_mut([lumped, star, f.first + axis]);
+        for i in 0..x.len() {
+            x[i] = (1.0 - a) * lumped[i] + 0.5 * (star[i] - lumped[i]);
+        }
+        let [inverse, lumped, x, y, w] = patch.nodes.fields_mut([
+            f.inverse,
+            f.lumped_velocity + axis,
+            f.first + axis,
+            f.scratch,
+            f.work + axis,
+        ]);
+        w.fill(0.0);
+        for line in &patch.active_lines {
+            patch.band.product([&*x], line.clone(), [&mut *y]);
+            for i in line.clone() {
+                w[i] = a * lumped[i] + inverse[i] * y[i];
+            }
+        }
+    }
+
+    /// The series of w.
+    fn work_series(&self) -> ProductSeries {
+        ProductSeries {
             sum: self.fields.work,
             first: self.fields.first,
             last: None,
-            order,
+            order: self.transfer.force_order(),
             matrix: Matrix::Mass,
-            mask: Mask::After,
+            mask: Mask::Work,
+        }
+    }
+
+    /// Velocity w for which f.w is the exact change of kinetic energy, so that the work on the
+    /// particles and this change add up to rounding. Collective between neighbours.
+    ///
+    /// Series: w = sum_(l<k) K'^l (vL + A v')/2 (only l = 0 if the force is lumped);
+    /// blend: w = a vL + A ((1 - a) vL + dt b/2); A = m^-1 M.
+    pub(super) fn solve_work(&self, nodal: &mut Nodal<'_, D>, effects: &Effects<D>) {
+        let series = self.work_series();
+        let Some(limiter) = &self.fields.limiter else {
+            return self.sum_series(nodal, effects, "work", &[], &[series], |_| {});
         };
-        self.sum_series(nodal, effects, "work", &[], &[series], |_| {});
+        nodal.refresh(&[(series.sum, Parity::Odd(0))]);
+        nodal.each("work", |patch| self.start_limited_work(patch, limiter));
+        let rest = ProductSeries { order: series.order - 1, ..series };
+        self.sum_series(nodal, effects, "work", &[], &[rest], |patch| {
+            for span in patch.span_lines.clone() {
+                let [work, first] = patch.nodes.fields_mut([series.sum, limiter.work]);
+                for i in span {
+                    work[i] += first[i];
+                }
+            }
+        });
     }
 }

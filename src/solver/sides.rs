@@ -61,7 +61,15 @@ impl<const D: usize> Scheme<D> {
     }
 
     /// Adds the force of a side to the force on a node, and records it.
-    pub(crate) fn push(
+    pub(crate) fn push(&self, patch: &mut Patch<D>, at: usize, index: [i64; D], force: [f64; D]) {
+        for (a, force) in force.iter().enumerate() {
+            patch.nodes.fields[self.fields.acceleration + a][at] += force;
+        }
+        self.record_side_force(patch, at, index, force, false);
+    }
+
+    /// Records the force of a side on a node, for its work and impulse.
+    pub(crate) fn record_side_force(
         &self,
         patch: &mut Patch<D>,
         at: usize,
@@ -69,9 +77,6 @@ impl<const D: usize> Scheme<D> {
         force: [f64; D],
         has_friction: bool,
     ) {
-        for (a, force) in force.iter().enumerate() {
-            patch.nodes.fields[self.fields.acceleration + a][at] += force;
-        }
         if force != [0.0; D] {
             let share = self.share_of(patch, index);
             patch.side_forces.push(SideForce { at, share, force, has_friction });

@@ -7,7 +7,7 @@ use super::columns::Columns;
 use super::effect::{Effects, Registry, Setup, StepContext};
 use super::exchange::World;
 use super::nodal_fields::{Fields, Wanted};
-use super::scheme::{EffectLimits, Scheme, contact_condition, rubs};
+use super::scheme::{EffectLimits, Scheme, contact_condition, rubs, volumes_multiply};
 use crate::material::constitutive::CustomModel;
 use crate::scene::{CheckedScene, Stepping};
 
@@ -50,7 +50,10 @@ impl<const D: usize> Stepper<D> {
             series: method.transfer.plan().series(),
             masked: method.edge_mask.is_some(),
             relaxed: method.pressure_relaxation.is_some(),
+            relaxes_ratio: method.pressure_relaxation.is_some() && volumes_multiply(method, D),
             has_friction: rubs::<D>(contact_condition(scene)) || columns.friction_heat.is_some(),
+            has_wall_friction: columns.friction_heat.is_some(),
+            limiter: method.flux_limiter.map(|limiter| limiter.neighbours as usize),
         };
         let mut fields = Fields::new(D, wanted);
         let mut setup = Setup { scene, columns: &columns, fields: &mut fields, matrices: 0 };
@@ -95,7 +98,8 @@ impl<const D: usize> Stepper<D> {
         Ok(())
     }
 
-    /// Advances all patches from `time` by `dt` [s]; `step` numbers the steps from 1. Collective.
+    /// Advances all patches from `time` by `dt` [s]; `stable` is the step at a Courant number of 1
+    /// [s], and `step` numbers the steps from 1. Collective.
     ///
     /// # Errors
     ///
@@ -105,10 +109,13 @@ impl<const D: usize> Stepper<D> {
         world: &mut World<'_, D>,
         time: f64,
         dt: f64,
+        stable: f64,
         step: u64,
     ) -> Result<(), decomp::ParticleError> {
         match self.stepping {
-            Stepping::Midpoint => self.advance_midpoint(world, time, dt, self.relaxes(step)),
+            Stepping::Midpoint => {
+                self.advance_midpoint(world, time, dt, self.relaxes(step, dt / stable))
+            }
             Stepping::Leapfrog => self.advance_leapfrog(world, time, dt),
         }
     }

@@ -225,7 +225,7 @@ impl<const D: usize> Scheme<D> {
     /// and matrix are those of the last step; the sums are the same as in a full pass.
     pub(super) fn scatter_moving<const K: usize>(&self, patch: &mut Patch<D>, force: bool) {
         let (c, f) = (&self.columns, &self.fields);
-        let vectors = [f.lumped_velocity, f.acceleration].into_iter().chain(f.filter_residual);
+        let vectors = [f.lumped_velocity, f.acceleration].into_iter().chain(f.residuals());
         let scratches = f.scratch..f.scratch + f.scratches;
         for field in vectors.flat_map(|v| v..v + D).chain(scratches) {
             patch.nodes.fields[field].fill(0.0);

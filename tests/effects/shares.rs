@@ -89,6 +89,12 @@ fn every_active_effect_has_a_share_of_the_step() {
     let mut piston = block();
     piston["boundary"] = json!({"y_lower": {"velocity": [[0.0, 0.0], [1e-6, 100.0]]}});
     scenes.push(("piston".into(), piston));
+    let disk = std::fs::read(format!("{inputs}/spinning_disk.json")).unwrap();
+    let mut disk: Value = serde_json::from_slice(&disk).unwrap();
+    disk["method"]["spin"] = json!(true);
+    disk["method"]["transfer"] = json!({"fmpm": 2});
+    disk["output"] = json!({});
+    scenes.push(("disk with spin".into(), disk));
     for entry in std::fs::read_dir(inputs).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|extension| extension == "json") {

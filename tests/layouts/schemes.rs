@@ -43,6 +43,19 @@ fn each_scheme_at_the_midpoint() {
     every_scheme(small_midpoint);
 }
 
+/// Shares of fluxes come from nodes of other patches, a mirror swaps those of both signs.
+#[test]
+fn the_flux_limiter() {
+    for neighbours in [1, 2] {
+        for shape in ["cpdi_bspline_quadratic", "cpdi"] {
+            let mut scene = small_midpoint(shape, &json!({"fmpm": 4}));
+            scene["method"]["flux_limiter"] = json!({"neighbours": neighbours});
+            ending(&mut scene, 3e-8);
+            same(&scene, &format!("{shape}, {neighbours} neighbours"));
+        }
+    }
+}
+
 /// A scene in the total-Lagrangian frame.
 fn total(mut scene: Value) -> Value {
     scene["method"]["frame"] = json!("total_lagrangian");

@@ -140,3 +140,49 @@ fn free_flight_makes_no_pressure() {
         }
     }
 }
+
+/// A block of copper that falls freely, off the lines of the grid.
+fn falling(method: &Value) -> Value {
+    json!({
+        "title": "Free fall",
+        "domain": {"lower": [-1.03e-4], "upper": [3.97e-4], "cell_size": 1e-5},
+        "time": {"end": 5e-7},
+        "method": method,
+        "materials": {"copper": {"library": "copper"}},
+        "bodies": [{"name": "block", "material": "copper",
+            "box": {"lower": [0.0], "upper": [2e-4]}, "particles_per_cell": [2]}],
+        "body_force": {"gravity": [1e8]}
+    })
+}
+
+#[test]
+fn a_block_in_free_fall_carries_no_stress() {
+    for frame in ["updated_lagrangian", "total_lagrangian"] {
+        for (order, mask) in [(2, 0.3), (4, 0.3), (8, 0.4), (8, 0.9)] {
+            let method = json!({"preset": "default", "frame": frame, "transfer": {"fmpm": order},
+                "edge_mask": mask});
+            let outcome = run(&falling(&method));
+            let pressure = greatest(column(outcome.last(), "pressure"));
+            let (weight, stiffness) = (8930.0 * 1e8 * 2e-4, 8930.0 * 3940.0 * 3940.0);
+            let limit = f64::max(1e-10 * weight, 1e-12 * stiffness);
+            at_most(&format!("{frame}, FMPM({order}), mask {mask}: pressure"), pressure, limit);
+            let v: Vec<f64> =
+                column(outcome.last(), "velocity").iter().map(|v| v / 50.0 - 1.0).collect();
+            at_most(&format!("{frame}, FMPM({order}), mask {mask}: speed"), greatest(&v), 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_smoothed_impact_has_the_same_momentum() {
+    let base = short("flyer.json", 2e-8);
+    let sharp = run(&base);
+    for cells in [1.0, 2.0] {
+        let smooth = run(&with(&base, &json!({"impact_smoothing": cells})));
+        let momentum = smooth.start.momentum[0] / sharp.start.momentum[0] - 1.0;
+        at_most(&format!("{cells} cells: change of momentum"), momentum, 1e-13);
+        let kinetic = 1.0 - smooth.start.kinetic / sharp.start.kinetic;
+        assert!(kinetic > 1e-3 * cells, "{cells} cells: loss of kinetic energy {kinetic}");
+        at_most("energy", smooth.energy_drift(), 1e-12);
+    }
+}

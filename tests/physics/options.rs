@@ -90,6 +90,8 @@ fn each_option_of_the_default_changes_the_run() {
         viscosity(json!({"limited": "both"})),
         viscosity(json!({"limiter": "nodal", "limited": "both"})),
         json!({"time": {"courant": 0.3}}),
+        json!({"impact_smoothing": 1.0}),
+        json!({"impact_smoothing": 2.0}),
         json!({"domain": {"cell_size": 2e-5}}),
     ];
     all_differ(&thin("flyer.json"), &edits);

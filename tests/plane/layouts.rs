@@ -42,6 +42,18 @@ fn the_default_scheme() {
     same(plates(), "default");
 }
 
+/// Ghosts carry spin, and a mirror reverses it.
+#[test]
+fn particles_with_spin() {
+    let mut scene = plates();
+    let order = json!({"preset": "default", "spin": true, "transfer": {"fmpm": 4}});
+    scene["method"] = order;
+    scene["domain"]["lower"] = json!([-0.0006, -0.0002]);
+    scene["boundary"] = json!({"y_lower": "symmetry"});
+    scene["bodies"][0]["velocity"] = json!([1e3, 3e2]);
+    same(scene, "spin");
+}
+
 /// Particles compare their volumes with the space at nodes that other patches own.
 #[test]
 fn volumes_relaxed_to_the_space_that_there_is() {

@@ -6,12 +6,14 @@
 mod bodies;
 mod column;
 mod contact;
+mod edges;
 mod frame;
 mod layouts;
 mod loads;
 mod pistons;
 mod sides;
 mod sphere;
+mod spin;
 mod symmetry;
 mod tools;
 mod waves;

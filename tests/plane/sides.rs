@@ -375,7 +375,7 @@ fn every_side_serves_alike() {
 }
 
 /// A block thrown at a wall slantwise loses along it the coefficient times what it loses across
-/// it, as long as all of it slides: to rounding, for transfers of lumped masses.
+/// it, as long as all of it slides: to rounding, for any transfer.
 #[test]
 fn a_block_thrown_at_a_wall_is_slowed_by_coulombs_law() {
     for (shape, transfer, stepping) in [
@@ -384,6 +384,9 @@ fn a_block_thrown_at_a_wall_is_slowed_by_coulombs_law() {
         ("cpdi_bspline_quadratic", json!("flip"), "leapfrog"),
         ("cpdi_bspline_quadratic", json!("apic"), "leapfrog"),
         ("bspline_cubic", json!("apic"), "midpoint"),
+        ("cpdi_bspline_quadratic", json!({"xpic": 2}), "leapfrog"),
+        ("bspline_quadratic", json!({"fmpm": 2}), "midpoint"),
+        ("cpdi_bspline_quadratic", json!({"fmpm": 4}), "midpoint"),
     ] {
         let what = format!("{shape} {transfer} {stepping}");
         let method = json!({"shape": shape, "transfer": transfer, "stepping": stepping});

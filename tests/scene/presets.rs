@@ -49,7 +49,10 @@ fn transfer_is(edits: &[(&str, Value)], transfer: &Value, reason: &str) {
 #[test]
 fn a_scene_without_a_method_has_that_of_the_flyer() {
     let [own, flyer] = [edited(&[]), with("flyer.json", &[]).unwrap()];
-    assert_eq!(json!(own.scene.method), json!(flyer.scene.method));
+    // the plates stay in contact
+    let mut method = json!(flyer.scene.method);
+    method["frame"] = json!("total_lagrangian");
+    assert_eq!(json!(own.scene.method), method);
     assert_eq!(own.scene.artificial_viscosity.unwrap().linear, 0.15);
     assert_eq!(choice(&own).preset, Preset::Default);
     assert_eq!(flyer.method_choice, None);
@@ -66,7 +69,7 @@ fn contents_change_the_default() {
         "surfaces may separate",
     );
     let strong = json!({"metal": {"library": "copper_johnson_cook"}});
-    transfer_is(&[("/materials", strong)], &json!({"fmpm": 6}), "precursors");
+    transfer_is(&[("/materials", strong)], &json!({"fmpm": 12}), "flux limiter");
     let explosive = with("detonation.json", &["method=default"]).unwrap();
     assert_eq!(json!(explosive.scene.method.transfer), json!({"fmpm": 2}));
     assert!(choice(&explosive).reasons.join("; ").contains("burn fronts"));
@@ -74,7 +77,7 @@ fn contents_change_the_default() {
     let contact = edited(&[("/contact", json!({"type": "stick"}))]);
     let quadratic = |scene: CheckedScene| scene.scene.artificial_viscosity.unwrap().quadratic;
     assert_eq!(quadratic(contact), 1.25);
-    assert_eq!(quadratic(edited(&[("/materials", strong)])), 2.0);
+    assert_eq!(quadratic(edited(&[("/materials", strong)])), 0.4);
     let gas = json!({"metal": {"density": 1.0, "eos": {"type": "ideal_gas", "gamma": 1.4}}});
     let warm = json!([{"name": "gas", "material": "metal", "pressure": 1e5, "velocity": [0.0],
         "box": {"lower": [0.0], "upper": [0.002]}, "particles_per_cell": [2]}]);
@@ -87,7 +90,7 @@ fn contents_change_the_default() {
 #[test]
 fn bodies_in_two_dimensions_get_a_domain_limit_and_elastic_ones_no_relaxation() {
     let plane = with("disks.json", &["method=default"]).unwrap();
-    assert_eq!(plane.scene.method.domain_limit, Some(1.0));
+    assert_eq!(plane.scene.method.domain_limit, Some(0.7));
     assert!(plane.scene.method.pressure_relaxation.is_none());
     let fluid = with("oblique_impact.json", &["method=default"]).unwrap();
     assert!(fluid.scene.method.pressure_relaxation.is_some());
@@ -107,7 +110,7 @@ fn presets_differ() {
     ]);
     assert_eq!(json!(apart.scene.method)["frame"], Value::Null);
     // what the frame does not suit
-    for (material, transfer) in [("copper_johnson_cook", 6), ("copper", 14)] {
+    for (material, transfer) in [("copper_johnson_cook", 12), ("copper", 14)] {
         let materials = json!({"metal": {"library": material}});
         let scene = edited(&[("/method", json!("sharpest")), ("/materials", materials)]);
         assert_eq!(json!(scene.scene.method.transfer), json!({"fmpm": transfer}), "{material}");
@@ -116,6 +119,30 @@ fn presets_differ() {
     let rubber = json!({"metal": {"density": 1000.0, "eos": eos}});
     let elastic = edited(&[("/method", json!("sharpest")), ("/materials", rubber)]);
     assert!(elastic.scene.method.pressure_relaxation.is_none());
+}
+
+#[test]
+fn plates_that_stay_in_contact_get_the_total_lagrangian_frame() {
+    let frame = |edits: &[(&str, Value)]| json!(edited(edits).scene.method)["frame"].clone();
+    assert_eq!(frame(&[]), "total_lagrangian");
+    let apart = ("/bodies/1/box", json!({"lower": [0.00002], "upper": [0.002]}));
+    assert_eq!(frame(&[apart]), Value::Null, "plates apart");
+    assert_eq!(frame(&[("/contact", json!({"type": "stick"}))]), Value::Null, "contact");
+    // an option that the frame excludes
+    let limit = json!({"preset": "default", "domain_limit": 2.0});
+    assert_eq!(frame(&[("/method", limit)]), Value::Null);
+    // the release of the softer plate parts them before the end
+    let soft = json!({"metal": {"library": "copper"}, "soft": {"library": "pmma"}});
+    let parted = |flyer: &str, target: &str| {
+        frame(&[
+            ("/time/end", json!(5e-7)),
+            ("/materials", soft.clone()),
+            ("/bodies/0/material", json!(flyer)),
+            ("/bodies/1/material", json!(target)),
+        ])
+    };
+    assert_eq!(parted("soft", "metal"), Value::Null);
+    assert_eq!(parted("metal", "soft"), "total_lagrangian");
 }
 
 #[test]

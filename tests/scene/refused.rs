@@ -33,6 +33,18 @@ fn domains_that_do_not_fit() {
 }
 
 #[test]
+fn impacts_that_cannot_be_smoothed() {
+    let smooth = "impact_smoothing=1";
+    let fragments = ["impact_smoothing = 1", "no impact that it can smooth", "leave it out"];
+    let alone = "reference=null";
+    refused("flyer.json", &[smooth, alone, "bodies.target.velocity=[1000]"], &fragments);
+    refused("flyer.json", &[smooth, alone, "bodies.target.box.lower=[0.001]"], &fragments);
+    refused("flyer_2d.json", &[smooth], &fragments);
+    refused("flyer.json", &["impact_smoothing=0"], &["impact_smoothing = 0", "above 0"]);
+    with("flyer.json", &[smooth]).unwrap();
+}
+
+#[test]
 fn bodies_that_do_not_fit() {
     let edit = |set: &str, fragments: &[&str]| refused("flyer.json", &[set], fragments);
     edit("bodies.flyer.box.lower=[-0.1]", &["bodies.flyer.box.lower = [-0.1]", "-0.001 to 0.009"]);

@@ -42,6 +42,8 @@ struct ReferenceParticle {
     density: f64,
     p: f64,
     e: f64,
+    /// Angular momentum of the spin [m2/s] and its energy [J/kg], per unit mass.
+    spin: [f64; 2],
     /// Initial position, if known.
     reference: Vector,
 }
@@ -118,8 +120,12 @@ impl PlaneReference {
             }
             PlaneSolution::Rotation => {
                 let kept = |particles: &[ReferenceParticle]| {
-                    let point =
-                        |q: &ReferenceParticle| MassPoint { mass: q.mass(), x: q.x, v: q.v };
+                    let point = |q: &ReferenceParticle| MassPoint {
+                        mass: q.mass(),
+                        x: q.x,
+                        v: q.v,
+                        spin: q.spin,
+                    };
                     let points: Vec<_> = particles.iter().map(point).collect();
                     let centre = rotation::centre_of_mass(&points);
                     let internal: f64 = particles.iter().map(|q| q.mass() * q.e).sum();
@@ -152,6 +158,13 @@ impl PlaneReference {
             Some(volume) => volume[r],
             None => 1.0 / value("density", r),
         };
+        let spin = |r: usize| match column("spin_inertia") {
+            Some(inertia) => {
+                let moment = value("spin", r);
+                [moment, 0.5 * moment * moment / inertia[r]]
+            }
+            None => [0.0; 2],
+        };
         (0..table.len())
             .filter(|&r| table.body[r] as usize == self.body)
             .map(|r| ReferenceParticle {
@@ -161,6 +174,7 @@ impl PlaneReference {
                 density: value("density", r),
                 p: value("pressure", r),
                 e: value("specific_internal_energy", r),
+                spin: spin(r),
                 reference: [value("reference_x", r), value("reference_y", r)],
             })
             .collect()

@@ -1,11 +1,31 @@
 //! Normals by logistic regression on particle corners (Nairn, Hammerquist & Smith 2020).
 
-use super::{BodyPair, BoundaryPoint, unit};
+use super::body_pair::{BodyPair, BoundaryPoint, ContactPlanes, unit};
 
-pub(super) const USES_CORNERS: bool = true;
+pub(super) const PLANE_ONLY: bool = true;
 
-pub(super) fn normal<const D: usize>(pair: &BodyPair<'_, D>) -> Option<[f64; D]> {
-    logistic_regression(pair.corners, pair.cell)
+pub(super) const USES_FACES: bool = false;
+
+/// Fraction of the half edges at which corners are taken, so that two bodies in contact can be
+/// separated.
+const INSET: f64 = 0.9;
+
+pub(super) fn planes<const D: usize>(
+    pair: &BodyPair<'_, D>,
+    corners: &mut Vec<BoundaryPoint<D>>,
+) -> ContactPlanes<D> {
+    corners.clear();
+    for (particles, second) in pair.particles.into_iter().zip([false, true]) {
+        for particle in particles {
+            let [first, other] = &particle.half_edges;
+            for (s, t) in [(-INSET, -INSET), (INSET, -INSET), (-INSET, INSET), (INSET, INSET)] {
+                let corner = |a: usize| particle.place[a] + s * first[a] + t * other[a];
+                corners.push((std::array::from_fn(|a| corner(a) / pair.cell[a]), second));
+            }
+        }
+    }
+    let normal = logistic_regression(corners, pair.cell);
+    normal.and_then(|normal| pair.plane(normal)).into_iter().collect()
 }
 
 /// Weight of |w|^2/2 (ridge term), relative to a total weight of 1 for the points of each body.
@@ -134,7 +154,6 @@ fn solve(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> Option<[f64; 3]> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::INSET;
     use super::*;
 
     /// Corners of squares on both sides of a line through the origin with normal `n`, shifted

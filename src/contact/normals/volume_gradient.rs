@@ -1,11 +1,17 @@
 //! Normals by the gradients of the filled volumes (Lemiale, Hurmane & Nairn 2010).
 
-use super::{BodyPair, unit};
+use super::body_pair::{BodyPair, BoundaryPoint, ContactPlanes, unit};
 
-pub(super) const USES_CORNERS: bool = false;
+pub(super) const PLANE_ONLY: bool = false;
 
-pub(super) fn normal<const D: usize>(pair: &BodyPair<'_, D>) -> Option<[f64; D]> {
-    volume_gradient(pair.volume, pair.gradient)
+pub(super) const USES_FACES: bool = false;
+
+pub(super) fn planes<const D: usize>(
+    pair: &BodyPair<'_, D>,
+    _: &mut Vec<BoundaryPoint<D>>,
+) -> ContactPlanes<D> {
+    let normal = volume_gradient(pair.volume, pair.gradient);
+    normal.and_then(|normal| pair.plane(normal)).into_iter().collect()
 }
 
 /// Unit normal from the first of two bodies to the second, by the gradient of the first body's
@@ -22,7 +28,10 @@ pub(super) fn normal<const D: usize>(pair: &BodyPair<'_, D>) -> Option<[f64; D]>
 /// Antisymmetric in the bodies, bit by bit.
 ///
 /// `None` if the gradients define no direction.
-fn volume_gradient<const D: usize>(volume: [f64; 2], [a, b]: [&[f64; D]; 2]) -> Option<[f64; D]> {
+pub(super) fn volume_gradient<const D: usize>(
+    volume: [f64; 2],
+    [a, b]: [&[f64; D]; 2],
+) -> Option<[f64; D]> {
     let square = |v: &[f64; D]| v.iter().map(|x| x * x).sum::<f64>();
     let (a, b) = (a.map(|x| volume[1] * x), b.map(|x| volume[0] * x));
     let difference = std::array::from_fn(|k| a[k] - b[k]);

@@ -26,6 +26,8 @@ pub struct MassPoint {
     pub x: Vector,
     /// Velocity [m/s].
     pub v: Vector,
+    /// Angular momentum [m2/s] and energy [J/kg] of the particle's own rotation, per unit mass.
+    pub spin: [f64; 2],
 }
 
 /// Initial and current position of a particle.
@@ -59,7 +61,7 @@ pub fn centre_of_mass(points: &[MassPoint]) -> Vector {
 
 /// Angular momentum about `centre`, counter-clockwise [kg m2/s].
 pub fn angular_momentum(points: &[MassPoint], centre: Vector) -> f64 {
-    points.iter().map(|q| q.mass * cross(difference(q.x, centre), q.v)).sum()
+    points.iter().map(|q| q.mass * (cross(difference(q.x, centre), q.v) + q.spin[0])).sum()
 }
 
 /// Moment of inertia about `centre` [kg m2].
@@ -69,7 +71,7 @@ pub fn moment_of_inertia(points: &[MassPoint], centre: Vector) -> f64 {
 
 /// Kinetic energy [J].
 pub fn kinetic_energy(points: &[MassPoint]) -> f64 {
-    points.iter().map(|q| 0.5 * q.mass * square(q.v)).sum()
+    points.iter().map(|q| q.mass * (0.5 * square(q.v) + q.spin[1])).sum()
 }
 
 /// Kinetic energy of the rigid rotation with the same angular momentum, L^2/(2 I) [J]; the
@@ -129,7 +131,12 @@ mod tests {
         let squares = (-n..n).flat_map(|i| (-n..n).map(move |j| [place(i), place(j)]));
         squares
             .filter(|&x| square(x) < 1.0)
-            .map(|[x, y]| MassPoint { mass: h * h, x: [CENTRE[0] + x, CENTRE[1] + y], v: [0.0; 2] })
+            .map(|[x, y]| MassPoint {
+                mass: h * h,
+                x: [CENTRE[0] + x, CENTRE[1] + y],
+                v: [0.0; 2],
+                spin: [0.0; 2],
+            })
             .collect()
     }
 

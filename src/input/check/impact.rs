@@ -53,6 +53,19 @@ struct ScoredImpact<'a> {
     gap: f64,
 }
 
+/// Checks that a scene that smooths impacts has one that starts at once, on a line.
+pub(super) fn check_smoothing(checked: &CheckedScene) -> Result<(), SceneFault> {
+    let Some(cells) = checked.scene.impact_smoothing else { return Ok(()) };
+    let count = checked.bodies.len();
+    let mut pairs = (0..count).flat_map(|a| (0..count).map(move |b| (a, b)));
+    if checked.dimension == 1 && pairs.any(|(a, b)| checked.strikes(a, b)) {
+        return Ok(());
+    }
+    let reason = "there is no impact that it can smooth; allowed: to leave it out, or one dimension and \
+                  two bodies that touch and approach each other";
+    Err(SceneFault::new("impact_smoothing", cells, reason))
+}
+
 /// Checks every impact before the end of the run against the limit; warns of gaps between bodies.
 pub(super) fn check(checked: &mut CheckedScene) -> Result<(), SceneFault> {
     let mut warnings = Vec::new();

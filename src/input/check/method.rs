@@ -5,7 +5,10 @@ use serde::Serialize;
 use super::super::errors::SceneFault;
 use super::super::paths::join;
 use crate::scene::CheckedScene;
-use crate::scene::{EnergyUpdate, FrameKind, LimitedTerms, Method, Scene, Stepping, StressUpdate};
+use crate::scene::{
+    EnergyUpdate, FluxLimiter, FrameKind, Geometry, LimitedTerms, Method, Scene, Stepping,
+    StressUpdate,
+};
 use crate::shape::{DomainExtent, most_nodes};
 
 const MIDPOINT: &str = "method.stepping = \"midpoint\"";
@@ -47,6 +50,12 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Sce
                       out, or method.edge_mask";
         return Err(SceneFault::new("method.volume_relaxation", rate, reason));
     }
+    if method.spin {
+        check_spin(scene)?;
+    }
+    if let Some(limiter) = method.flux_limiter {
+        check_limiter(scene, limiter)?;
+    }
     check_contact(scene, warnings)?;
     if method.shape.has_jumps() {
         warnings.push(
@@ -72,6 +81,67 @@ pub(super) fn check_bodies(checked: &CheckedScene) -> Result<(), SceneFault> {
         }
         _ => Ok(()),
     }
+}
+
+/// Checks the options that particles with spin need.
+fn check_spin(scene: &Scene) -> Result<(), SceneFault> {
+    let method = &scene.method;
+    let refuse = |reason: &str| Err(SceneFault::new("method.spin", true, reason.to_string()));
+    if scene.domain.lower.len() == 1 {
+        return refuse(
+            "has no effect: on a line nothing rotates; allowed: to leave it out, or two dimensions",
+        );
+    }
+    if scene.domain.geometry == Geometry::Axisymmetric {
+        return refuse(
+            "does not hold with axial symmetry: a rotation in the plane of radius and axis strains \
+             the hoops, and no angular momentum in this plane is conserved; allowed: to leave it out",
+        );
+    }
+    let spin = ("method.spin", true);
+    if method.stepping != Stepping::Midpoint {
+        let allowed = format!("to leave it out, or {MIDPOINT}");
+        return Err(conflict(spin, ("method.stepping", method.stepping), &allowed));
+    }
+    if !method.transfer.plan().full_mass_matrix {
+        let allowed = "to leave it out, or method.transfer {\"fmpm\": m}";
+        return Err(conflict(spin, ("method.transfer", method.transfer), allowed));
+    }
+    if method.frame == FrameKind::TotalLagrangian {
+        let allowed = "to leave it out, or method.frame \"updated_lagrangian\": distances to the \
+                       nodes are those of the initial positions";
+        return Err(conflict(spin, ("method.frame", method.frame), allowed));
+    }
+    if method.shape.has_jumps() {
+        let allowed = "to leave it out, or another method.shape: a particle at a node has no moment \
+                       of inertia";
+        return Err(conflict(spin, ("method.shape", method.shape), allowed));
+    }
+    Ok(())
+}
+
+/// Checks the options that the flux limiter needs.
+fn check_limiter(scene: &Scene, limiter: FluxLimiter) -> Result<(), SceneFault> {
+    let method = &scene.method;
+    let key = ("method.flux_limiter", limiter);
+    if scene.domain.lower.len() != 1 {
+        let reason = "acts on a line alone; allowed: to leave it out, or one dimension";
+        return Err(SceneFault::new(key.0, limiter, reason));
+    }
+    if method.stepping != Stepping::Midpoint {
+        let allowed = format!("to leave it out, or {MIDPOINT}");
+        return Err(conflict(key, ("method.stepping", method.stepping), &allowed));
+    }
+    let plan = method.transfer.plan();
+    if !plan.full_mass_matrix || plan.order < 2 {
+        let allowed = "to leave it out, or method.transfer {\"fmpm\": m} with m of 2 or more";
+        return Err(conflict(key, ("method.transfer", method.transfer), allowed));
+    }
+    if let Some(contact) = scene.contact.filter(|contact| contact.condition().is_some()) {
+        let allowed = "to leave one of them out";
+        return Err(conflict(key, ("contact.type", contact.name()), allowed));
+    }
+    Ok(())
 }
 
 /// Factor by which a particle may lengthen within a step.
@@ -116,7 +186,7 @@ pub(super) fn check_positions(checked: &CheckedScene) -> Result<(), SceneFault> 
 fn check_contact(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), SceneFault> {
     let Some(contact) = scene.contact else { return Ok(()) };
     let on_line = contact.condition().filter(|_| scene.domain.lower.len() == 1);
-    if let Some(normals) = on_line.map(|c| c.normals).filter(|normals| normals.uses_corners()) {
+    if let Some(normals) = on_line.map(|c| c.normals).filter(|normals| normals.is_plane_only()) {
         let reason = "says nothing: on a line every normal is along it; allowed: to leave it out, \
                       or two dimensions";
         return Err(SceneFault::new("contact.normals", normals, reason));

@@ -37,6 +37,7 @@ pub(super) fn check(scene: Scene, file: &str) -> Result<CheckedScene, Faults> {
     check_whole(&mut checked)?;
     reference::check(&mut checked)?;
     estimate::check(&checked)?;
+    impact::check_smoothing(&checked)?;
     if checked.dimension == 1 {
         impact::check(&mut checked)?;
     }

@@ -30,6 +30,16 @@ pub struct Method {
     /// same particle, as heat; default false.
     #[serde(default)]
     pub filter_heat: bool,
+    /// Each particle carries the angular momentum of its own rotation, which takes part in the mass
+    /// matrix: angular momentum is then conserved to rounding by FMPM of any order; default false.
+    /// Requires a plane without axial symmetry, `midpoint` stepping and a transfer `fmpm`.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub spin: bool,
+    /// Limiter of the fluxes between nodes in the series of FMPM on a line, against tension ahead of
+    /// shocks and weak elastic precursors; absent: none. Requires `midpoint` stepping, a transfer
+    /// `fmpm` of order 2 or more, and no contact.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flux_limiter: Option<FluxLimiter>,
     /// Relaxation of the particle pressure towards its projection on the grid; absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure_relaxation: Option<PressureRelaxation>,
@@ -40,7 +50,8 @@ pub struct Method {
     #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0.0))]
     pub volume_relaxation: Option<f64>,
     /// Smallest filled fraction of a node's volume at which the inverse of the filter acts on the
-    /// nodal force [-]; absent: no mask.
+    /// nodal force, between pairs of such nodes; a uniform acceleration stays uniform [-]; absent: no
+    /// mask.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0), extend("exclusiveMaximum" = 1.0))]
     pub edge_mask: Option<f64>,
@@ -115,12 +126,22 @@ pub enum EnergyUpdate {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PressureRelaxation {
-    /// Fraction of the deviation that one relaxation removes [-].
+    /// Fraction of the deviation that a relaxation removes in a step of Courant number 0.4 or more
+    /// [-]; in shorter steps the fraction is in proportion to the Courant number.
     #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0.0))]
     pub rate: f64,
     /// Number of steps between relaxations.
     #[schemars(range(min = 1))]
     pub interval: u32,
+}
+
+/// Limiter of the fluxes between nodes in the series of FMPM.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FluxLimiter {
+    /// Number of nodes on each side whose values bound those of a node: 1, or 2 for looser limits.
+    #[schemars(range(min = 1, max = 2))]
+    pub neighbours: u32,
 }
 
 /// Artificial viscosity q = rho (linear c h |D| + quadratic h^2 D^2), in compression only.

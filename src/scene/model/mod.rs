@@ -69,6 +69,13 @@ pub struct Scene {
     /// full; null: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub artificial_viscosity: Option<ArtificialViscosity>,
+    /// Length on each side of an interface over which the initial velocities of two bodies that touch
+    /// and approach each other on a line change to a common one, at the same momentum [cells]. 1
+    /// reduces the error of the energy at the interface from some 100 to 10 to 30 %, and the shocks
+    /// arrive up to 0.15 cells later; absent: the velocities jump.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 10.0), extend("exclusiveMinimum" = 0.0))]
+    pub impact_smoothing: Option<f64>,
     /// Body force per unit mass on every particle; absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body_force: Option<BodyForce>,

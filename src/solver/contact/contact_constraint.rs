@@ -12,8 +12,6 @@ pub struct ContactConstraint<const D: usize> {
     pub mass: [f64; 2],
     /// Unit normal from the first field to the second.
     pub normal: [f64; D],
-    /// Whether the whole velocity is shared, not only the normal component.
-    pub whole: bool,
     /// Whether filters leave out the tangential motion of the first or the second field, because
     /// its material fills too little of the node.
     pub low: [bool; 2],
@@ -22,7 +20,7 @@ pub struct ContactConstraint<const D: usize> {
     pub share: f64,
     /// Momentum [kg m/s] and force [N] of the second field on the first from the projections.
     pub given: [[f64; D]; 2],
-    /// Friction force of the second field on the first [N].
+    /// Friction force of the second field on the first [N], along the contact plane.
     pub friction: [f64; D],
 }
 
@@ -36,6 +34,13 @@ pub enum ConstraintJump {
 }
 
 impl<const D: usize> ContactConstraint<D> {
+    /// Impulse of the projections on the first field in a step of `dt` [s], of which particles adopt
+    /// the share `moved` of a jump of velocity [N s].
+    pub fn impulse(&self, moved: f64, dt: f64) -> [f64; D] {
+        let [momentum, force] = &self.given;
+        decomp::array::from_fn(|a| moved * momentum[a] + dt * force[a])
+    }
+
     /// Both values after projection: shared components become their mean by mass.
     ///
     /// The normal components are removed and replaced, not corrected by their difference: a thin
@@ -45,7 +50,7 @@ impl<const D: usize> ContactConstraint<D> {
     pub fn shared(&self, [a, b]: [[f64; D]; 2]) -> [[f64; D]; 2] {
         let [ma, mb] = self.mass;
         let inverse = 1.0 / (ma + mb);
-        if D == 1 || self.whole {
+        if D == 1 {
             let mean = decomp::array::from_fn(|k| (ma * a[k] + mb * b[k]) * inverse);
             return [mean, mean];
         }
@@ -63,38 +68,32 @@ pub(super) mod tests {
     use super::*;
 
     /// Constraint of two fields at the nodes 1 and 4, with masses of 2 and 6 kg.
-    pub fn constraint<const D: usize>(normal: [f64; D], whole: bool) -> ContactConstraint<D> {
+    pub fn constraint<const D: usize>(normal: [f64; D]) -> ContactConstraint<D> {
         let mass = [2.0, 6.0];
         let (low, given, friction) = ([false; 2], [[0.0; D]; 2], [0.0; D]);
-        ContactConstraint { at: [1, 4], mass, normal, whole, low, share: 1.0, given, friction }
+        ContactConstraint { at: [1, 4], mass, normal, low, share: 1.0, given, friction }
     }
 
     #[test]
     fn what_is_shared_is_the_mean_by_mass_and_momentum_stays() {
         let n = [0.6, 0.8];
         let (a, b) = ([3.0, -1.0], [0.5, 2.0]);
-        for whole in [false, true] {
-            let constraint = constraint(n, whole);
-            let [x, y] = constraint.shared([a, b]);
-            for k in 0..2 {
-                let momentum = 2.0 * (x[k] - a[k]) + 6.0 * (y[k] - b[k]);
-                assert!(momentum.abs() < 1e-14);
-            }
-            assert!((dot(&x, &n) - dot(&y, &n)).abs() < 1e-15);
-            let along = |v: [f64; 2]| 0.8 * v[0] - 0.6 * v[1];
-            if whole {
-                assert!((along(x) - along(y)).abs() < 1e-15);
-            } else {
-                assert!((along(x) - along(a)).abs() < 1e-15, "the plane's motion is its own");
-            }
-            // applied twice it gives the same result
-            assert!((dot(&constraint.shared([x, y])[0], &n) - dot(&x, &n)).abs() < 1e-15);
+        let constraint = constraint(n);
+        let [x, y] = constraint.shared([a, b]);
+        for k in 0..2 {
+            let momentum = 2.0 * (x[k] - a[k]) + 6.0 * (y[k] - b[k]);
+            assert!(momentum.abs() < 1e-14);
         }
+        assert!((dot(&x, &n) - dot(&y, &n)).abs() < 1e-15);
+        let along = |v: [f64; 2]| 0.8 * v[0] - 0.6 * v[1];
+        assert!((along(x) - along(a)).abs() < 1e-15, "the plane's motion is its own");
+        // applied twice it gives the same result
+        assert!((dot(&constraint.shared([x, y])[0], &n) - dot(&x, &n)).abs() < 1e-15);
     }
 
     #[test]
     fn a_sliver_loses_no_digits() {
-        let sliver = ContactConstraint { mass: [1e-12, 1.0], ..constraint([1.0], false) };
+        let sliver = ContactConstraint { mass: [1e-12, 1.0], ..constraint([1.0]) };
         // its acceleration is huge, but the sum of momentum is kept
         let [a, b] = sliver.shared([[3e12], [5.0]]);
         assert!((a[0] - 8.0).abs() < 1e-11 && a == b);

@@ -1,9 +1,10 @@
 //! Contact detection: whether two bodies touch at a node, from their gap, their contact pressure
 //! and their contact impulse.
 
+use crate::contact::{BodyPair, ContactParticle, ContactPlane, reach};
 use crate::solver::clock::timed;
+use crate::solver::contact::Member;
 use crate::solver::contact::vectors::norm;
-use crate::solver::contact::{Member, Touch};
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 use crate::solver::scheme::Scheme;
@@ -25,15 +26,14 @@ const HOLDS: f64 = 1e-3;
 /// of a cut body.
 const AT_START: f64 = 0.1;
 
-/// Fraction of u at which bodies with only their initial contact impulse separate: an oscillation
-/// opens an interface slowly, while bodies that really separate do so at once.
+/// Fraction of u at which bodies with only their initial contact impulse separate, and above which
+/// bodies that slide do not adhere: an oscillation opens an interface slowly, while bodies that
+/// really separate do so at once.
 const PARTS: f64 = 0.05;
 
 /// Edge of a body at a node with several bodies.
 #[derive(Clone, Copy)]
 struct BodyEdge {
-    /// Position of the edge along the normal, relative to the node [m].
-    reach: f64,
     /// p + q at the edge [Pa].
     stress: f64,
     /// Impulse that it may return as adhesion [Pa s].
@@ -49,48 +49,32 @@ impl<const D: usize> Scheme<D> {
     /// m u + A s dt > 0,
     /// ```
     ///
-    /// or if they were pressed together and adhere: see [`MAX_ADHESION`](crate::contact::MAX_ADHESION).
+    /// or if they do not slide, were pressed together and adhere: see
+    /// [`MAX_ADHESION`](crate::contact::MAX_ADHESION).
     pub(super) fn touch(
         &self,
         patch: &Patch<D>,
         index: [i64; D],
-        touches: &[Touch],
+        particles: &BodyPair<'_, D>,
         [a, b]: [&Member<D>; 2],
-        normal: &[f64; D],
+        plane: &ContactPlane<D>,
         dt: f64,
     ) -> bool {
-        let edges = |direction: &[f64; D]| {
-            let first = self.edge(patch, index, touches, a.layer, direction)?;
-            let second = self.edge(patch, index, touches, b.layer, &direction.map(|n| -n))?;
-            Some((first, second))
-        };
-        let Some((first, second)) = edges(normal) else { return false };
-        let cell = self.cell.iter().copied().fold(f64::INFINITY, f64::min);
-        let mut gap = -(first.reach + second.reach) / cell;
-        // near a corner the normal lies between the normals of two faces, and along it the bodies
-        // seem to overlap; a gap along any of these directions counts
-        if D > 1 {
-            let faces = [a.gradient, b.gradient.map(|g| -g)];
-            let axes = (0..D).map(|k| {
-                let mut axis = [0.0; D];
-                axis[k] = normal[k].signum();
-                axis
-            });
-            for direction in faces.into_iter().chain(axes) {
-                let length = norm(&direction);
-                if length > 0.0
-                    && let Some((first, second)) = edges(&direction.map(|x| x / length))
-                {
-                    gap = gap.max(-(first.reach + second.reach) / cell);
-                }
-            }
+        if plane.gap >= CLOSED + HELD {
+            return false;
         }
+        let (normal, gap) = (&plane.normal, plane.gap);
+        let first = self.edge(patch, particles.particles[0], normal);
+        let second = self.edge(patch, particles.particles[1], &normal.map(|n| -n));
+        let (Some(first), Some(second)) = (first, second) else { return false };
         let stress = 0.5 * (first.stress + second.stress);
         let strain = stress / self.stiffness[a.layer].min(self.stiffness[b.layer]);
         if gap >= CLOSED + strain.clamp(0.0, HELD) {
             return false;
         }
-        let closing = (0..D).map(|k| (a.velocity[k] - b.velocity[k]) * normal[k]).sum::<f64>();
+        let apart: [f64; D] = decomp::array::from_fn(|k| a.velocity[k] - b.velocity[k]);
+        let closing = (0..D).map(|k| apart[k] * normal[k]).sum::<f64>();
+        let slip: [f64; D] = decomp::array::from_fn(|k| apart[k] - closing * normal[k]);
         // both carry the same force: noise may have reduced the impulse of one of them
         let contact_impulse = first.contact_impulse.max(second.contact_impulse);
         let least =
@@ -99,10 +83,16 @@ impl<const D: usize> Scheme<D> {
         let start = 2.0 * self.starting_pull(a.layer).max(self.starting_pull(b.layer));
         let slow = -PARTS * self.impact;
         let mass = a.mass * b.mass / (a.mass + b.mass);
+        let held = contact_impulse > least
+            && contact_impulse + dt * stress > 0.0
+            && (contact_impulse > start || closing > slow);
         mass * closing + self.area(index, [a, b]) * dt * stress > 0.0
-            || (contact_impulse > least
-                && contact_impulse + dt * stress > 0.0
-                && (contact_impulse > start || closing > slow))
+            || (held && !self.slides(norm(&slip)))
+    }
+
+    /// Whether bodies with a slip of `speed` [m/s] slide, so that they do not adhere.
+    pub(super) fn slides(&self, speed: f64) -> bool {
+        speed > PARTS * self.impact
     }
 
     /// Initial contact impulse of a body, before any pressure [Pa s].
@@ -158,41 +148,19 @@ impl<const D: usize> Scheme<D> {
         patch.block.columns[contact_impulse] = impulse;
     }
 
-    /// Edge of the body in `layer` along `normal`, among the particles that touch a node.
+    /// Edge along `normal` of a body with `particles` at a node.
     fn edge(
         &self,
         patch: &Patch<D>,
-        index: [i64; D],
-        touches: &[Touch],
-        layer: usize,
+        particles: &[ContactParticle<D>],
         normal: &[f64; D],
     ) -> Option<BodyEdge> {
-        let c = &self.columns;
-        let column = |k: usize| &patch.block.columns[k];
-        let filled = column(c.current_volume.expect("contact has the column"));
-        let contact_impulse = column(c.contact_impulse.expect("contact has the column"));
-        let mut edge: Option<BodyEdge> = None;
-        let particles = touches.iter().map(|t| t.particle as usize);
-        for r in particles.filter(|&r| self.layer_of(patch, r) == layer) {
-            let along = |v: [f64; D]| (0..D).map(|a| v[a] * self.cell[a] * normal[a]).sum::<f64>();
-            let centre = along(self.place(patch, r, index));
-            let half = match c.half_edges {
-                None => along([0.5 * filled[r]; D]).abs(),
-                Some(first) => {
-                    let edge = |k: usize| {
-                        along(decomp::array::from_fn(|a| column(first + 2 * k + a)[r])).abs()
-                    };
-                    edge(0) + edge(1)
-                }
-            };
-            let reach = centre + half;
-            if edge.is_none_or(|e| reach > e.reach) {
-                let around = if self.axisymmetric { self.radius(patch, r).abs() } else { 1.0 };
-                let volume = filled[r] * self.cell.iter().product::<f64>() * around;
-                let stress = self.pressing(patch, r, normal) / volume;
-                edge = Some(BodyEdge { reach, stress, contact_impulse: contact_impulse[r] });
-            }
-        }
-        edge
+        let (_, particle) = reach(particles, normal)?;
+        let (c, r) = (&self.columns, particle as usize);
+        let column = |k: Option<usize>| patch.block.columns[k.expect("contact has the column")][r];
+        let around = if self.axisymmetric { self.radius(patch, r).abs() } else { 1.0 };
+        let volume = column(c.current_volume) * self.cell.iter().product::<f64>() * around;
+        let stress = self.pressing(patch, r, normal) / volume;
+        Some(BodyEdge { stress, contact_impulse: column(c.contact_impulse) })
     }
 }

@@ -2,8 +2,7 @@
 //!
 //! The sums of each body (mass, momentum, force, mass matrix) are in a layer of the nodal arrays.
 //! Nodes with particles of several bodies are *contact nodes*. A pair of bodies in contact there shares
-//! the degrees of freedom across the contact plane, that is one normal velocity (and the whole
-//! velocity while friction holds). With m_i the lumped masses, D their diagonal matrix and Pi the
+//! the degree of freedom across the contact plane, that is one normal velocity. With m_i the lumped masses, D their diagonal matrix and Pi the
 //! projection onto the velocities shared in this way, orthogonal in the scalar product of D, the
 //! matrix K = 1 - D^-1 M of one body becomes
 //!
@@ -21,6 +20,9 @@
 //! early, as it does if only the grid decides (Bardenhagen, Brackbill & Sulsky 2000), and bodies do
 //! not stick. Bodies that were pressed together adhere for a short time under tension, as an
 //! interface that opened at each oscillation ahead of a shock would scatter it.
+//!
+//! Friction acts on the velocities at the end of a step, when the normal impulse of contact is
+//! known: see [`friction`].
 //!
 //! Each patch finds the bodies in contact at the nodes that it computes, from particles alone, and
 //! applies the projection to the nodal sums and series.
@@ -42,26 +44,20 @@ use smallvec::SmallVec;
 
 use super::scheme::Scheme;
 use super::series::ProductSeries;
-use crate::contact::{BodyPair, BoundaryPoint, ContactCondition, INSET};
+use crate::contact::{BodyPair, ContactCondition, ContactParticle, ContactPlane};
 use crate::shape::with_width;
 use crate::solver::clock::timed;
 use crate::solver::patch::Patch;
 
 impl<const D: usize> Scheme<D> {
     /// Finds the pairs of bodies in contact at the nodes that the patch computes, after masses and
-    /// momenta have been summed, in a step of `dt`; `forces` says whether nodal forces are known.
-    pub(super) fn find_contact(
-        &self,
-        patch: &mut Patch<D>,
-        contact: &ContactCondition,
-        dt: f64,
-        forces: bool,
-    ) {
+    /// momenta have been summed, in a step of `dt`.
+    pub(super) fn find_contact(&self, patch: &mut Patch<D>, contact: &ContactCondition, dt: f64) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
             s: &Scheme<D>,
             contact: &ContactCondition,
-            [dt, rubbing]: [f64; 2],
+            dt: f64,
         ) {
             let mut found = std::mem::take(&mut patch.contact);
             found.clear();
@@ -76,26 +72,22 @@ impl<const D: usize> Scheme<D> {
                 &patch.runs,
             );
             for contact_node in 0..found.nodes.len() {
-                s.find_constraints::<K>(patch, &mut found, contact_node, contact, [dt, rubbing]);
+                s.find_constraints::<K>(patch, &mut found, contact_node, contact, dt);
             }
             s.fill_constrained_nodes(patch, &mut found);
-            if contact.coefficient.is_some() {
-                s.rub(patch, &found);
-            }
             patch.contact = found;
         }
-        let rubbing = if forces { dt } else { 0.0 };
-        with_width!(patch.stencils.width, go(patch, self, contact, [dt, rubbing]));
+        with_width!(patch.stencils.width, go(patch, self, contact, dt));
     }
 
-    /// Finds the constraints of a contact node, in a step of `dt`, with friction during `rubbing` [s].
+    /// Finds the constraints of a contact node, in a step of `dt`.
     fn find_constraints<const K: usize>(
         &self,
         patch: &Patch<D>,
         found: &mut PatchContact<D>,
         contact_node: usize,
         contact: &ContactCondition,
-        [dt, rubbing]: [f64; 2],
+        dt: f64,
     ) {
         let f = &self.fields;
         let fields = &patch.nodes.fields;
@@ -105,53 +97,40 @@ impl<const D: usize> Scheme<D> {
         let layers = patch.nodes.layers;
         let mut members =
             nodes.members(contact_node, self.empty_mass, layers, &fields[f.mass], sums);
-        let touches = nodes.touches(contact_node);
-        let filled = self.columns.current_volume.expect("contact has the column");
-        for touch in touches {
-            let (r, at) = (touch.particle as usize, touch.at as usize);
-            let weights = patch.stencils.particle::<K, D>(r);
-            let volume = patch.block.columns[filled][r];
-            if let Some(member) = members.iter_mut().find(|m| m.layer == self.layer_of(patch, r)) {
-                member.volume += volume * weights.values[at / K][at % K];
-                for a in 0..D {
-                    member.gradient[a] += volume * weights.gradient(a)[at / K][at % K];
-                }
-            }
-        }
         let node = nodes.node(contact_node);
         let index = self.index_of(patch, node);
+        let particles = &mut found.particles;
+        self.find_particles::<K>(
+            patch,
+            index,
+            nodes.touches(contact_node),
+            &mut members,
+            particles,
+        );
         let first = found.constraints.len();
         let share = self.share_of(patch, index);
         let count = patch.nodes.nodes.count();
         for (i, a) in members.iter().enumerate() {
-            for b in &members[i + 1..] {
+            for (k, b) in members.iter().enumerate().skip(i + 1) {
                 let pair = [a, b];
-                if contact.normals.uses_corners() {
-                    self.find_corners(patch, index, touches, pair, &mut found.points);
-                }
-                let normal = contact.normals.normal(&BodyPair {
-                    volume: [a.volume, b.volume],
+                let body_pair = BodyPair {
+                    volume: pair.map(|m| m.volume),
                     gradient: [&a.gradient, &b.gradient],
-                    corners: &found.points,
+                    particles: [&found.particles[i], &found.particles[k]],
                     cell: &self.cell,
-                });
-                let Some(normal) = normal else { continue };
-                if self.touch(patch, index, touches, pair, &normal, dt) {
-                    let (whole, friction) = match contact.coefficient {
-                        Some(coefficient) if D > 1 && rubbing > 0.0 => {
-                            self.friction(pair, &normal, coefficient, rubbing)
-                        }
-                        _ => (false, [0.0; D]),
-                    };
+                };
+                let planes = contact.normals.planes(&body_pair, &mut found.corners);
+                let touch =
+                    |plane: &ContactPlane<D>| self.touch(patch, index, &body_pair, pair, plane, dt);
+                for plane in planes.into_iter().filter(touch) {
                     found.constraints.push(ContactConstraint {
                         at: pair.map(|m| m.layer * count + node),
                         mass: pair.map(|m| m.mass),
-                        normal,
-                        whole,
+                        normal: plane.normal,
                         low: [false; 2],
                         share,
                         given: [[0.0; D]; 2],
-                        friction,
+                        friction: [0.0; D],
                     });
                 }
             }
@@ -199,28 +178,46 @@ impl<const D: usize> Scheme<D> {
         })
     }
 
-    /// Finds the corners of the particles of two bodies that touch a node.
-    fn find_corners(
+    /// Finds the particles of each body that touch a node, and their sums of filled volume.
+    fn find_particles<const K: usize>(
         &self,
         patch: &Patch<D>,
         index: [i64; D],
         touches: &[Touch],
-        [a, b]: [&Member<D>; 2],
-        points: &mut Vec<BoundaryPoint<D>>,
+        members: &mut [Member<D>],
+        particles: &mut Vec<Vec<ContactParticle<D>>>,
     ) {
-        points.clear();
-        let Some(edges) = self.columns.half_edges else { return };
-        for r in touches.iter().map(|t| t.particle as usize) {
+        let c = &self.columns;
+        let column = |k: usize| &patch.block.columns[k];
+        let filled = column(c.current_volume.expect("contact has the column"));
+        particles.resize(particles.len().max(members.len()), Vec::new());
+        particles.iter_mut().for_each(Vec::clear);
+        for touch in touches {
+            let (r, at) = (touch.particle as usize, touch.at as usize);
             let layer = self.layer_of(patch, r);
-            if layer != a.layer && layer != b.layer {
-                continue;
+            let Some(k) = members.iter().position(|m| m.layer == layer) else { continue };
+            let weights = patch.stencils.particle::<K, D>(r);
+            let volume = filled[r] * weights.values[at / K][at % K];
+            let member = &mut members[k];
+            member.volume += volume;
+            for a in 0..D {
+                member.gradient[a] += filled[r] * weights.gradient(a)[at / K][at % K];
             }
-            let x = self.place(patch, r, index);
-            let edge = |k: usize, a: usize| patch.block.columns[edges + 2 * k + a][r];
-            for (s, t) in [(-INSET, -INSET), (INSET, -INSET), (-INSET, INSET), (INSET, INSET)] {
-                let corner = decomp::array::from_fn(|a| x[a] + s * edge(0, a) + t * edge(1, a));
-                points.push((corner, layer == b.layer));
-            }
+            let place = self.place(patch, r, index);
+            let metres =
+                |v: [f64; D]| -> [f64; D] { decomp::array::from_fn(|a| v[a] * self.cell[a]) };
+            let half_edges = match c.half_edges {
+                None => [metres([0.5 * filled[r]; D]), [0.0; D]],
+                Some(first) => {
+                    [0, 1].map(|k| metres(decomp::array::from_fn(|a| column(first + 2 * k + a)[r])))
+                }
+            };
+            let faces = c.faces.map_or([[0.0; 2]; 2], |first| {
+                [0, 1].map(|k| [0, 1].map(|a| column(first + 2 * k + a)[r]))
+            });
+            let index = touch.particle;
+            let place = metres(place);
+            particles[k].push(ContactParticle { index, place, half_edges, volume, faces });
         }
     }
 
@@ -302,17 +299,17 @@ impl<const D: usize> Scheme<D> {
         forces.clear();
         let own = constraints.iter().filter(|j| j.share > 0.0);
         forces.extend(own.map(|constraint| {
-            let [momentum, force] = constraint.given;
+            let impulse = constraint.impulse(moved, dt);
             let force: [f64; D] = decomp::array::from_fn(|a| {
-                moved * momentum[a] / dt + force[a] + constraint.friction[a]
-            })
-            .map(|f: f64| constraint.share * f);
+                constraint.share * (impulse[a] / dt + constraint.friction[a])
+            });
             let along: SmallVec<[f64; 2]> =
                 (0..D).map(|a| force[a] * constraint.normal[a]).collect();
             let normal: f64 = along.iter().sum();
             let rest = |a: usize| force[a] - normal * constraint.normal[a];
             let across = (0..D).map(|a| rest(a) * rest(a)).sum::<f64>().sqrt();
-            [-normal, across]
+            // friction on a node that pulls has the sign of its normal force
+            [-normal, if normal > 0.0 { -across } else { across }]
         }));
     }
 }

@@ -4,7 +4,7 @@ use super::contact_constraint::{ConstraintJump, ContactConstraint};
 use super::contact_nodes::ContactNodes;
 use super::multi_body_constraint::MultiBodyConstraint;
 use super::vectors::dot;
-use crate::contact::BoundaryPoint;
+use crate::contact::{BoundaryPoint, ContactParticle};
 
 /// Contact data of a patch in one step; buffers are reused.
 #[derive(Clone, Debug, Default)]
@@ -15,8 +15,10 @@ pub struct PatchContact<const D: usize> {
     pub constraints: Vec<ContactConstraint<D>>,
     /// Nodes with more than one pair in contact; their constraints are consecutive.
     pub multi_body: Vec<MultiBodyConstraint<D>>,
+    /// Particles of each body at a node.
+    pub particles: Vec<Vec<ContactParticle<D>>>,
     /// Corners of particles, for normals by regression.
-    pub points: Vec<BoundaryPoint<D>>,
+    pub corners: Vec<BoundaryPoint<D>>,
     /// Normal and tangential force of each of the patch's own constraints [N]: the normal force is
     /// positive in compression, the tangential one a magnitude.
     pub forces: Vec<[f64; 2]>,
@@ -85,7 +87,7 @@ impl<const D: usize> PatchContact<D> {
         if D == 1 {
             return;
         }
-        for constraint in self.constraints.iter().filter(|j| !j.whole) {
+        for constraint in &self.constraints {
             for (at, low) in constraint.at.into_iter().zip(constraint.low) {
                 if !low {
                     continue;
@@ -110,8 +112,7 @@ mod tests {
 
     #[test]
     fn the_jump_is_recorded_on_request() {
-        let mut patch =
-            PatchContact { constraints: vec![constraint([1.0], false)], ..Default::default() };
+        let mut patch = PatchContact { constraints: vec![constraint([1.0])], ..Default::default() };
         let mut fields = vec![vec![0.0, 4.0, 0.0, 0.0, 0.0]];
         patch.join(&mut fields, None);
         assert_eq!((fields[0][1], fields[0][4]), (1.0, 1.0));

@@ -179,6 +179,7 @@ impl<const D: usize> Fixture<D> {
             "work" => f.work,
             "filter_residual" => f.filter_residual.expect("the transfer has a filter"),
             "volume" => f.volume,
+            "edge" => f.edge,
             "compliance" => f.relaxation[0],
             "pressure" => f.relaxation[2],
             "pressure_residual" => f.relaxation[3],
@@ -309,7 +310,9 @@ impl<const D: usize> Fixture<D> {
     /// One whole step of `dt` [s], number 1 of the run.
     pub(crate) fn advance(&mut self, dt: f64) -> &mut Self {
         let time = self.time;
-        self.world(|s, world| s.advance(world, time, dt, 1).expect("particles stay near"));
+        self.world(|s, world| {
+            s.advance(world, time, dt, 2.5 * dt, 1).expect("particles stay near")
+        });
         self
     }
 
@@ -351,6 +354,7 @@ pub(crate) fn solve<const D: usize>(
     nodal: &mut Nodal<'_, D>,
 ) {
     s.solve_velocity(nodal, step.effects, step.dt, s.relaxation.is_some());
+    s.solve_friction(nodal, step);
     if s.compatible {
         s.solve_work(nodal, step.effects);
     }

@@ -6,6 +6,7 @@ pub(crate) mod fixture;
 
 mod cells;
 mod contact;
+mod flux_limiter;
 mod gather;
 mod particle_domains;
 mod particle_update;
@@ -14,5 +15,6 @@ mod scatter;
 mod series;
 mod sides;
 mod solid;
+mod spin;
 mod steps;
 mod total_lagrangian;

@@ -68,11 +68,11 @@ fn the_work_and_impulse_of_a_side_are_counted_once() {
         f.set_node("velocity_y", index, 1.0).set_node("velocity_star_y", index, -3.0);
         f.run(0.1, |s, step, patch| {
             let at = patch.nodes.nodes.flat(index);
-            s.push(patch, at, index, [10.0, 20.0], false);
-            s.push(patch, at, index, [1.0, 2.0], true);
+            s.push(patch, at, index, [10.0, 20.0]);
+            s.record_side_force(patch, at, index, [1.0, 2.0], true);
             s.accumulate_side_forces(patch, step.dt);
         });
-        assert_eq!(f.node("acceleration_x", index), before + 11.0);
+        assert_eq!(f.node("acceleration_x", index), before + 10.0);
         // f.(v + v')/2 dt; the work of friction is heat
         let [pushed, rubbed] = f.patch.boundary_work[..] else { panic!("two forces") };
         close(&[pushed.work], &[share * 0.1 * (10.0 * 4.0 - 20.0)]);
@@ -90,7 +90,7 @@ fn with_compatible_energy_the_velocity_that_works_counts() {
     f.set_node("velocity", [3], 3.0).set_node("velocity_star", [3], 5.0).set_node("work", [3], 7.0);
     f.run(0.1, |s, step, patch| {
         let at = patch.nodes.nodes.flat([3]);
-        s.push(patch, at, [3], [10.0], false);
+        s.push(patch, at, [3], [10.0]);
         s.accumulate_side_forces(patch, step.dt);
     });
     close(&[f.patch.boundary_work[0].work], &[0.1 * 70.0]);

@@ -40,7 +40,17 @@ macro_rules! groups {
     };
 }
 
-groups!(flyer, plane, accuracy, effects, hard_cases, decomposition, reliability, resources);
+groups!(
+    flyer,
+    plane,
+    contact,
+    accuracy,
+    effects,
+    hard_cases,
+    decomposition,
+    reliability,
+    resources
+);
 
 /// Measures what flyer-mpm promises, and prints each figure beside its bound.
 #[derive(Parser)]

@@ -1,0 +1,75 @@
+//! Spin of particles: angular momentum and energy of a disk, and scenes without spin.
+
+use flyer_mpm::input;
+use serde_json::{Value, json};
+
+use crate::tools::run;
+
+/// A rubber disk of five cells' radius, a tenth of a turn.
+fn disk(method: Value) -> Value {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/inputs/spinning_disk.json");
+    let mut scene: Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
+    scene["domain"]["cell_size"] = json!(0.1);
+    scene["time"]["end"] = json!(2.7);
+    scene["output"] = json!({});
+    scene.as_object_mut().unwrap().remove("reference");
+    scene["method"] = json!({"shape": "cpdi_bspline_quadratic", "stepping": "midpoint",
+        "energy": "compatible", "filter_heat": true});
+    for (key, value) in method.as_object().unwrap() {
+        scene["method"][key] = value.clone();
+    }
+    scene
+}
+
+/// Relative losses of angular momentum from the first to the last table, and of energy.
+fn losses(scene: &Value) -> [f64; 2] {
+    let moment = |at_end: bool| {
+        let mut scene = scene.clone();
+        if !at_end {
+            scene["time"]["end"] = json!(1e-9);
+        }
+        let outcome = run::<2>(&scene);
+        let column = |name: &str| outcome.table.column(name).map(|values| values.to_vec());
+        let get = |name: &str| column(name).unwrap();
+        let (x, y) = (get("x"), get("y"));
+        let (u, v) = (get("velocity_x"), get("velocity_y"));
+        let mass: Vec<f64> =
+            get("density").iter().zip(get("volume")).map(|(rho, volume)| rho * volume).collect();
+        let spin = column("spin").unwrap_or(vec![0.0; x.len()]);
+        let sum: f64 = (0..x.len()).map(|r| mass[r] * (x[r] * v[r] - y[r] * u[r] + spin[r])).sum();
+        (sum, outcome.energy_drift())
+    };
+    let (start, (end, drift)) = (moment(false).0, moment(true));
+    [1.0 - end / start, drift]
+}
+
+#[test]
+fn a_spinning_disk_keeps_its_angular_momentum_and_energy() {
+    for order in [2, 4, 7] {
+        let [moment, energy] = losses(&disk(json!({"transfer": {"fmpm": order}, "spin": true})));
+        assert!(moment.abs() < 1e-12 && energy.abs() < 1e-13, "{order}: {moment:e} {energy:e}");
+    }
+    let [moment, energy] = losses(&disk(json!({"transfer": {"fmpm": 4}})));
+    assert!(moment > 0.02 && energy.abs() < 1e-13, "without: {moment:e} {energy:e}");
+}
+
+#[test]
+fn schemes_that_cannot_have_spin_are_refused() {
+    let cases = [
+        (json!({"transfer": {"xpic": 3}}), "method.transfer"),
+        (json!({"transfer": {"fmpm": 3}, "shape": "linear"}), "method.shape"),
+        (json!({"transfer": {"fmpm": 3}, "frame": "total_lagrangian"}), "method.frame"),
+        (
+            json!({"transfer": {"fmpm": 3}, "stepping": "leapfrog", "energy": "textbook",
+                "filter_heat": false}),
+            "method.stepping",
+        ),
+    ];
+    for (mut method, other) in cases {
+        method["spin"] = json!(true);
+        let scene = disk(method);
+        let error = input::parse(scene.to_string().as_bytes(), "scene.json", &[]).unwrap_err();
+        let text = error.to_string();
+        assert!(text.contains("method.spin") && text.contains(other), "{text}");
+    }
+}
