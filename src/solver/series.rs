@@ -180,11 +180,11 @@ impl<const D: usize> Scheme<D> {
     }
 
     /// Whether the edge mask leaves pairs of nodes out of the matrix. With spin, a pair has a block of
-    /// two by two, and momentum is not that of pairs; with contact, the nodes of a pair may belong to
-    /// several bodies. There the mask acts on the nodes alone, before each product of the force and
-    /// after each product of the work.
+    /// two by two, and momentum is not that of pairs; with contact in a plane, the nodes of a pair may
+    /// belong to several bodies. There the mask acts on the nodes alone, before each product of the
+    /// force and after each product of the work.
     fn masks_pairs(&self) -> bool {
-        self.columns.spin.is_none() && self.contact.is_none()
+        self.columns.spin.is_none() && (D == 1 || self.contact.is_none())
     }
 
     /// Masks the first term of a series.
