@@ -115,7 +115,11 @@ impl<const D: usize> Scheme<D> {
             if !self.total_lagrangian {
                 // relative to the volume at the end of the step, so that the volume at the middle
                 // of the next one fills the space to second order in time
-                own_d[r] *= j_mid[r] / own_j[r];
+                let share = j_mid[r] / own_j[r];
+                own_d[r] *= share;
+                if let Some(gradient) = &mut own_gradient {
+                    gradient.iter_mut().for_each(|component| component[r] *= share);
+                }
             }
         }
         let columns = &mut patch.block.columns;

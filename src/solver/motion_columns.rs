@@ -6,7 +6,7 @@ use super::columns::{Columns, SpinColumns};
 use super::declare::{Declare, Role, symmetric_mirror};
 use super::effect::Registry;
 use super::parts::StepPart;
-use super::scheme::volumes_multiply;
+use super::scheme::relaxes_ratio;
 use crate::scene::{CheckedScene, FrameKind, Normals, Stepping};
 use crate::shape::DomainExtent;
 
@@ -87,10 +87,7 @@ fn declare_state(d: &mut Declare<'_>, needs: &Needs) {
     d.columns.sound_speed = d.scalar("sound_speed", "m/s", State);
     d.columns.pressure = d.scalar("pressure", "Pa", State);
     if d.scene.scene.method.stepping == Stepping::Midpoint {
-        let method = &d.scene.scene.method;
-        let relaxed = method.pressure_relaxation.is_some();
-        let of_ghosts = relaxed && volumes_multiply(method, d.scene.dimension);
-        let role = if of_ghosts { GhostScratch } else { Scratch };
+        let role = if relaxes_ratio(d.scene) { GhostScratch } else { Scratch };
         d.columns.jacobian_mid = Some(d.scalar("jacobian_mid", "", role));
     }
 }

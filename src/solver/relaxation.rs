@@ -20,8 +20,9 @@
 //! exp(dV/V) to third order. Were the sum of dV conserved, the volume taken from a compressed
 //! particle and given to one ahead would shrink in the shock, and particles would no longer tile the
 //! space behind it: their pressure would be wrong by an amount that does not fall with the cells.
-//! Only on a line in the total-Lagrangian frame volumes grow by sums: there s is 1 and the sum of dV
-//! is conserved.
+//! On a line in the total-Lagrangian frame volumes grow by sums: there s is 1 and the sum of dV is
+//! conserved. So it is in scenes with gases: at their contact discontinuities J may jump by a factor
+//! of 5, and s = J gives Sod's shock tube 15 % more error in density.
 //!
 //! r is `rate` in a step of Courant number 0.4 and in proportion to the length of shorter steps, so
 //! that a result does not depend on the number of steps in which a shock crosses a cell. In longer

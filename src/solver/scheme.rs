@@ -5,9 +5,10 @@ use super::columns::Columns;
 use super::nodal_fields::Fields;
 use super::parts::StepPart;
 use crate::contact::ContactCondition;
+use crate::material::Eos;
 use crate::material::constitutive::{ConstitutiveModel, FailureModel, StrengthModel, ThermalModel};
 use crate::scene::{
-    CheckedScene, EnergyUpdate, FrameKind, Method, PressureRelaxation, ShapeKind, SideProperties,
+    CheckedScene, EnergyUpdate, FrameKind, PressureRelaxation, ShapeKind, SideProperties,
     Stepping, StressUpdate,
 };
 use crate::shape::DomainExtent;
@@ -34,6 +35,8 @@ pub struct Scheme<const D: usize> {
     pub(super) relaxation: Option<PressureRelaxation>,
     pub(super) volume_relaxation: Option<f64>,
     pub(super) edge_mask: Option<f64>,
+    /// Whether the edge mask acts on pairs of nodes.
+    pub(super) masks_pairs: bool,
     pub(super) viscosity: Option<Viscosity>,
     /// Contact between bodies with separate velocity fields.
     pub(super) contact: Option<ContactCondition>,
@@ -161,6 +164,7 @@ impl<const D: usize> Scheme<D> {
             relaxation: method.pressure_relaxation,
             volume_relaxation: method.volume_relaxation,
             edge_mask: method.edge_mask,
+            masks_pairs: masks_pairs(scene),
             viscosity: viscosity.map(|v| Viscosity::new(v, edge)),
             contact,
             layers: scene.velocity_fields(),
@@ -228,10 +232,26 @@ impl<const D: usize> Scheme<D> {
     }
 }
 
-/// Whether the volume ratio of a particle grows by its divergence times itself, as the size of the
-/// space around it does. On a line the total-Lagrangian frame adds volume instead.
-pub(super) fn volumes_multiply(method: &Method, dimension: usize) -> bool {
-    dimension > 1 || method.frame == FrameKind::UpdatedLagrangian
+/// Whether the relaxation conserves the sum of V0 ln J, not that of V. The volume ratio of a particle
+/// grows by its divergence times itself, as the size of the space around it does, except on a line
+/// in the total-Lagrangian frame, which adds volume. Gases expand by different factors on both sides
+/// of a contact discontinuity, where the sum of V0 ln J is not the space that they fill.
+pub(super) fn relaxes_ratio(scene: &CheckedScene) -> bool {
+    let method = &scene.scene.method;
+    let adds = scene.dimension == 1 && method.frame == FrameKind::TotalLagrangian;
+    method.pressure_relaxation.is_some() && !adds && !scene.has_eos(Eos::is_gas)
+}
+
+/// Whether the edge mask leaves pairs of nodes out of the mass matrix, so that a uniform force gives
+/// a uniform acceleration. Otherwise it acts on the nodes, before each product of the force and
+/// after each product of the work: without a uniform force both are equally accurate, and waves
+/// leave transmitting sides better; with spin a pair has a block of two by two; with contact the
+/// nodes of a pair may belong to several bodies. The flux limiter acts on pairs.
+fn masks_pairs(scene: &CheckedScene) -> bool {
+    let method = &scene.scene.method;
+    let uniform = scene.scene.body_force.is_some() || scene.accelerates();
+    let excluded = method.spin || scene.velocity_fields() > 1 || scene.transmits();
+    method.flux_limiter.is_some() || (uniform && !excluded)
 }
 
 /// Condition at the contact plane, if bodies of `scene` have separate velocity fields.

@@ -179,24 +179,16 @@ impl<const D: usize> Scheme<D> {
         });
     }
 
-    /// Whether the edge mask leaves pairs of nodes out of the matrix. With spin, a pair has a block of
-    /// two by two, and momentum is not that of pairs; with contact in a plane, the nodes of a pair may
-    /// belong to several bodies. There the mask acts on the nodes alone, before each product of the
-    /// force and after each product of the work.
-    fn masks_pairs(&self) -> bool {
-        self.columns.spin.is_none() && (D == 1 || self.contact.is_none())
-    }
-
     /// Masks the first term of a series.
     fn mask_first(&self, patch: &mut Patch<D>, series: &ProductSeries) {
-        if series.order > 1 && (self.masks_pairs() || series.mask == Mask::Force) {
+        if series.order > 1 && (self.masks_pairs || series.mask == Mask::Force) {
             self.mask(patch, series, false);
         }
     }
 
     /// Masks a new sum of a series, the final one if it `ends`.
     fn mask_sum(&self, patch: &mut Patch<D>, series: &ProductSeries, ends: bool) {
-        match (self.masks_pairs(), series.mask) {
+        match (self.masks_pairs, series.mask) {
             (true, _) => self.mask(patch, series, ends),
             (false, Mask::Force) if ends => {}
             (false, mask) => self.mask(patch, series, mask == Mask::Work),
@@ -242,7 +234,7 @@ impl<const D: usize> Scheme<D> {
         for (vector, scratch) in together.vectors.iter().zip(self.fields.scratch..) {
             // nodes without material hold zeros in both fields
             patch.nodes.fields.swap(vector.sum, scratch);
-            if vector.mask != Mask::No && self.masks_pairs() {
+            if vector.mask != Mask::No && self.masks_pairs {
                 Self::leave_edge_out(patch, vector.sum, scratch);
             }
             if let (true, Some(last)) = (together.ends(vector), vector.last) {
@@ -405,7 +397,7 @@ impl<const D: usize> Scheme<D> {
         }
         let mut others: SmallVec<[(usize, Parity); 8]> = SmallVec::new();
         others.push((f.inverse, Parity::Even));
-        if self.edge_mask.is_some() && self.transfer.force_order() > 1 && self.masks_pairs() {
+        if self.edge_mask.is_some() && self.transfer.force_order() > 1 && self.masks_pairs {
             others.push((f.edge, Parity::Even));
         }
         others.extend(f.relaxed_ratio.filter(|_| relax).map(|ratio| (ratio, Parity::Even)));

@@ -7,7 +7,7 @@ use super::columns::Columns;
 use super::effect::{Effects, Registry, Setup, StepContext};
 use super::exchange::World;
 use super::nodal_fields::{Fields, Wanted};
-use super::scheme::{EffectLimits, Scheme, contact_condition, rubs, volumes_multiply};
+use super::scheme::{EffectLimits, Scheme, contact_condition, relaxes_ratio, rubs};
 use crate::material::constitutive::CustomModel;
 use crate::scene::{CheckedScene, Stepping};
 
@@ -50,7 +50,7 @@ impl<const D: usize> Stepper<D> {
             series: method.transfer.plan().series(),
             masked: method.edge_mask.is_some(),
             relaxed: method.pressure_relaxation.is_some(),
-            relaxes_ratio: method.pressure_relaxation.is_some() && volumes_multiply(method, D),
+            relaxes_ratio: relaxes_ratio(scene),
             has_friction: rubs::<D>(contact_condition(scene)) || columns.friction_heat.is_some(),
             has_wall_friction: columns.friction_heat.is_some(),
             limiter: method.flux_limiter.map(|limiter| limiter.neighbours as usize),
