@@ -144,13 +144,14 @@ fn friction_is_that_of_the_normal_impulse_in_every_step() {
     }
 }
 
+/// A transfer that takes the bouncing of a block that has been dropped on the base.
 #[test]
 fn a_block_on_an_incline_slides_or_sticks_by_coulombs_law() {
     // a slope of 0.25 below the coefficient of 0.3, and one of 0.4 above it
     for (slope, moves) in [(0.25f64, 0.0), (0.4, 1.0)] {
         let angle = slope.atan();
         let [along, down] = [10.0 * angle.sin(), 10.0 * angle.cos()];
-        let mut scene = on_base(&json!({"fmpm": 4}), [along, -down], 0.0);
+        let mut scene = on_base(&json!("pic"), [along, -down], 0.0);
         scene["time"]["end"] = json!(0.1);
         let outcome = run::<2>(&scene);
         let exact = moves * (along - 0.3 * down) * 0.1;

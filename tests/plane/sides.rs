@@ -375,7 +375,8 @@ fn every_side_serves_alike() {
 }
 
 /// A block thrown at a wall slantwise loses along it the coefficient times what it loses across
-/// it, as long as all of it slides: to rounding, for any transfer.
+/// it, as long as all of it slides: to rounding for transfers of lumped masses. With a filter some
+/// nodes of the wall pull in the first steps, and have no friction.
 #[test]
 fn a_block_thrown_at_a_wall_is_slowed_by_coulombs_law() {
     for (shape, transfer, stepping) in [
@@ -389,7 +390,7 @@ fn a_block_thrown_at_a_wall_is_slowed_by_coulombs_law() {
         ("cpdi_bspline_quadratic", json!({"fmpm": 4}), "midpoint"),
     ] {
         let what = format!("{shape} {transfer} {stepping}");
-        let method = json!({"shape": shape, "transfer": transfer, "stepping": stepping});
+        let method = json!({"shape": shape, "transfer": &transfer, "stepping": stepping});
         let mut scene = column(0.01, method, json!({"friction": 0.3}), [0.0; 2]);
         scene["domain"]["upper"] = json!([0.8, 0.2]);
         scene["bodies"][0]["box"] = json!({"lower": [0.1, 0.0], "upper": [0.3, 0.04]});
@@ -399,7 +400,8 @@ fn a_block_thrown_at_a_wall_is_slowed_by_coulombs_law() {
         let [start, end] = run::<2>(&scene).totals.map(|t| t.momentum);
         let [along, across] = [0, 1].map(|a| end[a] - start[a]);
         assert!(across > 0.1 * start[1].abs(), "{what}: {across}");
-        at_most(&what, along / (0.3 * across) + 1.0, 1e-9);
+        let filters = transfer.is_object();
+        at_most(&what, along / (0.3 * across) + 1.0, if filters { 1e-5 } else { 1e-9 });
     }
 }
 
