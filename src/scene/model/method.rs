@@ -50,8 +50,8 @@ pub struct Method {
     #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0.0))]
     pub volume_relaxation: Option<f64>,
     /// Smallest filled fraction of a node's volume at which the inverse of the filter acts on the
-    /// nodal force, between pairs of such nodes; a uniform acceleration stays uniform [-]; absent: no
-    /// mask.
+    /// nodal force [-]; with a body force or an accelerated grid between pairs of such nodes, so that
+    /// a uniform force accelerates all particles alike; absent: no mask.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0), extend("exclusiveMaximum" = 1.0))]
     pub edge_mask: Option<f64>,
