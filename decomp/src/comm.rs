@@ -14,13 +14,15 @@ use crate::{bytes_of, words_of};
 /// Default time for which a rank waits for others that give no sign of life.
 pub const STALL_TIMEOUT: Duration = Duration::from_secs(300);
 
-/// Messages sent and time waited by one rank since its start.
+/// Messages sent and received and time waited by one rank since its start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Traffic {
     /// Messages sent to single ranks.
     pub messages: u64,
     /// Size of these messages [bytes].
     pub bytes: u64,
+    /// Size of the messages received [bytes].
+    pub bytes_received: u64,
     /// Reductions over all ranks: `min` and `sum`.
     pub reductions: u64,
     /// Time spent waiting for other ranks, receiving included [s].
@@ -55,7 +57,7 @@ pub trait Comm {
     /// Exact sum of each value over the ranks. Collective.
     fn sum(&self, values: &mut [i64]);
 
-    /// Messages sent and time waited by this rank so far.
+    /// Messages sent and received and time waited by this rank so far.
     fn traffic(&self) -> Traffic;
 
     /// Shows other ranks that this rank makes progress. A rank calls it regularly while it computes

@@ -125,7 +125,8 @@ pub struct Options {
     pub signal: Arc<AtomicU8>,
 }
 
-/// Steps to the end time, recording and writing checkpoints. Collective.
+/// Steps to the end time, recording and writing checkpoints. Returns the bytes that this rank has
+/// received for these outputs. Collective.
 fn step_to_end<const D: usize>(
     simulation: &mut Simulation<'_, D>,
     scene: &CheckedScene,
@@ -134,7 +135,7 @@ fn step_to_end<const D: usize>(
     recorder: &mut Recorder<'_>,
     schedule: &mut CheckpointSchedule,
     unfinished: &Path,
-) -> Result<(), RunFailure>
+) -> Result<u64, RunFailure>
 where
     Stepper<D>: Compiled<D>,
 {
@@ -145,9 +146,10 @@ where
     // the start and the restart state need no checkpoint
     let mut fresh = true;
     let mut mark = recorder.mark();
+    let mut bytes_received = 0;
     loop {
         let time = simulation.time();
-        let (start, waited) = (Instant::now(), comm.traffic().waited);
+        let (start, before) = (Instant::now(), comm.traffic());
         // a checkpoint already contains the records of its own step
         let resumed = fresh && simulation.steps() > 0;
         if !resumed {
@@ -162,7 +164,9 @@ where
             write_checkpoint(simulation, comm, scene, options, recorder, schedule)?;
         }
         fresh = false;
-        let waited = comm.traffic().waited - waited;
+        let traffic = comm.traffic();
+        bytes_received += traffic.bytes_received - before.bytes_received;
+        let waited = traffic.waited - before.waited;
         simulation.clock().add(Activity::Wait, waited);
         simulation.clock().add_since(Activity::Output, start, waited);
         if time >= end {
@@ -184,7 +188,7 @@ where
         }
         progress.show(simulation.time(), simulation.steps());
     }
-    Ok(())
+    Ok(bytes_received)
 }
 
 /// Writes the last state that has passed the monitor; returns how to restart from it. Collective.
@@ -342,10 +346,13 @@ where
         &mut schedule,
         &unfinished,
     );
-    if let Err(failure) = stepped {
-        let recorded = (&mut recorder, &simulation);
-        return Err(leave_records(comm, scene, options, recorded, failure));
-    }
+    let output_bytes = match stepped {
+        Ok(bytes) => bytes,
+        Err(failure) => {
+            let recorded = (&mut recorder, &simulation);
+            return Err(leave_records(comm, scene, options, recorded, failure));
+        }
+    };
     let loop_wall_seconds = loop_start.elapsed().as_secs_f64();
     let loop_cpu = user_cpu_seconds() - loop_cpu;
     let (end, ways, given) = (simulation.totals(), simulation.ways(), simulation.given());
@@ -356,6 +363,7 @@ where
         sharing,
         loop_wall_seconds,
         loop_cpu,
+        output_bytes,
         before,
     );
     let shares = rank_statistics::step_shares(comm, &simulation);

@@ -18,13 +18,15 @@ fn gather<T: Serialize + DeserializeOwned>(comm: &dyn Comm, value: &T) -> Vec<T>
 }
 
 /// Work and messages of all ranks, at rank 0. On this rank the time loop took `wall` and `cpu`
-/// seconds, and its traffic was `before` at the start of the loop. Collective.
+/// seconds and received `output_bytes` for outputs; its traffic was `before` at the start of the
+/// loop. Collective.
 pub fn decomposition<const D: usize>(
     comm: &dyn Comm,
     simulation: &mut Simulation<'_, D>,
     options: &crate::scene::Decomposition,
     wall: f64,
     cpu: f64,
+    output_bytes: u64,
     before: Traffic,
 ) -> Option<DecompositionSummary> {
     let (traffic, tally) = (comm.traffic(), simulation.tally());
@@ -41,6 +43,7 @@ pub fn decomposition<const D: usize>(
         cpu_seconds: cpu,
         bytes: traffic.bytes - before.bytes,
         messages: traffic.messages - before.messages,
+        output_bytes_received: output_bytes,
         particles_migrated: tally.migrated,
         patches_moved: tally.patches_moved,
     };

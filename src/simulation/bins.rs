@@ -76,11 +76,15 @@ impl<const D: usize> Simulation<'_, D> {
             std::array::from_fn(|a| (self.scene.cells[a] as u64).div_ceil(edge as u64));
         let body = self.stepper.columns.body;
         let own = self.patches.iter().map(|p| &p.block);
-        let end = blocks.iter().product::<u64>() * bodies;
-        let shares = Shares::by_key(self.comm, own, end, self.comm.size(), |block, r| {
-            let at = |a: usize| (i64::from(block.cells[r][a]) / edge) as u64;
-            let place = (0..D).rev().fold(0, |place, a| place * blocks[a] + at(a));
-            Some(place * bodies + block.columns[body][r] as u64)
+        let (ranks, places) = (self.comm.size(), blocks.iter().product::<u64>() * bodies);
+        let layout = self.layout();
+        // the rank that has the first cell of a block gets the whole block: few particles travel
+        let end = places * ranks as u64;
+        let shares = Shares::by_key(self.comm, own, end, ranks, |block, r| {
+            let at: [i64; D] = std::array::from_fn(|a| i64::from(block.cells[r][a]) / edge);
+            let rank = layout.rank_of(layout.patch_of(at.map(|k| k * edge)));
+            let place = (0..D).rev().fold(0, |place, a| place * blocks[a] + at[a] as u64);
+            Some(rank as u64 * places + place * bodies + block.columns[body][r] as u64)
         });
         // all columns of a profile, and the masses
         let unwanted = ["strain", "failed", super::HALF_EDGES];
@@ -91,7 +95,7 @@ impl<const D: usize> Simulation<'_, D> {
             groups.push(first..first + rows.len());
         }
         let mine = means(&table, &groups);
-        let keys = groups.iter().map(|rows| shares.keys[rows.start]);
+        let keys = groups.iter().map(|rows| shares.keys[rows.start] % places);
         let mut words: Vec<u64> = keys.collect();
         words.extend(groups.iter().map(|rows| u64::from(table.body[rows.start])));
         words.extend(mine.iter().flat_map(|column| column.values.iter().map(|v| v.to_bits())));

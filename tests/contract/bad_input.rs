@@ -5,7 +5,10 @@ use std::fs;
 
 use serde_json::{Value, json};
 
-use crate::home::Home;
+use crate::home::{Contents, Home};
+use crate::program::Ended;
+#[cfg(feature = "mpi")]
+use crate::program::Turn;
 use crate::scenes::short;
 
 /// An edit of the scene.
@@ -124,46 +127,50 @@ fn home_with_result() -> Home {
     home
 }
 
+/// Asserts that a call has changed no file and has refused the scene.
 #[track_caller]
-fn refused(home: &Home, edit: &Edit, fragments: &[&str], ranks: Option<usize>) {
-    home.write("scene.json", &edit.apply());
-    let before = home.contents();
-    let call = home.call(["scene.json"]);
-    let out = match ranks {
-        Some(ranks) => call.ranks(ranks).end(),
-        None => call.end(),
-    };
+fn refused(home: &Home, before: &Contents, out: &Ended, fragments: &[&str]) {
     out.failed(fragments);
-    if ranks.is_none() {
-        assert_eq!(out.stderr.lines().count(), 1, "{}", out.stderr);
-    }
     assert!(out.stderr.contains("scene.json"), "{}", out.stderr);
-    assert_eq!(home.contents(), before);
+    assert_eq!(home.contents(), *before);
 }
 
 #[test]
 fn a_bad_scene_is_refused() {
     let home = home_with_result();
     for (edit, fragments) in bad() {
-        refused(&home, &edit, fragments, None);
+        home.write("scene.json", &edit.apply());
+        let before = home.contents();
+        let out = home.call(["scene.json"]).end();
+        refused(&home, &before, &out, fragments);
+        assert_eq!(out.stderr.lines().count(), 1, "{}", out.stderr);
     }
 }
 
 #[test]
 #[cfg(feature = "mpi")]
 fn a_bad_scene_is_refused_by_two_ranks() {
-    let home = home_with_result();
-    for wanted in [
+    let all = bad();
+    let cases = [
         "did you mean cell_size?",
         "time.courant = 1.01",
         "overlaps bodies.fly",
         "particles_per_cell",
         "nested too deep",
         "scene.json: is empty",
-    ] {
-        let all = bad();
+    ];
+    let cases = cases.map(|wanted| {
         let (edit, fragments) = all.iter().find(|b| b.1.contains(&wanted)).unwrap();
-        refused(&home, edit, fragments, Some(2));
+        let home = home_with_result();
+        home.write("scene.json", &edit.apply());
+        (home.contents(), home, fragments)
+    });
+    // no rank computes, so all the calls are made at once
+    let turn = Turn::shared();
+    let start = |home: &Home| home.call(["scene.json"]).ranks(2).within(&turn).start();
+    let runs = cases.each_ref().map(|(_, home, _)| start(home));
+    for (run, (before, home, fragments)) in runs.into_iter().zip(&cases) {
+        refused(home, before, &run.end(), fragments);
     }
 }
 

@@ -1,21 +1,31 @@
 //! The commands `calibrate` and `predict`: tables, files, and rejected input.
 
+use std::sync::OnceLock;
+
 use serde_json::{Value, json};
 
 use crate::home::{Home, names};
+#[cfg(feature = "mpi")]
+use crate::program::Turn;
 use crate::scenes::{FLYER, short};
 
-/// A folder with the shipped scene and the constants of a short calibration.
+/// A folder with the shipped scene and the constants of a short calibration, which is made once.
 fn calibrated() -> Home {
+    static CONSTANTS: OnceLock<String> = OnceLock::new();
+    let constants = CONSTANTS.get_or_init(|| {
+        let home = Home::new();
+        home.write("flyer.json", FLYER);
+        let args = ["perf", "calibrate", "flyer.json", "--seconds", "0.05", "--output", "m.json"];
+        let text = home.call(args.into_iter().chain(["--samples"])).end().succeeded();
+        for word in ["compute row", "exchange ghost row", "latency L (assumed)", "fit of steps"] {
+            assert!(text.contains(word), "no {word} in: {text}");
+        }
+        assert_eq!(names(home.path()), ["flyer.json", "m.json"]);
+        std::fs::read_to_string(home.at("m.json")).unwrap()
+    });
     let home = Home::new();
     home.write("flyer.json", FLYER);
-    let args =
-        ["perf", "calibrate", "flyer.json", "--seconds", "0.05", "--output", "m.json", "--samples"];
-    let text = home.call(args).end().succeeded();
-    for word in ["compute row", "exchange ghost row", "latency L (assumed)", "fit of steps"] {
-        assert!(text.contains(word), "no {word} in: {text}");
-    }
-    assert_eq!(names(home.path()), ["flyer.json", "m.json"]);
+    home.write("m.json", constants);
     home
 }
 
@@ -113,11 +123,14 @@ fn what_cannot_be_predicted_is_refused() {
 fn ranks_measure_messages() {
     let home = Home::new();
     let args = ["perf", "calibrate", "--seconds", "0.05", "--output", "m.json"];
-    let text = home.call(args).ranks(3).end().succeeded();
+    let turn = Turn::alone();
+    let run = home.call(args).ranks(3).within(&turn).start();
+    let refused = home.call(["perf", "calibrate", "nowhere.json"]).ranks(2).within(&turn).start();
+    refused.end().failed(&["nowhere.json"]);
+    let text = run.end().succeeded();
     assert_eq!(text.matches("constants in m.json").count(), 1);
     let constants: Value =
         serde_json::from_str(&std::fs::read_to_string(home.at("m.json")).unwrap()).unwrap();
     assert_eq!((&constants["ranks"], &constants["network"]["measured"]), (&json!(3), &json!(true)));
     assert!(constants["network"]["reduction_level"].as_f64().unwrap() > 0.0);
-    home.call(["perf", "calibrate", "nowhere.json"]).ranks(2).end().failed(&["nowhere.json"]);
 }

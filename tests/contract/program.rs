@@ -9,6 +9,8 @@ use std::process::{Child, Command, ExitStatus};
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard};
 use std::time::{Duration, Instant};
 
+use crate::home::Home;
+
 const PROGRAM: &str = env!("CARGO_BIN_EXE_flyer-mpm");
 
 /// Lets Open MPI run in a container.
@@ -22,10 +24,24 @@ static CORES: RwLock<()> = RwLock::new(());
 /// sometimes hangs or crashes there, in `PMIx_server_finalize`.
 const LAUNCHER_END: Duration = Duration::from_secs(10);
 
-// the guards are kept only for their drop
-enum Turn {
-    Shared(#[expect(dead_code)] RwLockReadGuard<'static, ()>),
-    Alone(#[expect(dead_code)] RwLockWriteGuard<'static, ()>),
+/// Leave to use the cores, until it is dropped; several calls may be made within one.
+pub enum Turn {
+    /// Beside the turns of other tests.
+    Shared(#[expect(dead_code, reason = "kept for its drop")] RwLockReadGuard<'static, ()>),
+    /// While no other test has a turn.
+    Alone(#[expect(dead_code, reason = "kept for its drop")] RwLockWriteGuard<'static, ()>),
+}
+
+impl Turn {
+    /// Waits for a turn beside those of other tests.
+    pub fn shared() -> Turn {
+        Turn::Shared(CORES.read().unwrap_or_else(|e| e.into_inner()))
+    }
+
+    /// Waits until no other test has a turn.
+    pub fn alone() -> Turn {
+        Turn::Alone(CORES.write().unwrap_or_else(|e| e.into_inner()))
+    }
 }
 
 /// A call of the program.
@@ -35,6 +51,7 @@ pub struct Call {
     ranks: Option<usize>,
     limit: Duration,
     stderr: Option<PipeWriter>,
+    within: bool,
 }
 
 /// A call that has ended.
@@ -52,7 +69,7 @@ pub struct Started {
     since: Instant,
     limit: Duration,
     what: String,
-    _turn: Turn,
+    _turn: Option<Turn>,
 }
 
 impl Call {
@@ -64,6 +81,7 @@ impl Call {
             ranks: None,
             limit: Duration::from_secs(60),
             stderr: None,
+            within: false,
         }
     }
 
@@ -76,6 +94,12 @@ impl Call {
     #[allow(dead_code, reason = "unused without the feature mpi")]
     pub fn stderr(self, pipe: PipeWriter) -> Call {
         Call { stderr: Some(pipe), ..self }
+    }
+
+    /// Makes the call within a turn that the test has, beside its other calls.
+    #[allow(dead_code, reason = "unused without the feature mpi")]
+    pub fn within(self, _turn: &Turn) -> Call {
+        Call { within: true, ..self }
     }
 
     fn command(&self) -> Command {
@@ -97,9 +121,10 @@ impl Call {
 
     /// Starts the call.
     pub fn start(mut self) -> Started {
-        let turn = match self.ranks {
-            Some(_) => Turn::Alone(CORES.write().unwrap_or_else(|e| e.into_inner())),
-            None => Turn::Shared(CORES.read().unwrap_or_else(|e| e.into_inner())),
+        let turn = match (self.within, self.ranks) {
+            (true, _) => None,
+            (false, Some(_)) => Some(Turn::alone()),
+            (false, None) => Some(Turn::shared()),
         };
         // files rather than pipes: a rank that outlives mpirun cannot block the test
         let (stdout, stderr) = (tempfile::tempfile().unwrap(), tempfile::tempfile().unwrap());
@@ -222,6 +247,17 @@ impl Ended {
 /// Exit code of the ranks that mpirun has reported. It does so when all its ranks have ended.
 fn reported_code(stderr: &str) -> Option<i32> {
     stderr.lines().find_map(|line| line.trim().strip_prefix("Exit code:"))?.trim().parse().ok()
+}
+
+/// Does the same in every folder, at the same time; `act` also gets the index of the folder.
+#[allow(dead_code, reason = "unused without the feature mpi")]
+pub fn at_once(homes: &[Home], act: impl Fn(&Home, usize) + Sync) {
+    std::thread::scope(|scope| {
+        for (k, home) in homes.iter().enumerate() {
+            let act = &act;
+            scope.spawn(move || act(home, k));
+        }
+    });
 }
 
 /// Sends a signal, given by name.

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 
 use crate::home::{Home, Results};
-use crate::program::signal;
+use crate::program::{Turn, at_once, signal};
 use crate::scenes::{mirrored_stray, short, stray};
 
 /// Runs `scene.json` on this many ranks.
@@ -60,37 +60,45 @@ fn every_output_is_written_once() {
 /// A fault in the patch of only one of the two ranks, tested for each rank.
 #[test]
 fn a_fault_of_one_rank_ends_all() {
-    for scene in [stray(), mirrored_stray()] {
+    let cases = [stray(), mirrored_stray()].map(|scene| {
         let home = Home::with(&short());
         home.run("output/scene", &[]);
         home.write("scene.json", &scene.to_string());
-        let before = home.contents();
         let alone = home.call(["scene.json", "--quiet"]).end();
-        let args = ["scene.json", "--quiet", "--set", "domain.patches=[2]"];
-        let run = home.call(args).ranks(2).start();
-        let since = Instant::now();
+        (home.contents(), home, alone.stderr)
+    });
+    let turn = Turn::alone();
+    let args = ["scene.json", "--quiet", "--set", "domain.patches=[2]"];
+    let start = |home: &Home| home.call(args).ranks(2).within(&turn).start();
+    let since = Instant::now();
+    let runs = cases.each_ref().map(|(_, home, _)| start(home));
+    for (run, (before, home, alone)) in runs.into_iter().zip(&cases) {
         let out = run.end();
         assert!(since.elapsed() < Duration::from_secs(20), "{:?}", since.elapsed());
         out.failed(&["particle ", " of body `target` at x = ", "leaves the domain"]);
-        assert!(out.stderr.contains(alone.stderr.trim()), "{} is not {}", out.stderr, alone.stderr);
-        assert_eq!(home.contents(), before);
+        assert!(out.stderr.contains(alone.trim()), "{} is not {alone}", out.stderr);
+        assert_eq!(home.contents(), *before);
     }
 }
 
 #[test]
 fn arguments_are_judged_once() {
     let home = Home::with(&short());
-    let help = home.call(["--help"]).ranks(2).end().succeeded();
-    assert_eq!(help.matches("Usage:").count(), 1);
-    home.call(["scene.json", "--threads", "0"]).ranks(2).end().failed(&["--threads"]);
-    for wrong in ["0", "-1", "nan", "soon"] {
-        let args = ["scene.json".to_string(), format!("--stall-timeout={wrong}")];
-        let args = args.iter().map(String::as_str);
-        home.call(args).ranks(2).end().failed(&["--stall-timeout", "from 0.001 to 1e9"]);
+    // no rank computes, so all the calls are made at once
+    let turn = Turn::shared();
+    let start = |args: &[&str]| home.call(args.iter().copied()).ranks(2).within(&turn).start();
+    let (help, schema) = (start(&["--help"]), start(&["schema"]));
+    let threads = start(&["scene.json", "--threads", "0"]);
+    let compare = start(&["compare", "a", "b"]);
+    let timeouts = ["0", "-1", "nan", "soon"]
+        .map(|wrong| start(&["scene.json", &format!("--stall-timeout={wrong}")]));
+    assert_eq!(help.end().succeeded().matches("Usage:").count(), 1);
+    assert!(serde_json::from_str::<Value>(&schema.end().succeeded()).is_ok());
+    threads.end().failed(&["--threads"]);
+    compare.end().failed(&["a/summary.json"]);
+    for run in timeouts {
+        run.end().failed(&["--stall-timeout", "from 0.001 to 1e9"]);
     }
-    let schema = home.call(["schema"]).ranks(2).end().succeeded();
-    assert!(serde_json::from_str::<Value>(&schema).is_ok());
-    home.call(["compare", "a", "b"]).ranks(2).end().failed(&["a/summary.json"]);
 }
 
 /// Processes of the ranks that mpirun has started.
@@ -113,12 +121,16 @@ fn a_rank_that_is_lost_ends_all() {
     let mut long = short();
     long["domain"]["cell_size"] = json!(1e-6);
     long["time"]["end"] = json!(1e-6);
-    for victim in 0..2 {
+    let homes = [0, 1].map(|_| {
         let home = Home::with(&short());
         home.run("output/scene", &[]);
         home.write("scene.json", &long.to_string());
+        home
+    });
+    let turn = Turn::alone();
+    let lose = |home: &Home, victim: usize| {
         let before = home.contents();
-        let mut run = home.call(["scene.json", "--quiet"]).ranks(2).start();
+        let mut run = home.call(["scene.json", "--quiet"]).ranks(2).within(&turn).start();
         let since = Instant::now();
         while ranks_of(run.id()).len() < 2 && since.elapsed() < Duration::from_secs(20) {
             std::thread::sleep(Duration::from_millis(20));
@@ -137,5 +149,6 @@ fn a_rank_that_is_lost_ends_all() {
         let alive = |rank: &u32| fs::exists(format!("/proc/{rank}/exe")).unwrap_or(true);
         assert!(!ranks.iter().any(alive), "a rank lives on");
         assert_eq!(home.contents(), before);
-    }
+    };
+    at_once(&homes, lose);
 }

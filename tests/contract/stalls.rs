@@ -8,7 +8,7 @@ use nix::unistd::Pid;
 use serde_json::{Value, json};
 
 use crate::home::Home;
-use crate::program::{Started, signal};
+use crate::program::{Call, Started, Turn, at_once, signal};
 use crate::ranks::ranks_of;
 use crate::scenes::{short, whole};
 
@@ -59,13 +59,17 @@ fn long() -> Value {
 /// a rank that does.
 #[test]
 fn a_rank_that_is_stopped_is_named() {
-    for victim in 0..3 {
+    let homes = [0, 1, 2].map(|_| {
         let home = Home::with(&short());
         home.run("output/scene", &[]);
         home.write("scene.json", &long().to_string());
+        home
+    });
+    let turn = Turn::alone();
+    at_once(&homes, |home, victim| {
         let before = home.contents();
         let args = ["scene.json", "--quiet", "--stall-timeout", "5"];
-        let mut run = home.call(args).ranks(3).start();
+        let mut run = home.call(args).ranks(3).within(&turn).start();
         let ranks = processes(&mut run, 3);
         // well within the time loop
         std::thread::sleep(Duration::from_millis(1500));
@@ -73,7 +77,7 @@ fn a_rank_that_is_stopped_is_named() {
         signal("-STOP", ranks[victim]);
         names(run, victim, &ranks, 5);
         assert_eq!(home.contents(), before);
-    }
+    });
 }
 
 /// A rank is asked for a sign of life while it is stopped, and continues before the time is over;
@@ -122,10 +126,10 @@ fn ranks_of_a_calibration_wait_for_each_other() {
 
 #[test]
 fn a_rank_of_a_calibration_that_is_stopped_is_named() {
-    let home = Home::new();
-    for victim in 0..2 {
+    let turn = Turn::alone();
+    at_once(&[0, 1].map(|_| Home::new()), |home, victim| {
         let args = ["perf", "calibrate", "--seconds", "6", "--stall-timeout", "2"];
-        let mut run = home.call(args).ranks(2).start();
+        let mut run = home.call(args).ranks(2).within(&turn).start();
         let ranks = processes(&mut run, 2);
         std::thread::sleep(Duration::from_millis(1500));
         assert!(run.runs(), "the calibration is too short for this test");
@@ -135,24 +139,24 @@ fn a_rank_of_a_calibration_that_is_stopped_is_named() {
         let text = format!("error: rank {victim} has made no progress for 2 s: it hangs");
         out.failed(&[&text]);
         assert_eq!(out.code(), Some(7));
-    }
+    });
 }
 
 /// While rank 0 writes its files, all other ranks wait for it at their end.
 #[test]
 fn a_rank_that_is_stopped_at_the_end_is_named() {
-    for victim in 0..2 {
-        let home = Home::with(&whole());
+    let turn = Turn::alone();
+    at_once(&[0, 1].map(|_| Home::with(&whole())), |home, victim| {
         let args = ["scene.json", "--quiet", "--stall-timeout", "2"];
-        let mut run = home.call(args).ranks(2).start();
+        let mut run = home.call(args).ranks(2).within(&turn).start();
         let ranks = processes(&mut run, 2);
         let since = Instant::now();
-        while !writes(&home) {
+        while !writes(home) {
             assert!(run.runs() && since.elapsed() < Duration::from_secs(20), "no output");
         }
         signal("-STOP", ranks[victim]);
         names(run, victim, &ranks, 2);
-    }
+    });
 }
 
 /// Process id of a rank, as soon as it exists.
@@ -172,30 +176,37 @@ fn process_of(run: &mut Started, victim: usize) -> u32 {
     }
 }
 
+/// Runs that wait for a stopped rank at the same time.
+const AT_ONCE: usize = 5;
+
 /// While MPI starts and ends, no message can be sent: the ranks detect each other by signs of life.
 /// FLYER_MPM_STOPS sets the number of moments, spread over the whole run.
 #[test]
 fn a_rank_that_is_stopped_at_any_moment_is_named() {
     let moments = std::env::var("FLYER_MPM_STOPS").ok().and_then(|n| n.parse().ok()).unwrap_or(5);
-    let home = Home::with(&short());
+    let homes: Vec<Home> = (0..moments).map(|_| Home::with(&short())).collect();
     let args = ["scene.json", "--quiet", "--stall-timeout", "4"];
     let since = Instant::now();
-    home.call(args).ranks(3).end().succeeded();
+    homes[0].call(args).ranks(3).end().succeeded();
     let whole = since.elapsed();
-    for k in 0..moments {
-        let victim = k % 3;
-        let mut delay = whole.mul_f64(k as f64 / moments as f64);
-        // a run that ended before its signal is no test: repeat it with a shorter delay
-        while !stopped_rank_is_named(&home, &args, victim, delay) {
-            assert!(delay > Duration::from_millis(1), "every run ends before its signal");
-            delay /= 2;
-        }
+    let turn = Turn::alone();
+    for (wave, some) in homes.chunks(AT_ONCE).enumerate() {
+        at_once(some, |home, k| {
+            let k = wave * AT_ONCE + k;
+            let mut delay = whole.mul_f64(k as f64 / moments as f64);
+            // a run that ended before its signal is no test: repeat it with a shorter delay
+            while !stopped_rank_is_named(home.call(args).within(&turn), k % 3, delay) {
+                assert!(delay > Duration::from_millis(1), "every run ends before its signal");
+                delay /= 2;
+            }
+        });
     }
 }
 
-/// Stops a rank after a delay and asserts that it is named. Returns false if the run ended before.
-fn stopped_rank_is_named(home: &Home, args: &[&str], victim: usize, delay: Duration) -> bool {
-    let mut run = home.call(args.iter().copied()).ranks(3).start();
+/// Stops one of three ranks after a delay and asserts that it is named. Returns false if the run
+/// ended before.
+fn stopped_rank_is_named(call: Call, victim: usize, delay: Duration) -> bool {
+    let mut run = call.ranks(3).start();
     let process = process_of(&mut run, victim);
     let found = Instant::now();
     while found.elapsed() < delay && run.runs() {

@@ -139,6 +139,7 @@ impl Comm for LocalRank {
         meanwhile();
         received.clear();
         received.extend(from.iter().map(|&source| self.receive(source)));
+        self.watch.count_received(received);
     }
 
     fn min(&self, values: &mut [f64]) {

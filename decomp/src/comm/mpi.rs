@@ -160,6 +160,7 @@ impl Comm for Mpi {
             for (source, words) in from.iter().zip(received.iter_mut()) {
                 self.receive(*source, words);
             }
+            self.watch.count_received(received);
             for (to, request) in requests {
                 self.wait_request(Awaited::Rank(to), request);
             }

@@ -119,16 +119,24 @@ impl<C: Control> StallWatch<C> {
         self.timeout.set(timeout);
     }
 
-    /// Messages sent and time waited so far.
+    /// Messages sent and received and time waited so far.
     pub fn traffic(&self) -> Traffic {
         self.traffic.get()
     }
 
-    /// Counts the messages of an exchange.
+    /// Counts the messages that an exchange sends.
     pub fn count_sends(&self, sends: &[(usize, &[u64])]) {
         let mut traffic = self.traffic.get();
         traffic.messages += sends.len() as u64;
         traffic.bytes += sends.iter().map(|(_, words)| size_of_val(*words) as u64).sum::<u64>();
+        self.traffic.set(traffic);
+    }
+
+    /// Counts the messages that an exchange has received.
+    pub fn count_received(&self, received: &[Vec<u64>]) {
+        let mut traffic = self.traffic.get();
+        traffic.bytes_received +=
+            received.iter().map(|words| size_of_val(&words[..]) as u64).sum::<u64>();
         self.traffic.set(traffic);
     }
 

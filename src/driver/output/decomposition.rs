@@ -67,6 +67,10 @@ pub struct RankSummary {
     pub bytes: u64,
     /// Messages that the rank sent in the time loop.
     pub messages: u64,
+    /// Bytes that the rank received in the time loop for profiles, histories, fields and
+    /// checkpoints \[B\].
+    #[serde(default)]
+    pub output_bytes_received: u64,
     /// Particles that moved from a patch of the rank to another patch.
     pub particles_migrated: u64,
     /// Patches that the rank gave away.

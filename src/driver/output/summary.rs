@@ -321,6 +321,7 @@ pub(super) mod tests {
             cpu_seconds: 0.7,
             bytes: 26_120_000,
             messages: 5224,
+            output_bytes_received: 4000,
             particles_migrated: 7,
             patches_moved: rank as u64,
         };

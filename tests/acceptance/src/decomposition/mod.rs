@@ -11,6 +11,7 @@ mod in_process;
 mod layouts;
 mod memory;
 mod quiet;
+mod received;
 mod schemes;
 mod speed;
 
@@ -22,12 +23,13 @@ pub const TITLE: &str =
     "Work shared over ranks, patches and threads: the same bits, speed, balance and memory";
 
 /// Sections in the order in which they run.
-pub const SECTIONS: [Section; 7] = [
+pub const SECTIONS: [Section; 8] = [
     usual("bits", bits::check),
     usual("schemes", schemes::check),
     usual("speed", speed::check),
     usual("balance", balance::check),
     quick("quiet", quiet::check),
     usual("memory", memory::check),
+    quick("received", received::check),
     quick("hang", hang::check),
 ];
