@@ -27,6 +27,16 @@ fn half_sum<const K: usize>(a: &[f64; K], b: &[f64; K]) -> [f64; K] {
 /// Values of a nodal vector at the nodes of a particle: component, line of nodes, node.
 type Windows<const K: usize, const L: usize, const D: usize> = [[[f64; K]; L]; D];
 
+/// Scales the velocity gradient of a particle, if it exists, by `share`, the ratio of the volumes at
+/// the middle and the end of the step. Relative to the end, it gives the volume at the middle of the
+/// next step to second order in time.
+#[inline(always)]
+fn scale(gradient: &mut OwnTensor<'_>, particle: usize, share: f64) {
+    for component in gradient.iter_mut().flatten() {
+        component[particle] *= share;
+    }
+}
+
 impl<const D: usize> Scheme<D> {
     /// Updates the own particles at the end of a mid-point step: volume and energy from the
     /// gradients of the mean velocity and of w, heat of the filter, velocity, position and domain.
@@ -113,13 +123,9 @@ impl<const D: usize> Scheme<D> {
             own_e[r] += heat - work_done / mass[r];
             own_d[r] = self.with_hoop(patch, &weights, r, end, |l| star[0][l]);
             if !self.total_lagrangian {
-                // relative to the volume at the end of the step, so that the volume at the middle
-                // of the next one fills the space to second order in time
                 let share = j_mid[r] / own_j[r];
                 own_d[r] *= share;
-                if let Some(gradient) = &mut own_gradient {
-                    gradient.iter_mut().for_each(|component| component[r] *= share);
-                }
+                scale(&mut own_gradient, r, share);
             }
         }
         let columns = &mut patch.block.columns;

@@ -111,7 +111,8 @@ fn in_a_plane_the_whole_gradient_is_kept() {
     }));
     f.set_flow([(0.0, [0.0; 2]); 2], [(0.0, [4.0, 8.0]), (0.0, [3.0, -2.0])]);
     f.gather_midpoint(0.1);
+    // relative to the volume at the end, 1.1 of that at the middle
     for (of, value) in [("xx", 4.0), ("xy", 8.0), ("yx", 3.0), ("yy", -2.0)] {
-        close(&f.get(&format!("velocity_gradient_{of}")), &[value; 2]);
+        close(&f.get(&format!("velocity_gradient_{of}")), &[value / 1.1; 2]);
     }
 }

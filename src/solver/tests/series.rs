@@ -10,12 +10,12 @@ use super::fixture::{Fixture, close, solve};
 /// Solves a step of 1/2 s from the velocities 1, 5 m/s and accelerations 2, -2 m/s2 on the nodes 3
 /// and 4: means 2 m/s and 1 m/s2.
 fn solved(method: Value) -> Fixture<1> {
-    solved_with(method, [2.0, -2.0])
+    solved_with(json!({"method": method}), [2.0, -2.0])
 }
 
-/// The same from other accelerations of the nodes 3 and 4.
-fn solved_with(method: Value, acceleration: [f64; 2]) -> Fixture<1> {
-    let mut f = Fixture::<1>::new(json!({"method": method}));
+/// The same of a scene with other keys, from other accelerations of the nodes 3 and 4.
+fn solved_with(scene: Value, acceleration: [f64; 2]) -> Fixture<1> {
+    let mut f = Fixture::<1>::new(scene);
     f.set("position", &[3.25, 6.5]);
     f.nodal(0.5, |s, step, nodal| {
         nodal.each("start", |patch| {
@@ -68,26 +68,45 @@ fn the_velocity_that_works() {
     close(&of(json!({"flip_pic": 0.25})), &[0.25 + 1.75, 1.25 + 1.75]);
 }
 
-/// Accelerations and velocities of the work of a step with an edge mask, which removes node 4: it is
-/// filled by 1/4.
-fn masked(acceleration: [f64; 2]) -> [Vec<f64>; 2] {
+#[test]
+fn the_edge_mask_leaves_nodes_with_little_material_out_of_the_force() {
+    let method = json!({"transfer": {"fmpm": 2}, "stepping": "midpoint", "edge_mask": 0.3});
+    let f = solved(method);
+    // node 4 is filled by 1/4: K chi f/m = (2, 0) - 3/2; the velocity has no mask
+    close(&f.line("velocity", 3..=4), &[0.0, 8.0]);
+    close(&f.line("acceleration", 3..=4), &[2.0 + 0.5, -2.0 - 1.5]);
+}
+
+#[test]
+fn the_edge_mask_of_the_work() {
+    let method = json!({"transfer": {"fmpm": 2}, "stepping": "midpoint", "edge_mask": 0.3,
+        "energy": "compatible"});
+    let f = solved(method);
+    // v' = (1.25, 6.25), A v' = 2.5, w0 = (1.75, 3.75): only node 3 gets K w0 = 1.75 - 2.25
+    close(&f.line("work", 3..=4), &[1.75 - 0.5, 3.75]);
+}
+
+/// Accelerations and velocities of the work of a step of a scene with a body force, whose edge mask
+/// acts on pairs. It removes node 4, which is filled by 1/4.
+fn masked_pairs(acceleration: [f64; 2]) -> [Vec<f64>; 2] {
     let method = json!({"transfer": {"fmpm": 3}, "stepping": "midpoint", "edge_mask": 0.3,
         "energy": "compatible"});
-    let f = solved_with(method, acceleration);
+    let scene = json!({"method": method, "body_force": {"gravity": [1.0]}});
+    let f = solved_with(scene, acceleration);
     [f.line("acceleration", 3..=4), f.line("work", 3..=4)]
 }
 
 #[test]
-fn the_edge_mask_leaves_pairs_with_little_material_out_of_the_force() {
+fn with_a_body_force_the_edge_mask_leaves_pairs_of_nodes_out() {
     // the only pair of nodes is left out, and f/m stays; w0 = (vL + A v')/2 likewise
-    let [acceleration, work] = masked([2.0, -2.0]);
+    let [acceleration, work] = masked_pairs([2.0, -2.0]);
     close(&acceleration, &[2.0, -2.0]);
     // the velocity has no mask: vL + 2 K vL = (-1, 11), v' = (0, 10), A v' = 2.5
     close(&work, &[1.75, 3.75]);
 }
 
 #[test]
-fn an_edge_mask_keeps_a_uniform_acceleration_uniform() {
-    let [acceleration, _] = masked([7.0, 7.0]);
+fn with_a_body_force_a_uniform_acceleration_stays_uniform() {
+    let [acceleration, _] = masked_pairs([7.0, 7.0]);
     close(&acceleration, &[7.0, 7.0]);
 }
