@@ -33,7 +33,7 @@ impl CheckedScene {
             let away = (x - interface).abs() / width;
             let [rho, rho_beside] = [body, other].map(|i| self.material_of(i).density);
             let common = (rho * velocity + rho_beside * beside.velocity[0]) / (rho + rho_beside);
-            (away < 1.0).then(|| common + (velocity - common) * away)
+            (away < 1.0).then_some(common + (velocity - common) * away)
         });
         graded.next().unwrap_or(velocity)
     }

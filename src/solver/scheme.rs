@@ -8,8 +8,8 @@ use crate::contact::ContactCondition;
 use crate::material::Eos;
 use crate::material::constitutive::{ConstitutiveModel, FailureModel, StrengthModel, ThermalModel};
 use crate::scene::{
-    CheckedScene, EnergyUpdate, FrameKind, PressureRelaxation, ShapeKind, SideProperties,
-    Stepping, StressUpdate,
+    CheckedScene, EnergyUpdate, FrameKind, PressureRelaxation, ShapeKind, SideProperties, Stepping,
+    StressUpdate,
 };
 use crate::shape::DomainExtent;
 use crate::solver::artificial_viscosity::Viscosity;
