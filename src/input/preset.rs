@@ -22,7 +22,7 @@ struct SceneContents {
     /// Bodies on a line touch each other without a contact law, and no side lets particles out.
     joined: bool,
     /// The same of two plates that press on each other until the end of the run.
-    pressed: bool,
+    plates_in_contact: bool,
     /// Some body is a fluid, or a solid whose pressure follows an equation of state of fluids.
     fluid: bool,
     strength: bool,
@@ -169,7 +169,7 @@ impl Preset {
         let reason = match self {
             Preset::Default => {
                 merge(&mut base, [json!({}), json!({"linear": 0.15})]);
-                if contents.pressed && acting(contents).next().is_none() {
+                if contents.plates_in_contact && acting(contents).next().is_none() {
                     merge(&mut base, [json!({"frame": "total_lagrangian"}), json!({})]);
                     "least error of plane impacts whose peak pressure is within 0.5 %; \
                      total-Lagrangian, for plates that stay in contact"
@@ -367,7 +367,7 @@ impl SceneContents {
             body_force: scene.get("body_force").is_some_and(|force| !force.is_null()),
             contact: scene.get("contact").is_some_and(|contact| !contact.is_null()),
             joined: dimension == 1 && are_joined(scene),
-            pressed: dimension == 1 && are_joined(scene) && stay_pressed(scene),
+            plates_in_contact: dimension == 1 && are_joined(scene) && stay_in_contact(scene),
             fluid: any(|m, _| !m.eos.is_solid()),
             strength: any(|m, _| m.strength.is_some()),
             failure: any(|m, _| m.failure.is_some()),
@@ -396,7 +396,7 @@ fn are_joined(scene: &Map<String, Value>) -> bool {
 /// the run. The release from the free surface of the plate with the higher impedance leaves some
 /// pressure at the interface; that of the other plate parts them. No wave is faster than c0 + 2 s v
 /// in the initial coordinates, with the impact speed v.
-fn stay_pressed(scene: &Map<String, Value>) -> bool {
+fn stay_in_contact(scene: &Map<String, Value>) -> bool {
     let plate = |body: &Value| {
         let material = scene.get("materials")?.get(body["material"].as_str()?)?;
         let eos = &material["eos"];
@@ -440,7 +440,7 @@ mod tests {
                 gas: has(6),
                 burn: has(7),
                 porous: has(8),
-                pressed: has(9),
+                plates_in_contact: has(9),
                 axisymmetric: has(10),
                 body_force: has(11),
             }
