@@ -22,10 +22,10 @@ use decomp::{Block, Parity};
 use crate::scene::CheckedScene;
 use crate::shape::with_width;
 use crate::solver::Scheme;
+use crate::solver::band::Band;
 use crate::solver::declare::{Declare, Role};
 use crate::solver::effect::{Account, Effect, Package, Phase, Setup, StepContext};
 use crate::solver::exchange::Nodal;
-use crate::solver::nodal_fields::Band;
 use crate::solver::patch::Patch;
 use crate::solver::series::ScalarSeries;
 

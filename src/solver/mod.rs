@@ -5,6 +5,7 @@
 //! physics and messages: it runs a phase on every patch, and the exchanges between phases.
 
 pub mod artificial_viscosity;
+pub mod band;
 mod body_models;
 pub mod clock;
 pub mod columns;

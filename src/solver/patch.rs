@@ -5,9 +5,9 @@ use std::ops::Range;
 use decomp::{Block, IndexBox, Layout, NodeArrays};
 
 use crate::shape::{ParticleDomain, Shape, Weights};
+use crate::solver::band::Band;
 use crate::solver::clock::Stopwatch;
 use crate::solver::contact::PatchContact;
-use crate::solver::nodal_fields::Band;
 use crate::solver::particle_weights::{NARROW, lines};
 use crate::solver::shape_weights::Stencils;
 
