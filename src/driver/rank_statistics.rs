@@ -1,4 +1,6 @@
-//! Statistics of all ranks of a run, gathered at rank 0.
+//! Costs of a run over all ranks, gathered at rank 0.
+
+use std::time::Instant;
 
 use decomp::{Comm, Traffic, bytes_of, words_of};
 use serde::Serialize;
@@ -6,8 +8,9 @@ use serde::de::DeserializeOwned;
 
 use crate::driver::output::decomposition::{DecompositionSummary, RankSummary};
 use crate::driver::output::trace::TraceEvent;
+use crate::scene::Decomposition;
 use crate::simulation::Simulation;
-use crate::solver::clock::{Activity, Event};
+use crate::solver::clock::{Activity, Event, user_cpu_seconds};
 
 /// Each rank's value at rank 0, by rank; empty on other ranks. Collective.
 fn gather<T: Serialize + DeserializeOwned>(comm: &dyn Comm, value: &T) -> Vec<T> {
@@ -17,22 +20,94 @@ fn gather<T: Serialize + DeserializeOwned>(comm: &dyn Comm, value: &T) -> Vec<T>
     all.iter().map(|w| read(w).expect("a rank sends what it serialized")).collect()
 }
 
-/// Work and messages of all ranks, at rank 0. On this rank the time loop took `wall` and `cpu`
-/// seconds and received `output_bytes` for outputs; its traffic was `before` at the start of the
-/// loop. Collective.
-pub fn decomposition<const D: usize>(
+/// The state of this rank's counters at the start of its time loop.
+pub struct LoopStart {
+    time: Instant,
+    cpu: f64,
+    traffic: Traffic,
+}
+
+/// What this rank has used in its time loop.
+pub struct LoopUse {
+    /// Wall time \[s\].
+    pub wall: f64,
+    /// User CPU time \[s\].
+    pub cpu: f64,
+    /// Bytes that it has sent.
+    pub bytes: u64,
+    /// Messages that it has sent.
+    pub messages: u64,
+    /// Bytes that it has received for outputs.
+    pub output_bytes: u64,
+}
+
+impl LoopStart {
+    /// Reads the counters.
+    pub fn now(comm: &dyn Comm) -> Self {
+        LoopStart { time: Instant::now(), cpu: user_cpu_seconds(), traffic: comm.traffic() }
+    }
+
+    /// What was used since then; `output_bytes` were received for outputs.
+    pub fn end(self, comm: &dyn Comm, output_bytes: u64) -> LoopUse {
+        let traffic = comm.traffic();
+        LoopUse {
+            wall: self.time.elapsed().as_secs_f64(),
+            cpu: user_cpu_seconds() - self.cpu,
+            bytes: traffic.bytes - self.traffic.bytes,
+            messages: traffic.messages - self.traffic.messages,
+            output_bytes,
+        }
+    }
+}
+
+/// Costs of a run over all ranks.
+pub struct Costs {
+    /// Work and messages by rank.
+    pub decomposition: DecompositionSummary,
+    /// Wall time of the time loop of rank 0 \[s\].
+    pub loop_wall: f64,
+    /// User CPU time of the time loops \[s\].
+    pub loop_cpu: f64,
+    /// User CPU time of the other ranks \[s\].
+    pub others_cpu: f64,
+    /// Share of each [part](crate::solver::parts) of a step in the ranks' computing time; `None`
+    /// without samples.
+    pub step_shares: Option<Vec<f64>>,
+}
+
+/// Costs over all ranks, at rank 0, from what each has `used` in its time loop. Collective.
+pub fn costs<const D: usize>(
     comm: &dyn Comm,
     simulation: &mut Simulation<'_, D>,
-    options: &crate::scene::Decomposition,
-    wall: f64,
-    cpu: f64,
-    output_bytes: u64,
-    before: Traffic,
+    options: &Decomposition,
+    used: &LoopUse,
+) -> Option<Costs> {
+    let decomposition = decomposition(comm, simulation, options, used);
+    let step_shares = step_shares(comm, simulation);
+    let spent = comm.gather(&[used.cpu.to_bits(), user_cpu_seconds().to_bits()]);
+    let seconds = |rank: &[u64], k: usize| f64::from_bits(rank[k]);
+    let loop_cpu: f64 = spent.iter().map(|r| seconds(r, 0)).sum();
+    Some(Costs {
+        decomposition: decomposition?,
+        loop_wall: used.wall,
+        // a run shorter than the clock's tick has no CPU time
+        loop_cpu: if loop_cpu > 0.0 { loop_cpu } else { used.wall },
+        others_cpu: spent.iter().skip(1).map(|r| seconds(r, 1)).sum(),
+        step_shares,
+    })
+}
+
+/// Work and messages of all ranks, at rank 0. Collective.
+fn decomposition<const D: usize>(
+    comm: &dyn Comm,
+    simulation: &mut Simulation<'_, D>,
+    options: &Decomposition,
+    used: &LoopUse,
 ) -> Option<DecompositionSummary> {
-    let (traffic, tally) = (comm.traffic(), simulation.tally());
+    let tally = simulation.tally();
     let spent = simulation.clock().seconds;
     let named = Activity::ALL.iter().zip(spent).map(|(a, s)| (a.name().to_string(), s));
-    let rest = ("rest".to_string(), (wall - spent.iter().sum::<f64>()).max(0.0));
+    let rest = ("rest".to_string(), (used.wall - spent.iter().sum::<f64>()).max(0.0));
     let mine = RankSummary {
         rank: comm.rank(),
         patches: simulation.layout().patches_of(comm.rank()).len(),
@@ -40,10 +115,10 @@ pub fn decomposition<const D: usize>(
         particle_steps: tally.particle_steps,
         particle_steps_skipped: tally.skipped_particle_steps,
         seconds: named.chain([rest]).collect(),
-        cpu_seconds: cpu,
-        bytes: traffic.bytes - before.bytes,
-        messages: traffic.messages - before.messages,
-        output_bytes_received: output_bytes,
+        cpu_seconds: used.cpu,
+        bytes: used.bytes,
+        messages: used.messages,
+        output_bytes_received: used.output_bytes,
         particles_migrated: tally.migrated,
         patches_moved: tally.patches_moved,
     };
@@ -81,7 +156,7 @@ pub fn timeline<const D: usize>(
 
 /// Share of each [part](crate::solver::parts) of a step in the ranks' computing time, from samples;
 /// at rank 0, and `None` without samples. Collective.
-pub fn step_shares<const D: usize>(
+fn step_shares<const D: usize>(
     comm: &dyn Comm,
     simulation: &Simulation<'_, D>,
 ) -> Option<Vec<f64>> {

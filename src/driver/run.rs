@@ -1,0 +1,127 @@
+//! A run and its records, from its beginning to the files that an early end leaves.
+
+use std::path::PathBuf;
+
+use decomp::{Comm, StoredParticles};
+
+use super::failure::RunFailure;
+use super::options::{Beginning, Options};
+use super::profiles::{draw, write_profiles};
+use crate::accuracy::estimate::coarse_runs::{self, Companions};
+use crate::driver::checkpoint::CheckpointSchedule;
+use crate::driver::output::histories::HISTORIES_FILE;
+use crate::driver::output::shared_file::agree;
+use crate::driver::output::unfinished;
+use crate::driver::recorder::Recorder;
+use crate::scene::CheckedScene;
+use crate::simulation::{Compiled, Simulation, Totals};
+use crate::solver::Stepper;
+
+/// A run on one rank.
+pub(super) struct Run<'a, const D: usize> {
+    pub comm: &'a dyn Comm,
+    pub scene: &'a CheckedScene,
+    pub options: &'a Options,
+    /// The body whose errors are estimated, and the coarse runs for it.
+    pub estimated: Option<(usize, Companions)>,
+    pub simulation: Simulation<'a, D>,
+    /// Totals at the start of the run, before any restart.
+    pub start: Totals<D>,
+    pub recorder: Recorder<'a>,
+    pub schedule: CheckpointSchedule,
+    /// Folder of what is written during the run; empty if there is none, and on other ranks.
+    pub unfinished: PathBuf,
+}
+
+impl<'a, const D: usize> Run<'a, D>
+where
+    Stepper<D>: Compiled<D>,
+{
+    /// A run at its beginning, after the coarse runs from which its errors are estimated. Collective.
+    pub fn begin(
+        comm: &'a dyn Comm,
+        scene: &'a CheckedScene,
+        options: &'a Options,
+        beginning: Beginning,
+    ) -> Result<Self, RunFailure> {
+        let estimated = match scene.estimated_body() {
+            Some(body) => Some((body, coarse_runs::run(comm, scene, body, options.threads)?)),
+            None => None,
+        };
+        let mut simulation = Simulation::<D>::new(scene, comm, options.threads)?;
+        let start = simulation.totals();
+        if let Some((_, steps)) = &options.trace {
+            simulation.trace(steps.clone());
+        }
+        let mut recorder = Recorder::new(scene, &simulation);
+        if let Some((body, companions)) = &estimated {
+            recorder.arrivals = coarse_runs::arrivals(comm, scene, *body, companions);
+        }
+        let continues = matches!(beginning, Beginning::Checkpoint(_));
+        if let Beginning::Checkpoint(mut checkpoint) = beginning {
+            agree(comm, checkpoint.fit_share(scene))?;
+            simulation.restore(&checkpoint.saved)?;
+            checkpoint.saved.particles = StoredParticles::default();
+            recorder.resume(*checkpoint, simulation.time());
+        }
+        let unfinished = match recorder.fields.is_some() && comm.rank() == 0 {
+            true => unfinished::begin(&options.output, &recorder.origin, continues),
+            false => Ok(PathBuf::new()),
+        };
+        let unfinished = agree(comm, unfinished)?;
+        let now = simulation.time();
+        recorder.open_fields(comm, &unfinished, continues.then_some(now))?;
+        let signal = options.signal.clone();
+        let schedule = CheckpointSchedule::new(scene, now, options.started, signal);
+        Ok(Run {
+            comm,
+            scene,
+            options,
+            estimated,
+            simulation,
+            start,
+            recorder,
+            schedule,
+            unfinished,
+        })
+    }
+
+    /// Leaves the profiles and histories of a run that has failed or was stopped, with a picture of
+    /// its last profile, in the folder of the unfinished run; a run that was stopped adds its last
+    /// state. The failure names the folder. Collective.
+    pub fn leave_records(&mut self, failure: RunFailure) -> RunFailure {
+        match &failure {
+            RunFailure::Stopped { .. } => self.recorder.add_profile(&self.simulation),
+            RunFailure::Alarm { .. } => {}
+            _ => return failure,
+        }
+        if self.comm.rank() != 0 || self.recorder.tables.is_empty() {
+            return failure;
+        }
+        let left = match self.write_records() {
+            Ok(folder) => format!("; its records are in {}", folder.display()),
+            Err(error) => format!("; its profiles could not be written: {error}"),
+        };
+        match failure {
+            RunFailure::Stopped { why, time, step, next } => {
+                RunFailure::Stopped { why, time, step, next: next + &left }
+            }
+            RunFailure::Alarm { error, next } => RunFailure::Alarm { error, next: next + &left },
+            other => other,
+        }
+    }
+
+    /// Writes the records into the folder of the unfinished run, and returns that folder.
+    fn write_records(&self) -> Result<PathBuf, RunFailure> {
+        let (scene, recorder) = (self.scene, &self.recorder);
+        let folder = unfinished::begin(&self.options.output, &recorder.origin, true)?;
+        let profiles = write_profiles(self.comm, scene, None, recorder, &folder)?;
+        if let Some(histories) = recorder.histories() {
+            histories.write(&folder.join(HISTORIES_FILE))?;
+        }
+        if scene.scene.output.pictures {
+            draw(self.comm, scene, None, recorder, &profiles, &folder)?;
+        }
+        Ok(folder)
+    }
+}
