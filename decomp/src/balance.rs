@@ -9,8 +9,15 @@
 /// few patches.
 pub fn assign_patches(weights: &[u64], order: &[usize], ranks: usize) -> Vec<usize> {
     debug_assert_eq!(weights.len(), order.len(), "one place a patch");
+    let mut of = vec![0; weights.len()];
+    assign_along(weights, order, ranks, &mut of);
+    of
+}
+
+/// Assigns the patches of `order` to ranks in sections; see [`assign_patches`].
+fn assign_along(weights: &[u64], order: &[usize], ranks: usize, of: &mut [usize]) {
     // if all weights are zero, patches count equally
-    let even = weights.iter().all(|&w| w == 0);
+    let even = order.iter().all(|&p| weights[p] == 0);
     let weights: Vec<u128> =
         order.iter().map(|&p| if even { 1 } else { u128::from(weights[p]) }).collect();
     let total: u128 = weights.iter().sum();
@@ -21,7 +28,6 @@ pub fn assign_patches(weights: &[u64], order: &[usize], ranks: usize) -> Vec<usi
         if ranks_from(&weights, middle)[0] <= ranks { high = middle } else { low = middle + 1 }
     }
     let needed = ranks_from(&weights, low);
-    let mut of = vec![0; weights.len()];
     let (mut rank, mut load, mut before) = (0, 0, 0);
     for (k, &p) in order.iter().enumerate() {
         let w = weights[k];
@@ -35,7 +41,83 @@ pub fn assign_patches(weights: &[u64], order: &[usize], ranks: usize) -> Vec<usi
         load += w;
         before += w;
     }
-    of
+}
+
+/// Work and size of the patches in a new assignment.
+#[derive(Clone, Copy, Debug)]
+pub struct PatchLoads<'a> {
+    /// Cost of a step of each patch; 0 for a patch that no step computes.
+    pub work: &'a [u64],
+    /// Number of particles of each patch.
+    pub particles: &'a [u64],
+}
+
+impl PatchLoads<'_> {
+    /// Assigns patches to ranks anew, from the present `owners`. Patches with work, and empty ones,
+    /// are assigned by work in sections of `order`. The others need memory alone: each stays with its
+    /// owner, unless this rank would hold more than `most` times the mean number of particles; what
+    /// it has beyond goes, along `order`, to ranks that have fewer.
+    ///
+    /// The largest number of particles of a rank exceeds that limit by no more than one patch, unless
+    /// the patches with work alone do.
+    pub fn reassign(
+        &self,
+        order: &[usize],
+        owners: &[usize],
+        ranks: usize,
+        most: f64,
+    ) -> Vec<usize> {
+        let rests = |p: usize| self.work[p] == 0 && self.particles[p] > 0;
+        let works: Vec<usize> = order.iter().copied().filter(|&p| !rests(p)).collect();
+        let mut of = owners.to_vec();
+        if works.iter().any(|&p| self.work[p] > 0) {
+            assign_along(self.work, &works, ranks, &mut of);
+        }
+        let mut held = vec![0; ranks];
+        for &p in &works {
+            held[of[p]] += self.particles[p];
+        }
+        let mean = self.particles.iter().sum::<u64>() as f64 / ranks as f64;
+        let limit = (most * mean).ceil() as u64;
+        let mut moving = Vec::new();
+        for &p in order.iter().filter(|&&p| rests(p)) {
+            if held[of[p]] + self.particles[p] <= limit {
+                held[of[p]] += self.particles[p];
+            } else {
+                moving.push(p);
+            }
+        }
+        let mut free = FreeRanks { limit: mean.ceil() as u64, held, rank: 0 };
+        for p in moving {
+            of[p] = free.place(self.particles[p]);
+        }
+        of
+    }
+}
+
+/// Ranks that have room for particles, filled one after the other.
+struct FreeRanks {
+    /// Particles up to which a rank is filled.
+    limit: u64,
+    held: Vec<u64>,
+    rank: usize,
+}
+
+impl FreeRanks {
+    /// The rank for a patch of `particles`.
+    fn place(&mut self, particles: u64) -> usize {
+        while self.rank + 1 < self.held.len() && self.held[self.rank] >= self.limit {
+            self.rank += 1;
+        }
+        // all are full: the one with the fewest
+        let full = self.held[self.rank] >= self.limit;
+        let rank = match full {
+            true => (0..self.held.len()).min_by_key(|&r| self.held[r]).expect("a rank"),
+            false => self.rank,
+        };
+        self.held[rank] += particles;
+        rank
+    }
 }
 
 /// For each position, the number of ranks that the weights from there on need under `limit`.
@@ -108,6 +190,7 @@ pub fn even_cuts(weights: &[u64], parts: usize, least: usize) -> Vec<i64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::curve_order;
     use proptest::prelude::*;
 
     fn line(weights: &[u64], ranks: usize) -> Vec<usize> {
@@ -149,6 +232,65 @@ mod tests {
                 prop_assert_eq!(busiest_share(&weights, &of, ranks), best(&weights, ranks));
             }
         }
+    }
+
+    /// A tenth of 320 x 320 patches has work: a disk about the middle. 1000 ranks.
+    #[test]
+    fn patches_without_work_do_not_pile_up() {
+        let (n, ranks) = (320, 1000);
+        let order = curve_order([n, n]);
+        let away = |p: usize| {
+            let offset = |k: usize| (k as f64 - 0.5 * (n as f64 - 1.0)) / n as f64;
+            offset(p % n).hypot(offset(p / n))
+        };
+        let radius = (0.1 / std::f64::consts::PI).sqrt();
+        let particles = vec![64; n * n];
+        let mut owners = assign_patches(&particles, &order, ranks);
+        // the disk grows to this size, as a wave does
+        for growth in [0.2, 0.4, 0.6, 0.8, 1.0] {
+            let work: Vec<u64> =
+                (0..n * n).map(|p| if away(p) < growth * radius { 64 } else { 0 }).collect();
+            let loads = PatchLoads { work: &work, particles: &particles };
+            owners = loads.reassign(&order, &owners, ranks, 1.25);
+            let mean = |all: &[u64]| all.iter().sum::<u64>() as f64 / ranks as f64;
+            let most = |all: &[u64]| busiest_share(all, &owners, ranks) as f64 / mean(all);
+            assert!(most(&particles) <= 1.5, "{growth}: {}", most(&particles));
+            // whole patches: a rank has 10 or 11 of them where the mean is 10.2
+            assert!(growth < 1.0 || most(&work) <= 1.1, "{}", most(&work));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_rank_holds_more_than_the_limit_and_a_patch(
+            loads in prop::collection::vec((0u64..9, 0u64..30), 1..40),
+            ranks in 1usize..6,
+        ) {
+            let (work, particles): (Vec<u64>, Vec<u64>) =
+                loads.iter().map(|&(w, n)| (if n > 0 { w } else { 0 }, n)).unzip();
+            let order: Vec<usize> = (0..work.len()).collect();
+            let owners = vec![0; work.len()];
+            let loads = PatchLoads { work: &work, particles: &particles };
+            let of = loads.reassign(&order, &owners, ranks, 1.25);
+            prop_assert!(of.iter().all(|&rank| rank < ranks));
+            let with_work: Vec<u64> =
+                (0..work.len()).map(|p| if work[p] > 0 { particles[p] } else { 0 }).collect();
+            let mean = particles.iter().sum::<u64>().div_ceil(ranks as u64);
+            let widest = particles.iter().copied().max().unwrap_or(0);
+            let most = busiest_share(&with_work, &of, ranks).max((5 * mean).div_ceil(4) + widest);
+            prop_assert!(busiest_share(&particles, &of, ranks) <= most);
+        }
+    }
+
+    #[test]
+    fn patches_without_work_stay_where_they_are_while_there_is_room() {
+        let loads = PatchLoads { work: &[0, 0, 8, 8], particles: &[5, 5, 5, 5] };
+        assert_eq!(loads.reassign(&[0, 1, 2, 3], &[1, 0, 0, 1], 2, 1.25), [1, 0, 0, 1]);
+        // rank 0 has room for one of its three
+        assert_eq!(loads.reassign(&[0, 1, 2, 3], &[0, 0, 0, 0], 2, 1.0), [0, 1, 0, 1]);
+        // nothing has work
+        let loads = PatchLoads { work: &[0, 0], particles: &[5, 5] };
+        assert_eq!(loads.reassign(&[0, 1], &[1, 0], 2, 1.25), [1, 0]);
     }
 
     #[test]

@@ -37,7 +37,7 @@ mod patch_migration;
 mod reduce;
 mod shares;
 
-pub use balance::{assign_patches, busiest_share, choose_cuts, even_cuts};
+pub use balance::{PatchLoads, assign_patches, busiest_share, choose_cuts, even_cuts};
 pub use bytes::{bytes_of, words_of};
 pub use comm::{Comm, Serial, Traffic};
 pub use ghost_exchange::{GhostExchange, GhostReach, ParticleError};

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use decomp::{assign_patches, busiest_share, relocate};
+use decomp::{PatchLoads, busiest_share, relocate};
 
 use super::run::Simulation;
 use crate::balance::PatchLoad;
@@ -18,6 +18,13 @@ const MOVE_COST: u64 = 4;
 
 /// Gains below this fraction of the load of the busiest rank are noise.
 const WORTH: f64 = 0.03;
+
+/// Particles of a rank over the mean, quiescent ones included, above which quiescent patches move
+/// when patches are assigned anew, ...
+const MOST_PARTICLES: f64 = 1.25;
+
+/// ... and above which they are assigned anew even if the steps gain nothing.
+const CROWDED: f64 = 1.45;
 
 impl<const D: usize> Simulation<'_, D> {
     /// Whether the cost of patches is measured in `step`.
@@ -43,24 +50,30 @@ impl<const D: usize> Simulation<'_, D> {
         let start = Instant::now();
         let waited = self.comm.traffic().waited;
         let (costs, particles) = self.gather_costs();
-        let ranks = self.comm.size();
-        let wanted = assign_patches(&costs, &self.order, ranks);
-        let now = busiest_share(&costs, self.layout.ranks(), ranks);
+        let (ranks, owners) = (self.comm.size(), self.layout.ranks());
+        let loads = PatchLoads { work: &costs, particles: &particles };
+        let wanted = loads.reassign(&self.order, owners, ranks, MOST_PARTICLES);
+        let now = busiest_share(&costs, owners, ranks);
         let then = busiest_share(&costs, &wanted, ranks);
         let moved: u64 = (0..particles.len())
-            .filter(|&p| wanted[p] != self.layout.rank_of(p))
+            .filter(|&p| wanted[p] != owners[p])
             .map(|p| particles[p].max(1))
             .sum();
-        let mean = costs.iter().sum::<u64>() as f64 / particles.iter().sum::<u64>().max(1) as f64;
+        let all = particles.iter().sum::<u64>().max(1) as f64;
+        let mean = costs.iter().sum::<u64>() as f64 / all;
         let gain = (now - then.min(now)) as f64;
         let worth = gain > WORTH * now as f64;
         self.imbalance_debt += if worth { gain * every as f64 } else { 0.0 };
         let pays = self.imbalance_debt > (MOVE_COST * moved) as f64 * mean;
+        // memory does not wait for a gain in time
+        let most = busiest_share(&particles, owners, ranks);
+        let crowded = most as f64 > CROWDED * all / ranks as f64
+            && busiest_share(&particles, &wanted, ranks) < most;
         let waited = self.comm.traffic().waited - waited;
         self.clock.event("balance", start);
         self.clock.add(Activity::Wait, waited);
         self.clock.add_since(Activity::Balance, start, waited);
-        if worth && pays {
+        if (worth && pays) || crowded {
             self.imbalance_debt = 0.0;
             self.move_patches(wanted);
         }
@@ -76,7 +89,8 @@ impl<const D: usize> Simulation<'_, D> {
             let particles = patch.block.own() as u64;
             let computed = if patch.quiescence.is_quiescent() { 0 } else { particles };
             let load = PatchLoad { particles: computed, seconds: patch.stopwatch.cost() };
-            sums[index] = rule.of(&load) as i64;
+            // a quiescent patch is measured too, but no step computes it
+            sums[index] = if computed > 0 { rule.of(&load).max(1) as i64 } else { 0 };
             sums[count + index] = particles as i64;
         }
         self.comm.sum(&mut sums);

@@ -1,11 +1,14 @@
 //! Waiting for other ranks: the only function in which a rank waits, and the search for the rank
 //! that hangs if the wait times out. Independent of MPI and threads.
 //!
-//! A rank whose wait nears its limit asks the ranks that it waits for whether they are alive. A
-//! rank answers while it waits itself and at each exchange, reduction or heartbeat. The answer
-//! names the ranks it waits for; these are asked next. A rank that does not answer hangs, and is
-//! named. If all have answered, and none of them computes or has progressed since the previous
-//! round of questions, they are in a deadlock. Otherwise the wait continues with a new time limit.
+//! A rank whose wait nears its limit asks the rank that it waits for whether it is alive; in a
+//! reduction, rank 0 and those whose number differs from its own in one bit. A rank answers while it
+//! waits itself and at each exchange, reduction or heartbeat. The answer names the rank it waits for.
+//! A rank that does not answer hangs, and is named. Otherwise the wait continues with a new time limit.
+//!
+//! Rank 0 asks all ranks in a reduction, and the ranks that those that it asks wait for. If all have
+//! answered, and none of them computes or has progressed since the previous round of questions, they
+//! are in a deadlock. So P ranks that wait ask P log P questions, and each rank is asked by several.
 //!
 //! Several ranks reach the same verdict at about the same time, so only one reports it: the lowest
 //! rank that does not hang. The others send it the verdict, and report it themselves only if it
@@ -271,14 +274,17 @@ impl Inquiry {
             return;
         }
         self.ask(watch, watch.awaits.get());
-        let fresh = self.asked.values_mut().filter(|a| a.answer.is_some() && !a.followed);
-        let next: Vec<Awaited> = fresh
-            .map(|asked| {
-                asked.followed = true;
-                asked.answer.map_or(Awaited::Nobody, |(_, awaits)| awaits)
-            })
-            .collect();
-        next.into_iter().for_each(|awaited| self.ask(watch, awaited));
+        let follows = watch.control.rank() == 0;
+        if follows {
+            let fresh = self.asked.values_mut().filter(|a| a.answer.is_some() && !a.followed);
+            let next: Vec<Awaited> = fresh
+                .map(|asked| {
+                    asked.followed = true;
+                    asked.answer.map_or(Awaited::Nobody, |(_, awaits)| awaits)
+                })
+                .collect();
+            next.into_iter().for_each(|awaited| self.ask(watch, awaited));
+        }
 
         let due = |asked: &Asked| self.clock - asked.at >= grace;
         let silent = self.asked.iter().filter(|(_, a)| a.answer.is_none() && due(a));
@@ -287,7 +293,7 @@ impl Inquiry {
             let why = hanging(&silent, timeout, watch.control.rank());
             self.report(watch, &silent, why);
         } else if self.asked.values().all(|a| a.answer.is_some() && due(a)) {
-            if self.asked.iter().all(|(rank, now)| stuck(self.before.get(rank), now)) {
+            if follows && self.asked.iter().all(|(rank, now)| stuck(self.before.get(rank), now)) {
                 let ranks: Vec<usize> = self.asked.keys().copied().collect();
                 let why = deadlocked(&ranks, 2 * timeout);
                 self.report(watch, &[], why);
@@ -300,12 +306,12 @@ impl Inquiry {
 
     /// Asks the ranks of `awaited` that were not asked in this round.
     fn ask<C: Control>(&mut self, watch: &StallWatch<C>, awaited: Awaited) {
-        let size = watch.control.size();
+        let (me, size) = (watch.control.rank(), watch.control.size());
         let ranks = match awaited {
             Awaited::Nobody => return,
-            Awaited::Rank(rank) => rank..rank + 1,
+            Awaited::Rank(rank) => vec![rank],
             Awaited::All if self.asked.len() == size => return,
-            Awaited::All => 0..size,
+            Awaited::All => asked_in_reductions(me, size),
         };
         for rank in ranks {
             self.asked.entry(rank).or_insert_with(|| {
@@ -332,6 +338,16 @@ impl Inquiry {
         watch.control.send(speaker, &words);
         self.reported = Some((self.clock, why));
     }
+}
+
+/// The ranks that rank `me` of `size` asks while it waits for all, itself included: rank 0 asks every
+/// rank, the others rank 0 and their neighbours on a hypercube.
+fn asked_in_reductions(me: usize, size: usize) -> Vec<usize> {
+    if me == 0 {
+        return (0..size).collect();
+    }
+    let neighbours = (0..usize::BITS).map(|bit| me ^ (1 << bit)).filter(|&rank| rank < size);
+    [0, me].into_iter().chain(neighbours).collect()
 }
 
 /// Whether a rank waits, and was in the same wait in the previous round.
@@ -364,6 +380,25 @@ fn deadlocked(ranks: &[usize], waited: Duration) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn ranks_in_a_reduction_ask_few_and_each_is_asked() {
+        for size in [2usize, 3, 8, 16, 32, 100, 1024] {
+            let mut asked = vec![0; size];
+            for me in 0..size {
+                let mut ranks = asked_in_reductions(me, size);
+                ranks.sort_unstable();
+                ranks.dedup();
+                ranks.into_iter().filter(|&rank| rank != me).for_each(|rank| asked[rank] += 1);
+            }
+            let all: usize = asked.iter().sum();
+            let levels = size.ilog2() as usize + 1;
+            assert!(all <= size * (levels + 2), "{size}: {all}");
+            // by rank 0, and in a full hypercube by a neighbour beside it
+            let least = if size.is_power_of_two() && size > 2 { 2 } else { 1 };
+            assert!(asked.iter().all(|&n| n >= least), "{size}: {asked:?}");
+        }
+    }
 
     #[test]
     fn only_ranks_that_wait_without_progress_are_stuck() {
