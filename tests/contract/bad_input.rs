@@ -166,7 +166,7 @@ fn a_bad_scene_is_refused_by_two_ranks() {
         (home.contents(), home, fragments)
     });
     // no rank computes, so all the calls are made at once
-    let turn = Turn::shared();
+    let turn = Turn::of(2);
     let start = |home: &Home| home.call(["scene.json"]).ranks(2).within(&turn).start();
     let runs = cases.each_ref().map(|(_, home, _)| start(home));
     for (run, (before, home, fragments)) in runs.into_iter().zip(&cases) {

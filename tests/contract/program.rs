@@ -6,7 +6,7 @@ use std::io::PipeWriter;
 use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus};
-use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard};
+use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use crate::home::Home;
@@ -17,30 +17,50 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_flyer-mpm");
 const AS_ROOT: [(&str, &str); 2] =
     [("OMPI_ALLOW_RUN_AS_ROOT", "1"), ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")];
 
-/// Several ranks that wait for each other are slow on few cores, so such calls run alone.
-static CORES: RwLock<()> = RwLock::new(());
+/// Processes of the program that run at a time: two runs of three ranks. More would be slow on few
+/// cores, for ranks wait for each other.
+const MOST_PROCESSES: usize = 6;
+
+/// Number of further processes that may run.
+static FREE: Mutex<usize> = Mutex::new(MOST_PROCESSES);
+/// Signals an increase of `FREE`.
+static FREED: Condvar = Condvar::new();
+/// Held by the test that waits for processes, so that no later one overtakes it.
+static NEXT: Mutex<()> = Mutex::new(());
 
 /// Time for mpirun to end itself after it has reported the exit code of its ranks. Open MPI 4.1
 /// sometimes hangs or crashes there, in `PMIx_server_finalize`.
 const LAUNCHER_END: Duration = Duration::from_secs(10);
 
-/// Leave to use the cores, until it is dropped; several calls may be made within one.
-pub enum Turn {
-    /// Beside the turns of other tests.
-    Shared(#[expect(dead_code, reason = "kept for its drop")] RwLockReadGuard<'static, ()>),
-    /// While no other test has a turn.
-    Alone(#[expect(dead_code, reason = "kept for its drop")] RwLockWriteGuard<'static, ()>),
+/// Leave to run a number of processes, until it is dropped; several calls may be made within one.
+pub struct Turn {
+    processes: usize,
 }
 
 impl Turn {
-    /// Waits for a turn beside those of other tests.
-    pub fn shared() -> Turn {
-        Turn::Shared(CORES.read().unwrap_or_else(|e| e.into_inner()))
+    /// Waits until so many processes may run.
+    pub fn of(processes: usize) -> Turn {
+        let processes = processes.min(MOST_PROCESSES);
+        let _next = NEXT.lock().unwrap_or_else(PoisonError::into_inner);
+        let free = FREE.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut free = FREED
+            .wait_while(free, |free| *free < processes)
+            .unwrap_or_else(PoisonError::into_inner);
+        *free -= processes;
+        Turn { processes }
     }
 
-    /// Waits until no other test has a turn.
+    /// Waits until no other test runs processes.
+    #[allow(dead_code, reason = "unused without the feature mpi")]
     pub fn alone() -> Turn {
-        Turn::Alone(CORES.write().unwrap_or_else(|e| e.into_inner()))
+        Turn::of(MOST_PROCESSES)
+    }
+}
+
+impl Drop for Turn {
+    fn drop(&mut self) {
+        *FREE.lock().unwrap_or_else(PoisonError::into_inner) += self.processes;
+        FREED.notify_one();
     }
 }
 
@@ -121,11 +141,7 @@ impl Call {
 
     /// Starts the call.
     pub fn start(mut self) -> Started {
-        let turn = match (self.within, self.ranks) {
-            (true, _) => None,
-            (false, Some(_)) => Some(Turn::alone()),
-            (false, None) => Some(Turn::shared()),
-        };
+        let turn = (!self.within).then(|| Turn::of(self.ranks.unwrap_or(1)));
         // files rather than pipes: a rank that outlives mpirun cannot block the test
         let (stdout, stderr) = (tempfile::tempfile().unwrap(), tempfile::tempfile().unwrap());
         let mut command = self.command();

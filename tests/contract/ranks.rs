@@ -85,7 +85,7 @@ fn a_fault_of_one_rank_ends_all() {
 fn arguments_are_judged_once() {
     let home = Home::with(&short());
     // no rank computes, so all the calls are made at once
-    let turn = Turn::shared();
+    let turn = Turn::of(2);
     let start = |args: &[&str]| home.call(args.iter().copied()).ranks(2).within(&turn).start();
     let (help, schema) = (start(&["--help"]), start(&["schema"]));
     let threads = start(&["scene.json", "--threads", "0"]);

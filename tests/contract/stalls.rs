@@ -12,6 +12,9 @@ use crate::program::{Call, Started, Turn, at_once, signal};
 use crate::ranks::ranks_of;
 use crate::scenes::{short, whole};
 
+/// Longest time until a run shows what a test waits for.
+const PATIENCE: Duration = Duration::from_secs(100);
+
 /// Process ids of the ranks, in order of rank, once all have started.
 fn processes(run: &mut Started, size: usize) -> Vec<u32> {
     let since = Instant::now();
@@ -28,7 +31,7 @@ fn processes(run: &mut Started, size: usize) -> Vec<u32> {
             found.sort_by_key(number);
             return found;
         }
-        assert!(run.runs() && since.elapsed() < Duration::from_secs(20), "{found:?}");
+        assert!(run.runs() && since.elapsed() < PATIENCE, "{found:?}");
         std::thread::sleep(Duration::from_millis(10));
     }
 }
@@ -88,7 +91,8 @@ fn a_rank_that_goes_on_is_waited_for() {
     scene["time"]["end"] = json!(2e-7);
     let home = Home::with(&scene);
     let args = ["scene.json", "--quiet", "--stall-timeout", "5"];
-    let mut run = home.call(args).ranks(3).start();
+    let turn = Turn::alone();
+    let mut run = home.call(args).ranks(3).within(&turn).start();
     let ranks = processes(&mut run, 3);
     std::thread::sleep(Duration::from_millis(500));
     assert!(run.runs(), "the scene is too short for this test");
@@ -114,11 +118,13 @@ fn ranks_of_a_calibration_wait_for_each_other() {
     let (here, mut one) = (sched_getaffinity(Pid::from_raw(0)).unwrap(), CpuSet::new());
     let first = (0..CpuSet::count()).find(|&cpu| here.is_set(cpu).unwrap()).unwrap();
     one.set(first).unwrap();
+    let turn = Turn::alone();
     // processes started from here have one core
     sched_setaffinity(Pid::from_raw(0), &one).unwrap();
     let run = home
         .call(["perf", "calibrate", "--seconds", "12", "--stall-timeout", "2"])
         .ranks(2)
+        .within(&turn)
         .start();
     sched_setaffinity(Pid::from_raw(0), &here).unwrap();
     run.end().succeeded();
@@ -152,7 +158,7 @@ fn a_rank_that_is_stopped_at_the_end_is_named() {
         let ranks = processes(&mut run, 2);
         let since = Instant::now();
         while !writes(home) {
-            assert!(run.runs() && since.elapsed() < Duration::from_secs(20), "no output");
+            assert!(run.runs() && since.elapsed() < PATIENCE, "no output");
         }
         signal("-STOP", ranks[victim]);
         names(run, victim, &ranks, 2);
@@ -171,7 +177,7 @@ fn process_of(run: &mut Started, victim: usize) -> u32 {
         if let Some(found) = ranks_of(run.id()).into_iter().find(is_it) {
             return found;
         }
-        assert!(run.runs() && since.elapsed() < Duration::from_secs(20), "rank {victim}");
+        assert!(run.runs() && since.elapsed() < PATIENCE, "rank {victim}");
         std::thread::sleep(Duration::from_millis(1));
     }
 }
