@@ -17,7 +17,7 @@ import sys
 import tempfile
 
 # the unit tests need no speed
-UNOPTIMIZED = "profile.test.package.flyer-mpm.opt-level=0"
+UNOPTIMIZED = "profile.release.package.flyer-mpm.opt-level=0"
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -118,7 +118,7 @@ def main():
             (tree / f"src/effects/{effect}.rs").unlink()
             registry = tree / "src/effects/mod.rs"
             registry.write_text(registry.read_text().replace(line, "", 1))
-            tests = [("test", "--quiet", "--lib", "--config", UNOPTIMIZED)] if "--test" in sys.argv[1:] else []
+            tests = [("test", "--quiet", "--release", "--lib", "--config", UNOPTIMIZED)] if "--test" in sys.argv[1:] else []
             report(f"without {effect}", tree, 2, check, *tests)
     sys.exit(0 if ok else 1)
 

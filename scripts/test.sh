@@ -30,4 +30,14 @@ if [ -z "${FLYER_MPM_VTK_PYTHON:-}" ]; then
     fi
 fi
 
-cargo test --workspace --release "$@"
+# Many tests wait for processes.
+export RUST_TEST_THREADS="${RUST_TEST_THREADS:-$((2 * $(nproc)))}"
+
+if [ $# -gt 0 ]; then
+    cargo test --workspace --release "$@"
+    exit
+fi
+# The unit tests need no speed, and the library is compiled once more for them.
+cargo test --workspace --release --lib --config 'profile.release.package.flyer-mpm.opt-level=0'
+cargo test --workspace --release --bins --test '*'
+cargo test --workspace --release --doc
