@@ -4,7 +4,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use super::decomposition::DecompositionSummary;
+use super::decomposition::{DecompositionSummary, RankSummary};
 use super::labels;
 use super::summary::{FailureSummary, MeasuredQuantity, OutflowSummary, ProfileSummary, Summary};
 use super::wrap::warning;
@@ -103,26 +103,44 @@ pub fn full(summary: &Summary, folder: &Path) -> String {
     text
 }
 
-/// Largest number of ranks listed; `summary.json` has all.
+/// Largest number of ranks with a line each; `summary.json` has all.
 const LISTED: usize = 16;
 
-/// One line per rank: its times by activity, and its messages.
+/// One line per rank: its times by activity, and its messages. Of many ranks the least, the median and
+/// the greatest value of each column.
 fn ranks(sharing: &DecompositionSummary) -> Vec<Vec<String>> {
     let activities = || Activity::ALL.iter().map(|a| a.name());
     let mut heading: Vec<String> = vec!["ranks".into(), "patches".into(), "particles".into()];
     heading.extend(activities().map(|name| format!("{name} s")));
     heading.extend(["messages", "bytes", "migrated"].map(String::from));
-    let mut lines = vec![heading];
-    for rank in sharing.ranks.iter().take(LISTED) {
+    let values = |rank: &RankSummary| {
         let seconds = |name| rank.seconds.get(name).copied().unwrap_or(0.0);
-        let mut line = vec![
-            format!("rank {}", rank.rank),
-            rank.patches.to_string(),
-            rank.particles.to_string(),
-        ];
-        line.extend(activities().map(|name| format!("{:.3}", seconds(name))));
-        line.extend([rank.messages, rank.bytes, rank.particles_migrated].map(|n| n.to_string()));
-        lines.push(line);
+        let mut values = vec![rank.patches as f64, rank.particles as f64];
+        values.extend(activities().map(seconds));
+        values.extend([rank.messages, rank.bytes, rank.particles_migrated].map(|n| n as f64));
+        values
+    };
+    let times = 3..3 + Activity::ALL.len();
+    let line = |name: String, values: Vec<f64>| {
+        let digits = |column: usize| if times.contains(&column) { 3 } else { 0 };
+        let cells = values.iter().enumerate().map(|(k, v)| format!("{v:.*}", digits(k + 1)));
+        [name].into_iter().chain(cells).collect()
+    };
+    let all: Vec<Vec<f64>> = sharing.ranks.iter().map(values).collect();
+    let mut lines = vec![heading];
+    if all.len() <= LISTED {
+        let numbers = sharing.ranks.iter().map(|rank| format!("rank {}", rank.rank));
+        lines.extend(numbers.zip(all).map(|(name, values)| line(name, values)));
+        return lines;
+    }
+    let sorted = |column: usize| {
+        let mut values: Vec<f64> = all.iter().map(|rank| rank[column]).collect();
+        values.sort_by(f64::total_cmp);
+        values
+    };
+    let columns: Vec<Vec<f64>> = (0..all[0].len()).map(sorted).collect();
+    for (name, place) in [("least", 0), ("median", all.len() / 2), ("greatest", all.len() - 1)] {
+        lines.push(line(name.into(), columns.iter().map(|values| values[place]).collect()));
     }
     lines
 }
@@ -420,6 +438,19 @@ warning: linear shape functions ring across cells
   results   output/flyer
 ";
         assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn many_ranks_have_a_distribution() {
+        let mut sharing = example().decomposition;
+        let rank = sharing.ranks[0].clone();
+        sharing.ranks = (0..100)
+            .map(|k| RankSummary { rank: k, particles: 1000 - k as u64, ..rank.clone() })
+            .collect();
+        let lines = ranks(&sharing);
+        let particles: Vec<&str> = lines.iter().map(|line| line[2].as_str()).collect();
+        assert_eq!(particles, ["particles", "901", "951", "1000"]);
+        assert_eq!(lines[2][..4], ["median", "2", "951", "0.600"]);
     }
 
     #[test]
