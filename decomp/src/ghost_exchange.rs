@@ -231,11 +231,8 @@ impl<const D: usize> GhostExchange<D> {
         self.gone.clear();
         let GhostExchange { routes, messages, to_inner, to_border, .. } = self;
         let (routes, patch) = (&mut routes[k], self.patches[k]);
-        for particle in 0..block.own() {
+        for particle in outside(&block.cells[..block.own()], inner) {
             let cell = block.cells[particle].map(i64::from);
-            if inner.contains(cell) {
-                continue;
-            }
             let stays = home.contains(cell);
             let mut owned = stays;
             for route in routes.iter_mut() {
@@ -286,6 +283,29 @@ impl<const D: usize> GhostExchange<D> {
         }
         Ok(())
     }
+}
+
+/// Number of cells that are looked at together.
+const TOGETHER: usize = 16;
+
+/// Indices of the `cells` that lie outside of `inner`.
+fn outside<const D: usize>(
+    cells: &[[i32; D]],
+    inner: IndexBox<D>,
+) -> impl Iterator<Item = usize> + '_ {
+    let limit = |x: i64| x.clamp(i32::MIN.into(), i32::MAX.into()) as i32;
+    let (lower, upper) = (inner.lower.map(limit), inner.upper.map(limit));
+    // no branch per cell or direction, so that several are compared at a time
+    let is_inside = move |cell: &[i32; D]| {
+        (0..D).fold(true, |all, a| all & (lower[a] <= cell[a]) & (cell[a] < upper[a]))
+    };
+    let chunks = cells.chunks(TOGETHER).zip((0..).step_by(TOGETHER));
+    let some =
+        chunks.filter(move |(chunk, _)| !chunk.iter().fold(true, |all, c| all & is_inside(c)));
+    some.flat_map(move |(chunk, from)| {
+        let places = chunk.iter().zip(from..);
+        places.filter(move |(cell, _)| !is_inside(cell)).map(|(_, place)| place)
+    })
 }
 
 /// Number of neighbouring ranks whose list of messages needs no heap allocation.

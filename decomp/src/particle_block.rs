@@ -1,5 +1,7 @@
 //! Particles of a patch: ids, cells, and declared columns of `f64`.
 
+use std::ops::Range;
+
 use crate::IndexBox;
 
 /// Transformation of a column's value in a mirror.
@@ -187,68 +189,52 @@ impl<const D: usize> Block<D> {
     /// Key of the canonical order: cell, the last direction first, then id. It is one number, so
     /// that comparisons need no branch.
     fn key(&self, particle: usize) -> u128 {
-        const { assert!(D <= 2, "two cell numbers and an id fill the key") }
-        // as unsigned numbers in the same order
-        let cell = self.cells[particle]
-            .iter()
-            .rev()
-            .fold(0, |high, &c| (high << 32) | u128::from(c as u32 ^ (1 << 31)));
-        (cell << 64) | u128::from(self.ids[particle])
+        let cell = place(&self.cells[particle]) as u64 ^ (1 << 63);
+        (u128::from(cell) << 64) | u128::from(self.ids[particle])
     }
 
     fn sort(&mut self, from: usize, to: usize) {
-        // most steps keep the order or move few particles
-        let mut misplaced = 0;
-        let mut before = 0;
-        for r in from..to {
-            let key = self.key(r);
-            misplaced += usize::from(before > key);
-            before = key;
-        }
-        if misplaced == 0 {
-            return;
-        }
-        if misplaced <= FEW {
-            for particle in from + 1..to {
-                if self.key(particle - 1) > self.key(particle) {
-                    let key = self.key(particle);
-                    let place = from + partition_point(from, particle, |r| self.key(r) < key);
-                    self.rotate(place, particle, to);
-                }
-            }
+        if self.is_in_order(from..to) {
             return;
         }
         // most particles are still in order among themselves: the others are sorted and merged in
-        let mut order: Vec<_> = (from..to).map(|r| (self.key(r), r)).collect();
-        dmsort::sort_by(&mut order, |a, b| a.0.cmp(&b.0));
-        // target and source of each particle that moves; the others are not touched
-        let order = order.into_iter().map(|(_, particle)| particle);
-        let moved = (from..to).zip(order).filter(|(to, particle)| to != particle);
-        let moved: Vec<(usize, usize)> = moved.collect();
+        let mut order: Vec<u32> = (from as u32..to as u32).collect();
+        dmsort::sort_by(&mut order, |&a, &b| self.key(a as usize).cmp(&self.key(b as usize)));
+        let mut moved: Vec<Moved> = Vec::new();
+        for (to, particle) in (from..to).zip(order) {
+            let particle = particle as usize;
+            match moved.last_mut().filter(|last| last.follow([to, particle])) {
+                Some(last) => last.count += 1,
+                None if to == particle => {}
+                None => moved.push(Moved { to, from: particle, count: 1 }),
+            }
+        }
         permute(&mut self.ids, &moved, &mut Vec::new());
         permute(&mut self.cells, &moved, &mut Vec::new());
-        let mut sorted = Vec::new();
+        let mut buffer = Vec::new();
         for column in &mut self.columns {
             if column.len() >= to {
-                permute(column, &moved, &mut sorted);
+                permute(column, &moved, &mut buffer);
             }
         }
     }
 
-    /// Moves `particle` forward to `place`; columns shorter than `all` do not contain it.
-    fn rotate(&mut self, place: usize, particle: usize, all: usize) {
-        self.ids[place..=particle].rotate_right(1);
-        self.cells[place..=particle].rotate_right(1);
-        for column in &mut self.columns {
-            if column.len() >= all {
-                column[place..=particle].rotate_right(1);
-            }
-        }
+    /// Whether particles are in canonical order.
+    fn is_in_order(&self, particles: Range<usize>) -> bool {
+        let (cells, ids) = (&self.cells[particles.clone()], &self.ids[particles]);
+        let Some(last) = ids.len().checked_sub(1) else { return true };
+        let before = cells[..last].iter().zip(&ids[..last]);
+        let after = cells[1..].iter().zip(&ids[1..]);
+        // no early exit, and no branch per particle, so that several are compared at a time
+        before.zip(after).fold(true, |all, ((cell, id), (next, next_id))| {
+            let (cell, next) = (place(cell), place(next));
+            all & ((cell < next) | ((cell == next) & (id <= next_id)))
+        })
     }
 
     /// Ranges of particles in canonical order, own particles and ghosts together. A cell contains
     /// either own particles or ghosts, so they follow each other in runs. `runs` is cleared first.
-    pub fn runs(&self, runs: &mut Vec<std::ops::Range<usize>>) {
+    pub fn runs(&self, runs: &mut Vec<Range<usize>>) {
         runs.clear();
         let (mut own, mut ghost) = (0, self.own);
         while own < self.own || ghost < self.particles() {
@@ -290,8 +276,28 @@ fn partition_point(from: usize, to: usize, below: impl Fn(usize) -> bool) -> usi
     lo - from
 }
 
-/// Number of misplaced particles up to which moving them one by one is cheaper than a sort.
-const FEW: usize = 8;
+/// Place of a cell in the canonical order, the last direction first.
+fn place<const D: usize>(cell: &[i32; D]) -> i64 {
+    const { assert!(0 < D && D <= 2, "at most two cell numbers fill the place") }
+    // the low half as an unsigned number in the same order
+    let low = i64::from(cell[0] as u32 ^ (1 << 31));
+    (if D == 1 { 0 } else { i64::from(cell[D - 1]) << 32 }) | low
+}
+
+/// Neighbouring particles that a sort moves together.
+#[derive(Clone, Copy, Debug)]
+struct Moved {
+    to: usize,
+    from: usize,
+    count: usize,
+}
+
+impl Moved {
+    /// Whether the next particle, moved to `to` from `from`, moves together with these.
+    fn follow(&self, [to, from]: [usize; 2]) -> bool {
+        [self.to + self.count, self.from + self.count] == [to, from]
+    }
+}
 
 /// Removes the elements at the ascending indices `gone`, except for indices past the end.
 fn take_out<T: Copy>(values: &mut Vec<T>, gone: &[usize]) {
@@ -305,12 +311,24 @@ fn take_out<T: Copy>(values: &mut Vec<T>, gone: &[usize]) {
     values.truncate(to);
 }
 
-/// Moves values: each entry of `moved` is (target, source); `sorted` is a buffer.
-fn permute<T: Copy>(values: &mut [T], moved: &[(usize, usize)], sorted: &mut Vec<T>) {
-    sorted.clear();
-    sorted.extend(moved.iter().map(|&(_, from)| values[from]));
-    for (&(to, _), value) in moved.iter().zip(&*sorted) {
-        values[to] = *value;
+/// Moves values; those outside of `moved` are not touched, `buffer` is cleared first.
+fn permute<T: Copy>(values: &mut [T], moved: &[Moved], buffer: &mut Vec<T>) {
+    buffer.clear();
+    for &Moved { from, count, .. } in moved {
+        match count {
+            // mostly; cheaper than a call
+            1 => buffer.push(values[from]),
+            _ => buffer.extend_from_slice(&values[from..from + count]),
+        }
+    }
+    let mut sorted = &buffer[..];
+    for &Moved { to, count, .. } in moved {
+        let (these, rest) = sorted.split_at(count);
+        match these {
+            [value] => values[to] = *value,
+            _ => values[to..to + count].copy_from_slice(these),
+        }
+        sorted = rest;
     }
 }
 

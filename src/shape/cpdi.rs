@@ -5,9 +5,11 @@
 //! In a plane, values are the mean over the corners of the parallelogram. Gradients use the
 //! trapezoidal rule along its edges, which is exact for the interpolated hat functions.
 
+use wide::f64x4;
+
 use super::domain::{DomainExtent, ParticleDomain};
 use super::function::{Basis, CourantLimits, Shape, Weights, product};
-use super::knots::{integer, split};
+use super::knots::{integer, moved, split, split4};
 use super::plane::{Plane, RulePoint, by_rule};
 
 /// Corners of the parallelogram.
@@ -17,6 +19,24 @@ const RULE: [RulePoint; 4] = {
     }
     [corner(-1.0, -1.0), corner(1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0)]
 };
+
+/// Weights of a particle from the node below each of its ends and the distance from it.
+#[inline(always)]
+fn between<const K: usize>(
+    (first, a): (f64, f64),
+    (last, b): (f64, f64),
+    length: f64,
+) -> Weights<K> {
+    let inverse = 1.0 / length;
+    let mut w = Weights::none(integer(first));
+    let from_lower: [f64; K] = moved([1.0 - a, a], 0);
+    let from_upper: [f64; K] = moved([1.0 - b, b], integer(last - first) as usize);
+    for k in 0..K {
+        w.values[k] = 0.5 * (from_lower[k] + from_upper[k]);
+        w.gradients[k] = (from_upper[k] - from_lower[k]) * inverse;
+    }
+    w
+}
 
 /// Hat functions from the ends of the deforming particle.
 #[derive(Clone, Copy, Debug)]
@@ -36,32 +56,17 @@ impl Shape for Cpdi {
 
     #[inline(always)]
     fn weights<const K: usize>(fraction: f64, length: f64) -> Weights<K> {
-        let (first, a) = split(fraction - 0.5 * length);
-        let (last, b) = split(fraction + 0.5 * length);
-        let inverse = 1.0 / length;
-        let mut w = Weights::none(integer(first));
-        // nodes of the upper end, relative to the first node of the lower end
-        let apart = last - first;
-        for k in 0..K {
-            let at = k as f64;
-            let from_lower = if k == 0 {
-                1.0 - a
-            } else if k == 1 {
-                a
-            } else {
-                0.0
-            };
-            let from_upper = if at == apart {
-                1.0 - b
-            } else if at == apart + 1.0 {
-                b
-            } else {
-                0.0
-            };
-            w.values[k] = 0.5 * (from_lower + from_upper);
-            w.gradients[k] = (from_upper - from_lower) * inverse;
-        }
-        w
+        let lower = split(fraction - 0.5 * length);
+        let upper = split(fraction + 0.5 * length);
+        between(lower, upper, length)
+    }
+
+    #[inline(always)]
+    fn box_weights<const K: usize>(fraction: [f64; 2], extent: [f64; 2]) -> [Weights<K>; 2] {
+        let ([x, y], [half_x, half_y]) = (fraction, extent.map(|length| 0.5 * length));
+        let ends = split4(f64x4::new([x - half_x, x + half_x, y - half_y, y + half_y]));
+        let end = |lane: usize| (ends.0.as_array()[lane], ends.1.as_array()[lane]);
+        [between(end(0), end(1), extent[0]), between(end(2), end(3), extent[1])]
     }
 
     #[inline(always)]
@@ -73,9 +78,9 @@ impl Shape for Cpdi {
         if domain.is_box() {
             return product::<Self, K>(fraction, domain, out);
         }
-        let hats = |x: f64| {
-            let (first, t) = split(x);
-            (integer(first), [1.0 - t, t])
+        let hats = |x: f64x4| {
+            let (first, t) = split4(x);
+            (first, [f64x4::ONE - t, t])
         };
         by_rule(fraction, domain, &RULE, hats, out)
     }

@@ -5,9 +5,12 @@
 //! phi(upper))/6, which keeps linear fields exact. Gradients are the exact mean, (phi(upper) -
 //! phi(lower))/length. The same rule is used for parallelograms in two dimensions.
 
+use decomp::array::map;
+use wide::f64x4;
+
 use super::domain::{DomainExtent, ParticleDomain};
 use super::function::{Basis, CourantLimits, Shape, Weights, product};
-use super::knots::quadratic;
+use super::knots::{integer, moved, quadratic4};
 use super::plane::{Plane, RulePoint, by_rule};
 
 /// Simpson's rule over a parallelogram and along its edges.
@@ -31,6 +34,28 @@ const RULE: [RulePoint; 9] = {
     ]
 };
 
+/// Splines at four places, see [`quadratic4`].
+type Splines = (f64x4, [f64x4; 3]);
+
+/// Weights from the splines at the lower end, the centre and the upper end of a particle.
+#[inline(always)]
+fn averaged<const K: usize>(at: [(&Splines, usize); 3], length: f64) -> Weights<K> {
+    let nodes = map(&at, |(splines, lane)| splines.0.as_array()[lane]);
+    let lines = map(&[0, 1, 2], |place: usize| {
+        let (splines, lane) = at[place];
+        let by = integer(nodes[place] - nodes[0]) as usize;
+        moved::<3, K>(map(&splines.1, |f| f.as_array()[lane]), by)
+    });
+    let [lower, centre, upper] = lines;
+    let (sixth, inverse) = (1.0 / 6.0, 1.0 / length);
+    let mut w = Weights::none(integer(nodes[0]));
+    for k in 0..K {
+        w.values[k] = (lower[k] + 4.0 * centre[k] + upper[k]) * sixth;
+        w.gradients[k] = (upper[k] - lower[k]) * inverse;
+    }
+    w
+}
+
 /// Quadratic B-splines averaged over the deforming particle.
 #[derive(Clone, Copy, Debug)]
 pub struct CpdiBsplineQuadratic;
@@ -47,22 +72,19 @@ impl Shape for CpdiBsplineQuadratic {
     #[inline(always)]
     fn weights<const K: usize>(fraction: f64, length: f64) -> Weights<K> {
         let half = 0.5 * length;
-        let (first, _, lower) = quadratic(fraction - half);
-        let (middle, _, centre) = quadratic(fraction);
-        let (last, _, upper) = quadratic(fraction + half);
-        let (c, u) = ((middle - first) as usize, (last - first) as usize);
-        let (sixth, inverse) = (1.0 / 6.0, 1.0 / length);
-        let mut w = Weights::none(first);
-        // each on the whole window: a choice by position would cost mispredicted branches
-        let [mut at_lower, mut at_centre, mut at_upper] = [[0.0; K]; 3];
-        at_lower[..3].copy_from_slice(&lower);
-        at_centre[c..c + 3].copy_from_slice(&centre);
-        at_upper[u..u + 3].copy_from_slice(&upper);
-        for k in 0..K {
-            w.values[k] = (at_lower[k] + 4.0 * at_centre[k] + at_upper[k]) * sixth;
-            w.gradients[k] = (at_upper[k] - at_lower[k]) * inverse;
-        }
-        w
+        let at = quadratic4(f64x4::new([fraction - half, fraction, fraction + half, fraction]));
+        averaged([(&at, 0), (&at, 1), (&at, 2)], length)
+    }
+
+    #[inline(always)]
+    fn box_weights<const K: usize>(fraction: [f64; 2], extent: [f64; 2]) -> [Weights<K>; 2] {
+        let ([x, y], [half_x, half_y]) = (fraction, extent.map(|length| 0.5 * length));
+        let ends = quadratic4(f64x4::new([x - half_x, x + half_x, y - half_y, y + half_y]));
+        let middles = quadratic4(f64x4::new([x, y, x, y]));
+        [
+            averaged([(&ends, 0), (&middles, 0), (&ends, 1)], extent[0]),
+            averaged([(&ends, 2), (&middles, 1), (&ends, 3)], extent[1]),
+        ]
     }
 
     #[inline(always)]
@@ -74,10 +96,6 @@ impl Shape for CpdiBsplineQuadratic {
         if domain.is_box() {
             return product::<Self, K>(fraction, domain, out);
         }
-        let splines = |x: f64| {
-            let (first, _, values) = quadratic(x);
-            (first, values)
-        };
-        by_rule(fraction, domain, &RULE, splines, out)
+        by_rule(fraction, domain, &RULE, quadratic4, out)
     }
 }

@@ -66,6 +66,12 @@ pub trait Shape: Copy + Send + Sync + 'static {
     /// Weights of a particle at `fraction` of its cell. `K` is at least `nodes(length)`.
     fn weights<const K: usize>(fraction: f64, length: f64) -> Weights<K>;
 
+    /// Weights along both directions of a box of `extent` [cells].
+    #[inline(always)]
+    fn box_weights<const K: usize>(fraction: [f64; 2], extent: [f64; 2]) -> [Weights<K>; 2] {
+        decomp::array::from_fn(|a| Self::weights(fraction[a], extent[a]))
+    }
+
     /// Writes the weights in a plane of a particle at `fraction` of its cell to `out`; returns the
     /// first node, relative to the lower node of the cell. `K` is at least `nodes` of the domain's
     /// extent along either direction. By default the product of the weights along each direction.
@@ -86,9 +92,7 @@ pub(super) fn product<S: Shape, const K: usize>(
     domain: &ParticleDomain,
     out: &mut Plane<'_, K>,
 ) -> [i32; 2] {
-    let extent = domain.extent();
-    let x: Weights<K> = S::weights(fraction[0], extent[0]);
-    let y: Weights<K> = S::weights(fraction[1], extent[1]);
+    let [x, y] = S::box_weights::<K>(fraction, domain.extent());
     let [gx, gy] = &mut out.gradients;
     for l in 0..K {
         for k in 0..K {

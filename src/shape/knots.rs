@@ -1,5 +1,7 @@
 //! Places between knots: whole numbers, the rest beyond them, and the splines there.
 
+use wide::f64x4;
+
 /// 3 * 2^51: doubles of this size are integers, and the low half of their bits holds the added
 /// number, rounded to the nearest integer.
 const ROUNDING: f64 = (3u64 << 51) as f64;
@@ -40,6 +42,47 @@ pub(super) fn split(x: f64) -> (f64, f64) {
     }
 }
 
+/// [`split`] of four numbers at a time.
+#[inline(always)]
+pub(super) fn split4(x: f64x4) -> (f64x4, f64x4) {
+    let nearest = (x + f64x4::splat(ROUNDING)) - f64x4::splat(ROUNDING);
+    let one = f64x4::ONE;
+    let whole = nearest - nearest.simd_gt(x).select(one, f64x4::ZERO);
+    let rest = x - whole;
+    let is_low = rest.simd_lt(f64x4::splat(ON_KNOT));
+    let is_high = rest.simd_gt(f64x4::splat(1.0 - ON_KNOT));
+    (is_high.select(whole + one, whole), (is_low | is_high).select(f64x4::ZERO, rest))
+}
+
+/// [`quadratic`] at four numbers at a time: the first nodes, and the values one spline after the
+/// other.
+#[inline(always)]
+pub(super) fn quadratic4(x: f64x4) -> (f64x4, [f64x4; 3]) {
+    let half = f64x4::HALF;
+    let (first, t) = split4(x - half);
+    let r = f64x4::ONE - t;
+    (first, [half * r * r, half + t * r, half * t * t])
+}
+
+/// `values` moved up by `by` nodes in a line of `K` nodes, zero elsewhere; at most to its end, which
+/// only a particle passes that is torn apart.
+#[inline(always)]
+pub(super) fn moved<const N: usize, const K: usize>(values: [f64; N], by: usize) -> [f64; K] {
+    let mut line = [0.0; K];
+    if K == N + 1 {
+        // chosen, not stored and loaded again in another place
+        for k in 0..K {
+            let (at, before) = (values.get(k), k.checked_sub(1).and_then(|k| values.get(k)));
+            let chosen = if by == 0 { at } else { before };
+            line[k] = chosen.copied().unwrap_or(0.0);
+        }
+    } else {
+        let by = by.min(K - N);
+        line[by..by + N].copy_from_slice(&values);
+    }
+    line
+}
+
 /// Values of the three quadratic B-splines at `x`, with the first of their nodes and the distance
 /// from the knot below. Their knots lie midway between nodes.
 #[inline(always)]
@@ -59,6 +102,32 @@ mod tests {
             assert_eq!(split(x), (at, 0.0), "{x}");
         }
         assert_eq!(split(1.75), (1.0, 0.75));
+    }
+
+    #[test]
+    fn four_numbers_are_split_as_one() {
+        let on = [2.0, -1.0].map(|x: f64| [x, x - 1e-15, x + 1e-15, x + 0.25]);
+        for four in on.into_iter().chain([[0.4, -0.3, f64::NAN, 7.9]]) {
+            let (whole, rest) = split4(f64x4::from(four));
+            let (first, values) = quadratic4(f64x4::from(four));
+            for (k, x) in four.into_iter().enumerate() {
+                let bits = |(a, b): (f64, f64)| [a.to_bits(), b.to_bits()];
+                let lane = (whole.to_array()[k], rest.to_array()[k]);
+                assert_eq!(bits(lane), bits(split(x)), "{x}");
+                let (node, _, one) = quadratic(x);
+                assert_eq!(integer(first.to_array()[k]), node, "{x}");
+                let lane = values.map(|v| v.to_array()[k].to_bits());
+                assert_eq!(lane, one.map(f64::to_bits), "{x}");
+            }
+        }
+    }
+
+    #[test]
+    fn values_move_within_their_line() {
+        assert_eq!(moved::<2, 3>([1.0, 2.0], 0), [1.0, 2.0, 0.0]);
+        assert_eq!(moved::<2, 3>([1.0, 2.0], 1), [0.0, 1.0, 2.0]);
+        assert_eq!(moved::<2, 5>([1.0, 2.0], 2), [0.0, 0.0, 1.0, 2.0, 0.0]);
+        assert_eq!(moved::<3, 3>([1.0, 2.0, 3.0], 0), [1.0, 2.0, 3.0]);
     }
 
     #[test]

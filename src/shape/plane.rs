@@ -1,7 +1,11 @@
 //! Weights in a plane, by a rule over the points of a parallelogram.
 
+use wide::f64x4;
+
 use super::domain::ParticleDomain;
-use super::line_products::add_product;
+use super::knots::{integer, moved};
+use super::line_products::fours;
+use super::widths::MOST_NODES_IN_PLANE;
 
 /// Output arrays for the weights of one particle: `K` lines of `K` nodes.
 #[derive(Debug)]
@@ -24,52 +28,69 @@ pub(super) struct RulePoint {
     pub edge: f64,
 }
 
+/// Groups of four nodes in the widest line of a plane.
+const MOST_FOURS: usize = MOST_NODES_IN_PLANE.div_ceil(4);
+
 /// Weights by a quadrature rule, for a domain that is not a box: values are the means of the nodes'
 /// functions over the domain, gradients the means of their gradients. `basis` gives the `N`
-/// functions of one direction at a coordinate, with the first of their nodes.
+/// functions of one direction at four coordinates, with the first of their nodes.
 #[inline(always)]
 pub(super) fn by_rule<const P: usize, const N: usize, const K: usize>(
     fraction: [f64; 2],
     domain: &ParticleDomain,
     rule: &[RulePoint; P],
-    basis: impl Fn(f64) -> (i32, [f64; N]),
+    basis: impl Fn(f64x4) -> (f64x4, [f64x4; N]),
     out: &mut Plane<'_, K>,
 ) -> [i32; 2] {
     let [r1, r2] = domain.half_edges;
     // outward normals of the edges at +r1 and +r2, times edge length over area
     let scale = 0.5 / (r1[0] * r2[1] - r1[1] * r2[0]);
     let (g1, g2) = ([r2[1] * scale, -r2[0] * scale], [-r1[1] * scale, r1[0] * scale]);
-    let bases: [[(i32, [f64; N]); 2]; P] = decomp::array::from_fn(|p| {
-        let [s1, s2] = rule[p].place;
-        decomp::array::from_fn(|a| basis(fraction[a] + s1 * r1[a] + s2 * r2[a]))
-    });
-    let mut first = [i32::MAX; 2];
-    for point in &bases {
-        first = [first[0].min(point[0].0), first[1].min(point[1].0)];
+    // two points at a time: x, y, x, y
+    let twice = |[x, y]: [f64; 2]| f64x4::new([x, y, x, y]);
+    let (centre, along_r1, along_r2) = (twice(fraction), twice(r1), twice(r2));
+    let mut bases = [(f64x4::ZERO, [f64x4::ZERO; N]); P];
+    let mut least = f64x4::splat(f64::INFINITY);
+    for pair in 0..const { P.div_ceil(2) } {
+        let places = |c: usize| {
+            let [a, b] = [2 * pair, (2 * pair + 1).min(P - 1)].map(|p| rule[p].place[c]);
+            f64x4::new([a, a, b, b])
+        };
+        bases[pair] = basis(centre + places(0) * along_r1 + places(1) * along_r2);
+        least = least.fast_min(bases[pair].0);
     }
-    // whole lines of the window at once, with zeros around the N functions: the vector registers
-    // are as long as a line
-    let [mut values, mut gx, mut gy] = [[[0.0; K]; K]; 3];
-    for (point, [x, y]) in rule.iter().zip(&bases) {
+    let [x, y, next_x, next_y] = least.to_array();
+    let first = [x.min(next_x), y.min(next_y)];
+    // whole lines of the window at once, with zeros around the N functions
+    let mut sums = [[[f64x4::ZERO; MOST_FOURS]; K]; 3];
+    for (p, point) in rule.iter().enumerate() {
+        let (nodes, functions) = &bases[p / 2];
+        let line_along = |axis: usize| -> [f64; K] {
+            let lane = 2 * (p % 2) + axis;
+            let by = integer(nodes.as_array()[lane] - first[axis]);
+            moved(decomp::array::map(functions, |f| f.as_array()[lane]), by as usize)
+        };
+        let (across, along) = (line_along(0), line_along(1));
         let [s1, s2] = point.place;
-        let gradient: [f64; 2] = decomp::array::from_fn(|a| point.edge * (s1 * g1[a] + s2 * g2[a]));
-        let (from_x, from_y) = ((x.0 - first[0]) as usize, (y.0 - first[1]) as usize);
-        let mut across = [0.0; K];
-        across[from_x..from_x + N].copy_from_slice(&x.1);
-        for l in 0..N {
-            let y = y.1[l];
-            let lines = [&mut values, &mut gx, &mut gy];
-            for (lines, share) in lines.into_iter().zip([point.value, gradient[0], gradient[1]]) {
-                let (line, share) = (&mut lines[from_y + l], share * y);
-                add_product(line, 0, share, &across);
+        let gradient = |a: usize| point.edge * (s1 * g1[a] + s2 * g2[a]);
+        for (sums, share) in sums.iter_mut().zip([point.value, gradient(0), gradient(1)]) {
+            for (sums, along) in sums.iter_mut().zip(along) {
+                let factor = f64x4::splat(share * along);
+                for four in 0..const { K.div_ceil(4) } {
+                    sums[four] += factor * fours(&across, four);
+                }
             }
         }
     }
-    out.values[..K].copy_from_slice(&values);
-    for (out, lines) in out.gradients.iter_mut().zip([gx, gy]) {
-        out[..K].copy_from_slice(&lines);
+    let [gx, gy] = &mut out.gradients;
+    for (out, sums) in [&mut *out.values, gx, gy].into_iter().zip(&sums) {
+        for (out, sums) in out.iter_mut().zip(sums) {
+            for k in 0..K {
+                out[k] = sums[k / 4].as_array()[k % 4];
+            }
+        }
     }
-    first
+    first.map(integer)
 }
 
 #[cfg(test)]

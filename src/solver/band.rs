@@ -5,13 +5,16 @@
 use std::ops::Range;
 
 use decomp::array::map;
+use wide::f64x4;
 
-use crate::shape::{MOST_NODES_IN_PLANE, add_product};
+use crate::shape::{MOST_NODES, MOST_NODES_IN_PLANE, add_product};
 use crate::solver::particle_weights::{NARROW, ParticleWeights, lines};
 
-/// Number of nodes whose sums are computed at a time, so that their part of a matrix stays in the
-/// L1 cache.
+/// Number of nodes of which a diagonal is zero or not together, and which are cleared together.
 const BLOCK: usize = 64;
+
+/// Greatest number of nodes whose sums are computed at a time, so that they stay in the L1 cache.
+const SEGMENT: usize = 128;
 
 /// Doubles per page of memory: addresses at this distance share a set of the L1 cache, ...
 const PAGE: usize = 512;
@@ -25,14 +28,20 @@ const BLOCK_ENTRIES: usize = 4;
 /// Adds the blocks of a node and a line of `M` nodes to the node's entries xx, yy, xy and yx, each
 /// `count` long, from `first` on. `terms` are the node's value, and its products with the distances
 /// along x and y over I, `line` those of the other nodes.
+///
+/// # Panics
+///
+/// If `first + M` exceeds `count`.
 #[inline(always)]
 fn add_blocks<const M: usize>(
     row: &mut [f64],
     count: usize,
     first: usize,
     [term, x, y]: [f64; 3],
-    [values, along, across]: &[[f64; M]; 3],
+    [values, along, across]: [&[f64; M]; 3],
 ) {
+    // one check for all four entries
+    assert!(first + M <= count);
     // no closures over the loops: compilers would not vectorize them
     macro_rules! add {
         ($entry:literal, $k:ident => $value:expr) => {
@@ -86,6 +95,51 @@ enum Touched {
 /// Number of diagonals for windows of `width` nodes along each of `dimension` directions.
 const fn diagonals(width: usize, dimension: usize) -> usize {
     (lines(2 * width - 1, dimension) * (2 * width - 1)).div_ceil(2)
+}
+
+/// Copies the entries of diagonal `d` from `rows` of `count` entries; returns whether any is not
+/// zero.
+fn turn_one(rows: &[f64], count: usize, d: usize, diagonal: &mut [f64]) -> bool {
+    let mut bits = 0;
+    for (value, row) in diagonal.iter_mut().zip(rows.chunks_exact(count)) {
+        *value = row[d];
+        bits |= value.to_bits();
+    }
+    bits != 0
+}
+
+/// The same for the four diagonals from `d` on, by squares of four by four entries.
+fn turn_four<const COUNT: usize>(
+    rows: &[[f64; COUNT]],
+    d: usize,
+    diagonals: [&mut [f64]; 4],
+) -> [bool; 4] {
+    let (squares, rest) = rows.as_chunks::<4>();
+    let mut bits = [f64x4::ZERO; 4];
+    let mut columns = diagonals.map(|diagonal| diagonal.as_chunks_mut::<4>());
+    for (i, square) in squares.iter().enumerate() {
+        let lines = map(&[0, 1, 2, 3], |line: usize| fours_from(&square[line], d));
+        let turned = f64x4::transpose(lines);
+        for k in 0..4 {
+            columns[k].0[i] = turned[k].to_array();
+            bits[k] |= turned[k];
+        }
+    }
+    let mut filled = bits.map(|bits| bits.to_array().iter().any(|b| b.to_bits() != 0));
+    for (k, (_, last)) in columns.iter_mut().enumerate() {
+        for (value, row) in last.iter_mut().zip(rest) {
+            *value = row[d + k];
+            filled[k] |= value.to_bits() != 0;
+        }
+    }
+    filled
+}
+
+/// Four numbers of a row from `first` on.
+#[inline(always)]
+fn fours_from(row: &[f64], first: usize) -> f64x4 {
+    let four: [f64; 4] = row[first..first + 4].try_into().expect("four numbers");
+    f64x4::from(four)
 }
 
 impl Band {
@@ -151,6 +205,21 @@ impl Band {
         &self.diagonals[d * self.stride + nodes.start..d * self.stride + nodes.end]
     }
 
+    /// Notes that a particle changes entries of nodes from the first to the last of a line.
+    #[inline(always)]
+    fn touch(&mut self, [first, last]: [usize; 2], entries: Touched) {
+        let (first, last) = (first / BLOCK, last / BLOCK);
+        for block in [first, last] {
+            let touched = &mut self.touched[block];
+            if *touched < entries {
+                *touched = entries;
+            }
+            if first == last {
+                break;
+            }
+        }
+    }
+
     /// Adds a particle of mass `mass`.
     #[inline(always)]
     pub fn add<const K: usize, const D: usize>(
@@ -177,19 +246,24 @@ impl Band {
             |values: &[f64; K]| -> [f64; M] { *values.first_chunk().expect("as many nodes") };
         for line in 0..const { lines(M, D) } {
             let from = weights.first + line * weights.stride;
-            for node in [from, from + M - 1] {
-                let touched = &mut self.touched[node / BLOCK];
-                *touched = (*touched).max(if M < K { Touched::Near } else { Touched::All });
-            }
+            self.touch([from, from + M - 1], if M < K { Touched::Near } else { Touched::All });
             // a length known at compile time avoids bounds checks
             let rows = &mut self.rows[from * count..][..const { K * diagonals(K, D) }];
             let (here, later) = weights.values[..const { lines(M, D) }][line..]
                 .split_first()
                 .expect("the lines from this one on");
+            // zeros after the last node, so that all nodes of the line add as many terms
+            let mut padded = [0.0; 2 * MOST_NODES];
+            padded[..M].copy_from_slice(&here[..M]);
             for i in 0..M {
                 let term = mass * here[i];
-                for k in i..M {
-                    rows[i * count + k - i] += term * here[k];
+                if M == NARROW {
+                    let shifted: &[f64; M] = padded[i..].first_chunk().expect("room for zeros");
+                    add_product(rows, i * count, term, shifted);
+                } else {
+                    for k in i..M {
+                        rows[i * count + k - i] += term * here[k];
+                    }
                 }
                 for (line, values) in later.iter().enumerate() {
                     let first = i * count + K + line * (2 * K - 1) + K - 1 - i;
@@ -242,14 +316,11 @@ impl Band {
         let turn = mass * inverse;
         for line in 0..const { lines(M, D) } {
             let from = weights.first + line * weights.stride;
-            for node in [from, from + M - 1] {
-                let touched = &mut self.touched[node / BLOCK];
-                *touched = (*touched).max(if M < K { Touched::Near } else { Touched::All });
-            }
-            let here = parts.each_ref().map(|part| part[line]);
+            self.touch([from, from + M - 1], if M < K { Touched::Near } else { Touched::All });
+            let here = map(&[0, 1, 2], |part: usize| &parts[part][line]);
             // zeros after the last node, so that all nodes of the line add as many terms
             let mut padded = [[0.0; 2 * MOST_NODES_IN_PLANE]; 3];
-            for (padded, here) in padded.iter_mut().zip(&here) {
+            for (padded, here) in padded.iter_mut().zip(here) {
                 padded[..M].copy_from_slice(here);
             }
             let rows = &mut self.rows[from * BLOCK_ENTRIES * count..]
@@ -257,14 +328,15 @@ impl Band {
             for i in 0..M {
                 let [term, x, y] = [mass * here[0][i], turn * here[1][i], turn * here[2][i]];
                 let row = &mut rows[i * BLOCK_ENTRIES * count..][..BLOCK_ENTRIES * count];
-                let shifted = padded
-                    .each_ref()
-                    .map(|p| -> [f64; M] { *p[i..].first_chunk().expect("room for zeros") });
-                add_blocks(row, count, 0, [term, x, y], &shifted);
+                let [a, b, c] = &padded;
+                let shifted: [&[f64; M]; 3] =
+                    map(&[a, b, c], |p| p[i..].first_chunk().expect("room for zeros"));
+                add_blocks(row, count, 0, [term, x, y], shifted);
+                let [a, b, c] = &parts;
                 for later in line + 1..const { lines(M, D) } {
                     let first = K + (later - line - 1) * (2 * K - 1) + K - 1 - i;
-                    let there = parts.each_ref().map(|part| part[later]);
-                    add_blocks(row, count, first, [term, x, y], &there);
+                    let there = [&a[later], &b[later], &c[later]];
+                    add_blocks(row, count, first, [term, x, y], there);
                 }
             }
         }
@@ -272,7 +344,26 @@ impl Band {
 
     /// Completes the matrix after all particles have been added.
     pub fn finish(&mut self) {
-        let count = self.entries * self.offsets.len();
+        // known to the compiler for windows of 4 nodes on a line, and of 3 and 4 nodes in a plane,
+        // without and with spin
+        const LINE: usize = diagonals(4, 1);
+        const THREE: usize = diagonals(3, 2);
+        const FOUR: usize = diagonals(4, 2);
+        const SPIN_THREE: usize = BLOCK_ENTRIES * THREE;
+        const SPIN_FOUR: usize = BLOCK_ENTRIES * FOUR;
+        match self.entries * self.offsets.len() {
+            LINE => self.turn::<LINE>(),
+            THREE => self.turn::<THREE>(),
+            FOUR => self.turn::<FOUR>(),
+            SPIN_THREE => self.turn::<SPIN_THREE>(),
+            SPIN_FOUR => self.turn::<SPIN_FOUR>(),
+            _ => self.turn::<0>(),
+        }
+    }
+
+    /// Turns the matrix stored by nodes into diagonals, of which there are `COUNT` if it is not 0.
+    fn turn<const COUNT: usize>(&mut self) {
+        let count = if COUNT > 0 { COUNT } else { self.entries * self.offsets.len() };
         let nodes = self.rows.len() / count;
         let blocks = self.touched.iter_mut().zip(self.filled.chunks_exact_mut(count));
         for (block, (touched, filled)) in blocks.enumerate() {
@@ -281,20 +372,28 @@ impl Band {
             let touched = std::mem::take(touched);
             // block by block, so that its rows are loaded once
             let rows = &mut self.rows[from * count..to * count];
-            let diagonals = self.diagonals.chunks_exact_mut(self.stride);
-            for (d, (diagonal, filled)) in diagonals.zip(filled).enumerate() {
-                if touched == Touched::No || (touched == Touched::Near && !self.near[d]) {
-                    if std::mem::take(filled) {
-                        diagonal[from..to].fill(0.0);
+            let mut first = 0;
+            for diagonals in self.diagonals.chunks_mut(4 * self.stride) {
+                let some = first..count.min(first + 4);
+                let filled = &mut filled[some.clone()];
+                let mut parts = diagonals.chunks_exact_mut(self.stride).map(|d| &mut d[from..to]);
+                if touched == Touched::No
+                    || (touched == Touched::Near && !self.near[some].contains(&true))
+                {
+                    for (part, filled) in parts.zip(filled) {
+                        if std::mem::take(filled) {
+                            part.fill(0.0);
+                        }
                     }
-                    continue;
+                } else if COUNT > 0 && filled.len() == 4 {
+                    let parts = decomp::array::from_fn(|_| parts.next().expect("four diagonals"));
+                    filled.copy_from_slice(&turn_four(rows.as_chunks::<COUNT>().0, first, parts));
+                } else {
+                    for ((part, filled), d) in parts.zip(filled).zip(first..) {
+                        *filled = turn_one(rows, count, d, part);
+                    }
                 }
-                let mut bits = 0;
-                for (value, row) in diagonal[from..to].iter_mut().zip(rows.chunks_exact(count)) {
-                    *value = row[d];
-                    bits |= value.to_bits();
-                }
-                *filled = bits != 0;
+                first += 4;
             }
             if touched != Touched::No {
                 rows.fill(0.0);
@@ -382,9 +481,9 @@ impl Band {
         let count = self.offsets.len();
         let mut from = range.start;
         while from < range.end {
-            let to = range.end.min((from / BLOCK + 1) * BLOCK);
+            let to = range.end.min(from + SEGMENT);
             let n = to - from;
-            let mut sums = [[0.0; BLOCK]; V];
+            let mut sums = [[0.0; SEGMENT]; V];
             let main = self.diagonal(0, from..to);
             for v in 0..V {
                 let (sums, x) = (&mut sums[v][..n], &x[v][from..to]);
@@ -392,20 +491,11 @@ impl Band {
                     sums[i] += main[i] * x[i];
                 }
             }
-            for (d, &o) in self.offsets.iter().enumerate().skip(1) {
-                let is_filled = |node: usize| self.filled[node / BLOCK * count + d];
-                if !(is_filled(from) || is_filled(from - o) || is_filled(to - 1 - o)) {
-                    continue;
-                }
-                let (above, below) =
-                    (self.diagonal(d, from..to), self.diagonal(d, from - o..to - o));
-                for v in 0..V {
-                    let (x_above, x_below) = (&x[v][from + o..to + o], &x[v][from - o..to - o]);
-                    let sums = &mut sums[v][..n];
-                    for i in 0..n {
-                        sums[i] += above[i] * x_above[i];
-                        sums[i] += below[i] * x_below[i];
-                    }
+            let mut filled = self.filled_diagonals(from..to, count);
+            while let Some(first) = filled.next() {
+                match filled.next() {
+                    Some(second) => self.add_diagonals([first, second], x, from..to, &mut sums),
+                    None => self.add_diagonals([first], x, from..to, &mut sums),
                 }
             }
             for v in 0..V {
@@ -415,6 +505,54 @@ impl Band {
                 }
             }
             from = to;
+        }
+    }
+
+    /// Diagonals other than the main one with nonzero entries of `nodes`, of entries in `count`
+    /// diagonals each, and the distances to their other nodes.
+    #[inline(always)]
+    fn filled_diagonals(
+        &self,
+        nodes: Range<usize>,
+        count: usize,
+    ) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let others = self.offsets.iter().copied().enumerate().skip(1);
+        others.filter(move |&(d, o)| {
+            let blocks = [nodes.clone(), nodes.start - o..nodes.end - o];
+            blocks.into_iter().any(|nodes| {
+                let blocks = nodes.start / BLOCK..=(nodes.end - 1) / BLOCK;
+                let entry = |block: usize, k: usize| block * self.entries * count + k * count + d;
+                blocks.into_iter().any(|b| (0..self.entries).any(|k| self.filled[entry(b, k)]))
+            })
+        })
+    }
+
+    /// Adds the products of `G` diagonals and their mirror images, with the distances to their other
+    /// nodes, to the sums of `nodes`, one diagonal after the other.
+    #[inline(always)]
+    fn add_diagonals<const G: usize, const V: usize>(
+        &self,
+        diagonals: [(usize, usize); G],
+        x: [&[f64]; V],
+        nodes: Range<usize>,
+        sums: &mut [[f64; SEGMENT]; V],
+    ) {
+        let n = nodes.len();
+        let before = |o: usize| nodes.start - o..nodes.end - o;
+        let above = map(&diagonals, |(d, _)| self.diagonal(d, nodes.clone()));
+        let below = map(&diagonals, |(d, o)| self.diagonal(d, before(o)));
+        for v in 0..V {
+            let x_above = map(&diagonals, |(_, o)| &x[v][nodes.start + o..nodes.end + o]);
+            let x_below = map(&diagonals, |(_, o)| &x[v][before(o)]);
+            let sums = &mut sums[v][..n];
+            for i in 0..n {
+                let mut sum = sums[i];
+                for g in 0..G {
+                    sum += above[g][i] * x_above[g][i];
+                    sum += below[g][i] * x_below[g][i];
+                }
+                sums[i] = sum;
+            }
         }
     }
 
@@ -431,9 +569,9 @@ impl Band {
         let count = self.offsets.len();
         let mut from = range.start;
         while from < range.end {
-            let to = range.end.min((from / BLOCK + 1) * BLOCK);
+            let to = range.end.min(from + SEGMENT);
             let n = to - from;
-            let mut sums = [[0.0; BLOCK]; V];
+            let mut sums = [[0.0; SEGMENT]; V];
             let blocks = |d: usize, nodes: Range<usize>| -> [&[f64]; BLOCK_ENTRIES] {
                 decomp::array::from_fn(|k| self.diagonal(k * count + d, nodes.clone()))
             };
@@ -445,14 +583,7 @@ impl Band {
                     sum_y[i] += yx[i] * ux[i] + yy[i] * uy[i];
                 }
             }
-            for (d, &o) in self.offsets.iter().enumerate().skip(1) {
-                let is_filled = |node: usize| {
-                    let entry = |k: usize| node / BLOCK * BLOCK_ENTRIES * count + k * count + d;
-                    (0..BLOCK_ENTRIES).any(|k| self.filled[entry(k)])
-                };
-                if !(is_filled(from) || is_filled(from - o) || is_filled(to - 1 - o)) {
-                    continue;
-                }
+            for (d, o) in self.filled_diagonals(from..to, count) {
                 let (above, below) = (blocks(d, from..to), blocks(d, from - o..to - o));
                 for (sums, x) in sums.as_chunks_mut::<2>().0.iter_mut().zip(x.as_chunks::<2>().0) {
                     let [sum_x, sum_y] = sums;
@@ -598,6 +729,18 @@ mod tests {
         let lines = |a: f64| vec![[0.1, 0.2, 0.05], [a, 0.25, 0.1], [0.0, 0.07, 0.3 - a]];
         let particles = [(40, 2.0, lines(0.1)), (41, 1.5, lines(0.2)), (52, 0.7, lines(0.05))];
         check::<3, 2>([12, 9], &particles, 36..80);
+    }
+
+    #[test]
+    fn with_four_nodes_a_line_too() {
+        let lines = |a: f64| -> Vec<[f64; 4]> {
+            (0..4).map(|l| decomp::array::from_fn(|k| a + (l * 5 + k * 3) as f64 / 40.0)).collect()
+        };
+        // nodes in a number that neither four nor a block divides
+        let particles = [(45, 2.0, lines(0.1)), (46, 1.5, lines(0.2)), (71, 0.7, lines(0.05))];
+        check::<4, 2>([13, 15], &particles, 48..140);
+        let line = |a: f64| vec![[a, 0.4, 0.3, 0.3 - a]];
+        check::<4, 1>([19, 1], &[(4, 2.0, line(0.1)), (6, 0.5, line(0.2))], 4..14);
     }
 
     /// One matrix used for several sums: a sum contains nothing of the previous one, for narrow

@@ -242,6 +242,8 @@ impl<const D: usize> Scheme<D> {
         let layer = |r: usize| if layers > 1 { first[r] as usize / count * count } else { 0 };
         let mut limiters = std::mem::take(&mut patch.block.columns[column]);
         let (phi, gradient) = (&mut limiters, &patch.block.columns[self.columns.divergence]);
+        // particles of a cell follow each other, and have one limiter by Christensen
+        let mut of_cell = (usize::MAX, 0.0);
         for r in 0..n {
             // in expansion there is no viscosity to limit
             phi[r] = if gradient[r] >= 0.0 {
@@ -253,7 +255,10 @@ impl<const D: usize> Scheme<D> {
                             |a: usize| (i64::from(patch.block.cells[r][a]) - lower[a]) as usize;
                         let node = (1..D).fold(at(0), |sum, a| sum + stride * at(a));
                         let node = node + layer(r);
-                        artificial_viscosity::christensen(&nodes, node)
+                        if of_cell.0 != node {
+                            of_cell = (node, artificial_viscosity::christensen(&nodes, node));
+                        }
+                        of_cell.1
                     }
                     Limiter::Nodal => {
                         let weights = patch.stencils.particle::<K, D>(r);

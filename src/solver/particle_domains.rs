@@ -100,6 +100,7 @@ impl<const D: usize> Scheme<D> {
                 .get_disjoint_mut([c.volume0, jacobian, k])
                 .expect("columns differ");
             out.resize(n, 0.0);
+            let (volume0, j, out) = (&volume0[..n], &j[..n], &mut out[..n]);
             match self.extent() {
                 DomainExtent::Undeformed if k == c.domain => {
                     (0..n).for_each(|r| out[r] = volume0[r] * scale);
@@ -388,15 +389,20 @@ impl<const D: usize> Scheme<D> {
     /// Greatest extent of the domains of all particles of a patch along a direction [cells].
     pub(super) fn longest(&self, block: &decomp::Block<D>) -> f64 {
         let column = |k: usize| &block.columns[self.columns.domain + k][..];
-        let greatest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
         match (D, self.extent()) {
             (1, _) => greatest(column(0)),
             (_, DomainExtent::Point) => 0.0,
             (_, DomainExtent::Undeformed) => greatest(column(0)).max(greatest(column(1))),
             (_, DomainExtent::Current) => {
                 let along = |a: usize| {
-                    let edges = column(a).iter().zip(column(a + 2));
-                    edges.fold(0.0f64, |l, (r1, r2)| l.max(2.0 * (r1.abs() + r2.abs())))
+                    let (r1, r2) = (column(a).chunks(BLOCK), column(a + 2).chunks(BLOCK));
+                    r1.zip(r2).fold(0.0f64, |most, (r1, r2)| {
+                        let mut lengths = [0.0; BLOCK];
+                        for ((length, r1), r2) in lengths.iter_mut().zip(r1).zip(r2) {
+                            *length = 2.0 * (r1.abs() + r2.abs());
+                        }
+                        most.max(greatest(&lengths))
+                    })
                 };
                 along(0).max(along(1))
             }

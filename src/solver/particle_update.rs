@@ -43,13 +43,20 @@ fn find_cells(
     outside
 }
 
+/// Number of values at the start of a column that equal `body`, many compared at a time.
+fn leading(column: &[f64], body: f64) -> usize {
+    let is_whole = |some: &&[f64; 16]| some.iter().fold(true, |all, b| all & (*b == body));
+    let whole = 16 * column.as_chunks::<16>().0.iter().take_while(is_whole).count();
+    whole + column[whole..].iter().take_while(|&&b| b == body).count()
+}
+
 /// Ranges of particles of the same body.
 pub(crate) fn bodies(column: &[f64]) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
     let mut at = 0;
     std::iter::from_fn(move || {
         let body = *column.get(at)?;
         let start = at;
-        at += column[at..].iter().take_while(|&&b| b == body).count();
+        at += leading(&column[at..], body);
         Some((body as usize, start..at))
     })
 }
@@ -157,17 +164,22 @@ impl<const D: usize> Scheme<D> {
         let [j, d, j_mid] =
             patch.block.columns.get_disjoint_mut([c.jacobian, c.divergence, mid]).expect("differ");
         j_mid.resize(j.len(), 0.0);
-        for r in 0..j.len() {
-            j_mid[r] = j[r] * (1.0 + 0.5 * dt * d[r]);
+        // slices of equal length, so that the loops have no bounds checks
+        let n = j.len();
+        let (j, d, out) = (&j[..n], &d[..n], &mut j_mid[..n]);
+        for r in 0..n {
+            out[r] = j[r] * (1.0 + 0.5 * dt * d[r]);
         }
         if D > 1 || !self.domains_deform() {
             return;
         }
-        let volume0 = &patch.block.columns[c.volume0];
-        let j_mid = &patch.block.columns[mid];
+        let volume0 = &patch.block.columns[c.volume0][..n];
+        let j_mid = &patch.block.columns[mid][..n];
         let (limit, scale) = (patch.reach_length, self.inverse_cell[0]);
-        let torn = |r: &usize| self.domain_length(volume0[*r] * j_mid[*r] * scale) > limit;
-        if let Some(particle) = (0..j_mid.len()).find(torn) {
+        let torn = |r: usize| self.domain_length(volume0[r] * j_mid[r] * scale) > limit;
+        // no early exit from the loop, which would prevent vectorization
+        let any = (0..n).fold(false, |any, r| any | torn(r));
+        if let Some(particle) = any.then(|| (0..n).find(|&r| torn(r))).flatten() {
             self.fault(
                 patch,
                 FaultPhase::Start,
@@ -334,7 +346,9 @@ impl<const D: usize> Scheme<D> {
         before.extend_from_slice(&patch.block.columns[c.jacobian]);
         let [j, d] =
             patch.block.columns.get_disjoint_mut([c.jacobian, c.divergence]).expect("differ");
-        for r in 0..before.len() {
+        let n = before.len();
+        let (j, d) = (&mut j[..n], &d[..n]);
+        for r in 0..n {
             j[r] = before[r] * (1.0 + dt * d[r]);
         }
         self.invert_deformation(patch, dt, c.jacobian);
@@ -579,6 +593,23 @@ impl<const D: usize> Scheme<D> {
         };
         if patch.report.fault.as_ref().is_none_or(|known| fault.order() < known.order()) {
             patch.report.fault = Some(fault);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bodies;
+
+    #[test]
+    fn bodies_are_the_longest_ranges_of_equal_numbers() {
+        for lengths in [&[][..], &[1], &[16, 3], &[5, 40, 16, 1, 33]] {
+            let (mut column, mut expected) = (Vec::new(), Vec::new());
+            for (body, &length) in lengths.iter().enumerate() {
+                expected.push((body, column.len()..column.len() + length));
+                column.resize(column.len() + length, body as f64);
+            }
+            assert_eq!(bodies(&column).collect::<Vec<_>>(), expected);
         }
     }
 }

@@ -8,7 +8,7 @@ use super::spin::{spin_gradient, spin_inertia};
 use crate::shape::{Shape, with_shape, with_width};
 use crate::solver::clock::timed;
 use crate::solver::effect::{Phase, StepContext};
-use crate::solver::particle_weights::{ParticleWeights, cut, lines};
+use crate::solver::particle_weights::{ParticleWeights, add, cut, lines};
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 
@@ -213,16 +213,17 @@ impl<const D: usize> Scheme<D> {
         for a in 0..D {
             let mv = m * column(self.columns.velocity + a);
             let mc: [f64; D] = array::from_fn(|b| m * slope[a][b] * self.cell[b]);
+            let mut along = [0.0; K];
+            (0..K).for_each(|k| along[k] = mc[0] * (offset[0] + k as f64));
             for line in 0..const { lines(K, D) } {
                 let across = match D {
                     1 => mv,
                     _ => mv + mc[D - 1] * (offset[D - 1] + line as f64),
                 };
                 let n = &weights.values[line];
-                let at = weights.first + line * weights.stride;
-                for k in 0..K {
-                    momentum[a][at + k] += n[k] * (across + mc[0] * (offset[0] + k as f64));
-                }
+                let mut terms = [0.0; K];
+                (0..K).for_each(|k| terms[k] = n[k] * (across + along[k]));
+                add(momentum[a], weights.first + line * weights.stride, terms);
             }
         }
     }

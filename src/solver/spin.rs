@@ -47,10 +47,31 @@ pub(super) fn spin_inertia<const K: usize, const D: usize>(
 ) -> f64 {
     weights.sum(weights.values, |line| {
         let across = first[1] + line as f64 * cell[1];
-        from_fn(|k| {
+        let mut squares = [0.0; K];
+        for k in 0..K {
             let along = first[0] + k as f64 * cell[0];
-            along * along + across * across
-        })
+            squares[k] = along * along + across * across;
+        }
+        squares
+    })
+}
+
+/// Angular momentum per unit mass of the nodal velocity with the components x and y about a
+/// particle, sqrt(I) phi.u [m2/s].
+#[inline(always)]
+fn moment_of<const K: usize, const D: usize>(
+    weights: &ParticleWeights<'_, K, D>,
+    (first, cell): Place,
+    [x, y]: [&[f64]; 2],
+) -> f64 {
+    let mut along = [0.0; K];
+    (0..K).for_each(|k| along[k] = first[0] + k as f64 * cell[0]);
+    weights.sum(weights.values, |line| {
+        let across = first[1] + line as f64 * cell[1];
+        let (x, y) = (weights.line(x, line), weights.line(y, line));
+        let mut moments = [0.0; K];
+        (0..K).for_each(|k| moments[k] = along[k] * y[k] - across * x[k]);
+        moments
     })
 }
 
@@ -114,28 +135,20 @@ impl<const D: usize> Scheme<D> {
         let vector = |k: usize| [&fields[k][..], &fields[k + D - 1][..]];
         let residual = f.filter_residual.filter(|_| self.filter_heat && !primes).map(vector);
         let (start, star) = (vector(f.velocity), vector(f.velocity_star));
-        for r in 0..n {
-            let weights = patch.stencils.particle::<K, D>(r);
+        for (r, weights) in patch.stencils.particles::<K, D>(0..n).enumerate() {
             let place = self.place_of(patch, &weights, r);
-            // sqrt(I) phi.u
-            let moment_of = |[x, y]: [&[f64]; 2]| {
-                weights.sum(weights.values, |line| {
-                    let across = place.0[1] + line as f64 * place.1[1];
-                    let (x, y) = (weights.line(x, line), weights.line(y, line));
-                    from_fn(|k| (place.0[0] + k as f64 * place.1[0]) * y[k] - across * x[k])
-                })
-            };
             let new_inertia = spin_inertia(&weights, place);
             let inverse = 1.0 / new_inertia;
-            let new = moment_of(star);
+            let new = moment_of(&weights, place, star);
             if !primes {
                 let old = moment[r];
                 let mut heat = 0.5 * old * old * (1.0 / inertia[r] - inverse);
                 if let Some(residual) = residual {
-                    let filtered = moment_of(start);
+                    let filtered = moment_of(&weights, place, start);
                     let rest = old - filtered;
                     let mean = 0.5 * (filtered + new);
-                    heat += (0.5 * rest * rest - moment_of(residual) * mean) * inverse;
+                    heat +=
+                        (0.5 * rest * rest - moment_of(&weights, place, residual) * mean) * inverse;
                 }
                 energy[r] += heat;
             }

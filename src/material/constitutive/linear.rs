@@ -6,67 +6,98 @@ use crate::material::{EquationOfState, LinearPressure};
 /// Particle loops over an equation of state that is linear in the energy.
 pub(super) struct LinearEosKernel<E>(pub(super) E);
 
+/// Number of particles computed together, from copies of their columns: what does not overlap can
+/// be vectorized.
+const BLOCK: usize = 32;
+
+/// Values of a column for a block of particles from `first` on; zeros after the last.
+#[inline(always)]
+fn block(column: &[f64], first: usize) -> [f64; BLOCK] {
+    let mut values = [0.0; BLOCK];
+    match column[first..].first_chunk() {
+        Some(whole) => values = *whole,
+        None => values[..column.len() - first].copy_from_slice(&column[first..]),
+    }
+    values
+}
+
+/// Writes the values of a block of particles to a column.
+#[inline(always)]
+fn put(column: &mut [f64], first: usize, values: &[f64; BLOCK]) {
+    match column[first..].first_chunk_mut() {
+        Some(whole) => *whole = *values,
+        None => {
+            let rest = &mut column[first..];
+            rest.copy_from_slice(&values[..rest.len()]);
+        }
+    }
+}
+
 impl<E: EquationOfState> FluidModel for LinearEosKernel<E> {
-    fn mid_step(&self, particles: MidStep<'_>) {
-        let n = particles.mass.len();
-        let (mass, volume0, j, j_mid) = (
-            particles.mass,
-            &particles.volume0[..n],
-            &particles.jacobian[..n],
-            &particles.jacobian_mid[..n],
-        );
-        let (energy, out) = (&particles.energy[..n], &mut particles.stress_volume[..n]);
-        let gradient = &particles.gradient[..n];
-        let pressure_at = |r: usize, q: f64| {
-            let dv = (j_mid[r] - j[r]) * volume0[r] / mass[r];
-            let LinearPressure { reference_pressure, gruneisen_rho } = self.0.linear(j_mid[r]);
-            let linear = reference_pressure + gruneisen_rho * (energy[r] - q * dv);
-            self.0.clamp_tension(linear / (1.0 + gruneisen_rho * dv))
-        };
-        // compute the pressure once if both outputs are requested
-        if let Some((pressure, compliance)) = particles.compliance {
-            let (pressure, compliance) = (&mut pressure[..n], &mut compliance[..n]);
-            for r in 0..n {
-                let p = pressure_at(r, particles.q.map_or(0.0, |q| q[r]));
-                out[r] = particles.q.map_or(p, |q| p + q[r]) * volume0[r] * j_mid[r];
+    fn mid_step(&self, mut particles: MidStep<'_>) {
+        for first in (0..particles.mass.len()).step_by(BLOCK) {
+            let [mass, volume0, j, j_mid, energy] = [
+                particles.mass,
+                particles.volume0,
+                particles.jacobian,
+                particles.jacobian_mid,
+                particles.energy,
+            ]
+            .map(|column| block(column, first));
+            let q = particles.q.map(|q| block(q, first));
+            let against = q.unwrap_or([0.0; BLOCK]);
+            let mut pressure = [0.0; BLOCK];
+            for r in 0..BLOCK {
+                let dv = (j_mid[r] - j[r]) * volume0[r] / mass[r];
+                let LinearPressure { reference_pressure, gruneisen_rho } = self.0.linear(j_mid[r]);
+                let linear = reference_pressure + gruneisen_rho * (energy[r] - against[r] * dv);
+                pressure[r] = self.0.clamp_tension(linear / (1.0 + gruneisen_rho * dv));
+            }
+            let mut stress = pressure;
+            if let Some(q) = q {
+                (0..BLOCK).for_each(|r| stress[r] += q[r]);
+            }
+            (0..BLOCK).for_each(|r| stress[r] = stress[r] * volume0[r] * j_mid[r]);
+            put(particles.stress_volume, first, &stress);
+            let Some((out, compliances)) = &mut particles.compliance else { continue };
+            let gradient = block(particles.gradient, first);
+            let mut compliance = [0.0; BLOCK];
+            for r in 0..BLOCK {
                 let volume = volume0[r] * j_mid[r];
-                let c2 = self.0.sound_speed_squared(j_mid[r], p);
+                let c2 = self.0.sound_speed_squared(j_mid[r], pressure[r]);
                 let jump = particles.edge * gradient[r];
                 let stiffness = mass[r] * (c2 + jump * jump) + particles.floor * volume;
-                pressure[r] = p;
-                compliance[r] = if c2 > 0.0 { volume * volume / stiffness } else { 0.0 };
+                // computed in both cases, then selected: no branch
+                let softness = volume * volume / stiffness;
+                compliance[r] = if c2 > 0.0 { softness } else { 0.0 };
             }
-            return;
-        }
-        match particles.q {
-            Some(q) => {
-                for r in 0..n {
-                    out[r] = (pressure_at(r, q[r]) + q[r]) * volume0[r] * j_mid[r];
-                }
-            }
-            None => {
-                for r in 0..n {
-                    out[r] = pressure_at(r, 0.0) * volume0[r] * j_mid[r];
-                }
-            }
+            put(out, first, &pressure);
+            put(compliances, first, &compliance);
         }
     }
 
     fn change_volume(&self, particles: VolumeChange<'_>) {
-        for r in 0..particles.mass.len() {
-            let dv = (particles.after[r] - particles.before[r]) * particles.volume0[r]
-                / particles.mass[r];
-            let q = particles.q.map_or(0.0, |q| q[r]);
-            let LinearPressure { reference_pressure, gruneisen_rho } =
-                self.0.linear(particles.after[r]);
-            let energy = (particles.energy[r]
-                - (0.5 * (particles.pressure[r] + reference_pressure) + q) * dv)
-                / (1.0 + 0.5 * gruneisen_rho * dv);
-            let pressure = reference_pressure + gruneisen_rho * energy;
-            let clamped = self.0.clamp_tension(pressure);
-            // tension that the material does not carry does no work
-            particles.energy[r] = energy + 0.5 * (pressure - clamped) * dv;
-            particles.pressure[r] = clamped;
+        for first in (0..particles.mass.len()).step_by(BLOCK) {
+            let [mass, volume0, before, after] =
+                [particles.mass, particles.volume0, particles.before, particles.after]
+                    .map(|column| block(column, first));
+            let q = particles.q.map_or([0.0; BLOCK], |q| block(q, first));
+            let mut pressures = block(particles.pressure, first);
+            let mut energies = block(particles.energy, first);
+            for r in 0..BLOCK {
+                let dv = (after[r] - before[r]) * volume0[r] / mass[r];
+                let LinearPressure { reference_pressure, gruneisen_rho } = self.0.linear(after[r]);
+                let energy = (energies[r]
+                    - (0.5 * (pressures[r] + reference_pressure) + q[r]) * dv)
+                    / (1.0 + 0.5 * gruneisen_rho * dv);
+                let pressure = reference_pressure + gruneisen_rho * energy;
+                let clamped = self.0.clamp_tension(pressure);
+                // tension that the material does not carry does no work
+                energies[r] = energy + 0.5 * (pressure - clamped) * dv;
+                pressures[r] = clamped;
+            }
+            put(particles.energy, first, &energies);
+            put(particles.pressure, first, &pressures);
         }
     }
 
@@ -174,6 +205,52 @@ mod tests {
         };
         let order = (error(20) / error(40)).log2();
         assert!((order - 2.0).abs() < 0.05, "{order}");
+    }
+
+    /// A block, some of the next, and their ends: each particle as if it were alone.
+    #[test]
+    fn particles_beside_others_are_those_alone() {
+        const N: usize = 2 * BLOCK + 7;
+        let values = |seed: usize, from: f64| -> [f64; N] {
+            decomp::array::from_fn(|r| from + 0.1 * ((r * 7 + seed) % 13) as f64 / 13.0)
+        };
+        let [mass, volume0, j, j_mid, energy, q] =
+            [0.02, 0.01, 0.95, 0.93, 3.0, 0.2].map(|from| values((1e3 * from) as usize, from));
+        let run = |r: std::ops::Range<usize>| {
+            let n = r.len();
+            let [mut stress, mut p, mut w] = [0; 3].map(|_| vec![0.0; n]);
+            GAS.mid_step(MidStep {
+                mass: &mass[r.clone()],
+                volume0: &volume0[r.clone()],
+                jacobian: &j[r.clone()],
+                jacobian_mid: &j_mid[r.clone()],
+                energy: &energy[r.clone()],
+                q: Some(&q[r.clone()]),
+                history: None,
+                gradient: &q[r.clone()],
+                edge: 0.1,
+                floor: 1e-3,
+                stress_volume: &mut stress,
+                compliance: Some((&mut p, &mut w)),
+            });
+            let (mut pressure, mut e) = (p.clone(), energy[r.clone()].to_vec());
+            GAS.change_volume(VolumeChange {
+                mass: &mass[r.clone()],
+                volume0: &volume0[r.clone()],
+                before: &j[r.clone()],
+                after: &j_mid[r.clone()],
+                q: Some(&q[r]),
+                pressure: &mut pressure,
+                energy: &mut e,
+                history: None,
+            });
+            [stress, p, w, pressure, e]
+        };
+        let all = run(0..N);
+        assert!(all.iter().flatten().all(|value| *value != 0.0));
+        for r in 0..N {
+            assert_eq!(all.each_ref().map(|column| column[r]), run(r..r + 1).map(|one| one[0]));
+        }
     }
 
     #[test]
