@@ -70,8 +70,7 @@ impl StoredParticles {
     }
 }
 
-/// The own particles of all ranks, dealt to the first `ranks` ranks by a key, in order of the key
-/// and then of the id. Each of these ranks holds one section of the keys, the same for any layout.
+/// The own particles of all ranks, dealt to some of the ranks in order of a key and then of the id.
 ///
 /// Columns are fetched one by one, which limits the memory of each rank to little more than its
 /// share of the columns that it keeps.
@@ -91,7 +90,9 @@ pub struct Shares<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Shares<'a, D> {
-    /// Deals the own particles of `blocks` by their id; all ids are less than `end`. Collective.
+    /// Deals the own particles of `blocks` to the first `ranks` ranks by their id, which is their key
+    /// and less than `end`. Each of these ranks holds one section of the ids, the same for any layout.
+    /// Collective.
     ///
     /// # Panics
     ///
@@ -102,33 +103,16 @@ impl<'a, const D: usize> Shares<'a, D> {
         end: u64,
         ranks: usize,
     ) -> Self {
-        Self::by_key(comm, blocks, end, ranks, |block, r| Some(block.ids[r]))
-    }
-
-    /// Deals the own particles of `blocks` by `key`, which is less than `end`; a particle without a
-    /// key is left out. Collective.
-    ///
-    /// # Panics
-    ///
-    /// If `ranks` is 0 or greater than the number of ranks.
-    pub fn by_key(
-        comm: &'a dyn Comm,
-        blocks: impl Iterator<Item = &'a Block<D>>,
-        end: u64,
-        ranks: usize,
-        key: impl Fn(&Block<D>, usize) -> Option<u64>,
-    ) -> Self {
         assert!((1..=comm.size()).contains(&ranks), "some of the ranks get shares");
         let blocks: Vec<&Block<D>> = blocks.collect();
         let section = end.div_ceil(ranks as u64).max(1);
         let mut sent = vec![Vec::new(); comm.size()];
         let mut heads = vec![Vec::new(); comm.size()];
         for (b, block) in blocks.iter().enumerate() {
-            for r in 0..block.own() {
-                let Some(key) = key(block, r) else { continue };
-                let to = ((key / section) as usize).min(ranks - 1);
+            for (r, &id) in block.ids[..block.own()].iter().enumerate() {
+                let to = ((id / section) as usize).min(ranks - 1);
                 sent[to].push((b as u32, r as u32));
-                heads[to].extend([key, block.ids[r]]);
+                heads[to].push(id);
             }
         }
         let rank = comm.rank();
@@ -141,13 +125,33 @@ impl<'a, const D: usize> Shares<'a, D> {
             heads[rank].iter().chain(received.iter().flatten()).copied().collect();
         let from = from.into_iter().zip(&received).filter(|(_, words)| !words.is_empty());
         let from = from.map(|(rank, _)| rank).collect();
-        let (keys, ids): (Vec<u64>, Vec<u64>) =
-            arrived.chunks_exact(2).map(|w| (w[0], w[1])).unzip();
-        let order =
-            if keys == ids { by_id(&ids, rank as u64 * section) } else { by_both(&keys, &ids) };
-        let keys = order.iter().map(|&r| keys[r]).collect();
-        let ids = order.iter().map(|&r| ids[r]).collect();
-        Shares { comm, blocks, sent, from, order, keys, ids }
+        let order = by_id(&arrived, rank as u64 * section);
+        let ids: Vec<u64> = order.iter().map(|&r| arrived[r]).collect();
+        Shares { comm, blocks, sent, from, order, keys: ids.clone(), ids }
+    }
+
+    /// The own particles of `blocks` that have a key, as the share of their rank, in order of `key`;
+    /// none of them travels.
+    pub fn of_own(
+        comm: &'a dyn Comm,
+        blocks: impl Iterator<Item = &'a Block<D>>,
+        key: impl Fn(&Block<D>, usize) -> Option<u64>,
+    ) -> Self {
+        let blocks: Vec<&Block<D>> = blocks.collect();
+        let (mut own, mut heads) = (Vec::new(), Vec::new());
+        for (b, block) in blocks.iter().enumerate() {
+            for r in 0..block.own() {
+                let Some(key) = key(block, r) else { continue };
+                own.push((b as u32, r as u32));
+                heads.push((key, block.ids[r]));
+            }
+        }
+        let mut sent = vec![Vec::new(); comm.size()];
+        sent[comm.rank()] = own;
+        let mut order: Vec<usize> = (0..heads.len()).collect();
+        order.sort_unstable_by_key(|&r| heads[r]);
+        let (keys, ids) = order.iter().map(|&r| heads[r]).unzip();
+        Shares { comm, blocks, sent, from: Vec::new(), order, keys, ids }
     }
 
     /// The words `of` the particles of this rank's share, in order. Collective.
@@ -189,18 +193,13 @@ fn by_id(ids: &[u64], first: u64) -> Vec<usize> {
     // ids count from `first` and few are missing: direct placement takes a tenth of the time of a sort
     let most = ids.iter().copied().max().map_or(0, |id| id - first);
     if most / 2 > ids.len() as u64 {
-        return by_both(ids, ids);
+        let mut order: Vec<usize> = (0..ids.len()).collect();
+        order.sort_unstable_by_key(|&r| ids[r]);
+        return order;
     }
     let mut order = vec![NONE; most as usize + 1];
     ids.iter().enumerate().for_each(|(r, &id)| order[(id - first) as usize] = r);
     order.retain(|&r| r != NONE);
-    order
-}
-
-/// Positions of the particles in order of key, then of id.
-fn by_both(keys: &[u64], ids: &[u64]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..ids.len()).collect();
-    order.sort_unstable_by_key(|&r| (keys[r], ids[r]));
     order
 }
 
@@ -303,7 +302,7 @@ mod tests {
         }
     }
 
-    /// Deals particles of any shares to patches and back to shares by id and by cell.
+    /// Deals particles of any shares to patches, and back to shares by id; orders those of a rank by cell.
     #[test]
     fn particles_come_back_from_any_layout() {
         for (ranks, parts) in [(1, [1, 1]), (1, [3, 2]), (3, [4, 3]), (4, [1, 2])] {
@@ -331,15 +330,22 @@ mod tests {
                     let column = |s: &Shares<'_, 2>| -> Vec<u64> {
                         s.column(2).iter().map(|v| v.to_bits()).collect()
                     };
-                    let odd = Shares::by_key(comm, blocks.iter(), 12, ranks, |block, r| {
+                    let by_cell = Shares::of_own(comm, blocks.iter(), |block, r| {
                         (block.ids[r] % 2 == 1).then_some(block.cells[r][0] as u64)
                     });
-                    let cells = odd.words(|block, r| block.cells[r][0] as u64);
-                    assert_eq!(cells, odd.keys);
+                    let cells = by_cell.words(|block, r| block.cells[r][0] as u64);
+                    assert_eq!(cells, by_cell.keys);
+                    let heads: Vec<_> = cells.iter().zip(&by_cell.ids).collect();
+                    assert!(heads.is_sorted());
+                    let mut found = by_cell.ids.clone();
+                    found.sort_unstable();
+                    let mut own_ids = own.ids.clone();
+                    own_ids.retain(|id| id % 2 == 1);
+                    own_ids.sort_unstable();
+                    assert_eq!(found, own_ids);
                     [
                         (at_first.ids.clone(), column(&at_first)),
                         (shares.ids.clone(), column(&shares)),
-                        (odd.ids.clone(), cells),
                         (own.ids, Vec::new()),
                     ]
                 });
@@ -351,19 +357,7 @@ mod tests {
                 assert_eq!((&ends[0][0].0, &ends[0][0].1), (&all.ids, &bits));
                 assert!(ends[1..].iter().all(|end| end[0].0.is_empty()));
                 assert_eq!(joined(1), (all.ids.clone(), bits));
-                let mut odd: Vec<(u64, u64)> = all
-                    .ids
-                    .iter()
-                    .zip(all.cells.chunks(2))
-                    .filter(|(id, _)| *id % 2 == 1)
-                    .map(|(&id, cell)| (cell[0] as u64, id))
-                    .collect();
-                odd.sort_unstable();
-                assert_eq!(
-                    joined(2),
-                    (odd.iter().map(|o| o.1).collect(), odd.iter().map(|o| o.0).collect())
-                );
-                let mut own = joined(3).0;
+                let mut own = joined(2).0;
                 own.sort_unstable();
                 assert_eq!(own, all.ids);
             }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use decomp::Serial;
 use flyer_mpm::accuracy::reference;
-use flyer_mpm::driver::figures::{self, PressureRow, plate_name};
+use flyer_mpm::driver::figures::{self, WaveRow, plate_name};
 use flyer_mpm::driver::output::SUMMARY_FILE;
 use flyer_mpm::driver::output::folder::OutputFolder;
 use flyer_mpm::driver::output::lock::Lock;
@@ -166,7 +166,7 @@ pub fn hugoniot(scene: &CheckedScene, output: &Path) -> Outcome<String> {
 }
 
 /// The exact pressure over both plates, per row of the x-t diagram.
-fn rows(solution: &Solution) -> Vec<PressureRow> {
+fn rows(solution: &Solution) -> Vec<WaveRow> {
     solution
         .snapshots
         .iter()
@@ -175,7 +175,8 @@ fn rows(solution: &Solution) -> Vec<PressureRow> {
             let (lower, upper) = profile.span()?;
             let x = |k: usize| lower + (upper - lower) * (k as f64 + 0.5) / 1500.0;
             let points = (0..1500).filter_map(|k| Some((x(k), profile.at(x(k))?.p)));
-            Some(PressureRow { time: s.time, points: points.collect() })
+            let (x, pressure) = points.unzip();
+            Some(WaveRow { time: s.time, x, pressure, others: Vec::new() })
         })
         .collect()
 }

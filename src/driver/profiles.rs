@@ -94,7 +94,7 @@ pub(super) fn draw(
     }
     let stem = folder.join("x_t_diagram");
     let (rows, bodies) = (&recorded.waves, &recorded.bodies);
-    figures::draw_run_waves(scene, rows, bodies, reference, &stem)?;
+    figures::draw_run_waves(scene, rows, bodies, &recorded.quantities, reference, &stem)?;
     comm.heartbeat();
     if let Some(histories) = recorded.histories() {
         figures::draw_histories(scene, histories, reference, &folder.join("histories"))?;

@@ -8,13 +8,14 @@ use crate::accuracy::estimate::Arrivals;
 use crate::accuracy::reference::PlaneReference;
 use crate::driver::checkpoint::{Checkpoint, CheckpointContents, Due, StateColumn};
 use crate::driver::fields::FieldSeries;
-use crate::driver::figures::PressureRow;
+use crate::driver::figures::{DiagramQuantity, WaveRow};
 use crate::driver::output::OutputError;
+use crate::driver::output::field_arrays::quantity_of;
 use crate::driver::output::histories::HistoryTable;
 use crate::driver::output::origin::{Origin, RUN};
 use crate::driver::probes::{GaugeKind, Probes};
 use crate::scene::CheckedScene;
-use crate::simulation::{BodyRow, ParticleTable};
+use crate::simulation::{BodyRow, ParticleTable, TableColumn};
 use crate::simulation::{Saved, Simulation};
 
 /// Number of rows of the x-t diagram.
@@ -37,8 +38,10 @@ pub struct Recorder<'a> {
     pub tables: Vec<(ParticleTable, String)>,
     /// Particles at the start, if the error evaluation needs them.
     pub start: Option<ParticleTable>,
-    /// Rows of the x-t diagram.
-    pub waves: Vec<PressureRow>,
+    /// Rows of the x-t diagrams.
+    pub waves: Vec<WaveRow>,
+    /// Quantities of the x-t diagrams besides the pressure.
+    pub quantities: Vec<DiagramQuantity>,
     /// Surfaces and failed parts of the bodies, at the times of `waves`.
     pub bodies: Vec<BodyRow>,
     /// Wave arrivals; empty unless the scene asks for them.
@@ -71,6 +74,7 @@ impl<'a> Recorder<'a> {
             tables: Vec::new(),
             start: if needs_start { simulation.gather().map(|(table, _)| table) } else { None },
             waves: Vec::new(),
+            quantities: Vec::new(),
             bodies: Vec::new(),
             arrivals: Arrivals::default(),
             due_wave: 0,
@@ -88,6 +92,8 @@ impl<'a> Recorder<'a> {
         self.arrivals.resume(due.arrivals);
         self.kept_frames = Some(due.frames);
         (self.tables, self.waves, self.bodies) = (record.tables, record.waves, record.bodies);
+        self.quantities = due.quantities;
+        self.choose_quantities();
         if let Some(probes) = &mut self.probes {
             let same = due.history_interval == self.scene.history_interval;
             probes.resume(time, same.then_some(due.history), record.histories);
@@ -105,10 +111,14 @@ impl<'a> Recorder<'a> {
         if draws && time >= self.due_wave as f64 * end / WAVE_ROWS as f64 {
             self.due_wave = wave_after(time, end);
             let stride = self.scene.particles.div_ceil(WAVE_POINTS).max(1);
-            let points = simulation.sample_pressure(stride);
+            let others = &self.scene.scene.output.diagrams;
+            let wanted = |name: &str| {
+                ["x", "pressure"].contains(&name) || others.iter().any(|q| q == quantity_of(name))
+            };
+            let columns = simulation.sample(stride, &wanted);
             let bodies = simulation.body_row(stride);
             if first {
-                self.waves.push(PressureRow { time, points });
+                self.add_waves(time, columns);
                 self.bodies.push(bodies);
             }
         }
@@ -116,6 +126,40 @@ impl<'a> Recorder<'a> {
             self.due_profile += 1;
             self.tables.extend(simulation.profile(most_particles(self.scene)));
         }
+    }
+
+    /// Adds a row of the x-t diagrams, of these columns. Called on rank 0.
+    fn add_waves(&mut self, time: f64, mut columns: Vec<TableColumn>) {
+        let mut taken = |quantity: &str| {
+            // of a tensor the first component, which is that along x
+            let found = columns.iter().position(|c| quantity_of(&c.name) == quantity);
+            found.map(|k| columns.remove(k)).unwrap_or_default()
+        };
+        let mut row = WaveRow { time, x: taken("x").values, ..WaveRow::default() };
+        row.pressure = taken("pressure").values;
+        self.quantities.clear();
+        for name in &self.scene.scene.output.diagrams {
+            let column = taken(name);
+            self.quantities.push(DiagramQuantity { name: name.clone(), unit: column.unit });
+            row.others.push(column.values);
+        }
+        self.waves.push(row);
+    }
+
+    /// Puts the quantities of the rows of a checkpoint in the order of the scene, which may ask for
+    /// others now.
+    fn choose_quantities(&mut self) {
+        let place = |name: &String| self.quantities.iter().position(|q| q.name == *name);
+        let places: Vec<Option<usize>> =
+            self.scene.scene.output.diagrams.iter().map(place).collect();
+        for row in &mut self.waves {
+            let values = |k: &Option<usize>| k.map_or(Vec::new(), |k| row.others[k].clone());
+            row.others = places.iter().map(values).collect();
+        }
+        let unit = |k: Option<usize>| k.map_or(String::new(), |k| self.quantities[k].unit.clone());
+        let names = self.scene.scene.output.diagrams.iter().cloned();
+        let chosen = names.zip(places).map(|(name, k)| DiagramQuantity { name, unit: unit(k) });
+        self.quantities = chosen.collect();
     }
 
     /// Opens the files of the fields in `folder`; `restarted` is the time of a restart [s]. Collective.
@@ -222,6 +266,7 @@ impl<'a> Recorder<'a> {
             end: self.scene.scene.time.end,
             arrivals: self.arrivals.state(),
             frames: mark.frames,
+            quantities: self.quantities.clone(),
         };
         CheckpointContents {
             origin: Some(&self.origin),

@@ -414,28 +414,35 @@ impl<const D: usize> Simulation<'_, D> {
             .collect()
     }
 
-    /// Position [m] and pressure [Pa] of every `stride`th particle by id, sorted by x, at rank 0;
-    /// empty on other ranks. Collective.
-    pub fn sample_pressure(&self, stride: u64) -> Vec<(f64, f64)> {
-        let c = &self.stepper.columns;
-        let shift = self.frame.travel(self.time)[0];
-        let mut words = Vec::new();
-        for patch in &self.patches {
-            for particle in 0..patch.block.own() {
-                if patch.block.ids[particle].is_multiple_of(stride) {
-                    words.push((patch.block.columns[c.position][particle] + shift).to_bits());
-                    words.push(patch.block.columns[c.pressure][particle].to_bits());
-                }
-            }
-        }
+    /// The columns that `wanted` names of every `stride`th particle by id, sorted by x, ties by id, at
+    /// rank 0; columns without values on other ranks. Collective.
+    pub fn sample(&self, stride: u64, wanted: &dyn Fn(&str) -> bool) -> Vec<TableColumn> {
+        let own = self.patches.iter().map(|patch| &patch.block);
+        let sampled = |id: u64| id.is_multiple_of(stride).then_some(id);
+        let shares = Shares::of_own(self.comm, own, |block, r| sampled(block.ids[r]));
+        let ParticleTable { ids, mut columns, .. } = self.table(&shares, RowOrder::Share, wanted);
+        let values = columns.iter().map(|c| &c.values);
+        let mut words = ids.clone();
+        words.extend(values.flatten().map(|value| value.to_bits()));
         let all = self.comm.gather(&words);
-        let mut points: Vec<(f64, f64)> = all
-            .iter()
-            .flat_map(|w| w.chunks(2))
-            .map(|w| (f64::from_bits(w[0]), f64::from_bits(w[1])))
+        let column = |k: usize| -> Vec<u64> {
+            let of_rank = all.iter().flat_map(|words| {
+                let count = words.len() / (1 + columns.len());
+                &words[k * count..(k + 1) * count]
+            });
+            of_rank.copied().collect()
+        };
+        let ids = column(0);
+        let values: Vec<Vec<f64>> = (0..columns.len())
+            .map(|k| column(1 + k).into_iter().map(f64::from_bits).collect())
             .collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        points
+        let mut order: Vec<usize> = (0..ids.len()).collect();
+        let x = &values[0];
+        order.sort_unstable_by(|&a, &b| x[a].total_cmp(&x[b]).then(ids[a].cmp(&ids[b])));
+        for (column, values) in columns.iter_mut().zip(&values) {
+            column.values = pick(&order, |r| values[r]);
+        }
+        columns
     }
 }
 

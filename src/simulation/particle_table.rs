@@ -1,7 +1,7 @@
 //! Table of particles at one time, for outputs.
 
 /// One named column of a [`ParticleTable`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct TableColumn {
     /// Name as in output files, such as `pressure`.
     pub name: String,

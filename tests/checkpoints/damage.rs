@@ -1,15 +1,15 @@
 //! A checkpoint comes back from its file as it was, or not at all.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use decomp::comm::local::run_ranks;
 use decomp::{Census, Comm, Serial, StoredParticles};
 use flyer_mpm::driver::checkpoint::seal::HEAD;
 use flyer_mpm::driver::checkpoint::{
-    Checkpoint, CheckpointContents, CheckpointError, Due, StateColumn, file, folder,
+    Checkpoint, CheckpointContents, CheckpointError, Due, StateColumn, file, folder, profiles,
 };
-use flyer_mpm::driver::figures::PressureRow;
+use flyer_mpm::driver::figures::{DiagramQuantity, WaveRow};
 use flyer_mpm::driver::output::histories::HistoryTable;
 use flyer_mpm::driver::output::origin::{Origin, RUN};
 use flyer_mpm::scene::{MethodChoice, Preset};
@@ -71,15 +71,24 @@ fn example() -> Checkpoint {
             wave: 9,
             end: 1e-6,
             frames: 4,
+            quantities: ["velocity", "damage"]
+                .map(|name| DiagramQuantity { name: name.into(), unit: "m/s".into() })
+                .into(),
             arrivals: Vec::new(),
         },
         record: Default::default(),
     };
     checkpoint.record.tables = vec![(table.clone(), "00ff".into()), (table, "ab".into())];
+    let waves = |time, x, pressure, others: [Vec<f64>; 2]| WaveRow {
+        time,
+        x,
+        pressure,
+        others: others.into(),
+    };
     checkpoint.record.waves = vec![
-        PressureRow { time: 0.0, points: vec![(0.0, 1.0), (2.0, 3.0)] },
-        PressureRow { time: 0.5, points: vec![] },
-        PressureRow { time: 0.6, points: vec![(4.0, -0.0)] },
+        waves(0.0, vec![0.0, 2.0], vec![1.0, 3.0], [vec![5.0, 6.0], vec![]]),
+        waves(0.5, vec![], vec![], [vec![], vec![]]),
+        waves(0.6, vec![4.0], vec![-0.0], [vec![7.0], vec![8.0]]),
     ];
     let row = |time, failed| BodyRow { time, ends: vec![[0.0, 2.0], [2.0, 4.0]], failed };
     checkpoint.record.bodies =
@@ -190,28 +199,87 @@ fn a_share_that_is_not_written_fails_on_all_ranks() {
     assert!(errors[1..].iter().all(|e| e.contains("another rank")), "{errors:?}");
 }
 
+/// Files of profiles beside checkpoints.
+fn profiles(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let is_one =
+        |path: &PathBuf| profiles::is_profile(&path.file_name().unwrap().to_string_lossy());
+    entries.filter(is_one).collect()
+}
+
+/// A profile has a file of its own, which is written once, and whose loss or damage is told.
+#[test]
+fn a_profile_is_written_once() {
+    let home = tempfile::tempdir().unwrap();
+    let place = home.path().join("checkpoints");
+    let mut checkpoint = example();
+    let table = checkpoint.record.tables.remove(1).0;
+    let [first, second, third] = [0, 1, 2].map(|k| {
+        let more = if k == 1 { Some((table.clone(), "cd".into())) } else { None };
+        checkpoint.record.tables.extend(more);
+        let path = folder::write(&Serial, &place, 9, &contents(&checkpoint)).unwrap();
+        let files = profiles(&place);
+        let at = |path: &PathBuf| (path.clone(), fs::metadata(path).unwrap().modified().unwrap());
+        (path, files.iter().map(at).collect::<Vec<_>>())
+    });
+    assert_eq!([&first.1, &second.1].map(Vec::len), [1, 2]);
+    assert!(second.1.contains(&first.1[0]) && third.1 == second.1, "written again");
+    // of a lost or damaged profile the checkpoints without it can be read
+    let added = second.1.iter().find(|file| !first.1.contains(file)).unwrap().0.clone();
+    let bytes = fs::read(&added).unwrap();
+    let earlier = || {
+        let (found, path, notes) = folder::open(&Serial, &place).unwrap();
+        assert_eq!((found.record.tables.len(), path, notes.len()), (1, first.0.clone(), 2));
+        notes[0].clone()
+    };
+    fs::remove_file(&added).unwrap();
+    let note = earlier();
+    assert!(note.contains("no longer beside it") && !note.contains('\n'), "{note}");
+    for (k, at) in (0..bytes.len()).step_by(97).enumerate() {
+        let mut changed = bytes.clone();
+        changed[at] ^= 1 << (k % 8);
+        fs::write(&added, if k % 9 == 8 { &bytes[..at] } else { &changed }).unwrap();
+        let note = earlier();
+        assert!(note.contains(&*added.to_string_lossy()) && !note.contains('\n'), "{note}");
+    }
+    // another profile under its name
+    fs::copy(&first.1[0].0, &added).unwrap();
+    assert!(earlier().contains("it is another profile"));
+    // a run that still has the profile writes it again
+    fs::remove_file(&added).unwrap();
+    folder::write(&Serial, &place, 9, &contents(&checkpoint)).unwrap();
+    assert!(fs::read(&added).unwrap() == bytes);
+    assert_eq!(file::read(&Serial, &third.0).unwrap(), checkpoint);
+    folder::clear(&place);
+    assert!(!place.exists());
+}
+
 /// The message names the damaged column, on any number of ranks.
 #[test]
 fn the_damaged_part_is_named() {
     let home = tempfile::tempdir().unwrap();
     let path = home.path().join("c.hdf5");
-    let bytes = written(&path);
+    written(&path);
     // the last value of the first column, and one of a profile, each with the value before it: the
     // bytes of such small numbers alone stand in the structure of the file too
     for (before, value, name) in
-        [(-0.0, 5e-324, "particles: mass"), (1.0, f64::MIN_POSITIVE, "profiles/0000/columns/0001")]
+        [(-0.0, 5e-324, "particles: mass"), (1.0, f64::MIN_POSITIVE, "columns/0001")]
     {
-        let mut bytes = bytes.clone();
+        written(&path);
+        let damaged = match name.starts_with("particles") {
+            true => path.clone(),
+            false => profiles(home.path()).remove(0),
+        };
+        let mut bytes = fs::read(&damaged).unwrap();
         let two = [before, value].map(f64::to_ne_bytes).concat();
         let at = bytes.windows(16).position(|w| w == two).unwrap() + 8;
         bytes[at] ^= 1;
-        fs::write(&path, &bytes).unwrap();
+        fs::write(&damaged, &bytes).unwrap();
         for ranks in [1, 3] {
             let errors = run_ranks(ranks, |comm| file::read(comm, &path).unwrap_err().to_string());
             assert!(errors[0].contains(name) && errors[0].contains("(bytes "), "{errors:?}");
         }
-        let head = file::read_without_particles(&path);
-        assert_eq!(head.is_ok(), name.starts_with("particles"), "{head:?}");
+        file::read_head_alone(&path).unwrap();
     }
 }
 
@@ -266,7 +334,7 @@ fn another_format_is_refused_in_words() {
     file::write_as(&Serial, &path, &contents(&example()), 7).unwrap();
     let error = file::read(&Serial, &path).unwrap_err().to_string();
     let version = env!("CARGO_PKG_VERSION");
-    for words in ["format 7", &format!("version {version}"), "reads format 4", "c.hdf5"] {
+    for words in ["format 7", &format!("version {version}"), "reads format 5", "c.hdf5"] {
         assert!(error.contains(words), "{error}");
     }
     assert!(!error.contains('\n'));
@@ -283,7 +351,8 @@ fn the_last_few_stay_and_the_newest_whole_one_is_taken() {
     }
     let found = folder::list(&place);
     assert_eq!(found.iter().map(|f| f.0).collect::<Vec<_>>(), [5, 4, 3]);
-    assert_eq!(fs::read_dir(&place).unwrap().count(), 3);
+    // with two profiles, which all of them name
+    assert_eq!(fs::read_dir(&place).unwrap().count(), 3 + profiles(&place).len());
     let step = |path: &Path| {
         let (checkpoint, _, notes) = folder::open(&Serial, path).unwrap();
         (checkpoint.saved.step, notes.len())

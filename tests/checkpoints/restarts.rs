@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::home::{Home, Results, names};
+use crate::home::{Home, Results, checkpoints, names};
 use crate::scenes::{small, with};
 
 /// A small scene that records all there is, with a checkpoint every so many steps.
@@ -48,11 +48,15 @@ pub fn same(a: &Results, b: &Results) {
 fn every_file_is_as_without_a_break() {
     let mut scene = recorded(25);
     scene["output"]["pictures"] = json!(true);
+    scene["output"]["diagrams"] = json!(["velocity", "strain"]);
+    scene["output"]["profiles"]["times"] = json!([0.0, 1e-8, 2.5e-8, 5e-8]);
     let home = Home::with(&scene);
     let whole = home.run("whole", &[]);
     let steps = whole.count("steps");
-    assert!(whole.names().contains(&"x_t_diagram.svg"));
-    let checkpoints = names(&home.at("whole.checkpoints"));
+    for name in ["x_t_diagram.svg", "x_t_diagram_velocity.svg", "x_t_diagram_strain.svg"] {
+        assert!(whole.names().contains(&name), "{:?}", whole.names());
+    }
+    let checkpoints = checkpoints(&home.at("whole.checkpoints"));
     assert_eq!(checkpoints.len() as u64, steps / 25);
     for (k, name) in checkpoints.iter().enumerate() {
         let (file, threads) = (format!("whole.checkpoints/{name}"), (1 + k % 2).to_string());
@@ -64,6 +68,14 @@ fn every_file_is_as_without_a_break() {
         assert_eq!(from, Some(25 * (k as u64 + 1)));
     }
     assert_eq!(whole.summary["decomposition"]["first_step"], 0);
+    // another quantity is drawn from the restart on
+    let file = format!("whole.checkpoints/{}", checkpoints[0]);
+    let density = "output.diagrams=[\"density\",\"velocity\"]";
+    let args = ["--restart", &file, "--output", "other", "--set", density];
+    home.call(args).end().succeeded();
+    let (other, drawn) = (home.results("other"), "x_t_diagram_velocity.svg");
+    assert!(other.bytes(drawn) == whole.bytes(drawn));
+    assert!(other.names().contains(&"x_t_diagram_density.svg"));
 }
 
 /// From the checkpoint of the very last step, and of steps at which something is recorded.
@@ -101,7 +113,7 @@ fn steps_that_record_are_recorded_once() {
     for (scene, all) in std::iter::once((&line, false)).chain(planes.iter().map(|p| (p, true))) {
         let home = Home::with(scene);
         let whole = home.run("whole", &[]);
-        let checkpoints = names(&home.at("whole.checkpoints"));
+        let checkpoints = checkpoints(&home.at("whole.checkpoints"));
         assert_eq!(checkpoints.len() as u64, whole.count("steps"));
         let last = checkpoints.len() - 1;
         for (k, name) in checkpoints.iter().enumerate() {
@@ -199,7 +211,7 @@ fn what_may_not_change_after_the_start_is_refused() {
 fn the_newest_is_damaged() {
     let home = Home::with(&recorded(20));
     let whole = home.run("run", &[]);
-    let newest = names(&home.at("run.checkpoints")).pop().unwrap();
+    let newest = checkpoints(&home.at("run.checkpoints")).pop().unwrap();
     home.write(&format!("run.checkpoints/{newest}"), "flyer-mpm checkpoint\n");
     let out = home.call(["--restart", "run", "--output", "again"]).end();
     assert!(out.stderr.contains(&newest) && out.stderr.contains("damaged"), "{}", out.stderr);
@@ -222,7 +234,7 @@ fn keys_say_when() {
         assert_eq!(run.states(), whole.states());
         assert_eq!(run.text("histories.csv"), whole.text("histories.csv"));
         let folder = home.at("run.checkpoints");
-        let found = if folder.exists() { names(&folder) } else { Vec::new() };
+        let found = if folder.exists() { checkpoints(&folder) } else { Vec::new() };
         let _ = std::fs::remove_dir_all(folder);
         found.len() as u64
     };

@@ -228,7 +228,7 @@ fn files_of_another_kind() {
         &["--restart", "scene.json"],
         &["scene.json: is JSON text such as a scene", "flyer-mpm scene.json without --restart"],
     );
-    let checkpoints = crate::home::names(&home.at("run.checkpoints"));
+    let checkpoints = crate::home::checkpoints(&home.at("run.checkpoints"));
     let file = format!("run.checkpoints/{}", checkpoints[0]);
     for args in [&[&file[..]][..], &["check", &file], &["hugoniot", &file]] {
         refused(&home, args, &["is a checkpoint", "--restart"]);

@@ -97,6 +97,13 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
+/// Names of the checkpoints in a folder, the oldest first.
+pub fn checkpoints(folder: &Path) -> Vec<String> {
+    let mut all = names(folder);
+    all.retain(|name| name.starts_with("checkpoint-"));
+    all
+}
+
 /// Results of a run, kept in memory so that the folder may be deleted.
 pub struct Results {
     pub files: Contents,

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::home::{Home, names};
+use crate::home::{Home, checkpoints};
 use crate::scenes::short;
 
 /// A scene in which both plates keep flying and the target leaves the domain after about a hundred
@@ -41,7 +41,7 @@ fn goes_on(ranks: Option<usize>) {
     let ended = call(&["scene.json", "--quiet", "--output", "run"]);
     ended.failed(&FRAGMENTS);
     assert!(ended.status.code().is_some_and(|code| code == 3));
-    assert_eq!(names(&home.at("run.checkpoints")), ["checkpoint-000001.hdf5"]);
+    assert_eq!(checkpoints(&home.at("run.checkpoints")), ["checkpoint-000001.hdf5"]);
     let restart = ["--restart", "run.checkpoints", "--quiet", "--output", "on"];
     assert_eq!(call(&[&restart[..], &EARLIER].concat()).succeeded(), "");
     let plain = ["scene.json", "--quiet", "--output", "plain"];

@@ -156,7 +156,9 @@ fn profiles_at_an_interval_and_of_blocks_of_cells() {
         .iter()
         .map(|p| p["time"].as_f64().unwrap())
         .collect();
-    assert_eq!(times, [3e-8, 6e-8, 9e-8, 1e-7]);
+    assert_eq!(times, [0.0, 3e-8, 6e-8, 9e-8, 1e-7]);
+    let start = column(run.profile(0), "velocity");
+    assert!(start.iter().all(|&u| u == 0.0 || u == start[0]) && start[0] > 0.0, "{start:?}");
     let few = home.run("few", &["--set", "output.profiles.max_particles=50"]);
     let warnings = few.summary["warnings"].to_string();
     assert!(warnings.contains("blocks of 8 cells"), "{warnings}");
@@ -164,7 +166,7 @@ fn profiles_at_an_interval_and_of_blocks_of_cells() {
         run.states().iter().map(|(digest, _)| digest.to_string()).collect()
     };
     assert_eq!(digests(&few), digests(&run));
-    let (x, all) = (column(few.profile(3), "x"), column(run.profile(3), "x"));
+    let (x, all) = (column(few.profile(4), "x"), column(run.profile(4), "x"));
     assert!((20..=52).contains(&x.len()) && all.len() == 400, "{}", x.len());
     assert!(x.windows(2).all(|pair| pair[0] < pair[1]));
     let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len() as f64;
@@ -175,6 +177,14 @@ fn profiles_at_an_interval_and_of_blocks_of_cells() {
     let unknown = r#"output.fields={"every":1e-8,"quantities":["stress"]}"#;
     home.call(["scene.json", "--set", unknown]).end().failed(&["quantities[0]", "velocity"]);
     home.call(["scene.json", "--set", "output.fields={}"]).end().failed(&["every or times"]);
+    for (diagrams, words) in [
+        (r#"["density","stress"]"#, ["output.diagrams[1]", "velocity"]),
+        (r#"["pressure"]"#, ["output.diagrams[0]", "besides the pressure"]),
+        (r#"["mass","mass"]"#, ["output.diagrams[1]", "named twice"]),
+    ] {
+        let set = format!("output.diagrams={diagrams}");
+        home.call(["scene.json", "--set", &set]).end().failed(&words);
+    }
 }
 
 #[test]

@@ -225,7 +225,7 @@ fn times_of_outputs() {
         &["output.profiles.times[1] = 2e-6", "beyond time.end = 1e-6", "allowed"],
     );
     edit("output.profiles.times=[2e-7, 2e-7]", &["output.profiles.times[1]", "increasing"]);
-    edit("output.profiles.times=[0]", &["output.profiles.times[0] = 0", "a number above 0"]);
+    edit("output.profiles.times=[-1]", &["output.profiles.times[0] = -1", "at least 0"]);
 }
 
 #[test]

@@ -9,15 +9,15 @@ use super::ticks::Ruler;
 /// Background colour: no material. White, because light gray stands for a value.
 const NOTHING: Color = Color::WHITE;
 
-/// Pressure along x at one time.
+/// A quantity along x at one time.
 #[derive(Debug, Clone)]
 pub struct DiagramRow {
     /// Time \[s\].
     pub time: f64,
     /// Positions \[m\].
     pub x: Vec<f64>,
-    /// Pressures \[Pa\].
-    pub pressure: Vec<f64>,
+    /// Values.
+    pub values: Vec<f64>,
 }
 
 /// A quantity over position and time.
@@ -38,7 +38,7 @@ impl ColorMap {
 
     /// All values.
     pub fn values(&self) -> impl Iterator<Item = f64> {
-        self.rows.iter().flat_map(|row| row.pressure.iter().copied())
+        self.rows.iter().flat_map(|row| row.values.iter().copied())
     }
 
     /// The image of the map in `rect`: linear between the points of a row, nearest row in time.
@@ -97,7 +97,7 @@ fn colors_of(
     x: &Ruler,
     (colors, shades): (&Ruler, Shades),
 ) -> Vec<Color> {
-    let mut points: Vec<(f64, f64)> = std::iter::zip(&row.x, &row.pressure)
+    let mut points: Vec<(f64, f64)> = std::iter::zip(&row.x, &row.values)
         .filter(|(x, p)| x.is_finite() && p.is_finite())
         .map(|(&x, &p)| (x, p))
         .collect();
@@ -138,8 +138,8 @@ mod tests {
 
     #[test]
     fn zero_is_in_the_middle_of_signed_values() {
-        let map = |pressure: Vec<f64>| {
-            let rows = vec![DiagramRow { time: 0.0, x: vec![0.0, 1.0, 2.0], pressure }];
+        let map = |values: Vec<f64>| {
+            let rows = vec![DiagramRow { time: 0.0, x: vec![0.0, 1.0, 2.0], values }];
             let scale =
                 ColorMap { label: "p".into(), unit: "Pa".into(), rows, limits: None }.scale();
             (scale.shades, scale.low, scale.high)
@@ -154,7 +154,7 @@ mod tests {
         let x = Ruler::new(&axis("x"), [0.0, 10.0].into_iter(), 5);
         let colors = Ruler::new(&axis("p"), [0.0, 1.0].into_iter(), 5);
         let positions = vec![0.0, 0.5, 1.0, 1.5, 2.0, 8.0, 8.5, 9.0, 9.5, 10.0];
-        let row = DiagramRow { time: 0.0, x: positions, pressure: vec![1.0; 10] };
+        let row = DiagramRow { time: 0.0, x: positions, values: vec![1.0; 10] };
         let shades = colors_of(&row, 100, &x, (&colors, Shades::Sequential));
         assert_eq!(shades[5], Shades::Sequential.color(1.0));
         assert_eq!(shades[50], NOTHING);

@@ -68,8 +68,8 @@ fn check(figure: &Figure) -> Result<(), PictureError> {
             }
         }
         for row in panel.map.iter().flat_map(|map| &map.rows) {
-            if row.x.len() != row.pressure.len() {
-                return Err(lengths("colour map", row.x.len(), row.pressure.len()));
+            if row.x.len() != row.values.len() {
+                return Err(lengths("colour map", row.x.len(), row.values.len()));
             }
         }
     }

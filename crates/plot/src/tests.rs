@@ -112,9 +112,9 @@ fn odd_data_are_drawn_as_far_as_they_go() {
         }
     }
     let rows = vec![
-        DiagramRow { time: f64::NAN, x: vec![0.0], pressure: vec![1.0] },
-        DiagramRow { time: 1e-6, x: vec![0.0, 0.0, f64::NAN], pressure: vec![f64::NAN, 2.0, 1.0] },
-        DiagramRow { time: 1e-6, x: vec![], pressure: vec![] },
+        DiagramRow { time: f64::NAN, x: vec![0.0], values: vec![1.0] },
+        DiagramRow { time: 1e-6, x: vec![0.0, 0.0, f64::NAN], values: vec![f64::NAN, 2.0, 1.0] },
+        DiagramRow { time: 1e-6, x: vec![], values: vec![] },
     ];
     drawn(&WaveDiagram { title: "odd".into(), rows, ..WaveDiagram::default() }.figure());
 }
@@ -176,7 +176,7 @@ fn colour_map_is_in_both_files() {
     let rows = (0..50).map(|i| {
         let x: Vec<f64> = (0..100).map(|j| f64::from(j) * 1e-5).collect();
         let pressure = x.iter().map(|x| if *x < f64::from(i) * 2e-5 { 1e9 } else { 0.0 }).collect();
-        DiagramRow { time: f64::from(i) * 1e-8, x, pressure }
+        DiagramRow { time: f64::from(i) * 1e-8, x, values: pressure }
     });
     let path = WavePath {
         name: "shock".into(),

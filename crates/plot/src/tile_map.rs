@@ -88,7 +88,7 @@ fn row(time: f64, values: &[Option<f64>], edges: &[f64]) -> DiagramRow {
     let tile = |x: f64| edges.partition_point(|e| *e <= x).clamp(1, values.len()) - 1;
     let value = |&x: &f64| values[tile(x)].unwrap_or(f64::NAN);
     let pressure = x.iter().map(value).collect();
-    DiagramRow { time, x, pressure }
+    DiagramRow { time, x, values: pressure }
 }
 
 #[cfg(test)]
@@ -100,7 +100,7 @@ mod tests {
         assert_eq!(edges(&[0.0, 1.0, 3.0]), [-0.5, 0.5, 2.0, 4.0]);
         assert_eq!(edges(&[2.0]), [1.5, 2.5]);
         let row = row(0.0, &[Some(1.0), None, Some(3.0)], &[0.0, 1.0, 2.0, 4.0]);
-        let at = |x: f64| row.pressure[(x / 4.0 * POINTS as f64) as usize];
+        let at = |x: f64| row.values[(x / 4.0 * POINTS as f64) as usize];
         assert_eq!((at(0.5), at(3.9)), (1.0, 3.0));
         assert!(at(1.5).is_nan());
     }

@@ -1,4 +1,4 @@
-//! The x-t diagram: computed pressure as colour, with the exact wave paths.
+//! The x-t diagram: a computed quantity as colour, with the exact wave paths.
 
 use super::axis::Axis;
 use super::color::Color;
@@ -12,12 +12,14 @@ const FAILED: Color = Color(0xff, 0xe0, 0x66);
 /// Colour of the computed surfaces of bodies.
 const SURFACE: Color = Color(0xd9, 0xf2, 0xff);
 
-/// Computed pressure over position and time, and wave paths.
-#[derive(Debug, Clone, Default)]
+/// A computed quantity over position and time, and wave paths.
+#[derive(Debug, Clone)]
 pub struct WaveDiagram {
     /// Title of the picture.
     pub title: String,
-    /// Computed pressure, one row per time; rows may differ in length.
+    /// Name and unit of the quantity.
+    pub quantity: (String, String),
+    /// Computed values, one row per time; rows may differ in length.
     pub rows: Vec<DiagramRow>,
     /// Wave paths; paths with the same name share a colour and a legend entry.
     pub paths: Vec<WavePath>,
@@ -46,6 +48,24 @@ pub struct WavePath {
     pub stroke: Stroke,
 }
 
+impl Default for WaveDiagram {
+    /// A diagram of the pressure without rows.
+    fn default() -> Self {
+        WaveDiagram {
+            title: String::new(),
+            quantity: ("Pressure".into(), "Pa".into()),
+            rows: Vec::new(),
+            paths: Vec::new(),
+            end: None,
+            bands: Vec::new(),
+            surfaces: Vec::new(),
+            failed: Vec::new(),
+            exact_until: None,
+            notes: Vec::new(),
+        }
+    }
+}
+
 impl WaveDiagram {
     /// Colours that are visible on every colour of the map.
     const COLORS: [Color; 4] =
@@ -71,8 +91,8 @@ impl WaveDiagram {
             panel.series.push(Series::new(&path.name, path.points.clone(), style));
         }
         panel.map = Some(ColorMap {
-            label: "Pressure".into(),
-            unit: "Pa".into(),
+            label: self.quantity.0.clone(),
+            unit: self.quantity.1.clone(),
             rows: self.rows.clone(),
             limits: None,
         });

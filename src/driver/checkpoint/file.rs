@@ -1,10 +1,10 @@
 //! Format of a checkpoint on disk: HDF5 data behind a sealed head.
 //!
 //! `rows` holds id, cell and each state column of every particle, rank after rank: each rank writes
-//! those of its patches. `profiles`, `histories` and `waves` hold the records; `scene` and `books` are
-//! JSON text. Rank 0 writes these; each of their datasets carries the SHA-256 of its values, computed
-//! before they are passed to HDF5. The particles have the digest in `books`, which a restart compares
-//! with that of its patches.
+//! those of its patches. `histories` and `waves` hold the records; `scene` and `books` are JSON text.
+//! Rank 0 writes these; each of their datasets carries the SHA-256 of its values. The particles have the
+//! digest in `books`, which a restart compares with that of its patches. `books` names the files of the
+//! profiles, which lie beside the checkpoint.
 
 use std::cell::RefCell;
 use std::fs;
@@ -12,23 +12,22 @@ use std::io;
 use std::path::Path;
 
 use decomp::{Census, Comm, Serial, StoredParticles};
-use hdf5::types::{FixedAscii, VarLenUnicode};
 use hdf5::{Dataset, File, Group};
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
-use super::seal::{FORMAT, HEAD, hexadecimal, seal, verify};
-use super::{Checkpoint, CheckpointContents, CheckpointError, Due, Record, StateColumn};
-use crate::driver::figures::PressureRow;
+use super::datasets::{Reader, Writer, name_column, refused, text};
+use super::seal::{FORMAT, HEAD, seal, verify};
+use super::{Checkpoint, CheckpointContents, CheckpointError, Due, Record, StateColumn, profiles};
+use crate::driver::figures::WaveRow;
 use crate::driver::output::OutputError;
 use crate::driver::output::histories::HistoryTable;
 use crate::driver::output::origin::Origin;
 use crate::driver::output::shared_file::{
-    Extent, Plain, SharedFile, agree, from_first, read_values, reserve,
+    Extent, SharedFile, agree, from_first, read_values, reserve,
 };
 use crate::scene::MethodChoice;
 use crate::simulation::monitor::Peaks;
-use crate::simulation::{BodyRow, ParticleTable, Saved, TableColumn};
+use crate::simulation::{BodyRow, Saved};
 
 /// All scalar values.
 #[derive(Serialize, Deserialize)]
@@ -55,7 +54,8 @@ struct Books {
     state_sha256: String,
     due: Due,
     materials: Vec<String>,
-    profiles: usize,
+    /// Names of the files of the profiles.
+    profiles: Vec<String>,
     has_histories: bool,
 }
 
@@ -78,7 +78,10 @@ impl Books {
             state_sha256: saved.digest.clone(),
             due: contents.due.clone(),
             materials: tables.first().map_or(Vec::new(), |t| t.0.materials.clone()),
-            profiles: tables.len(),
+            profiles: tables
+                .iter()
+                .map(|(table, state)| profiles::file_name(table, state))
+                .collect(),
             has_histories: contents.histories.is_some(),
         }
     }
@@ -86,17 +89,6 @@ impl Books {
 
 /// First word of the names of the parts of a file with particles.
 const PARTICLES: &str = "particles:";
-
-fn digest<T: Plain>(values: &[T]) -> String {
-    let mut digest = Sha256::new();
-    let mut bytes = Vec::with_capacity(1 << 16);
-    for chunk in values.chunks(1 << 12) {
-        bytes.clear();
-        chunk.iter().for_each(|v| bytes.extend_from_slice(v.bytes().as_ref()));
-        digest.update(&bytes);
-    }
-    hexadecimal(digest)
-}
 
 /// Places of the particles in a file.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -143,7 +135,9 @@ pub fn write_as(
 ) -> Result<(), CheckpointError> {
     let counts = comm.gather(&[contents.saved.particles.ids.len() as u64]).concat();
     let laid_out = match comm.rank() {
-        0 => lay_out(path, contents, &counts, &|| comm.heartbeat()).map_err(|e| refused(path, e)),
+        0 => profiles::store(path, contents.tables, &|| comm.heartbeat()).and_then(|()| {
+            lay_out(path, contents, &counts, &|| comm.heartbeat()).map_err(|e| refused(path, e))
+        }),
         _ => Ok(FileLayout::default()),
     };
     let plan = from_first(comm, agree(comm, laid_out)?);
@@ -173,17 +167,6 @@ fn unwritten(path: &Path, error: io::Error) -> CheckpointError {
     }
 }
 
-fn refused(path: &Path, error: hdf5::Error) -> CheckpointError {
-    let said = error.to_string().replace('\n', "; ");
-    // if a write failed, only the system's reason in the text of HDF5 is useful
-    let system = said.split_once("error message = '").and_then(|(_, rest)| rest.split_once('\''));
-    let message = match system {
-        Some((reason, _)) => format!("{reason}: make room, or choose another --output"),
-        None => said,
-    };
-    OutputError::Hdf5 { path: path.into(), message }.into()
-}
-
 /// Writes all but the particles, and makes room for these; rank number k has `counts[k]` of them.
 fn lay_out(
     path: &Path,
@@ -204,13 +187,6 @@ fn lay_out(
     };
     let firsts = counts.iter().map(first).collect();
     Ok(FileLayout { rows, firsts, extents: writer.extents.into_inner() })
-}
-
-/// Writes datasets and notes their places.
-struct Writer<'a> {
-    extents: RefCell<Vec<Extent>>,
-    /// Called regularly.
-    alive: &'a dyn Fn(),
 }
 
 impl Writer<'_> {
@@ -244,19 +220,21 @@ impl Writer<'_> {
         let books = serde_json::to_string(&Books::of(contents)).map_err(|e| e.to_string())?;
         self.put(file, "scene", contents.scene.as_bytes())?;
         self.put(file, "books", books.as_bytes())?;
-        let profiles = file.create_group("profiles")?;
-        for (k, (table, state)) in contents.tables.iter().enumerate() {
-            self.table(&profiles.create_group(&format!("{k:04}"))?, table, state)?;
-            (self.alive)();
-        }
         let waves = file.create_group("waves")?;
         let times: Vec<f64> = contents.waves.iter().map(|w| w.time).collect();
-        let counts: Vec<u64> = contents.waves.iter().map(|w| w.points.len() as u64).collect();
-        let points = contents.waves.iter().flat_map(|w| &w.points);
-        let points: Vec<f64> = points.flat_map(|p| [p.0, p.1]).collect();
+        let counts: Vec<u64> = contents.waves.iter().map(|w| w.x.len() as u64).collect();
         self.put(&waves, "time", &times)?;
         self.put(&waves, "points", &counts)?;
-        self.put(&waves, "x_and_pressure", &points)?;
+        let all = |of: &dyn Fn(&WaveRow) -> &[f64]| -> Vec<f64> {
+            contents.waves.iter().flat_map(|row| of(row).iter().copied()).collect()
+        };
+        self.put(&waves, "x", &all(&|row| &row.x))?;
+        self.put(&waves, "pressure", &all(&|row| &row.pressure))?;
+        for k in 0..contents.due.quantities.len() {
+            let known = contents.waves.iter().map(|w| w.others[k].len() as u64);
+            self.put(&waves, &format!("points_{k:04}"), &known.collect::<Vec<u64>>())?;
+            self.put(&waves, &format!("values_{k:04}"), &all(&|row| &row.others[k]))?;
+        }
         self.bodies(&file.create_group("bodies")?, contents.bodies)?;
         let histories = file.create_group("histories")?;
         let columns = contents.histories.map_or(&[][..], |h| h.columns());
@@ -280,53 +258,6 @@ impl Writer<'_> {
         put_parts("ends", rows.iter().map(|row| &row.ends).collect())?;
         put_parts("failed", rows.iter().map(|row| &row.failed).collect())
     }
-
-    fn table(&self, group: &Group, table: &ParticleTable, state: &str) -> hdf5::Result<()> {
-        self.put(group, "time", &[table.time])?;
-        self.put(group, "state_sha256", state.as_bytes())?;
-        self.put(group, "id", &table.ids)?;
-        self.put(group, "material", &table.material)?;
-        self.put(group, "body", &table.body)?;
-        let edges: Vec<f64> = table.half_edges.iter().flatten().flatten().copied().collect();
-        self.put(group, "half_edges", &edges)?;
-        let columns = group.create_group("columns")?;
-        for (k, column) in table.columns.iter().enumerate() {
-            self.column(&columns, k, &column.name, &column.unit, &column.values)?;
-        }
-        Ok(())
-    }
-
-    fn put<T: Plain>(&self, group: &Group, name: &str, values: &[T]) -> hdf5::Result<Dataset> {
-        let dataset =
-            group.new_dataset::<T>().shape(values.len()).obj_track_times(false).create(name)?;
-        dataset.write_raw(values)?;
-        let digest = FixedAscii::<64>::from_ascii(&digest(values)).map_err(|e| e.to_string())?;
-        dataset.new_attr::<FixedAscii<64>>().create("sha256")?.write_scalar(&digest)?;
-        let path = dataset.name();
-        self.extents.borrow_mut().push(Extent::of(path.trim_start_matches('/').into(), &dataset));
-        Ok(dataset)
-    }
-
-    /// Writes a column with name and unit under its index, by which it is found.
-    fn column(
-        &self,
-        group: &Group,
-        place: usize,
-        name: &str,
-        unit: &str,
-        values: &[f64],
-    ) -> hdf5::Result<()> {
-        name_column(&self.put(group, &format!("{place:04}"), values)?, name, unit)
-    }
-}
-
-/// Adds the name and the unit of a column.
-fn name_column(dataset: &Dataset, name: &str, unit: &str) -> hdf5::Result<()> {
-    for (key, text) in [("name", name), ("units", unit)] {
-        let text: VarLenUnicode = text.parse().map_err(|_| format!("text of {key}"))?;
-        dataset.new_attr::<VarLenUnicode>().create(key)?.write_scalar(&text)?;
-    }
-    Ok(())
 }
 
 /// Reads a checkpoint after verifying its seal: on each rank a share of the particles, on rank 0 the
@@ -340,14 +271,14 @@ pub fn read(comm: &dyn Comm, path: &Path) -> Result<Checkpoint, CheckpointError>
     agree(comm, read_verified(comm, path))
 }
 
-/// Reads a checkpoint without its particles, of which no part is looked at. Called on one rank.
+/// Reads a checkpoint without its particles and records. Called on one rank.
 ///
 /// # Errors
 ///
 /// As [`read`].
-pub fn read_without_particles(path: &Path) -> Result<Checkpoint, CheckpointError> {
+pub fn read_head_alone(path: &Path) -> Result<Checkpoint, CheckpointError> {
     verify(&Serial, path, &|name| !name.starts_with(PARTICLES))?;
-    read_head(path, true).map(|(checkpoint, _)| checkpoint)
+    read_head(path, false).map(|(checkpoint, _)| checkpoint)
 }
 
 fn read_verified(comm: &dyn Comm, path: &Path) -> Result<Checkpoint, CheckpointError> {
@@ -375,17 +306,28 @@ fn read_verified(comm: &dyn Comm, path: &Path) -> Result<Checkpoint, CheckpointE
 /// particles.
 fn read_head(path: &Path, wanted: bool) -> Result<(Checkpoint, Rows), CheckpointError> {
     let length = fs::metadata(path).map_or(0, |m| m.len());
-    let read = || -> hdf5::Result<(Checkpoint, Rows)> {
+    let read = || -> hdf5::Result<(Checkpoint, Rows, ProfileNames)> {
         let file = File::open(path)?;
         read_root(&file, length, wanted)
     };
-    read().map_err(|e| CheckpointError::Damaged {
-        path: path.into(),
-        why: e.to_string().replace('\n', "; "),
-    })
+    let (mut checkpoint, rows, (names, materials)) = read().map_err(|e| {
+        CheckpointError::Damaged { path: path.into(), why: e.to_string().replace('\n', "; ") }
+    })?;
+    if wanted {
+        let of = |name: &String| profiles::read(path, name, checkpoint.dimension, &materials);
+        checkpoint.record.tables = names.iter().map(of).collect::<Result<_, _>>()?;
+    }
+    Ok((checkpoint, rows))
 }
 
-fn read_root(file: &Group, length: u64, wanted: bool) -> hdf5::Result<(Checkpoint, Rows)> {
+/// Names of the files of profiles, and of the materials in them.
+type ProfileNames = (Vec<String>, Vec<String>);
+
+fn read_root(
+    file: &Group,
+    length: u64,
+    wanted: bool,
+) -> hdf5::Result<(Checkpoint, Rows, ProfileNames)> {
     let get = Reader { length };
     let books: Books = serde_json::from_slice(&get.values::<u8>(file, "books")?)
         .map_err(|e| format!("books: {e}"))?;
@@ -429,46 +371,30 @@ fn read_root(file: &Group, length: u64, wanted: bool) -> hdf5::Result<(Checkpoin
         due: books.due,
         record,
     };
-    Ok((checkpoint, rows))
-}
-
-/// Text of an attribute.
-fn text(dataset: &Dataset, key: &str) -> hdf5::Result<String> {
-    Ok(dataset.attr(key)?.read_scalar::<VarLenUnicode>()?.to_string())
-}
-
-/// Reads datasets of a file of `length` bytes, which no dataset can exceed.
-struct Reader {
-    length: u64,
+    Ok((checkpoint, rows, (books.profiles, books.materials)))
 }
 
 impl Reader {
-    fn values<T: Plain>(&self, group: &Group, name: &str) -> hdf5::Result<Vec<T>> {
-        let dataset = group.dataset(name)?;
-        if (dataset.size() * size_of::<T>()) as u64 > self.length {
-            return Err(format!("{name} is longer than the file").into());
-        }
-        let values: Vec<T> = dataset.read_raw()?;
-        let told: FixedAscii<64> = dataset.attr("sha256")?.read_scalar()?;
-        match told.as_str() == digest(&values) {
-            true => Ok(values),
-            false => Err(format!("the values of {name} are not those that were written").into()),
-        }
-    }
-
     fn record(&self, file: &Group, books: &Books) -> hdf5::Result<Record> {
         let mut record = Record::default();
-        for k in 0..books.profiles {
-            let group = file.group(&format!("profiles/{k:04}"))?;
-            record.tables.push(self.table(&group, books)?);
-        }
         let waves = file.group("waves")?;
-        let points: Vec<f64> = self.values(&waves, "x_and_pressure")?;
-        let mut points = points.chunks_exact(2).map(|p| (p[0], p[1]));
-        let counts: Vec<u64> = self.values(&waves, "points")?;
-        for (time, count) in self.values::<f64>(&waves, "time")?.into_iter().zip(counts) {
-            let points = points.by_ref().take(count as usize).collect();
-            record.waves.push(PressureRow { time, points });
+        let times: Vec<f64> = self.values(&waves, "time")?;
+        let rows = |counts: &str, values: &str| -> hdf5::Result<Vec<Vec<f64>>> {
+            let counts: Vec<u64> = self.values(&waves, counts)?;
+            let mut values = self.values::<f64>(&waves, values)?.into_iter();
+            if counts.len() != times.len() {
+                return Err("as many rows as times are needed".into());
+            }
+            Ok(counts.iter().map(|&n| values.by_ref().take(n as usize).collect()).collect())
+        };
+        let (x, pressure) = (rows("points", "x")?, rows("points", "pressure")?);
+        for (&time, (x, pressure)) in times.iter().zip(x.into_iter().zip(pressure)) {
+            record.waves.push(WaveRow { time, x, pressure, others: Vec::new() });
+        }
+        for k in 0..books.due.quantities.len() {
+            let of_rows = rows(&format!("points_{k:04}"), &format!("values_{k:04}"))?;
+            let of_rows = record.waves.iter_mut().zip(of_rows);
+            of_rows.for_each(|(row, values)| row.others.push(values));
         }
         record.bodies = self.bodies(&file.group("bodies")?)?;
         if record.bodies.len() != record.waves.len() {
@@ -494,41 +420,5 @@ impl Reader {
         }
         let rows = times.into_iter().zip(ends.into_iter().zip(failed));
         Ok(rows.map(|(time, (ends, failed))| BodyRow { time, ends, failed }).collect())
-    }
-
-    fn columns(&self, group: &Group) -> hdf5::Result<Vec<TableColumn>> {
-        let column = |k: u64| -> hdf5::Result<TableColumn> {
-            let name = format!("{k:04}");
-            let values = self.values(group, &name)?;
-            let dataset = group.dataset(&name)?;
-            Ok(TableColumn {
-                name: text(&dataset, "name")?,
-                unit: text(&dataset, "units")?,
-                values,
-            })
-        };
-        (0..group.len()).map(column).collect()
-    }
-
-    fn table(&self, group: &Group, books: &Books) -> hdf5::Result<(ParticleTable, String)> {
-        let time: Vec<f64> = self.values(group, "time")?;
-        let state = String::from_utf8(self.values(group, "state_sha256")?);
-        let edges: Vec<f64> = self.values(group, "half_edges")?;
-        let table = ParticleTable {
-            time: *time.first().ok_or("a profile without its time")?,
-            dimension: books.dimension,
-            ids: self.values(group, "id")?,
-            material: self.values(group, "material")?,
-            materials: books.materials.clone(),
-            body: self.values(group, "body")?,
-            columns: self.columns(&group.group("columns")?)?,
-            half_edges: edges.chunks_exact(4).map(|e| [[e[0], e[1]], [e[2], e[3]]]).collect(),
-        };
-        let lengths = table.columns.iter().map(|c| c.values.len());
-        let mut lengths = lengths.chain([table.material.len(), table.body.len()]);
-        if lengths.any(|n| n != table.len()) {
-            return Err("a profile whose columns are not alike in length".into());
-        }
-        Ok((table, state.map_err(|e| e.to_string())?))
     }
 }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use decomp::Comm;
 use nix::sys::statvfs::statvfs;
 
-use super::{Checkpoint, CheckpointContents, CheckpointError, file};
+use super::{Checkpoint, CheckpointContents, CheckpointError, file, profiles};
 use crate::driver::output::OutputError;
 use crate::driver::output::folder::{CHECKPOINTS, checkpoint_folder};
 use crate::driver::output::origin::{ExistingResult, Maker};
@@ -60,9 +60,10 @@ fn try_write(
     keep: u64,
     contents: &CheckpointContents,
 ) -> Result<PathBuf, CheckpointError> {
-    let mut needed = [contents.bytes() as i64];
-    comm.sum(&mut needed);
     let first = comm.rank() == 0;
+    let profiles = if first { profiles::missing_bytes(folder, contents.tables) } else { 0 };
+    let mut needed = [(contents.bytes() + profiles) as i64];
+    comm.sum(&mut needed);
     let names = if first { make_room(folder, needed[0] as u64) } else { Ok(Names::default()) };
     let (partial, path, earlier) = from_first(comm, agree(comm, names)?);
     let written = file::write(comm, &partial, contents).and_then(|()| {
@@ -120,12 +121,13 @@ pub fn list(folder: &Path) -> Vec<(u64, PathBuf)> {
     found
 }
 
-/// Removes all checkpoints from a folder, and the folder if it is then empty. Best effort.
+/// Removes all checkpoints and their profiles from a folder, and the folder if it is then empty. Best effort.
 pub fn clear(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
         let name = name.to_string_lossy();
-        if name.starts_with(PARTIAL) || (name.starts_with(BEFORE) && name.ends_with(AFTER)) {
+        let checkpoint = name.starts_with(BEFORE) && name.ends_with(AFTER);
+        if checkpoint || name.starts_with(PARTIAL) || profiles::is_profile(&name) {
             let _ = fs::remove_file(entry.path());
         }
     }
@@ -210,7 +212,7 @@ pub fn check_owner(target: &Path, maker: &Maker) -> Result<(), OutputError> {
     }
     let ours = maker.origin.to_string();
     for (_, path) in list(&folder) {
-        let checkpoint = match file::read_without_particles(&path) {
+        let checkpoint = match file::read_head_alone(&path) {
             Ok(checkpoint) => checkpoint,
             Err(CheckpointError::Damaged { .. }) => continue,
             // a checkpoint of another format is a whole one of somebody

@@ -1,14 +1,17 @@
 //! Checkpoints: files for a restart that gives the same bits as an uninterrupted run.
 //!
 //! A checkpoint is itself an input: it holds the whole scene, the state that the next step needs
-//! ([`Saved`]), and all records so far. [`folder`] writes, flushes and renames the files, [`seal`]
-//! detects any changed bit, [`mod@file`] defines the format on disk, [`schedule`] decides when a
-//! checkpoint is due. All ranks write and read their shares of the particles; independent of MPI.
+//! ([`Saved`]), and all records so far; [`profiles`] have files of their own, which it names. [`folder`]
+//! writes, flushes and renames the files, [`seal`] detects any changed bit, [`mod@file`] defines the format
+//! on disk, [`schedule`] decides when a checkpoint is due. All ranks write and read their shares of the
+//! particles; independent of MPI.
 
+mod datasets;
 pub mod error;
 pub mod file;
 pub mod fit;
 pub mod folder;
+pub mod profiles;
 pub mod schedule;
 pub mod seal;
 
@@ -18,7 +21,7 @@ pub use schedule::CheckpointSchedule;
 use serde::{Deserialize, Serialize};
 
 use crate::accuracy::estimate::arrival::Passing;
-use crate::driver::figures::PressureRow;
+use crate::driver::figures::{DiagramQuantity, WaveRow};
 use crate::driver::output::histories::HistoryTable;
 use crate::driver::output::origin::{Origin, RUN};
 use crate::scene::MethodChoice;
@@ -47,6 +50,9 @@ pub struct Due {
     /// Frames of the fields written so far.
     #[serde(default)]
     pub frames: u64,
+    /// Quantities of the x-t diagrams besides the pressure, in the order of the rows.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub quantities: Vec<DiagramQuantity>,
     /// State of the wave arrivals that the run reports.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub arrivals: Vec<[Passing; 2]>,
@@ -58,7 +64,7 @@ pub struct Record {
     /// Profiles and the digests of their states.
     pub tables: Vec<(ParticleTable, String)>,
     /// Rows of the x-t diagram.
-    pub waves: Vec<PressureRow>,
+    pub waves: Vec<WaveRow>,
     /// Surfaces and failed parts of the bodies, at the times of `waves`.
     pub bodies: Vec<BodyRow>,
     /// Histories.
@@ -109,7 +115,7 @@ pub struct CheckpointContents<'a> {
     /// Profiles and the digests of their states.
     pub tables: &'a [(ParticleTable, String)],
     /// Rows of the x-t diagram.
-    pub waves: &'a [PressureRow],
+    pub waves: &'a [WaveRow],
     /// Surfaces and failed parts of the bodies, at the times of `waves`.
     pub bodies: &'a [BodyRow],
     /// Histories.
@@ -125,16 +131,15 @@ impl Checkpoint {
 }
 
 impl CheckpointContents<'_> {
-    /// Approximate size of this rank's share of the file [bytes].
+    /// Approximate size of this rank's share of the file, without those of the profiles [bytes].
     pub fn bytes(&self) -> u64 {
         let rows = self.saved.particles.ids.len() * (16 + 8 * self.columns.len());
-        let table = |t: &ParticleTable| t.len() * (16 + 8 * (t.columns.len() + 4));
-        let tables: usize = self.tables.iter().map(|t| table(&t.0)).sum();
-        let waves: usize = self.waves.iter().map(|w| 16 * (w.points.len() + 1)).sum();
+        let waves = self.waves.iter().map(|w| 16 + 8 * w.x.len() * (2 + w.others.len()));
+        let waves: usize = waves.sum();
         let bodies = self.bodies.iter();
         let bodies: usize = bodies.map(|b| 16 * (b.ends.len() + b.failed.len() + 1)).sum();
         let histories = self.histories.map_or(0, |h| 8 * h.len() * h.columns().len());
         // overhead of HDF5
-        (rows + tables + waves + bodies + histories + self.scene.len() + (64 << 10)) as u64
+        (rows + waves + bodies + histories + self.scene.len() + (64 << 10)) as u64
     }
 }

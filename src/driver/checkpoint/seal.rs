@@ -20,7 +20,7 @@ use crate::input::input_file::CHECKPOINT_START;
 use crate::input::input_file::{self, InputFault};
 
 /// Version of the checkpoint format.
-pub const FORMAT: u32 = 4;
+pub const FORMAT: u32 = 5;
 
 /// Length of the head [bytes].
 pub const HEAD: u64 = 512;

@@ -12,6 +12,8 @@ pub use waves::{draw_run_waves, draw_waves};
 
 use std::path::Path;
 
+use serde::{Deserialize, Serialize};
+
 use crate::accuracy::reference::{ImpactReference, ReferenceSolution};
 use crate::driver::output::histories::HistoryTable;
 use crate::exact::wave_interactions::{centre_left, centre_right, hugoniot_left, hugoniot_right};
@@ -19,13 +21,26 @@ use crate::exact::{Chain, History, Impact, Plate};
 use crate::plot::{self, Color, PictureError, Points};
 use crate::scene::CheckedScene;
 
-/// Pressure over all particles at one time, for the x-t diagram.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PressureRow {
+/// Particles along x at one time, for the x-t diagrams.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WaveRow {
     /// Time [s].
     pub time: f64,
-    /// Position [m] and pressure [Pa], sorted by position.
-    pub points: Vec<(f64, f64)>,
+    /// Positions [m], ascending.
+    pub x: Vec<f64>,
+    /// Pressures [Pa].
+    pub pressure: Vec<f64>,
+    /// Values of each further quantity; empty if they are not known at this time.
+    pub others: Vec<Vec<f64>>,
+}
+
+/// A quantity of an x-t diagram.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DiagramQuantity {
+    /// Name as in the scene.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
 }
 
 /// Draws the Hugoniots with the states of the chain into `folder`. For the impact of Burghardt (2010)

@@ -1,33 +1,35 @@
-//! The x-t diagram of a scene on a line.
+//! The x-t diagrams of a scene on a line.
 
 use std::path::Path;
 
-use super::{PressureRow, bodies};
+use super::{DiagramQuantity, WaveRow, bodies};
 use crate::accuracy::reference::ReferenceSolution;
 use crate::exact::{self, ExactError, PathKind, Plate, Solution};
 use crate::plot::{self, PictureError, Points, Stroke, WaveDiagram, WavePath};
 use crate::scene::CheckedScene;
 use crate::simulation::BodyRow;
 
-/// Draws the x-t diagram of a run: computed pressure, surfaces and failed parts of the bodies, and the
-/// exact wave paths if there are any.
+/// Draws the x-t diagrams of a run, of the pressure at `stem` and of each of the `others`: computed
+/// values, surfaces and failed parts of the bodies, and the exact wave paths if there are any.
 ///
 /// # Errors
 ///
 /// [`PictureError`] if a file cannot be written.
 pub fn draw_run_waves(
     scene: &CheckedScene,
-    rows: &[PressureRow],
+    rows: &[WaveRow],
     body_rows: &[BodyRow],
+    others: &[DiagramQuantity],
     reference: Option<&ReferenceSolution>,
     stem: &Path,
 ) -> Result<(), PictureError> {
     let mut diagram = diagram(rows, None, reference);
     let content = match diagram.paths.is_empty() {
-        true => "pressure over position and time",
-        false => "pressure and exact wave paths",
+        true => "over position and time",
+        false => "and exact wave paths",
     };
-    diagram.title = format!("{}: {content}", scene.scene.title);
+    let title = |quantity: &str| format!("{}: {quantity} {content}", scene.scene.title);
+    diagram.title = title("pressure");
     if let Some(last) = body_rows.last() {
         diagram.bands = bodies::bands(scene, &last.ends);
     }
@@ -45,7 +47,32 @@ pub fn draw_run_waves(
         .flat_map(|row| row.failed.iter().map(|part| (part[0], part[1], row.time)))
         .collect();
     plot::draw(&diagram.figure(), stem)?;
+    for (k, quantity) in others.iter().enumerate() {
+        let words = quantity.name.replace('_', " ");
+        diagram.title = title(&words);
+        diagram.quantity = (capitalized(&words), quantity.unit.clone());
+        let known = rows.iter().filter_map(|row| row.others.get(k).map(|values| (row, values)));
+        let known = known.filter(|(row, values)| values.len() == row.x.len());
+        diagram.rows = known.map(|(row, values)| diagram_row(row, values)).collect();
+        let stem = stem.with_file_name(format!(
+            "{}_{}",
+            stem.file_name().unwrap_or_default().to_string_lossy(),
+            quantity.name
+        ));
+        plot::draw(&diagram.figure(), &stem)?;
+    }
     Ok(())
+}
+
+/// The text with its first letter in upper case.
+fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// A row of a picture.
+fn diagram_row(row: &WaveRow, values: &[f64]) -> plot::DiagramRow {
+    plot::DiagramRow { time: row.time, x: row.x.clone(), values: values.to_vec() }
 }
 
 /// Draws the x-t diagram: pressure under the exact wave paths, up to the last row or to `end` [s], if
@@ -56,7 +83,7 @@ pub fn draw_run_waves(
 /// [`PictureError`] if a file cannot be written.
 pub fn draw_waves(
     title: &str,
-    rows: &[PressureRow],
+    rows: &[WaveRow],
     end: Option<f64>,
     reference: Option<&ReferenceSolution>,
     stem: &Path,
@@ -68,7 +95,7 @@ pub fn draw_waves(
 
 /// Pressure and exact paths, without a title.
 fn diagram(
-    rows: &[PressureRow],
+    rows: &[WaveRow],
     end: Option<f64>,
     reference: Option<&ReferenceSolution>,
 ) -> WaveDiagram {
@@ -81,12 +108,7 @@ fn diagram(
         };
         (diagram.exact_until, diagram.notes) = ends(&all.solution, end);
     }
-    let drawn = |row: &PressureRow| plot::DiagramRow {
-        time: row.time,
-        x: row.points.iter().map(|p| p.0).collect(),
-        pressure: row.points.iter().map(|p| p.1).collect(),
-    };
-    diagram.rows = rows.iter().map(drawn).collect();
+    diagram.rows = rows.iter().map(|row| diagram_row(row, &row.pressure)).collect();
     diagram
 }
 

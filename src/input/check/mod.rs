@@ -95,6 +95,7 @@ fn check_whole(checked: &mut CheckedScene) -> Result<(), Faults> {
     faults.take(output::check_tracers(checked));
     faults.take(output::check_checkpoints(&checked.scene));
     faults.take(output::check_fields(checked));
+    faults.take(output::check_diagrams(checked));
     for key in crate::effects::keys() {
         let fault = (key.check)(checked).map_err(|e| SceneFault::of_parameter(e, key.name));
         faults.take(fault);

@@ -28,7 +28,7 @@ pub(super) fn profile_times(scene: &Scene) -> Result<Vec<f64>, SceneFault> {
     }
     check_count(path, every, end, MOST_PROFILES)?;
     // a multiple next to the end is the end
-    let multiples = (1..).map(|k| decimal(f64::from(k) * every));
+    let multiples = (0..).map(|k| decimal(f64::from(k) * every));
     let multiples = multiples.take_while(|&t| t < end * (1.0 - 1e-9));
     Ok(multiples.chain([end]).collect())
 }
@@ -78,19 +78,42 @@ pub(super) fn check_fields(checked: &CheckedScene) -> Result<(), SceneFault> {
     Ok(())
 }
 
+/// Checks the quantities of the x-t diagrams.
+pub(super) fn check_diagrams(checked: &CheckedScene) -> Result<(), SceneFault> {
+    let diagrams = &checked.scene.output.diagrams;
+    let mut known = effects::columns(checked).quantities(checked.dimension);
+    // the pressure always has one
+    known.retain(|name| *name != "pressure");
+    for (k, name) in diagrams.iter().enumerate() {
+        let path = format!("output.diagrams[{k}]");
+        let reason = if checked.dimension > 1 {
+            "x-t diagrams need a scene on a line; allowed: none in a plane".to_string()
+        } else if diagrams[..k].contains(name) {
+            "named twice; allowed: each quantity once".to_string()
+        } else if !known.contains(&name.as_str()) {
+            let all = known.join(", ");
+            format!("not a quantity of this scene besides the pressure; allowed: {all}")
+        } else {
+            continue;
+        };
+        return Err(SceneFault::new(path, name, reason));
+    }
+    Ok(())
+}
+
 /// Checks that times are strictly increasing and not beyond the end.
 fn check_times(path: &str, times: &[f64], end: f64) -> Result<(), SceneFault> {
     for (i, &time) in times.iter().enumerate() {
         let path = || format!("{path}[{i}]");
         if time > end {
-            let reason = format!("beyond time.end = {end:e}; allowed: above 0 and at most {end:e}");
+            let reason = format!("beyond time.end = {end:e}; allowed: at most {end:e}");
             return Err(SceneFault::new(path(), time, reason));
         }
         if i > 0 && time <= times[i - 1] {
             let before = times[i - 1];
             let reason = format!(
-                "not above the time before it, {before:e}; allowed: increasing times, above 0 and \
-                 at most time.end = {end:e}"
+                "not above the time before it, {before:e}; allowed: increasing times up to \
+                 time.end = {end:e}"
             );
             return Err(SceneFault::new(path(), time, reason));
         }

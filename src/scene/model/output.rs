@@ -25,6 +25,10 @@ pub struct Output {
     pub hdf5: bool,
     /// Draw the pictures; default true.
     pub pictures: bool,
+    /// Quantities of which a run on a line draws an x-t diagram besides that of the pressure, such as
+    /// `velocity`, `density`, `temperature`, `damage`; of `stress` and `strain` the component along x.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub diagrams: Vec<String>,
     /// Prediction of `flyer-mpm plan`, with which the run is compared at its end; absent: none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plan: Option<Planned>,
@@ -67,6 +71,7 @@ impl Default for Output {
             checkpoint: None,
             hdf5: true,
             pictures: true,
+            diagrams: Vec::new(),
             plan: None,
         }
     }
@@ -158,13 +163,13 @@ pub struct Profiles {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1))]
     pub max_particles: Option<u64>,
-    /// Time between profiles [s], in place of `times`; the end of the run has a profile as well.
+    /// Time between profiles [s], from 0, in place of `times`; the end of the run has one as well.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub every: Option<f64>,
     /// Times [s], increasing; time steps end exactly at them. Empty (default): only the end of the
     /// run.
-    #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0.0}))]
+    #[schemars(extend("items" = {"type": "number", "minimum": 0.0}))]
     pub times: Vec<f64>,
 }
 

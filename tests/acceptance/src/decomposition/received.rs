@@ -1,5 +1,5 @@
-//! Bytes that rank 0 receives for outputs: of a profile the blocks of cells, of a checkpoint next to
-//! nothing, of fields an even share.
+//! Bytes that rank 0 receives for outputs: of a profile sums over blocks of cells, of a checkpoint next
+//! to nothing, of fields an even share.
 
 use crate::bounds::{Unit, decomposition as bounds};
 use crate::runs::Job;
@@ -23,6 +23,7 @@ fn received(table: &mut Table, cell: f64, output: &str) -> Option<(Vec<f64>, f64
 
 /// A profile alone, with checkpoints at every step, and with fields; two sizes of cells.
 pub fn check(table: &mut Table) {
+    let mut of_profiles = Vec::new();
     for cell in [4e-5, 2e-5] {
         let mut run = |output: &str| received(table, cell, output);
         let plain = run("output.fields=null");
@@ -32,16 +33,21 @@ pub fn check(table: &mut Table) {
         else {
             continue;
         };
-        let each = plain[0] / particles;
-        let name = format!("{particles} particles: bytes of a profile per particle");
-        table.check(&name, Some(each), bounds::received::PROFILE_BYTES_A_PARTICLE);
+        of_profiles.push(plain[0]);
+        let name = format!("{particles} particles: bytes of a profile");
+        table.beside(&name, Some(plain[0]), "", Unit::Bytes);
         let name = "  bytes of checkpoints at every step";
         table.check(name, Some(kept[0] - plain[0]), bounds::received::CHECKPOINTS);
         let own = |rank: usize| fields[rank] - plain[rank];
         let others = (1..fields.len()).map(own).sum::<f64>() / (fields.len() - 1) as f64;
         let name = "  bytes of fields over the mean of the other ranks";
         table.check(name, Some(own(0) / others), bounds::received::FIELDS_OVER_OTHERS);
-        table.beside("  bytes of a profile", Some(plain[0]), "", Unit::Bytes);
         table.beside("  bytes of fields", Some(own(0)), "", Unit::Bytes);
     }
+    let growth = match of_profiles[..] {
+        [few, many] => Some(many / few),
+        _ => None,
+    };
+    let name = "bytes of a profile of as many blocks, four times the particles";
+    table.check(name, growth, bounds::received::PROFILE_GROWTH);
 }

@@ -2,6 +2,7 @@
 
 mod equations;
 mod explosives;
+mod gauges;
 mod heat;
 mod motion;
 mod objectivity;
@@ -18,7 +19,7 @@ pub const TITLE: &str =
     "Materials and effects against exact solutions and integrations of their own";
 
 /// Sections in the order in which they run.
-pub const SECTIONS: [Section; 18] = [
+pub const SECTIONS: [Section; 19] = [
     usual("equations", equations::check),
     usual("porous", equations::porous),
     quick("tables", tables::check),
@@ -36,6 +37,7 @@ pub const SECTIONS: [Section; 18] = [
     quick("heat", heat::check),
     quick("plates", plates::check),
     quick("window", plates::window),
+    quick("gauges", gauges::check),
     quick("wave", motion::wave),
     quick("conservation", motion::conservation),
 ];

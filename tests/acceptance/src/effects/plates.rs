@@ -12,14 +12,15 @@ use crate::runs::{Job, Outcome};
 use crate::table::Table;
 
 /// A material at rest or in motion.
-struct Plate {
+pub(super) struct Plate {
     eos: Box<dyn HistoryEos>,
-    state: HugoniotState,
+    /// Its state.
+    pub state: HugoniotState,
 }
 
 impl Plate {
     /// A material of the scene as run, at no pressure.
-    fn of(run: &Outcome, material: &str, u: f64) -> Option<Plate> {
+    pub fn of(run: &Outcome, material: &str, u: f64) -> Option<Plate> {
         let material = run.summary.scene.get("materials")?.get(material)?;
         let material: Material = serde_json::from_value(material.clone()).ok()?;
         let eos = equation(&material).ok()??;
@@ -28,12 +29,12 @@ impl Plate {
     }
 
     /// The shock that brings it to the velocity `u`, either way.
-    fn shock(&self, u: f64) -> Option<ShockFront> {
+    pub fn shock(&self, u: f64) -> Option<ShockFront> {
         shock(&*self.eos, &self.state, (u - self.state.u).abs()).ok()
     }
 
     /// Its state at `u` behind that shock.
-    fn shocked(self, u: f64) -> Option<Plate> {
+    pub fn shocked(self, u: f64) -> Option<Plate> {
         let state = HugoniotState { u, ..self.shock(u)?.behind };
         Some(Plate { state, ..self })
     }
@@ -46,7 +47,7 @@ impl Plate {
     }
 
     /// The release at which `excess`, positive in the shock, comes to zero.
-    fn released_until(&self, excess: impl Fn(&HugoniotState) -> f64) -> HugoniotState {
+    pub fn released_until(&self, excess: impl Fn(&HugoniotState) -> f64) -> HugoniotState {
         let (mut low, mut high) = (self.state.jacobian, 1.2);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
@@ -57,7 +58,7 @@ impl Plate {
 }
 
 /// Velocity of the interface where `left` runs into `right`: the same pressure in both.
-fn meet(left: &Plate, right: &Plate) -> Option<f64> {
+pub(super) fn meet(left: &Plate, right: &Plate) -> Option<f64> {
     let (mut low, mut high) = (right.state.u, left.state.u);
     for _ in 0..60 {
         let u = 0.5 * (low + high);
@@ -74,7 +75,7 @@ fn passes(histories: &CsvTable, column: &str, level: f64) -> Option<f64> {
     Some(t[k - 1] + (t[k] - t[k - 1]) * (level - v[k - 1]) / (v[k] - v[k - 1]))
 }
 
-fn histories(run: &Outcome) -> Option<CsvTable> {
+pub(super) fn histories(run: &Outcome) -> Option<CsvTable> {
     read_csv(&run.folder.join("histories.csv")).ok()
 }
 
@@ -121,7 +122,7 @@ pub fn check(table: &mut Table) {
 }
 
 /// Velocity of the window's interface by hand, and its mean over the run's plateau.
-fn seen(run: &Outcome) -> Option<(f64, f64)> {
+pub(super) fn seen(run: &Outcome) -> Option<(f64, f64)> {
     let (flyer, window) = (Plate::of(run, "copper", 600.0)?, Plate::of(run, "window", 0.0)?);
     let sample = Plate::of(run, "aluminium", 0.0)?;
     let u = meet(&flyer, &sample)?;
