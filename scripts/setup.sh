@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what a Debian or Ubuntu machine lacks for building and running flyer-mpm: Open MPI,
-# HDF5, libclang, a C compiler, pkg-config; with --tests also what makes a Python environment.
+# HDF5, libclang, a C compiler, pkg-config; with --tests also what makes a Python environment, and
+# chromium.
 # Says what it does; where all is there it does and says nothing.
 set -euo pipefail
 
@@ -32,6 +33,11 @@ have_libclang || need libclang-dev
 have clang || need clang
 if [ "${1:-}" = --tests ] && ! python3 -c 'import ensurepip, venv' 2>/dev/null; then
     need python3 python3-venv
+fi
+# where apt has no chromium, the test of report.html in a browser is skipped
+if [ "${1:-}" = --tests ] && ! have chromium && have apt-cache &&
+    apt-cache policy chromium 2>/dev/null | grep -q 'Candidate: [0-9]'; then
+    need chromium
 fi
 
 if [ ${#missing[@]} -gt 0 ]; then

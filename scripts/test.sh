@@ -14,16 +14,19 @@ if [ "$(cores)" -lt 4 ]; then
     export OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_mpi_yield_when_idle=1
 fi
 
-# VTK's own reader and h5py, from pip, for tests/vtk_reader.rs and tests/python.rs.
+# VTK's own reader, h5py and what executes notebooks, from pip, for tests/vtk_reader.rs and
+# tests/python.rs.
 if [ -z "${FLYER_MPM_VTK_PYTHON:-}" ]; then
     venv="$root/target/vtk-venv"
-    if ! "$venv/bin/python" -c 'import vtkmodules.vtkIOHDF, h5py' 2>/dev/null; then
-        echo "test: making a Python environment with vtk and h5py in target/vtk-venv"
+    needed='import vtkmodules.vtkIOHDF, h5py, matplotlib, nbclient, nbformat, ipykernel'
+    if ! "$venv/bin/python" -c "$needed" 2>/dev/null; then
+        echo "test: making a Python environment with vtk, h5py and nbclient in target/vtk-venv"
         rm -rf "$venv"
         mkdir -p "$root/target"
         python3 -m venv "$venv"
-        "$venv/bin/python" -m pip install --quiet --disable-pip-version-check 'vtk>=9.4' numpy h5py ||
-            echo "test: vtk and h5py cannot be installed; their tests will be skipped" >&2
+        "$venv/bin/python" -m pip install --quiet --disable-pip-version-check \
+            'vtk>=9.4' numpy h5py matplotlib nbclient nbformat ipykernel ||
+            echo "test: vtk, h5py and nbclient cannot be installed; their tests will be skipped" >&2
     fi
     if "$venv/bin/python" -c 'import vtkmodules.vtkIOHDF, h5py' 2>/dev/null; then
         export FLYER_MPM_VTK_PYTHON="$venv/bin/python"

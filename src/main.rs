@@ -34,6 +34,9 @@ use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
 use signal_hook::iterator::Signals;
 use signal_hook::low_level::emulate_default_handler;
 
+/// Commit of the sources, if the build was told; `scripts/run.sh` and `scripts/release.sh` tell it.
+const COMMIT: Option<&str> = option_env!("FLYER_MPM_COMMIT");
+
 /// The command line or the scene is wrong.
 const BAD_INPUT: u8 = 2;
 /// The run failed.
@@ -320,14 +323,19 @@ fn run_scene(comm: &dyn Comm, args: &RunArgs, started: Instant) -> Outcome<()> {
         trace: args.trace.clone().map(|file| (file, args.trace_steps.clone())),
         started,
         signal,
+        commit: COMMIT,
     };
     // all ranks know the error, and rank 0 prints it
     match run(comm, &checked, &options, beginning) {
-        Ok(Some(report)) if !args.quiet => {
-            say(&report);
-            Ok(())
+        Ok(ended) => {
+            if let Some(text) = ended.filter(|_| !args.quiet) {
+                say(&text);
+            }
+            match &lock {
+                Some(_) if args.report => cli::report::report(&options.output, None).map(|_| ()),
+                _ => Ok(()),
+            }
         }
-        Ok(_) => Ok(()),
         Err(RunFailure::Run(RunError::Elsewhere) | RunFailure::Output(OutputError::Elsewhere)) => {
             Err((FAILED, String::new()))
         }
@@ -470,6 +478,11 @@ fn side_command(command: Command) -> Outcome<()> {
         }
         Command::Plan(args) => cli::plan::plan(&args).map(|text| say(&text)),
         Command::Perf(PerfCommand::Calibrate { .. }) => unreachable!("all ranks calibrate"),
+        Command::Report { folder, output } => {
+            let page = cli::report::report(&folder, output.as_deref())?;
+            say(&format!("{}\n", page.display()));
+            Ok(())
+        }
         Command::Compare { first, second } => {
             let comparison = compare(&first, &second).map_err(bad)?;
             say(&format!("{comparison}\n"));

@@ -81,6 +81,8 @@ fn write_run(folder: &Path, tables: &[ParticleTable]) {
         format: flyer_mpm::driver::output::summary::SUMMARY_FORMAT,
         title: "test".into(),
         version: String::new(),
+        commit: None,
+        machine: String::new(),
         origin: None,
         scene,
         ranks: 1,

@@ -88,6 +88,7 @@ fn once(impact: &RandomImpact, folder: &Path) -> Result<Summary, String> {
         trace: None,
         started: Instant::now(),
         signal: Default::default(),
+        commit: None,
     };
     run(&Serial, &scene, &options, Beginning::Scene).map_err(|e| e.to_string())?;
     let summary = Summary::read(folder).map_err(|e| e.to_string());

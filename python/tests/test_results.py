@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import shutil
 import tempfile
 import unittest
 from pathlib import Path
@@ -19,13 +20,13 @@ class RunsAndReads(unittest.TestCase):
     def setUpClass(cls):
         cls.home = tempfile.TemporaryDirectory()
         folder = Path(cls.home.name) / "results"
-        changes = {
+        cls.changes = {
             "time.end": 4e-7,
             "output.profiles.times": [2e-7, 4e-7],
             "output.pictures": False,
             "domain.cell_size": "20 um",
         }
-        cls.results = flyer_mpm.run(SCENES / "flyer.json", folder, set=changes)
+        cls.results = flyer_mpm.run(SCENES / "flyer.json", folder, set=cls.changes)
 
     @classmethod
     def tearDownClass(cls):
@@ -44,6 +45,17 @@ class RunsAndReads(unittest.TestCase):
         x, pressure = profile["x"], profile["pressure"]
         plateau = pressure[(x > 1.5e-3) & (x < 2.0e-3)]
         self.assertAlmostEqual(plateau.mean() / 12.144294e9, 1.0, delta=1e-3)
+
+    @unittest.skipUnless(shutil.which("mpirun"), "not run: no mpirun")
+    def test_four_ranks_give_the_same_arrays(self):
+        folder = Path(self.home.name) / "four"
+        shared = flyer_mpm.run(SCENES / "flyer.json", folder, ranks=4, set=self.changes)
+        self.assertEqual(shared.summary["ranks"], 4)
+        for name in ("x", "pressure", "velocity"):
+            one, four = (results.profile(4e-7)[name] for results in (self.results, shared))
+            numpy.testing.assert_array_equal(one, four)
+        for one, four in zip(self.results.x_t("pressure"), shared.x_t("pressure")):
+            numpy.testing.assert_array_equal(one, four)
 
     def test_profile_has_the_doubles_of_the_file(self):
         with (self.results.folder / "profile_0.400us.csv").open() as file:

@@ -9,6 +9,7 @@ pub mod new;
 pub mod plan;
 pub mod predict;
 pub mod reference;
+pub mod report;
 pub mod scaling;
 pub mod study;
 
@@ -112,6 +113,10 @@ pub struct RunArgs {
     /// Start even if the run seems to need more memory than this machine has left.
     #[arg(long)]
     pub ignore_memory: bool,
+
+    /// Write report.html too: one page with curves and maps that zoom, tables and the scene.
+    #[arg(long)]
+    pub report: bool,
 
     /// Refuse to replace an earlier result.
     #[arg(long)]
@@ -311,6 +316,16 @@ pub enum Command {
         /// Print it as tables in Markdown, as in docs/scene.md.
         #[arg(long)]
         markdown: bool,
+    },
+    /// Write report.html about the results of a run: one page that needs no other file and no
+    /// network, with curves and maps that zoom and show values, tables, warnings and the scene.
+    Report {
+        /// Folder of the results.
+        #[arg(value_name = "RUN")]
+        folder: PathBuf,
+        /// File to write [default: report.html in the folder].
+        #[arg(long, value_name = "FILE")]
+        output: Option<PathBuf>,
     },
     /// Compare the results of two runs: norms, and the first particle and column that differ. The
     /// exit code is 1 if they differ.

@@ -38,4 +38,6 @@ pub struct Options {
     pub started: Instant,
     /// Number of a signal that requests an end; 0: none.
     pub signal: Arc<AtomicU8>,
+    /// Commit of the sources of the program, for the summary.
+    pub commit: Option<&'static str>,
 }

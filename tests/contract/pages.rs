@@ -57,6 +57,38 @@ fn the_reference_of_scenes_is_the_output_of_the_program() {
     }
 }
 
+#[test]
+fn the_reference_explains_every_key() {
+    let page = fs::read_to_string(root().join("docs/scene.md")).unwrap();
+    let rows = page.lines().filter(|line| line.starts_with("| `"));
+    let mut count = 0;
+    for row in rows {
+        let cells: Vec<&str> = row.trim_matches('|').split(" | ").collect();
+        assert!(cells.len() >= 4 && cells[2].trim().len() > 1, "a key without text: {row}");
+        count += 1;
+    }
+    assert!(count > 250, "{count} keys");
+}
+
+#[test]
+fn the_gallery_shows_every_scene() {
+    let page = fs::read_to_string(root().join("docs/gallery.md")).unwrap();
+    let mut count = 0;
+    for folder in ["inputs", "inputs/hard"] {
+        let files = fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().path());
+        for scene in files.filter(|path| path.extension().is_some_and(|e| e == "json")) {
+            let name = scene.file_stem().unwrap().to_str().unwrap();
+            let command = format!("`flyer-mpm {folder}/{name}.json`");
+            assert!(page.contains(&command), "scripts/gallery.py: {command}");
+            let picture = root().join(format!("docs/gallery/{name}.png"));
+            let size = fs::metadata(&picture).map(|data| data.len()).unwrap_or(0);
+            assert!((1000..=60_000).contains(&size), "{}: {size} bytes", picture.display());
+            count += 1;
+        }
+    }
+    assert!(count > 40, "{count} scenes");
+}
+
 /// The schema that the shipped scenes name for editors is the program's.
 #[test]
 fn the_schema_of_the_inputs_is_the_output_of_the_program() {

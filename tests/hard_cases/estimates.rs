@@ -117,6 +117,7 @@ fn ends(value: &Value, folder: &Path) -> Option<Result<Summary, String>> {
         trace: None,
         started: Instant::now(),
         signal: Default::default(),
+        commit: None,
     };
     let ended = run(&Serial, &scene, &options, Beginning::Scene).map_err(|e| e.to_string());
     Some(ended.map(|_| Summary::read(folder).expect("a run writes its summary")))

@@ -30,6 +30,12 @@ pub struct Summary {
     pub title: String,
     /// Version of the program.
     pub version: String,
+    /// Commit of its sources; absent if the build was not told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
+    /// Processor of the machine of rank 0, and the cores that rank 0 may use.
+    #[serde(default)]
+    pub machine: String,
     /// The command and the scene file that made the result.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub origin: Option<Origin>,
@@ -352,6 +358,8 @@ pub(super) mod tests {
             title: "flyer".into(),
             format: SUMMARY_FORMAT,
             version: "0.1.0".into(),
+            commit: None,
+            machine: "processor, 2 cores".into(),
             origin: None,
             scene: json!({"domain": {"lower": [0.0]}}),
             method_choice: None,

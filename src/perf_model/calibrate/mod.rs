@@ -238,8 +238,8 @@ pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
-/// Name of the processor, as given by Linux.
-fn processor() -> String {
+/// Name of the processor; `unknown` without `/proc/cpuinfo`.
+pub fn processor() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
     name.map_or("unknown", |(_, name)| name.trim()).into()

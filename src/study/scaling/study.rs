@@ -14,6 +14,7 @@ use super::row::ScalingRow;
 use crate::driver::output::lock::Lock;
 use crate::driver::output::origin::{Origin, claim};
 use crate::input;
+use crate::perf_model::calibrate::processor;
 use crate::scene::{CellSize, CheckedScene};
 
 /// Folder of the results of one run, within that of the study.
@@ -190,13 +191,6 @@ fn grown(scene: &CheckedScene, workers: usize) -> Result<Vec<String>, ScalingErr
         format!("time.end={:e}", scene.scene.time.end / workers),
         "output.profiles.times=[]".into(),
     ])
-}
-
-/// Name of the processor; `unknown` without `/proc/cpuinfo`.
-fn processor() -> String {
-    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
-    name.map_or("unknown", |(_, name)| name.trim()).into()
 }
 
 #[cfg(test)]

@@ -102,6 +102,7 @@ fn once(
         trace: None,
         started: Instant::now(),
         signal: Default::default(),
+        commit: None,
     };
     run(&Serial, &checked, &options, Beginning::Scene).map_err(|e| e.to_string())?;
     let summary = Summary::read(&options.output).map_err(|e| e.to_string())?;

@@ -1,0 +1,18 @@
+//! `report.html`: one page about a result that needs no other file and no network.
+//!
+//! - [`frames`] reads the particles of a result at its times from VTKHDF files.
+//! - [`payload`] reduces the frames to arrays of a bounded size.
+//! - [`page`] joins the arrays, the summary and the pictures with the viewer to a page. The viewer
+//!   (`page/report.js`) draws with uPlot (`page/uplot`, MIT licence).
+//!
+//! This crate knows no scene, material or solver: it shows the arrays, the units and the names that a
+//! result holds.
+
+pub mod error;
+pub mod frames;
+pub mod page;
+pub mod payload;
+
+pub use error::ReportError;
+pub use frames::{Column, Frame, FrameFile};
+pub use page::{Body, Curve, LARGEST_PAGE, Page};
