@@ -12,6 +12,7 @@
 
 mod bound;
 mod bounds;
+mod counts;
 mod program;
 mod report;
 mod resident;
@@ -49,7 +50,8 @@ groups!(
     hard_cases,
     decomposition,
     reliability,
-    resources
+    resources,
+    kernels
 );
 
 /// Measures what flyer-mpm promises, and prints each figure beside its bound.

@@ -12,9 +12,28 @@ use wait4::Wait4;
 use crate::program;
 use crate::resident::Watcher;
 
+/// What callgrind counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Counted {
+    /// Nothing: the program runs by itself.
+    Nothing,
+    /// Instructions.
+    Instructions,
+    /// Instructions, and lines of memory that a simulated L2 cache loads and writes back.
+    Memory,
+}
+
+/// Simulated L2 cache: bytes, ways, bytes of a line.
+const L2: &str = "--LL=1048576,8,64";
+
+/// Bytes of a line of a cache.
+const LINE: u64 = 64;
+
 /// A run of the program.
 #[derive(Clone, Debug)]
 pub struct Job {
+    /// Folder of the scene, in the repository.
+    of: &'static str,
     scene: &'static str,
     sets: Vec<String>,
     ranks: usize,
@@ -22,13 +41,14 @@ pub struct Job {
     whole: bool,
     own_cores: bool,
     watched: bool,
-    counted: bool,
+    counted: Counted,
 }
 
 impl Job {
     /// The shipped scene `inputs/SCENE.json` on one rank and thread, without pictures and HDF5.
     pub fn new(scene: &'static str) -> Job {
         Job {
+            of: "inputs",
             scene,
             sets: Vec::new(),
             ranks: 1,
@@ -36,8 +56,13 @@ impl Job {
             whole: false,
             own_cores: false,
             watched: false,
-            counted: false,
+            counted: Counted::Nothing,
         }
+    }
+
+    /// The frozen scene `tests/acceptance/bench/SCENE.json`.
+    pub fn bench(scene: &'static str) -> Job {
+        Job { of: "tests/acceptance/bench", ..Job::new(scene) }
     }
 
     /// With `--set PATH=VALUE`.
@@ -73,14 +98,23 @@ impl Job {
 
     /// With its instructions counted by callgrind, on one rank.
     pub fn counted(self) -> Job {
-        Job { counted: true, ..self }
+        Job { counted: Counted::Instructions, ..self }
+    }
+
+    /// With its traffic between L2 cache and memory simulated by callgrind, on one rank.
+    pub fn with_memory_counted(self) -> Job {
+        Job { counted: Counted::Memory, ..self }
     }
 
     fn command(&self) -> Command {
         let program = program::path();
-        let mut command = if self.counted {
+        let mut command = if self.counted != Counted::Nothing {
             let mut valgrind = Command::new("valgrind");
-            valgrind.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(program);
+            valgrind.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]);
+            if self.counted == Counted::Memory {
+                valgrind.args(["--cache-sim=yes", "--simulate-wb=yes", L2]);
+            }
+            valgrind.arg(program);
             // rep movs counts as one instruction however much it copies
             let above = "1000000000";
             let tunables =
@@ -103,7 +137,7 @@ impl Job {
         } else {
             Command::new(program)
         };
-        command.arg(program::root().join(format!("inputs/{}.json", self.scene)));
+        command.arg(program::root().join(format!("{}/{}.json", self.of, self.scene)));
         command.args(["--threads", &self.threads.to_string()]);
         // a run that hangs is to say so
         command.args(["--stall-timeout", "60"]);
@@ -137,7 +171,8 @@ impl Job {
             user_seconds: ended.usage.rusage.utime.as_secs_f64(),
             peak_bytes: ended.usage.rusage.maxrss,
             resident: ended.resident,
-            instructions: collected(&ended.stderr),
+            instructions: collected(&ended.stderr, &["Ir"]),
+            memory_bytes: collected(&ended.stderr, &TRAFFIC).map(|lines| lines * LINE),
         })
     }
 
@@ -184,11 +219,25 @@ pub struct Outcome {
     pub resident: Vec<u64>,
     /// Instructions of the whole process, where callgrind has counted them.
     pub instructions: Option<u64>,
+    /// Bytes that the whole process has moved between L2 cache and memory, where callgrind has
+    /// simulated it.
+    pub memory_bytes: Option<u64>,
 }
 
-/// The number that callgrind prints at its end.
-fn collected(stderr: &str) -> Option<u64> {
-    stderr.lines().find_map(|line| line.split_once("Collected : ")?.1.trim().parse().ok())
+/// Events of callgrind in which a line moves between L2 cache and memory: loaded by a read or a
+/// write, and written back by either.
+const TRAFFIC: [&str; 4] = ["DLmr", "DLmw", "DLdmr", "DLdmw"];
+
+/// Sum of the numbers of `events` that callgrind prints at its end.
+fn collected(stderr: &str, events: &[&str]) -> Option<u64> {
+    let after = |head: &str| stderr.lines().find_map(|line| Some(line.split_once(head)?.1));
+    let names = after("Events    : ")?.split_whitespace();
+    let numbers: Vec<(&str, u64)> = names
+        .zip(after("Collected : ")?.split_whitespace())
+        .filter_map(|(name, number)| Some((name, number.parse().ok()?)))
+        .collect();
+    let of = |event: &&str| numbers.iter().find(|(name, _)| name == event).map(|(_, n)| *n);
+    events.iter().map(of).sum()
 }
 
 impl Outcome {
@@ -204,9 +253,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_count_of_callgrind_is_found() {
-        let said = "==7== Events    : Ir\n==7== Collected : 231748\n==7==\n";
-        assert_eq!(collected(said), Some(231_748));
-        assert_eq!(collected("error: no scene\n"), None);
+    fn the_counts_of_callgrind_are_found() {
+        let said = "==7== Events    : Ir DLmr DLmw\n==7== Collected : 231748 5 7\n==7==\n";
+        assert_eq!(collected(said, &["Ir"]), Some(231_748));
+        assert_eq!(collected(said, &["DLmr", "DLmw"]), Some(12));
+        assert_eq!(collected(said, &TRAFFIC), None);
+        assert_eq!(collected("error: no scene\n", &["Ir"]), None);
     }
 }
