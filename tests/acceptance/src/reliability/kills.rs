@@ -49,10 +49,10 @@ fn lives(process: u32) -> bool {
     stat.rsplit_once(") ").is_some_and(|(_, state)| !state.starts_with('Z'))
 }
 
-/// Whether a checkpoint is being written.
+/// Whether a checkpoint or a profile for it is being written.
 fn writes(folder: &Path) -> bool {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    entries.into_iter().any(|e| e.file_name().to_string_lossy().starts_with(".checkpoint-"))
+    entries.into_iter().any(|e| e.file_name().to_string_lossy().starts_with('.'))
 }
 
 /// When a run is killed.
@@ -116,7 +116,7 @@ pub fn check(table: &mut Table) {
     let home = folder("kills");
     let place = |role: &str| home.join(role).display().to_string();
     let sets = [
-        "domain.cell_size=2e-6",
+        "domain.cell_size=4e-6",
         "time.end=2e-7",
         "output.profiles.times=[5e-8,2e-7]",
         &format!("output.checkpoint={{\"every_steps\":{EVERY}}}"),
