@@ -12,9 +12,10 @@ cd "$root"
 folder=${1:-target/release-archive}
 
 "$root/scripts/setup.sh"
-FLYER_MPM_COMMIT=$(git -C "$root" describe --always --dirty 2>/dev/null || true)
-export FLYER_MPM_COMMIT
-[ -n "$FLYER_MPM_COMMIT" ] || unset FLYER_MPM_COMMIT
+# results record the commit of the program
+if commit=$(git -C "$root" describe --always --dirty 2>/dev/null); then
+    export FLYER_MPM_COMMIT=$commit
+fi
 cargo build --release --quiet
 
 program="${CARGO_TARGET_DIR:-$root/target}/release/flyer-mpm"

@@ -9,6 +9,10 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/scripts/mpi_env.sh"
 
 "$root/scripts/setup.sh"
+# results record the commit of the program
+if commit=$(git -C "$root" describe --always --dirty 2>/dev/null); then
+    export FLYER_MPM_COMMIT=$commit
+fi
 cargo build --release --quiet --manifest-path "$root/Cargo.toml"
 
 if [ $# -eq 0 ] || [[ $1 == -* ]]; then

@@ -116,6 +116,7 @@ fn a_run_in_a_plane_zooms_and_shows_values() {
     assert!(console.is_empty(), "{console:#?}");
     zooms(&seen, "x ");
     assert!(seen["first"].as_str().unwrap().starts_with("100 ms"), "{seen}");
+    assert_eq!([&seen["chosen"], &seen["legend"]], ["materials", "rubber"], "{seen}");
 }
 
 /// The console and the ban on loading are seen by the test.

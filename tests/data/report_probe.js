@@ -20,5 +20,11 @@
   const slider = document.getElementById("time");
   slider.value = 0; slider.dispatchEvent(new Event("input")); await pause(60);
   seen.first = document.getElementById("time-text").textContent;
+  const quantity = document.getElementById("quantity");
+  quantity.selectedIndex = quantity.options.length - 1;
+  quantity.dispatchEvent(new Event("change"));
+  await pause(60);
+  seen.chosen = quantity.selectedOptions[0].textContent;
+  seen.legend = document.getElementById("frame-legend").textContent;
   const out = document.createElement("pre"); out.id = "probe"; out.textContent = JSON.stringify(seen); document.body.append(out);
 })();

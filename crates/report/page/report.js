@@ -92,7 +92,7 @@ function increasing(x) {
 // Colours -------------------------------------------------------------------------------------------
 
 const SEQUENTIAL = ["#26185f", "#005fa8", "#008f8a", "#54b24f", "#e3c42b", "#fff3b0"];
-const DIVERGING = ["#0b3c8c", "#4a86d8", "#b9d3f3", "#f7f7f7", "#f6c3a4", "#d9603b", "#8a1a12"];
+const DIVERGING = ["#0b3c8c", "#4a86d8", "#a9c8ee", "#dddddd", "#f2b795", "#d9603b", "#8a1a12"];
 const rgb = (hex) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16));
 
 /** Range and colours of values: zero in the middle if both signs matter. */
@@ -352,7 +352,20 @@ function showLine(frame, q) {
   if (between.length > 0) legend.append("dashed: interfaces");
 }
 
+/** The bodies of a plane in the colours of their materials. */
+function showMaterials(frame) {
+  const body = bytes(frame.body);
+  const values = Array.from(body, (k) => (k === 255 ? NaN : k));
+  const colors = data.bodies.map(({ color }) => rgb(color));
+  const cells = { ...grid, values, body, failed: frame.failed ? bytes(frame.failed) : null };
+  const names = [{ name: "x", unit: "m" }, { name: "y", unit: "m" }, { name: "body number", unit: "", equal: true }];
+  mapPlot(byId("frame-plot"), byId("frame-values"), cells, { at: (k) => colors[k] ?? [0, 0, 0] }, names);
+  materials.forEach(([material, color]) => swatch(byId("frame-legend"), color, material));
+  if (frame.failed) byId("frame-legend").append("crosses: failed");
+}
+
 function showPlane(frame, q) {
+  if (q === quantities.length) { showMaterials(frame); return; }
   const { name, unit } = quantities[q];
   const values = planeValues(frame, q);
   const scale = colours(values);
@@ -404,7 +417,7 @@ const FEWEST_ROWS = 8;
 function startFrames() {
   if (frames.length === 0 || quantities.length === 0) return;
   byId("frames").hidden = false;
-  options(byId("quantity"), quantities.map((quantity) => quantity.name));
+  options(byId("quantity"), [...quantities.map((quantity) => quantity.name), ...(grid ? ["materials"] : [])]);
   const slider = byId("time");
   slider.max = frames.length - 1;
   slider.value = frames.length - 1;
