@@ -13,6 +13,7 @@ use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::Parser;
+use clap::error::ErrorKind;
 use cli::{Cli, Command, PerfCommand, RunArgs, SceneArgs};
 use decomp::{Comm, Serial};
 use flyer_mpm::driver::checkpoint::fit::CHANGEABLE;
@@ -81,8 +82,12 @@ fn act(comm: &dyn Comm, started: Instant, cli: Result<Cli, clap::Error>) -> Exit
         Ok(cli) => cli,
         Err(error) => {
             // clap reports help and version as errors too
-            if first {
-                let _ = error.print();
+            let asked = !error.use_stderr()
+                || error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
+            match asked {
+                _ if !first => {}
+                true => drop(error.print()),
+                false => eprintln!("{}", in_one_line(&error)),
             }
             return ExitCode::from(if error.use_stderr() { BAD_INPUT } else { 0 });
         }
@@ -128,6 +133,17 @@ fn mistyped() -> Option<String> {
         return None;
     }
     Some(format!("{name}: no such scene or command; did you mean {known}?"))
+}
+
+/// The fault of a command line and its remedy, without the usage.
+fn in_one_line(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    let text = text.split("\n\nUsage:").next().unwrap_or_default();
+    let text = text.split("\n\nFor more").next().unwrap_or_default();
+    // one of the tips is no remedy for a mistyped option
+    let text = text.split("\n\n  tip: to pass ").next().unwrap_or_default();
+    let words: Vec<&str> = text.split_whitespace().collect();
+    format!("{}; see --help", words.join(" ").replace(" tip: ", "; "))
 }
 
 /// Prints to standard output; ignores a reader that has closed it, as `head` does.

@@ -12,7 +12,7 @@ use flyer_mpm::driver::output::lock::Lock;
 use flyer_mpm::driver::output::origin::Maker;
 use flyer_mpm::effects::{ledger, ledger_lines, ledger_rest};
 use flyer_mpm::exact::{Accuracy, Chain, Impact, Plate, Release, Solution, WaveKind};
-use flyer_mpm::scene::{CheckedScene, Reference};
+use flyer_mpm::scene::{Body, CheckedScene, Reference};
 use flyer_mpm::simulation::{Compiled, RunError, Simulation};
 use flyer_mpm::solver::Stepper;
 use serde_json::json;
@@ -39,6 +39,10 @@ where
     };
     line("title", scene.scene.title.clone());
     line("particles", scene.particles.to_string());
+    if let Some(names) = bodies_with_default(scene) {
+        let counts = Body::default().particles_per_cell(scene.dimension);
+        line("particles per cell", format!("{counts:?} (default): {names}"));
+    }
     line("cells", scene.cell_count().to_string());
     line("memory", format!("{:.1} MB", scene.memory() as f64 / 1e6));
     line("first time step", format!("{dt:.4e} s"));
@@ -69,6 +73,18 @@ where
     }
     let _ = writeln!(text, "  {}", ledger_rest(&all));
     Ok(text)
+}
+
+/// Names of the bodies whose number of particles per cell is the default; `None`: there are none.
+fn bodies_with_default(scene: &CheckedScene) -> Option<String> {
+    let has_default = |b: &&Body| b.particles_per_cell.is_none() && b.positions.is_none();
+    let bodies = scene.scene.bodies.iter().filter(has_default);
+    let names: Vec<&str> = bodies.map(|body| body.name.as_str()).collect();
+    match &names[..] {
+        [] => None,
+        all if all.len() == scene.bodies.len() => Some("all bodies".into()),
+        some => Some(some.join(", ")),
+    }
 }
 
 /// Each effect, with its setting in the scene.

@@ -85,5 +85,10 @@ pub fn scene_of(name: &str) -> Outcome<CheckedScene> {
         "bodies": [{"name": "body", "material": name, "velocity": [0.0], "particles_per_cell": [1],
                     "box": {"lower": [0.0], "upper": [0.01]}}],
     });
-    input::parse(scene.to_string().as_bytes(), LIBRARY_SCENE, &[]).map_err(bad)
+    input::parse(scene.to_string().as_bytes(), LIBRARY_SCENE, &[]).map_err(|error| {
+        // the user has written no scene
+        let text = error.to_string();
+        let known = text.split_once(": no such material").map(|(_, known)| known);
+        bad(known.map_or(text.clone(), |known| format!("{name}: no such material{known}")))
+    })
 }

@@ -1,7 +1,7 @@
 //! `flyer-mpm new`: short scenes that run as they are, to start from.
 
 use std::fs::OpenOptions;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use flyer_mpm::input;
@@ -46,10 +46,18 @@ pub fn list() -> String {
 pub fn write(name: &str, output: Option<&Path>) -> Outcome<String> {
     let Some((_, text)) = TEMPLATES.iter().find(|(known, _)| *known == name) else {
         let known: Vec<&str> = TEMPLATES.iter().map(|(known, _)| *known).collect();
-        return Err(bad(format!("{name}: no such template; allowed: {}", known.join(", "))));
+        let near = known.iter().map(|known| (strsim::damerau_levenshtein(name, known), known));
+        let near = near.filter(|(distance, known)| *distance <= known.len() / 3).min();
+        let meant = near.map_or(";".into(), |(_, near)| format!("; did you mean {near}?"));
+        return Err(bad(format!("{name}: no such template{meant} allowed: {}", known.join(", "))));
     };
     let file = output.map_or_else(|| PathBuf::from(format!("{name}.json")), Path::to_path_buf);
-    let fail = |e: std::io::Error| bad(format!("{}: cannot write the file: {e}", file.display()));
+    let fail = |e: std::io::Error| match e.kind() {
+        ErrorKind::AlreadyExists => {
+            bad(format!("{}: exists already; allowed: --output ANOTHER.json", file.display()))
+        }
+        _ => bad(format!("{}: cannot write the file: {e}", file.display())),
+    };
     let mut made = OpenOptions::new().write(true).create_new(true).open(&file).map_err(fail)?;
     made.write_all(text.as_bytes()).map_err(fail)?;
     Ok(format!("{0} is written; run it with `flyer-mpm {0}`\n", file.display()))

@@ -96,7 +96,7 @@ pub(super) struct SceneFault {
     path: String,
     value: String,
     reason: String,
-    /// Path of the part that cannot be judged any further.
+    /// Path of the part that cannot be judged any further; empty: there is none.
     invalidated: String,
 }
 
@@ -137,6 +137,11 @@ impl SceneFault {
         &self.path
     }
 
+    /// Path of the part that cannot be judged any further; empty: there is none.
+    pub(super) fn invalidated(&self) -> &str {
+        &self.invalidated
+    }
+
     /// Whether `other` may be no more than a consequence of this fault.
     pub(super) fn explains(&self, other: &SceneFault) -> bool {
         is_within(&other.path, &self.invalidated)
@@ -144,7 +149,9 @@ impl SceneFault {
 
     /// The same fault with `parent` prepended to its path.
     pub(super) fn below(mut self, parent: &str) -> Self {
-        for path in [&mut self.path, &mut self.invalidated] {
+        let has_invalidated = !self.invalidated.is_empty() || self.path.is_empty();
+        let invalidated = has_invalidated.then_some(&mut self.invalidated);
+        for path in [Some(&mut self.path), invalidated].into_iter().flatten() {
             let dot = if path.is_empty() || path.starts_with('[') { "" } else { "." };
             *path = format!("{parent}{dot}{path}");
         }

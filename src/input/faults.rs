@@ -13,6 +13,10 @@ const MAX_FAULTS: usize = 20;
 #[derive(Debug, Default)]
 pub(super) struct Faults {
     found: Vec<SceneFault>,
+    /// Paths of the parts of the scene that no check may read.
+    unread: Vec<String>,
+    /// Whether keys of the scene are not valid, so that it is only known in part.
+    in_part: bool,
 }
 
 impl Faults {
@@ -30,9 +34,37 @@ impl Faults {
         faults.into_iter().for_each(|fault| self.add(fault));
     }
 
-    /// Whether a fault is at `path` or below.
+    /// The scene is only known without these parts, since its keys are not valid.
+    pub(super) fn read_in_part(&mut self, unread: Vec<String>) {
+        self.unread.extend(unread);
+        self.in_part = true;
+    }
+
+    /// Whether all keys of the scene are valid.
+    pub(super) fn keys_are_valid(&self) -> bool {
+        !self.in_part
+    }
+
+    /// Leaves out all further checks that read the part at `path`.
+    pub(super) fn leave_out(&mut self, path: String) {
+        self.unread.push(path);
+    }
+
+    /// Whether nothing is known about the part at `path`, or about a part of it.
     pub(super) fn concern(&self, path: &str) -> bool {
-        self.found.iter().any(|fault| is_within(fault.path(), path))
+        let beside = |other: &str| is_within(other, path) || is_within(path, other);
+        let invalidated = self.found.iter().map(SceneFault::invalidated);
+        self.unread.iter().map(String::as_str).chain(invalidated).any(beside)
+    }
+
+    /// The value of a check that reads the parts at `reads`. `None` if it found a fault, or if a
+    /// fault is known in one of these parts, of which another one might be a consequence.
+    pub(super) fn judge<T, E: Into<Faults>>(
+        &mut self,
+        reads: &[&str],
+        check: impl FnOnce() -> Result<T, E>,
+    ) -> Option<T> {
+        if reads.iter().any(|path| self.concern(path)) { None } else { self.take(check()) }
     }
 
     /// The value of a check, or `None` if it found a fault.
@@ -63,7 +95,7 @@ impl Faults {
 
 impl From<SceneFault> for Faults {
     fn from(fault: SceneFault) -> Self {
-        Faults { found: vec![fault] }
+        Faults { found: vec![fault], ..Faults::default() }
     }
 }
 

@@ -12,13 +12,14 @@ use serde_json::{Map, Value};
 use super::check::BYTES_PER_PARTICLE;
 use super::check::{check as check_relations, tiles};
 use super::comments::without_comments;
-use super::errors::{LONGEST_VALUE, SceneError, SceneFault, one_line, shorten, suggest};
+use super::errors::{LONGEST_VALUE, SceneError, SceneFault, one_line, shorten};
 use super::faults::Faults;
 use super::library::{inline_courses, inline_files, resolve};
 use super::migrate::check_format;
+use super::names;
 use super::overrides::{apply, check_allowed};
-use super::paths::entry_key;
 use super::preset;
+use super::readable::keep_readable;
 use super::schema::full_schema;
 use super::units;
 use super::validate::conform;
@@ -94,8 +95,8 @@ fn with_files(bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>, SceneError> {
 ///
 /// # Errors
 ///
-/// The first fault of the text or of an override, else all faults of keys, else all faults of
-/// checks that do not depend on each other.
+/// The first fault of the text or of an override, else all faults of keys and of the checks that read
+/// none of these keys.
 pub fn parse(bytes: &[u8], file: &str, sets: &[String]) -> Result<CheckedScene, SceneError> {
     let mut value = parse_json(bytes, file)?;
     if value.is_object() {
@@ -124,7 +125,9 @@ pub fn check_size(
     let read = || -> Option<Scene> {
         let mut value = parse_json(bytes, file).ok()?;
         sets.iter().try_for_each(|set| apply(&mut value, set)).ok()?;
-        complete(&mut value).ok()?;
+        let mut faults = Faults::default();
+        complete(&mut value, &mut faults).ok()?;
+        faults.is_empty().then_some(())?;
         serde_json::from_value(value).ok()
     };
     let particles = read().map_or(0, |scene| tiles(&scene));
@@ -166,42 +169,30 @@ pub fn check(scene: Scene, file: &str) -> Result<CheckedScene, SceneError> {
 }
 
 fn judge(mut value: Value, file: &str) -> Result<CheckedScene, Faults> {
-    let choice = complete(&mut value)?;
+    let mut faults = Faults::default();
+    let choice = complete(&mut value, &mut faults)?;
+    if !faults.is_empty() {
+        let Some(unread) = keep_readable(&mut value) else { return Err(faults) };
+        faults.read_in_part(unread);
+    }
     let scene = serde_path_to_error::deserialize(value)
-        .map_err(|e| SceneFault::missing(e.path().to_string(), e.inner().to_string()))?;
-    let mut checked = check_relations(scene, file)?;
+        .map_err(|e| SceneFault::missing(e.path().to_string(), e.inner().to_string()));
+    let Some(scene) = faults.take(scene) else { return Err(faults) };
+    let mut checked = check_relations(scene, file, faults)?;
     checked.method_choice = choice;
     Ok(checked)
 }
 
 /// Replaces library names, quantities and presets by what they stand for, and validates the keys.
-fn complete(value: &mut Value) -> Result<Option<MethodChoice>, Faults> {
-    let mut faults = Faults::default();
+fn complete(value: &mut Value, faults: &mut Faults) -> Result<Option<MethodChoice>, SceneFault> {
     faults.extend(resolve(value));
     // every key of a former format would be a fault
     check_format(value)?;
     faults.extend(units::convert(value, &full_schema()));
     let choice = faults.take(preset::expand(value)).flatten();
     faults.extend(conform(value));
-    faults.extend(unknown_materials(value));
-    faults.ok_or_faults(choice)
-}
-
-/// Bodies of materials that the scene does not have.
-fn unknown_materials(scene: &Value) -> Vec<SceneFault> {
-    let (Some(materials), Some(bodies)) =
-        (scene["materials"].as_object(), scene["bodies"].as_array())
-    else {
-        return Vec::new();
-    };
-    let unknown = |(i, body): (usize, &Value)| {
-        let name = body["material"].as_str().filter(|name| !materials.contains_key(*name))?;
-        let known = materials.keys().map(String::as_str);
-        let fault =
-            SceneFault::new("material", name, format!("no such material{}", suggest(name, known)));
-        Some(fault.below(&entry_key(bodies, i)).below("bodies"))
-    };
-    bodies.iter().enumerate().filter_map(unknown).collect()
+    faults.extend(names::check(value));
+    Ok(choice)
 }
 
 /// Parses JSON text; a duplicate key is an error.

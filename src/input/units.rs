@@ -136,6 +136,11 @@ fn unit_of(schema: &Value) -> Option<(&str, ScaledUnit)> {
     names.filter_map(|name| Some((name, unit(name)?))).next()
 }
 
+/// Whether the description of a schema gives a unit.
+pub(super) fn has_unit(schema: &Value) -> bool {
+    unit_of(schema).is_some()
+}
+
 /// Replaces the quantities in a scene by numbers in SI units; `schema` is that of a scene whose method
 /// is given in full. Returns a fault for each text whose unit is unknown or of other dimensions than
 /// its key.
@@ -338,6 +343,9 @@ fn quantity(text: &str, name: &str, target: ScaledUnit) -> Result<Option<f64>, S
         return Ok(None);
     };
     let fault = |reason: String| SceneFault::new("", text, reason);
+    if own.starts_with(',') {
+        return Err(fault("a decimal comma; allowed: a decimal point".into()));
+    }
     let Some(found) = unit(own) else {
         let known = list(SYMBOLS.map(|(symbol, ..)| symbol));
         return Err(fault(format!(

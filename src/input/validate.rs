@@ -12,6 +12,7 @@ use serde_json::{Map, Value};
 use super::errors::{SceneFault, list, nearest, suggest};
 use super::paths::{entry_key, quote, types};
 use super::schema::{GREATEST, LEAST};
+use super::units::has_unit;
 
 /// Validates `scene` against the schema; returns all faults.
 pub(super) fn conform(scene: &Value) -> Vec<SceneFault> {
@@ -75,7 +76,12 @@ impl Conform<'_> {
                 return SceneFault::new("", value, reason);
             }
         }
-        SceneFault::new("", value, format!("not allowed; allowed: {}", self.allowed(schema)))
+        let or_quantity = match has_unit(schema) && value.is_string() {
+            true => ", or text of a number and a unit",
+            false => "",
+        };
+        let allowed = self.allowed(schema);
+        SceneFault::new("", value, format!("not allowed; allowed: {allowed}{or_quantity}"))
     }
 
     fn check_array(&self, schema: &Value, entries: &[Value], value: &Value) -> Vec<SceneFault> {
@@ -108,9 +114,12 @@ impl Conform<'_> {
                     faults.extend(found.map(|fault| fault.below(&quote(key))));
                 }
                 None => {
-                    misspelt.extend(nearest(key, names.clone()));
+                    let meant = nearest(key, names.clone());
+                    misspelt.extend(meant);
                     let reason = format!("unknown key{}", suggest(key, names));
-                    faults.push(SceneFault::new(quote(key), value, reason));
+                    let fault = SceneFault::new(quote(key), value, reason);
+                    // without a similar name, no other key is in doubt
+                    faults.push(fault.invalidates(meant.map(quote).unwrap_or_default()));
                 }
             }
         }
@@ -313,7 +322,7 @@ fn bounds(schema: &Value) -> String {
     ] {
         if let Some(bound) = schema.get(key).and_then(Value::as_f64)
             // the general bounds are not shown, nor a bound that another one implies
-            && ![GREATEST, -GREATEST, LEAST].contains(&bound)
+            && ![GREATEST, -GREATEST, LEAST, f64::MAX].contains(&bound)
             && !(key == "minimum" && schema.get("exclusiveMinimum").is_some())
         {
             texts.push(format!("{words} {bound}"));

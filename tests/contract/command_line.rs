@@ -118,6 +118,31 @@ fn without_arguments_it_says_how_it_is_used() {
 }
 
 #[test]
+fn faults_of_the_command_line_are_one_line() {
+    let home = Home::with(&short());
+    let says = |args: &[&str], line: &str| {
+        let out = home.call(args.iter().copied()).end();
+        assert_eq!((out.status.code(), out.stderr.trim_end()), (Some(2), line));
+    };
+    says(
+        &["scene.json", "--outptu", "x"],
+        "error: unexpected argument '--outptu' found; a similar argument exists: '--output'; see \
+         --help",
+    );
+    says(
+        &["plan", "scene.json"],
+        "error: the following required arguments were not provided: --quantity <NAME> --error \
+         <ERROR>; see --help",
+    );
+    says(
+        &["scene.json", "--threads", "0"],
+        "error: invalid value '0' for '--threads <N>': a whole number from 1 to 1024 is allowed; \
+         see --help",
+    );
+    assert!(names(home.path()).iter().all(|name| name == "scene.json"));
+}
+
+#[test]
 fn quiet_says_nothing_and_else_a_report_stands_at_the_end() {
     let home = Home::with(&short());
     let out = home.call(["scene.json", "--quiet"]).end();

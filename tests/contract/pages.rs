@@ -175,3 +175,23 @@ fn the_table_of_the_presets_keeps_the_rule_of_sharpest() {
     let taken = equal.min_by(|a, b| a.2.total_cmp(&b.2)).unwrap();
     assert_eq!(taken.0, "sharpest", "{rows:?}");
 }
+
+/// The shape function and transfer of `robust` have the least mean error over the hard cases, of those
+/// that pass all of them. The last two columns are drifts of the energy.
+#[test]
+fn the_table_of_the_hard_cases_keeps_the_rule_of_robust() {
+    let page = fs::read_to_string(root().join("docs/hard_cases.md")).unwrap();
+    let row = |line: &str| -> Option<(String, f64)> {
+        let cells: Vec<&str> = line.trim_matches(['|', ' ']).split(" | ").collect();
+        let errors: Option<Vec<f64>> = cells.get(1..10)?.iter().map(|e| e.parse().ok()).collect();
+        Some((cells[0].to_string(), errors?.iter().sum::<f64>() / 9.0))
+    };
+    let rows: Vec<(String, f64)> = page.lines().filter_map(row).collect();
+    assert!(rows.len() > 20, "{rows:?}");
+    let least = rows.iter().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
+    let scene = fs::read_to_string(root().join("inputs/flyer.json")).unwrap();
+    let robust = flyer_mpm::input::parse(scene.as_bytes(), "", &["method=robust".into()]).unwrap();
+    let method = serde_json::json!(robust.scene.method);
+    let name = |key: &str| method[key].to_string().replace(['"', '{', '}'], "").replace(':', " ");
+    assert_eq!(least.0, format!("{}, {}", name("shape"), name("transfer")), "{rows:?}");
+}

@@ -31,6 +31,9 @@ fn every_template_runs() {
         assert!(results.names().iter().any(|file| file.ends_with(".png")), "{name}");
     }
     // nothing is overwritten
-    home.call(["new", "empty"]).end().failed(&["empty.json: cannot write the file"]);
-    home.call(["new", "emty"]).end().failed(&["no such template", "empty"]);
+    home.call(["new", "empty"]).end().failed(&["empty.json: exists already; allowed: --output"]);
+    home.call(["new", "emty"]).end().failed(&["no such template; did you mean empty?"]);
+    // defaults that no line of the scene shows
+    let checked = home.call(["check", "empty.json"]).end().succeeded();
+    assert!(checked.contains("particles per cell   [2] (default): all bodies"), "{checked}");
 }

@@ -78,6 +78,21 @@ fn units_and_names_are_reported_with_them() {
 }
 
 #[test]
+fn text_that_is_no_quantity_is_told_so() {
+    let end = |text: &str, fragments: &[&str]| {
+        refused_edit(|scene| scene["time"]["end"] = json!(text), fragments);
+    };
+    end("0,2 us", &["time.end = \"0,2 us\"", "a decimal comma; allowed: a decimal point"]);
+    end("us", &["a number above 0, or text of a number and a unit"]);
+    // no bound that every number has
+    let density = |scene: &mut Value| scene["materials"]["copper"]["density"] = json!(-1.0);
+    refused_edit(density, &["allowed: a number above 0"]);
+    let mut scene: Value = serde_json::from_slice(&shipped("flyer.json")).unwrap();
+    density(&mut scene);
+    assert!(!lines(&scene.to_string())[0].contains("at most"));
+}
+
+#[test]
 fn the_order_is_that_of_the_file_and_not_of_the_alphabet() {
     let text = r#"{
         // the last letter first
@@ -146,6 +161,95 @@ fn checks_that_do_not_depend_on_each_other_are_all_reported() {
             "output.profiles.times[0] = 1.0: beyond time.end",
         ],
     );
+}
+
+#[test]
+fn faults_of_keys_and_of_physics_are_reported_together() {
+    let lines = reply(|scene| {
+        remove(scene, "/domain", "cell_size");
+        remove(scene, "/time", "end");
+        scene["materials"]["copper"]["eos"]["c0"] = json!("fast");
+        scene["materials"]["aluminium"]["density"] = json!(-2700.0);
+        scene["bodies"][0]["velocty"] = json!([1000.0]);
+        scene["bodies"][0]["colour"] = json!("red");
+        scene["bodies"][0]["box"]["lower"] = json!([-1.0]);
+        scene["bodies"][1]["velocity"] = json!([1.0, 2.0]);
+        scene["reference"]["flyer_impact"]["target"] = json!("targt");
+        scene["boundary"] = json!({"y_lower": "wall"});
+        scene["output"]["checkpoint"] = json!({"at_times": [2.0, 1.0]});
+        scene["artificial_viscosity"] =
+            json!({"linear": 0.1, "quadratic": 2.0, "growth": {"rate": 1.0, "max": 1.0}});
+    });
+    holds(
+        &lines,
+        &[
+            "artificial_viscosity.growth.max = 1.0: leaves no room",
+            "bodies.flyer.box.lower = [-1.0]: outside of the domain",
+            "bodies.flyer.colour = \"red\": unknown key",
+            "bodies.flyer.velocty = [1000.0]: unknown key; did you mean velocity?",
+            "bodies.target.velocity = [1.0,2.0]: 2 numbers",
+            "boundary.y_lower = \"wall\": a side along y",
+            "domain.cell_size: missing key",
+            "materials.aluminium.density = -2700.0: not allowed",
+            "materials.copper.eos.c0 = \"fast\": not allowed",
+            "reference.flyer_impact.target = \"targt\": no such body; did you mean target?",
+            "time.end: missing key",
+        ],
+    );
+}
+
+#[test]
+fn parts_that_are_known_are_checked_against_each_other() {
+    // bodies that cannot approach each other, beside a key that says nothing about them
+    let lines = reply(|scene| {
+        scene["title"] = json!(3);
+        scene["bodies"][0]["velocity"] = json!([-1000.0]);
+        scene["output"]["histories"] = json!({"tracers": [
+            {"name": "a", "body": "flyer", "at": [1.0]}, {"name": "b", "body": "target", "at": [-1.0]}]});
+    });
+    holds(
+        &lines,
+        &[
+            "bodies.flyer.velocity = [-1000.0]: does not approach",
+            "output.histories.tracers.a.at = [1.0]: outside of its body",
+            "output.histories.tracers.b.at = [-1.0]: outside of its body",
+            "title = 3",
+        ],
+    );
+    // each body that overlaps another one, and each impact beyond the limit
+    let lines = reply(|scene| {
+        scene["bodies"][0]["box"]["upper"] = json!([1e-4]);
+        let mut third = scene["bodies"][1].clone();
+        third["name"] = json!("third");
+        scene["bodies"].as_array_mut().unwrap().push(third);
+    });
+    assert_eq!(lines.len(), 3, "{lines:#?}");
+    assert!(lines[1..].iter().all(|line| line.contains("overlaps")), "{lines:#?}");
+    // the place of a body without a material
+    let lines = reply(|scene| {
+        remove(scene, "/bodies/0", "material");
+        scene["bodies"][0]["box"]["lower"] = json!([-1.0]);
+    });
+    holds(&lines, &["bodies.flyer.box.lower = [-1.0]: outside", "bodies.flyer.material: missing"]);
+}
+
+#[test]
+fn the_rest_of_a_broken_scene_gives_no_faults_of_its_own() {
+    // the region of the flyer, its material and the reference depend on what cannot be read
+    for (edit, path) in [
+        ("/bodies/0/box/upper", "bodies.flyer.box.upper: missing key"),
+        ("/bodies/0/material", "bodies.flyer.material: missing key"),
+        ("/materials/copper/eos/type", "materials.copper.eos.type: missing key"),
+        ("/domain/lower", "domain.lower: missing key"),
+        ("/bodies", "bodies: missing key"),
+        ("/materials", "materials: missing key"),
+        ("/time", "time: missing key"),
+    ] {
+        let (parent, key) = edit.rsplit_once('/').unwrap();
+        let lines = reply(|scene| remove(scene, parent, key));
+        assert_eq!(lines.len(), 1, "{lines:#?}");
+        assert!(lines[0].contains(path), "{lines:#?}");
+    }
 }
 
 #[test]

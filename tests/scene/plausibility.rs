@@ -64,6 +64,14 @@ fn runs_that_end_too_early_or_too_late() {
 }
 
 #[test]
+fn speeds_in_other_units() {
+    let slow = ["bodies.flyer.velocity=[1.0]"];
+    warned("flyer.json", &slow, &["bodies.flyer.velocity=[6.0]"], "bodies: they meet at 1 m/s");
+    let fast = ["bodies.flyer.velocity=[76000]"];
+    warned("flyer.json", &fast, &["bodies.flyer.velocity=[20000]"], "bodies: a speed of 7.6e4 m/s");
+}
+
+#[test]
 fn lengths_in_other_units() {
     let sizes = |lower: &str, upper: &str, cell: &str| {
         let flyer = format!("bodies.flyer.box={{\"lower\": [{lower}], \"upper\": [0]}}");

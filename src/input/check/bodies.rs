@@ -15,74 +15,86 @@ use crate::scene::CheckedBody;
 use crate::scene::TOUCHING;
 use crate::scene::{Body, BoxShape, Positions, Region, Scene};
 
+/// Checks each body; `None` for one that has a fault.
 pub(super) fn check(
     scene: &Scene,
     cell_size: &[f64],
-    warnings: &mut Vec<String>,
-) -> Result<Vec<CheckedBody>, Faults> {
-    let mut faults = Faults::default();
-    faults.extend(materials::check(scene, warnings));
-    let materials: Vec<_> = scene.materials.keys().map(String::as_str).collect();
-    let index: HashMap<_, _> = materials.iter().enumerate().map(|(i, &name)| (name, i)).collect();
+    faults: &mut Faults,
+) -> Vec<Option<CheckedBody>> {
+    let materials: HashMap<_, _> =
+        scene.materials.keys().enumerate().map(|(i, name)| (name.as_str(), i)).collect();
     let mut names = HashSet::new();
-    let mut checked = Vec::with_capacity(scene.bodies.len());
-    for (i, body) in scene.bodies.iter().enumerate() {
+    let mut check_name = |(i, body): (usize, &Body), faults: &mut Faults| {
         let path = format!("bodies[{i}].name");
         faults.take(check_printable(&path, &body.name));
-        if !names.insert(body.name.as_str()) {
+        if !names.insert(body.name.clone()) {
             let reason = "another body has this name; allowed: a name of its own";
             faults.add(SceneFault::new(path, &body.name, reason));
         }
+    };
+    let mut check = |(i, body): (usize, &Body)| {
+        // numbers are those of the file if no body is left out
+        if faults.keys_are_valid() {
+            check_name((i, body), faults);
+        }
         let path = join("bodies", &body.name);
-        let material = index[body.material.as_str()];
-        // what a faulty material cannot do is no fault of the body
-        if faults.concern(&join("materials", &body.material)) {
-            continue;
+        let material = materials.get(body.material.as_str()).copied();
+        let checked = check_body(scene, body, &path, material, cell_size, faults);
+        if checked.is_none() {
+            faults.leave_out(path);
         }
-        checked.extend(faults.take(check_body(scene, body, &path, material, cell_size)));
+        checked
+    };
+    scene.bodies.iter().enumerate().map(&mut check).collect()
+}
+
+/// Warns of materials that no body has.
+pub(super) fn warn_of_materials(scene: &Scene, warnings: &mut Vec<String>) {
+    let used: HashSet<_> = scene.bodies.iter().map(|body| body.material.as_str()).collect();
+    for name in scene.materials.keys().filter(|name| !used.contains(name.as_str())) {
+        warnings.push(format!("{}: no body is of this material", join("materials", name)));
     }
-    faults.ok_or_faults(())?;
-    check_overlap(scene, &checked, cell_size)?;
-    let used: HashSet<_> = checked.iter().map(|body| body.material).collect();
-    for (i, name) in materials.iter().enumerate() {
-        if !used.contains(&i) {
-            warnings.push(format!("{}: no body is of this material", join("materials", name)));
-        }
-    }
-    Ok(checked)
 }
 
 fn check_body(
     scene: &Scene,
     body: &Body,
     path: &str,
-    material: usize,
+    material: Option<usize>,
     cell_size: &[f64],
-) -> Result<CheckedBody, SceneFault> {
+    faults: &mut Faults,
+) -> Option<CheckedBody> {
     let dimension = cell_size.len();
     let below = |key: &str| format!("{path}.{key}");
     let velocity = body.velocity.clone().unwrap_or_else(|| vec![0.0; dimension]);
-    let mut regions = scene.regions_of(body);
-    let keys: Vec<_> = regions.iter().map(|(key, _)| *key).collect();
-    let (Some((key, region)), 1) = (regions.pop(), keys.len()) else {
-        let allowed = if dimension == 1 { "\"box\"" } else { KEYS };
-        return Err(match keys.get(1) {
-            None => {
-                SceneFault::missing(below("box"), format!("missing key; allowed: one of {allowed}"))
-            }
-            Some(other) => {
-                let reason = format!("beside {}; allowed: one region a body", below(keys[0]));
-                SceneFault::new(below(other), true, reason)
-            }
-        });
+    faults.judge(&[&below("velocity")], || check_length(&below("velocity"), &velocity, dimension));
+    let region = match faults.concern(path) {
+        false => faults.take(region_of(scene, body, path)),
+        true => region_of(scene, body, path).ok().filter(|(key, _)| !faults.concern(&below(key))),
     };
-    let fill = Fill { scene, body, path, key, region: &region, cell_size };
-    let filled = if dimension == 1 { fill.line()? } else { fill.plane()? };
-    check_length(&below("velocity"), &velocity, dimension)?;
-    check_inside(scene, path, (key, &region), &filled, cell_size)?;
-    materials::check_pressure(scene, body, &below("pressure"))?;
-    let motion = motion::check_field(scene, body, path, dimension)?;
-    let Filled { lower, upper, lattice, tiles } = filled;
+    let filled = region.and_then(|(key, region)| {
+        let fill = Fill { scene, body, path, key, region: &region, cell_size };
+        let outline = faults.take(fill.outline())?;
+        // in a plane, a body is clipped at sides of symmetry
+        let reads: &[&str] = if dimension == 1 { &[] } else { &["boundary"] };
+        faults.judge(reads, || check_inside(scene, path, (key, &region), &outline, cell_size))?;
+        // what cannot run is not filled, since that may take long
+        let is_lattice = matches!(region, Region::Box(_)) && body.positions.is_none();
+        match (is_lattice || faults.keys_are_valid()) && !faults.concern("domain.cell_size") {
+            true => faults.take(fill.fill(outline)),
+            false => Some(Filled::unknown(outline)),
+        }
+    });
+    // what a faulty material cannot do is no fault of the body
+    let material = material.filter(|_| !faults.concern(&join("materials", &body.material)))?;
+    let pressure = below("pressure");
+    faults.judge(&[&pressure], || materials::check_pressure(scene, body, &pressure));
+    let reads = [&below("velocity")[..], &below("velocity_field")[..], &pressure[..]];
+    let motion = faults.judge(&reads, || motion::check_field(scene, body, path, dimension))?;
+    let Filled { lower, upper, lattice, tiles } = filled?;
+    if faults.concern(path) {
+        return None;
+    }
     let top_speed = match &motion {
         Some(motion) => motion.top_speed(&lower, &upper),
         None => norm(&velocity),
@@ -91,7 +103,7 @@ fn check_body(
         Some(tiles) => tiles.len() as u64,
         None => lattice.iter().map(|&n| n as u64).product(),
     };
-    Ok(CheckedBody {
+    Some(CheckedBody {
         material,
         velocity,
         motion,
@@ -104,6 +116,24 @@ fn check_body(
     })
 }
 
+/// The region of a body, with its key.
+fn region_of(scene: &Scene, body: &Body, path: &str) -> Result<(&'static str, Region), SceneFault> {
+    let mut regions = scene.regions_of(body);
+    let keys: Vec<_> = regions.iter().map(|(key, _)| *key).collect();
+    match (&keys[..], regions.pop()) {
+        ([_], Some(region)) => Ok(region),
+        ([first, other, ..], _) => {
+            let reason = format!("beside {path}.{first}; allowed: one region a body");
+            Err(SceneFault::new(format!("{path}.{other}"), true, reason))
+        }
+        _ => {
+            let allowed = if scene.domain.lower.len() == 1 { "\"box\"" } else { KEYS };
+            let reason = format!("missing key; allowed: one of {allowed}");
+            Err(SceneFault::missing(format!("{path}.box"), reason))
+        }
+    }
+}
+
 /// Keys of regions, for messages.
 const KEYS: &str = "\"box\", \"disk\", \"ellipse\", \"polygon\", \"annulus\", \"half_plane\", \
                     \"union\", \"difference\", \"intersection\" and \"rotation\"";
@@ -114,6 +144,14 @@ struct Filled {
     upper: Vec<f64>,
     lattice: Vec<usize>,
     tiles: Option<Arc<Vec<Tile>>>,
+}
+
+impl Filled {
+    /// A body whose particles are not known.
+    fn unknown(outline: Outline) -> Self {
+        let Outline { lower, upper, .. } = outline;
+        Filled { lattice: vec![1; lower.len()], lower, upper, tiles: None }
+    }
 }
 
 /// Input for filling a body with particles.
@@ -132,19 +170,15 @@ impl Fill<'_> {
         format!("{}.{key}", self.path)
     }
 
-    /// Particles per cell; required without `positions`, not allowed with them.
-    fn per_cell(&self) -> Result<Option<&[usize]>, SceneFault> {
+    /// Particles per cell, not allowed with `positions`.
+    fn per_cell(&self) -> Result<Option<Vec<usize>>, SceneFault> {
         let path = self.below("particles_per_cell");
-        let dimension = self.cell_size.len();
         match (&self.body.particles_per_cell, &self.body.positions) {
-            (Some(counts), None) => {
-                check_length(&path, counts, dimension)?;
-                Ok(Some(counts))
-            }
             (None, Some(_)) => Ok(None),
-            (None, None) => {
-                let reason = "missing key; allowed: an array of whole numbers, or positions";
-                Err(SceneFault::missing(path, reason))
+            (_, None) => {
+                let counts = self.body.particles_per_cell(self.cell_size.len());
+                check_length(&path, &counts, self.cell_size.len())?;
+                Ok(Some(counts))
             }
             (Some(counts), Some(_)) => {
                 let reason = format!("beside {}; allowed: one of them", self.below("positions"));
@@ -177,67 +211,90 @@ impl Fill<'_> {
         SceneFault::new(path, fault.place, fault.reason)
     }
 
-    /// Fills a body in one dimension.
-    fn line(&self) -> Result<Filled, SceneFault> {
-        let Region::Box(extent) = self.region else {
+    /// The region's bounds, and its shape unless it is a box.
+    fn outline(&self) -> Result<Outline, SceneFault> {
+        let dimension = self.cell_size.len();
+        if let Region::Box(extent) = self.region {
+            let (lower, upper) = (extent.lower.clone(), extent.upper.clone());
+            check_length(&self.below("box.lower"), &lower, dimension)?;
+            check_length(&self.below("box.upper"), &upper, dimension)?;
+            check_box(&self.below("box"), &lower, &upper)?;
+            return Ok(Outline { lower, upper, shape: None });
+        }
+        if dimension == 1 {
             let reason = "a region of the plane, but domain.lower has 1 number, which is the \
                           dimension of the scene; allowed: \"box\"";
             return Err(SceneFault::new(self.below(self.key), true, reason));
-        };
-        let (lower, upper) = (extent.lower.clone(), extent.upper.clone());
-        check_length(&self.below("box.lower"), &lower, 1)?;
-        check_length(&self.below("box.upper"), &upper, 1)?;
-        check_box(&self.below("box"), &lower, &upper)?;
-        let Some(per_cell) = self.per_cell()? else {
-            let points: Vec<f64> = self.points::<1>()?.into_iter().map(|p| p[0]).collect();
-            let tiles = voronoi_line(lower[0], upper[0], &points).map_err(|f| self.faulty(f))?;
-            let tile = |&(centre, length): &(f64, f64)| Tile {
-                centre: [centre, 0.0],
-                area: length,
-                size: [length, 0.0],
-            };
-            let tiles = Some(Arc::new(tiles.iter().map(tile).collect()));
-            return Ok(Filled { lower, upper, lattice: vec![1], tiles });
-        };
-        let lattice = lattice(extent, per_cell, self.path, self.cell_size)?;
-        Ok(Filled { lower, upper, lattice, tiles: None })
+        }
+        let shape = self.shape()?;
+        let [lower, upper] = shape.bounds().map(|corner| corner.to_vec());
+        Ok(Outline { lower, upper, shape: Some(shape) })
     }
 
-    /// Fills a body in a plane.
-    fn plane(&self) -> Result<Filled, SceneFault> {
-        if let Region::Box(extent) = self.region {
-            check_length(&self.below("box.lower"), &extent.lower, 2)?;
-            check_length(&self.below("box.upper"), &extent.upper, 2)?;
-            check_box(&self.below("box"), &extent.lower, &extent.upper)?;
-            if let Some(per_cell) = self.per_cell()? {
-                let (lower, upper) = (extent.lower.clone(), extent.upper.clone());
-                let lattice = lattice(extent, per_cell, self.path, self.cell_size)?;
-                return Ok(Filled { lower, upper, lattice, tiles: None });
-            }
-        }
-        let shape = BoundedRegion::new(self.region)
-            .map_err(|fault| SceneFault::new(self.below(&fault.path), fault.value, fault.reason))?;
-        let [lower, upper] = shape.bounds().map(|corner| corner.to_vec());
-        let cell = [self.cell_size[0], self.cell_size[1]];
-        let tiles = match self.per_cell()? {
-            Some(per_cell) => {
-                let counts = [per_cell[0], per_cell[1]];
-                let whole = cell[0] * cell[1] / (counts[0] * counts[1]) as f64;
-                if shape.area() / whole > MOST_TILES {
-                    let reason = format!(
-                        "{:.1e} particles; allowed: at most {MOST_TILES:e} in a body that is no box",
-                        shape.area() / whole
-                    );
-                    let path = self.below("particles_per_cell");
-                    return Err(SceneFault::new(path, per_cell, reason));
-                }
-                let origin = [self.scene.domain.lower[0], self.scene.domain.lower[1]];
-                fill(&shape, origin, cell, counts)
-            }
-            None => voronoi(&shape, &self.points::<2>()?).map_err(|f| self.faulty(f))?,
-        };
-        Ok(Filled { lower, upper, lattice: vec![1; 2], tiles: Some(Arc::new(tiles)) })
+    fn shape(&self) -> Result<BoundedRegion, SceneFault> {
+        BoundedRegion::new(self.region)
+            .map_err(|fault| SceneFault::new(self.below(&fault.path), fault.value, fault.reason))
     }
+
+    /// Fills a body with particles.
+    fn fill(&self, outline: Outline) -> Result<Filled, SceneFault> {
+        let Outline { lower, upper, shape } = outline;
+        let per_cell = self.per_cell()?;
+        if let (Region::Box(extent), Some(per_cell)) = (self.region, &per_cell) {
+            let lattice = lattice(extent, per_cell, self.path, self.cell_size)?;
+            return Ok(Filled { lower, upper, lattice, tiles: None });
+        }
+        let tiles = match self.cell_size {
+            [_] => self.tiles_on_line(lower[0], upper[0])?,
+            _ => {
+                self.tiles_in_plane(&shape.map_or_else(|| self.shape(), Ok)?, per_cell.as_deref())?
+            }
+        };
+        let lattice = vec![1; lower.len()];
+        Ok(Filled { lower, upper, lattice, tiles: Some(Arc::new(tiles)) })
+    }
+
+    /// Particles at given positions on a line.
+    fn tiles_on_line(&self, lower: f64, upper: f64) -> Result<Vec<Tile>, SceneFault> {
+        let points: Vec<f64> = self.points::<1>()?.into_iter().map(|p| p[0]).collect();
+        let tiles = voronoi_line(lower, upper, &points).map_err(|f| self.faulty(f))?;
+        let tile = |&(centre, length): &(f64, f64)| Tile {
+            centre: [centre, 0.0],
+            area: length,
+            size: [length, 0.0],
+        };
+        Ok(tiles.iter().map(tile).collect())
+    }
+
+    /// Particles in a plane, `per_cell` of them or at given positions.
+    fn tiles_in_plane(
+        &self,
+        shape: &BoundedRegion,
+        per_cell: Option<&[usize]>,
+    ) -> Result<Vec<Tile>, SceneFault> {
+        let Some(per_cell) = per_cell else {
+            return voronoi(shape, &self.points::<2>()?).map_err(|f| self.faulty(f));
+        };
+        let cell = [self.cell_size[0], self.cell_size[1]];
+        let counts = [per_cell[0], per_cell[1]];
+        let particles = shape.area() / (cell[0] * cell[1] / (counts[0] * counts[1]) as f64);
+        if particles > MOST_TILES {
+            let reason = format!(
+                "{particles:.1e} particles; allowed: at most {MOST_TILES:e} in a body that is no box"
+            );
+            return Err(SceneFault::new(self.below("particles_per_cell"), per_cell, reason));
+        }
+        let origin = [self.scene.domain.lower[0], self.scene.domain.lower[1]];
+        Ok(fill(shape, origin, cell, counts))
+    }
+}
+
+/// Bounds of a region.
+struct Outline {
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    /// `None` for a box.
+    shape: Option<BoundedRegion>,
 }
 
 /// Maximum number of particles of a body whose tiles are generated one by one.
@@ -248,7 +305,7 @@ fn check_inside(
     scene: &Scene,
     path: &str,
     (key, region): (&str, &Region),
-    filled: &Filled,
+    filled: &Outline,
     cell_size: &[f64],
 ) -> Result<(), SceneFault> {
     let domain = &scene.domain;
@@ -327,11 +384,13 @@ fn lattice(
 
 /// Checks that bodies may touch but do not overlap: in order of x, each is compared with those that
 /// begin before it ends.
-fn check_overlap(
+pub(super) fn check_overlap(
     scene: &Scene,
     checked: &[CheckedBody],
     cell_size: &[f64],
-) -> Result<(), SceneFault> {
+) -> Vec<SceneFault> {
+    let mut faults = Vec::new();
+    let mut overlapping = vec![false; checked.len()];
     let mut order: Vec<usize> = (0..checked.len()).collect();
     order.sort_by(|&a, &b| checked[a].lower[0].total_cmp(&checked[b].lower[0]));
     let cell: f64 = cell_size.iter().product();
@@ -354,16 +413,17 @@ fn check_overlap(
     for (k, &body) in order.iter().enumerate() {
         let rest = order[k + 1..].iter();
         for &other in rest.take_while(|&&other| checked[other].lower[0] < checked[body].upper[0]) {
-            if overlap(body, other) {
+            if !overlapping[other] && overlap(body, other) {
                 let reason = format!(
                     "overlaps {} = {}; allowed: {} that touch at most",
                     path(body),
                     value(body),
                     if scene.domain.lower.len() == 1 { "boxes" } else { "bodies" }
                 );
-                return Err(SceneFault::new(path(other), value(other), reason));
+                faults.push(SceneFault::new(path(other), value(other), reason));
+                overlapping[other] = true;
             }
         }
     }
-    Ok(())
+    faults
 }

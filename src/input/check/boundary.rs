@@ -1,9 +1,50 @@
 //! Checks of the sides of the domain and their combinations.
 
 use super::super::errors::SceneFault;
+use super::super::faults::Faults;
 use crate::scene::{CheckedScene, Course, Geometry, Scene, Side};
 
-pub(super) fn check(scene: &Scene) -> Result<(), SceneFault> {
+pub(super) fn check(scene: &Scene, faults: &mut Faults) {
+    if faults.concern("boundary") {
+        return;
+    }
+    faults.take(check_at_axis(scene));
+    let Some(boundary) = &scene.boundary else { return };
+    let y = [("boundary.y_lower", &boundary.y_lower), ("boundary.y_upper", &boundary.y_upper)];
+    let x = [("boundary.x_lower", &boundary.x_lower), ("boundary.x_upper", &boundary.x_upper)];
+    let beside = y.iter().filter_map(|(path, side)| Some((*path, side.as_ref()?)));
+    for (path, side) in x.into_iter().chain(beside.clone()) {
+        if let Some(course) = side.course() {
+            let path = format!("{path}.{}", side.name());
+            faults.take(check_course(&path, side.name(), &course));
+        }
+    }
+    if scene.domain.lower.len() == 1 {
+        for (path, side) in beside {
+            let reason = "a side along y, but domain.lower has 1 number, which is the dimension of \
+                          the scene; allowed: boundary.x_lower and boundary.x_upper";
+            faults.add(SceneFault::new(path, side, reason));
+        }
+        for (path, side) in x.into_iter().filter(|(_, s)| s.properties().resists_sliding()) {
+            let reason = "holds what slides along it, but domain.lower has 1 number, which is the \
+                          dimension of the scene; allowed: \"wall\"";
+            faults.add(SceneFault::new(path, side, reason));
+        }
+    }
+    let on_axis = scene.domain.geometry == Geometry::Axisymmetric;
+    if on_axis && let Some((path, side)) = x.into_iter().find(|(_, side)| is_periodic(side)) {
+        let reason = "joins radii, which domain.geometry = \"axisymmetric\" has along x; allowed: \
+                      any other side";
+        faults.add(SceneFault::new(path, side, reason));
+    }
+    let x_sides = [&boundary.x_lower, &boundary.x_upper];
+    faults.take(check_axis(["boundary.x_lower", "boundary.x_upper"], x_sides));
+    let y_sides = y.map(|(_, side)| side.clone().unwrap_or_default());
+    faults.take(check_axis(y.map(|(path, _)| path), y_sides.each_ref()));
+}
+
+/// Checks that the axis is a plane of symmetry.
+fn check_at_axis(scene: &Scene) -> Result<(), SceneFault> {
     let at_axis = scene.domain.geometry == Geometry::Axisymmetric && scene.domain.lower[0] == 0.0;
     let inner = scene.boundary.clone().unwrap_or_default().x_lower;
     if at_axis && !inner.properties().symmetric {
@@ -11,41 +52,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneFault> {
                       \"symmetry\", or domain.lower[0] above 0";
         return Err(SceneFault::new("boundary.x_lower", inner, reason));
     }
-    let Some(boundary) = &scene.boundary else { return Ok(()) };
-    let y = [("boundary.y_lower", &boundary.y_lower), ("boundary.y_upper", &boundary.y_upper)];
-    let x = [("boundary.x_lower", &boundary.x_lower), ("boundary.x_upper", &boundary.x_upper)];
-    let beside = y.iter().filter_map(|(path, side)| Some((*path, side.as_ref()?)));
-    for (path, side) in x.into_iter().chain(beside) {
-        if let Some(course) = side.course() {
-            check_course(&format!("{path}.{}", side.name()), side.name(), &course)?;
-        }
-    }
-    if scene.domain.lower.len() == 1 {
-        for (path, side) in y {
-            if let Some(side) = side {
-                let reason = "a side along y, but domain.lower has 1 number, which is the \
-                              dimension of the scene; allowed: boundary.x_lower and \
-                              boundary.x_upper";
-                return Err(SceneFault::new(path, side, reason));
-            }
-        }
-        for (path, side) in x {
-            if side.properties().resists_sliding() {
-                let reason = "holds what slides along it, but domain.lower has 1 number, which is \
-                              the dimension of the scene; allowed: \"wall\"";
-                return Err(SceneFault::new(path, side, reason));
-            }
-        }
-    }
-    let on_axis = scene.domain.geometry == Geometry::Axisymmetric;
-    if on_axis && let Some((path, side)) = x.into_iter().find(|(_, side)| is_periodic(side)) {
-        let reason = "joins radii, which domain.geometry = \"axisymmetric\" has along x; allowed: \
-                      any other side";
-        return Err(SceneFault::new(path, side, reason));
-    }
-    check_axis(["boundary.x_lower", "boundary.x_upper"], [&boundary.x_lower, &boundary.x_upper])?;
-    let y_sides = y.map(|(_, side)| side.clone().unwrap_or_default());
-    check_axis(y.map(|(path, _)| path), y_sides.each_ref())
+    Ok(())
 }
 
 fn is_periodic(side: &Side) -> bool {
@@ -96,13 +103,14 @@ fn is_touched(checked: &CheckedScene, a: usize, end: usize) -> bool {
 }
 
 /// Checks transmitting sides: each continues the material of a body that must touch it.
-pub(super) fn check_transmitting(checked: &mut CheckedScene) -> Result<(), SceneFault> {
+pub(super) fn check_transmitting(checked: &mut CheckedScene) -> Result<(), Faults> {
     let sides = checked.sides::<2>();
+    let mut faults = Faults::default();
     for (a, end) in (0..checked.dimension).flat_map(|a| [(a, 0), (a, 1)]) {
         if sides[a][end].properties().absorbs_waves && !is_touched(checked, a, end) {
             let reason = "stands for more of the material that touches it, but no body does; \
                           allowed: \"outflow\", or a body up to this side";
-            return Err(SceneFault::new(PATHS[a][end], &sides[a][end], reason));
+            faults.add(SceneFault::new(PATHS[a][end], &sides[a][end], reason));
         }
     }
     let method = &checked.scene.method;
@@ -115,7 +123,7 @@ pub(super) fn check_transmitting(checked: &mut CheckedScene) -> Result<(), Scene
                 .to_string(),
         );
     }
-    Ok(())
+    faults.ok_or_faults(())
 }
 
 /// Checks that the times of a course increase and that its file has been read.
@@ -140,8 +148,9 @@ fn check_course(path: &str, quantity: &str, course: &Course) -> Result<(), Scene
 }
 
 /// Checks that each pressure acts on a body.
-pub(super) fn check_loads(checked: &mut CheckedScene) -> Result<(), SceneFault> {
+pub(super) fn check_loads(checked: &mut CheckedScene) -> Result<(), Faults> {
     let sides = checked.sides::<2>();
+    let mut faults = Faults::default();
     for (a, end) in (0..checked.dimension).flat_map(|a| [(a, 0), (a, 1)]) {
         let side = &sides[a][end];
         let Some(load) = side.properties().pressure else { continue };
@@ -149,12 +158,11 @@ pub(super) fn check_loads(checked: &mut CheckedScene) -> Result<(), SceneFault> 
         if !is_touched(checked, a, end) {
             let reason = "presses on what touches this side, but no body does; allowed: \"free\", \
                           or a body up to this side";
-            return Err(SceneFault::new(path, load, reason));
-        }
-        if checked.scene.reference.is_some() {
+            faults.add(SceneFault::new(path, load, reason));
+        } else if checked.scene.reference.is_some() {
             let reason = "is not in any exact solution; allowed: a scene without reference, or \
                           another side";
-            return Err(SceneFault::new(path, load, reason));
+            faults.add(SceneFault::new(path, load, reason));
         }
     }
     let method = &checked.scene.method;
@@ -167,5 +175,5 @@ pub(super) fn check_loads(checked: &mut CheckedScene) -> Result<(), SceneFault> 
                 .to_string(),
         );
     }
-    Ok(())
+    faults.ok_or_faults(())
 }

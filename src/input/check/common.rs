@@ -13,7 +13,7 @@ pub(super) const MOST: f64 = 1e15;
 const LONGEST_NAME: usize = 200;
 
 /// Checks that a name or title is one printable line.
-pub(super) fn check_printable(path: &str, text: &str) -> Result<(), SceneFault> {
+pub(in super::super) fn check_printable(path: &str, text: &str) -> Result<(), SceneFault> {
     if text.trim().is_empty() {
         return Err(SceneFault::new(
             path,

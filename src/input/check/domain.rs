@@ -13,24 +13,22 @@ const ROUNDING: f64 = 1e-12;
 
 /// Grid of a domain.
 pub(super) struct Grid {
-    pub dimension: usize,
     pub cell_size: Vec<f64>,
     pub cells: Vec<usize>,
 }
 
-pub(super) fn check(domain: &Domain) -> Result<Grid, SceneFault> {
+impl Grid {
+    /// A single cell, which stands in where the cells are not known.
+    pub(super) fn of_whole_domain(domain: &Domain) -> Self {
+        let lengths = domain.lower.iter().zip(&domain.upper).map(|(lower, upper)| upper - lower);
+        Grid { cell_size: lengths.collect(), cells: vec![1; domain.lower.len()] }
+    }
+}
+
+/// Checks the corners of a domain; returns its dimension.
+pub(super) fn check_corners(domain: &Domain) -> Result<usize, SceneFault> {
     let dimension = domain.lower.len();
     check_length("domain.upper", &domain.upper, dimension)?;
-    let asked = match &domain.cell_size {
-        CellSize::Uniform(size) => vec![*size; dimension],
-        CellSize::PerDirection(sizes) => {
-            check_length("domain.cell_size", sizes, dimension)?;
-            sizes.clone()
-        }
-    };
-    if let Some(patches) = &domain.patches {
-        check_length("domain.patches", patches, dimension)?;
-    }
     if dimension > 2 {
         let reason = "more than two dimensions; allowed: one number or two";
         return Err(SceneFault::new("domain.lower", &domain.lower, reason));
@@ -47,7 +45,19 @@ pub(super) fn check(domain: &Domain) -> Result<Grid, SceneFault> {
             return Err(SceneFault::new("domain.lower", &domain.lower, reason));
         }
     }
-    let mut grid = Grid { dimension, cell_size: Vec::new(), cells: Vec::new() };
+    Ok(dimension)
+}
+
+/// Checks the cells of a domain with valid corners.
+pub(super) fn check(domain: &Domain, dimension: usize) -> Result<Grid, SceneFault> {
+    let asked = match &domain.cell_size {
+        CellSize::Uniform(size) => vec![*size; dimension],
+        CellSize::PerDirection(sizes) => {
+            check_length("domain.cell_size", sizes, dimension)?;
+            sizes.clone()
+        }
+    };
+    let mut grid = Grid { cell_size: Vec::new(), cells: Vec::new() };
     for (d, &size) in asked.iter().enumerate() {
         let (lower, upper) = (domain.lower[d], domain.upper[d]);
         let cells = whole_cells(domain, lower, upper, size)?;
@@ -60,15 +70,20 @@ pub(super) fn check(domain: &Domain) -> Result<Grid, SceneFault> {
     if total > MOST {
         return Err(too_many(domain, total));
     }
-    if let Some(patches) = &domain.patches {
-        for (&count, &cells) in patches.iter().zip(&grid.cells) {
-            if count > cells {
-                let reason = format!("more patches than cells; allowed: 1 to {cells}");
-                return Err(SceneFault::new("domain.patches", patches, reason));
-            }
+    Ok(grid)
+}
+
+/// Checks the patches of a domain with this number of cells in each direction.
+pub(super) fn check_patches(domain: &Domain, cells: &[usize]) -> Result<(), SceneFault> {
+    let Some(patches) = &domain.patches else { return Ok(()) };
+    check_length("domain.patches", patches, cells.len())?;
+    for (&count, &cells) in patches.iter().zip(cells) {
+        if count > cells {
+            let reason = format!("more patches than cells; allowed: 1 to {cells}");
+            return Err(SceneFault::new("domain.patches", patches, reason));
         }
     }
-    Ok(grid)
+    Ok(())
 }
 
 fn whole_cells(domain: &Domain, lower: f64, upper: f64, size: f64) -> Result<f64, SceneFault> {
@@ -91,7 +106,7 @@ fn whole_cells(domain: &Domain, lower: f64, upper: f64, size: f64) -> Result<f64
     let least = lower.abs().max(upper.abs()) * f64::EPSILON / WHOLE;
     if size < least {
         let reason = format!(
-            "too small for doubles at coordinates up to {}; allowed: at least {least}",
+            "too small for doubles at coordinates up to {}; allowed: at least {least:e}",
             lower.abs().max(upper.abs())
         );
         return Err(SceneFault::new("domain.cell_size", &domain.cell_size, reason));

@@ -2,22 +2,30 @@
 //! other.
 
 use super::super::errors::SceneFault;
+use super::super::faults::Faults;
 use super::super::paths::join;
 use crate::material::ParameterError;
-use crate::scene::{HeatSource, Material, Scene};
+use crate::scene::{Body, HeatSource, Material, Scene};
 
-pub(super) fn check(scene: &Scene) -> Vec<SceneFault> {
-    let of_materials = scene.materials.iter().flat_map(|(name, material)| {
+pub(super) fn check(scene: &Scene, faults: &mut Faults) {
+    for (name, material) in &scene.materials {
         let path = join("materials", name);
-        [
-            check_strength(&path, material),
-            check_failure(&path, material),
-            check_erosion(&path, material, scene),
-            check_thermal(&path, material),
-        ]
-    });
-    let checks = [check_sides(scene), check_bodies(scene)].into_iter().chain(of_materials);
-    checks.filter_map(Result::err).collect()
+        if faults.concern(&path) {
+            continue;
+        }
+        faults.take(check_strength(&path, material));
+        faults.take(check_failure(&path, material));
+        faults.take(check_thermal(&path, material));
+        faults.judge(&["body_force", "boundary"], || check_erosion(&path, material, scene));
+    }
+    faults.judge(&["boundary", "materials"], || check_sides(scene));
+    for body in &scene.bodies {
+        let path = join("bodies", &body.name);
+        let reads = [&join(&path, "temperature"), &join(&path, "pressure")];
+        faults.judge(&[reads[0], reads[1], &join("materials", &body.material)], || {
+            check_body(scene, body, reads[0].clone())
+        });
+    }
 }
 
 /// Checks that side temperatures have a material with heat conduction and a rigid side.
@@ -49,24 +57,20 @@ fn check_sides(scene: &Scene) -> Result<(), SceneFault> {
     Ok(())
 }
 
-fn check_bodies(scene: &Scene) -> Result<(), SceneFault> {
-    for body in &scene.bodies {
-        let Some(temperature) = body.temperature else { continue };
-        let path = format!("{}.temperature", join("bodies", &body.name));
-        let Some(material) = scene.materials.get(&body.material) else { continue };
-        let Some(thermal) = material.thermal else {
-            let key = join("materials", &body.material);
-            let reason =
-                format!("{key} has no thermal; allowed: to leave it out, or {key}.thermal");
-            return Err(SceneFault::new(path, temperature, reason));
-        };
-        if thermal.source == HeatSource::Energy && body.pressure != 0.0 {
-            let reason = format!(
-                "beside pressure = {}, which sets the energy too; allowed: one of the two",
-                body.pressure
-            );
-            return Err(SceneFault::new(path, temperature, reason));
-        }
+fn check_body(scene: &Scene, body: &Body, path: String) -> Result<(), SceneFault> {
+    let Some(temperature) = body.temperature else { return Ok(()) };
+    let Some(material) = scene.materials.get(&body.material) else { return Ok(()) };
+    let Some(thermal) = material.thermal else {
+        let key = join("materials", &body.material);
+        let reason = format!("{key} has no thermal; allowed: to leave it out, or {key}.thermal");
+        return Err(SceneFault::new(path, temperature, reason));
+    };
+    if thermal.source == HeatSource::Energy && body.pressure != 0.0 {
+        let reason = format!(
+            "beside pressure = {}, which sets the energy too; allowed: one of the two",
+            body.pressure
+        );
+        return Err(SceneFault::new(path, temperature, reason));
     }
     Ok(())
 }

@@ -7,6 +7,7 @@
 //! strikes one is not checked.
 
 use super::super::errors::SceneFault;
+use super::super::faults::Faults;
 use super::super::paths::join;
 use crate::scene::CheckedScene;
 use crate::scene::Eos;
@@ -67,14 +68,15 @@ pub(super) fn check_smoothing(checked: &CheckedScene) -> Result<(), SceneFault> 
 }
 
 /// Checks every impact before the end of the run against the limit; warns of gaps between bodies.
-pub(super) fn check(checked: &mut CheckedScene) -> Result<(), SceneFault> {
+pub(super) fn check(checked: &mut CheckedScene) -> Result<(), Faults> {
     let mut warnings = Vec::new();
+    let mut faults = Faults::default();
     for impact in impacts(checked) {
         let &ScoredImpact { body, other, speed, gap, .. } = &impact;
         if speed <= 0.0 || gap.max(0.0) / speed > checked.scene.time.end {
             continue;
         }
-        check_impact(checked, &impact)?;
+        faults.take(check_impact(checked, &impact));
         if let Some(other) = other
             && checked.velocity_fields() == 1
             && gap > checked.tolerance(0)
@@ -87,7 +89,7 @@ pub(super) fn check(checked: &mut CheckedScene) -> Result<(), SceneFault> {
         }
     }
     checked.warnings.extend(warnings);
-    Ok(())
+    faults.ok_or_faults(())
 }
 
 /// Impacts of neighbours along x, and of the outer bodies on walls; one dimension only.

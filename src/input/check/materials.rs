@@ -1,6 +1,7 @@
 //! Checks of materials: consistent constants and admissible pressures.
 
 use super::super::errors::SceneFault;
+use super::super::faults::Faults;
 use super::super::paths::join;
 use super::super::schema::{GREATEST, LEAST};
 use super::common::check_printable;
@@ -16,19 +17,16 @@ const NEAR: f64 = 0.05;
 /// cells.
 const STABLE_ORDER: u32 = 2;
 
-pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Vec<SceneFault> {
-    let mut faults = Vec::new();
+pub(super) fn check(scene: &Scene, faults: &mut Faults, warnings: &mut Vec<String>) {
     for (name, material) in &scene.materials {
         let path = join("materials", name);
-        match check_one(scene, name, material, &path) {
-            Ok(()) => {
-                warn_of_front(material, &path, warnings);
-                warn_of_filter(scene, material, &path, warnings);
-            }
-            Err(fault) => faults.push(fault),
+        let eos = join(&path, "eos");
+        let reads = [&join(&path, "density")[..], &eos[..]];
+        if faults.judge(&reads, || check_one(scene, name, material, &path)).is_some() {
+            warn_of_front(material, &path, warnings);
+            warn_of_filter(scene, material, &path, warnings);
         }
     }
-    faults
 }
 
 fn check_one(scene: &Scene, name: &str, material: &Material, path: &str) -> Result<(), SceneFault> {

@@ -61,8 +61,9 @@ pub(in super::super) fn tiles(scene: &Scene) -> u64 {
     };
     let of_body = |body: &crate::scene::Body| -> Option<f64> {
         let (_, region) = scene.regions_of(body).pop()?;
-        let counts = body.particles_per_cell.as_ref()?;
-        if matches!(region, Region::Box(_)) || counts.len() != 2 || scene.domain.lower.len() != 2 {
+        let counts = body.particles_per_cell(2);
+        let lattice = matches!(region, Region::Box(_)) || body.positions.is_some();
+        if lattice || counts.len() != 2 || scene.domain.lower.len() != 2 {
             return None;
         }
         let whole = cell[0] * cell[1] / (counts[0] * counts[1]) as f64;

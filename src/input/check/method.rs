@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::super::errors::SceneFault;
+use super::super::faults::Faults;
 use super::super::paths::join;
 use crate::scene::CheckedScene;
 use crate::scene::{
@@ -13,13 +14,36 @@ use crate::shape::{DomainExtent, most_nodes};
 
 const MIDPOINT: &str = "method.stepping = \"midpoint\"";
 
-pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), SceneFault> {
-    let method = &scene.method;
-    if method.stepping == Stepping::Midpoint {
-        check_midpoint(scene)?;
-    } else {
-        check_leapfrog(scene)?;
+pub(super) fn check(scene: &Scene, faults: &mut Faults, warnings: &mut Vec<String>) {
+    let step = match scene.method.stepping {
+        Stepping::Midpoint => check_midpoint,
+        Stepping::Leapfrog => check_leapfrog,
+    };
+    faults.judge(&["artificial_viscosity"], || check_growth(scene));
+    faults.judge(&["artificial_viscosity"], || check_limited(scene));
+    faults.judge(&["contact", "domain.lower"], || check_contact(scene, warnings));
+    if faults.concern("method") {
+        return;
     }
+    faults.take(step(scene));
+    faults.take(check_domain_limit(scene));
+    faults.take(check_volume_relaxation(scene));
+    if scene.method.spin {
+        faults.take(check_spin(scene));
+    }
+    if let Some(limiter) = scene.method.flux_limiter {
+        faults.judge(&["contact"], || check_limiter(scene, limiter));
+    }
+    if scene.method.shape.has_jumps() {
+        warnings.push(
+            "method.shape = \"linear\": inaccurate, since forces jump when a particle passes into \
+             another cell; allowed all the same"
+                .to_string(),
+        );
+    }
+}
+
+fn check_growth(scene: &Scene) -> Result<(), SceneFault> {
     if let Some(viscosity) = &scene.artificial_viscosity
         && let Some(growth) = viscosity.growth
         && growth.max <= viscosity.quadratic
@@ -30,6 +54,10 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Sce
         );
         return Err(SceneFault::new("artificial_viscosity.growth.max", growth.max, reason));
     }
+    Ok(())
+}
+
+fn check_limited(scene: &Scene) -> Result<(), SceneFault> {
     if let Some(viscosity) = &scene.artificial_viscosity
         && viscosity.limited != LimitedTerms::Linear
         && viscosity.limiter.is_none()
@@ -38,31 +66,25 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<String>) -> Result<(), Sce
                       leave both out, or artificial_viscosity.limiter \"christensen\" or \"nodal\"";
         return Err(SceneFault::new("artificial_viscosity.limited", viscosity.limited, reason));
     }
-    if let Some(limit) = method.domain_limit
-        && method.shape.extent() != DomainExtent::Current
+    Ok(())
+}
+
+fn check_domain_limit(scene: &Scene) -> Result<(), SceneFault> {
+    if let Some(limit) = scene.method.domain_limit
+        && scene.method.shape.extent() != DomainExtent::Current
     {
         let reason = "has no effect: no particle's domain deforms; allowed: to leave it out, or \
                       method.shape \"cpdi\" or \"cpdi_bspline_quadratic\"";
         return Err(SceneFault::new("method.domain_limit", limit, reason));
     }
-    if let (Some(rate), None) = (method.volume_relaxation, method.edge_mask) {
+    Ok(())
+}
+
+fn check_volume_relaxation(scene: &Scene) -> Result<(), SceneFault> {
+    if let (Some(rate), None) = (scene.method.volume_relaxation, scene.method.edge_mask) {
         let reason = "needs method.edge_mask, which knows what is filled; allowed: to leave it \
                       out, or method.edge_mask";
         return Err(SceneFault::new("method.volume_relaxation", rate, reason));
-    }
-    if method.spin {
-        check_spin(scene)?;
-    }
-    if let Some(limiter) = method.flux_limiter {
-        check_limiter(scene, limiter)?;
-    }
-    check_contact(scene, warnings)?;
-    if method.shape.has_jumps() {
-        warnings.push(
-            "method.shape = \"linear\": inaccurate, since forces jump when a particle passes into \
-             another cell; allowed all the same"
-                .to_string(),
-        );
     }
     Ok(())
 }

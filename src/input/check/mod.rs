@@ -24,23 +24,29 @@ mod tension;
 
 use super::errors::{SceneFault, one_line};
 use super::faults::Faults;
-use crate::scene::{CheckedScene, Scene};
-use common::check_printable;
+use crate::scene::{CheckedBody, CheckedScene, Scene};
+pub(super) use common::check_printable;
 
 pub(super) use memory::tiles;
 pub use memory::{BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, available_memory};
 
-/// Checks `scene`, read from `file`. As far as possible, checks of one group do not depend on each
-/// other; a group is only judged if the one before has no fault.
-pub(super) fn check(scene: Scene, file: &str) -> Result<CheckedScene, Faults> {
-    let mut checked = build(scene, file)?;
-    check_whole(&mut checked)?;
-    reference::check(&mut checked)?;
-    estimate::check(&checked)?;
-    impact::check_smoothing(&checked)?;
+/// Parts of a scene that its exact solution depends on.
+const OF_REFERENCE: [&str; 6] =
+    ["reference", "bodies", "materials", "boundary", "contact", "body_force"];
+
+/// Checks `scene`, read from `file`; `faults` are those of its keys. A check is left out if a part of
+/// the scene that it reads has a fault.
+pub(super) fn check(scene: Scene, file: &str, mut faults: Faults) -> Result<CheckedScene, Faults> {
+    let Some(mut checked) = build(scene, file, &mut faults) else { return Err(faults) };
+    check_whole(&mut checked, &mut faults);
+    faults.judge(&OF_REFERENCE, || reference::check(&mut checked));
+    faults.judge(&["error_estimate", "reference", "bodies"], || estimate::check(&checked));
+    faults.judge(&["impact_smoothing", "bodies"], || impact::check_smoothing(&checked));
     if checked.dimension == 1 {
-        impact::check(&mut checked)?;
+        let reads = ["bodies", "materials", "boundary", "contact", "time.end"];
+        faults.judge(&reads, || impact::check(&mut checked));
     }
+    faults.ok_or_faults(())?;
     checked.warnings.extend(plausibility::warnings(&checked));
     for warning in &mut checked.warnings {
         *warning = one_line(warning);
@@ -48,28 +54,36 @@ pub(super) fn check(scene: Scene, file: &str) -> Result<CheckedScene, Faults> {
     Ok(checked)
 }
 
-/// Checks the parts of a scene, each by itself.
-fn build(scene: Scene, file: &str) -> Result<CheckedScene, Faults> {
+/// Checks the parts of a scene, each by itself. The result has the bodies without a fault; `None` if
+/// its domain is not known.
+fn build(mut scene: Scene, file: &str, faults: &mut Faults) -> Option<CheckedScene> {
     let mut warnings = Vec::new();
-    let mut faults = Faults::default();
-    faults.take(check_printable("title", &scene.title));
-    let grid = faults.take(domain::check(&scene.domain));
+    faults.judge(&["title"], || check_printable("title", &scene.title));
+    let profile_times = faults
+        .judge(&["output.profiles", "time.end"], || output::profile_times(&scene))
+        .unwrap_or_default();
+    faults.judge(&["output.checkpoint", "time.end"], || output::check_checkpoints(&scene));
+    let corners = ["domain.lower", "domain.upper", "domain.geometry"];
     // the other parts have the dimension of the domain
-    let Some(domain::Grid { dimension, cell_size, cells }) = grid else {
-        return Err(faults);
-    };
-    faults.take(method::check(&scene, &mut warnings));
-    faults.take(boundary::check(&scene));
-    faults.extend(effects::check(&scene));
-    let profile_times = faults.take(output::profile_times(&scene));
-    let bodies = faults.take(bodies::check(&scene, &cell_size, &mut warnings));
-    let (Some(bodies), Some(profile_times)) = (bodies, profile_times) else {
-        return Err(faults);
-    };
-    faults.ok_or_faults(CheckedScene {
+    let dimension = faults.judge(&corners, || domain::check_corners(&scene.domain))?;
+    let grid = domain::Grid::of_whole_domain(&scene.domain);
+    let cells = faults.judge(&["domain.cell_size"], || domain::check(&scene.domain, dimension));
+    let grid = cells.unwrap_or(grid);
+    faults.judge(&["domain"], || domain::check_patches(&scene.domain, &grid.cells));
+    method::check(&scene, faults, &mut warnings);
+    boundary::check(&scene, faults);
+    effects::check(&scene, faults);
+    materials::check(&scene, faults, &mut warnings);
+    let mut bodies = bodies::check(&scene, &grid.cell_size, faults);
+    let mut known = bodies.iter().map(Option::is_some);
+    scene.bodies.retain(|_| known.next() == Some(true));
+    let bodies: Vec<CheckedBody> = bodies.drain(..).flatten().collect();
+    faults.extend(bodies::check_overlap(&scene, &bodies, &grid.cell_size));
+    bodies::warn_of_materials(&scene, &mut warnings);
+    Some(CheckedScene {
         dimension,
-        cell_size,
-        cells,
+        cell_size: grid.cell_size,
+        cells: grid.cells,
         particles: bodies.iter().fold(0, |sum, body| sum.saturating_add(body.particles)),
         bodies,
         profile_times,
@@ -82,23 +96,31 @@ fn build(scene: Scene, file: &str) -> Result<CheckedScene, Faults> {
 }
 
 /// Checks the parts of a scene against each other.
-fn check_whole(checked: &mut CheckedScene) -> Result<(), Faults> {
-    memory::check_counts(checked)?;
-    let mut faults = Faults::default();
-    faults.take(method::check_bodies(checked));
-    faults.take(method::check_positions(checked));
-    faults.take(frame::check(checked));
-    faults.take(boundary::check_transmitting(checked));
-    faults.take(boundary::check_loads(checked));
-    faults.take(courant::check(checked));
-    faults.take(motion::check_body_force(checked));
-    faults.take(output::check_tracers(checked));
-    faults.take(output::check_checkpoints(&checked.scene));
-    faults.take(output::check_fields(checked));
-    faults.take(output::check_diagrams(checked));
-    for key in crate::effects::keys() {
-        let fault = (key.check)(checked).map_err(|e| SceneFault::of_parameter(e, key.name));
-        faults.take(fault);
+fn check_whole(checked: &mut CheckedScene, faults: &mut Faults) {
+    // particles are only made of a scene without a fault in its keys
+    if faults.keys_are_valid() && !faults.concern("domain.cell_size") && !faults.concern("bodies") {
+        faults.take(memory::check_counts(checked));
+        faults.judge(&["method"], || method::check_positions(checked));
     }
-    faults.ok_or_faults(())
+    faults.judge(&["method", "bodies", "materials"], || method::check_bodies(checked));
+    faults.judge(&["method", "bodies", "boundary", "contact"], || frame::check(checked));
+    let sides = ["boundary", "bodies", "method"];
+    faults.judge(&sides, || boundary::check_transmitting(checked));
+    faults.judge(&sides, || boundary::check_loads(checked));
+    let reads = ["time.courant", "method", "boundary", "monitor.on_courant_exceeded"];
+    faults.judge(&reads, || courant::check(checked));
+    let reads = ["body_force", "boundary", "bodies", "materials"];
+    faults.judge(&reads, || motion::check_body_force(checked));
+    faults.judge(&["output.histories", "bodies"], || output::check_tracers(checked));
+    // quantities are those of the effects that act
+    if OF_REFERENCE.iter().all(|path| !faults.concern(path)) {
+        faults.judge(&["output.fields", "time.end"], || output::check_fields(checked));
+        faults.judge(&["output.diagrams"], || output::check_diagrams(checked));
+    }
+    for key in crate::effects::keys() {
+        let reads = [key.name, "bodies", "materials", "method", "contact"];
+        faults.judge(&reads, || {
+            (key.check)(checked).map_err(|e| SceneFault::of_parameter(e, key.name))
+        });
+    }
 }

@@ -2,7 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::super::errors::{SceneFault, suggest};
+use super::super::errors::SceneFault;
+use super::super::faults::Faults;
 use super::super::paths::join;
 use super::common::check_length;
 use crate::effects;
@@ -132,8 +133,10 @@ pub(super) fn history_interval(scene: &Scene) -> Option<f64> {
     Some(histories.interval.unwrap_or(scene.time.end / ROWS))
 }
 
-pub(super) fn check_tracers(checked: &CheckedScene) -> Result<(), SceneFault> {
+/// Checks names and places of probes and gauges.
+pub(super) fn check_tracers(checked: &CheckedScene) -> Result<(), Faults> {
     let Some(histories) = &checked.scene.output.histories else { return Ok(()) };
+    let mut faults = Faults::default();
     let names = checked.scene.bodies.iter().map(|body| body.name.as_str());
     let bodies: HashMap<_, _> = names.zip(0..).collect();
     let mut names = HashSet::new();
@@ -141,36 +144,43 @@ pub(super) fn check_tracers(checked: &CheckedScene) -> Result<(), SceneFault> {
     let meters = histories.velocimeters.iter().map(|t| ("velocimeters", &t.name, &t.body, &t.at));
     let points = tracers.enumerate().chain(meters.enumerate());
     for (i, (list, name, body, at)) in points {
-        let path = check_name(list, i, name, &mut names)?;
-        let Some(&number) = bodies.get(body.as_str()) else {
-            let known = checked.scene.bodies.iter().map(|body| body.name.as_str());
-            let reason = format!("no such body{}", suggest(body, known));
-            return Err(SceneFault::new(join(&path, "body"), body, reason));
-        };
-        let path = join(&path, "at");
-        check_length(&path, at, checked.dimension)?;
-        for (d, x) in at.iter().enumerate() {
-            let tolerance = checked.tolerance(d);
-            let bounds = &checked.bodies[number];
-            let (lower, upper) = (bounds.lower[d], bounds.upper[d]);
-            if *x < lower - tolerance || *x > upper + tolerance {
-                let reason = format!(
-                    "outside of its body; allowed: {lower} to {upper} ({})",
-                    join("bodies", body)
-                );
-                return Err(SceneFault::new(path, at, reason));
-            }
-        }
+        let Some(path) = faults.take(check_name(list, i, name, &mut names)) else { continue };
+        // the name of the body is known, else this check is left out
+        let Some(&number) = bodies.get(body.as_str()) else { continue };
+        faults.take(check_place(checked, &join(&path, "at"), at, number));
     }
     for (i, station) in histories.stations.iter().enumerate() {
-        let path = check_name("stations", i, &station.name, &mut names)?;
-        check_length(&join(&path, "at"), &station.at, checked.dimension)?;
+        let named = faults.take(check_name("stations", i, &station.name, &mut names));
+        let Some(path) = named else { continue };
+        faults.take(check_length(&join(&path, "at"), &station.at, checked.dimension));
     }
     for (i, plane) in histories.planes.iter().enumerate() {
-        let path = check_name("planes", i, &plane.name, &mut names)?;
+        let named = faults.take(check_name("planes", i, &plane.name, &mut names));
+        let Some(path) = named else { continue };
         if plane.axis == GaugeAxis::Y && checked.dimension == 1 {
             let reason = "a line has no y axis; allowed: \"x\"";
-            return Err(SceneFault::new(join(&path, "axis"), "y", reason));
+            faults.add(SceneFault::new(join(&path, "axis"), "y", reason));
+        }
+    }
+    faults.ok_or_faults(())
+}
+
+/// Checks that a place is in the body with this number.
+fn check_place(
+    checked: &CheckedScene,
+    path: &str,
+    at: &[f64],
+    number: usize,
+) -> Result<(), SceneFault> {
+    check_length(path, at, checked.dimension)?;
+    let bounds = &checked.bodies[number];
+    for (d, x) in at.iter().enumerate() {
+        let tolerance = checked.tolerance(d);
+        let (lower, upper) = (bounds.lower[d], bounds.upper[d]);
+        if *x < lower - tolerance || *x > upper + tolerance {
+            let body = join("bodies", &checked.scene.bodies[number].name);
+            let reason = format!("outside of its body; allowed: {lower} to {upper} ({body})");
+            return Err(SceneFault::new(path, at, reason));
         }
     }
     Ok(())

