@@ -196,7 +196,7 @@ impl Parting {
     }
 }
 
-/// The worst of all impacts, and their greatest magnitudes in the mean.
+/// The worst of all impacts.
 pub fn check(table: &mut Table) {
     let impacts = impacts();
     for (name, frame, dimension) in [
@@ -205,16 +205,13 @@ pub fn check(table: &mut Table) {
         ("column, updated", "updated_lagrangian", 2),
     ] {
         let mut worst = [0.0f64; 3];
-        for (k, impact) in impacts.iter().enumerate() {
+        for impact in &impacts {
             let steps =
                 if dimension == 1 { impact.run::<1>(frame) } else { impact.run::<2>(frame) };
             let [(flyer, ..), (target, ..)] = impact.materials;
             let what = format!("{name}: {flyer} on {target}, {} m/s", impact.speed);
             let Some(steps) = table.take(&what, steps) else { continue };
             let errors = impact.errors(&steps);
-            if std::env::var("EACH").is_ok() {
-                println!("{k} {what}, {:.0} cells: {errors:.4?}", impact.lengths[0] / CELL);
-            }
             worst = std::array::from_fn(|k| worst[k].max(errors[k].abs()));
         }
         let bounds: [(&str, Bound); 3] = [
