@@ -11,11 +11,12 @@
 //! ```
 //!
 //! are sums over such pairs. The normal is the direction with the widest gap among the mean of both,
-//! S_a alone and -S_b alone; the gap is that of the faces. A convex corner adds nothing: each of its
-//! faces faces only what is opposite to it. In a concave corner that both bodies fill, the pairs
-//! form two families more than 45 degrees apart, each with its own plane. Where faces face each other
-//! but none overlap, bodies pass each other; they touch if the particles overlap widely, as at
-//! surfaces of fracture, which carry no faces.
+//! S_a alone and -S_b alone; the gap is the mean over the pairs, by their weights, of the distances
+//! between their faces. A convex corner adds nothing: each of its faces faces only what is opposite
+//! to it. In a concave corner that both bodies fill, the pairs form two families more than 45
+//! degrees apart, each with its own plane. Where faces face each other but none overlap, bodies pass
+//! each other; they touch if the particles overlap widely, as at surfaces of fracture, which carry
+//! no faces.
 
 use smallvec::SmallVec;
 
@@ -30,9 +31,6 @@ pub(super) const USES_FACES: bool = true;
 
 /// Least cosine between a face and the reverse of another for which they face each other.
 const FACING: f64 = 0.5;
-
-/// Least cosine between a face and a direction for which the face bounds its body along it.
-const BOUNDING: f64 = 0.7;
 
 /// Face of a particle near a node.
 struct Face<const D: usize> {
@@ -116,10 +114,17 @@ fn faces_planes<const D: usize>(pair: &BodyPair<'_, D>) -> (ContactPlanes<D>, bo
     let mut planes = ContactPlanes::new();
     while let Some(heaviest) = heaviest(&left).filter(|_| planes.len() < MOST_PLANES) {
         let mut sums = [[0.0; D]; 2];
+        let mut feet = [[0.0; D]; 2];
+        let mut total = 0.0;
         left.retain(|pair| {
             let other = dot(&pair.normal, &heaviest) <= SAME_FAMILY;
             if !other {
                 let normals = [&first[pair.faces[0]].normal, &second[pair.faces[1]].normal];
+                let points = [&first[pair.faces[0]].foot, &second[pair.faces[1]].foot];
+                for (sum, point) in feet.iter_mut().zip(points) {
+                    (0..D).for_each(|a| sum[a] += pair.weight * point[a]);
+                }
+                total += pair.weight;
                 for (sum, normal) in sums.iter_mut().zip(normals) {
                     (0..D).for_each(|a| sum[a] += pair.weight * normal[a]);
                 }
@@ -128,9 +133,9 @@ fn faces_planes<const D: usize>(pair: &BodyPair<'_, D>) -> (ContactPlanes<D>, bo
         });
         let outward = sums.map(direction);
         let candidates = [mean(outward), outward[0], outward[1].map(|n| n.map(|x| -x))];
+        // extents would close the gap of round bodies over the whole width of the weights
         planes.extend(widest(candidates.into_iter().flatten(), |normal| {
-            let second = extent(&second, &normal.map(|n| -n))?;
-            Some(-(extent(&first, normal)? + second) / cell)
+            Some((dot(&feet[1], normal) - dot(&feet[0], normal)) / (total * cell))
         }));
     }
     (planes, passing)
@@ -193,12 +198,6 @@ fn faces<const D: usize>(particles: &[ContactParticle<D>]) -> SmallVec<[Face<D>;
         }
     }
     faces
-}
-
-/// Greatest extent along `normal` of faces that bound their body along it [m].
-fn extent<const D: usize>(faces: &[Face<D>], normal: &[f64; D]) -> Option<f64> {
-    let bounding = faces.iter().filter(|face| dot(&face.normal, normal) > BOUNDING);
-    bounding.map(|face| dot(&face.foot, normal)).reduce(f64::max)
 }
 
 #[cfg(test)]
@@ -271,6 +270,16 @@ mod tests {
         assert!(planes_between(&[left], &[right]).is_empty());
         let lower = particle([-0.25, 0.0], [1.0, 0.0], 0.25);
         assert_eq!(planes_between(&[lower], &[right]).len(), 1);
+    }
+
+    #[test]
+    fn the_gap_of_a_face_that_is_not_flat_is_the_mean() {
+        let floor = [-0.25, 0.25].map(|x| particle([x, -0.25], [0.0, 1.0], 0.25));
+        let stairs = [(-0.25, 0.35), (0.25, 0.25)]
+            .map(|(x, y)| particle([x, y], [0.0, -1.0], 0.25));
+        let plane = planes_between(&floor, &stairs)[0];
+        assert_eq!(plane.normal, [0.0, 1.0]);
+        assert!((plane.gap - 0.05).abs() < 1e-15);
     }
 
     #[test]

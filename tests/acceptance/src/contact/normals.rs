@@ -15,7 +15,7 @@ const SOURCES: [&str; 4] =
 type Case = (&'static str, fn(f64) -> Value, fn(&Measured, f64) -> f64, Bound);
 
 /// Speed along the base that the first body has lost.
-fn lost(found: &Measured, degrees: f64) -> f64 {
+pub fn lost(found: &Measured, degrees: f64) -> f64 {
     1.0 - turned(found.bodies[0].velocity, -degrees)[0]
 }
 
@@ -34,7 +34,7 @@ fn rectangle(lower: [f64; 2], upper: [f64; 2]) -> [[f64; 2]; 4] {
 }
 
 /// A base, longer than the block that slides on it for 20 cells.
-fn flat(degrees: f64) -> Value {
+pub fn flat(degrees: f64) -> Value {
     let bodies = [
         (block([0.0, 0.0], [0.08, 0.04], degrees), turned([1.0, 0.0], degrees)),
         (block([-0.06, -0.04], [0.34, 0.0], degrees), [0.0; 2]),
