@@ -275,8 +275,8 @@ mod tests {
     #[test]
     fn the_gap_of_a_face_that_is_not_flat_is_the_mean() {
         let floor = [-0.25, 0.25].map(|x| particle([x, -0.25], [0.0, 1.0], 0.25));
-        let stairs = [(-0.25, 0.35), (0.25, 0.25)]
-            .map(|(x, y)| particle([x, y], [0.0, -1.0], 0.25));
+        let stairs =
+            [(-0.25, 0.35), (0.25, 0.25)].map(|(x, y)| particle([x, y], [0.0, -1.0], 0.25));
         let plane = planes_between(&floor, &stairs)[0];
         assert_eq!(plane.normal, [0.0, 1.0]);
         assert!((plane.gap - 0.05).abs() < 1e-15);
