@@ -206,8 +206,8 @@ impl<const D: usize> Simulation<'_, D> {
 
 #[cfg(test)]
 mod tests {
-    use decomp::{Comm, Serial};
     use decomp::comm::local::run_ranks;
+    use decomp::{Comm, Serial};
 
     use super::*;
     use crate::input;
