@@ -7,7 +7,7 @@ use flyer_mpm::input;
 use flyer_mpm::input::parse;
 use serde_json::{Value, json};
 
-use super::{inputs, mentions, mentions_all, refused, refused_edit, refused_text, with};
+use super::{inputs, mentions, mentions_all, refused, refused_edit, refused_text, shipped, with};
 
 #[test]
 fn files_that_are_no_scene() {
@@ -286,12 +286,18 @@ fn huge_files_get_a_short_verdict_soon() {
         });
         scene["bodies"] = many.collect();
     };
-    refused_edit(bodies, &["bodies.1.box", "overlaps bodies.0.box"]);
+    let several = |edit: &dyn Fn(&mut Value), fragments: &[&str]| {
+        let mut value: Value = serde_json::from_slice(&shipped("flyer.json")).unwrap();
+        edit(&mut value);
+        let error = parse(value.to_string().as_bytes(), "bad.json", &[]).unwrap_err();
+        mentions_all(&error.to_string(), fragments);
+    };
+    several(&bodies, &["10 faults", "bodies.1.box", "overlaps bodies.0.box"]);
     let unknown = |scene: &mut Value| {
         bodies(scene);
         scene["bodies"][49_999]["colour"] = "red".into();
     };
-    refused_edit(unknown, &["bodies.49999.colour = \"red\"", "unknown key"]);
+    several(&unknown, &["11 faults", "bodies.49999.colour = \"red\"", "unknown key"]);
     let nobody = |scene: &mut Value| {
         bodies(scene);
         for i in 0..50_000 {

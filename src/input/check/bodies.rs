@@ -148,8 +148,8 @@ struct Filled {
 
 impl Filled {
     /// A body whose particles are not known.
-    fn unknown(outline: Outline) -> Self {
-        let Outline { lower, upper, .. } = outline;
+    fn unknown(outline: BodyOutline) -> Self {
+        let BodyOutline { lower, upper, .. } = outline;
         Filled { lattice: vec![1; lower.len()], lower, upper, tiles: None }
     }
 }
@@ -212,14 +212,14 @@ impl Fill<'_> {
     }
 
     /// The region's bounds, and its shape unless it is a box.
-    fn outline(&self) -> Result<Outline, SceneFault> {
+    fn outline(&self) -> Result<BodyOutline, SceneFault> {
         let dimension = self.cell_size.len();
         if let Region::Box(extent) = self.region {
             let (lower, upper) = (extent.lower.clone(), extent.upper.clone());
             check_length(&self.below("box.lower"), &lower, dimension)?;
             check_length(&self.below("box.upper"), &upper, dimension)?;
             check_box(&self.below("box"), &lower, &upper)?;
-            return Ok(Outline { lower, upper, shape: None });
+            return Ok(BodyOutline { lower, upper, shape: None });
         }
         if dimension == 1 {
             let reason = "a region of the plane, but domain.lower has 1 number, which is the \
@@ -228,7 +228,7 @@ impl Fill<'_> {
         }
         let shape = self.shape()?;
         let [lower, upper] = shape.bounds().map(|corner| corner.to_vec());
-        Ok(Outline { lower, upper, shape: Some(shape) })
+        Ok(BodyOutline { lower, upper, shape: Some(shape) })
     }
 
     fn shape(&self) -> Result<BoundedRegion, SceneFault> {
@@ -237,8 +237,8 @@ impl Fill<'_> {
     }
 
     /// Fills a body with particles.
-    fn fill(&self, outline: Outline) -> Result<Filled, SceneFault> {
-        let Outline { lower, upper, shape } = outline;
+    fn fill(&self, outline: BodyOutline) -> Result<Filled, SceneFault> {
+        let BodyOutline { lower, upper, shape } = outline;
         let per_cell = self.per_cell()?;
         if let (Region::Box(extent), Some(per_cell)) = (self.region, &per_cell) {
             let lattice = lattice(extent, per_cell, self.path, self.cell_size)?;
@@ -290,7 +290,7 @@ impl Fill<'_> {
 }
 
 /// Bounds of a region.
-struct Outline {
+struct BodyOutline {
     lower: Vec<f64>,
     upper: Vec<f64>,
     /// `None` for a box.
@@ -305,7 +305,7 @@ fn check_inside(
     scene: &Scene,
     path: &str,
     (key, region): (&str, &Region),
-    filled: &Outline,
+    filled: &BodyOutline,
     cell_size: &[f64],
 ) -> Result<(), SceneFault> {
     let domain = &scene.domain;
@@ -382,6 +382,9 @@ fn lattice(
     Ok(lattice)
 }
 
+/// Maximum number of overlapping bodies that are reported.
+const MOST_OVERLAPS: usize = 10;
+
 /// Checks that bodies may touch but do not overlap: in order of x, each is compared with those that
 /// begin before it ends.
 pub(super) fn check_overlap(
@@ -422,6 +425,9 @@ pub(super) fn check_overlap(
                 );
                 faults.push(SceneFault::new(path(other), value(other), reason));
                 overlapping[other] = true;
+                if faults.len() == MOST_OVERLAPS {
+                    return faults;
+                }
             }
         }
     }
