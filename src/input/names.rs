@@ -15,8 +15,11 @@ pub(super) fn check(scene: &Value) -> Vec<SceneFault> {
     if let Some(materials) = scene["materials"].as_object() {
         let known: Vec<&str> = materials.keys().map(String::as_str).collect();
         for (i, body) in bodies.iter().enumerate() {
-            let path = format!("{}.material", below("bodies", &entry_key(bodies, i)));
-            faults.extend(unknown(&body["material"], &path, "material", &known));
+            // a path costs a look at the names of all bodies
+            if body["material"].as_str().is_some_and(|name| !materials.contains_key(name)) {
+                let path = format!("{}.material", below("bodies", &entry_key(bodies, i)));
+                faults.extend(unknown(&body["material"], &path, "material", &known));
+            }
         }
     }
     // a body with a faulty name may be the one that is meant
