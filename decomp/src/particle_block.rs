@@ -194,7 +194,19 @@ impl<const D: usize> Block<D> {
     }
 
     fn sort(&mut self, from: usize, to: usize) {
-        if self.is_in_order(from..to) {
+        // most steps keep the order or move few particles
+        let misplaced = self.misplaced(from..to);
+        if misplaced == 0 {
+            return;
+        }
+        if misplaced <= FEW {
+            for particle in from + 1..to {
+                if self.key(particle - 1) > self.key(particle) {
+                    let key = self.key(particle);
+                    let place = from + partition_point(from, particle, |r| self.key(r) < key);
+                    self.rotate(place, particle, to);
+                }
+            }
             return;
         }
         // most particles are still in order among themselves: the others are sorted and merged in
@@ -219,17 +231,29 @@ impl<const D: usize> Block<D> {
         }
     }
 
-    /// Whether particles are in canonical order.
-    fn is_in_order(&self, particles: Range<usize>) -> bool {
+    /// Moves `particle` forward to `place`; columns shorter than `all` do not contain it.
+    fn rotate(&mut self, place: usize, particle: usize, all: usize) {
+        self.ids[place..=particle].rotate_right(1);
+        self.cells[place..=particle].rotate_right(1);
+        for column in &mut self.columns {
+            if column.len() >= all {
+                column[place..=particle].rotate_right(1);
+            }
+        }
+    }
+
+    /// Number of particles that stand behind one of a later place.
+    fn misplaced(&self, particles: Range<usize>) -> usize {
         let (cells, ids) = (&self.cells[particles.clone()], &self.ids[particles]);
-        let Some(last) = ids.len().checked_sub(1) else { return true };
+        let Some(last) = ids.len().checked_sub(1) else { return 0 };
         let before = cells[..last].iter().zip(&ids[..last]);
         let after = cells[1..].iter().zip(&ids[1..]);
-        // no early exit, and no branch per particle, so that several are compared at a time
-        before.zip(after).fold(true, |all, ((cell, id), (next, next_id))| {
+        // no branch per particle, so that several are compared at a time
+        let misplaced = before.zip(after).map(|((cell, id), (next, next_id))| {
             let (cell, next) = (place(cell), place(next));
-            all & ((cell < next) | ((cell == next) & (id <= next_id)))
-        })
+            usize::from((cell > next) | ((cell == next) & (id > next_id)))
+        });
+        misplaced.sum()
     }
 
     /// Ranges of particles in canonical order, own particles and ghosts together. A cell contains
@@ -275,6 +299,10 @@ fn partition_point(from: usize, to: usize, below: impl Fn(usize) -> bool) -> usi
     }
     lo - from
 }
+
+/// Number of misplaced particles up to which moving them one by one is cheaper than a sort, and asks
+/// for no memory.
+const FEW: usize = 8;
 
 /// Place of a cell in the canonical order, the last direction first.
 fn place<const D: usize>(cell: &[i32; D]) -> i64 {

@@ -24,7 +24,6 @@ use crate::driver::output::vtkhdf::{RESULTS_FILE, RunInfo, write_vtkhdf};
 use crate::driver::readings::{gauge_readings, report_readings};
 use crate::driver::recorder::most_particles;
 use crate::effects::ledger;
-use crate::perf_model::calibrate::{cores, processor};
 use crate::simulation::{BoundaryWork, Compiled, ParticleTable, RemovedByKind, Totals};
 use crate::solver::Stepper;
 use crate::solver::clock::user_cpu_seconds;
@@ -186,7 +185,7 @@ where
             title: scene.scene.title.clone(),
             version: env!("CARGO_PKG_VERSION").into(),
             commit: self.options.commit.map(String::from),
-            machine: format!("{}, {} cores", processor(), cores()),
+            machine: self.machine.clone(),
             origin: None,
             scene: serde_json::to_value(&scene.scene).expect("a scene is plain data"),
             method_choice: scene.method_choice.clone(),

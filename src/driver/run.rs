@@ -13,6 +13,7 @@ use crate::driver::output::histories::HISTORIES_FILE;
 use crate::driver::output::shared_file::agree;
 use crate::driver::output::unfinished;
 use crate::driver::recorder::Recorder;
+use crate::perf_model::calibrate::{cores, processor};
 use crate::scene::CheckedScene;
 use crate::simulation::{Compiled, Simulation, Totals};
 use crate::solver::Stepper;
@@ -22,6 +23,8 @@ pub(super) struct Run<'a, const D: usize> {
     pub comm: &'a dyn Comm,
     pub scene: &'a CheckedScene,
     pub options: &'a Options,
+    /// Processor, and the cores that the process may use.
+    pub machine: String,
     /// The body whose errors are estimated, and the coarse runs for it.
     pub estimated: Option<(usize, Companions)>,
     pub simulation: Simulation<'a, D>,
@@ -44,6 +47,8 @@ where
         options: &'a Options,
         beginning: Beginning,
     ) -> Result<Self, RunFailure> {
+        // before threads are bound to cores
+        let machine = format!("{}, {} cores", processor(), cores());
         let estimated = match scene.estimated_body() {
             Some(body) => Some((body, coarse_runs::run(comm, scene, body, options.threads)?)),
             None => None,
@@ -77,6 +82,7 @@ where
             comm,
             scene,
             options,
+            machine,
             estimated,
             simulation,
             start,
