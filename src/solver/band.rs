@@ -7,7 +7,7 @@ use std::ops::Range;
 use decomp::array::map;
 use wide::f64x4;
 
-use crate::shape::{MOST_NODES, MOST_NODES_IN_PLANE, add_product};
+use crate::shape::{MOST_NODES, MOST_NODES_IN_PLANE, add_product, fours};
 use crate::solver::particle_weights::{NARROW, ParticleWeights, lines};
 
 /// Number of nodes of which a diagonal is zero or not together, and which are cleared together.
@@ -42,20 +42,19 @@ fn add_blocks<const M: usize>(
 ) {
     // one check for all four entries
     assert!(first + M <= count);
-    // no closures over the loops: compilers would not vectorize them
-    macro_rules! add {
-        ($entry:literal, $k:ident => $value:expr) => {
-            let at = $entry * count + first;
-            let sums: &mut [f64; M] = (&mut row[at..at + M]).try_into().expect("M numbers");
-            for $k in 0..M {
-                sums[$k] += $value;
+    let [term, x, y] = [term, x, y].map(f64x4::splat);
+    for four in 0..const { M.div_ceil(4) } {
+        let [values, along, across] = map(&[values, along, across], |line| fours(line, four));
+        let both = term * values;
+        let terms = [both + y * across, both + x * along, -(y * along), -(x * across)];
+        for (entry, terms) in terms.into_iter().enumerate() {
+            let at = entry * count + first + 4 * four;
+            let terms = terms.to_array();
+            for (sum, term) in row[at..at + 4.min(M - 4 * four)].iter_mut().zip(terms) {
+                *sum += term;
             }
-        };
+        }
     }
-    add!(0, k => term * values[k] + y * across[k]);
-    add!(1, k => term * values[k] + x * along[k]);
-    add!(2, k => -(y * along[k]));
-    add!(3, k => -(x * across[k]));
 }
 
 /// Symmetric matrix M_ij = sum_p m_p N_ip N_jp over the nodes of a patch, stored by diagonals: a
