@@ -37,16 +37,15 @@ macro_rules! with_width {
 pub(crate) use with_width;
 
 /// Calls `$call` with a shape function, a constant width and the dimension. The width is as given,
-/// or for shape functions that depend on the length of the particle the padded width of `$nodes`, in
-/// a plane at least 4: a line of four nodes is one vector, and costs less than three numbers.
+/// or for shape functions that depend on the length of the particle the padded width of `$nodes`.
 macro_rules! with_shape_width {
     ([$width:literal], $shape:ty, $nodes:expr, $call:ident ( $($arg:expr),* )) => {
         $call::<$shape, $width, D>($($arg),*)
     };
     ([by_length], $shape:ty, $nodes:expr, $call:ident ( $($arg:expr),* )) => {
         match $nodes {
-            0..=3 if D == 1 => $call::<$shape, 3, D>($($arg),*),
-            0..=4 => $call::<$shape, 4, D>($($arg),*),
+            0..=3 => $call::<$shape, 3, D>($($arg),*),
+            4 => $call::<$shape, 4, D>($($arg),*),
             5..=6 => $call::<$shape, 6, D>($($arg),*),
             _ if D > 1 || $nodes <= 10 => $call::<$shape, 10, D>($($arg),*),
             _ => $call::<$shape, { $crate::shape::MOST_NODES }, D>($($arg),*),

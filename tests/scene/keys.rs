@@ -292,7 +292,7 @@ fn huge_files_get_a_short_verdict_soon() {
         let error = parse(value.to_string().as_bytes(), "bad.json", &[]).unwrap_err();
         mentions_all(&error.to_string(), fragments);
     };
-    several(&bodies, &["10 faults", "bodies.1.box", "overlaps bodies.0.box"]);
+    several(&bodies, &["12 faults", "bodies.1.box", "overlaps bodies.0.box"]);
     let unknown = |scene: &mut Value| {
         bodies(scene);
         scene["bodies"][49_999]["colour"] = "red".into();
