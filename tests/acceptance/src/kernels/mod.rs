@@ -8,19 +8,16 @@ mod roofline;
 use crate::bounds::{Bound, Unit, kernels as bounds};
 use crate::counts;
 use crate::runs::Job;
-use crate::table::Table;
 use crate::section::{Section, usual};
+use crate::table::Table;
 use roofline::{Least, Machine};
 
 /// Subject of the group.
 pub const TITLE: &str = "Kernels: instructions, memory traffic and speed of frozen scenes";
 
 /// Sections in the order in which they run.
-pub const SECTIONS: [Section; 3] = [
-    usual("instructions", instructions),
-    usual("memory", memory),
-    usual("speed", speed),
-];
+pub const SECTIONS: [Section; 3] =
+    [usual("instructions", instructions), usual("memory", memory), usual("speed", speed)];
 
 /// Runs of each scene whose median speed is taken.
 const ROUNDS: usize = 5;
