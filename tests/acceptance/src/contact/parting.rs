@@ -88,8 +88,7 @@ fn impacts() -> Vec<Parting> {
             upper,
             velocity,
         };
-        let [left, right] =
-            [plate(flyer, -thickness, 0.0, speed), plate(target, 0.0, length, 0.0)];
+        let [left, right] = [plate(flyer, -thickness, 0.0, speed), plate(target, 0.0, length, 0.0)];
         let exact = Impact::new(left, right)
             .and_then(|impact| Separation::new(&impact, end, Accuracy { wavelets: 120 }));
         // some pairs stay together, and some materials do not reach such pressures
@@ -161,8 +160,7 @@ impl Parting {
     {
         let text = self.scene(frame, D).to_string();
         let scene = input::parse(text.as_bytes(), "scene.json", &[]).map_err(|e| e.to_string())?;
-        let mut simulation =
-            Simulation::<D>::new(&scene, &Serial, 1).map_err(|e| e.to_string())?;
+        let mut simulation = Simulation::<D>::new(&scene, &Serial, 1).map_err(|e| e.to_string())?;
         let area = if D == 1 { 1.0 } else { f64::from(ROWS) * CELL };
         let mut steps = Vec::new();
         while simulation.time() < self.end {
