@@ -51,6 +51,7 @@ row() {
     on_cost=$(cost "$scene" "$end" "${with[@]}")
     read -r off off_bytes <<<"$off_cost"
     read -r on on_bytes <<<"$on_cost"
+    # shellcheck disable=SC2016 # the quotes are of Markdown
     printf '| %s | `%s.json` | %d | %d | %+d | %+d |\n' \
         "$effect" "$scene" "$off" "$on" "$((on - off))" "$((on_bytes - off_bytes))"
 }
