@@ -4,10 +4,15 @@ use std::fs;
 use std::io::{IsTerminal, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use sha2::{Digest, Sha256};
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+use signal_hook::low_level::emulate_default_handler;
 
 use super::cases::{Case, cases};
 use super::record::StudyRecord;
@@ -171,26 +176,66 @@ impl StudyRunner {
         let program = command.get_program().to_string_lossy().into_owned();
         let start = |source| StudyError::Start { program: program.clone(), source };
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
+        let request = EndRequest::watch();
         let mut child = command.spawn().map_err(start)?;
         let started = Instant::now();
-        loop {
+        let ended = loop {
+            request.obey(&mut child);
             let status = child.try_wait().map_err(start)?;
             match status {
-                Some(status) if status.success() => return Ok(None),
+                Some(status) if status.success() => break None,
                 Some(status) => {
                     let said = said(&mut child);
                     let line =
                         said.lines().find(|l| !l.trim().is_empty() && !l.starts_with("warning"));
                     let line = line.unwrap_or("no message").trim_start_matches("error: ");
-                    return Ok(Some(format!("{status}: {line}")));
+                    break Some(format!("{status}: {line}"));
                 }
                 None if started.elapsed().as_secs_f64() > limit => {
                     let _ = child.kill();
                     let _ = child.wait();
-                    return Ok(Some(format!("longer than limit_seconds = {limit}")));
+                    break Some(format!("longer than limit_seconds = {limit}"));
                 }
                 None => std::thread::sleep(LOOK),
             }
+        };
+        request.idle.store(true, Ordering::SeqCst);
+        Ok(ended)
+    }
+}
+
+/// A request to end this process, while it waits for a run.
+struct EndRequest {
+    /// Number of the signal; 0: none.
+    signal: Arc<AtomicUsize>,
+    /// Whether a signal ends the process at once, as without a handler.
+    idle: Arc<AtomicBool>,
+}
+
+impl EndRequest {
+    /// The request of this process, for which signals are watched from now on.
+    fn watch() -> &'static EndRequest {
+        static REQUEST: OnceLock<EndRequest> = OnceLock::new();
+        let request = REQUEST.get_or_init(|| {
+            let request = EndRequest { signal: Arc::default(), idle: Arc::default() };
+            for signal in [SIGTERM, SIGINT] {
+                // without a handler, the signal ends the process as usual
+                let _ = flag::register_conditional_default(signal, request.idle.clone());
+                let _ = flag::register_usize(signal, request.signal.clone(), signal as usize);
+            }
+            request
+        });
+        request.idle.store(false, Ordering::SeqCst);
+        request
+    }
+
+    /// Kills the run and ends this process, if a signal has come: the run would go on alone.
+    fn obey(&self, child: &mut Child) {
+        let signal = self.signal.load(Ordering::SeqCst);
+        if signal != 0 {
+            let _ = child.kill();
+            let _ = child.wait();
+            let _ = emulate_default_handler(signal as i32);
         }
     }
 }

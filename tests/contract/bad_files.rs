@@ -216,6 +216,11 @@ fn a_signal_ends_a_study() {
     let since = Instant::now();
     assert!(!run.end().status.success());
     assert!(since.elapsed() < Duration::from_secs(5));
+    // its run does not go on alone
+    let works_here = |process: &fs::DirEntry| {
+        fs::read_link(process.path().join("cwd")).is_ok_and(|folder| home.at(".") == folder)
+    };
+    assert!(!fs::read_dir("/proc").unwrap().flatten().any(|process| works_here(&process)));
 }
 
 /// A file of the wrong kind is identified in the message.
