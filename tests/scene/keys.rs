@@ -297,7 +297,7 @@ fn huge_files_get_a_short_verdict_soon() {
         bodies(scene);
         scene["bodies"][49_999]["colour"] = "red".into();
     };
-    several(&unknown, &["11 faults", "bodies.49999.colour = \"red\"", "unknown key"]);
+    several(&unknown, &["13 faults", "bodies.49999.colour = \"red\"", "unknown key"]);
     let nobody = |scene: &mut Value| {
         bodies(scene);
         for i in 0..50_000 {
