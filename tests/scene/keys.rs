@@ -307,7 +307,10 @@ fn huge_files_get_a_short_verdict_soon() {
             scene["bodies"][i as usize]["particles_per_cell"] = json!([100]);
         }
     };
-    refused_edit(nobody, &["reference.flyer_impact.flyer", "no such body", "and 49980 more"]);
+    several(
+        &nobody,
+        &["2 faults", "reference.flyer_impact.flyer", "no such body", "and 49980 more"],
+    );
 }
 
 /// Pairs and ramps of pressures and velocities take units, and give the same doubles.
