@@ -46,20 +46,22 @@ fn assign_along(weights: &[u64], order: &[usize], ranks: usize, of: &mut [usize]
 /// Work and size of the patches in a new assignment.
 #[derive(Clone, Copy, Debug)]
 pub struct PatchLoads<'a> {
-    /// Cost of a step of each patch; 0 for a patch that no step computes.
+    /// Cost of a step of each patch; 0 for a quiescent patch.
     pub work: &'a [u64],
     /// Number of particles of each patch.
     pub particles: &'a [u64],
 }
 
 impl PatchLoads<'_> {
-    /// Assigns patches to ranks anew, from the present `owners`. Patches with work, and empty ones,
-    /// are assigned by work in sections of `order`. The others need memory alone: each stays with its
-    /// owner, unless this rank would hold more than `most` times the mean number of particles; what
-    /// it has beyond goes, along `order`, to ranks that have fewer.
+    /// New assignment of patches to ranks. `owners` is the present rank of each patch.
     ///
-    /// The largest number of particles of a rank exceeds that limit by no more than one patch, unless
-    /// the patches with work alone do.
+    /// Active patches (work > 0) and empty patches are assigned in sections of `order` with equal
+    /// work. A quiescent patch (work 0) keeps its rank if the rank then holds at most `most` times the
+    /// mean number of particles. Otherwise it moves to a rank with fewer particles, in the order of
+    /// `order`.
+    ///
+    /// The number of particles of a rank exceeds this limit by at most one patch, unless its active
+    /// patches alone exceed it.
     pub fn reassign(
         &self,
         order: &[usize],
@@ -67,20 +69,20 @@ impl PatchLoads<'_> {
         ranks: usize,
         most: f64,
     ) -> Vec<usize> {
-        let rests = |p: usize| self.work[p] == 0 && self.particles[p] > 0;
-        let works: Vec<usize> = order.iter().copied().filter(|&p| !rests(p)).collect();
+        let is_quiescent = |p: usize| self.work[p] == 0 && self.particles[p] > 0;
+        let active: Vec<usize> = order.iter().copied().filter(|&p| !is_quiescent(p)).collect();
         let mut of = owners.to_vec();
-        if works.iter().any(|&p| self.work[p] > 0) {
-            assign_along(self.work, &works, ranks, &mut of);
+        if active.iter().any(|&p| self.work[p] > 0) {
+            assign_along(self.work, &active, ranks, &mut of);
         }
         let mut held = vec![0; ranks];
-        for &p in &works {
+        for &p in &active {
             held[of[p]] += self.particles[p];
         }
         let mean = self.particles.iter().sum::<u64>() as f64 / ranks as f64;
         let limit = (most * mean).ceil() as u64;
         let mut moving = Vec::new();
-        for &p in order.iter().filter(|&&p| rests(p)) {
+        for &p in order.iter().filter(|&&p| is_quiescent(p)) {
             if held[of[p]] + self.particles[p] <= limit {
                 held[of[p]] += self.particles[p];
             } else {

@@ -2,13 +2,13 @@
 //! damage is seen; faults leave what was good.
 
 #[path = "../contract/home.rs"]
-#[allow(dead_code, reason = "shared with other targets")]
+#[expect(dead_code, reason = "shared with other targets")]
 mod home;
 #[path = "../contract/program.rs"]
-#[allow(dead_code, reason = "shared with other targets")]
+#[expect(dead_code, reason = "shared with other targets")]
 mod program;
 #[path = "../common/scenes.rs"]
-#[allow(dead_code, reason = "shared with other targets")]
+#[expect(dead_code, reason = "shared with other targets")]
 mod scenes;
 
 mod bits;

@@ -198,3 +198,17 @@ fn a_run_names_no_effect() {
         }
     }
 }
+
+/// The faults that the tests are measured with are written for the present sources.
+#[test]
+fn every_mutant_has_its_place_in_the_sources() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(root.join("tests/data/mutants.json")).unwrap();
+    let mutants: Vec<serde_json::Value> = serde_json::from_str(&text).unwrap();
+    for mutant in &mutants {
+        let [file, find] = ["file", "find"].map(|key| mutant[key].as_str().unwrap());
+        let source = std::fs::read_to_string(root.join(file)).unwrap_or_default();
+        let places = source.matches(&find.replace(['«', '»'], "")).count();
+        assert_eq!(places, 1, "{file}: {find}");
+    }
+}

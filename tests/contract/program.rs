@@ -9,6 +9,7 @@ use std::process::{Child, Command, ExitStatus};
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+#[cfg(feature = "mpi")]
 use crate::home::Home;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_flyer-mpm");
@@ -51,7 +52,7 @@ impl Turn {
     }
 
     /// Waits until no other test runs processes.
-    #[allow(dead_code, reason = "unused without the feature mpi")]
+    #[cfg(feature = "mpi")]
     pub fn alone() -> Turn {
         Turn::of(MOST_PROCESSES)
     }
@@ -111,13 +112,13 @@ impl Call {
     }
 
     /// Redirects stderr to a pipe instead of [`Ended::stderr`].
-    #[allow(dead_code, reason = "unused without the feature mpi")]
+    #[allow(dead_code, reason = "used by the tests of checkpoints alone")]
     pub fn stderr(self, pipe: PipeWriter) -> Call {
         Call { stderr: Some(pipe), ..self }
     }
 
     /// Makes the call within a turn that the test has, beside its other calls.
-    #[allow(dead_code, reason = "unused without the feature mpi")]
+    #[cfg(feature = "mpi")]
     pub fn within(self, _turn: &Turn) -> Call {
         Call { within: true, ..self }
     }
@@ -176,7 +177,6 @@ impl Started {
     }
 
     /// Text on stderr so far.
-    #[allow(dead_code, reason = "unused without the feature mpi")]
     pub fn said(&self) -> String {
         text(&self.stderr)
     }
@@ -266,7 +266,7 @@ fn reported_code(stderr: &str) -> Option<i32> {
 }
 
 /// Does the same in every folder, at the same time; `act` also gets the index of the folder.
-#[allow(dead_code, reason = "unused without the feature mpi")]
+#[cfg(feature = "mpi")]
 pub fn at_once(homes: &[Home], act: impl Fn(&Home, usize) + Sync) {
     std::thread::scope(|scope| {
         for (k, home) in homes.iter().enumerate() {

@@ -11,6 +11,6 @@ mod refused;
 mod shares;
 mod strength;
 mod temperature;
-#[allow(dead_code, reason = "each target uses a part")]
+#[expect(dead_code, reason = "each target uses a part")]
 #[path = "../solids/tools.rs"]
 mod tools;

@@ -5,8 +5,8 @@
 //! - [`page`] joins the arrays, the summary and the pictures with the viewer to a page. The viewer
 //!   (`page/report.js`) draws with uPlot (`page/uplot`, MIT licence).
 //!
-//! This crate knows no scene, material or solver: it shows the arrays, the units and the names that a
-//! result holds.
+//! The crate is independent of scenes, materials and the solver. Arrays, units and names come from the
+//! files of the result.
 
 pub mod error;
 pub mod frames;
