@@ -21,11 +21,12 @@ fn by_segments<const V: usize>(
     let mut from = range.start;
     while from < range.end {
         let to = range.end.min(from + SEGMENT);
+        let n = to - from;
         let mut sums = [[0.0; SEGMENT]; V];
         add(from..to, &mut sums);
         for v in 0..V {
             let y = &mut y[v][from..to];
-            for i in 0..to - from {
+            for i in 0..n {
                 y[i] = f(sums[v][i], v, from - range.start + i);
             }
         }
@@ -96,18 +97,20 @@ impl Band {
         f: impl Fn(f64, usize, usize) -> f64,
     ) {
         by_segments(range, y, f, |nodes, sums| {
-            let main = self.diagonal(0, nodes.clone());
+            let (from, to) = (nodes.start, nodes.end);
+            let n = to - from;
+            let main = self.diagonal(0, from..to);
             for v in 0..V {
-                let (sums, x) = (&mut sums[v][..nodes.len()], &x[v][nodes.clone()]);
-                for i in 0..nodes.len() {
+                let (sums, x) = (&mut sums[v][..n], &x[v][from..to]);
+                for i in 0..n {
                     sums[i] += main[i] * x[i];
                 }
             }
-            let mut filled = self.filled_diagonals(nodes.clone());
+            let mut filled = self.filled_diagonals(from..to);
             while let Some(first) = filled.next() {
                 match filled.next() {
-                    Some(second) => self.add_diagonals([first, second], x, nodes.clone(), sums),
-                    None => self.add_diagonals([first], x, nodes.clone(), sums),
+                    Some(second) => self.add_diagonals([first, second], x, from..to, sums),
+                    None => self.add_diagonals([first], x, from..to, sums),
                 }
             }
         });
@@ -139,7 +142,7 @@ impl Band {
         nodes: Range<usize>,
         sums: &mut [[f64; SEGMENT]; V],
     ) {
-        let n = nodes.len();
+        let n = nodes.end - nodes.start;
         let before = |o: usize| nodes.start - o..nodes.end - o;
         let above = map(&diagonals, |(d, _)| self.diagonal(d, nodes.clone()));
         let below = map(&diagonals, |(d, o)| self.diagonal(d, before(o)));
@@ -173,7 +176,7 @@ impl Band {
             decomp::array::from_fn(|k| self.diagonal(k * count + d, nodes.clone()))
         };
         by_segments(range, y, f, |nodes, sums| {
-            let (from, to, n) = (nodes.start, nodes.end, nodes.len());
+            let (from, to, n) = (nodes.start, nodes.end, nodes.end - nodes.start);
             let [xx, yy, xy, yx] = blocks(0, from..to);
             for (sums, x) in sums.as_chunks_mut::<2>().0.iter_mut().zip(x.as_chunks::<2>().0) {
                 let ([sum_x, sum_y], [ux, uy]) = (sums, x.map(|x| &x[from..to]));
