@@ -69,13 +69,19 @@ pub fn ledger_rest(ledger: &[EffectUse]) -> String {
     let off = || ledger.iter().filter(|line| !line.active);
     let names: Vec<&str> = off().map(|line| line.effect.as_str()).collect();
     let bytes: usize = off().map(|line| line.bytes_per_particle).sum();
-    let share: f64 = off().filter_map(|line| line.step_share).sum();
+    // a sum of no terms is -0
+    let share: f64 = off().filter_map(|line| line.step_share).fold(0.0, |sum, share| sum + share);
     format!("off, {bytes} bytes and {:.0} % of the step: {}", 100.0 * share, names.join(", "))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_share_that_was_not_measured_is_no_negative_zero() {
+        assert!(ledger_rest(&[]).contains("and 0 % of the step"));
+    }
 
     #[test]
     fn effects_that_are_off_have_no_column() {
