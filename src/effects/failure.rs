@@ -42,7 +42,8 @@ impl Package for FailureEffect {
         let bodies = 0..scene.bodies.len();
         let may_fail = bodies.filter(|&body| scene.material_of(body).failure.is_some());
         may_fail.for_each(|body| d.tension_free(body, damage));
-        d.scalar("released_energy", "J", Role::State);
+        let released = d.scalar("released_energy", "J", Role::State);
+        d.released_energy(released);
         d.output(DAMAGE, "-", "damage");
     }
 

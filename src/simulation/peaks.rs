@@ -26,7 +26,10 @@ impl<const D: usize> Simulation<'_, D> {
         let expected = &self.expected[column(c.body) as usize];
         let energy = column(c.energy) - expected.energy;
         let plastic = |strain| self.stepper.plastic_heat(block, r, strain);
-        let unexplained = energy - c.plastic_strain.map_or(0.0, plastic);
+        let released = |energy| column(energy) / column(c.mass);
+        let unexplained = energy
+            - c.plastic_strain.map_or(0.0, plastic)
+            - c.released_energy.map_or(0.0, released);
         let mut peaks = Peaks {
             heat: unexplained / expected.heat,
             energy: if expected.heat.is_finite() { energy } else { 0.0 },

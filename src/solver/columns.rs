@@ -55,6 +55,8 @@ pub struct Columns {
     pub burn: Option<[usize; 2]>,
     /// Equivalent plastic strain [-], with strength.
     pub plastic_strain: Option<usize>,
+    /// Elastic energy that failure has released as heat [J], if a material can fail.
+    pub released_energy: Option<usize>,
     /// Temperature [K]; 0 in bodies without thermal properties.
     pub temperature: Option<usize>,
     /// Plastic work that is stored and does not heat [J/kg], if any.

@@ -169,6 +169,11 @@ impl<'a> Declare<'a> {
         self.columns.plastic_strain = Some(column);
     }
 
+    /// Sets [`Columns::released_energy`].
+    pub fn released_energy(&mut self, column: usize) {
+        self.columns.released_energy = Some(column);
+    }
+
     /// Sets [`Columns::temperature`].
     pub fn temperature(&mut self, column: usize) {
         self.columns.temperature = Some(column);

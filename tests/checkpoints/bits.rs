@@ -216,7 +216,7 @@ fn strength_failure_heat_pores_and_fire() {
     same_bits::<2>(&bar, &[5, 16], &[&[2, 2], &[1, 3]]);
     let mut spall = coarse("spall.json", 1e-4);
     // hardly any tension, so that it fails within the steps
-    spall["materials"]["aluminium"]["failure"]["stress"] = json!(1e5);
+    spall["materials"]["aluminium"]["failure"] = json!({"type": "tension_limit", "stress": 1e5});
     spall["materials"]["aluminium"]["thermal"] =
         json!({"specific_heat": 896.0, "reference_temperature": 293.0});
     same_bits::<1>(&spall, &[3, 14], &[&[3], &[2]]);

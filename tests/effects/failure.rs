@@ -4,12 +4,13 @@ use serde_json::{Value, json};
 
 use crate::tools::{Outcome, at_most, run, shipped};
 
-/// A coarser spall.
+/// A coarser spall by a tension limit.
 fn spall() -> Value {
     let mut scene = shipped("spall.json");
     scene["domain"] = json!({"lower": [-0.0015], "upper": [0.0045], "cell_size": 2.5e-5});
     scene["bodies"][0]["box"] = json!({"lower": [-0.001], "upper": [0.0]});
     scene["bodies"][1]["box"] = json!({"lower": [0.0], "upper": [0.003]});
+    scene["materials"]["aluminium"]["failure"] = json!({"type": "tension_limit", "stress": 1e9});
     scene["time"]["end"] = json!(2e-6);
     scene["output"] = json!({});
     scene

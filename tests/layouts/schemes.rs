@@ -27,7 +27,7 @@ fn every_scheme(scene: impl Fn(&str, &Value) -> Value) {
     for shape in SHAPES {
         for transfer in transfers() {
             let mut scene = scene(shape, &transfer);
-            ending(&mut scene, 3e-8);
+            ending(&mut scene, 2e-8);
             same(&scene, &format!("{shape} {transfer}"));
         }
     }
@@ -67,7 +67,7 @@ fn each_scheme_in_the_total_lagrangian_frame() {
     every_scheme(|shape, transfer| total(small_midpoint(shape, transfer)));
     for shape in SHAPES {
         let mut scene = total(small_leapfrog(shape, &json!("flip")));
-        ending(&mut scene, 3e-8);
+        ending(&mut scene, 2e-8);
         same(&scene, &format!("{shape}, leapfrog"));
     }
     let mut parts = total(small("soft_flyer.json"));
