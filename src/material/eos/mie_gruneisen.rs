@@ -168,8 +168,9 @@ impl EosParameters for MieGruneisenParameters {
 }
 
 impl Eos {
-    /// Mie-Grueneisen material with a straight Us-up line, constant Gamma rho and unlimited
-    /// tension, for which the exact solutions of impacts are made; `None` for all others.
+    /// Mie-Grueneisen material of `density` [kg/m3] with a straight Us-up line, constant Gamma rho
+    /// and unlimited tension, for which the exact solutions of impacts are made; `None` for all
+    /// others.
     pub fn straight(&self, density: f64) -> Option<MieGruneisen> {
         let Eos::MieGruneisen(p) = self else { return None };
         let straight = p.s2 == 0.0 && p.gruneisen.is_default() && p.tension_cutoff.is_none();

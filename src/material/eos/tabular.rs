@@ -135,8 +135,8 @@ pub struct Tabular {
 const CHECKED: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 
 impl Tabular {
-    /// Equation of state from `table`, for a material of density `rho0` at rest; pressures at or
-    /// below minus `cutoff` are not checked.
+    /// Equation of state from `table`, for a material of density `rho0` at rest [kg/m3]; pressures
+    /// at or below minus `cutoff` [Pa] are not checked.
     ///
     /// # Errors
     ///
