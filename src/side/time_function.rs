@@ -23,15 +23,15 @@ pub enum Course {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ramp {
-    /// Value before the transition; default 0.
+    /// Value before the transition, in the unit of the quantity; default 0.
     #[serde(default)]
     pub from: f64,
-    /// Value after the transition.
+    /// Value after the transition, in the unit of the quantity.
     pub to: f64,
     /// Start time of the transition [s]; default 0.
     #[serde(default)]
     pub start: f64,
-    /// Duration of the transition [s].
+    /// Duration of the transition [s]. With a larger value the transition is smoother.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub duration: f64,
 }

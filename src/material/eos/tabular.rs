@@ -240,7 +240,8 @@ impl GeneralEos for Tabular {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TabularParameters {
-    /// The table.
+    /// Pressures over density and specific internal energy: the name of a file, or the lists
+    /// themselves.
     pub table: TableSource,
     /// Greatest tension that the material carries [Pa]; absent: all that the table has.
     #[serde(default, skip_serializing_if = "Option::is_none")]
