@@ -1,4 +1,4 @@
-//! Errors of a computed profile against an exact one: PROBLEM.md, section 3.
+//! Errors of a computed profile against an exact one, as defined in `docs/accuracy.md`.
 //!
 //! Particles, sorted by x, are joined by straight lines ("raw"); after [`cell_average`] the same is
 //! done with the cell means. Beyond the first and the last point their values are held constant.
