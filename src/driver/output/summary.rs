@@ -30,7 +30,7 @@ pub struct Summary {
     pub title: String,
     /// Version of the program.
     pub version: String,
-    /// Commit of its sources; absent if the build was not told.
+    /// Commit of its sources; absent if the build did not set it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
     /// Processor of the machine of rank 0, and the cores that rank 0 may use.
