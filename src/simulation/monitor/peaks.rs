@@ -24,8 +24,8 @@ const RINGS: f64 = 0.15;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Peaks {
-    /// Increase of specific internal energy since the start, less plastic work, over the energy
-    /// from one shock of the strongest impact of the body [-].
+    /// Increase of specific internal energy since the start, less plastic work, over the energy from
+    /// one shock of the strongest impact of the body.
     pub heat: f64,
     /// Increase of specific internal energy of that particle since the start [J/kg].
     pub energy: f64,
