@@ -46,10 +46,11 @@ pub struct Thermal {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum HeatSource {
-    /// Internal energy, relative to the isentrope of the equation of state.
+    /// The temperature follows from the internal energy, relative to the isentrope of the equation
+    /// of state.
     #[default]
     Energy,
-    /// Plastic work only.
+    /// The temperature rises by the plastic work only.
     PlasticWork,
 }
 

@@ -238,7 +238,7 @@ pub enum Burn {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BurnWhole {
-    /// Fully burnt before the start.
+    /// The whole explosive is burnt before the start.
     Complete,
 }
 

@@ -136,10 +136,10 @@ fn is_zero(value: &f64) -> bool {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Gruneisen {
-    /// Gamma rho.
+    /// The product of Gamma and the density is constant.
     #[default]
     GammaRhoConstant,
-    /// Gamma itself.
+    /// Gamma is constant.
     GammaConstant,
 }
 

@@ -185,9 +185,10 @@ pub struct ViscosityGrowth {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Limiter {
-    /// From the ratios of the velocity gradients of neighbouring cells (Christensen 1990).
+    /// Reduction from the ratios of the velocity gradients of neighbouring cells (Christensen
+    /// 1990).
     Christensen,
-    /// From the smallest nodal mean of the velocity gradient around the particle.
+    /// Reduction from the smallest nodal mean of the velocity gradient around the particle.
     Nodal,
 }
 
@@ -195,9 +196,9 @@ pub enum Limiter {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LimitedTerms {
-    /// Only the linear term.
+    /// The limiter reduces only the linear term.
     #[default]
     Linear,
-    /// The linear and the quadratic term.
+    /// The limiter reduces the linear and the quadratic term.
     Both,
 }

@@ -112,7 +112,7 @@ pub enum FieldsFormat {
     Vtkhdf,
     /// A table for each frame in the folder `fields`, in order of the particles' numbers.
     Csv,
-    /// Both.
+    /// Both `vtkhdf` and `csv`.
     Both,
 }
 
