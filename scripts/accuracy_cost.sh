@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What accuracy costs in time: runs the studies of inputs/studies/ into output/studies/ (what an
-# earlier call has run is not run again), and checks what the document says of viscosity in words.
+# Cost of accuracy in time: runs the studies of inputs/studies/ into output/studies/ (cases that an
+# earlier call has run are not run again), and checks the statements of Burghardt (2010) on viscosity.
 # --quick: the shorter study of schemes and the viscosity sweep, a few minutes.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

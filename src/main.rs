@@ -35,7 +35,7 @@ use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
 use signal_hook::iterator::Signals;
 use signal_hook::low_level::emulate_default_handler;
 
-/// Commit of the sources, if the build was told, as by `scripts/run.sh` and `scripts/release.sh`.
+/// Commit of the sources, if the build set it, as `scripts/run.sh` and `scripts/release.sh` do.
 const COMMIT: Option<&str> = option_env!("FLYER_MPM_COMMIT");
 
 /// The command line or the scene is wrong.

@@ -53,7 +53,8 @@ pub struct PatchLoads<'a> {
 }
 
 impl PatchLoads<'_> {
-    /// New assignment of patches to ranks. `owners` is the present rank of each patch.
+    /// New assignment of patches to ranks. `owners` is the present rank of each patch. `most` is the
+    /// limit of the particles of a rank, relative to the mean of all ranks [-].
     ///
     /// Active patches (work > 0) and empty patches are assigned in sections of `order` with equal
     /// work. A quiescent patch (work 0) keeps its rank if the rank then holds at most `most` times the

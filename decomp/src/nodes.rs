@@ -24,7 +24,7 @@ pub struct NodeArrays<const D: usize> {
     pub owned: IndexBox<D>,
     /// Number of values of a field per node.
     pub layers: usize,
-    /// One array per field, over `nodes`, layer after layer.
+    /// One array per field, over `nodes`, layer after layer; each in the unit of its field.
     pub fields: Vec<Vec<f64>>,
 }
 

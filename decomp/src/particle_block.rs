@@ -33,7 +33,8 @@ pub struct ColumnSpec {
 }
 
 impl ColumnSpec {
-    /// The value in an image that is mirrored in the directions of `flip`.
+    /// The value in an image that is mirrored in the directions of `flip`, in the unit of the
+    /// column.
     pub fn image(&self, value: f64, flip: &[bool]) -> f64 {
         match self.mirror {
             Mirror::Negate(a) if flip[a] => -value,
@@ -54,7 +55,7 @@ pub struct Block<const D: usize> {
     pub ids: Vec<u64>,
     /// Cell of each particle; outside the domain for images.
     pub cells: Vec<[i32; D]>,
-    /// Values of each declared column.
+    /// Values of each declared column, in the unit of its [`ColumnSpec`].
     pub columns: Vec<Vec<f64>>,
     /// The cells whose particles may change in this step; the particle exchange notifies the
     /// patches nearby.
@@ -114,7 +115,7 @@ impl<const D: usize> Block<D> {
             .map(|c| c.as_mut_slice())
     }
 
-    /// Adds an own particle; `values` holds its columns in order. Sort afterwards.
+    /// Adds an own particle; `values` holds its columns in order, in their units. Sort afterwards.
     pub fn push(&mut self, id: u64, cell: [i32; D], values: &[f64]) {
         debug_assert_eq!(self.particles(), self.own, "own particles go before ghosts");
         self.ids.push(id);

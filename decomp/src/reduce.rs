@@ -23,8 +23,8 @@ pub struct ExactSum {
 }
 
 impl ExactSum {
-    /// Creates an empty sum of terms that are at most `largest` in magnitude. All parts of one sum
-    /// must use the same `largest`.
+    /// Creates an empty sum of terms that are at most `largest` in magnitude, in the unit of the
+    /// terms. All parts of one sum must use the same `largest`.
     pub fn new(largest: f64) -> Self {
         let bits = largest.log2().ceil() as i32;
         let exponent = if largest > 0.0 { bits.saturating_add(1) } else { 0 };
@@ -108,7 +108,7 @@ impl ExactSum {
         self.total = total;
     }
 
-    /// The sum so far.
+    /// The sum so far, in the unit of its terms.
     pub fn value(&self) -> f64 {
         self.total as f64 * self.quantum
     }

@@ -12,7 +12,7 @@ pub struct StoredParticles {
     pub ids: Vec<u64>,
     /// Cell of each particle, one number per direction, particle after particle.
     pub cells: Vec<i32>,
-    /// The columns declared as state, in order of declaration.
+    /// The columns declared as state, in order of declaration and in their declared units.
     pub columns: Vec<Vec<f64>>,
 }
 

@@ -20,6 +20,10 @@ use serde_json::json;
 use crate::{FAILED, Outcome, bad};
 
 /// Particles, cells, memory, first time step, steps and effects of a scene.
+///
+/// # Errors
+///
+/// If the scene cannot be simulated.
 pub fn check(scene: &CheckedScene) -> Result<String, RunError> {
     match scene.dimension {
         1 => check_in::<1>(scene),

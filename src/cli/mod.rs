@@ -114,7 +114,8 @@ pub struct RunArgs {
     #[arg(long)]
     pub ignore_memory: bool,
 
-    /// Write report.html too: one page with curves and maps that zoom, tables and the scene.
+    /// Also write report.html: one page with curves and maps that can be enlarged, tables and the
+    /// scene.
     #[arg(long)]
     pub report: bool,
 
@@ -130,7 +131,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "WHEN", default_value = "auto")]
     pub progress: ProgressArg,
 
-    /// Print the errors of every profile, the cost of each effect and the work of each rank too.
+    /// Also print the errors of every profile, the cost of each effect and the work of each rank.
     #[arg(long, conflicts_with = "quiet")]
     pub verbose: bool,
 }
@@ -235,7 +236,8 @@ pub enum Command {
         #[arg(long, value_name = "DIR")]
         output: Option<PathBuf>,
     },
-    /// Write a short scene that runs as it is, to start from; without a name, list them.
+    /// Write a template: a short scene that can be run without changes. Without a name, list the
+    /// templates.
     New {
         /// Name of the template.
         #[arg(value_name = "NAME")]
@@ -306,10 +308,10 @@ pub enum Command {
         #[arg(long)]
         quiet: bool,
     },
-    /// Choose scheme, cell size, particles per cell and Courant number that reach an error in the
-    /// least time, predict both, and write the scene to run. That run compares predicted and actual
-    /// values at its end. The plan times pilot runs of the scene: nothing else should run
-    /// meanwhile.
+    /// Choose the scheme, cell size, particles per cell and Courant number that reach an error in
+    /// the least time. Predict error and time, and write the scene to run. That run compares
+    /// predicted and actual values at its end. The plan measures the time of pilot runs of the
+    /// scene: nothing else should run meanwhile.
     Plan(PlanArgs),
     /// Print the JSON schema of a scene.
     Schema {
@@ -317,8 +319,9 @@ pub enum Command {
         #[arg(long)]
         markdown: bool,
     },
-    /// Write report.html about the results of a run: one page that needs no other file and no
-    /// network, with curves and maps that zoom and show values, tables, warnings and the scene.
+    /// Write report.html about the results of a run: one page with curves and maps that can be
+    /// enlarged and show values, tables, warnings and the scene. It needs no other file and no
+    /// network.
     Report {
         /// Folder of the results.
         #[arg(value_name = "RUN")]
@@ -355,7 +358,7 @@ pub enum PerfCommand {
         /// File of the constants.
         #[arg(long, value_name = "FILE", default_value = MACHINE_FILE)]
         output: PathBuf,
-        /// Measuring time; less time is less exact.
+        /// Measuring time; a shorter time gives less exact constants.
         #[arg(long, value_name = "SECONDS", default_value_t = 16.0, value_parser = seconds)]
         seconds: f64,
         /// Print every sample of the fit.

@@ -70,8 +70,8 @@ pub struct Costs {
     pub loop_cpu: f64,
     /// User CPU time of the other ranks \[s\].
     pub others_cpu: f64,
-    /// Share of each [part](crate::solver::parts) of a step in the ranks' computing time; `None`
-    /// without samples.
+    /// Share of each [part](crate::solver::parts) of a step in the ranks' computing time \[-\];
+    /// `None` without samples.
     pub step_shares: Option<Vec<f64>>,
 }
 

@@ -20,17 +20,23 @@ use crate::solver::Stepper;
 
 /// A run on one rank.
 pub(super) struct Run<'a, const D: usize> {
+    /// Messages between ranks.
     pub comm: &'a dyn Comm,
+    /// The scene.
     pub scene: &'a CheckedScene,
+    /// Options of the run.
     pub options: &'a Options,
     /// Processor, and the cores that the process may use.
     pub machine: String,
     /// The body whose errors are estimated, and the coarse runs for it.
     pub estimated: Option<(usize, Companions)>,
+    /// State of the run.
     pub simulation: Simulation<'a, D>,
     /// Totals at the start of the run, before any restart.
     pub start: Totals<D>,
+    /// Profiles, histories and frames so far.
     pub recorder: Recorder<'a>,
+    /// Times of the checkpoints.
     pub schedule: CheckpointSchedule,
     /// Folder of what is written during the run; empty if there is none, and on other ranks.
     pub unfinished: PathBuf,
@@ -41,6 +47,10 @@ where
     Stepper<D>: Compiled<D>,
 {
     /// A run at its beginning, after the coarse runs from which its errors are estimated. Collective.
+    ///
+    /// # Errors
+    ///
+    /// If the scene cannot be simulated, or if a coarse run fails.
     pub fn begin(
         comm: &'a dyn Comm,
         scene: &'a CheckedScene,

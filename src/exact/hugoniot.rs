@@ -25,7 +25,8 @@ pub struct HugoniotState {
     pub e: f64,
     /// Velocity [m/s].
     pub u: f64,
-    /// History variable of the material.
+    /// History variable of the material, in its own unit (p-alpha: the distension [-]); 0 without
+    /// one.
     pub history: f64,
     /// Sound speed [m/s].
     pub sound_speed: f64,
@@ -59,7 +60,7 @@ impl HugoniotState {
     }
 }
 
-/// The shock towards +x from `ahead` to the volume ratio `jacobian`; `None` if there is no such
+/// The shock towards +x from `ahead` to the volume ratio `jacobian` [-]; `None` if there is no such
 /// shock.
 pub fn shock_to(eos: &dyn HistoryEos, ahead: &HugoniotState, jacobian: f64) -> Option<ShockFront> {
     let rho0 = eos.reference_density();
@@ -177,7 +178,7 @@ pub fn piston(
     }
 }
 
-/// The end of the isentrope from `state` to the volume ratio `jacobian`, integrated by the
+/// The end of the isentrope from `state` to the volume ratio `jacobian` [-], integrated by the
 /// classical Runge-Kutta rule in `steps` steps. The velocity changes as in a simple wave towards
 /// +x: du = -C dJ with C = c/J.
 pub fn isentrope(

@@ -225,8 +225,9 @@ impl Impact {
         Profile { points }
     }
 
-    /// The chain's profile over the whole target at the scene's time `t`: the black line of figure
-    /// 4 of Burghardt (2010). `None` before contact, and when the chain no longer holds.
+    /// The profile of the chain over the whole target at the time `t` of the scene [s]: the black
+    /// line of figure 4 of Burghardt (2010). `None` before contact, and when the chain no longer
+    /// holds.
     pub fn chain_profile(&self, chain: &Chain, t: f64) -> Option<Profile> {
         let since = t - self.contact_time;
         if t > self.valid_until {
@@ -240,7 +241,7 @@ impl Impact {
         Some(self.profile_to_lab(t, &profile.points))
     }
 
-    /// The true solution at `times` (in any order) and for the `tracers`. Histories and paths
+    /// The true solution at `times` [s] (in any order) and for the `tracers`. Histories and paths
     /// extend to the last of the times, or to [`Solution::stopped`].
     ///
     /// # Errors

@@ -132,7 +132,7 @@ fn finite(name: &'static str, value: f64) -> Result<f64, ExactError> {
     }
 }
 
-/// The materials of PROBLEM.md, section 1, for tests.
+/// The materials of `inputs/flyer.json`, for tests.
 #[cfg(test)]
 pub(crate) mod samples {
     use crate::material::MieGruneisen;

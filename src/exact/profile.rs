@@ -42,7 +42,7 @@ pub struct Profile {
 }
 
 impl Profile {
-    /// The state at `x`; at a jump the mean of both sides; `None` outside of the profile.
+    /// The state at `x` [m]; at a jump the mean of both sides; `None` outside of the profile.
     pub fn at(&self, x: f64) -> Option<ProfilePoint> {
         let (first, last) = self.span()?;
         if !(first..=last).contains(&x) {
@@ -65,7 +65,7 @@ impl Profile {
         Some(self.points[after - 1].towards(&self.points[after], x))
     }
 
-    /// The part between `lower` and `upper`; its end points are interpolated linearly.
+    /// The part between `lower` and `upper` [m]; its end points are interpolated linearly.
     pub fn between(&self, lower: f64, upper: f64) -> Profile {
         let mut points = Vec::new();
         for pair in self.points.windows(2) {
@@ -96,7 +96,7 @@ impl Profile {
 /// coordinates of the profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Landmarks {
-    /// +1 if the shock runs towards +x, -1 if it runs towards -x.
+    /// Direction of the shock [-]: +1 if it runs towards +x, -1 if it runs towards -x.
     pub direction: f64,
     /// Impact face of the scored body [m].
     pub interface: f64,
@@ -147,7 +147,7 @@ pub struct History {
 }
 
 impl History {
-    /// The state at `t`; at a jump the mean of both sides; `None` outside of the history.
+    /// The state at `t` [s]; at a jump the mean of both sides; `None` outside of the history.
     pub fn at(&self, t: f64) -> Option<HistoryPoint> {
         let as_profile =
             |h: &HistoryPoint| ProfilePoint { x: h.t, p: h.p, u: h.u, rho: h.x, e: 0.0 };

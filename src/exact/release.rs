@@ -64,7 +64,8 @@ pub struct Release {
 }
 
 impl Release {
-    /// The times, and the states up to the number `last_state`.
+    /// The times, and the states up to the number `last_state`, of an impact at `speed` [m/s] of a
+    /// flyer of `thickness` [m].
     ///
     /// # Errors
     ///

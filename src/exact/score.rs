@@ -1,4 +1,4 @@
-//! Errors of a computed profile against an exact one: PROBLEM.md, section 3.
+//! Errors of a computed profile against an exact one, as defined in `docs/accuracy.md`.
 //!
 //! Particles, sorted by x, are joined by straight lines ("raw"); after [`cell_average`] the same is
 //! done with the cell means. Beyond the first and the last point their values are held constant.
@@ -14,7 +14,7 @@ use super::{Landmarks, Profile, ProfilePoint};
 pub struct ScoreSample {
     /// Position [m].
     pub x: f64,
-    /// Current volume; in one dimension a length [m]. Only ratios matter.
+    /// Current volume; in one dimension a length [m], in two an area [m2]. Only ratios matter.
     pub volume: f64,
     /// Pressure [Pa].
     pub p: f64,
@@ -24,54 +24,59 @@ pub struct ScoreSample {
     pub e: f64,
 }
 
-/// Errors of a profile; all are fractions unless stated otherwise.
+/// Errors of a profile; all are fractions [-] unless stated otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Errors {
-    /// int |p - p_exact| dx / int |p_exact| dx.
+    /// Relative L1 error of the pressure, int |p - p_exact| dx / int |p_exact| dx [-].
     pub l1: Option<f64>,
-    /// Square root of int (p - p_exact)^2 dx / int p_exact^2 dx.
+    /// Relative L2 error of the pressure: square root of int (p - p_exact)^2 dx / int p_exact^2 dx
+    /// [-].
     pub l2: Option<f64>,
-    /// int |p - p_exact| dx / P2, in cells.
+    /// int |p - p_exact| dx / P2 [cells].
     pub e1_cells: Option<f64>,
-    /// Mean over the middle 40 % of the first plateau, relative to P2, signed.
+    /// Error of the mean pressure over the middle 40 % of the first plateau, relative to P2, signed
+    /// [-].
     pub plateau: Option<f64>,
-    /// Rms deviation from a straight line over the same range, as a fraction of P2.
+    /// Rms deviation of the pressure from a straight line over the same range, as a fraction of P2
+    /// [-].
     pub noise: Option<f64>,
     /// Position of the shock: the first point, coming from ahead, where the pressure reaches half
     /// of the exact pressure behind the shock. Computed minus exact, positive in the direction of
-    /// the shock, in cells.
+    /// the shock [cells].
     pub shock_position_cells: Option<f64>,
-    /// Distance between 10 % and 90 % of that pressure, in cells.
+    /// Distance between 10 % and 90 % of the exact pressure behind the shock [cells].
     pub rise_cells: Option<f64>,
-    /// Greatest computed pressure minus the greatest exact pressure, as a fraction of P2, signed.
+    /// Greatest computed minus greatest exact pressure, as a fraction of P2, signed [-].
     pub overshoot: Option<f64>,
-    /// Mean over the middle 60 % of the second plateau, relative to the exact mean, signed.
+    /// Error of the mean pressure over the middle 60 % of the second plateau, relative to the exact
+    /// mean, signed [-].
     pub second_plateau: Option<f64>,
-    /// Mean density over the middle 40 % of the first plateau, relative to rho2, signed.
+    /// Error of the mean density over the middle 40 % of the first plateau, relative to rho2,
+    /// signed [-].
     pub density_plateau: Option<f64>,
-    /// Mean specific internal energy over the same range, relative to e2, signed.
+    /// Error of the mean specific internal energy over the same range, relative to e2, signed [-].
     pub energy_plateau: Option<f64>,
     /// int |rho - rho_exact| dx [kg/m2], for Riemann problems.
     pub density_l1: Option<f64>,
-    /// Greatest error of density within ten cells of the interface, as a fraction of rho2. Errors
-    /// of the energy appear here, not in the pressure.
+    /// Greatest error of the density within ten cells of the interface, as a fraction of rho2 [-].
+    /// Errors of the energy appear here, not in the pressure.
     pub density_interface: Option<f64>,
-    /// Greatest error of specific internal energy there, as a fraction of e2.
+    /// Greatest error of the specific internal energy there, as a fraction of e2 [-].
     pub energy_interface: Option<f64>,
     /// L1 split by the regions of the solution.
     pub waves: Option<WaveErrors>,
 }
 
-/// L1 split by the regions of the exact solution; the parts add up to the total.
+/// L1 split by the regions of the exact solution [-]; the parts add up to the total.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct WaveErrors {
-    /// Region of the shock: ahead of it, and up to ten cells behind it.
+    /// L1 in the region of the shock, ahead of it and up to ten cells behind it [-].
     pub shock: f64,
-    /// From there back to the head of the fan, or to the interface while there is no fan.
+    /// L1 from there back to the head of the fan, or to the interface while there is no fan [-].
     pub plateau_2: f64,
-    /// Within the fan, from its head to the start of the second plateau.
+    /// L1 within the fan, from its head to the start of the second plateau [-].
     pub fan: f64,
-    /// On the second plateau and behind it.
+    /// L1 on the second plateau and behind it [-].
     pub second_plateau: f64,
 }
 
@@ -103,8 +108,8 @@ fn wave_errors(
     })
 }
 
-/// Replaces the particles in each grid cell (cells of size `h`, one face at `origin`) by their
-/// volume-weighted mean, at their mean position. `samples` must be sorted by x.
+/// Replaces the particles in each grid cell (cells of size `h` [m], one face at `origin` [m]) by
+/// their volume-weighted mean, at their mean position. `samples` must be sorted by x.
 pub fn cell_average(samples: &[ScoreSample], h: f64, origin: f64) -> Vec<ScoreSample> {
     let cell = |s: &ScoreSample| ((s.x - origin) / h).floor();
     samples
@@ -260,7 +265,8 @@ fn turned(
     (samples, Profile { points }, marks)
 }
 
-/// Relative L1 difference of the pressures of two profiles over their common range.
+/// Relative L1 difference of the pressures of two profiles over their common range [-]; NaN if one
+/// is empty.
 pub fn difference(profile: &Profile, exact: &Profile) -> f64 {
     let line = |p: &Profile| -> Polyline { p.points.iter().map(|q| (q.x, q.p)).collect() };
     let (Some(a), Some(b)) = (profile.span(), exact.span()) else { return f64::NAN };
@@ -320,8 +326,8 @@ pub fn score(samples: &[ScoreSample], exact: &Profile, landmarks: &Landmarks, h:
     errors
 }
 
-/// Scores samples of any bodies, sorted by x, between `lower` and `upper`, for problems without a
-/// single shock (Riemann problems): l1 and l2 of the pressure, and density_l1.
+/// Scores samples of any bodies, sorted by x, between `lower` and `upper` [m], for problems without
+/// a single shock (Riemann problems): l1 and l2 of the pressure, and density_l1.
 pub fn score_density(samples: &[ScoreSample], exact: &Profile, lower: f64, upper: f64) -> Errors {
     let finite = |s: &ScoreSample| s.x.is_finite() && s.p.is_finite() && s.rho.is_finite();
     if samples.len() < 2 || !samples.iter().all(finite) {
@@ -340,8 +346,9 @@ pub fn score_density(samples: &[ScoreSample], exact: &Profile, lower: f64, upper
     }
 }
 
-/// Greatest errors of density and of specific internal energy within ten cells of the interface, as
-/// fractions of rho2 and e2. Errors of the energy appear here, not in the pressure.
+/// Greatest errors of the density and of the specific internal energy within ten cells of the
+/// interface, as fractions of rho2 and e2 [-]; `h` is the cell size [m]. `None` without samples
+/// there. Errors of the energy appear here, not in the pressure.
 pub fn interface_errors(
     samples: &[ScoreSample],
     exact: &Profile,

@@ -127,7 +127,8 @@ impl<P: Drive> SimpleWaveSolution<P> {
         Ok((more - less) / (2.0 * h))
     }
 
-    /// The whole body at time `t`; `None` before 0 and after [`SimpleWaveSolution::valid_until`].
+    /// The whole body at time `t` [s]; `None` before 0 and after
+    /// [`SimpleWaveSolution::valid_until`].
     pub fn profile(&self, t: f64) -> Option<Profile> {
         if !(0.0..=self.valid_until).contains(&t) {
             return None;
@@ -157,7 +158,7 @@ impl<P: Drive> SimpleWaveSolution<P> {
         Some(Profile { points })
     }
 
-    /// Features for the scoring; `None` where the profile is `None`, and at t = 0.
+    /// Features for the scoring at time `t` [s]; `None` where the profile is `None`, and at t = 0.
     pub fn landmarks(&self, t: f64) -> Option<Landmarks> {
         if !(t > 0.0 && t <= self.valid_until) {
             return None;

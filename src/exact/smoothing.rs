@@ -11,7 +11,7 @@
 /// A front on the axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step<const N: usize> {
-    /// Position on the axis.
+    /// Position on the axis [m or s].
     pub at: f64,
     /// 0 left-going, 1 contact, 2 right-going.
     pub family: usize,
@@ -19,7 +19,7 @@ pub(super) struct Step<const N: usize> {
     pub strong: bool,
     /// Whether the front is the edge of a wave: it is not spread, and always counts as a neighbour.
     pub edge: bool,
-    /// Values after the front.
+    /// Values after the front, each in its own unit.
     pub after: [f64; N],
 }
 

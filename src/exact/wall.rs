@@ -171,7 +171,8 @@ impl WallImpactSolution {
         [struck + self.wall_velocity * t, struck + shock * t, other + self.far.u * t]
     }
 
-    /// The whole body at time `t`; `None` before 0 and after [`WallImpactSolution::valid_until`].
+    /// The whole body at time `t` [s]; `None` before 0 and after
+    /// [`WallImpactSolution::valid_until`].
     pub fn profile(&self, t: f64) -> Option<Profile> {
         if !(0.0..=self.valid_until).contains(&t) {
             return None;
@@ -193,7 +194,7 @@ impl WallImpactSolution {
         Some(Profile { points })
     }
 
-    /// Features for the scoring; `None` where the profile is `None`, and at t = 0.
+    /// Features for the scoring at time `t` [s]; `None` where the profile is `None`, and at t = 0.
     pub fn landmarks(&self, t: f64) -> Option<Landmarks> {
         if !(t > 0.0 && t <= self.valid_until) {
             return None;

@@ -13,9 +13,9 @@ use crate::material::MieGruneisen;
 /// The two waves that leave a collision.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Outgoing {
-    /// Strength (change of compression) and number of steps of the left-going wave.
+    /// Strength (change of the compression chi) [-] and number of steps of the left-going wave.
     pub left: (f64, usize),
-    /// Strength and number of steps of the right-going wave.
+    /// Strength [-] and number of steps of the right-going wave.
     pub right: (f64, usize),
     /// State behind the left-going wave.
     pub left_star: WaveState,

@@ -149,8 +149,8 @@ pub(super) fn check(
 }
 
 impl Chain {
-    /// The chain up to the state number `last_state`, at least 2. It ends earlier if the plates
-    /// separate or come to rest.
+    /// The chain up to the state number `last_state`, at least 2, of an impact at `speed` [m/s] of
+    /// a flyer of `thickness` [m]. It ends earlier if the plates separate or come to rest.
     ///
     /// # Errors
     ///

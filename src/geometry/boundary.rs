@@ -18,7 +18,7 @@ pub struct BodyBoundary {
 /// Tangent of a boundary at its point nearest to another point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundaryFace {
-    /// Outward unit normal.
+    /// Outward unit normal [-].
     pub normal: [f64; 2],
     /// Distance from the point [m].
     pub distance: f64,

@@ -15,8 +15,9 @@ pub(super) enum Curve {
 /// The upper or lower half of an ellipse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Arc {
+    /// The ellipse.
     pub ellipse: EllipseCurve,
-    /// 1 for the upper half, -1 for the lower.
+    /// Sign of the half [-]: 1 for the upper, -1 for the lower.
     pub side: f64,
 }
 
@@ -34,6 +35,7 @@ const GAUSS: [(f64, f64); 4] = [
 const STRETCH: f64 = 1.0;
 
 impl Curve {
+    /// Ordinate at `x` [m].
     pub fn y(&self, x: f64) -> f64 {
         match self {
             Curve::Line(line) => line.y(x),

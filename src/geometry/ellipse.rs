@@ -61,7 +61,8 @@ impl EllipseCurve {
         self.half_height.hypot(self.skew * self.half_width)
     }
 
-    /// Point nearest to another point `at`, and the unit normal there, out of the ellipse.
+    /// Point of the ellipse nearest to another point `at` [m], and the unit normal there [-], out
+    /// of the ellipse.
     ///
     /// Newton's method for (P(t) - at).P'(t) = 0 with the points P(t) of the ellipse, from the
     /// point in the same direction after the ellipse has been mapped to a circle: exact for circles

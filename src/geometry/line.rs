@@ -32,6 +32,7 @@ impl Line {
         Line { at: [0.0, y], slope: 0.0, range: [y, y] }
     }
 
+    /// Ordinate at `x`, limited to the range of the line [m].
     pub fn y(&self, x: f64) -> f64 {
         let y = self.at[1] + self.slope * (x - self.at[0]);
         y.max(self.range[0]).min(self.range[1])

@@ -13,7 +13,9 @@ use super::moments::Moments;
 pub(super) struct Piece {
     /// Interval of x [m].
     pub x: [f64; 2],
+    /// Lower border.
     pub lower: Curve,
+    /// Upper border.
     pub upper: Curve,
 }
 
@@ -22,7 +24,9 @@ pub(super) struct Piece {
 pub(super) struct Trapezium {
     /// Interval of x [m].
     pub x: [f64; 2],
+    /// Lower border.
     pub lower: Line,
+    /// Upper border.
     pub upper: Line,
 }
 

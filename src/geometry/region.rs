@@ -36,9 +36,9 @@ pub enum Region {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Disk {
-    /// Centre [m].
+    /// Coordinates of the centre [m].
     pub centre: Vec<f64>,
-    /// Radius [m].
+    /// Radius of the disk [m].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub radius: f64,
 }
@@ -47,7 +47,7 @@ pub struct Disk {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ellipse {
-    /// Centre [m].
+    /// Coordinates of the centre [m].
     pub centre: Vec<f64>,
     /// Half axes along x and y [m].
     #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0.0}))]
@@ -67,7 +67,7 @@ pub struct Polygon {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Annulus {
-    /// Centre [m].
+    /// Coordinates of the common centre of both circles [m].
     pub centre: Vec<f64>,
     /// Radius of the inner circle [m].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
@@ -81,7 +81,7 @@ pub struct Annulus {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HalfPlane {
-    /// A point on the line [m].
+    /// Coordinates of any point on the line [m].
     pub point: Vec<f64>,
     /// Normal that points out of the half-plane, of any length [-].
     pub normal: Vec<f64>,
@@ -93,7 +93,7 @@ pub struct HalfPlane {
 pub struct Rotation {
     /// Angle of rotation, counter-clockwise [degrees].
     pub angle: f64,
-    /// Centre of rotation [m].
+    /// Coordinates of the point about which the region is rotated [m].
     pub about: Vec<f64>,
     /// The region that is rotated.
     pub of: Box<Region>,
@@ -103,9 +103,10 @@ pub struct Rotation {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoxShape {
-    /// Lower corner [m].
+    /// Coordinates of the lower corner, one number per direction [m].
     pub lower: Vec<f64>,
-    /// Upper corner [m].
+    /// Coordinates of the upper corner, one number per direction, each above that of the lower
+    /// corner [m].
     pub upper: Vec<f64>,
 }
 

@@ -38,7 +38,9 @@ pub(super) enum Outline {
 /// An edge of a polygon.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
+    /// Start [m].
     pub from: Point,
+    /// End [m].
     pub to: Point,
     /// Line through the edge; `None` if it is vertical.
     pub line: Option<Line>,
@@ -71,7 +73,8 @@ impl Outline {
         Outline::Polygon(vertices.iter().zip(next).map(edge).collect())
     }
 
-    /// The side of the line through `point` that `normal` points away from.
+    /// The side of the line through `point` [m] that `normal` points away from; `normal` has any
+    /// length but zero [-].
     pub fn half_plane(point: Point, normal: [f64; 2]) -> Self {
         let slope = -normal[0] / normal[1];
         let range = [f64::NEG_INFINITY, f64::INFINITY];

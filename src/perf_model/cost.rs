@@ -27,7 +27,7 @@ pub struct Prediction {
     pub exchange: f64,
     /// Fraction for waiting: for messages, for the reduction, for the busiest rank \[-\].
     pub wait: f64,
-    /// Messages of all ranks per step.
+    /// Number of messages of all ranks per step \[-\].
     pub messages: f64,
     /// Bytes in these messages \[B\].
     pub bytes: f64,

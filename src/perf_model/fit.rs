@@ -9,7 +9,7 @@ const SINGULAR: f64 = 1e-6;
 /// Result of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit<const N: usize> {
-    /// Coefficients, not negative.
+    /// Coefficients, not negative, in the unit of [`Sample::value`] per count.
     pub coefficients: [f64; N],
     /// Root mean square of the relative residuals \[-\].
     pub rms: f64,
@@ -20,11 +20,12 @@ pub struct Fit<const N: usize> {
 /// Counts and measured value of one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample<const N: usize> {
-    /// Counts, one per coefficient.
+    /// Counts, one per coefficient \[-\].
     pub features: [f64; N],
-    /// Measured value.
+    /// Measured value, in any unit; times are in \[s\].
     pub value: f64,
-    /// Scale of the residual: the value itself, or a total of which it is a part.
+    /// Scale of the residual in the unit of `value`: the value itself, or a total of which it is a
+    /// part.
     pub whole: f64,
 }
 

@@ -36,13 +36,13 @@ pub struct Work {
 pub struct PatchWork {
     lower: f64,
     upper: f64,
-    /// Own particles.
+    /// Number of own particles \[-\].
     pub rows: f64,
-    /// Ghost particles.
+    /// Number of ghost particles \[-\].
     pub ghosts: f64,
-    /// Nodes on which the patch computes.
+    /// Number of nodes on which the patch computes \[-\].
     pub nodes: f64,
-    /// Nodes with values from other patches.
+    /// Number of nodes with values from other patches \[-\].
     pub halo: f64,
 }
 
@@ -64,18 +64,19 @@ pub struct Share {
 /// Work of one rank in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RankWork {
-    /// Computing on the busiest thread, counted by [`COMPUTE`].
+    /// Numbers of the things that the busiest thread computes, in the order of [`COMPUTE`] \[-\].
     pub compute: [f64; COMPUTE.len()],
-    /// Part of the computing on patches that need no data from other ranks.
+    /// Part of these numbers on patches that need no data from other ranks \[-\].
     pub inner: [f64; COMPUTE.len()],
-    /// Packing, copying and unpacking, counted by [`SERIAL`].
+    /// Numbers of the things that the rank packs, copies and unpacks, in the order of [`SERIAL`]
+    /// \[-\].
     pub serial: [f64; SERIAL.len()],
-    /// Number of ranks from which it receives ghost particles, and nodal values.
+    /// Number of ranks from which it receives ghost particles, and nodal values \[-\].
     pub neighbours: [f64; 2],
     /// Bytes received in one exchange of ghost particles, and in all exchanges of nodal values
     /// \[B\].
     pub bytes: [f64; 2],
-    /// Fraction of its particles that do not stay in cache.
+    /// Fraction of its particles that do not stay in cache \[-\].
     pub cold: f64,
 }
 
@@ -275,8 +276,9 @@ impl Work {
     }
 }
 
-/// Fraction of repeatedly swept data that does not stay in a cache: none up to the size of the
-/// cache, all from twice its size, because the least recently used data are evicted first.
+/// Fraction of `swept` bytes of repeatedly swept data that does not stay in a cache of `cache`
+/// bytes \[-\]: none up to the size of the cache, all from twice its size, because the least
+/// recently used data are evicted first.
 pub fn cold_share(swept: f64, cache: f64) -> f64 {
     if cache <= 0.0 { 0.0 } else { (swept / cache - 1.0).clamp(0.0, 1.0) }
 }

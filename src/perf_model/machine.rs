@@ -241,8 +241,8 @@ impl Machine {
         Err(MachineError::Scheme { file, there: there.name(), here: here.name(), more })
     }
 
-    /// Slowdown of a core with `workers` busy cores in total on a node of this kind, for the
-    /// fraction `cold` of cold particles.
+    /// Slowdown of a core with `workers` busy cores in total on a node of this kind \[-\], for the
+    /// fraction `cold` of cold particles \[-\].
     pub fn slowing(&self, workers: usize, cold: f64) -> f64 {
         let others = (self.busy.cores - 1).max(1) as f64;
         let share = ((workers.max(1) - 1) as f64 / others).min(1.0);

@@ -17,7 +17,7 @@ struct Span {
 pub struct Terrain {
     /// Number of cells of the domain.
     pub cells: usize,
-    /// Number of particles of all bodies.
+    /// Number of particles of all bodies \[-\].
     pub particles: f64,
     /// Longest particle \[cells\].
     pub longest: f64,
@@ -75,12 +75,12 @@ impl Terrain {
         sum
     }
 
-    /// Number of particles in the cells from `lower` to `upper`.
+    /// Number of particles \[-\] in the cells from `lower` to `upper` \[cells\].
     pub fn particles_in(&self, lower: f64, upper: f64) -> f64 {
         self.sum(lower, upper, &|s| s.particles_per_cell)
     }
 
-    /// Number of cells with material from `lower` to `upper`.
+    /// Number of cells with material \[-\] from `lower` to `upper` \[cells\].
     pub fn filled_in(&self, lower: f64, upper: f64) -> f64 {
         self.sum(lower, upper, &|_| 1.0)
     }

@@ -10,15 +10,15 @@ use crate::transfer::TransferPlan;
 /// Counts per step; not whole numbers if an operation is not done in every step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepCounts {
-    /// Exchanges of ghost particles.
+    /// Number of exchanges of ghost particles \[-\].
     pub row_exchanges: f64,
-    /// Exchanges of nodal values, one after each product, if halos are exchanged.
+    /// Number of exchanges of nodal values \[-\], one after each product, if halos are exchanged.
     pub node_exchanges: f64,
-    /// Fields in these exchanges, in total.
+    /// Number of fields in these exchanges, in total \[-\].
     pub node_fields: f64,
-    /// Phases over patches.
+    /// Number of phases over patches \[-\].
     pub phases: f64,
-    /// Phases outside of an exchange of ghost particles.
+    /// Number of phases outside of an exchange of ghost particles \[-\].
     pub plain_phases: f64,
 }
 
@@ -35,7 +35,7 @@ impl StepCounts {
         }
     }
 
-    /// Exchanges between ranks per step.
+    /// Number of exchanges between ranks per step \[-\].
     pub fn exchanges(&self, halo: FilterHalo) -> f64 {
         match halo {
             FilterHalo::Exchange => self.row_exchanges + self.node_exchanges,
@@ -43,9 +43,9 @@ impl StepCounts {
         }
     }
 
-    /// Forks and joins of the threads of a rank per step: one per phase, and a second one after an
-    /// exchange, for inner patches and for the others. With redundant halos, all phases after an
-    /// exchange of ghost particles run as one.
+    /// Number of forks and joins of the threads of a rank per step \[-\]: one per phase, and a
+    /// second one after an exchange, for inner patches and for the others. With redundant halos,
+    /// all phases after an exchange of ghost particles run as one.
     pub fn forks(&self, halo: FilterHalo) -> f64 {
         match halo {
             FilterHalo::Exchange => self.phases + self.exchanges(halo),

@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 pub enum Preset {
     /// The most accurate method that was measured to be stable with the contents of the scene.
     Default,
-    /// From the shape function and transfer with the least error of those that pass every hard
+    /// The shape function and the transfer with the smallest error of those that pass every hard
     /// case, with a moderate viscosity.
     Robust,
-    /// From the method with the least mean of E1 over ten plane impacts, in the total-Lagrangian
-    /// frame if the scene has nothing but fluids on a line that touch and stay in contact.
+    /// The method with the smallest mean of E1 over ten plane impacts; in the total-Lagrangian
+    /// frame if the scene has only fluids on a line that touch and stay in contact.
     Sharpest,
 }
 

@@ -25,9 +25,9 @@ pub enum Basis {
 /// the impact pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CourantLimits {
-    /// Leapfrog stepping.
+    /// Limits for leapfrog stepping [-].
     pub leapfrog: [f64; 9],
-    /// Mid-point stepping.
+    /// Limits for mid-point stepping [-].
     pub midpoint: [f64; 9],
 }
 
@@ -36,7 +36,7 @@ pub struct CourantLimits {
 pub struct Weights<const K: usize> {
     /// First node, relative to the lower node of the particle's cell.
     pub first: i32,
-    /// Values of the nodes' functions; they sum to 1.
+    /// Values of the nodes' functions [-]; they sum to 1.
     pub values: [f64; K],
     /// Gradients of the nodes' functions [1/cell]; they sum to 0.
     pub gradients: [f64; K],
@@ -105,8 +105,8 @@ pub(super) fn product<S: Shape, const K: usize>(
 }
 
 impl<const K: usize> Plane<'_, K> {
-    /// Like [`Shape::plane`], for a particle with nonzero weights only at the first `M` nodes along
-    /// each direction: only these are computed.
+    /// Like [`Shape::plane`], for a particle at `fraction` [cells] of its cell with nonzero weights
+    /// only at the first `M` nodes along each direction: only these are computed.
     #[inline(always)]
     pub fn fill_first<S: Shape, const M: usize>(
         &mut self,

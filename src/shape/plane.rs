@@ -10,7 +10,7 @@ use super::widths::MOST_NODES_IN_PLANE;
 /// Output arrays for the weights of one particle: `K` lines of `K` nodes.
 #[derive(Debug)]
 pub struct Plane<'a, const K: usize> {
-    /// Values; they sum to 1.
+    /// Values [-]; they sum to 1.
     pub values: &'a mut [[f64; K]],
     /// Gradients along x and y [1/cell]; they sum to 0.
     pub gradients: [&'a mut [[f64; K]]; 2],

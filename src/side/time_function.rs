@@ -23,15 +23,15 @@ pub enum Course {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ramp {
-    /// Value before the transition; default 0.
+    /// Value before the transition, in the unit of the quantity; default 0.
     #[serde(default)]
     pub from: f64,
-    /// Value after the transition.
+    /// Value after the transition, in the unit of the quantity.
     pub to: f64,
     /// Start time of the transition [s]; default 0.
     #[serde(default)]
     pub start: f64,
-    /// Duration of the transition [s].
+    /// Duration of the transition [s]. With a larger value the transition is smoother.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub duration: f64,
 }
@@ -61,7 +61,8 @@ impl Ramp {
 }
 
 impl Course {
-    /// The value at `time`.
+    /// The value at `time` [s], in the SI unit of its quantity; NaN for a file that has not been
+    /// read.
     pub fn at(&self, time: f64) -> f64 {
         match self {
             Course::Constant(value) => *value,
@@ -78,7 +79,8 @@ impl Course {
         }
     }
 
-    /// Time derivative just after `time`.
+    /// Time derivative just after `time` [s], in the SI unit of the quantity per second; NaN for a
+    /// file that has not been read.
     pub fn slope(&self, time: f64) -> f64 {
         match self {
             Course::Constant(_) => 0.0,
@@ -95,7 +97,8 @@ impl Course {
         }
     }
 
-    /// Integral from 0 to `time` >= 0.
+    /// Integral from 0 to `time` >= 0 [s], in the SI unit of the quantity times seconds; NaN for a
+    /// file that has not been read.
     pub fn integral(&self, time: f64) -> f64 {
         match self {
             Course::Constant(value) => value * time,
@@ -119,7 +122,7 @@ impl Course {
         !matches!(self, Course::Constant(_))
     }
 
-    /// Smallest and largest value.
+    /// Smallest and largest value over all times, in the SI unit of the quantity.
     pub fn range(&self) -> [f64; 2] {
         let of = |values: &mut dyn Iterator<Item = f64>| {
             values.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, u], v| [l.min(v), u.max(v)])
@@ -141,7 +144,8 @@ impl Course {
         }
     }
 
-    /// Reads the text of a CSV file with the columns time and `quantity`.
+    /// Reads the text of a CSV file with the columns time [s] and `quantity` (in its SI unit):
+    /// pairs of time and value, one per line.
     ///
     /// # Errors
     ///

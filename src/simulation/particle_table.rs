@@ -7,7 +7,7 @@ pub struct TableColumn {
     pub name: String,
     /// SI unit, such as `Pa`.
     pub unit: String,
-    /// One value per particle.
+    /// One value per particle, in the unit of the column.
     pub values: Vec<f64>,
 }
 
@@ -44,7 +44,8 @@ impl ParticleTable {
         self.ids.is_empty()
     }
 
-    /// Values of the column `name`, if there is one.
+    /// Values of the column `name` in its unit, one per particle; `None` if there is no such
+    /// column.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         self.columns.iter().find(|c| c.name == name).map(|c| c.values.as_slice())
     }

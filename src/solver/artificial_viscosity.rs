@@ -184,10 +184,10 @@ fn christensen_line(v: [f64; 4], ends: [bool; 2]) -> f64 {
     positive(least.clamp(0.0, 1.0))
 }
 
-/// phi of Christensen (1990) for a particle in the cell above node `node`. In a plane it is
-/// computed along each direction, from that component of the velocity on both lines of nodes of the
-/// cell. The result is their mean, weighted by the rate of compression of the cell along each
-/// direction.
+/// phi of Christensen (1990) for a particle in the cell above node `node` [-], from 0 (no
+/// reduction) to 1 (smooth flow). In a plane it is computed along each direction, from that
+/// component of the velocity on both lines of nodes of the cell. The result is their mean, weighted
+/// by the rate of compression of the cell along each direction.
 #[inline(always)]
 pub fn christensen<const D: usize>(nodes: &Nodes<'_, D>, node: usize) -> f64 {
     let along = |axis: usize, from: usize| {
@@ -220,10 +220,10 @@ pub fn christensen<const D: usize>(nodes: &Nodes<'_, D>, node: usize) -> f64 {
 /// node's function.
 const TOUCHES: f64 = 1e-3;
 
-/// phi = clamp(2 min_i D_i/D_p, 0, 1) over the nodes i that a particle touches, with D_i the
-/// divergence of the nodal velocity by central differences: a form for any dimension. Differences
-/// with respect to initial positions are pushed forward with `push`, the inverse of the particle's
-/// F.
+/// phi = clamp(2 min_i D_i/D_p, 0, 1) [-] over the nodes i that a particle touches, with D_p =
+/// `gradient` [1/s] and D_i the divergence of the nodal velocity by central differences: a form for
+/// any dimension. Differences with respect to initial positions are pushed forward with `push`, the
+/// inverse of the particle's F.
 #[inline(always)]
 pub fn nodal<const K: usize, const D: usize>(
     nodes: &Nodes<'_, D>,

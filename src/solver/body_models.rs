@@ -11,8 +11,11 @@ use crate::scene::{CheckedScene, Material};
 
 /// Material models of each body.
 pub(super) struct BodyModels {
+    /// Constitutive model of each body.
     pub models: Vec<ConstitutiveModel>,
+    /// Strength of each body; `None` without one.
     pub strengths: Vec<Option<Box<dyn StrengthModel>>>,
+    /// Temperature model of each body; `None` without one.
     pub thermals: Vec<Option<ThermalModel>>,
 }
 

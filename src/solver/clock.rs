@@ -62,7 +62,7 @@ pub struct Event {
 /// Clock of a rank.
 #[derive(Clone, Debug)]
 pub struct Clock {
-    /// Seconds of each activity, in the order of [`Activity::ALL`].
+    /// Time of each activity, in the order of [`Activity::ALL`] [s].
     pub seconds: [f64; Activity::ALL.len()],
     /// Events of the rank, while a timeline is recorded.
     pub events: Vec<Event>,
@@ -90,12 +90,12 @@ impl Clock {
         (self.step, self.traced, self.sampled) = (step, traced, sampled);
     }
 
-    /// Adds seconds of an activity.
+    /// Adds `seconds` [s] to an activity.
     pub fn add(&mut self, activity: Activity, seconds: f64) {
         self.seconds[activity as usize] += seconds;
     }
 
-    /// Adds the time from `start` to now to an activity, minus `other` seconds that are counted
+    /// Adds the time from `start` to now to an activity, minus the time `other` [s] that is counted
     /// elsewhere.
     pub fn add_since(&mut self, activity: Activity, start: Instant, other: f64) {
         self.add(activity, (start.elapsed().as_secs_f64() - other).max(0.0));
@@ -200,9 +200,9 @@ const MEASURED: usize = 9;
 pub struct Stopwatch {
     /// Events of the patch, while a timeline is recorded.
     pub events: Vec<Event>,
-    /// Seconds of the phases that were timed.
+    /// Time of the phases that were timed [s].
     pub computed: f64,
-    /// Seconds of each part of a step in these phases; trailing parts without time may be missing.
+    /// Time of each part of a step in these phases [s]; trailing parts without time may be missing.
     pub parts: SmallVec<[f64; 32]>,
     /// Whether a phase is being timed.
     runs: bool,
@@ -224,7 +224,7 @@ impl Stopwatch {
         self.spent = 0.0;
     }
 
-    /// Seconds per step; `None` before the first measurement.
+    /// Computing time of the patch per step [s]; `None` before the first measurement.
     pub fn cost(&self) -> Option<f64> {
         let mut known = self.measured;
         let known = &mut known[..self.count.min(MEASURED)];

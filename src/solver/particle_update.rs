@@ -554,7 +554,7 @@ impl<const D: usize> Scheme<D> {
         (0..D).map(along).fold(0.0, f64::max)
     }
 
-    /// Number of cells that an own particle fills; initial cells if the grid moves with the
+    /// Volume of an own particle in cells [cells]; in initial cells if the grid moves with the
     /// material.
     pub fn filled_cells(&self, block: &decomp::Block<D>, particle: usize) -> f64 {
         let column = |k: usize| block.columns[k][particle];

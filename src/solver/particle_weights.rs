@@ -29,7 +29,7 @@ pub struct ParticleWeights<'a, const K: usize, const D: usize> {
     pub stride: usize,
     /// Whether weights beyond the first [`NARROW`] nodes along each direction are zero.
     pub narrow: bool,
-    /// Values, line by line.
+    /// Values, line by line [-].
     pub values: &'a [[f64; K]],
     /// Gradients [1/m]: those along x, then those along y.
     pub gradients: &'a [[f64; K]],
@@ -39,7 +39,7 @@ impl<'a, const K: usize, const D: usize> ParticleWeights<'a, K, D> {
     /// Number of lines of the window.
     pub const LINES: usize = lines(K, D);
 
-    /// Gradients along `axis`, line by line.
+    /// Gradients along `axis`, line by line [1/m].
     #[inline(always)]
     pub fn gradient(&self, axis: usize) -> &'a [[f64; K]] {
         &self.gradients[axis * Self::LINES..(axis + 1) * Self::LINES]
@@ -81,7 +81,7 @@ impl<'a, const K: usize, const D: usize> ParticleWeights<'a, K, D> {
         windows
     }
 
-    /// Adds `term` of each weight to the nodes of `field`.
+    /// Adds `term` of each weight to the nodes of `field`, in the unit of the field.
     #[inline(always)]
     pub fn add(&self, field: &mut [f64], weights: &[[f64; K]], term: impl Fn(f64) -> f64) {
         for line in 0..self.lines() {
@@ -93,7 +93,7 @@ impl<'a, const K: usize, const D: usize> ParticleWeights<'a, K, D> {
         }
     }
 
-    /// Sum of weights times nodal values.
+    /// Sum of weights times nodal values, in the product of both units.
     #[inline(always)]
     pub fn dot(&self, weights: &[[f64; K]], field: &[f64]) -> f64 {
         self.sum(weights, |line| *self.line(field, line))

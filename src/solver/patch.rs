@@ -141,7 +141,7 @@ pub struct Patch<const D: usize> {
     pub removed: Vec<RemovedParticle<D>>,
     /// Longest particle for which ghost layers and halos are deep enough [cells].
     pub reach_length: f64,
-    /// Reusable buffer with one value per particle: the volume ratios before the step while the
+    /// Reusable buffer with one value per particle: the volume ratios before the step [-] while the
     /// stress update runs.
     pub kept: Vec<f64>,
     /// Whether the patch is quiescent.

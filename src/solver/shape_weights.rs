@@ -22,7 +22,7 @@ pub struct Stencils {
     /// Whether a particle's weights beyond the first [`NARROW`] nodes are zero, if windows are
     /// wider.
     pub narrow: Vec<bool>,
-    /// Values, `width`^D per particle.
+    /// Values [-], `width`^D per particle.
     pub values: Vec<f64>,
     /// Gradients [1/m], `width`^D per particle and direction.
     pub gradients: Vec<f64>,

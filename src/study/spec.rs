@@ -171,7 +171,7 @@ pub struct Choices {
     pub error: String,
     /// Time of the profile \[s\].
     pub time: f64,
-    /// Target values.
+    /// Target values of the error \[-\].
     pub wanted: Vec<f64>,
 }
 

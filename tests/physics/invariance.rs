@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use crate::tools::{apart, at_most, column, greatest, run, scored, shipped, short, with};
 
-/// Schemes that are looked at: the default, the document's, and one of each other kind.
+/// Schemes that are tested: the default, that of Burghardt (2010), and one of each other kind.
 fn schemes() -> Vec<Value> {
     let mut scenes = vec![short("flyer.json", 0.3e-6), short("flyer_uintah.json", 0.3e-6)];
     for (name, method) in [

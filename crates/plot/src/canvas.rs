@@ -114,7 +114,7 @@ pub(super) struct CanvasImage {
 #[derive(Debug, Clone)]
 pub(super) struct Canvas {
     pub title: String,
-    /// Width and height in whole pixels.
+    /// Width and height in whole pixels \[px\].
     pub size: (f64, f64),
     pub images: Vec<CanvasImage>,
     pub shapes: Vec<CanvasShape>,

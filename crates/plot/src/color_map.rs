@@ -16,7 +16,7 @@ pub struct DiagramRow {
     pub time: f64,
     /// Positions \[m\].
     pub x: Vec<f64>,
-    /// Values.
+    /// Values, in the unit of the diagram.
     pub values: Vec<f64>,
 }
 

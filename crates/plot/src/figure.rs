@@ -64,11 +64,12 @@ pub struct Panel {
     pub labels: Vec<Label>,
     /// Lines of text, placed where they cover the least data.
     pub notes: Vec<String>,
-    /// Part of the x axis that is shown again, enlarged, if there is space.
+    /// Part of the x axis, in its unit, that is shown again, enlarged, if there is space.
     pub close_up: Option<(f64, f64)>,
     /// Coloured bands above the panel, which name parts of the x axis.
     pub bands: Vec<MaterialBand>,
-    /// Abscissae of thin vertical lines under the series, such as interfaces.
+    /// Abscissae of thin vertical lines under the series, such as interfaces, in the unit of the x
+    /// axis.
     pub lines: Vec<f64>,
     /// A colour map under the series.
     pub(super) map: Option<ColorMap>,

@@ -15,15 +15,16 @@ pub struct TileMap {
     pub x: Axis,
     /// The y axis.
     pub y: Axis,
-    /// Coordinates of the tile centres along x and y, ascending.
+    /// Coordinates of the tile centres along x and y, ascending, in the units of the axes.
     pub places: [Vec<f64>; 2],
-    /// Values, one row per y coordinate; `None` leaves a tile empty.
+    /// Values in the unit of the colour scale, one row per y coordinate; `None` leaves a tile
+    /// empty.
     pub values: Vec<Vec<Option<f64>>>,
     /// Name of the quantity.
     pub label: String,
     /// Unit of the values.
     pub unit: String,
-    /// Marked points: text, x, y.
+    /// Marked points: text, x and y in the units of the axes.
     pub marks: Vec<(String, f64, f64)>,
 }
 

@@ -27,7 +27,7 @@ pub struct Passing {
 pub struct Between {
     /// Ids of the particles.
     pub ids: [u64; 2],
-    /// Interpolation weights of the particles, with sum 1.
+    /// Interpolation weights of the particles, with sum 1 \[-\].
     pub weights: [f64; 2],
 }
 
@@ -70,9 +70,9 @@ impl Between {
 /// Pressure levels that mark the arrival of a wave \[Pa\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Levels {
-    /// Start pressure plus a tenth of the rise to the largest pressure.
+    /// Start pressure plus a tenth of the rise to the largest pressure \[Pa\].
     pub toe: f64,
-    /// Start pressure plus half of that rise.
+    /// Start pressure plus half of the rise to the largest pressure \[Pa\].
     pub half: f64,
 }
 

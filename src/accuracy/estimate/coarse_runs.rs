@@ -9,17 +9,17 @@ use crate::scene::{self, CellSize, CheckedScene};
 use crate::simulation::{RunError, Simulation};
 use crate::solver::clock::user_cpu_seconds;
 
-/// Cell sizes of the coarse runs over that of the scene.
+/// Cell sizes of the coarse runs over that of the scene \[-\].
 pub const FACTORS: [usize; 2] = [4, 2];
 
 /// Results of one coarse run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Companion {
-    /// Cell size over that of the scene, rounded to a whole number.
+    /// Cell size over that of the scene, rounded to a whole number \[-\].
     pub factor: f64,
     /// Cell size \[m\].
     pub cell_size: f64,
-    /// Pressures of the body, one line per profile.
+    /// Pressures of the body \[Pa\] over x \[m\], one line per profile.
     pub profiles: Vec<Polyline>,
     /// Arrival times of the wave at the given positions \[s\].
     pub arrivals: Vec<Option<f64>>,

@@ -22,9 +22,10 @@ pub const LEAST: f64 = 1e-7;
 pub struct Law {
     /// Names of the indicators that it needs.
     pub evidence: Vec<String>,
-    /// w0, and one weight per indicator.
+    /// w0 and one weight per indicator, in the exponent: error = exp(w0 + sum w ln(indicator))
+    /// \[-\].
     pub weights: Vec<f64>,
-    /// Safety factor on the fitted error.
+    /// Safety factor on the fitted error \[-\].
     pub factor: f64,
     /// Number of runs in the fit.
     pub cases: usize,
@@ -42,11 +43,11 @@ pub struct Laws {
     pub source: String,
     /// The range of impacts used for the fit and its validation.
     pub fitted: FittedRange,
-    /// Plateau pressure: relative error.
+    /// Plateau pressure: relative error \[-\].
     pub plateau_pressure: QuantityLaws,
-    /// Arrival time: error in sound transit times of a cell.
+    /// Arrival time: error in sound transit times of a cell \[-\].
     pub arrival_time: QuantityLaws,
-    /// Profile: relative L1.
+    /// Profile: relative L1 error of the pressure \[-\].
     pub l1: QuantityLaws,
 }
 
@@ -59,8 +60,8 @@ impl Laws {
 }
 
 impl Law {
-    /// The error expected from the indicators, without the factor; `None` if an indicator is
-    /// missing.
+    /// The error expected from the indicators, without the factor \[-\], relative as in [`Laws`];
+    /// `None` if an indicator is missing.
     pub fn size(&self, evidence: &Evidence) -> Option<f64> {
         let mut sum = *self.weights.first()?;
         for (name, weight) in self.evidence.iter().zip(&self.weights[1..]) {
@@ -71,7 +72,8 @@ impl Law {
 }
 
 impl QuantityLaws {
-    /// Half-width by the first error model whose indicators are all present.
+    /// Half-width by the first error model whose indicators are all present \[-\], relative as in
+    /// [`Laws`]; `None` if there is no such model.
     pub fn half_width(&self, evidence: &Evidence) -> Option<f64> {
         self.0.iter().find_map(|law| Some(law.factor * law.size(evidence)?))
     }

@@ -13,9 +13,10 @@ fn named(pairs: impl IntoIterator<Item = (String, f64)>) -> Evidence {
     pairs.into_iter().filter(|(_, v)| v.is_finite()).collect()
 }
 
-/// Indicators of the plateau pressure, relative to it: `difference_2`, `difference_4` from the mean
-/// of the coarse runs over the same positions, `noise`, the length in `cells`, and the deviations
-/// from a level plateau `halves`, `wide`.
+/// Indicators of the plateau pressure \[-\], relative to it: `difference_2`, `difference_4` from
+/// the mean of the coarse runs over the same positions, `noise`, the length in `cells`, and the
+/// deviations from a level plateau `halves`, `wide`. `others` are the coarse runs with their cell
+/// sizes over `h` \[m\], the cell size of the scene.
 pub fn of_plateau(found: &Plateau, others: &[(f64, &Polyline)], h: f64) -> Evidence {
     let theirs = others.iter().filter_map(|(factor, line)| {
         let reach = found.reach.max(factor * h);
@@ -33,13 +34,15 @@ pub fn of_plateau(found: &Plateau, others: &[(f64, &Polyline)], h: f64) -> Evide
     named(own.map(|(name, value)| (name.to_string(), value)).into_iter().chain(theirs))
 }
 
-/// Indicators of a profile: `difference_2`, `difference_4`, the relative L1 to the coarse runs.
+/// Indicators of a profile \[-\]: `difference_2`, `difference_4`, the relative L1 to the coarse
+/// runs `others`, which are given with their cell sizes over that of the scene.
 pub fn of_profile(own: &Polyline, others: &[(f64, &Polyline)]) -> Evidence {
     named(others.iter().map(|(factor, line)| (format!("difference_{factor}"), distance(own, line))))
 }
 
-/// Indicators of an arrival, in sound transit times of a cell: `difference_2`, `difference_4` from
-/// the coarse runs, and `rise`, the time from a tenth to half of the pressure rise.
+/// Indicators of an arrival, in sound transit times of a cell \[-\]: `difference_2`, `difference_4`
+/// from the coarse runs, and `rise`, the time from a tenth to half of the pressure rise. All times
+/// are in \[s\]: the arrival `time`, `rise`, those of `others`, and the transit time `cell_time`.
 pub fn of_arrival(time: f64, rise: f64, others: &[(f64, f64)], cell_time: f64) -> Evidence {
     let theirs = others
         .iter()
@@ -47,7 +50,8 @@ pub fn of_arrival(time: f64, rise: f64, others: &[(f64, f64)], cell_time: f64) -
     named([("rise".to_string(), rise / cell_time)].into_iter().chain(theirs))
 }
 
-/// int |a - b| dx / int |a| dx over the range of `a`; lines are constant beyond their ends.
+/// Relative L1 difference of two lines \[-\], int |a - b| dx / int |a| dx over the range of `a`.
+/// Lines are constant beyond their ends; NaN if one is empty.
 pub fn distance(a: &Polyline, b: &Polyline) -> f64 {
     let (Some(first), Some(last)) = (a.first(), a.last()) else { return f64::NAN };
     let mut places: Vec<f64> = a.iter().chain(b).map(|q| q.0).collect();

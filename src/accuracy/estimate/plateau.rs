@@ -59,7 +59,7 @@ pub fn find(line: &Polyline, h: f64) -> Option<Plateau> {
     find_over(line, h, LEAST)
 }
 
-/// The same with a minimum length of `least` cells.
+/// The same as [`find`] with a minimum length of `least` cells of size `h` \[m\] instead of 20.
 pub fn find_over(line: &Polyline, h: f64, least: usize) -> Option<Plateau> {
     let ahead = from_ahead(cells(line, h));
     let peak = ahead.iter().map(|c| c.1).fold(0.0, f64::max);

@@ -35,7 +35,7 @@ pub struct Plan {
     pub cell_size: f64,
     /// Particles per cell.
     pub particles_per_cell: usize,
-    /// Courant number.
+    /// Courant number \[-\].
     pub courant: f64,
     /// Expected error \[-\].
     pub error: f64,
@@ -82,7 +82,7 @@ pub enum PlanError {
     },
 }
 
-/// A fraction as text in per cent.
+/// A fraction \[-\] as text in per cent.
 pub fn percent(fraction: f64) -> String {
     format!("{:.4} %", 100.0 * fraction)
 }

@@ -4,18 +4,19 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-/// Distribution of an error: median and 95 % quantile.
+/// Distribution of an error: median and 95 % quantile, in the unit that each field of
+/// [`SchemeAccuracy`] names.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Size {
-    /// Half of the runs have a smaller error.
+    /// Median: half of the runs have a smaller error \[- or cells\].
     pub median: f64,
-    /// 19 of 20 runs have a smaller error.
+    /// 95 % quantile: 19 of 20 runs have a smaller error \[- or cells\].
     pub most: f64,
 }
 
 impl Size {
-    /// Both values times a factor.
+    /// Both values times a factor \[-\].
     pub fn times(self, factor: f64) -> Size {
         Size { median: self.median * factor, most: self.most * factor }
     }

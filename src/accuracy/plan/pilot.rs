@@ -54,7 +54,8 @@ pub fn with_cells(
     checked.map(|checked| (new, checked)).map_err(|error| error.to_string())
 }
 
-/// Runs a scene without output files. The error is the message of the run.
+/// Runs a scene without output files and measures its cost; `place` \[m\] is the position of an
+/// arrival in the body with the index `body`, if that is planned.
 ///
 /// # Errors
 ///

@@ -13,7 +13,7 @@ pub struct PlannedScheme {
     pub name: String,
     /// Particles per cell.
     pub particles_per_cell: usize,
-    /// Courant number.
+    /// Courant number \[-\].
     pub courant: f64,
     /// Top-level keys of a scene that define the scheme; if empty, those of the standard problem.
     pub set: BTreeMap<String, Value>,

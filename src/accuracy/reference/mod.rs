@@ -313,7 +313,8 @@ impl ReferenceSolution {
         }
     }
 
-    /// In a plane: means of the scored particles over strips of `cells` cells along the waves.
+    /// In a plane: means of the scored particles over strips whose length along the direction of
+    /// the waves is `cells` \[cells\].
     pub fn samples_along(
         &self,
         scene: &CheckedScene,

@@ -6,7 +6,7 @@ use smallvec::SmallVec;
 pub struct BodyPair<'a, const D: usize> {
     /// Filled volumes V = sum V_p N [cells].
     pub volume: [f64; 2],
-    /// Gradients of the filled volumes g = sum V_p G; they point out of the bodies.
+    /// Gradients of the filled volumes g = sum V_p G [cells/m]; they point out of the bodies.
     pub gradient: [&'a [f64; D]; 2],
     /// Particles that touch the node, in canonical order.
     pub particles: [&'a [ContactParticle<D>]; 2],
@@ -25,15 +25,15 @@ pub struct ContactParticle<const D: usize> {
     pub half_edges: [[f64; D]; 2],
     /// Filled volume V N at the node [cells].
     pub volume: f64,
-    /// Faces of its body: with the coordinates s, t along the half edges, a face is the line
-    /// s k1 + t k2 = 1; zeros: none.
+    /// Faces of its body [-]: with the coordinates s, t along the half edges, a face is the line s
+    /// k1 + t k2 = 1; zeros: none.
     pub faces: [[f64; 2]; 2],
 }
 
 /// Contact plane of two bodies at a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPlane<const D: usize> {
-    /// Unit normal from the first body to the second.
+    /// Unit normal from the first body to the second [-].
     pub normal: [f64; D],
     /// Gap between the bodies, negative if they overlap [cells].
     pub gap: f64,

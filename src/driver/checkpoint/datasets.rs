@@ -47,6 +47,10 @@ pub(super) struct Writer<'a> {
 
 impl Writer<'_> {
     /// Writes the values of a dataset with their digest.
+    ///
+    /// # Errors
+    ///
+    /// If HDF5 cannot write the dataset.
     pub fn put<T: Plain>(&self, group: &Group, name: &str, values: &[T]) -> hdf5::Result<Dataset> {
         let dataset =
             group.new_dataset::<T>().shape(values.len()).obj_track_times(false).create(name)?;
@@ -58,7 +62,12 @@ impl Writer<'_> {
         Ok(dataset)
     }
 
-    /// Writes a column with name and unit under its index, by which it is found.
+    /// Writes a column with name and unit under its index, by which it is found. The values are in
+    /// `unit`.
+    ///
+    /// # Errors
+    ///
+    /// If HDF5 cannot write the column.
     pub fn column(
         &self,
         group: &Group,
@@ -87,11 +96,16 @@ pub(super) fn text(dataset: &Dataset, key: &str) -> hdf5::Result<String> {
 
 /// Reads datasets of a file of `length` bytes, which no dataset can exceed.
 pub(super) struct Reader {
+    /// Length of the file [B].
     pub length: u64,
 }
 
 impl Reader {
     /// The values of a dataset, which must have their digest.
+    ///
+    /// # Errors
+    ///
+    /// If the dataset is missing, is longer than the file, or differs from its digest.
     pub fn values<T: Plain>(&self, group: &Group, name: &str) -> hdf5::Result<Vec<T>> {
         let dataset = group.dataset(name)?;
         if (dataset.size() * size_of::<T>()) as u64 > self.length {
@@ -106,6 +120,10 @@ impl Reader {
     }
 
     /// The columns of a group, with names and units.
+    ///
+    /// # Errors
+    ///
+    /// If a dataset cannot be read, as in [`Reader::values`].
     pub fn columns(&self, group: &Group) -> hdf5::Result<Vec<TableColumn>> {
         let column = |k: u64| -> hdf5::Result<TableColumn> {
             let name = format!("{k:04}");

@@ -103,8 +103,8 @@ impl CheckpointSchedule {
         }
     }
 
-    /// Whether a checkpoint is due at the end of a step, with the agreed request `asked`; the same
-    /// on all ranks.
+    /// Whether a checkpoint is due at the end of step `step` at `time` \[s\], with the agreed
+    /// request `asked`; the same on all ranks.
     pub fn is_due(&mut self, time: f64, step: u64, asked: u8) -> bool {
         let mut due = asked >= CHECKPOINT;
         if let Some(every) = self.every_seconds

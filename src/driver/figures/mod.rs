@@ -30,7 +30,8 @@ pub struct WaveRow {
     pub x: Vec<f64>,
     /// Pressures [Pa].
     pub pressure: Vec<f64>,
-    /// Values of each further quantity; empty if they are not known at this time.
+    /// Values of each further quantity in its SI unit, one per particle; empty if they are not
+    /// known at this time.
     pub others: Vec<Vec<f64>>,
 }
 

@@ -39,7 +39,7 @@ pub struct DecompositionSummary {
     pub particles_migrated: u64,
     /// Bytes sent per step by all ranks together \[B\].
     pub bytes_per_step: f64,
-    /// Messages sent per step by all ranks together.
+    /// Number of messages sent per step by all ranks together \[-\].
     pub messages_per_step: f64,
     /// Values of each rank.
     pub ranks: Vec<RankSummary>,

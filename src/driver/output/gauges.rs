@@ -13,7 +13,7 @@ pub struct GaugeReading {
     pub quantity: String,
     /// SI unit of the value.
     pub unit: String,
-    /// Value.
+    /// Value, in the unit of the field `unit`.
     pub value: f64,
     /// Time of the value \[s\]; absent where the value has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -33,7 +33,8 @@ impl HistoryTable {
         HistoryTable { columns }
     }
 
-    /// Appends one value to each column, in order; NaN for a missing value.
+    /// Appends one value to each column, in order and in the unit of the column; NaN for a missing
+    /// value.
     ///
     /// # Panics
     /// If the number of values differs from the number of columns.
@@ -68,7 +69,7 @@ impl HistoryTable {
         &self.columns
     }
 
-    /// Values of the column `name`, if it exists.
+    /// Values of the column `name` in its unit, one per row; `None` if there is no such column.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         self.columns.iter().find(|c| c.name == name).map(|c| c.values.as_slice())
     }

@@ -30,7 +30,7 @@ pub struct Summary {
     pub title: String,
     /// Version of the program.
     pub version: String,
-    /// Commit of its sources; absent if the build was not told.
+    /// Commit of its sources; absent if the build did not set it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
     /// Processor of the machine of rank 0, and the cores that rank 0 may use.
@@ -105,24 +105,26 @@ pub struct Summary {
     pub warnings: Vec<String>,
 }
 
-/// Energy of all particles \[J\]; in one dimension \[J/m2\], in two \[J/m\].
+/// Energies of all particles. All fields but the drift are in \[J/m2\] in one dimension (per area),
+/// in \[J/m\] in two (per thickness), and in \[J\] per radian with axial symmetry.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
-    /// Kinetic energy at the start.
+    /// Kinetic energy at the start, in the unit of [`Energy`].
     pub kinetic_start: f64,
-    /// Internal energy at the start.
+    /// Internal energy at the start, in the unit of [`Energy`].
     pub internal_start: f64,
-    /// Sum of both at the start.
+    /// Sum of kinetic and internal energy at the start, in the unit of [`Energy`].
     pub total_start: f64,
-    /// Kinetic energy at the end.
+    /// Kinetic energy at the end, in the unit of [`Energy`].
     pub kinetic_end: f64,
-    /// Internal energy at the end.
+    /// Internal energy at the end, in the unit of [`Energy`].
     pub internal_end: f64,
-    /// Sum of both at the end.
+    /// Sum of kinetic and internal energy at the end, in the unit of [`Energy`].
     pub total_end: f64,
-    /// Work of the boundaries on the particles, minus the energy of removed particles.
+    /// Work of the boundaries on the particles, minus the energy of removed particles, in the unit
+    /// of [`Energy`].
     pub boundary_work: f64,
-    /// Work of a body force; absent without one.
+    /// Work of a body force, in the unit of [`Energy`]; absent without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body_force_work: Option<f64>,
     /// (total_end - total_start - all work) / total_start \[-\]; if total_start is 0, relative to
@@ -131,8 +133,9 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// Totals and drift from kinetic and internal energy at \[start, end\]. There is no drift if
-    /// the energy does not exceed the rounding error `rounding`.
+    /// Totals and drift from kinetic and internal energy, each at \[start, end\], and the work of
+    /// the boundaries. There is no drift if the energy does not exceed the rounding error
+    /// `rounding`. All arguments are in the unit of [`Energy`].
     pub fn new(kinetic: [f64; 2], internal: [f64; 2], boundary_work: f64, rounding: f64) -> Energy {
         let [total_start, total_end] = [kinetic[0] + internal[0], kinetic[1] + internal[1]];
         let scale = if total_start == 0.0 { total_end } else { total_start }.abs();
@@ -152,7 +155,7 @@ impl Energy {
         }
     }
 
-    /// The same with the work of a body force.
+    /// The same with the work of a body force; both arguments are in the unit of [`Energy`].
     pub fn with_body_force(self, work: f64, rounding: f64) -> Energy {
         let kinetic = [self.kinetic_start, self.kinetic_end];
         let internal = [self.internal_start, self.internal_end];
@@ -161,17 +164,18 @@ impl Energy {
     }
 }
 
-/// Momentum of all particles \[kg m/s\]; in one dimension \[kg/(m s)\], in two \[kg/s\].
+/// Momentum of all particles. All fields but the drift are in \[kg/(m s)\] in one dimension (per
+/// area), in \[kg/s\] in two (per thickness), and in \[kg m/s\] per radian with axial symmetry.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Momentum {
-    /// At the start, D components.
+    /// Momentum at the start, D components, in the unit of [`Momentum`].
     pub start: Vec<f64>,
-    /// At the end, D components.
+    /// Momentum at the end, D components, in the unit of [`Momentum`].
     pub end: Vec<f64>,
     /// Impulse of the boundaries on the particles, minus the momentum of removed particles, D
-    /// components.
+    /// components, in the unit of [`Momentum`].
     pub boundary_impulse: Vec<f64>,
-    /// Impulse of a body force, D components; absent without one.
+    /// Impulse of a body force, D components, in the unit of [`Momentum`]; absent without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body_force_impulse: Option<Vec<f64>>,
     /// |end - start - all impulses| over the sum of m|v| at the start \[-\]; signed in one
@@ -181,7 +185,8 @@ pub struct Momentum {
 
 impl Momentum {
     /// Drift from the momentum at start and end, the impulse of the boundaries and the sum `scale`
-    /// of m|v| at the start.
+    /// of m|v| at the start. All arguments are in the unit of [`Momentum`]; the first three have D
+    /// components.
     pub fn new(start: &[f64], end: &[f64], boundary_impulse: &[f64], scale: f64) -> Momentum {
         let left = |i: usize| end[i] - start[i] - boundary_impulse[i];
         let left = match start.len() {
@@ -197,7 +202,8 @@ impl Momentum {
         }
     }
 
-    /// The same with the impulse of a body force; `scale` is the sum of m|v| at the start.
+    /// The same with the impulse of a body force, D components; `scale` is the sum of m|v| at the
+    /// start. Both are in the unit of [`Momentum`].
     pub fn with_body_force(self, impulse: &[f64], scale: f64) -> Momentum {
         let all: Vec<f64> = self.boundary_impulse.iter().zip(impulse).map(|(a, b)| a + b).collect();
         let drift = Momentum::new(&self.start, &self.end, &all, scale).drift;
@@ -210,7 +216,8 @@ impl Momentum {
 pub struct OutflowSummary {
     /// Number of particles.
     pub particles: u64,
-    /// Mass of these particles \[kg\]; in one dimension \[kg/m2\], in two \[kg/m\].
+    /// Mass of these particles \[kg/m2\] in one dimension, \[kg/m\] in two, \[kg\] per radian with
+    /// axial symmetry.
     pub mass: f64,
     /// Momentum of these particles, D components, in the unit of [`Momentum`].
     pub momentum: Vec<f64>,
@@ -239,9 +246,9 @@ pub struct MeasuredQuantity {
     pub unit: String,
     /// Time at which it was measured \[s\].
     pub time: f64,
-    /// Computed value.
+    /// Computed value, in the unit of the field `unit`.
     pub value: f64,
-    /// Exact value; absent if it is not known.
+    /// Exact value, in the unit of the field `unit`; absent if it is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub exact: Option<f64>,
 }
@@ -264,7 +271,8 @@ pub struct ProfileSummary {
 }
 
 impl ProfileSummary {
-    /// The error `name` of the raw profile; `None` if undefined.
+    /// The error `name` of the raw profile, in the unit of [`crate::exact::Errors`]; `None` if
+    /// undefined.
     pub fn error(&self, name: &str) -> Option<f64> {
         self.errors.as_ref()?.get(name)?.as_f64()
     }

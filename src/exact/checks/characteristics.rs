@@ -10,9 +10,13 @@ use crate::material::{EquationOfState, MieGruneisen};
 
 /// An isentrope, tabulated at equal steps of compression, in ascending order.
 pub(super) struct Isentrope {
+    /// Compression chi = 1 - rho0/rho [-].
     pub chi: Vec<f64>,
+    /// Pressure [Pa].
     pub p: Vec<f64>,
+    /// Lagrangian sound speed [m/s].
     pub c: Vec<f64>,
+    /// Specific internal energy [J/kg].
     pub e: Vec<f64>,
     /// I, 0 at the top [m/s].
     pub i: Vec<f64>,

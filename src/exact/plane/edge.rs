@@ -115,7 +115,7 @@ mod tests {
     fn sound_speeds_of_the_standard_problem() {
         let edge = EdgeRelease::new(&standard(0.0), 2e-3).unwrap();
         close(edge.target_sound_speed, 6418.0, 0.05);
-        // the Lagrangian speeds of PROBLEM.md, section 2, times rho0/rho2
+        // the Lagrangian speeds of the head of the fan, times rho0/rho2
         close(edge.target_sound_speed, 7207.040 * 2785.0 / 3127.380, 2e-3);
         close(edge.flyer_sound_speed, 4855.239 * 8930.0 / 9604.616, 2e-3);
         close(edge.centre_time(), 2e-3 / edge.target_sound_speed, 1e-18);

@@ -58,8 +58,8 @@ impl Gap {
         (self.closing_time() - computed) * self.speed / h
     }
 
-    /// The impact of a flyer that comes from the side of -x, starts at this gap from the face that
-    /// it strikes, and moves at this speed relative to the target.
+    /// The impact of a flyer of `thickness` [m] that comes from the side of -x, starts at this gap
+    /// from the face that it strikes, and moves at this speed relative to the target.
     ///
     /// # Errors
     ///

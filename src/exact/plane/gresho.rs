@@ -71,7 +71,7 @@ impl Gresho {
     }
 
     /// The same vortex with its pressure level set so that V over the sound speed at the centre is
-    /// `mach`.
+    /// `mach` [-].
     ///
     /// # Errors
     ///

@@ -54,7 +54,9 @@ pub struct Noh {
 const PIECES: usize = 512;
 
 impl Noh {
-    /// Noh's problem; refuses constants that do not describe a gas.
+    /// Noh's problem for a gas with the ratio of specific heats `gamma` [-], the initial `density`
+    /// [kg/m3] and the initial `speed` towards the centre [m/s]. Refuses constants that do not
+    /// describe a gas.
     ///
     /// # Errors
     ///
@@ -94,8 +96,8 @@ impl Noh {
         0.5 * (self.gamma - 1.0) * self.density_behind() * self.speed * self.speed
     }
 
-    /// The gas at the distance `r` >= 0 and time `t` >= 0; `x` of the point is r, `u` the radial
-    /// velocity. At the shock itself the state is the one behind it.
+    /// The gas at the distance `r` >= 0 [m] and time `t` >= 0 [s]; `x` of the point is r, `u` the
+    /// radial velocity. At the shock itself the state is the one behind it.
     pub fn at(&self, r: f64, t: f64) -> ProfilePoint {
         if t > 0.0 && r <= self.shock_position(t) { self.behind(r) } else { self.ahead(r, t) }
     }
@@ -143,8 +145,8 @@ impl Noh {
         (self.mass_within(to, t) - self.mass_within(from, t)) / volume
     }
 
-    /// The gas from the centre to `outer` at `t` > 0; straight lines between points that are closer
-    /// together near the shock.
+    /// The gas from the centre to the distance `outer` [m] at `t` > 0 [s]: straight lines between
+    /// points that are closer together near the shock.
     pub fn profile(&self, t: f64, outer: f64) -> Profile {
         let shock = self.shock_position(t);
         if !(shock > 0.0 && shock < outer) {

@@ -111,8 +111,8 @@ impl PlaneWave {
         points.iter().filter(move |q| line.across(q.x).abs() < half_width)
     }
 
-    /// The particles at a distance of less than `half_width` from the line, sorted along it; their
-    /// `x` is s.
+    /// The particles at a distance of less than `half_width` [m] from the line, sorted along it;
+    /// their `x` is the position s along the line [m].
     pub fn samples(&self, points: &[PlanePoint], half_width: f64) -> Vec<ScoreSample> {
         let sample = |q: &PlanePoint| ScoreSample {
             x: self.along(q.x),

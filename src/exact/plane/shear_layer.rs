@@ -40,7 +40,8 @@ pub struct ShearLayer {
 }
 
 impl ShearLayer {
-    /// A shear layer; refuses a speed or height that is not positive.
+    /// A shear layer with the largest velocity `speed` [m/s], the `height` [m] and the `centre`
+    /// [m]. Refuses a speed or height that is not positive.
     ///
     /// # Errors
     ///

@@ -51,7 +51,7 @@ pub struct Vortex {
 }
 
 impl Default for Vortex {
-    /// The constants of PROBLEM.md, section 2.
+    /// The ring and the material of Kamojjala et al. (2015).
     fn default() -> Vortex {
         Vortex {
             inner: 0.75,

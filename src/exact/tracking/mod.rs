@@ -57,18 +57,21 @@ pub(super) enum FrontKind {
 /// One front, and the state to its right.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TrackedFront {
+    /// Kind of the front.
     pub kind: FrontKind,
     /// -1 left-going, 0 fixed to the material, 1 right-going.
     pub family: i8,
-    /// Lagrangian position [m] at the time `t` [s].
+    /// Lagrangian position at the time `t` [m].
     pub x: f64,
+    /// Time to which `x` and `place` belong [s].
     pub t: f64,
     /// Lagrangian speed, signed [m/s].
     pub speed: f64,
     /// State to the right of the front.
     pub right: WaveState,
-    /// Number of the path that the front draws, and its Eulerian position at the time `t` [m].
+    /// Number of the path that the front draws; `None` if it draws none.
     pub path: Option<usize>,
+    /// Eulerian position at the time `t`, for fronts that draw a path [m].
     pub place: f64,
     /// Whether the front is in the flyer.
     flyer: bool,
@@ -139,10 +142,13 @@ impl Ord for Meeting {
 /// One change of the state of a recorded material point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WaveRecord {
+    /// Time of the change [s].
     pub t: f64,
     /// Family of the arriving front: 0 from the right, 2 from the left, 1 neither.
     pub family: usize,
+    /// Whether the front is a shock.
     pub strong: bool,
+    /// Whether the front is the edge of a wave.
     pub edge: bool,
     /// Pressure [Pa] and velocity [m/s] after the front.
     pub after: [f64; 2],
@@ -161,7 +167,9 @@ struct Faces {
 /// Parameters of the tracking.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TrackingSetup {
+    /// Material of the flyer.
     pub flyer: MieGruneisen,
+    /// Material of the target.
     pub target: MieGruneisen,
     /// Closing speed U [m/s].
     pub speed: f64,
@@ -178,6 +186,7 @@ pub(super) struct TrackingSetup {
 /// The sequence of fronts at one time.
 #[derive(Clone, Debug)]
 pub(super) struct Tracker {
+    /// Parameters of the tracking.
     pub setup: TrackingSetup,
     fronts: Vec<TrackedFront>,
     free: Vec<usize>,

@@ -13,9 +13,13 @@ pub(super) type Trail = Option<(usize, f64)>;
 
 /// A wave to be inserted.
 pub(super) struct Leaving {
+    /// Strength, the change of the compression chi [-].
     pub strength: f64,
+    /// Number of fronts that represent the wave.
     pub steps: usize,
+    /// State behind the wave.
     pub star: WaveState,
+    /// Path that the wave continues.
     pub trail: Trail,
     /// Eulerian position, for paths that start here [m].
     pub place: f64,

@@ -13,7 +13,9 @@ const ROUNDING: f64 = 1e-12;
 
 /// Grid of a domain.
 pub(super) struct Grid {
+    /// Edges of a cell, one per direction [m].
     pub cell_size: Vec<f64>,
+    /// Number of cells in each direction.
     pub cells: Vec<usize>,
 }
 

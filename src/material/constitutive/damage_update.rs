@@ -35,7 +35,9 @@ pub trait FailureModel: Send + Sync {
 
 /// Particle loop over one failure law.
 pub(super) struct FailureKernel<L> {
+    /// Law of failure.
     pub law: L,
+    /// Strength of the same material.
     pub strength: StrengthBeside,
 }
 

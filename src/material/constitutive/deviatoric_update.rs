@@ -42,7 +42,7 @@ pub struct Deviators<'a> {
 }
 
 impl Deviators<'_> {
-    /// The deviator of particle `r`.
+    /// The deviator of particle `r` [Pa].
     #[inline(always)]
     pub fn at(&self, r: usize) -> Symmetric {
         let xx = self.xx[r];
@@ -57,15 +57,15 @@ impl Deviators<'_> {
 pub struct StrengthUpdate<'a> {
     /// Time step [s].
     pub dt: f64,
-    /// Velocity gradient.
+    /// Velocity gradient [1/s].
     pub rate: VelocityGradients<'a>,
-    /// Volume ratio J.
+    /// Volume ratio J [-].
     pub jacobian: &'a [f64],
     /// Pressure [Pa].
     pub pressure: &'a [f64],
     /// Temperature [K], if the scene has one.
     pub temperature: Option<&'a [f64]>,
-    /// Deviator of the stress before the update.
+    /// Deviator of the stress before the update [Pa].
     pub deviator: Deviators<'a>,
     /// Equivalent plastic strain before the update [-].
     pub plastic_strain: &'a [f64],

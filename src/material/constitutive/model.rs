@@ -43,9 +43,9 @@ pub struct MidStep<'a> {
     pub mass: &'a [f64],
     /// Volume at J = 1 [m3].
     pub volume0: &'a [f64],
-    /// J at the start of the step.
+    /// Volume ratio J at the start of the step [-].
     pub jacobian: &'a [f64],
-    /// J at the middle of the step.
+    /// Volume ratio J at the middle of the step [-].
     pub jacobian_mid: &'a [f64],
     /// Specific internal energy at the start of the step [J/kg].
     pub energy: &'a [f64],
@@ -57,7 +57,8 @@ pub struct MidStep<'a> {
     pub floor: f64,
     /// Artificial viscosity [Pa], if active.
     pub q: Option<&'a [f64]>,
-    /// History variable at the start of the step, if the material has one.
+    /// History variable at the start of the step in the unit of its column, if the material has
+    /// one.
     pub history: Option<&'a [f64]>,
     /// Output: (p + q) V [J].
     pub stress_volume: &'a mut [f64],
@@ -73,9 +74,9 @@ pub struct VolumeChange<'a> {
     pub mass: &'a [f64],
     /// Volume at J = 1 [m3].
     pub volume0: &'a [f64],
-    /// J before the change.
+    /// Volume ratio J before the change [-].
     pub before: &'a [f64],
-    /// J after the change.
+    /// Volume ratio J after the change [-].
     pub after: &'a [f64],
     /// Artificial viscosity during the change [Pa], if active.
     pub q: Option<&'a [f64]>,
@@ -83,7 +84,7 @@ pub struct VolumeChange<'a> {
     pub pressure: &'a mut [f64],
     /// Specific internal energy [J/kg], updated in place.
     pub energy: &'a mut [f64],
-    /// History variable before the change, if the material has one.
+    /// History variable before the change in the unit of its column, if the material has one.
     pub history: Option<&'a [f64]>,
 }
 

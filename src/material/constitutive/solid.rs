@@ -16,7 +16,7 @@ pub enum Strain<'a> {
 /// F in a plane, extrapolated from its columns by the time `ahead`: (1 + ahead L) F.
 #[derive(Clone, Copy)]
 pub struct PlaneStrain<'a> {
-    /// F by rows.
+    /// F by rows: xx, xy, yx, yy [-].
     pub deformation: [&'a [f64]; 4],
     /// Velocity gradient L by rows [1/s].
     pub gradient: [&'a [f64]; 4],
@@ -51,18 +51,19 @@ impl Strain<'_> {
     }
 }
 
-/// Columns of a symmetric tensor, only those that a scene needs.
+/// Columns of a symmetric tensor in the unit of the tensor, with one entry per particle; only those
+/// that a scene needs.
 pub struct TensorColumns<'a> {
-    /// Component xx.
+    /// Component xx, in the unit of the tensor.
     pub xx: &'a mut [f64],
-    /// Components yy and xy; `None` in one dimension.
+    /// Components yy and xy, in the unit of the tensor; `None` in one dimension.
     pub plane: Option<[&'a mut [f64]; 2]>,
-    /// Component zz, across the plane, in axisymmetry.
+    /// Component zz, across the plane, in the unit of the tensor; with axial symmetry only.
     pub across: Option<&'a mut [f64]>,
 }
 
 impl TensorColumns<'_> {
-    /// Sets particle `r` to `scale` times `tensor`.
+    /// Sets particle `r` to `scale` times `tensor`, in the unit of the product.
     #[inline(always)]
     pub fn set(&mut self, r: usize, tensor: &Symmetric, scale: f64) {
         self.xx[r] = scale * tensor.xx;

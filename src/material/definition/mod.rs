@@ -20,10 +20,12 @@ pub use crate::material::strength::Strength;
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
-    /// Density at rest [kg/m3]; further bounds follow from the equation of state.
+    /// Density at rest, the reference density of the equation of state [kg/m3]; further bounds
+    /// follow from the equation of state.
     #[schemars(extend("exclusiveMinimum" = 0.0, "minimum" = 0.0, "maximum" = f64::MAX))]
     pub density: f64,
-    /// Equation of state.
+    /// Equation of state, selected by `type`: the pressure as a function of density and energy, or
+    /// the stress of an elastic solid.
     pub eos: Eos,
     /// Strength in shear, in addition to a fluid's equation of state; absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -34,10 +36,11 @@ pub struct Material {
     /// Erosion, which removes particles from the run; absent: never.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub erosion: Option<Erosion>,
-    /// Temperature; absent: none.
+    /// Temperature model, which strength with softening, heat conduction and initial temperatures
+    /// need; absent: the material has no temperature.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal: Option<Thermal>,
-    /// Source of the constants.
+    /// Source of the constants: author, year and table. It has no effect on the run.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub source: String,
 }

@@ -22,16 +22,17 @@ pub struct Erosion {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Thermal {
-    /// Specific heat cv [J/(kg K)].
+    /// Specific heat cv at constant volume [J/(kg K)]. With a larger value the same heat raises the
+    /// temperature less.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub specific_heat: f64,
-    /// Temperature at rest [K].
+    /// Temperature of the material at rest, at its reference density and without heat [K].
     #[schemars(range(min = 0.0))]
     pub reference_temperature: f64,
-    /// Quantity that determines the temperature.
+    /// Quantity that determines the temperature; default `energy`.
     #[serde(default)]
     pub source: HeatSource,
-    /// Fraction of the plastic work that becomes heat (Taylor & Quinney 1934) [-].
+    /// Fraction of the plastic work that becomes heat (Taylor & Quinney 1934) [-]; default 1.
     #[serde(default = "one")]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub taylor_quinney: f64,
@@ -45,10 +46,11 @@ pub struct Thermal {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum HeatSource {
-    /// Internal energy, relative to the isentrope of the equation of state.
+    /// The temperature follows from the internal energy, relative to the isentrope of the equation
+    /// of state.
     #[default]
     Energy,
-    /// Plastic work only.
+    /// The temperature rises by the plastic work only.
     PlasticWork,
 }
 

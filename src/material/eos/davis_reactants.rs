@@ -101,23 +101,29 @@ impl EquationOfState for DavisReactants {
     }
 }
 
-/// Unreacted explosive with the equation of state of Davis; it does not burn.
+/// Unreacted explosive with the equation of state of Davis; it does not burn. With y = 1 - rho0/rho
+/// >= 0 and u = 4 B y the isentrope from rest is p_s = rho0 A^2/(4 B) (u + u^2/2 + u^3/6 + C u^4/24
+/// + y^2/(1 - y)^4), and the Grueneisen coefficient is G0 + Z y.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DavisReactantsParameters {
-    /// Sound speed at rest A [m/s].
+    /// Sound speed A of the material at rest [m/s]. A larger value makes the material stiffer.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub a: f64,
-    /// B [-].
+    /// Constant B of the isentrope [-]. With a larger value the stiffness grows faster with
+    /// compression.
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 100.0))]
     pub b: f64,
-    /// C [-].
+    /// Constant C, the weight of the fourth-order term of the isentrope [-]. A larger value makes
+    /// strongly compressed material stiffer.
     #[schemars(extend("minimum" = 0.0))]
     pub c: f64,
-    /// Grueneisen coefficient at rest G0 [-].
+    /// Grueneisen coefficient G0 at rest and in expansion [-]. A larger value gives more pressure
+    /// per energy.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub gamma0: f64,
-    /// Growth of the Grueneisen coefficient with compression Z [-].
+    /// Increase Z of the Grueneisen coefficient with the compression y [-]; default 0: it is
+    /// constant.
     #[serde(default)]
     pub z: f64,
     /// Greatest tension that the material carries [Pa]; absent: no limit.

@@ -14,27 +14,28 @@ use crate::material::ParameterError;
 /// Deformation gradient F = dx/dX that preserves a plane [-].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deformation {
-    /// F in the plane, by rows: xx, xy, yx, yy.
+    /// F in the plane, by rows: xx, xy, yx, yy [-].
     pub plane: [f64; 4],
-    /// Stretch across the plane: 1 in plane strain, current over initial radius in axisymmetry.
+    /// Stretch across the plane [-]: 1 in plane strain, current over initial radius in axisymmetry.
     pub across: f64,
 }
 
-/// Symmetric tensor without components xz and yz.
+/// Symmetric tensor without components xz and yz; stress [Pa], strain [-] or rate [1/s], as the
+/// holder says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Symmetric {
-    /// Component xx.
+    /// Component xx, in the unit of the tensor.
     pub xx: f64,
-    /// Component yy.
+    /// Component yy, in the unit of the tensor.
     pub yy: f64,
-    /// Component xy, the same as yx.
+    /// Component xy, the same as yx, in the unit of the tensor.
     pub xy: f64,
-    /// Component zz, across the plane.
+    /// Component zz, across the plane, in the unit of the tensor.
     pub zz: f64,
 }
 
 impl Deformation {
-    /// F of uniaxial strain in one dimension, with volume ratio `jacobian`.
+    /// F of uniaxial strain in one dimension, with the volume ratio `jacobian` [-].
     #[inline(always)]
     pub fn uniaxial(jacobian: f64) -> Self {
         Deformation { plane: [jacobian, 0.0, 0.0, 1.0], across: 1.0 }
@@ -91,19 +92,19 @@ impl Deformation {
 }
 
 impl Symmetric {
-    /// `value` times the unit tensor.
+    /// `value` times the unit tensor, in the unit of `value`.
     #[inline(always)]
     pub fn isotropic(value: f64) -> Self {
         Symmetric { xx: value, yy: value, xy: 0.0, zz: value }
     }
 
-    /// Sum of the diagonal.
+    /// Sum of the diagonal, in the unit of the tensor.
     #[inline(always)]
     pub fn trace(&self) -> f64 {
         self.xx + self.yy + self.zz
     }
 
-    /// Double contraction a : b.
+    /// Double contraction a : b, in the product of both units.
     #[inline(always)]
     pub fn double_dot(&self, other: &Symmetric) -> f64 {
         self.xx * other.xx + self.yy * other.yy + 2.0 * self.xy * other.xy + self.zz * other.zz

@@ -19,7 +19,9 @@ pub struct EosPoint {
 }
 
 impl EosPoint {
-    /// From the derivatives of p(J, e): c^2 = J^2/rho0 (-dp/dJ + p/rho0 dp/de).
+    /// From the derivatives of p(J, e): c^2 = J^2/rho0 (-dp/dJ + p/rho0 dp/de). The arguments are
+    /// the density at rest [kg/m3], J [-], p [Pa], dp/dJ at fixed energy [Pa] and dp/de at fixed
+    /// volume [kg/m3].
     #[inline(always)]
     pub fn new(rho0: f64, jacobian: f64, p: f64, volume_slope: f64, energy_slope: f64) -> Self {
         EosPoint {
@@ -139,8 +141,9 @@ impl<E: GeneralEos> HistoryEos for E {
 /// Maximum number of Newton steps; the search then returns its current value.
 const MOST_STEPS: usize = 80;
 
-/// Solves e + `weight` p(e) = `known` for the energy e, starting from `guess`, and returns e and
-/// the state there. `at` gives the state at an energy and the fixed volume.
+/// Solves e + `weight` p(e) = `known` for the energy e [J/kg], starting from `guess` [J/kg], and
+/// returns e and the state there. `weight` is a change of specific volume [m3/kg], `known` an
+/// energy [J/kg]. `at` gives the state at an energy and the fixed volume.
 ///
 /// Newton's method; a step that would leave the current bracket halves the bracket instead. Ends
 /// when a step is below the rounding of the terms. Depends on its arguments only, so that it gives

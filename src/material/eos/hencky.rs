@@ -123,10 +123,11 @@ impl ElasticSolid for Hencky {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LinearElasticParameters {
-    /// Young's modulus [Pa].
+    /// Young's modulus E, the stress over the strain of a rod in tension [Pa].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub youngs_modulus: f64,
-    /// Poisson's ratio [-].
+    /// Poisson's ratio nu, the lateral contraction over the extension of a rod in tension [-];
+    /// towards 0.5 the material becomes incompressible.
     #[schemars(extend("exclusiveMinimum" = -1.0, "exclusiveMaximum" = 0.5))]
     pub poissons_ratio: f64,
 }

@@ -51,7 +51,8 @@ impl EquationOfState for IdealGas {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct IdealGasParameters {
-    /// Ratio of specific heats [-].
+    /// Ratio of specific heats gamma [-]: 5/3 for atoms, 1.4 for molecules of two atoms. A larger
+    /// value gives more pressure per energy and a smaller compression in a shock.
     #[schemars(extend("exclusiveMinimum" = 1.0))]
     pub gamma: f64,
 }

@@ -192,29 +192,35 @@ impl HistoryEos for Burning {
     }
 }
 
-/// Detonation products with the equation of state of Jones, Wilkins and Lee; the density is that of
-/// the explosive.
+/// Detonation products with the equation of state of Jones, Wilkins and Lee, p = A (1 - omega/(R1
+/// V)) exp(-R1 V) + B (1 - omega/(R2 V)) exp(-R2 V) + omega rho0 e/V with the volume ratio V; the
+/// density is that of the explosive.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JwlParameters {
-    /// A [Pa].
+    /// Coefficient A of the first exponential term, which gives most of the pressure near the
+    /// initial volume [Pa].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub a: f64,
-    /// B [Pa].
+    /// Coefficient B of the second exponential term, which acts at medium expansion [Pa].
     pub b: f64,
-    /// R1 [-].
+    /// Exponent R1 of the first term [-]. With a larger value this term fades at a smaller
+    /// expansion.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub r1: f64,
-    /// R2 [-].
+    /// Exponent R2 of the second term [-], usually smaller than R1. With a larger value this term
+    /// fades at a smaller expansion.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub r2: f64,
-    /// Omega, the Grueneisen coefficient of the products [-].
+    /// Grueneisen coefficient omega of the products [-]: the pressure of strongly expanded products
+    /// is omega rho e. A larger value gives more pressure per energy.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub omega: f64,
-    /// Energy of detonation per volume of the explosive E0 [J/m3].
+    /// Energy of detonation E0 per initial volume of the explosive [J/m3]. A larger value gives
+    /// more pressure at every volume.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub energy: f64,
-    /// How the explosive burns.
+    /// Way in which the explosive burns: `"complete"` before the start, or a burn front.
     pub burn: Burn,
 }
 
@@ -232,7 +238,7 @@ pub enum Burn {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BurnWhole {
-    /// Fully burnt before the start.
+    /// The whole explosive is burnt before the start.
     Complete,
 }
 
@@ -253,11 +259,12 @@ pub struct BurnFront {
     /// Length behind the front over which the burnt fraction grows from 0 to 1 [m].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub width: f64,
-    /// Start time of the front [s].
+    /// Time at which the front starts [s]; default 0.
     #[serde(default)]
     #[schemars(extend("minimum" = 0.0))]
     pub start: f64,
-    /// Whether compression burns too: the burnt fraction is at least (1 - V)/(1 - V_CJ).
+    /// Whether compression burns the explosive too: the burnt fraction is then at least (1 - V)/(1
+    /// - V_CJ), with the volume ratio V and that of the Chapman-Jouguet state; default false.
     #[serde(default)]
     pub compression: bool,
 }
@@ -266,7 +273,7 @@ pub struct BurnFront {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BurnPlane {
-    /// Point of the plane [m].
+    /// Coordinates of any point of the plane [m].
     pub point: Vec<f64>,
     /// Normal of the plane, of any length.
     pub normal: Vec<f64>,

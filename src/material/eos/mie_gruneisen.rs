@@ -103,19 +103,23 @@ impl EquationOfState for MieGruneisen {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MieGruneisenParameters {
-    /// Bulk sound speed at rest [m/s].
+    /// Bulk sound speed c0 of the material at rest, the shock speed Us of a very weak shock [m/s].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub c0: f64,
-    /// Slope of the Us-up curve [-].
+    /// Slope s of the shock speed Us over the particle velocity up [-]. A larger value makes
+    /// compressed material stiffer.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub s: f64,
-    /// Curvature of the Us-up curve [s/m].
+    /// Curvature s2 of the shock speed Us over the particle velocity up [s/m]; absent: 0, a
+    /// straight line.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub s2: f64,
-    /// Grueneisen coefficient at rest [-].
+    /// Grueneisen coefficient Gamma of the material at rest [-]. A larger value gives more pressure
+    /// per internal energy.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub gamma0: f64,
-    /// Which form of the Grueneisen coefficient is constant.
+    /// Form of the Grueneisen coefficient that does not change with density; absent:
+    /// `gamma_rho_constant`.
     #[serde(default, skip_serializing_if = "Gruneisen::is_default")]
     pub gruneisen: Gruneisen,
     /// Greatest tension that the material carries [Pa]; absent: no limit.
@@ -132,10 +136,10 @@ fn is_zero(value: &f64) -> bool {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Gruneisen {
-    /// Gamma rho.
+    /// The product of Gamma and the density is constant.
     #[default]
     GammaRhoConstant,
-    /// Gamma itself.
+    /// Gamma is constant.
     GammaConstant,
 }
 
@@ -168,8 +172,9 @@ impl EosParameters for MieGruneisenParameters {
 }
 
 impl Eos {
-    /// Mie-Grueneisen material with a straight Us-up line, constant Gamma rho and unlimited
-    /// tension, for which the exact solutions of impacts are made; `None` for all others.
+    /// Mie-Grueneisen material of `density` [kg/m3] with a straight Us-up line, constant Gamma rho
+    /// and unlimited tension, for which the exact solutions of impacts are made; `None` for all
+    /// others.
     pub fn straight(&self, density: f64) -> Option<MieGruneisen> {
         let Eos::MieGruneisen(p) = self else { return None };
         let straight = p.s2 == 0.0 && p.gruneisen.is_default() && p.tension_cutoff.is_none();

@@ -68,7 +68,8 @@ macro_rules! eos_models {
                 }
             }
 
-            /// The same for a fluid without a history; also `None` for a fluid with one.
+            /// The same for a fluid of density `rho0` at rest [kg/m3] without a history; also
+            /// `None` for a fluid with one.
             ///
             /// # Errors
             ///
@@ -79,7 +80,7 @@ macro_rules! eos_models {
                 }
             }
 
-            /// The same for an elastic solid; `None` for a fluid.
+            /// The same for an elastic solid of density `rho0` at rest [kg/m3]; `None` for a fluid.
             pub fn visit_solid<V: SolidVisitor>(&self, rho0: f64, visitor: V) -> Option<V::Output> {
                 match self {
                     $(Eos::$type(parameters) => parameters.visit_solid(rho0, visitor),)*

@@ -68,13 +68,16 @@ impl EquationOfState for NobleAbelStiffenedGas {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NobleAbelStiffenedGasParameters {
-    /// Ratio of specific heats [-].
+    /// Constant gamma, the ratio of specific heats of the gas without cohesion [-]. With a larger
+    /// value the stiffness grows faster with pressure.
     #[schemars(extend("exclusiveMinimum" = 1.0))]
     pub gamma: f64,
-    /// Cohesion p_inf [Pa].
+    /// Cohesion p_inf [Pa]; no tension above it is possible. A larger value makes the material
+    /// stiffer.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub p_inf: f64,
-    /// Volume of the molecules b [m3/kg], below 1/density.
+    /// Covolume b, the specific volume of the molecules [m3/kg], below 1/density; the specific
+    /// volume of the material is always larger. A larger value makes compressed material stiffer.
     #[schemars(extend("minimum" = 0.0))]
     pub covolume: f64,
     /// Greatest tension that the material carries [Pa]; absent: up to p_inf.

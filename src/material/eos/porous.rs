@@ -146,10 +146,12 @@ pub struct PAlphaParameters {
     /// Density of the solid without pores at rest [kg/m3], above the material's density.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub solid_density: f64,
-    /// Pressure at which pores begin to close [Pa].
+    /// Pressure at which the pores begin to close [Pa]. Below it the material is elastic; a larger
+    /// value gives a stronger elastic precursor.
     #[schemars(extend("minimum" = 0.0))]
     pub elastic_pressure: f64,
-    /// Pressure at which all pores are closed [Pa], above `elastic_pressure`.
+    /// Pressure at which all pores are closed [Pa], above `elastic_pressure`. With a larger value
+    /// the pores close more gradually.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub full_compaction_pressure: f64,
 }

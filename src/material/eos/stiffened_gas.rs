@@ -58,10 +58,12 @@ impl EquationOfState for StiffenedGas {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StiffenedGasParameters {
-    /// Ratio of specific heats gamma [-].
+    /// Constant gamma, the ratio of specific heats of the gas without cohesion [-]. With a larger
+    /// value the stiffness grows faster with pressure.
     #[schemars(extend("exclusiveMinimum" = 1.0))]
     pub gamma: f64,
-    /// Cohesion p_inf [Pa].
+    /// Cohesion p_inf [Pa]: the sound speed at rest is (gamma p_inf/rho0)^(1/2), and no tension
+    /// above p_inf is possible. A larger value makes the material stiffer.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub p_inf: f64,
     /// Greatest tension that the material carries [Pa]; absent: up to p_inf.

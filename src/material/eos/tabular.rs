@@ -135,8 +135,8 @@ pub struct Tabular {
 const CHECKED: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 
 impl Tabular {
-    /// Equation of state from `table`, for a material of density `rho0` at rest; pressures at or
-    /// below minus `cutoff` are not checked.
+    /// Equation of state from `table`, for a material of density `rho0` at rest [kg/m3]; pressures
+    /// at or below minus `cutoff` [Pa] are not checked.
     ///
     /// # Errors
     ///
@@ -240,7 +240,8 @@ impl GeneralEos for Tabular {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TabularParameters {
-    /// The table.
+    /// Pressures over density and specific internal energy: the name of a file, or the lists
+    /// themselves.
     pub table: TableSource,
     /// Greatest tension that the material carries [Pa]; absent: all that the table has.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -62,10 +62,12 @@ impl EquationOfState for Tait {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TaitParameters {
-    /// Bulk modulus at rest K0 [Pa].
+    /// Bulk modulus K0 of the material at rest [Pa]; the sound speed at rest is (K0/rho0)^(1/2).
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub bulk_modulus: f64,
-    /// Exponent n, the derivative of the modulus by pressure [-].
+    /// Exponent n, the derivative of the bulk modulus with respect to pressure [-], about 7 for
+    /// water. A larger value makes compressed material stiffer; 1 makes the pressure linear in the
+    /// density.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub exponent: f64,
     /// Greatest tension that the material carries [Pa]; absent: up to K0/n.

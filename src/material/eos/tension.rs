@@ -77,7 +77,7 @@ pub struct GeneralCutoff<E> {
 }
 
 impl<E: GeneralEos> GeneralCutoff<E> {
-    /// Adds a cutoff to `eos`.
+    /// Adds a limit of the `tension` [Pa] to `eos`.
     pub fn new(eos: E, tension: f64) -> Self {
         let rest = eos.at(1.0, eos.energy_at(0.0)).sound_speed_squared;
         GeneralCutoff { eos, tension, rest }

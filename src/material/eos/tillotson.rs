@@ -124,35 +124,45 @@ impl GeneralEos for Tillotson {
     }
 }
 
-/// Tillotson's equation of state, from cold compression to vapour.
+/// Tillotson's equation of state, from cold compression to vapour. With eta = rho/rho0, mu = eta -
+/// 1 and z = 1/eta - 1, the condensed state has p = (a + b/(e/(e0 eta^2) + 1)) rho e + A mu + B
+/// mu^2, the vapour p = a rho e + (b rho e/(e/(e0 eta^2) + 1) + A mu exp(-beta z)) exp(-alpha z^2);
+/// between e_iv and e_cv the pressure changes linearly with e from one to the other.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TillotsonParameters {
-    /// a [-].
+    /// Constant a of the thermal pressure a rho e [-]: the Grueneisen coefficient of the hot
+    /// vapour. A larger value gives more pressure per energy.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub a: f64,
-    /// b [-].
+    /// Constant b of the thermal pressure [-]: at low energy the Grueneisen coefficient is a + b. A
+    /// larger value gives cold material more pressure per energy.
     #[schemars(extend("minimum" = 0.0))]
     pub b: f64,
-    /// A, the bulk modulus at rest [Pa].
+    /// Bulk modulus A of the material at rest [Pa]. A larger value makes the material stiffer.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub bulk_modulus: f64,
-    /// B [Pa].
+    /// Coefficient B of the pressure that is quadratic in the compression [Pa]. A larger value
+    /// makes strongly compressed material stiffer.
     #[schemars(extend("minimum" = 0.0))]
     pub second_modulus: f64,
-    /// alpha, how fast cohesion fades in expansion [-].
+    /// Exponent alpha in the expanded state [-]. With a larger value the energy-dependent pressure
+    /// above a rho e fades faster in expansion.
     #[schemars(extend("minimum" = 0.0))]
     pub alpha: f64,
-    /// beta, as alpha [-].
+    /// Exponent beta in the expanded state [-]. With a larger value the cohesion, the term with A,
+    /// fades faster in expansion.
     #[schemars(extend("minimum" = 0.0))]
     pub beta: f64,
-    /// e0, energy at which the thermal part changes [J/kg].
+    /// Specific energy e0 at which the Grueneisen coefficient of material at rest density has
+    /// fallen to a + b/2 [J/kg]. A larger value keeps it at a + b up to higher energies.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub e0: f64,
-    /// Energy of incipient vaporization [J/kg].
+    /// Specific internal energy at which expanded material begins to vaporize, e_iv [J/kg].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub e_iv: f64,
-    /// Energy of complete vaporization [J/kg], above e_iv.
+    /// Specific internal energy at which expanded material is completely vaporized, e_cv [J/kg];
+    /// above `e_iv`.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub e_cv: f64,
     /// Greatest tension that the material carries [Pa]; absent: no limit.

@@ -82,10 +82,11 @@ impl EquationOfState for Vinet {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VinetParameters {
-    /// Bulk modulus at rest K [Pa].
+    /// Bulk modulus K of the isotherm at rest [Pa]. A larger value makes the material stiffer.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub bulk_modulus: f64,
-    /// Derivative of the bulk modulus by pressure K' [-].
+    /// Derivative K' of the bulk modulus with respect to pressure [-]. With a larger value the
+    /// stiffness grows faster with compression.
     #[schemars(extend("exclusiveMinimum" = 1.0), range(max = 20.0))]
     pub bulk_modulus_derivative: f64,
     /// Grueneisen coefficient at rest; Gamma rho is constant [-].

@@ -42,10 +42,12 @@ pub struct CochranBanner {
     /// Tension (minus the pressure) at which cracks begin to open, Sigma0 [Pa].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub stress: f64,
-    /// Volume of the cracks per area at failure, D0 [m].
+    /// Volume D0 of the cracks per area at which the material carries nothing [m]. A spall takes
+    /// the energy Sigma0 D0 x/(1 + x) per area, so that a larger value makes the material tougher.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub opening: f64,
-    /// Exponent of the damage in the strength, x [-].
+    /// Exponent x of the damage D in the strength Sigma0 (1 - D^x) [-]; default 2/3. With a smaller
+    /// value the strength falls faster when cracks begin to open.
     #[serde(default = "two_thirds")]
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 1.0))]
     pub exponent: f64,

@@ -37,13 +37,16 @@ use super::{Carried, FailureLaw, RestState, StrengthBeside, StressState};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GradyKipp {
-    /// Coefficient of the number of flaws per volume, k [1/m3].
+    /// Coefficient k of the number of flaws per volume, k strain^m [1/m3]. With a larger value
+    /// flaws are activated at smaller strains, and the material is weaker.
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 1e100))]
     pub flaw_density: f64,
-    /// Exponent of the strain in the number of flaws, m [-].
+    /// Exponent m of the strain in the number of flaws k strain^m [-]. With a larger value the
+    /// flaws are activated in a narrower range of strains.
     #[schemars(range(min = 1.0, max = 50.0))]
     pub exponent: f64,
-    /// Speed of the cracks over that of longitudinal waves, cg/cl [-].
+    /// Speed of the cracks over the speed of longitudinal waves, cg/cl [-]; default 0.4. With a
+    /// larger value the damage grows faster.
     #[serde(default = "two_fifths")]
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 1.0))]
     pub crack_speed: f64,

@@ -20,16 +20,20 @@ use crate::material::strength::equivalent;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JohnsonCookFracture {
-    /// Constant part of the strain at fracture [-].
+    /// Part d1 of the strain at fracture that does not depend on the stress [-]; default 0. A
+    /// larger value makes the material more ductile.
     #[serde(default)]
     pub d1: f64,
-    /// Part of the strain at fracture that depends on the triaxiality [-].
+    /// Coefficient d2 of the part of the strain at fracture that depends on the triaxiality s*, the
+    /// mean tension over the equivalent stress [-]; default 0.
     #[serde(default)]
     pub d2: f64,
-    /// Exponent of the part that depends on the triaxiality [-].
+    /// Factor d3 of the triaxiality in the exponential [-]; default 0. With a negative d3 and a
+    /// positive d2 the strain at fracture falls with tension.
     #[serde(default)]
     pub d3: f64,
-    /// Coefficient of the logarithm of the strain rate [-].
+    /// Coefficient d4 of the logarithm of the strain rate [-]; default 0. With a larger value the
+    /// strain at fracture grows more with the rate.
     #[serde(default)]
     pub d4: f64,
     /// Coefficient of the temperature, which needs `thermal` and the strength's `softening` [-].

@@ -9,7 +9,7 @@ use super::{FailureLaw, PressureLimit, StrengthBeside, StressState};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TensionLimit {
-    /// Tension limit [Pa].
+    /// Tension at which a particle fails at once [Pa]. A larger value makes the material stronger.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub stress: f64,
     /// Stress measure that must reach the limit.

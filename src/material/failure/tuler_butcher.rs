@@ -17,13 +17,15 @@ use super::{FailureLaw, PressureLimit, StrengthBeside, StressState, TensionMeasu
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TulerButcher {
-    /// Tension that does no damage however long it acts, s0 [Pa].
+    /// Tension s0 below which no damage accumulates, however long it acts [Pa].
     #[schemars(range(min = 0.0))]
     pub threshold: f64,
-    /// Exponent lambda [-].
+    /// Exponent lambda of the tension above the threshold [-]. With a larger value the time to
+    /// failure falls faster with the tension.
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 10.0))]
     pub exponent: f64,
-    /// Integral at which the material fails, K [Pa^exponent s].
+    /// Value K of the integral at which the material fails [Pa^exponent s]. With a larger value
+    /// failure takes longer.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub impulse: f64,
     /// Stress measure that must exceed the threshold.

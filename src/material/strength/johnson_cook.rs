@@ -19,19 +19,22 @@ use crate::material::ParameterError;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JohnsonCook {
-    /// Shear modulus [Pa].
+    /// Shear modulus G, the elastic shear stress over the shear strain [Pa]. It is constant.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub shear_modulus: f64,
-    /// Yield stress at zero plastic strain [Pa].
+    /// Yield stress at zero plastic strain, at the reference rate and the reference temperature
+    /// [Pa].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub a: f64,
-    /// Hardening coefficient [Pa].
+    /// Hardening coefficient [Pa]: increase of the yield stress at a plastic strain of 1.
     #[schemars(range(min = 0.0))]
     pub b: f64,
-    /// Exponent of the plastic strain [-].
+    /// Exponent of the plastic strain ep in the hardening b ep^n [-]. With a smaller value the
+    /// material hardens earlier.
     #[schemars(range(max = 5.0), extend("exclusiveMinimum" = 0.0))]
     pub n: f64,
-    /// Coefficient of the logarithm of the strain rate [-].
+    /// Coefficient of the logarithm of the strain rate [-]; default 0. With a larger value the
+    /// yield stress grows more with the rate.
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub c: f64,
@@ -48,13 +51,15 @@ pub struct JohnsonCook {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Softening {
-    /// Exponent [-].
+    /// Exponent m of the homologous temperature T* [-]. With a larger value the yield stress falls
+    /// later, nearer to melting.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub m: f64,
     /// Temperature below which there is no softening [K].
     #[schemars(range(min = 0.0))]
     pub reference_temperature: f64,
-    /// Melting temperature [K].
+    /// Temperature at which the material melts and its yield stress is 0 [K]; above
+    /// `reference_temperature`.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub melt_temperature: f64,
 }

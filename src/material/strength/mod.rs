@@ -113,9 +113,9 @@ pub trait StrengthLaw: Copy + Send + Sync + 'static {
 /// Velocity gradient L in the plane, and strain rate across it [1/s].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rate {
-    /// L in the plane by rows: xx, xy, yx, yy.
+    /// L in the plane by rows: xx, xy, yx, yy [1/s].
     pub plane: [f64; 4],
-    /// Strain rate across the plane: 0 in plane strain, v_x/x in axisymmetry.
+    /// Strain rate across the plane [1/s]: 0 in plane strain, v_x/x in axisymmetry.
     pub across: f64,
 }
 
@@ -156,8 +156,8 @@ fn rotated(s: &Symmetric, half: f64) -> Symmetric {
     }
 }
 
-/// Advances the deviator `s` and the plastic strain `strain` by `dt` at the velocity gradient
-/// `rate`.
+/// Advances the deviator `s` [Pa] and the plastic strain `strain` [-] by the time `dt` [s] at the
+/// velocity gradient `rate` [1/s].
 #[inline(always)]
 pub fn advance(
     model: &impl StrengthLaw,

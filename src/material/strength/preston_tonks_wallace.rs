@@ -27,50 +27,59 @@ pub struct PrestonTonksWallace {
     /// Shear modulus G0 at zero temperature and pressure [Pa].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub shear_modulus: f64,
-    /// Decrease of the shear modulus from zero temperature to melting, alpha [-].
+    /// Fraction alpha by which the shear modulus falls from zero temperature to melting [-].
     #[schemars(range(min = 0.0, max = 1.0))]
     pub alpha: f64,
     /// Growth of the shear modulus with pressure, A = G'p/G0 [1/Pa].
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub pressure_hardening: f64,
-    /// Melting temperature Tm [K].
+    /// Melting temperature Tm, which does not change with pressure [K]; above it there is no
+    /// strength.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub melt_temperature: f64,
-    /// Mass of one atom, M [kg].
+    /// Mass M of one atom [kg], for the rate at which a shear wave crosses an atom, by which strain
+    /// rates are scaled.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub atomic_mass: f64,
-    /// Initial hardening, theta [-].
+    /// Initial hardening theta, the slope of the flow stress over 2 G with the plastic strain at
+    /// the yield stress [-].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub theta: f64,
-    /// Curvature of the hardening, p [-].
+    /// Constant p of the hardening [-]; 0: the flow stress approaches saturation exponentially
+    /// (Voce).
     #[schemars(range(min = 0.0))]
     pub p: f64,
-    /// Saturation stress over 2 G at zero temperature, s0 [-].
+    /// Saturation stress, the flow stress at large strain, over 2 G at zero temperature [-]; at
+    /// least `s_inf` and `y0`.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub s0: f64,
-    /// Saturation stress over 2 G near melting, s_inf [-].
+    /// Saturation stress, the flow stress at large strain, over 2 G near melting [-]; at least
+    /// `y_inf`.
     #[schemars(range(min = 0.0))]
     pub s_inf: f64,
-    /// Dependence on temperature, kappa [-].
+    /// Factor kappa of the temperature in the thermal activation [-]. With a larger value the flow
+    /// stress falls faster with temperature.
     #[schemars(range(min = 0.0))]
     pub kappa: f64,
-    /// Dependence on the rate, gamma [-].
+    /// Factor gamma of the rate by which strain rates are scaled [-]. With a larger value high
+    /// rates raise the flow stress less.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub gamma: f64,
-    /// Yield stress over 2 G at zero temperature, y0 [-].
+    /// Yield stress over 2 G at zero temperature [-]; at least `y_inf`.
     #[schemars(range(min = 0.0))]
     pub y0: f64,
     /// Yield stress over 2 G near melting, y_inf [-].
     #[schemars(range(min = 0.0))]
     pub y_inf: f64,
-    /// Yield stress over 2 G at medium rates, y1 [-].
+    /// Factor y1 of the yield stress over 2 G at medium strain rates, y1 (rate/x)^y2 [-].
     #[schemars(range(min = 0.0))]
     pub y1: f64,
-    /// Exponent of the rate at medium rates, y2 [-].
+    /// Exponent y2 of the strain rate in the yield stress at medium rates [-].
     #[schemars(range(min = 0.0))]
     pub y2: f64,
-    /// Exponent of the rate in overdriven shocks, beta [-].
+    /// Exponent beta of the strain rate in the flow stress of overdriven shocks [-]. With a larger
+    /// value the flow stress grows more with the rate.
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 1.0))]
     pub beta: f64,
     /// Density of the material at rest [kg/m3].

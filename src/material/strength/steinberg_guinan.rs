@@ -16,27 +16,32 @@ use serde::{Deserialize, Serialize};
 use super::{MaterialState, StrengthLaw};
 use crate::material::ParameterError;
 
-/// Steinberg, Cochran & Guinan (1980), for high rates.
+/// Steinberg, Cochran & Guinan (1980), for high rates: Y = min(yield_stress (1 + beta (ep +
+/// initial_strain))^n, max_yield_stress) g and G = shear_modulus g, with g = 1 + A p/eta^(1/3) - B
+/// (T - 300) and the compression eta = rho/rho0.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SteinbergGuinan {
-    /// Shear modulus at rest [Pa].
+    /// Shear modulus G0 at zero pressure and 300 K [Pa].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub shear_modulus: f64,
-    /// Yield stress at rest [Pa].
+    /// Yield stress Y0 at zero plastic strain, zero pressure and 300 K [Pa].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub yield_stress: f64,
-    /// Hardening coefficient [-].
+    /// Hardening coefficient beta, a factor of the plastic strain [-]. With a larger value the
+    /// material hardens more.
     #[schemars(range(min = 0.0))]
     pub beta: f64,
-    /// Exponent of the hardening [-].
+    /// Exponent n of the hardening (1 + beta (ep + initial_strain))^n [-]; 0: no hardening.
     #[schemars(range(min = 0.0, max = 5.0))]
     pub n: f64,
-    /// Initial plastic strain [-].
+    /// Equivalent plastic strain that the material has before the start, for its hardening only
+    /// [-]; default 0.
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub initial_strain: f64,
-    /// Greatest yield stress that hardening reaches [Pa].
+    /// Greatest yield stress that hardening reaches at zero pressure and 300 K [Pa]; at least
+    /// `yield_stress`.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub max_yield_stress: f64,
     /// Growth of shear modulus and yield stress with pressure, A = G'p/G0 [1/Pa].

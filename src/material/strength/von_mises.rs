@@ -15,13 +15,14 @@ use super::{MaterialState, StrengthLaw};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VonMises {
-    /// Shear modulus [Pa].
+    /// Shear modulus G, the elastic shear stress over the shear strain [Pa]. It is constant.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub shear_modulus: f64,
     /// Yield stress at zero plastic strain [Pa].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub yield_stress: f64,
-    /// Growth of the yield stress with the plastic strain [Pa].
+    /// Increase of the yield stress per equivalent plastic strain [Pa]; default 0: perfect
+    /// plasticity.
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub hardening: f64,

@@ -20,7 +20,7 @@ use crate::material::ParameterError;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ZerilliArmstrong {
-    /// Shear modulus [Pa].
+    /// Shear modulus G, the elastic shear stress over the shear strain [Pa]. It is constant.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub shear_modulus: f64,
     /// Part of the yield stress that depends on neither temperature nor rate [Pa].
@@ -36,17 +36,19 @@ pub struct ZerilliArmstrong {
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub c2: f64,
-    /// Thermal softening [1/K].
+    /// Coefficient c3 of the thermal softening exp(-c3 T) [1/K]. With a larger value the yield
+    /// stress falls more with temperature.
     #[schemars(range(min = 0.0))]
     pub c3: f64,
-    /// Hardening with the logarithm of the rate [1/K].
+    /// Coefficient c4 of temperature times the logarithm of the rate [1/K]. With a larger value the
+    /// yield stress grows more with the rate.
     #[schemars(range(min = 0.0))]
     pub c4: f64,
-    /// Hardening with the plastic strain, for body-centred cubic metals [Pa].
+    /// Coefficient c5 of the hardening c5 ep^n, for body-centred cubic metals [Pa]; default 0.
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub c5: f64,
-    /// Exponent of the plastic strain in the c5 term [-].
+    /// Exponent n of the plastic strain in the hardening c5 ep^n [-]; default 1.
     #[serde(default = "one")]
     #[schemars(range(max = 5.0), extend("exclusiveMinimum" = 0.0))]
     pub n: f64,

@@ -41,7 +41,7 @@ pub enum CalibrateError {
 /// One sample of the fit, for a table.
 #[derive(Clone, Debug)]
 pub struct Residual {
-    /// Particles.
+    /// Number of particles \[-\].
     pub particles: f64,
     /// Patches.
     pub patches: usize,
@@ -55,8 +55,8 @@ pub struct Residual {
     pub fitted: f64,
 }
 
-/// Measures everything in about `seconds`. Rank 0 gets the constants and the residuals of the fit.
-/// Collective.
+/// Measures everything in about `seconds` \[s\]. Rank 0 gets the constants and the residuals of the
+/// fit. Collective.
 ///
 /// # Errors
 ///

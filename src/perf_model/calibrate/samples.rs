@@ -50,7 +50,8 @@ pub struct MeasuredVariant<'a> {
 }
 
 impl MeasuredVariant<'_> {
-    /// Work of the single rank.
+    /// Work of the single rank; `cache` are the effective cache sizes for particles and patches
+    /// \[B\].
     pub fn work(&self, cache: [f64; 2]) -> RankWork {
         self.variant.work.rank_works(&self.share, cache)[0]
     }
@@ -162,7 +163,7 @@ impl<'a> SampleRunner<'a> {
     }
 }
 
-/// Times of the fastest batch of a variant within about `seconds`; `None` if it does not run.
+/// Times of the fastest batch of a variant within about `seconds` \[s\]; `None` if it does not run.
 pub fn measure(variant: &Variant, seconds: f64) -> Option<MeasuredVariant<'_>> {
     let start = Instant::now();
     let mut runner = SampleRunner::new(variant)?;
@@ -180,9 +181,9 @@ pub fn measure(variant: &Variant, seconds: f64) -> Option<MeasuredVariant<'_>> {
     Some(MeasuredVariant { variant, share, total, compute })
 }
 
-/// Slowdown of a step while `cores` cores compute, relative to one alone: for particles that stay
-/// in a cache of `cache` bytes, and for particles that do not. `None` for one core. `alive` is
-/// called from time to time.
+/// Slowdown of a step while `cores` cores compute, relative to one alone \[-\], measured in about
+/// `seconds` \[s\]: for particles that stay in a cache of `cache` bytes, and for particles that do
+/// not. `None` for one core. `alive` is called from time to time.
 pub fn busy(
     variants: &[Variant],
     cores: usize,

@@ -16,43 +16,45 @@ use crate::geometry::region::{
 pub struct Body {
     /// Name of the body; no other body may have it.
     pub name: String,
-    /// Name of the body's material, a key of `materials`.
+    /// Name of the material of the body, a key of `materials`.
     pub material: String,
     /// An axis-aligned box, at its initial position.
     #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
     pub extent: Option<BoxShape>,
-    /// A disk.
+    /// A disk, given by centre and radius; in an axisymmetric domain a torus, or a ball if its
+    /// centre is on the axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disk: Option<Disk>,
-    /// An ellipse with its axes along x and y.
+    /// An ellipse with its axes along x and y, given by centre and half axes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ellipse: Option<Ellipse>,
-    /// A polygon.
+    /// A polygon, given by its vertices.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub polygon: Option<Polygon>,
-    /// The region between two concentric circles.
+    /// The region between two circles with the same centre, in a plane.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub annulus: Option<Annulus>,
     /// One side of a straight line. It is unbounded, so it is usable only together with regions
     /// that bound it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub half_plane: Option<HalfPlane>,
-    /// The union of several regions.
+    /// All points that are in at least one of the regions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1))]
     pub union: Option<Vec<Region>>,
-    /// The first of several regions without all the others.
+    /// All points of the first region that are in none of the others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1))]
     pub difference: Option<Vec<Region>>,
-    /// The intersection of several regions.
+    /// All points that are in each of the regions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1))]
     pub intersection: Option<Vec<Region>>,
-    /// A region rotated about a point.
+    /// A region that is rotated about a point.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotation: Option<Rotation>,
-    /// Initial velocity [m/s], one number per direction; absent: at rest.
+    /// Initial velocity of the whole body [m/s], one number per direction; absent: the body is at
+    /// rest, unless `velocity_field` is given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity: Option<Vec<f64>>,
     /// Initial velocity as a function of position, instead of `velocity`.

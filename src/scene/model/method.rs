@@ -10,12 +10,12 @@ use crate::transfer::Transfer;
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Method {
-    /// Shape function.
+    /// Shape function, which gives the weights of the nodes for each particle.
     pub shape: ShapeKind,
     /// Configuration in which shape functions are evaluated; default `updated_lagrangian`.
     #[serde(default, skip_serializing_if = "FrameKind::is_default")]
     pub frame: FrameKind,
-    /// Transfer of velocity from the grid to the particles.
+    /// Transfer: the way in which the velocity of a particle follows from the nodal velocities.
     pub transfer: Transfer,
     /// Order of the stress update within a leapfrog step; default `last`.
     #[serde(default)]
@@ -130,7 +130,8 @@ pub struct PressureRelaxation {
     /// [-]; in shorter steps the fraction is in proportion to the Courant number.
     #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0.0))]
     pub rate: f64,
-    /// Number of steps between relaxations.
+    /// Number of steps between two relaxations; 1: every step. A larger value costs less time and
+    /// damps less.
     #[schemars(range(min = 1))]
     pub interval: u32,
 }
@@ -148,10 +149,12 @@ pub struct FluxLimiter {
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ArtificialViscosity {
-    /// Coefficient of the linear term [-].
+    /// Coefficient a1 of the linear term [-]; 0: no linear term. A larger value damps oscillations
+    /// behind shocks more, and makes weak shocks wider.
     #[schemars(range(min = 0.0))]
     pub linear: f64,
-    /// Coefficient of the quadratic term [-].
+    /// Coefficient a2 of the quadratic term [-]; 0: no quadratic term. A larger value reduces the
+    /// overshoot of strong shocks, and makes them wider.
     #[schemars(range(min = 0.0))]
     pub quadratic: f64,
     /// Growth of the quadratic coefficient in strong shocks; absent: it is constant.
@@ -173,7 +176,7 @@ pub struct ViscosityGrowth {
     /// Increase of the coefficient per unit of h |D|/c, the velocity jump over the sound speed [-].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub rate: f64,
-    /// Largest quadratic coefficient, greater than `quadratic` [-].
+    /// Upper limit of the quadratic coefficient [-], greater than `quadratic`.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub max: f64,
 }
@@ -182,9 +185,10 @@ pub struct ViscosityGrowth {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Limiter {
-    /// From the ratios of the velocity gradients of neighbouring cells (Christensen 1990).
+    /// Reduction from the ratios of the velocity gradients of neighbouring cells (Christensen
+    /// 1990).
     Christensen,
-    /// From the smallest nodal mean of the velocity gradient around the particle.
+    /// Reduction from the smallest nodal mean of the velocity gradient around the particle.
     Nodal,
 }
 
@@ -192,9 +196,9 @@ pub enum Limiter {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LimitedTerms {
-    /// Only the linear term.
+    /// The limiter reduces only the linear term.
     #[default]
     Linear,
-    /// The linear and the quadratic term.
+    /// The limiter reduces the linear and the quadratic term.
     Both,
 }

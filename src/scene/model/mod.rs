@@ -44,14 +44,14 @@ pub struct Scene {
     #[serde(default = "present_format")]
     #[schemars(range(min = 1))]
     pub format: u32,
-    /// Title of the run in tables and pictures, one line.
+    /// Title of the run in tables, pictures and the terminal; one line.
     pub title: String,
     /// Description of the scene, with the sources of its constants.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
-    /// The computational domain and its grid.
+    /// Size of the computational domain, its cells and its patches.
     pub domain: Domain,
-    /// End time and time step control.
+    /// End time of the run, and control of the time step.
     pub time: Time,
     /// Numerical method, in full: the name of a preset is expanded when a scene is read.
     pub method: Method,
@@ -62,7 +62,7 @@ pub struct Scene {
     /// override single values.
     #[schemars(with = "BTreeMap<String, MaterialSource>")]
     pub materials: BTreeMap<String, Material>,
-    /// Bodies; particles are numbered in this order.
+    /// The bodies. Particles are numbered from 0 in this order.
     #[schemars(length(min = 1))]
     pub bodies: Vec<Body>,
     /// Artificial viscosity; absent: that of the method's preset, or none if the method is given in
@@ -76,7 +76,7 @@ pub struct Scene {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 10.0), extend("exclusiveMinimum" = 0.0))]
     pub impact_smoothing: Option<f64>,
-    /// Body force per unit mass on every particle; absent: none.
+    /// Force per unit mass on every particle, such as gravity; absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body_force: Option<BodyForce>,
     /// Contact law between bodies; absent: one velocity field for all bodies, so that they interact
@@ -86,10 +86,12 @@ pub struct Scene {
     /// Conditions at the sides of the domain; absent: every side is free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub boundary: Option<Boundary>,
-    /// Run-time checks; absent: the default bounds, which hold for every scene.
+    /// Bounds of the run-time checks, and the response to a violated bound; absent: the default
+    /// bounds, which hold for every scene.
     #[serde(default, skip_serializing_if = "Monitor::is_default")]
     pub monitor: Monitor,
-    /// Output files.
+    /// Files that the run writes; absent: a profile at the end of the run, pictures and
+    /// `results.hdf5`.
     #[serde(default)]
     pub output: Output,
     /// Exact solution with which the results are compared; absent: none.
@@ -112,13 +114,15 @@ fn present_format() -> u32 {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Domain {
-    /// Lower corner [m]; the number of coordinates is the dimension of the scene.
+    /// Coordinates of the lower corner of the domain [m]; their number is the dimension of the
+    /// scene.
     #[schemars(length(min = 1))]
     pub lower: Vec<f64>,
-    /// Upper corner [m].
+    /// Coordinates of the upper corner of the domain, each above that of the lower corner [m].
     pub upper: Vec<f64>,
-    /// Edge of a cell [m], one number or one per direction; the domain must be a whole number of
-    /// cells.
+    /// Edge of a cell, one number for all directions or one per direction [m]; the domain must be a
+    /// whole number of cells. With half the edge a run on a line takes four times the work, in a
+    /// plane eight times.
     pub cell_size: CellSize,
     /// Coordinate system of a plane; default `plane_strain`.
     #[serde(default, skip_serializing_if = "Geometry::is_plane_strain")]
@@ -151,14 +155,15 @@ impl Geometry {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Decomposition {
-    /// Load balancing: migration of patches between ranks.
+    /// Load balancing: the rule by which patches migrate between ranks.
     pub balance: Balance,
     /// Compute the inner patches of a rank while messages for its outer patches are in transit;
     /// default true.
     pub overlap: bool,
     /// Skip quiescent patches, which no wave has reached; default true.
     pub skip_quiescent: bool,
-    /// Threads per rank, default 1; the option `--threads` takes precedence.
+    /// Number of threads on which each rank computes its patches, default 1; the option `--threads`
+    /// takes precedence. It changes no bit of the results.
     #[schemars(range(min = 1, max = 1024))]
     pub threads: usize,
     /// Ghost data for filters that extend over several cells; absent: the cheaper choice for the
@@ -185,7 +190,7 @@ impl Default for Decomposition {
 pub struct Balance {
     /// Steps between load measurements, default 50; 0: patches do not migrate.
     pub every: u64,
-    /// Measure of a patch's load; default `time`.
+    /// Measure of the load of a patch; default `time`.
     pub cost: BalanceCost,
 }
 
@@ -225,10 +230,12 @@ pub enum CellSize {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Time {
-    /// End time of the run [s].
+    /// Simulated time at which the run ends; it starts at 0 [s].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub end: f64,
-    /// Courant number, in (0, 1] [-]; default 0.4.
+    /// Courant number [-], above 0 and at most 1: the time step over the time in which the fastest
+    /// wave crosses a cell; default 0.4. A larger value gives fewer steps; above the limit of the
+    /// method the run becomes unstable.
     #[serde(default = "default_courant")]
     #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0.0))]
     pub courant: f64,
@@ -247,14 +254,15 @@ fn default_courant() -> f64 {
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Boundary {
-    /// Side at the lower end of x.
+    /// Condition at the side at the lower end of x; default `free`. In an axisymmetric domain that
+    /// begins at x = 0 it must be `symmetry`.
     pub x_lower: Side,
-    /// Side at the upper end of x.
+    /// Condition at the side at the upper end of x; default `free`.
     pub x_upper: Side,
-    /// Side at the lower end of y, in a plane.
+    /// Condition at the side at the lower end of y, in a plane; default `free`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub y_lower: Option<Side>,
-    /// Side at the upper end of y, in a plane.
+    /// Condition at the side at the upper end of y, in a plane; default `free`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub y_upper: Option<Side>,
     /// Fixed temperatures of rigid sides, for scenes with heat conduction; the other sides are
@@ -267,19 +275,21 @@ pub struct Boundary {
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SideTemperatures {
-    /// Temperature at the lower end of x [K].
+    /// Fixed temperature of the side at the lower end of x [K]; absent: the side is insulated.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub x_lower: Option<f64>,
-    /// Temperature at the upper end of x [K].
+    /// Fixed temperature of the side at the upper end of x [K]; absent: the side is insulated.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub x_upper: Option<f64>,
-    /// Temperature at the lower end of y, in a plane [K].
+    /// Fixed temperature of the side at the lower end of y, in a plane [K]; absent: the side is
+    /// insulated.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub y_lower: Option<f64>,
-    /// Temperature at the upper end of y, in a plane [K].
+    /// Fixed temperature of the side at the upper end of y, in a plane [K]; absent: the side is
+    /// insulated.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub y_upper: Option<f64>,

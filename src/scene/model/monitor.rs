@@ -31,7 +31,8 @@ pub struct Monitor {
     /// escaping gas and of loads [-]; default 4.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub speed: f64,
-    /// Largest Courant number of a step, computed from the state at its end [-]; default 4.
+    /// Largest Courant number of a step, computed from the state at its end [-]; default 4. With a
+    /// larger value a run that becomes unstable ends later.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub courant: f64,
     /// Smallest stable time step, relative to the time in which that largest speed crosses a cell

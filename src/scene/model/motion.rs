@@ -23,7 +23,7 @@ pub enum VelocityField {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rotating {
-    /// Centre of the rotation [m].
+    /// Coordinates of the centre of the rotation [m].
     pub about: Vec<f64>,
     /// Angular velocity, counter-clockwise [rad/s].
     pub rate: f64,
@@ -35,7 +35,7 @@ pub struct Rotating {
 pub struct Shearing {
     /// Shape of the velocity profile.
     pub profile: ShearForm,
-    /// Largest velocity [m/s].
+    /// Largest velocity of the profile [m/s].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub speed: f64,
     /// Period of the sine, or half thickness of the tanh [m].
@@ -59,15 +59,15 @@ pub enum ShearForm {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GreshoVortex {
-    /// Centre of the vortex [m].
+    /// Coordinates of the centre of the vortex [m].
     pub centre: Vec<f64>,
     /// Radius of the largest velocity; beyond twice this radius the gas is at rest [m].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub radius: f64,
-    /// Largest velocity [m/s].
+    /// Largest velocity of the gas, at `radius` [m/s].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub speed: f64,
-    /// Pressure at the centre [Pa].
+    /// Pressure at the centre [Pa]. With a larger value the Mach number is smaller.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub centre_pressure: f64,
 }
@@ -76,7 +76,7 @@ pub struct GreshoVortex {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Radial {
-    /// The point [m]; in one dimension one number.
+    /// Coordinates of the point [m]; in one dimension a list with one number.
     pub about: Vec<f64>,
     /// Speed away from the point; negative: towards it [m/s].
     pub speed: f64,
@@ -87,9 +87,11 @@ pub struct Radial {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RingVortex {
-    /// Largest angle [rad].
+    /// Largest angle by which the middle of the ring rotates [rad]. With a larger value the ring is
+    /// sheared more.
     pub amplitude: f64,
-    /// Twice the time of the largest angle [s].
+    /// Twice the time at which the angle is largest [s]; at this time the ring is back at its
+    /// initial position.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub period: f64,
     /// Inner radius of the ring [m].

@@ -9,21 +9,23 @@ use super::planned_quantity::PlannedQuantity;
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Output {
-    /// Profiles: the state of every particle at given times.
+    /// Times of the profiles; a profile is a table of the state of every particle at one time.
     pub profiles: Profiles,
     /// Fields: quantities of all particles at many times, for pictures and films; absent: none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fields: Option<FieldOutput>,
-    /// Histories of faces, tracers, energies and momentum; absent: none.
+    /// Quantities of faces, tracers and gauges, energies and momentum over time, written to
+    /// `histories.csv`; absent: none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub histories: Option<Histories>,
     /// Checkpoints, from which a run can be restarted; absent: one every ten minutes of wall time,
     /// of which the last two are kept and deleted after a successful run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub checkpoint: Option<Checkpoints>,
-    /// Write `results.hdf5`; default true.
+    /// Whether the run writes its profiles to `results.hdf5`, for ParaView and Python; default
+    /// true.
     pub hdf5: bool,
-    /// Draw the pictures; default true.
+    /// Whether the run draws its pictures (PNG and SVG); default true.
     pub pictures: bool,
     /// Quantities of which a run on a line draws an x-t diagram besides that of the pressure, such as
     /// `velocity`, `density`, `temperature`, `damage`; of `stress` and `strain` the component along x.
@@ -44,10 +46,10 @@ pub struct Planned {
     pub of: Option<String>,
     /// Quantity whose error is planned.
     pub quantity: PlannedQuantity,
-    /// Target for the relative error [-].
+    /// Relative error that the plan was to reach [-].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub wanted: f64,
-    /// Predicted relative error [-].
+    /// Predicted relative error of the quantity [-].
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub error: f64,
     /// Predicted user CPU time of the time loop [s].
@@ -84,11 +86,11 @@ impl Default for Output {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FieldOutput {
-    /// Time between frames [s], from 0.
+    /// Simulated time between two frames [s]; the first frame is at time 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub every: Option<f64>,
-    /// Times of the frames [s], increasing.
+    /// Simulated times of the frames [s], increasing.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("items" = {"type": "number", "minimum": 0.0}))]
     pub times: Vec<f64>,
@@ -110,7 +112,7 @@ pub enum FieldsFormat {
     Vtkhdf,
     /// A table for each frame in the folder `fields`, in order of the particles' numbers.
     Csv,
-    /// Both.
+    /// Both `vtkhdf` and `csv`.
     Both,
 }
 
@@ -120,19 +122,19 @@ pub enum FieldsFormat {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Checkpoints {
-    /// Simulated time between checkpoints [s].
+    /// Simulated time between two checkpoints [s]; absent: none at simulated intervals.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub every_seconds: Option<f64>,
-    /// Number of steps between checkpoints.
+    /// Number of steps between two checkpoints; absent: none at intervals of steps.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1))]
     pub every_steps: Option<u64>,
-    /// Simulated times of checkpoints [s], increasing.
+    /// Simulated times at which checkpoints are written [s], increasing; absent: none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0.0}))]
     pub at_times: Vec<f64>,
-    /// Wall time between checkpoints [s].
+    /// Wall time between two checkpoints [s]; 600 if no other key gives a time.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub every_wall_seconds: Option<f64>,
@@ -204,9 +206,9 @@ pub struct Histories {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Station {
-    /// Name used for its columns.
+    /// Name with which its columns in `histories.csv` begin.
     pub name: String,
-    /// Position [m].
+    /// Coordinates of the point, one number per direction [m].
     pub at: Vec<f64>,
 }
 
@@ -214,7 +216,7 @@ pub struct Station {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Velocimeter {
-    /// Name used for its columns.
+    /// Name with which its columns in `histories.csv` begin.
     pub name: String,
     /// Name of the body whose surface is measured.
     pub body: String,
@@ -236,12 +238,12 @@ pub struct Velocimeter {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GaugePlane {
-    /// Name used for its columns.
+    /// Name with which its columns in `histories.csv` begin.
     pub name: String,
     /// Axis to which the plane is normal; default x.
     #[serde(default)]
     pub axis: GaugeAxis,
-    /// Position along the axis [m].
+    /// Position of the plane along its axis [m].
     pub at: f64,
 }
 
@@ -260,9 +262,9 @@ pub enum GaugeAxis {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Tracer {
-    /// Name used for its columns.
+    /// Name with which its columns in `histories.csv` begin.
     pub name: String,
-    /// Name of the body to which it belongs.
+    /// Name of the body to which the particle belongs.
     pub body: String,
     /// Initial position [m]; the particle whose initial position is nearest is recorded.
     pub at: Vec<f64>,
@@ -297,7 +299,7 @@ pub enum Reference {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NamedBody {
-    /// Name of the body; its profiles are scored.
+    /// Name of the body whose profiles are compared with the exact solution.
     pub body: String,
 }
 
@@ -306,7 +308,7 @@ pub struct NamedBody {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NamedNoh {
-    /// Name of the body.
+    /// Name of the body of gas.
     pub body: String,
     /// Symmetry of the implosion.
     pub symmetry: NohSymmetry,
@@ -333,14 +335,15 @@ pub enum NohSymmetry {
 pub struct FlyerImpact {
     /// Name of the body that strikes.
     pub flyer: String,
-    /// Name of the body that is struck; its profiles are scored.
+    /// Name of the body that is struck; its profiles are compared with the exact solution.
     pub target: String,
     /// Direction of the waves in a plane; absent: along x.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub front: Option<Front>,
 }
 
-/// Direction of plane waves in a plane, and the region whose particles are scored.
+/// Direction of plane waves in a plane, and the region whose particles are compared with the exact
+/// solution.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Front {
@@ -350,12 +353,13 @@ pub struct Front {
     /// A point on the line along which the waves are followed [m]; at an angle other than 0 the
     /// interface passes through it.
     pub about: Vec<f64>,
-    /// Only particles nearer to this line are scored [m]; absent: all.
+    /// Half width of the strip along the line [m]: only particles nearer to the line are compared
+    /// with the exact solution; absent: all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub half_width: Option<f64>,
-    /// Two positions along the line, measured from `about`; only particles between them are scored
-    /// [m]. Absent: everywhere.
+    /// Two positions along the line, measured from `about` [m]; only particles between them are
+    /// compared with the exact solution. Absent: everywhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub range: Option<[f64; 2]>,
 }
@@ -377,7 +381,7 @@ pub struct Riemann {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SimpleWave {
-    /// Name of the body.
+    /// Name of the body that the piston drives.
     pub body: String,
 }
 
@@ -385,6 +389,6 @@ pub struct SimpleWave {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WallImpact {
-    /// Name of the body.
+    /// Name of the body that runs into the wall, or that the piston drives.
     pub body: String,
 }

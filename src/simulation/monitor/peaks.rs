@@ -29,21 +29,22 @@ pub struct Peaks {
     pub heat: f64,
     /// Increase of specific internal energy of that particle since the start [J/kg].
     pub energy: f64,
-    /// Pressure just behind a detonation front, over the Chapman-Jouguet pressure.
+    /// Pressure just behind a detonation front, over the Chapman-Jouguet pressure [-].
     pub front: f64,
-    /// Speed of unburnt explosive relative to its body, over the Chapman-Jouguet velocity.
+    /// Speed of unburnt explosive relative to its body, over the Chapman-Jouguet velocity [-].
     pub ahead: f64,
     /// Lowest temperature below absolute zero, with opposite sign [K].
     pub frozen: f64,
     /// Tension of particles that no wave has reached yet, over rho c up of the strongest impact of
-    /// the body.
+    /// the body [-].
     pub tension: f64,
-    /// Speed of such particles against the approaching wave, over up.
+    /// Speed of such particles against the approaching wave, over the particle velocity up of that
+    /// impact [-].
     pub against: f64,
 }
 
 impl Peaks {
-    /// Values for a reduction over ranks.
+    /// Values of the fields in order, each in its own unit, for a reduction over ranks.
     pub fn values(&self) -> [f64; 7] {
         let Peaks { heat, energy, front, ahead, frozen, tension, against } = *self;
         [heat, energy, front, ahead, frozen, tension, against]

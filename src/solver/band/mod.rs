@@ -245,8 +245,8 @@ impl Band {
         }
     }
 
-    /// Calls `act` with each other node of a line that shares particles with node `i`, and the entry
-    /// of both.
+    /// Calls `act` with each other node of a line that shares particles with node `i`, and the
+    /// entry of both [kg].
     #[inline(always)]
     pub fn each_neighbour(&self, i: usize, mut act: impl FnMut(usize, f64)) {
         for (d, &o) in self.offsets.iter().enumerate().skip(1) {

@@ -40,7 +40,7 @@ fn add_blocks<const M: usize>(
 }
 
 impl Band {
-    /// Adds a particle of mass `mass`.
+    /// Adds a particle of mass `mass` [kg].
     #[inline(always)]
     pub fn add<const K: usize, const D: usize>(
         &mut self,

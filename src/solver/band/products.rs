@@ -37,12 +37,13 @@ fn by_segments<const V: usize>(
 impl Band {
     /// y = M x on the nodes `range`, which must be at least the width of the band away from the
     /// ends, for several vectors at a time; with blocks of two by two, x and y are the two
-    /// components of vectors.
+    /// components of vectors. M is in [kg], so that y has the unit of x times [kg].
     pub fn product<const V: usize>(&self, x: [&[f64]; V], range: Range<usize>, y: [&mut [f64]; V]) {
         self.each_product(x, range, y, |product, _, _| product);
     }
 
-    /// (M x)_i at node `i`, which must be at least the width of the band away from the ends.
+    /// (M x)_i at node `i`, which must be at least the width of the band away from the ends, in the
+    /// unit of x times [kg].
     pub fn product_at(&self, x: &[f64], i: usize) -> f64 {
         let mut sum = self.diagonal(0, i..i + 1)[0] * x[i];
         for (d, &o) in self.offsets.iter().enumerate().skip(1) {
@@ -53,7 +54,8 @@ impl Band {
     }
 
     /// y = t + x - d M x on the nodes `range` for several vectors at a time, with a diagonal matrix
-    /// d: from one sum of a series to the next by Horner's rule.
+    /// d [1/kg]: from one sum of a series to the next by Horner's rule. t, x and y have the same
+    /// unit.
     pub fn next_sums<'a, const V: usize>(
         &self,
         x: [&'a [f64]; V],

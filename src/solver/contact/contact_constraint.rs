@@ -10,7 +10,7 @@ pub struct ContactConstraint<const D: usize> {
     pub at: [usize; 2],
     /// Lumped masses [kg].
     pub mass: [f64; 2],
-    /// Unit normal from the first field to the second.
+    /// Unit normal from the first field to the second [-].
     pub normal: [f64; D],
     /// Whether filters leave out the tangential motion of the first or the second field, because
     /// its material fills too little of the node.
@@ -41,7 +41,8 @@ impl<const D: usize> ContactConstraint<D> {
         decomp::array::from_fn(|a| moved * momentum[a] + dt * force[a])
     }
 
-    /// Both values after projection: shared components become their mean by mass.
+    /// Both values after projection, in their common unit: shared components become their mean by
+    /// mass.
     ///
     /// The normal components are removed and replaced, not corrected by their difference: a thin
     /// piece of material has accelerations so great that the difference would lose the digits of

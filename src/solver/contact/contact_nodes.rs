@@ -48,9 +48,9 @@ pub struct ContactNodes<const D: usize> {
 }
 
 impl<const D: usize> ContactNodes<D> {
-    /// Finds the nodes in `nodes` at which more than one layer has more than `least` of `mass`,
-    /// among the nodes that each layer computes, and the particles that touch them (with windows
-    /// `K` wide), in the order of `runs`.
+    /// Finds the nodes in `nodes` at which more than one layer has a `mass` of more than `least`
+    /// [kg], among the nodes that each layer computes, and the particles that touch them (with
+    /// windows `K` wide), in the order of `runs`.
     pub fn find<const K: usize>(
         &mut self,
         mass: &[f64],
@@ -150,8 +150,8 @@ impl<const D: usize> ContactNodes<D> {
         &self.touches[self.starts[contact_node] as usize..self.starts[contact_node + 1] as usize]
     }
 
-    /// Bodies at a contact node with more than `least` of `mass`; `sums` are the components of momentum
-    /// and force.
+    /// Bodies at a contact node with a `mass` of more than `least` [kg]. The last argument has the
+    /// components of the nodal momentum [kg m/s] and force [N].
     pub fn members(
         &self,
         contact_node: usize,

@@ -102,8 +102,8 @@ impl<const D: usize> MultiBodyConstraint<D> {
         }
     }
 
-    /// Projects a vector with components in `fields`, and adds the jumps of the constraints to their
-    /// account.
+    /// Projects a vector with components in `fields` [m/s or m/s2], and adds the jumps of the
+    /// constraints to their account.
     pub fn join(
         &self,
         fields: &mut [Vec<f64>],

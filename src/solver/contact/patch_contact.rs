@@ -32,7 +32,8 @@ impl<const D: usize> PatchContact<D> {
         self.forces.clear();
     }
 
-    /// Projects a vector with components in `fields`, and adds the jump to its account.
+    /// Projects a vector with components in `fields` [m/s or m/s2], and adds the jump to its
+    /// account.
     pub fn join(&mut self, fields: &mut [Vec<f64>], jump_of: Option<ConstraintJump>) {
         let mut multi_body = self.multi_body.iter().peekable();
         let mut k = 0;
@@ -59,7 +60,8 @@ impl<const D: usize> PatchContact<D> {
         }
     }
 
-    /// Replaces a scalar by its mean, weighted by `weight`, at nodes in contact.
+    /// Replaces the scalar `field` by its mean, weighted by `weight`, at nodes in contact; both
+    /// have any unit.
     pub fn join_scalar(&self, weight: &[f64], field: &mut [f64]) {
         let mean = |places: &[usize], field: &mut [f64]| {
             let sum: f64 = places.iter().map(|&i| weight[i]).sum();

@@ -30,15 +30,15 @@ pub struct MeasuredRun {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
 pub struct MeasuredDecomposition {
-    /// Particles computed, summed over steps.
+    /// Number of computed particle-steps \[-\]: particles, summed over steps.
     pub particle_steps_computed: f64,
-    /// Particles of quiescent patches, which were skipped, summed over steps.
+    /// Number of skipped particle-steps \[-\]: particles of quiescent patches, summed over steps.
     pub particle_steps_skipped: f64,
-    /// Work of the busiest rank over the mean of all.
+    /// Work of the busiest rank over the mean of all \[-\].
     pub imbalance: Option<f64>,
-    /// Bytes sent per step.
+    /// Bytes sent per step \[B\].
     pub bytes_per_step: Option<f64>,
-    /// Messages sent per step.
+    /// Number of messages sent per step \[-\].
     pub messages_per_step: Option<f64>,
     /// Times of each rank.
     pub ranks: Vec<MeasuredRank>,
@@ -53,7 +53,7 @@ pub struct MeasuredRank {
 }
 
 impl MeasuredDecomposition {
-    /// Share of particle-steps that were skipped.
+    /// Share of particle-steps that were skipped \[-\]; `None` without particle-steps.
     pub fn skipped(&self) -> Option<f64> {
         let all = self.particle_steps_computed + self.particle_steps_skipped;
         (all > 0.0).then(|| self.particle_steps_skipped / all)

@@ -38,31 +38,31 @@ pub struct ScalingRow {
     pub cpu_seconds: f64,
     /// Wall time of the loop times workers over particles times steps \[s\].
     pub worker_seconds_per_particle_step: f64,
-    /// Particle-steps per wall second over those of 1 x 1.
+    /// Particle-steps per wall second over those of 1 x 1 \[-\].
     pub speed_up: f64,
-    /// Speed-up over workers.
+    /// Speed-up over the number of workers \[-\].
     pub efficiency: f64,
     /// Share of the ranks' time in computing \[-\].
     pub compute: Option<f64>,
-    /// Share in packing, sending and unpacking ghosts.
+    /// Share in packing, sending and unpacking ghosts \[-\].
     pub exchange: Option<f64>,
-    /// Share in migrating particles.
+    /// Share in migrating particles \[-\].
     pub migrate: Option<f64>,
-    /// Share in moving patches between ranks.
+    /// Share in moving patches between ranks \[-\].
     pub balance: Option<f64>,
-    /// Share in waiting for other ranks.
+    /// Share in waiting for other ranks \[-\].
     pub wait: Option<f64>,
-    /// Share in recording results.
+    /// Share in recording results \[-\].
     pub output: Option<f64>,
-    /// Share in the rest of the loop.
+    /// Share in the rest of the loop \[-\].
     pub rest: Option<f64>,
-    /// Bytes sent per step, all ranks.
+    /// Bytes sent per step, all ranks \[B\].
     pub bytes_per_step: Option<f64>,
-    /// Messages per step, all ranks.
+    /// Number of messages per step, all ranks \[-\].
     pub messages_per_step: Option<f64>,
-    /// Work of the busiest rank over the mean.
+    /// Work of the busiest rank over the mean \[-\].
     pub imbalance: Option<f64>,
-    /// Share of particle-steps that were skipped.
+    /// Share of particle-steps that were skipped \[-\].
     pub skipped: Option<f64>,
 }
 
@@ -117,13 +117,13 @@ impl ScalingRow {
         }
     }
 
-    /// The shares of time in the order of [`PARTS`].
+    /// The shares of time in the order of [`PARTS`] \[-\].
     pub fn shares(&self) -> [Option<f64>; PARTS.len()] {
         let ScalingRow { compute, exchange, migrate, balance, wait, output, rest, .. } = *self;
         [compute, exchange, migrate, balance, wait, output, rest]
     }
 
-    /// Difference of the greatest and the least wall time over the median.
+    /// Difference of the greatest and the least wall time over the median \[-\].
     pub fn spread(&self) -> f64 {
         (self.wall_seconds_max - self.wall_seconds_min) / self.wall_seconds
     }

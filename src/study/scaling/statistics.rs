@@ -18,8 +18,8 @@ pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     }
 }
 
-/// The shares of [`PARTS`] in the time of all ranks of all runs; `None` if no time is counted. Time
-/// of an activity with another name counts as rest.
+/// The shares of [`PARTS`] in the time of all ranks of all runs \[-\]; `None` if no time is
+/// counted. Time of an activity with another name counts as rest.
 pub fn shares<'a>(
     ranks: impl IntoIterator<Item = &'a BTreeMap<String, f64>>,
 ) -> Option<[f64; PARTS.len()]> {

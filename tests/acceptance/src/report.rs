@@ -9,7 +9,7 @@ use crate::program::root;
 use crate::section::{Extent, Group};
 use crate::table::Table;
 
-/// The document.
+/// The page that the figures are written to.
 pub fn document() -> PathBuf {
     root().join("docs/verification.md")
 }

@@ -57,7 +57,8 @@ fn spall(table: &mut Table) {
             .set("output.histories.interval=5e-10");
         if let Some(run) = table.take("spall.json with a tension limit", job.run()) {
             let error = reading(&run, "target_upper", "pull-back").map(|u| u / fall - 1.0);
-            let figure = format!("spall.json with a limit, {cells}00 cells a flyer: pull-back off by");
+            let figure =
+                format!("spall.json with a limit, {cells}00 cells a flyer: pull-back off by");
             table.beside(&figure, error, "tension_limit", Unit::Fraction);
         }
     }

@@ -27,7 +27,11 @@ pub fn check(table: &mut Table) {
     if let Some(run) = table.take("spall by a limit in a thick target", job.run()) {
         let acoustic = 2e9 / (2785.0 * 5386.0);
         let error = pull_back(&run).map(|fall| fall / acoustic - 1.0);
-        table.check("spall by a limit: pull-back against 2 sigma/(rho0 c0)", error, bounds::spall::PULL_BACK);
+        table.check(
+            "spall by a limit: pull-back against 2 sigma/(rho0 c0)",
+            error,
+            bounds::spall::PULL_BACK,
+        );
     }
 }
 

@@ -58,7 +58,8 @@ fn profiles(table: &mut Table) {
     );
 }
 
-/// Linear CPDI with FMPM(4): nothing else changed, and with its rows in PROBLEM.md 6.
+/// Linear CPDI with FMPM(4): with nothing else changed, and with two other pairs of viscosity and
+/// pressure relaxation.
 fn cpdi(table: &mut Table) {
     let job = || {
         let job = Job::new("flyer").set("method.shape=cpdi");
@@ -97,7 +98,7 @@ fn convergence(table: &mut Table) {
     table.check("order of convergence, 20 to 5 um", order, bounds::convergence::ORDER);
 }
 
-/// The document's own settings, beside what Uintah makes of them.
+/// The settings of Burghardt (2010), beside the errors of Uintah with the same settings.
 fn uintah(table: &mut Table) {
     let Some(run) = table.take("flyer_uintah.json", Job::new("flyer_uintah").run()) else { return };
     for (time, other) in [(0.5e-6, "Uintah 12.0 %"), (1e-6, "Uintah 16.1 %")] {
