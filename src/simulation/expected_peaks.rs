@@ -16,8 +16,8 @@ const RELEASED: f64 = 2.0;
 pub(super) struct ExpectedPeaks<const D: usize> {
     /// Initial specific internal energy [J/kg].
     pub(super) energy: f64,
-    /// Energy from one shock of the strongest impact [J/kg], four times this where the material can
-    /// fail; infinite where gases, explosives or forces drive the bodies.
+    /// Energy from one shock in the body that the impacts heat most [J/kg], four times this where the
+    /// material can fail; infinite where gases, explosives or forces drive the bodies.
     pub(super) heat: f64,
     pub(super) front: Option<PeakFront>,
     /// Initial velocity [m/s].
@@ -62,11 +62,13 @@ impl<const D: usize> ExpectedPeaks<D> {
                 pressure: stepper.impedance(i) * up[i],
             })
         };
+        // a particle at an interface shares nodes, and so heat, with those of the other body
+        let strongest = heat.iter().copied().fold(0.0, f64::max);
         let can_fail = |i: usize| scene.material_of(i).failure.is_some();
         bodies
             .map(|(i, body)| ExpectedPeaks {
                 energy: stepper.starting_energy(i, body.pressure, body.temperature),
-                heat: heat[i] * if can_fail(i) { RELEASED * RELEASED } else { 1.0 },
+                heat: strongest * if can_fail(i) { RELEASED * RELEASED } else { 1.0 },
                 front: front(scene, i),
                 velocity: std::array::from_fn(|a| scene.bodies[i].velocity[a]),
                 ahead: ahead(i),
