@@ -150,6 +150,7 @@ impl<const D: usize> Scheme<D> {
                     let place = self.place_of(patch, &weights, r);
                     let inverse = 1.0 / spin_inertia(&weights, place);
                     let turn = spin_gradient(spin[r] * inverse);
+                    let (turn, place) = self.reflect_spin(patch, r, turn, place);
                     self.add_affine_momentum(patch, &weights, r, turn, momentum);
                     patch.band.add_spin(&weights, m, place, inverse);
                 } else if let Some(affine) = affine {
