@@ -82,7 +82,7 @@ const RULES: &[Rule] = &[
         reason: "a lower transfer order and a domain limit, since the scene has two dimensions",
     },
     Rule {
-        applies: |c| c.plane && !(c.axisymmetric || c.gas || c.contact || c.body_force),
+        applies: |c| c.plane && !(c.axisymmetric || c.gas || (c.body_force && !c.contact)),
         changes: || [json!({"spin": true, "domain_limit": 0.7}), json!({})],
         reason: "spin, since bodies may turn, with a shorter domain limit",
     },

@@ -4,7 +4,7 @@
 use decomp::array;
 
 use super::scheme::Scheme;
-use super::spin::{spin_gradient, spin_inertia};
+use super::spin::spin_inertia;
 use crate::shape::{Shape, with_shape, with_width};
 use crate::solver::clock::timed;
 use crate::solver::effect::{Phase, StepContext};
@@ -149,7 +149,7 @@ impl<const D: usize> Scheme<D> {
                 if let Some(spin) = spin {
                     let place = self.place_of(patch, &weights, r);
                     let inverse = 1.0 / spin_inertia(&weights, place);
-                    let turn = spin_gradient(spin[r] * inverse);
+                    let (turn, place) = self.reflect_spin(patch, r, spin[r] * inverse, place);
                     self.add_affine_momentum(patch, &weights, r, turn, momentum);
                     patch.band.add_spin(&weights, m, place, inverse);
                 } else if let Some(affine) = affine {

@@ -53,6 +53,39 @@ fn a_spinning_disk_keeps_its_angular_momentum_and_energy() {
     assert!(moment > 0.02 && energy.abs() < 1e-13, "without: {moment:e} {energy:e}");
 }
 
+/// A block that strikes a wall aslant, normal to x or y.
+fn block_at_a_wall(side: &str, kind: Value) -> Value {
+    let axis = usize::from(side.starts_with('y'));
+    let turned = |along: f64, away: f64| if axis == 0 { [away, along] } else { [along, away] };
+    json!({
+        "title": "a block strikes a wall",
+        "domain": {"lower": turned(-0.1, 0.0), "upper": turned(0.1, 0.1), "cell_size": 0.01},
+        "time": {"end": 3e-3},
+        "method": {
+            "shape": "cpdi_bspline_quadratic", "transfer": {"fmpm": 4}, "stepping": "midpoint",
+            "energy": "compatible", "filter_heat": true, "spin": true
+        },
+        "materials": {"rubber": {"density": 1000.0, "eos": {"type": "neo_hookean",
+            "youngs_modulus": 1e6, "poissons_ratio": 0.3}}},
+        "bodies": [{
+            "name": "block", "material": "rubber", "particles_per_cell": [2, 2],
+            "box": {"lower": turned(-0.03, 0.0), "upper": turned(0.03, 0.04)},
+            "velocity": turned(0.3, -1.0)
+        }],
+        "boundary": {side: kind}
+    })
+}
+
+#[test]
+fn a_block_with_spin_keeps_its_energy_at_walls() {
+    for side in ["x_lower", "y_lower"] {
+        for kind in ["symmetry", "no_slip"] {
+            let drift = run::<2>(&block_at_a_wall(side, json!(kind))).energy_drift();
+            assert!(drift.abs() < 1e-13, "{side} {kind}: {drift:e}");
+        }
+    }
+}
+
 #[test]
 fn schemes_that_cannot_have_spin_are_refused() {
     let cases = [

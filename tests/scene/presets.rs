@@ -97,6 +97,19 @@ fn bodies_in_two_dimensions_get_a_domain_limit_and_elastic_ones_no_relaxation() 
 }
 
 #[test]
+fn bodies_that_may_turn_have_spin() {
+    let spin = |more: &[&str]| {
+        let edits: Vec<&str> = ["method=default"].iter().chain(more).copied().collect();
+        with("disks.json", &edits).unwrap().scene.method.spin
+    };
+    let [contact, gravity] =
+        [r#"contact={"type": "frictionless"}"#, r#"body_force={"gravity": [0, -10]}"#];
+    assert!(spin(&[]) && spin(&[contact]) && spin(&[contact, gravity]));
+    // a body in free fall would carry stress at its edges, as it does with contact anyway
+    assert!(!spin(&[gravity]));
+}
+
+#[test]
 fn presets_differ() {
     let method = |name: &str| json!(edited(&[("/method", json!(name))]).scene.method);
     let [default, robust, sharpest] = ["default", "robust", "sharpest"].map(method);

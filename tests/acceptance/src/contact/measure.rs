@@ -12,7 +12,7 @@ pub struct Motion {
     pub mass: f64,
     /// Mean velocity [m/s].
     pub velocity: [f64; 2],
-    /// Angular momentum about its centre per depth [kg m/s].
+    /// Angular momentum about its centre per depth, with the spin of its particles [kg m/s].
     pub spin: f64,
 }
 
@@ -55,6 +55,7 @@ pub fn run(scene: &Value) -> Result<Measured, String> {
     let [density, volume] = [column("density")?, column("volume")?];
     let place = [column("x")?, column("y")?];
     let velocity = [column("velocity_x")?, column("velocity_y")?];
+    let spin = table.column("spin");
     let mut bodies = vec![Motion::default(); scene.bodies.len()];
     let mut centres = vec![[0.0; 2]; scene.bodies.len()];
     let mass = |r: usize| density[r] * volume[r];
@@ -76,7 +77,8 @@ pub fn run(scene: &Value) -> Result<Measured, String> {
         let (motion, centre) = (&mut bodies[body as usize], &centres[body as usize]);
         let x = [0, 1].map(|a| place[a][r] - centre[a]);
         let v = [0, 1].map(|a| velocity[a][r] - motion.velocity[a]);
-        motion.spin += mass(r) * (x[0] * v[1] - x[1] * v[0]);
+        let own = spin.map_or(0.0, |spin| spin[r]);
+        motion.spin += mass(r) * (x[0] * v[1] - x[1] * v[0] + own);
     }
     let drift = |a: usize| {
         let booked = given.impulse[a] + end.body_force_impulse[a];

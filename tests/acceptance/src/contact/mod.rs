@@ -3,6 +3,7 @@
 mod bounce;
 mod cost;
 mod friction;
+mod heat;
 mod hertz;
 mod measure;
 mod normals;
@@ -19,7 +20,7 @@ pub use sliding::{pass, passing_pressure};
 pub const TITLE: &str = "Contact between bodies: normals, sliding, friction";
 
 /// Sections in the order in which they run.
-pub const SECTIONS: [Section; 8] = [
+pub const SECTIONS: [Section; 9] = [
     usual("normals", normals::check),
     usual("cost", cost::check),
     quick("sliding", sliding::check),
@@ -27,5 +28,6 @@ pub const SECTIONS: [Section; 8] = [
     usual("incline", friction::incline),
     usual("bounce", bounce::check),
     usual("hertz", hertz::check),
+    usual("heat", heat::check),
     usual("parting", parting::check),
 ];

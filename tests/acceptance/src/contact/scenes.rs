@@ -97,7 +97,7 @@ pub fn scene(
         "time": {"end": end, "courant": 0.4},
         "method": {
             "shape": "cpdi_bspline_quadratic", "transfer": {"fmpm": 4}, "stepping": "midpoint",
-            "energy": "compatible", "filter_heat": true, "edge_mask": 0.3
+            "energy": "compatible", "filter_heat": true, "edge_mask": 0.3, "spin": true
         },
         "materials": {"material": material.scene()},
         "artificial_viscosity": {"linear": 0.1, "quadratic": 1.25, "limiter": "christensen"},
