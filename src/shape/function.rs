@@ -138,7 +138,7 @@ fn one_by_one<S: Shape, const K: usize>(fraction: f64x4, length: f64x4) -> Lanes
         }
     }
     let [values, gradients] =
-        decomp::array::map(&lines, |line| decomp::array::map(&line, |k| f64x4::from(k)));
+        decomp::array::map(&lines, |line| decomp::array::map(&line, f64x4::from));
     Lanes { first: f64x4::from(first), skipped: f64x4::ZERO, values, gradients }
 }
 

@@ -250,7 +250,9 @@ mod tests {
             assert_eq!(lanes.values[0].to_array()[0] == 0.0, skipped, "{at}");
         }
         // nodes 0 to 3: too far to the right
-        let lanes = CpdiBsplineQuadratic::four::<4>(f64x4::splat(0.99), f64x4::splat(0.9));
+        let lanes = CpdiBsplineQuadratic::four::<4>(f64x4::splat(0.99), f64x4::splat(1.0));
+        assert_eq!((lanes.first.to_array(), lanes.skipped.any()), ([-1.0; 4], false));
+        let lanes = CpdiBsplineQuadratic::four::<4>(f64x4::splat(1.01), f64x4::splat(1.0));
         assert_eq!((lanes.first.to_array(), lanes.skipped.any()), ([0.0; 4], false));
     }
 }

@@ -1,11 +1,8 @@
 //! Hat functions at the particle centre (Sulsky, Chen & Schreyer 1994). The gradient jumps when a
 //! particle crosses a cell boundary: unsuitable for shocks, kept as a reference.
 
-use wide::f64x4;
-
 use super::domain::DomainExtent;
 use super::function::{Basis, CourantLimits, Shape, Weights};
-use super::lanes::Lanes;
 
 /// Hat functions.
 #[derive(Clone, Copy, Debug)]
@@ -31,15 +28,5 @@ impl Shape for Linear {
         w.gradients[0] = -1.0;
         w.gradients[1] = 1.0;
         w
-    }
-
-    #[inline(always)]
-    fn four<const K: usize>(fraction: f64x4, _length: f64x4) -> Lanes<K> {
-        let (mut values, mut gradients) = ([f64x4::ZERO; K], [f64x4::ZERO; K]);
-        values[0] = f64x4::ONE - fraction;
-        values[1] = fraction;
-        gradients[0] = f64x4::splat(-1.0);
-        gradients[1] = f64x4::ONE;
-        Lanes { first: f64x4::ZERO, skipped: f64x4::ZERO, values, gradients }
     }
 }

@@ -65,6 +65,12 @@ fn put(numbers: &[f64x4], out: &mut [f64]) {
     }
 }
 
+/// Whether four particles are computed together: the weights on two nodes take fewer instructions one
+/// by one.
+const fn in_lanes(width: usize) -> bool {
+    2 < width && width <= NARROW
+}
+
 impl Stencils {
     /// Computes the weights of all particles at the places `at`, in arrays with lines of `stride`
     /// nodes.
@@ -76,10 +82,10 @@ impl Stencils {
         let n = at.cells.len();
         self.resize::<K, D>(n, stride);
         let mut corners = Corners { least: [i32::MAX; D], most: [i32::MIN; D] };
-        let whole = if const { K <= NARROW } { n - n % LANES } else { 0 };
+        let whole = if const { in_lanes(K) } { n - n % LANES } else { 0 };
         let mut buffer = PlaneLanes::none();
         for first in (0..whole).step_by(LANES) {
-            if const { K <= NARROW } {
+            if const { in_lanes(K) } {
                 self.fill_four::<S, K, D>(at, first, &mut corners, &mut buffer);
             }
         }

@@ -70,47 +70,45 @@ impl<const D: usize> Scheme<D> {
         fn packed<const K: usize, const V: usize, const D: usize>(
             patch: &mut Patch<D>,
             s: &Scheme<D>,
-            dt: f64,
-            wanted: [bool; 2],
+            (dt, moves): (f64, bool),
+            wanted: [bool; 3],
         ) {
-            let tensors = s.columns.velocity_gradient.is_some();
-            let [moves, strains] = wanted;
             let (mut window, mut at) = (PackedEnds::<V, D>::none(), u32::MAX);
-            s.end_particles(patch, dt, wanted, |stencils, r, nodal| {
+            s.end_particles(patch, dt, [moves, wanted[1]], |stencils, r, nodal| {
                 // several particles of a cell have the same window
                 if stencils.first[r] != at {
                     at = stencils.first[r];
                     window.fetch::<K>(nodal, stencils.place(r));
                 }
-                window.sums::<K>(
-                    &stencils.packed::<K, V, D>(r),
-                    [moves || s.axisymmetric, strains, tensors],
-                )
+                window.sums::<K>(&stencils.packed::<K, V, D>(r), wanted)
             });
         }
-        fn wide<const K: usize, const D: usize>(
+        fn single<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
             s: &Scheme<D>,
-            dt: f64,
-            wanted: [bool; 2],
+            (dt, moves): (f64, bool),
+            wanted: [bool; 3],
         ) {
-            s.end_particles(patch, dt, wanted, |stencils, r, nodal| {
+            s.end_particles(patch, dt, [moves, wanted[1]], |stencils, r, nodal| {
                 let weights = stencils.particle::<K, D>(r);
                 if const { D == 1 } {
-                    EndSums::of_wide::<K, 1>(nodal, &weights)
+                    EndSums::one_by_one::<K, 1>(nodal, &weights, wanted)
                 } else {
-                    EndSums::of_wide::<K, K>(nodal, &weights)
+                    EndSums::one_by_one::<K, K>(nodal, &weights, wanted)
                 }
             });
         }
         fn limiter<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
             s.gather_limiter::<K>(patch);
         }
-        let (width, wanted) = (patch.stencils.width, [moves, strains]);
+        let width = patch.stencils.width;
+        // hoop strain needs the velocity at the particle
+        let velocities = moves || self.axisymmetric;
+        let wanted = [velocities, strains, self.columns.velocity_gradient.is_some()];
         with_packed!(
             width,
-            packed(patch, self, dt, wanted),
-            with_width!(width, wide(patch, self, dt, wanted))
+            packed(patch, self, (dt, moves), wanted),
+            with_width!(width, single(patch, self, (dt, moves), wanted))
         );
         if strains {
             with_width!(width, limiter(patch, self));

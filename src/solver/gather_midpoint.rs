@@ -52,13 +52,13 @@ impl<const D: usize> Scheme<D> {
                 window.sums::<K>(nodal, &stencils.packed::<K, V, D>(r))
             });
         }
-        fn wide<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>, dt: f64) {
+        fn single<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>, dt: f64) {
             s.gather_particles(patch, dt, |stencils, r, nodal| {
                 let weights = stencils.particle::<K, D>(r);
                 if const { D == 1 } {
-                    NodalSums::of_wide::<K, 1>(nodal, &weights)
+                    NodalSums::one_by_one::<K, 1>(nodal, &weights)
                 } else {
-                    NodalSums::of_wide::<K, K>(nodal, &weights)
+                    NodalSums::one_by_one::<K, K>(nodal, &weights)
                 }
             });
         }
@@ -71,7 +71,7 @@ impl<const D: usize> Scheme<D> {
             s.gather_limiter::<K>(patch);
         }
         let width = patch.stencils.width;
-        with_packed!(width, packed(patch, self, dt), with_width!(width, wide(patch, self, dt)));
+        with_packed!(width, packed(patch, self, dt), with_width!(width, single(patch, self, dt)));
         with_width!(width, rest(patch, self));
     }
 

@@ -82,7 +82,7 @@ impl<const V: usize, const D: usize> PackedVelocities<V, D> {
     /// Fetches the nodes of the window at `place`.
     #[inline(always)]
     pub fn fetch<const K: usize>(&mut self, nodal: &NodalVelocities<'_, D>, place: WindowPlace) {
-        let nodes = |field: &[f64]| place.nodes::<K, V, D>(field);
+        let nodes = |field: &[f64]| place.nodes::<K, V>(field);
         for a in 0..D {
             self.start[a] = nodes(nodal.start[a]);
             self.star[a] = nodes(nodal.star[a]);
@@ -106,7 +106,7 @@ impl<const V: usize, const D: usize> PackedVelocities<V, D> {
         }
     }
 
-    /// Sums at a particle with the `weights` on this window.
+    /// Sums at a particle with the `weights` on this window, in a plane.
     #[inline(always)]
     pub fn sums<const K: usize>(
         &self,
@@ -114,43 +114,18 @@ impl<const V: usize, const D: usize> PackedVelocities<V, D> {
         weights: &PackedWeights<V, D>,
     ) -> NodalSums<D> {
         let (n, g) = (&weights.values, &weights.gradients);
-        if D == 1 {
-            let [start, star, lost, product] = totals::<K, D>([
-                dot(n, &self.start[0]),
-                dot(n, &self.star[0]),
-                dot(n, &self.lost[0]),
-                dot(n, &self.product[0]),
-            ]);
-            let [mean, of_mean, of_star, of_work] = totals::<K, D>([
-                dot(n, &self.mean[0]),
-                dot(&g[0], &self.mean[0]),
-                dot(&g[0], &self.star[0]),
-                dot(&g[0], &self.work[0]),
-            ]);
-            return NodalSums {
-                start: [start; D],
-                star: [star; D],
-                mean: [mean; D],
-                lost: [lost; D],
-                product: [product; D],
-                mean_gradient: [[of_mean; D]; D],
-                star_gradient: [[of_star; D]; D],
-                work_gradient: [[of_work; D]; D],
-                work: 0.0,
-            };
-        }
         let (x, y) = (0, D - 1);
         let along = |v: &[[f64x4; V]; D], a: usize, b: usize| dot(&g[b], &v[a]);
         let pair = |v: [f64; 2]| from_fn(|a| v[a]);
         let tensor =
             |[xx, xy, yx, yy]: [f64; 4]| from_fn(|a| from_fn(|b| [xx, xy, yx, yy][2 * a + b]));
-        let [start_x, start_y, star_x, star_y] = totals::<K, D>([
+        let [start_x, start_y, star_x, star_y] = totals::<K>([
             dot(n, &self.start[x]),
             dot(n, &self.start[y]),
             dot(n, &self.star[x]),
             dot(n, &self.star[y]),
         ]);
-        let [mean_x, mean_y, work_xx, work_yy] = totals::<K, D>([
+        let [mean_x, mean_y, work_xx, work_yy] = totals::<K>([
             dot(n, &self.mean[x]),
             dot(n, &self.mean[y]),
             along(&self.work, x, x),
@@ -158,7 +133,7 @@ impl<const V: usize, const D: usize> PackedVelocities<V, D> {
         ]);
         let mut products = [0.0; 4];
         if nodal.lost.is_some() || nodal.squares {
-            products = totals::<K, D>([
+            products = totals::<K>([
                 dot(n, &self.lost[x]),
                 dot(n, &self.lost[y]),
                 dot(n, &self.product[x]),
@@ -166,12 +141,12 @@ impl<const V: usize, const D: usize> PackedVelocities<V, D> {
             ]);
         }
         let full = |v: &[[f64x4; V]; D]| {
-            totals::<K, D>([along(v, x, x), along(v, x, y), along(v, y, x), along(v, y, y)])
+            totals::<K>([along(v, x, x), along(v, x, y), along(v, y, x), along(v, y, y)])
         };
         let [of_mean, of_star] = match nodal.tensors {
             true => [full(&self.mean), full(&self.star)],
             false => {
-                let [a, b, c, d] = totals::<K, D>([
+                let [a, b, c, d] = totals::<K>([
                     along(&self.mean, x, x),
                     along(&self.mean, y, y),
                     along(&self.star, x, x),
@@ -182,7 +157,7 @@ impl<const V: usize, const D: usize> PackedVelocities<V, D> {
         };
         let mut others = [0.0; 4];
         if nodal.work_tensor {
-            others = totals::<K, D>([
+            others = totals::<K>([
                 along(&self.work, x, y),
                 along(&self.work, y, x),
                 dot(n, &self.work[x]),
@@ -219,12 +194,12 @@ impl<const V: usize, const D: usize> PackedEnds<V, D> {
     #[inline(always)]
     pub fn fetch<const K: usize>(&mut self, [start, star]: [[&[f64]; D]; 2], place: WindowPlace) {
         for a in 0..D {
-            self.start[a] = place.nodes::<K, V, D>(start[a]);
-            self.star[a] = place.nodes::<K, V, D>(star[a]);
+            self.start[a] = place.nodes::<K, V>(start[a]);
+            self.star[a] = place.nodes::<K, V>(star[a]);
         }
     }
 
-    /// Sums at a particle with the `weights` on this window: of the velocities if it `moves`, of the
+    /// Sums at a particle with the `weights` on this window in a plane: of the velocities if it `moves`, of the
     /// gradient if it is `strained`, of all its components for `tensors`.
     #[inline(always)]
     pub fn sums<const K: usize>(
@@ -237,14 +212,9 @@ impl<const V: usize, const D: usize> PackedEnds<V, D> {
         let along = |a: usize, b: usize| dot(&g[b], &self.star[a]);
         let mut gradient = [0.0; 4];
         let mut ends = [0.0; 4];
-        if D == 1 {
-            let all = [dot(n, &self.start[x]), dot(n, &self.star[x]), along(x, x), f64x4::ZERO];
-            let [start, star, slope, _] = totals::<K, D>(all);
-            return EndSums { start: [start; D], star: [star; D], gradient: [[slope; D]; D] };
-        }
         if moves {
             let [start, star] = [&self.start, &self.star];
-            ends = totals::<K, D>([
+            ends = totals::<K>([
                 dot(n, &start[x]),
                 dot(n, &start[y]),
                 dot(n, &star[x]),
@@ -254,7 +224,7 @@ impl<const V: usize, const D: usize> PackedEnds<V, D> {
         if strained {
             let zero = f64x4::ZERO;
             let mixed = if tensors { [along(x, y), along(y, x)] } else { [zero; 2] };
-            gradient = totals::<K, D>([along(x, x), mixed[0], mixed[1], along(y, y)]);
+            gradient = totals::<K>([along(x, x), mixed[0], mixed[1], along(y, y)]);
         }
         EndSums {
             start: from_fn(|a| ends[a]),
@@ -267,17 +237,22 @@ impl<const V: usize, const D: usize> PackedEnds<V, D> {
 impl<const D: usize> EndSums<D> {
     /// The same sums one after the other, for windows of any width.
     #[inline(always)]
-    pub fn of_wide<const K: usize, const L: usize>(
+    pub fn one_by_one<const K: usize, const L: usize>(
         [start, star]: [[&[f64]; D]; 2],
         weights: &ParticleWeights<'_, K, D>,
+        [moves, strained, tensors]: [bool; 3],
     ) -> Self {
         let (start, star) = (weights.windows::<L, D>(start), weights.windows::<L, D>(star));
         let mut sums = EndSums { start: [0.0; D], star: [0.0; D], gradient: [[0.0; D]; D] };
         for a in 0..D {
-            sums.start[a] = weights.sum(weights.values, |l| start[a][l]);
-            sums.star[a] = weights.sum(weights.values, |l| star[a][l]);
+            if moves {
+                sums.start[a] = weights.sum(weights.values, |l| start[a][l]);
+                sums.star[a] = weights.sum(weights.values, |l| star[a][l]);
+            }
             for b in 0..D {
-                sums.gradient[a][b] = weights.sum(weights.gradient(b), |l| star[a][l]);
+                if strained && (a == b || tensors) {
+                    sums.gradient[a][b] = weights.sum(weights.gradient(b), |l| star[a][l]);
+                }
             }
         }
         sums
@@ -287,7 +262,7 @@ impl<const D: usize> EndSums<D> {
 impl<const D: usize> NodalSums<D> {
     /// The same sums one after the other, for windows of any width.
     #[inline(always)]
-    pub fn of_wide<const K: usize, const L: usize>(
+    pub fn one_by_one<const K: usize, const L: usize>(
         nodal: &NodalVelocities<'_, D>,
         weights: &ParticleWeights<'_, K, D>,
     ) -> Self {

@@ -1,6 +1,6 @@
 //! Windows of at most four nodes along a direction in vectors of four numbers, for sums over several
 //! particles with one window and for several sums over one particle. A line of the window fills one
-//! vector; both lines of a window of two nodes in a plane share one.
+//! vector.
 //!
 //! The sums have the bits of [`ParticleWeights`](super::particle_weights::ParticleWeights).
 //!
@@ -47,42 +47,19 @@ pub struct WindowPlace {
 }
 
 impl WindowPlace {
-    /// Nodes of the window in `field`; numbers beyond the nodes of a line are those of any nodes.
+    /// Nodes of the window in `field`.
     #[inline(always)]
-    pub fn nodes<const K: usize, const V: usize, const D: usize>(
-        &self,
-        field: &[f64],
-    ) -> [f64x4; V] {
-        if K == 2 && D == 2 {
-            let [a, b] = [0, self.stride].map(|line| window::<2>(field, self.first + line));
-            return [f64x4::new([a[0], a[1], b[0], b[1]]); V];
-        }
-        from_fn(|line| {
-            let at = self.first + line * self.stride;
-            // one load, but at the end of the field; what lies beyond the window meets no weight
-            match field.get(at..at + PACKED).and_then(|nodes| nodes.first_chunk()) {
-                Some(nodes) => vector(nodes),
-                None => fours(window::<K>(field, at), 0),
-            }
-        })
+    pub fn nodes<const K: usize, const V: usize>(&self, field: &[f64]) -> [f64x4; V] {
+        from_fn(|line| fours(window::<K>(field, self.first + line * self.stride), 0))
     }
 
     /// Writes the nodes of the window to `field`.
     #[inline(always)]
-    pub fn put<const K: usize, const V: usize, const D: usize>(
-        &self,
-        field: &mut [f64],
-        nodes: &[f64x4; V],
-    ) {
+    pub fn put<const K: usize, const V: usize>(&self, field: &mut [f64], nodes: &[f64x4; V]) {
         for (line, nodes) in nodes.iter().enumerate() {
             let nodes = nodes.to_array();
             let at = self.first + line * self.stride;
-            if K == 2 && D == 2 {
-                field[at..at + 2].copy_from_slice(&nodes[..2]);
-                field[at + self.stride..at + self.stride + 2].copy_from_slice(&nodes[2..]);
-            } else {
-                field[at..at + K].copy_from_slice(&nodes[..K]);
-            }
+            field[at..at + K].copy_from_slice(&nodes[..K]);
         }
     }
 }
@@ -113,41 +90,27 @@ pub fn dot<const V: usize>(weights: &[f64x4; V], nodes: &[f64x4; V]) -> f64x4 {
     sum
 }
 
-/// Sums over the nodes of a line, or of two lines of two nodes, of each of four vectors.
+/// Sums over the nodes of a line of each of four vectors.
 #[inline(always)]
-pub fn totals<const K: usize, const D: usize>(sums: [f64x4; 4]) -> [f64; 4] {
+pub fn totals<const K: usize>(sums: [f64x4; 4]) -> [f64; 4] {
     let columns = f64x4::transpose(sums);
     // from +0 on, as sums of one particle
     let mut total = f64x4::ZERO;
-    if K == 2 && D == 2 {
-        total += columns[0] + columns[2];
-        total += columns[1] + columns[3];
-    } else {
-        for column in &columns[..K] {
-            total += *column;
-        }
+    for column in &columns[..K] {
+        total += *column;
     }
     total.to_array()
 }
 
-/// Calls `$call` with the width of windows of at most four nodes along a direction, the number of
-/// vectors that hold one and the dimension; evaluates `$other` if windows are wider.
+/// Calls `$call` with the width of windows of three or four nodes along a direction in a plane, the
+/// number of vectors that hold one and the dimension; evaluates `$other` for others: on a line and
+/// with two nodes the sums of one particle take fewer instructions.
 macro_rules! with_packed {
     ($width:expr, $call:ident ( $($arg:expr),* ), $other:expr) => {
-        if const { D == 1 } {
-            match $width {
-                0..=2 => $call::<2, 1, D>($($arg),*),
-                3 => $call::<3, 1, D>($($arg),*),
-                4 => $call::<4, 1, D>($($arg),*),
-                _ => $other,
-            }
-        } else {
-            match $width {
-                0..=2 => $call::<2, 1, D>($($arg),*),
-                3 => $call::<3, 3, D>($($arg),*),
-                4 => $call::<4, 4, D>($($arg),*),
-                _ => $other,
-            }
+        match $width {
+            3 if const { D > 1 } => $call::<3, 3, D>($($arg),*),
+            4 if const { D > 1 } => $call::<4, 4, D>($($arg),*),
+            _ => $other,
         }
     };
 }
@@ -181,7 +144,7 @@ mod tests {
         for r in 0..3 {
             let weights: ParticleWeights<'_, K, D> = stencils.particle(r);
             let packed = stencils.packed::<K, V, D>(r);
-            let nodes = stencils.place(r).nodes::<K, V, D>(&field);
+            let nodes = stencils.place(r).nodes::<K, V>(&field);
             let slope = dot(&packed.gradients[D - 1], &nodes);
             let sums = [dot(&packed.values, &nodes), slope, f64x4::ZERO, slope];
             let expected = [
@@ -190,30 +153,28 @@ mod tests {
                 0.0,
                 weights.dot(weights.gradient(D - 1), &field),
             ];
-            assert_eq!(totals::<K, D>(sums).map(f64::to_bits), expected.map(f64::to_bits));
+            assert_eq!(totals::<K>(sums).map(f64::to_bits), expected.map(f64::to_bits));
         }
         // scatter: sums over a group are those over one particle after the other
         let (mut one, mut together) = (field.clone(), field);
         for group in groups {
             let place = stencils.place(group.start);
-            let mut nodes = place.nodes::<K, V, D>(&together);
+            let mut nodes = place.nodes::<K, V>(&together);
             for r in group {
                 let weights: ParticleWeights<'_, K, D> = stencils.particle(r);
                 let term = 0.7 + r as f64;
                 weights.add(&mut one, weights.values, |n| n * term);
                 add_to(&mut nodes, &stencils.packed_values::<K, V, D>(r), term);
             }
-            place.put::<K, V, D>(&mut together, &nodes);
+            place.put::<K, V>(&mut together, &nodes);
         }
         assert_eq!(one, together, "{K} nodes");
     }
 
     #[test]
     fn sums_in_vectors_have_the_bits_of_sums_one_by_one() {
-        check::<2, 1, 1>();
         check::<3, 1, 1>();
         check::<4, 1, 1>();
-        check::<2, 1, 2>();
         check::<3, 3, 2>();
         check::<4, 4, 2>();
     }
@@ -226,14 +187,14 @@ mod tests {
         stencils.first.copy_from_slice(&[1, 1]);
         stencils.values[..6].copy_from_slice(&[0.25, 0.5, 0.25, 0.0, 0.5, 0.5]);
         let field = [9.0, 2.0, 4.0, 6.0, 9.0, 9.0];
-        let nodes = stencils.place(0).nodes::<3, 1, 1>(&field);
+        let nodes = stencils.place(0).nodes::<3, 1>(&field);
         let sums = [0, 1, 0, 1].map(|r| dot(&stencils.packed_values::<3, 1, 1>(r), &nodes));
-        assert_eq!(totals::<3, 1>(sums), [4.0, 5.0, 4.0, 5.0]);
+        assert_eq!(totals::<3>(sums), [4.0, 5.0, 4.0, 5.0]);
         let mut masses = [0.0; 6];
-        let mut nodes = stencils.place(0).nodes::<3, 1, 1>(&masses);
+        let mut nodes = stencils.place(0).nodes::<3, 1>(&masses);
         add_to(&mut nodes, &stencils.packed_values::<3, 1, 1>(0), 2.0);
         add_to(&mut nodes, &stencils.packed_values::<3, 1, 1>(1), 3.0);
-        stencils.place(0).put::<3, 1, 1>(&mut masses, &nodes);
+        stencils.place(0).put::<3, 1>(&mut masses, &nodes);
         assert_eq!(masses, [0.0, 0.5, 2.5, 2.0, 0.0, 0.0]);
     }
 }

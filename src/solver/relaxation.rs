@@ -126,11 +126,11 @@ impl PressureSums<'_> {
         of: &Relaxed<'_>,
     ) {
         let place = stencils.place(group.start);
-        let mut weight = place.nodes::<K, V, D>(self.weight);
-        let mut pressure = place.nodes::<K, V, D>(self.pressure);
+        let mut weight = place.nodes::<K, V>(self.weight);
+        let mut pressure = place.nodes::<K, V>(self.pressure);
         let mut ratio = pressure;
         if let Some(field) = &self.ratio {
-            ratio = place.nodes::<K, V, D>(field);
+            ratio = place.nodes::<K, V>(field);
         }
         for r in group {
             let (values, share) = (stencils.packed_values::<K, V, D>(r), of.share(r));
@@ -138,10 +138,10 @@ impl PressureSums<'_> {
             add_to(&mut pressure, &values, share * of.pressure[r]);
             add_to(&mut ratio, &values, of.compliance[r]);
         }
-        place.put::<K, V, D>(self.weight, &weight);
-        place.put::<K, V, D>(self.pressure, &pressure);
+        place.put::<K, V>(self.weight, &weight);
+        place.put::<K, V>(self.pressure, &pressure);
         if let Some(field) = &mut self.ratio {
-            place.put::<K, V, D>(field, &ratio);
+            place.put::<K, V>(field, &ratio);
         }
     }
 }
@@ -187,11 +187,11 @@ impl Projected<'_> {
         &self,
         place: WindowPlace,
     ) -> [[f64x4; V]; 4] {
-        let pressure = place.nodes::<K, V, D>(self.pressure);
-        let last = place.nodes::<K, V, D>(self.last);
+        let pressure = place.nodes::<K, V>(self.pressure);
+        let last = place.nodes::<K, V>(self.last);
         let (mut work, mut product) = (pressure, last);
         if let Some(ratio) = self.ratio {
-            let ratio = place.nodes::<K, V, D>(ratio);
+            let ratio = place.nodes::<K, V>(ratio);
             (0..V).for_each(|l| work[l] = ratio[l] * pressure[l]);
         }
         (0..V).for_each(|l| product[l] = last[l] * work[l]);
@@ -213,7 +213,7 @@ impl<const D: usize> Scheme<D> {
                 }
             });
         }
-        fn wide<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
+        fn single<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
             s.scatter_pressure(patch, K, |stencils, runs, band, of, sums| {
                 for r in runs.iter().cloned().flatten() {
                     let weights = stencils.particle::<K, D>(r);
@@ -223,7 +223,7 @@ impl<const D: usize> Scheme<D> {
             });
         }
         let width = patch.stencils.width;
-        with_packed!(width, packed(patch, self), with_width!(width, wide(patch, self)));
+        with_packed!(width, packed(patch, self), with_width!(width, single(patch, self)));
     }
 
     /// The same with the sums over the particles by `add`, in windows of `width` nodes.
@@ -307,16 +307,20 @@ impl<const D: usize> Scheme<D> {
                     window = nodal.fetch::<K, V, D>(stencils.place(r));
                 }
                 let values = stencils.packed_values::<K, V, D>(r);
-                totals::<K, D>(decomp::array::from_fn(|k| dot(&values, &window[k])))
+                totals::<K>(decomp::array::from_fn(|k| dot(&values, &window[k])))
             });
         }
-        fn wide<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>, rate: f64) {
+        fn single<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>, rate: f64) {
             s.relax_particles(patch, rate, |stencils, r, nodal| {
                 nodal.sums(&stencils.particle::<K, D>(r))
             });
         }
         let width = patch.stencils.width;
-        with_packed!(width, packed(patch, self, rate), with_width!(width, wide(patch, self, rate)));
+        with_packed!(
+            width,
+            packed(patch, self, rate),
+            with_width!(width, single(patch, self, rate))
+        );
     }
 
     /// The same with the `sums` over the nodes of each particle, by its index.

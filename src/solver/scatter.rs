@@ -95,9 +95,7 @@ impl<const D: usize> Scheme<D> {
         self.reflect_ghosts(patch);
         let tensor = self.tensor_stress();
         let (width, scalar) = (patch.stencils.width, force && !tensor);
-        // blocks of spin are added on windows of at least three nodes
-        let spins = self.columns.spin.is_some();
-        let is_plain = self.columns.affine.is_none() && !self.axisymmetric && !(spins && width < 3);
+        let is_plain = self.columns.affine.is_none() && !self.axisymmetric;
         if is_plain && (recomputed || self.contact.is_some()) {
             with_packed!(
                 width,

@@ -43,10 +43,10 @@ impl<const D: usize> Sums<'_, D> {
         of: &Summed<'_, D>,
     ) {
         let place = stencils.place(group.start);
-        let mut mass = place.nodes::<K, V, D>(self.mass);
+        let mut mass = place.nodes::<K, V>(self.mass);
         let mut momentum = [mass; D];
         for a in 0..D {
-            momentum[a] = place.nodes::<K, V, D>(self.momentum[a]);
+            momentum[a] = place.nodes::<K, V>(self.momentum[a]);
         }
         for r in group {
             let (values, m) = (stencils.packed_values::<K, V, D>(r), of.mass[r]);
@@ -55,9 +55,9 @@ impl<const D: usize> Sums<'_, D> {
                 add_to(&mut momentum[a], &values, m * of.velocity[a][r]);
             }
         }
-        place.put::<K, V, D>(self.mass, &mass);
+        place.put::<K, V>(self.mass, &mass);
         for a in 0..D {
-            place.put::<K, V, D>(self.momentum[a], &momentum[a]);
+            place.put::<K, V>(self.momentum[a], &momentum[a]);
         }
     }
 
@@ -74,9 +74,9 @@ impl<const D: usize> Sums<'_, D> {
     ) {
         let place = stencils.place(group.start);
         let (x, y) = (0, D - 1);
-        let mut mass = place.nodes::<K, V, D>(self.mass);
-        let mut along_x = place.nodes::<K, V, D>(self.momentum[x]);
-        let mut along_y = place.nodes::<K, V, D>(self.momentum[y]);
+        let mut mass = place.nodes::<K, V>(self.mass);
+        let mut along_x = place.nodes::<K, V>(self.momentum[x]);
+        let mut along_y = place.nodes::<K, V>(self.momentum[y]);
         for r in group {
             let (values, m) = (stencils.packed_values::<K, V, D>(r), of.mass[r]);
             add_to(&mut mass, &values, m);
@@ -93,9 +93,9 @@ impl<const D: usize> Sums<'_, D> {
                 along_y[line] += values[line] * terms;
             }
         }
-        place.put::<K, V, D>(self.mass, &mass);
-        place.put::<K, V, D>(self.momentum[x], &along_x);
-        place.put::<K, V, D>(self.momentum[y], &along_y);
+        place.put::<K, V>(self.mass, &mass);
+        place.put::<K, V>(self.momentum[x], &along_x);
+        place.put::<K, V>(self.momentum[y], &along_y);
     }
 
     /// Adds volume and force of a group of particles.
@@ -108,16 +108,16 @@ impl<const D: usize> Sums<'_, D> {
     ) {
         let place = stencils.place(group.start);
         if let Some(field) = &mut self.volume {
-            let mut volume = place.nodes::<K, V, D>(field);
+            let mut volume = place.nodes::<K, V>(field);
             for r in group.clone() {
                 add_to(&mut volume, &stencils.packed_values::<K, V, D>(r), of.filled[r]);
             }
-            place.put::<K, V, D>(field, &volume);
+            place.put::<K, V>(field, &volume);
         }
         let Some(stress) = of.stress else { return };
         let mut force = [[f64x4::ZERO; V]; D];
         for a in 0..D {
-            force[a] = place.nodes::<K, V, D>(self.force[a]);
+            force[a] = place.nodes::<K, V>(self.force[a]);
         }
         for r in group {
             let gradients = stencils.packed_gradients::<K, V, D>(r);
@@ -126,7 +126,7 @@ impl<const D: usize> Sums<'_, D> {
             }
         }
         for a in 0..D {
-            place.put::<K, V, D>(self.force[a], &force[a]);
+            place.put::<K, V>(self.force[a], &force[a]);
         }
     }
 }
@@ -172,10 +172,10 @@ impl<const D: usize> Scheme<D> {
         for group in patch.runs.iter().flat_map(|run| patch.stencils.groups(run.clone())) {
             sums.add_rest::<K, V>(&patch.stencils, group.clone(), &of);
             match spin {
-                Some(moment) if const { D > 1 && K > 2 } => {
+                Some(moment) => {
                     self.add_spinning::<K, V>(&mut sums, patch, &mut band, group, (&of, moment));
                 }
-                _ => {
+                None => {
                     sums.add_motion::<K, V>(&patch.stencils, group.clone(), &of);
                     if matrix {
                         let mass = |r: usize| of.mass[r];
@@ -219,7 +219,7 @@ impl<const D: usize> Scheme<D> {
                 let r = from + k;
                 let place = self.place_of(patch, r);
                 let inertia = packed_inertia(&stencils.packed_values::<K, V, D>(r), place);
-                let [inertia, ..] = totals::<K, D>([inertia; 4]);
+                let [inertia, ..] = totals::<K>([inertia; 4]);
                 let inverse = 1.0 / inertia;
                 turning[k] = moment[r] * inverse;
                 spinning[k] = Spinning { mass: of.mass[r], place, inverse };

@@ -142,15 +142,15 @@ impl<const D: usize> Scheme<D> {
                 if stencils.first[r] != at {
                     at = stencils.first[r];
                     let place = stencils.place(r);
-                    window = map(nodal, |v| map(&v, |field| place.nodes::<K, V, D>(field)));
+                    window = map(nodal, |v| map(&v, |field| place.nodes::<K, V>(field)));
                 }
                 let values = stencils.packed_values::<K, V, D>(r);
                 let moments = map(&window, |v: [[f64x4; V]; 2]| packed_moment(&values, place, &v));
                 let [start, star, residual] = moments;
-                totals::<K, D>([packed_inertia(&values, place), start, star, residual])
+                totals::<K>([packed_inertia(&values, place), start, star, residual])
             });
         }
-        fn wide<const K: usize, const D: usize>(
+        fn single<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
             s: &Scheme<D>,
             spin: SpinColumns,
@@ -168,7 +168,7 @@ impl<const D: usize> Scheme<D> {
             with_packed!(
                 width,
                 packed(patch, self, spin, primes),
-                with_width!(width, wide(patch, self, spin, primes))
+                with_width!(width, single(patch, self, spin, primes))
             );
         });
     }

@@ -407,10 +407,8 @@ mod tests {
             assert_eq!(one.rows, grouped.rows, "{K} nodes");
             assert_eq!(one.touched, grouped.touched, "{K} nodes");
         }
-        check::<2, 1, 1>(20, 20);
         check::<3, 1, 1>(20, 20);
         check::<4, 1, 1>(20, 20);
-        check::<2, 1, 2>(120, 12);
         check::<3, 3, 2>(120, 12);
         check::<4, 4, 2>(120, 12);
     }

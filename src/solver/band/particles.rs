@@ -135,7 +135,7 @@ impl Band {
         }
     }
 
-    /// Adds the particles of `group`, which have the same window of at most four nodes along each
+    /// Adds the particles of `group`, which have the same window of three or four nodes along each
     /// direction in `V` vectors, with the `mass` of each.
     #[inline(always)]
     pub fn add_group<const K: usize, const V: usize, const D: usize>(
@@ -144,12 +144,6 @@ impl Band {
         group: Range<usize>,
         mass: impl Fn(usize) -> f64,
     ) {
-        if V != const { lines(K, D) } || K < 3 {
-            for r in group {
-                self.add(&stencils.particle::<K, D>(r), mass(r));
-            }
-            return;
-        }
         let (place, mut from) = (stencils.place(group.start), group.start);
         // numbers of particles known at compile time, so that there are no loops over them
         while from < group.end {
