@@ -66,6 +66,7 @@ pub struct Block<const D: usize> {
     /// Indices of the columns that ghosts carry.
     ghost_columns: Vec<usize>,
     own: usize,
+    moves: Moves<D>,
 }
 
 impl<const D: usize> Block<D> {
@@ -80,6 +81,7 @@ impl<const D: usize> Block<D> {
             specs: specs.to_vec(),
             ghost_columns: (0..specs.len()).filter(|&c| specs[c].ghost).collect(),
             own: 0,
+            moves: Moves::default(),
         }
     }
 
@@ -195,51 +197,93 @@ impl<const D: usize> Block<D> {
     }
 
     fn sort(&mut self, from: usize, to: usize) {
+        let mut moves = std::mem::take(&mut self.moves);
+        self.find_disorder(from..to, &mut moves.ranges);
         // most steps keep the order or move few particles
-        let misplaced = self.misplaced(from..to);
-        if misplaced == 0 {
-            return;
-        }
-        if misplaced <= FEW {
-            for particle in from + 1..to {
-                if self.key(particle - 1) > self.key(particle) {
-                    let key = self.key(particle);
-                    let place = from + partition_point(from, particle, |r| self.key(r) < key);
-                    self.rotate(place, particle, to);
+        if !moves.ranges.is_empty() {
+            self.find_moves(&mut moves);
+            permute(&mut self.ids, &moves.moved, &mut moves.words);
+            permute(&mut self.cells, &moves.moved, &mut moves.places);
+            for column in &mut self.columns {
+                if column.len() >= to {
+                    permute(column, &moves.moved, &mut moves.numbers);
                 }
             }
-            return;
         }
-        // most particles are still in order among themselves: the others are sorted and merged in
-        let mut order: Vec<u32> = (from as u32..to as u32).collect();
-        dmsort::sort_by(&mut order, |&a, &b| self.key(a as usize).cmp(&self.key(b as usize)));
-        let mut moved: Vec<Moved> = Vec::new();
-        for (to, particle) in (from..to).zip(order) {
-            let particle = particle as usize;
-            match moved.last_mut().filter(|last| last.follow([to, particle])) {
-                Some(last) => last.count += 1,
-                None if to == particle => {}
-                None => moved.push(Moved { to, from: particle, count: 1 }),
+        self.moves = moves;
+    }
+
+    /// Finds the ranges of `particles` that are in order once each of them is sorted. Disorder is
+    /// local: a particle that enters the next cell passes the others of one or two cells, or of a
+    /// line of cells.
+    fn find_disorder(&self, particles: Range<usize>, ranges: &mut Vec<Disorder>) {
+        ranges.clear();
+        let (from, to) = (particles.start, particles.end);
+        let mut at = from + 1;
+        while at < to {
+            let next = to.min(at + CHUNK);
+            if self.misplaced(at - 1..next) == 0 {
+                at = next;
+                continue;
             }
+            while self.key(at - 1) <= self.key(at) {
+                at += 1;
+            }
+            let greatest = self.key(at - 1);
+            let (mut least, mut start, mut end) = (self.key(at), at - 1, at + 1);
+            while end < to && self.key(end) < greatest {
+                least = least.min(self.key(end));
+                end += 1;
+            }
+            while start > from {
+                match ranges.last() {
+                    Some(last) if last.end == start && last.greatest < least => break,
+                    Some(last) if last.end == start => {
+                        start = last.start;
+                        ranges.pop();
+                    }
+                    _ if self.key(start - 1) < least => break,
+                    _ => start -= 1,
+                }
+            }
+            ranges.push(Disorder { start, end, greatest });
+            at = end;
         }
-        permute(&mut self.ids, &moved, &mut Vec::new());
-        permute(&mut self.cells, &moved, &mut Vec::new());
-        let mut buffer = Vec::new();
-        for column in &mut self.columns {
-            if column.len() >= to {
-                permute(column, &moved, &mut buffer);
+    }
+
+    /// Finds the moves that sort each of the ranges.
+    fn find_moves(&self, moves: &mut Moves<D>) {
+        let Moves { ranges, order, moved, .. } = moves;
+        moved.clear();
+        for range in ranges {
+            order.clear();
+            order.extend(range.start as u32..range.end as u32);
+            self.sort_few_or_many(order);
+            for (to, &particle) in (range.start..range.end).zip(&*order) {
+                let particle = particle as usize;
+                match moved.last_mut().filter(|last| last.follow([to, particle])) {
+                    Some(last) => last.count += 1,
+                    None if to == particle => {}
+                    None => moved.push(Moved { to, from: particle, count: 1 }),
+                }
             }
         }
     }
 
-    /// Moves `particle` forward to `place`; columns shorter than `all` do not contain it.
-    fn rotate(&mut self, place: usize, particle: usize, all: usize) {
-        self.ids[place..=particle].rotate_right(1);
-        self.cells[place..=particle].rotate_right(1);
-        for column in &mut self.columns {
-            if column.len() >= all {
-                column[place..=particle].rotate_right(1);
+    /// Sorts particles by their keys.
+    fn sort_few_or_many(&self, order: &mut [u32]) {
+        let key = |particle: u32| self.key(particle as usize);
+        if order.len() > CHUNK {
+            // most are still in order among themselves: the others are sorted and merged in
+            return dmsort::sort_by(order, |&a, &b| key(a).cmp(&key(b)));
+        }
+        for k in 1..order.len() {
+            let (particle, mut place) = (order[k], k);
+            while place > 0 && key(order[place - 1]) > key(particle) {
+                order[place] = order[place - 1];
+                place -= 1;
             }
+            order[place] = particle;
         }
     }
 
@@ -301,9 +345,42 @@ fn partition_point(from: usize, to: usize, below: impl Fn(usize) -> bool) -> usi
     lo - from
 }
 
-/// Number of misplaced particles up to which moving them one by one is cheaper than a sort, and asks
-/// for no memory.
-const FEW: usize = 8;
+/// Number of particles that are compared together, and up to which an insertion sort is cheaper than
+/// another one; it asks for no memory.
+const CHUNK: usize = 64;
+
+/// Range of particles that are out of order, and the greatest of their keys.
+#[derive(Clone, Copy, Debug)]
+struct Disorder {
+    start: usize,
+    end: usize,
+    greatest: u128,
+}
+
+/// Buffers of a sort.
+#[derive(Clone, Debug)]
+struct Moves<const D: usize> {
+    ranges: Vec<Disorder>,
+    /// Particles of a range in their order.
+    order: Vec<u32>,
+    moved: Vec<Moved>,
+    words: Vec<u64>,
+    places: Vec<[i32; D]>,
+    numbers: Vec<f64>,
+}
+
+impl<const D: usize> Default for Moves<D> {
+    fn default() -> Self {
+        Moves {
+            ranges: Vec::new(),
+            order: Vec::new(),
+            moved: Vec::new(),
+            words: Vec::new(),
+            places: Vec::new(),
+            numbers: Vec::new(),
+        }
+    }
+}
 
 /// Place of a cell in the canonical order, the last direction first.
 fn place<const D: usize>(cell: &[i32; D]) -> i64 {
@@ -418,6 +495,50 @@ mod tests {
                 assert_eq!(block.columns[0][r], block.ids[r] as f64);
                 assert_eq!(block.columns[1][r], block.cells[r][0] as f64);
             }
+        }
+    }
+
+    /// Particles that pass one, some, or a whole line of others, in several places at once, with
+    /// ranges of disorder that touch or enclose each other.
+    #[test]
+    fn any_disorder_is_sorted() {
+        let check = |cells: &[i32]| {
+            let mut block = Block::<1>::new(&SPECS);
+            for (id, &cell) in cells.iter().enumerate() {
+                block.push(id as u64, [cell], &[id as f64, f64::from(cell)]);
+            }
+            block.sort_own();
+            let mut expected: Vec<(i32, u64)> = cells.iter().copied().zip(0..).collect();
+            expected.sort_unstable();
+            let sorted: Vec<_> = block.cells.iter().map(|c| c[0]).zip(block.ids.clone()).collect();
+            assert_eq!(sorted, expected, "{cells:?}");
+            assert!(block.columns[0].iter().zip(&block.ids).all(|(c, id)| *c == *id as f64));
+            assert!(
+                block.columns[1].iter().zip(&block.cells).all(|(c, at)| *c == f64::from(at[0]))
+            );
+        };
+        for cells in [
+            &[2, 1][..],
+            &[1, 3, 2, 5, 4, 6],
+            // the third range encloses the first two
+            &[1, 3, 2, 5, 4, 9, 0],
+            &[5, 1, 2, 3, 4, 6, 7],
+            &[9, 1, 8, 2, 7, 3],
+        ] {
+            check(cells);
+        }
+        let mut seed = 1u64;
+        let mut random = |below: u64| {
+            seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (seed >> 33) % below
+        };
+        for round in 0..200 {
+            let mut cells: Vec<i32> = (0..300).map(|k| k / 3).collect();
+            for _ in 0..round % 40 {
+                let (at, by) = (random(300) as usize, [1, -1, 7, -60][random(4) as usize]);
+                cells[at] += by;
+            }
+            check(&cells);
         }
     }
 

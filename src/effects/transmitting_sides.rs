@@ -243,7 +243,7 @@ impl<const D: usize> TransmittingSides<D> {
                 let hoop = v / s.radius(patch, r);
                 weights.add(&mut sums[0], weights.values, |n| n * hoop);
             }
-            let apart = s.offset(patch, r, weights.first)[axis];
+            let offset = s.offset(patch, r);
             for a in 0..D {
                 let (z, pressure) = match a == axis {
                     true => (column(self.impedance)[r], outward * initial.pressure),
@@ -255,8 +255,8 @@ impl<const D: usize> TransmittingSides<D> {
                 let growth = m * column(self.gradient + D * a + axis)[r] * s.cell[axis];
                 for line in 0..ParticleWeights::<K, D>::LINES {
                     let terms = std::array::from_fn(|k| {
-                        let nodes = if axis == 0 { k } else { line } as f64;
-                        weights.values[line][k] * growth * (apart + nodes)
+                        let apart = offset.at(axis, if axis == 0 { k } else { line });
+                        weights.values[line][k] * growth * apart
                     });
                     let first = weights.first + line * weights.stride;
                     add::<K>(&mut sums[1 + 2 * D + a], first, terms);

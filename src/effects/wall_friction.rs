@@ -153,14 +153,14 @@ impl WallFriction {
             weights.add(&mut impulses, weights.values, |n| n * impulse);
             if let Some(affine) = c.affine {
                 // APIC: m N C (x_i - x_p), as in the momentum sum
-                let offset = s.offset(patch, r, weights.first);
+                let offset = s.offset(patch, r);
                 let mc: [f64; D] =
                     std::array::from_fn(|b| -m * column(affine + D * axis + b) * s.cell[b]);
                 for line in 0..ParticleWeights::<K, D>::LINES {
                     let across =
-                        if D == 1 { 0.0 } else { mc[D - 1] * (offset[D - 1] + line as f64) };
+                        if D == 1 { 0.0 } else { mc[D - 1] * offset.at(D - 1, line) };
                     let terms = std::array::from_fn(|k| {
-                        weights.values[line][k] * (across + mc[0] * (offset[0] + k as f64))
+                        weights.values[line][k] * (across + mc[0] * offset.at(0, k))
                     });
                     add::<K>(&mut impulses, weights.first + line * weights.stride, terms);
                 }

@@ -8,8 +8,9 @@
 use wide::f64x4;
 
 use super::domain::{DomainExtent, ParticleDomain};
-use super::function::{Basis, CourantLimits, Shape, Weights, product};
+use super::function::{Basis, CourantLimits, Shape, Weights, four_boxes, product};
 use super::knots::{integer, moved, split, split4};
+use super::lanes::{self, Lanes, PlaneLanes};
 use super::plane::{Plane, RulePoint, by_rule};
 
 /// Corners of the parallelogram.
@@ -36,6 +37,13 @@ fn between<const K: usize>(
         w.gradients[k] = (from_upper[k] - from_lower[k]) * inverse;
     }
     w
+}
+
+/// Hat functions at four places: the nodes below, and the values there and at the next nodes.
+#[inline(always)]
+fn hats(x: f64x4) -> (f64x4, [f64x4; 2]) {
+    let (first, t) = split4(x);
+    (first, [f64x4::ONE - t, t])
 }
 
 /// Hat functions from the ends of the deforming particle.
@@ -78,10 +86,32 @@ impl Shape for Cpdi {
         if domain.is_box() {
             return product::<Self, K>(fraction, domain, out);
         }
-        let hats = |x: f64x4| {
-            let (first, t) = split4(x);
-            (first, [f64x4::ONE - t, t])
-        };
         by_rule(fraction, domain, &RULE, hats, out)
+    }
+
+    #[inline(always)]
+    fn four<const K: usize>(fraction: f64x4, length: f64x4) -> Lanes<K> {
+        let half = f64x4::HALF;
+        let (first, lower) = hats(fraction - half * length);
+        let (last, upper) = hats(fraction + half * length);
+        let inverse = f64x4::ONE / length;
+        let lower: [f64x4; K] = lanes::moved(&lower, f64x4::ZERO);
+        let upper: [f64x4; K] = lanes::moved(&upper, last - first);
+        let (mut values, mut gradients) = ([f64x4::ZERO; K], [f64x4::ZERO; K]);
+        for k in 0..K {
+            values[k] = half * (lower[k] + upper[k]);
+            gradients[k] = (upper[k] - lower[k]) * inverse;
+        }
+        Lanes { first, skipped: f64x4::ZERO, values, gradients }
+    }
+
+    #[inline(always)]
+    fn four_in_plane<const K: usize>(
+        fraction: [f64x4; 2],
+        half_edges: [[f64x4; 2]; 2],
+        out: &mut PlaneLanes<K>,
+    ) {
+        let boxes = |out: &mut PlaneLanes<K>| four_boxes::<Self, K>(fraction, half_edges, out);
+        lanes::boxes_or_rule(fraction, half_edges, &RULE, hats, boxes, out);
     }
 }

@@ -9,8 +9,9 @@ use decomp::array::map;
 use wide::f64x4;
 
 use super::domain::{DomainExtent, ParticleDomain};
-use super::function::{Basis, CourantLimits, Shape, Weights, product};
+use super::function::{Basis, CourantLimits, Shape, Weights, four_boxes, product};
 use super::knots::{integer, moved, quadratic4};
+use super::lanes::{self, Lanes, PlaneLanes};
 use super::plane::{Plane, RulePoint, by_rule};
 
 /// Simpson's rule over a parallelogram and along its edges.
@@ -97,5 +98,34 @@ impl Shape for CpdiBsplineQuadratic {
             return product::<Self, K>(fraction, domain, out);
         }
         by_rule(fraction, domain, &RULE, quadratic4, out)
+    }
+
+    #[inline(always)]
+    fn four<const K: usize>(fraction: f64x4, length: f64x4) -> Lanes<K> {
+        let half = f64x4::HALF * length;
+        let (least, lower) = quadratic4(fraction - half);
+        let (middle, centre) = quadratic4(fraction);
+        let (last, upper) = quadratic4(fraction + half);
+        let (sixth, inverse) = (f64x4::splat(1.0 / 6.0), f64x4::ONE / length);
+        let (first, skipped) = lanes::common_first::<3, K>(least, last);
+        let lower: [f64x4; K] = lanes::moved(&lower, least - first);
+        let centre: [f64x4; K] = lanes::moved(&centre, middle - first);
+        let upper: [f64x4; K] = lanes::moved(&upper, last - first);
+        let (mut values, mut gradients) = ([f64x4::ZERO; K], [f64x4::ZERO; K]);
+        for k in 0..K {
+            values[k] = (lower[k] + f64x4::splat(4.0) * centre[k] + upper[k]) * sixth;
+            gradients[k] = (upper[k] - lower[k]) * inverse;
+        }
+        Lanes { first, skipped, values, gradients }
+    }
+
+    #[inline(always)]
+    fn four_in_plane<const K: usize>(
+        fraction: [f64x4; 2],
+        half_edges: [[f64x4; 2]; 2],
+        out: &mut PlaneLanes<K>,
+    ) {
+        let boxes = |out: &mut PlaneLanes<K>| four_boxes::<Self, K>(fraction, half_edges, out);
+        lanes::boxes_or_rule(fraction, half_edges, &RULE, quadratic4, boxes, out);
     }
 }

@@ -1,5 +1,7 @@
 //! The domain of a particle: the length, or the parallelogram in a plane, that it covers.
 
+use wide::f64x4;
+
 use super::knots::ON_KNOT;
 
 /// Length of the particle, or its domain in a plane, on which a shape function depends.
@@ -21,6 +23,20 @@ impl DomainExtent {
             DomainExtent::Point => 0,
             DomainExtent::Undeformed => 2,
             DomainExtent::Current => 4,
+        }
+    }
+}
+
+impl DomainExtent {
+    /// Half edges of the domains of four particles from `column`, which gives four values of a
+    /// column: see [`DomainExtent::plane_columns`].
+    #[inline(always)]
+    pub fn half_edges(self, column: impl Fn(usize) -> f64x4) -> [[f64x4; 2]; 2] {
+        let (zero, half) = (f64x4::ZERO, f64x4::HALF);
+        match self {
+            DomainExtent::Point => [[zero; 2]; 2],
+            DomainExtent::Undeformed => [[half * column(0), zero], [zero, half * column(1)]],
+            DomainExtent::Current => [[column(0), column(1)], [column(2), column(3)]],
         }
     }
 }

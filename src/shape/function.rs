@@ -1,6 +1,9 @@
 //! What makes a shape function: its basis, its weights along one direction and in a plane.
 
+use wide::f64x4;
+
 use super::domain::{DomainExtent, ParticleDomain};
+use super::lanes::{LANES, Lanes, PlaneLanes};
 use super::plane::Plane;
 
 /// Nodal basis functions.
@@ -83,6 +86,23 @@ pub trait Shape: Copy + Send + Sync + 'static {
     ) -> [i32; 2] {
         product::<Self, K>(fraction, domain, out)
     }
+
+    /// [`Shape::weights`] of four particles, bit by bit, one in each lane.
+    #[inline(always)]
+    fn four<const K: usize>(fraction: f64x4, length: f64x4) -> Lanes<K> {
+        one_by_one::<Self, K>(fraction, length)
+    }
+
+    /// Writes [`Shape::plane`] of four particles with the half edges of their domains to `out`, bit
+    /// by bit, one in each lane.
+    #[inline(always)]
+    fn four_in_plane<const K: usize>(
+        fraction: [f64x4; 2],
+        half_edges: [[f64x4; 2]; 2],
+        out: &mut PlaneLanes<K>,
+    ) {
+        four_boxes::<Self, K>(fraction, half_edges, out);
+    }
 }
 
 /// Weights of a box: products of the weights along each direction.
@@ -102,6 +122,52 @@ pub(super) fn product<S: Shape, const K: usize>(
         }
     }
     [x.first, y.first]
+}
+
+/// Weights of each particle by the function for one.
+#[inline(always)]
+fn one_by_one<S: Shape, const K: usize>(fraction: f64x4, length: f64x4) -> Lanes<K> {
+    let mut first = [0.0; LANES];
+    let mut lines = [[[0.0; LANES]; K]; 2];
+    for lane in 0..LANES {
+        let w = S::weights::<K>(fraction.as_array()[lane], length.as_array()[lane]);
+        first[lane] = f64::from(w.first);
+        for k in 0..K {
+            lines[0][k][lane] = w.values[k];
+            lines[1][k][lane] = w.gradients[k];
+        }
+    }
+    let [values, gradients] =
+        decomp::array::map(&lines, |line| decomp::array::map(&line, f64x4::from));
+    Lanes { first: f64x4::from(first), skipped: f64x4::ZERO, values, gradients }
+}
+
+/// Extents of domains along x and y [cells].
+#[inline(always)]
+fn extents([r1, r2]: [[f64x4; 2]; 2]) -> [f64x4; 2] {
+    let two = f64x4::splat(2.0);
+    [two * (r1[0].abs() + r2[0].abs()), two * (r1[1].abs() + r2[1].abs())]
+}
+
+/// Weights of four boxes: products of the weights along each direction.
+#[inline(always)]
+pub(super) fn four_boxes<S: Shape, const K: usize>(
+    fraction: [f64x4; 2],
+    half_edges: [[f64x4; 2]; 2],
+    out: &mut PlaneLanes<K>,
+) {
+    let [width, height] = extents(half_edges);
+    let (x, y) = (S::four::<K>(fraction[0], width), S::four::<K>(fraction[1], height));
+    let [gx, gy] = &mut out.gradients;
+    for l in 0..K {
+        for k in 0..K {
+            out.values[l][k] = x.values[k] * y.values[l];
+            gx[l][k] = x.gradients[k] * y.values[l];
+            gy[l][k] = x.values[k] * y.gradients[l];
+        }
+    }
+    out.first = [x.first, y.first];
+    out.skipped = [x.skipped, y.skipped];
 }
 
 impl<const K: usize> Plane<'_, K> {

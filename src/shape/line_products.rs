@@ -11,6 +11,13 @@ pub fn fours<const K: usize>(line: &[f64; K], four: usize) -> f64x4 {
     f64x4::new([at(k), at(k + 1), at(k + 2), at(k + 3)])
 }
 
+/// Four numbers as a vector, by one load: compilers take overlapping lines apart.
+#[inline(always)]
+pub fn vector(numbers: &[f64; 4]) -> f64x4 {
+    // SAFETY: a vector is four numbers, and any bits are numbers
+    unsafe { std::mem::transmute_copy(numbers) }
+}
+
 /// Adds `factor` times a line of values to the entries of `sums` from `first` on.
 ///
 /// # Panics

@@ -7,6 +7,7 @@
 mod domain;
 mod function;
 mod knots;
+mod lanes;
 mod line_products;
 mod plane;
 mod widths;
@@ -17,7 +18,8 @@ use serde::{Deserialize, Serialize};
 pub use domain::{DomainExtent, ParticleDomain};
 pub use function::{Basis, CourantLimits, Shape, Weights};
 pub(crate) use knots::{floor, integer};
-pub use line_products::{add_product, fours};
+pub use lanes::{LANES, Lanes, PlaneLanes};
+pub use line_products::{add_product, fours, vector};
 pub use plane::Plane;
 pub use widths::{MOST_NODES, MOST_NODES_IN_PLANE, most_nodes, padded_width};
 pub(crate) use widths::{with_shape_width, with_width};

@@ -2,15 +2,18 @@
 
 use std::ops::DerefMut;
 
+use super::nodal_sums::{EndSums, PackedEnds};
 use super::scheme::Scheme;
 use super::solid::{Taken, put_back};
 use crate::scene::Limiter;
 use crate::shape::with_width;
 use crate::solver::artificial_viscosity::{self, Nodes};
 use crate::solver::clock::timed;
+use crate::solver::packed::with_packed;
 use crate::solver::particle_weights::ParticleWeights;
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
+use crate::solver::shape_weights::Stencils;
 use crate::transfer::VelocityUpdate;
 
 /// Columns of a vector, taken out of their block: they are written while other columns are read.
@@ -44,51 +47,82 @@ impl<const D: usize> Scheme<D> {
     /// its affine part, and position x += dt N v'; with `strain` also the results of
     /// [`Self::gather_gradient`].
     pub(crate) fn gather_leapfrog(&self, patch: &mut Patch<D>, dt: f64, strain: bool) {
-        fn go<const K: usize, const D: usize>(
-            patch: &mut Patch<D>,
-            s: &Scheme<D>,
-            dt: f64,
-            strain: bool,
-        ) {
-            if const { D == 1 } {
-                match strain {
-                    false => s.gather_end::<K, 1, true, false>(patch, dt),
-                    true => s.gather_end::<K, 1, true, true>(patch, dt),
-                }
-            } else {
-                match strain {
-                    false => s.gather_end::<K, K, true, false>(patch, dt),
-                    true => s.gather_end::<K, K, true, true>(patch, dt),
-                }
-            }
+        fn affine<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
             if let Some(affine) = s.columns.affine {
                 timed(StepPart::Affine as usize, patch, |patch| {
                     s.gather_affine::<K>(patch, affine)
                 });
             }
         }
-        with_width!(patch.stencils.width, go(patch, self, dt, strain));
+        self.gather_end(patch, dt, [true, strain]);
+        with_width!(patch.stencils.width, affine(patch, self));
     }
 
     /// Divergence of v' at the own particles, its full gradient if domains deform, and the limiter
     /// computed from it.
     pub(super) fn gather_gradient(&self, patch: &mut Patch<D>) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
-            if const { D == 1 } {
-                s.gather_end::<K, 1, false, true>(patch, 0.0);
-            } else {
-                s.gather_end::<K, K, false, true>(patch, 0.0);
-            }
-        }
-        with_width!(patch.stencils.width, go(patch, self));
+        self.gather_end(patch, 0.0, [false, true]);
     }
 
     /// Moves the own particles by `dt`, computes their velocity gradients, or both, in one pass:
     /// finding the weights and nodes of a particle takes as long as a sum over them.
-    fn gather_end<const K: usize, const L: usize, const MOVE: bool, const STRAIN: bool>(
+    fn gather_end(&self, patch: &mut Patch<D>, dt: f64, [moves, strains]: [bool; 2]) {
+        fn packed<const K: usize, const V: usize, const D: usize>(
+            patch: &mut Patch<D>,
+            s: &Scheme<D>,
+            (dt, moves): (f64, bool),
+            wanted: [bool; 3],
+        ) {
+            let (mut window, mut at) = (PackedEnds::<V, D>::none(), u32::MAX);
+            s.end_particles(patch, dt, [moves, wanted[1]], |stencils, r, nodal| {
+                // several particles of a cell have the same window
+                if stencils.first[r] != at {
+                    at = stencils.first[r];
+                    window.fetch::<K>(nodal, stencils.place(r));
+                }
+                window.sums::<K>(&stencils.packed::<K, V, D>(r), wanted)
+            });
+        }
+        fn single<const K: usize, const D: usize>(
+            patch: &mut Patch<D>,
+            s: &Scheme<D>,
+            (dt, moves): (f64, bool),
+            wanted: [bool; 3],
+        ) {
+            s.end_particles(patch, dt, [moves, wanted[1]], |stencils, r, nodal| {
+                let weights = stencils.particle::<K, D>(r);
+                if const { D == 1 } {
+                    EndSums::one_by_one::<K, 1>(nodal, &weights, wanted)
+                } else {
+                    EndSums::one_by_one::<K, K>(nodal, &weights, wanted)
+                }
+            });
+        }
+        fn limiter<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
+            s.gather_limiter::<K>(patch);
+        }
+        let width = patch.stencils.width;
+        // hoop strain needs the velocity at the particle
+        let velocities = moves || self.axisymmetric;
+        let wanted = [velocities, strains, self.columns.velocity_gradient.is_some()];
+        with_packed!(
+            width,
+            packed(patch, self, (dt, moves), wanted),
+            with_width!(width, single(patch, self, (dt, moves), wanted))
+        );
+        if strains {
+            with_width!(width, limiter(patch, self));
+        }
+    }
+
+    /// The same with the `sums` over the nodes of each particle, by its index.
+    #[inline(always)]
+    fn end_particles(
         &self,
         patch: &mut Patch<D>,
         dt: f64,
+        [moves, strains]: [bool; 2],
+        mut sums: impl FnMut(&Stencils, usize, [[&[f64]; D]; 2]) -> EndSums<D>,
     ) {
         let (c, f) = (&self.columns, &self.fields);
         let n = patch.block.own();
@@ -96,7 +130,7 @@ impl<const D: usize> Scheme<D> {
         // slices of equal length, so that the bounds of a window are checked only once
         let nodes = fields[f.mass].len();
         let vector = |k: usize| decomp::array::from_fn::<&[f64], D, _>(|a| &fields[k + a][..nodes]);
-        let (lumped, star) = (vector(f.lumped_velocity), vector(f.velocity_star));
+        let nodal = [vector(f.lumped_velocity), vector(f.velocity_star)];
         let columns = &mut patch.block.columns;
         let [mut x, mut v] = [c.position, c.velocity].map(|k| take_vector::<D>(columns, k));
         let mut divergence = std::mem::take(&mut columns[c.divergence]);
@@ -104,37 +138,25 @@ impl<const D: usize> Scheme<D> {
         let (own_x, own_v) = (&mut own::<D>(&mut x, n), &mut own::<D>(&mut v, n));
         let own_divergence = &mut divergence[..n];
         let mut own_gradient = own_tensor(&mut tensor, n);
-        for (r, weights) in patch.stencils.particles::<K, D>(0..n).enumerate() {
-            let star = weights.windows::<L, D>(star);
-            if MOVE {
-                for a in 0..D {
-                    let new = weights.sum(weights.values, |line| star[a][line]);
-                    let v = &mut own_v[a][r];
-                    *v = match self.transfer.update {
-                        VelocityUpdate::Blend(share) => {
-                            let old = weights.dot(weights.values, lumped[a]);
-                            share * *v + (1.0 - share) * old + (new - old)
-                        }
-                        VelocityUpdate::Filtered | VelocityUpdate::Affine => new,
-                    };
-                    own_x[a][r] += dt * new;
-                }
-            }
-            if STRAIN {
-                let plane = match &mut own_gradient {
-                    Some(gradient) => {
-                        let l = tensor_of(&weights, |a, line| star[a][line]);
-                        put(gradient, 0, r, &l);
-                        trace(&l)
-                    }
-                    None => {
-                        let along =
-                            |a: usize| weights.sum(weights.gradient(a), |line| star[a][line]);
-                        (1..D).fold(along(0), |sum, a| sum + along(a))
-                    }
+        for r in 0..n {
+            let at = sums(&patch.stencils, r, nodal);
+            for a in 0..if moves { D } else { 0 } {
+                let (old, new, v) = (at.start[a], at.star[a], &mut own_v[a][r]);
+                *v = match self.transfer.update {
+                    VelocityUpdate::Blend(share) => share * *v + (1.0 - share) * old + (new - old),
+                    VelocityUpdate::Filtered | VelocityUpdate::Affine => new,
                 };
-                let radial = |line: usize| star[0][line];
-                own_divergence[r] = self.with_hoop(patch, &weights, r, plane, radial);
+                own_x[a][r] += dt * new;
+            }
+            if strains {
+                if let Some(gradient) = &mut own_gradient {
+                    put(gradient, 0, r, &at.gradient);
+                }
+                let plane = trace(&at.gradient);
+                own_divergence[r] = match D > 1 && self.axisymmetric {
+                    true => plane + at.star[0] / self.radius(patch, r),
+                    false => plane,
+                };
             }
         }
         let columns = &mut patch.block.columns;
@@ -144,20 +166,16 @@ impl<const D: usize> Scheme<D> {
         if let Some(first) = c.velocity_gradient {
             put_back(columns, first, tensor);
         }
-        if STRAIN {
-            self.gather_limiter::<K>(patch);
-        }
     }
 
     /// C = B D^-1 with B = sum N v' (x_i - x_p) and D = sum N (x_i - x_p) (x_i - x_p) (Jiang et al.
     /// 2015): exact for a linear velocity, also if a sheared domain gives D an xy component.
     pub(super) fn gather_affine<const K: usize>(&self, patch: &mut Patch<D>, affine: usize) {
         for r in 0..patch.block.own() {
-            let offset = self.offset(patch, r, patch.stencils.first[r] as usize);
+            let offset = self.offset(patch, r);
             let weights = patch.stencils.particle::<K, D>(r);
-            let apart = |b: usize, line: usize, k: usize| {
-                offset[b] + if b == 0 { k as f64 } else { line as f64 }
-            };
+            let apart =
+                |b: usize, line: usize, k: usize| offset.at(b, if b == 0 { k } else { line });
             let second = |a: usize, b: usize| {
                 let product =
                     |line: usize| decomp::array::from_fn(|k| apart(a, line, k) * apart(b, line, k));

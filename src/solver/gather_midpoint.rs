@@ -1,31 +1,18 @@
 //! Grid to particles at the end of a mid-point step, for own particles only.
 
-use decomp::array::{from_fn, sum};
+use decomp::array::from_fn;
 
-use super::gather::{OwnTensor, own, own_tensor, put, take_tensor, take_vector, tensor_of, trace};
+use super::gather::{OwnTensor, own, own_tensor, put, take_tensor, take_vector, trace};
+use super::nodal_sums::{NodalSums, NodalVelocities, PackedVelocities};
 use super::scheme::Scheme;
 use super::solid::put_back;
 use crate::shape::with_width;
 use crate::solver::clock::timed;
-use crate::solver::particle_weights::ParticleWeights;
+use crate::solver::packed::with_packed;
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
+use crate::solver::shape_weights::Stencils;
 use crate::transfer::VelocityUpdate;
-
-/// Product of two lines of nodes.
-#[inline(always)]
-fn times<const K: usize>(a: &[f64; K], b: &[f64; K]) -> [f64; K] {
-    from_fn(|k| a[k] * b[k])
-}
-
-/// Mean of two lines of nodes.
-#[inline(always)]
-fn half_sum<const K: usize>(a: &[f64; K], b: &[f64; K]) -> [f64; K] {
-    from_fn(|k| 0.5 * (a[k] + b[k]))
-}
-
-/// Values of a nodal vector at the nodes of a particle: component, line of nodes, node.
-type Windows<const K: usize, const L: usize, const D: usize> = [[[f64; K]; L]; D];
 
 /// Scales the velocity gradient of a particle, if it exists, by `share`, the ratio of the volumes at
 /// the middle and the end of the step. Relative to the end, it gives the volume at the middle of the
@@ -37,19 +24,45 @@ fn scale(gradient: &mut OwnTensor<'_>, particle: usize, share: f64) {
     }
 }
 
+/// Divergence `plane` in the plane, plus the hoop strain rate at a radius, if there is one [1/s].
+#[inline(always)]
+fn with_hoop(plane: f64, radial: f64, radius: Option<f64>) -> f64 {
+    match radius {
+        Some(radius) => plane + radial / radius,
+        None => plane,
+    }
+}
+
 impl<const D: usize> Scheme<D> {
     /// Updates the own particles at the end of a mid-point step: volume and energy from the
     /// gradients of the mean velocity and of w, heat of the filter, velocity, position and domain.
     pub(super) fn gather_midpoint(&self, patch: &mut Patch<D>, dt: f64) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>, dt: f64) {
-            if const { D == 1 } {
-                s.gather_particles::<K, 1, false>(patch, dt);
-            } else {
-                match s.tensor_stress() {
-                    false => s.gather_particles::<K, K, false>(patch, dt),
-                    true => s.gather_particles::<K, K, true>(patch, dt),
+        fn packed<const K: usize, const V: usize, const D: usize>(
+            patch: &mut Patch<D>,
+            s: &Scheme<D>,
+            dt: f64,
+        ) {
+            let (mut window, mut at) = (PackedVelocities::<V, D>::none(), u32::MAX);
+            s.gather_particles(patch, dt, |stencils, r, nodal| {
+                // several particles of a cell have the same window
+                if stencils.first[r] != at {
+                    at = stencils.first[r];
+                    window.fetch::<K>(nodal, stencils.place(r));
                 }
-            }
+                window.sums::<K>(nodal, &stencils.packed::<K, V, D>(r))
+            });
+        }
+        fn single<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>, dt: f64) {
+            s.gather_particles(patch, dt, |stencils, r, nodal| {
+                let weights = stencils.particle::<K, D>(r);
+                if const { D == 1 } {
+                    NodalSums::one_by_one::<K, 1>(nodal, &weights)
+                } else {
+                    NodalSums::one_by_one::<K, K>(nodal, &weights)
+                }
+            });
+        }
+        fn rest<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
             if let Some(affine) = s.columns.affine {
                 timed(StepPart::Affine as usize, patch, |patch| {
                     s.gather_affine::<K>(patch, affine)
@@ -57,13 +70,18 @@ impl<const D: usize> Scheme<D> {
             }
             s.gather_limiter::<K>(patch);
         }
-        with_width!(patch.stencils.width, go(patch, self, dt));
+        let width = patch.stencils.width;
+        with_packed!(width, packed(patch, self, dt), with_width!(width, single(patch, self, dt)));
+        with_width!(width, rest(patch, self));
     }
 
-    fn gather_particles<const K: usize, const L: usize, const TENSOR: bool>(
+    /// Updates the own particles with the `sums` over the nodes of each, by its index.
+    #[inline(always)]
+    fn gather_particles(
         &self,
         patch: &mut Patch<D>,
         dt: f64,
+        mut sums: impl FnMut(&Stencils, usize, &NodalVelocities<'_, D>) -> NodalSums<D>,
     ) {
         let (c, f) = (&self.columns, &self.fields);
         let n = patch.block.own();
@@ -71,10 +89,16 @@ impl<const D: usize> Scheme<D> {
         // slices of equal length, so that the bounds of a window are checked only once
         let nodes = fields[f.mass].len();
         let vector = |k: usize| from_fn::<&[f64], D, _>(|a| &fields[k + a][..nodes]);
-        let (lumped, start, star) =
-            (vector(f.lumped_velocity), vector(f.velocity), vector(f.velocity_star));
-        let work = vector(f.work);
-        let remainder = f.filter_residual.filter(|_| self.filter_heat).map(vector);
+        let is_blend = matches!(self.transfer.update, VelocityUpdate::Blend(_));
+        let nodal = NodalVelocities {
+            start: vector(f.velocity),
+            star: vector(f.velocity_star),
+            work: self.compatible.then(|| vector(f.work)),
+            lost: f.filter_residual.filter(|_| self.filter_heat).map(vector),
+            squares: is_blend && self.filter_heat,
+            tensors: c.velocity_gradient.is_some(),
+            work_tensor: self.tensor_stress() || self.axisymmetric,
+        };
         let columns = &mut patch.block.columns;
         let [mut x, mut v] = [c.position, c.velocity].map(|k| take_vector::<D>(columns, k));
         let [mut j, mut e, mut d] =
@@ -87,41 +111,28 @@ impl<const D: usize> Scheme<D> {
         let mut own_gradient = own_tensor(&mut gradient, n);
         let column = |k: usize| &patch.block.columns[k][..n];
         let mid = c.jacobian_mid.expect("mid-point stepping has the column");
-        let (mass, j_mid, stress) = (column(c.mass), column(mid), column(c.stress_volume));
-        for (r, weights) in patch.stencils.particles::<K, D>(0..n).enumerate() {
-            // fetched once, as several sums use them
-            let (mut means, star) = (weights.windows::<L, D>(start), weights.windows::<L, D>(star));
-            let mut filtered = [0.0; D];
-            if remainder.is_some() {
-                for a in 0..D {
-                    filtered[a] = weights.sum(weights.values, |line| means[a][line]);
-                }
-            }
-            for a in 0..D {
-                for line in 0..L {
-                    means[a][line] = half_sum(&means[a][line], &star[a][line]);
-                }
-            }
+        let (mass, j_mid) = (column(c.mass), column(mid));
+        for r in 0..n {
+            let at = sums(&patch.stencils, r, &nodal);
             let old = from_fn(|a| own_v[a][r]);
-            let (new, heat) =
-                self.end_velocity(&weights, old, &filtered, [&means, &star], lumped, remainder);
-            let tensors = (&mut own_deformation, &mut own_gradient);
-            let [plane, end] = self.end_strain(&weights, r, [&means, &star], tensors, dt);
-            let divergence = self.with_hoop(patch, &weights, r, plane, |l| means[0][l]);
-            let does = if self.compatible { weights.windows::<L, D>(work) } else { means };
-            let work_done = self
-                .work_done::<K, L, TENSOR>(patch, &weights, r, &does, divergence, stress[r], dt);
+            let (new, heat) = self.end_velocity(old, &at);
+            self.end_strain(r, &at, (&mut own_deformation, &mut own_gradient), dt);
+            let hoop = self.hoop_of(patch, r);
+            let plane = trace(&at.mean_gradient);
+            let divergence = with_hoop(plane, at.mean[0], hoop);
+            let work_done = self.work_done(patch, r, &at, divergence, dt);
             for a in 0..D {
                 own_x[a][r] += match self.transfer.update {
                     // with the grid: the particles' own velocities would break up the tiling
-                    VelocityUpdate::Blend(_) => dt * weights.sum(weights.values, |l| means[a][l]),
+                    VelocityUpdate::Blend(_) => dt * at.mean[a],
                     _ => 0.5 * dt * (own_v[a][r] + new[a]),
                 };
                 own_v[a][r] = new[a];
             }
             own_j[r] += dt * j_mid[r] * divergence;
             own_e[r] += heat - work_done / mass[r];
-            own_d[r] = self.with_hoop(patch, &weights, r, end, |l| star[0][l]);
+            let plane = trace(&at.star_gradient);
+            own_d[r] = with_hoop(plane, at.star[0], hoop);
             if !self.total_lagrangian {
                 let share = j_mid[r] / own_j[r];
                 own_d[r] *= share;
@@ -144,43 +155,24 @@ impl<const D: usize> Scheme<D> {
     /// Velocity of a particle at the end of a step [m/s] from its `old` one, and the heat of the
     /// filter per unit mass [J/kg].
     #[inline(always)]
-    fn end_velocity<const K: usize, const L: usize>(
-        &self,
-        weights: &ParticleWeights<'_, K, D>,
-        old: [f64; D],
-        filtered: &[f64; D],
-        [means, star]: [&Windows<K, L, D>; 2],
-        lumped: [&[f64]; D],
-        remainder: Option<[&[f64]; D]>,
-    ) -> ([f64; D], f64) {
-        let (mut heat, mut new) = (0.0, [0.0; D]);
+    fn end_velocity(&self, old: [f64; D], at: &NodalSums<D>) -> ([f64; D], f64) {
+        let (mut heat, mut new) = (0.0, at.star);
         for a in 0..D {
-            let old = old[a];
-            new[a] = weights.sum(weights.values, |line| star[a][line]);
+            let rest = old[a] - at.start[a];
             match self.transfer.update {
                 VelocityUpdate::Filtered => {
-                    if let Some(lost) = remainder {
-                        let [lost] = weights.windows::<L, 1>([lost[a]]);
-                        let both = |l: usize| times(&lost[l], &means[a][l]);
-                        let rest = old - filtered[a];
-                        heat += 0.5 * rest * rest
-                            + (weights.sum(weights.values, both)
-                                - weights.sum(weights.values, |l| lost[l])
-                                    * weights.sum(weights.values, |l| means[a][l]));
+                    if self.filter_heat && self.fields.filter_residual.is_some() {
+                        heat += 0.5 * rest * rest + (at.product[a] - at.lost[a] * at.mean[a]);
                     }
                 }
                 VelocityUpdate::Blend(share) => {
-                    let [lumped] = weights.windows::<L, 1>([lumped[a]]);
-                    let on_grid = weights.sum(weights.values, |l| lumped[l]);
+                    let on_grid = at.start[a];
                     let change = new[a] - on_grid;
                     if self.filter_heat {
-                        let square = |l: usize| times(&lumped[l], &lumped[l]);
-                        let rest = old - on_grid;
                         heat += 0.5 * (1.0 - share * share) * rest * rest
-                            + (1.0 - share)
-                                * (weights.sum(weights.values, square) - on_grid * on_grid);
+                            + (1.0 - share) * (at.product[a] - on_grid * on_grid);
                     }
-                    new[a] = share * old + (1.0 - share) * on_grid + change;
+                    new[a] = share * old[a] + (1.0 - share) * on_grid + change;
                 }
                 VelocityUpdate::Affine => {}
             }
@@ -188,65 +180,61 @@ impl<const D: usize> Scheme<D> {
         (new, heat)
     }
 
-    /// Deformation and velocity gradient of a particle at the end of a step; returns the divergence
-    /// in the plane, of the mean velocity and of v' [1/s].
+    /// Deformation and velocity gradient of a particle at the end of a step, if it has them.
     #[inline(always)]
-    fn end_strain<const K: usize, const L: usize>(
+    fn end_strain(
         &self,
-        weights: &ParticleWeights<'_, K, D>,
         r: usize,
-        [means, star]: [&Windows<K, L, D>; 2],
+        at: &NodalSums<D>,
         (deformation, gradient): (&mut OwnTensor<'_>, &mut OwnTensor<'_>),
         dt: f64,
-    ) -> [f64; 2] {
-        // if domains deform the full gradients are needed, otherwise only their traces
-        let plane = match (&mut *deformation, &*gradient) {
-            (Some(deformation), Some(gradient)) => {
-                let during = tensor_of(weights, |a, l| means[a][l]);
-                if self.total_lagrangian {
-                    deform_linearly(deformation, gradient, r, &during, dt);
-                } else {
-                    deform(deformation, r, &during, dt);
-                }
-                trace(&during)
+    ) {
+        if let (Some(deformation), Some(gradient)) = (deformation, &*gradient) {
+            if self.total_lagrangian {
+                deform_linearly(deformation, gradient, r, &at.mean_gradient, dt);
+            } else {
+                deform(deformation, r, &at.mean_gradient, dt);
             }
-            _ => sum::<D>(|a| weights.sum(weights.gradient(a), |l| means[a][l])),
-        };
-        let end = match gradient {
-            Some(gradient) => {
-                let end = tensor_of(weights, |a, l| star[a][l]);
-                put(gradient, 0, r, &end);
-                trace(&end)
-            }
-            None => sum::<D>(|a| weights.sum(weights.gradient(a), |l| star[a][l])),
-        };
-        [plane, end]
+        }
+        if let Some(gradient) = gradient {
+            put(gradient, 0, r, &at.star_gradient);
+        }
     }
 
-    /// Work that the stress of a particle does in a step with the velocity `does` [J].
-    #[expect(clippy::too_many_arguments)]
+    /// Work that the stress of a particle does in a step [J].
     #[inline(always)]
-    fn work_done<const K: usize, const L: usize, const TENSOR: bool>(
+    fn work_done(
         &self,
         patch: &Patch<D>,
-        weights: &ParticleWeights<'_, K, D>,
         r: usize,
-        does: &Windows<K, L, D>,
+        at: &NodalSums<D>,
         divergence: f64,
-        stress: f64,
         dt: f64,
     ) -> f64 {
-        if TENSOR {
-            dt * self.stress_power(patch, weights, r, |a, line| does[a][line])
-        } else {
-            let working = if self.compatible {
-                let along = |a: usize| weights.sum(weights.gradient(a), |line| does[a][line]);
-                self.with_hoop(patch, weights, r, sum::<D>(along), |line| does[0][line])
-            } else {
-                divergence
+        let s = |k: usize| patch.block.columns[self.columns.stress_volume + k][r];
+        let hoop = self.hoop_of(patch, r);
+        if self.tensor_stress() {
+            let ([x, y], g) = ([0, D - 1], &at.work_gradient);
+            let plane = s(0) * g[x][x] + s(1) * g[y][y] + s(2) * (g[x][y] + g[y][x]);
+            return match hoop {
+                Some(radius) => dt * (plane + s(3) * at.work / radius),
+                None => dt * plane,
             };
-            stress * dt * working
         }
+        let working = match self.compatible {
+            true => {
+                let plane = trace(&at.work_gradient);
+                with_hoop(plane, at.work, hoop)
+            }
+            false => divergence,
+        };
+        s(0) * dt * working
+    }
+
+    /// Distance of a particle from the axis [m], with axial symmetry.
+    #[inline(always)]
+    fn hoop_of(&self, patch: &Patch<D>, r: usize) -> Option<f64> {
+        if D > 1 && self.axisymmetric { Some(self.radius(patch, r)) } else { None }
     }
 }
 

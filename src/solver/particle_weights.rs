@@ -20,6 +20,55 @@ pub const fn lines(width: usize, dimension: usize) -> usize {
 /// most other particles use only this many nodes of the wide window.
 pub const NARROW: usize = 4;
 
+/// Distances of the nodes of a window from their particle [cells].
+#[derive(Clone, Copy, Debug)]
+pub struct Offset<const D: usize> {
+    /// Distance of the first node with a weight.
+    pub first: [f64; D],
+    /// Number of nodes before it.
+    pub skipped: [f64; D],
+}
+
+impl<const D: usize> Offset<D> {
+    /// Distance of node or line `k` along a direction.
+    #[inline(always)]
+    pub fn at(&self, axis: usize, k: usize) -> f64 {
+        self.first[axis] + (k as f64 - self.skipped[axis])
+    }
+}
+
+/// Distances of the nodes of a window from their particle in a plane.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Distances {
+    /// Distance of the first node with a weight [m].
+    pub first: [f64; 2],
+    /// Number of nodes before it.
+    pub skipped: [f64; 2],
+    /// Distance between nodes [m].
+    pub cell: [f64; 2],
+}
+
+impl Distances {
+    /// Distance of node `k` along x [m].
+    #[inline(always)]
+    pub fn along(&self, k: usize) -> f64 {
+        self.first[0] + (k as f64 - self.skipped[0]) * self.cell[0]
+    }
+
+    /// Distance of line `line` along y [m].
+    #[inline(always)]
+    pub fn across(&self, line: usize) -> f64 {
+        self.first[1] + (line as f64 - self.skipped[1]) * self.cell[1]
+    }
+
+    /// Distances of the first four nodes along x [m].
+    #[inline(always)]
+    pub fn four_along(&self) -> f64x4 {
+        let nodes = f64x4::from([0.0, 1.0, 2.0, 3.0]) - f64x4::splat(self.skipped[0]);
+        f64x4::splat(self.first[0]) + nodes * f64x4::splat(self.cell[0])
+    }
+}
+
 /// Weights of one particle on its window of nodes.
 #[derive(Clone, Copy, Debug)]
 pub struct ParticleWeights<'a, const K: usize, const D: usize> {

@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use decomp::{Block, IndexBox, Layout, NodeArrays};
 
-use crate::shape::{ParticleDomain, Shape, Weights};
+use crate::shape::Shape;
 use crate::solver::band::Band;
 use crate::solver::clock::Stopwatch;
 use crate::solver::contact::PatchContact;
-use crate::solver::particle_weights::{NARROW, lines};
+use crate::solver::find_weights::{Corners, Places};
 use crate::solver::shape_weights::Stencils;
 
 /// Results of a patch in one step.
@@ -260,72 +260,17 @@ impl<const D: usize> Patch<D> {
         layer: Option<usize>,
     ) {
         let particles = self.block.particles();
-        let stencils = &mut self.stencils;
-        let nodes = const { K * lines(K, D) };
-        stencils.width = K;
-        stencils.stride = self.nodes.nodes.extent(0);
-        stencils.first.resize(particles, 0);
-        stencils.values.resize(particles * nodes, 0.0);
-        stencils.gradients.resize(particles * nodes * D, 0.0);
-        stencils.narrow.resize(if K > NARROW { particles } else { 0 }, false);
-        let lower = self.nodes.nodes.lower.map(|l| l as i32);
         let column = |k: usize| &self.block.columns[k][..particles];
-        let cells = &self.block.cells[..particles];
-        let (mut least, mut most) = ([i32::MAX; D], [i32::MIN; D]);
-        let narrow = &mut stencils.narrow;
-        let out = stencils
-            .first
-            .iter_mut()
-            .zip(stencils.values.chunks_exact_mut(nodes))
-            .zip(stencils.gradients.chunks_exact_mut(nodes * D));
-        if D == 1 {
-            let (fractions, lengths) = (column(fraction), column(domain));
-            for (particle, ((first, values), gradients)) in out.enumerate() {
-                let w: Weights<K> = S::weights(fractions[particle], lengths[particle]);
-                let at = cells[particle][0] + w.first - lower[0];
-                (least[0], most[0]) = (least[0].min(at), most[0].max(at));
-                *first = at as u32;
-                if K > NARROW {
-                    narrow[particle] = S::nodes(lengths[particle]) <= NARROW;
-                }
-                values.copy_from_slice(&w.values);
-                for (out, g) in gradients.iter_mut().zip(w.gradients) {
-                    *out = g * inverse_cell[0];
-                }
-            }
-        } else {
-            let fractions = [0, 1].map(|a| column(fraction + a));
-            let domains: [&[f64]; 4] = decomp::array::from_fn(|k| {
-                if k < S::EXTENT.plane_columns() { column(domain + k) } else { &[] }
-            });
-            let stride = stencils.stride as i32;
-            for (particle, ((first, values), gradients)) in out.enumerate() {
-                let place = decomp::array::map(&fractions, |f| f[particle]);
-                let domain = ParticleDomain::from_columns(S::EXTENT, &domains, particle);
-                let (gx, gy) = gradients.split_at_mut(nodes);
-                let mut lines = crate::shape::Plane {
-                    values: values.as_chunks_mut::<K>().0,
-                    gradients: [gx.as_chunks_mut::<K>().0, gy.as_chunks_mut::<K>().0],
-                };
-                let [width, height] = domain.extent();
-                let is_narrow = K > NARROW && S::nodes(width.max(height)) <= NARROW;
-                let corner = match is_narrow {
-                    true => lines.fill_first::<S, NARROW>(place, &domain),
-                    false => S::plane(place, &domain, &mut lines),
-                };
-                let at: [i32; D] =
-                    decomp::array::from_fn(|a| cells[particle][a] + corner[a] - lower[a]);
-                for a in 0..D {
-                    (least[a], most[a]) = (least[a].min(at[a]), most[a].max(at[a]));
-                }
-                *first = (at[0] + stride * at[D - 1]) as u32;
-                if K > NARROW {
-                    narrow[particle] = is_narrow;
-                }
-                gx.iter_mut().for_each(|g| *g *= inverse_cell[0]);
-                gy.iter_mut().for_each(|g| *g *= inverse_cell[D - 1]);
-            }
-        }
+        let domains = if D == 1 { 1 } else { S::EXTENT.plane_columns() };
+        let at = Places {
+            cells: &self.block.cells[..particles],
+            fractions: decomp::array::from_fn(|a| column(fraction + a)),
+            domains: decomp::array::from_fn(|k| if k < domains { column(domain + k) } else { &[] }),
+            lower: self.nodes.nodes.lower.map(|l| l as i32),
+            inverse_cell,
+        };
+        let Corners { least, most } =
+            self.stencils.fill::<S, K, D>(&at, self.nodes.nodes.extent(0));
         self.find_runs(layer, K as i64, least, most);
     }
 

@@ -45,14 +45,21 @@
 //! for particles all of whose nodes are filled, so that a free surface has no effect. Energy,
 //! momentum and mass do not change.
 
+use std::ops::Range;
+
+use wide::f64x4;
+
+use super::band::Band;
 use super::particle_update::bodies;
 use super::scheme::Scheme;
 use crate::material::constitutive::ConstitutiveModel;
 use crate::shape::with_width;
 use crate::solver::clock::timed;
-use crate::solver::particle_weights::cut;
+use crate::solver::packed::{WindowPlace, add_to, dot, totals, with_packed};
+use crate::solver::particle_weights::{ParticleWeights, cut};
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
+use crate::solver::shape_weights::Stencils;
 
 /// Number of terms in the series of the projection.
 pub const ORDER: u32 = 4;
@@ -63,65 +70,209 @@ const INNER: f64 = 0.8;
 /// Fraction of a particle's greatest weight above which it counts as touching a node.
 const TOUCHES: f64 = 1e-3;
 
+/// Columns that the relaxation of the pressure reads.
+struct Relaxed<'a> {
+    /// Pressure [Pa].
+    pressure: &'a [f64],
+    /// Compliance [m3/Pa].
+    compliance: &'a [f64],
+    /// Volume ratio, if weights are relative to the current volume; else empty.
+    jacobian: &'a [f64],
+}
+
+impl Relaxed<'_> {
+    /// Weight of a particle, w/s.
+    #[inline(always)]
+    fn share(&self, r: usize) -> f64 {
+        match self.jacobian.is_empty() {
+            true => self.compliance[r],
+            false => self.compliance[r] / self.jacobian[r],
+        }
+    }
+}
+
+/// Nodal sums of the relaxation: weights, weights times pressure, and weights times volume ratio, if
+/// weights are relative to the current volume.
+struct PressureSums<'a> {
+    weight: &'a mut [f64],
+    pressure: &'a mut [f64],
+    ratio: Option<&'a mut [f64]>,
+}
+
+impl PressureSums<'_> {
+    /// Adds a particle.
+    #[inline(always)]
+    fn add<const K: usize, const D: usize>(
+        &mut self,
+        weights: &ParticleWeights<'_, K, D>,
+        r: usize,
+        of: &Relaxed<'_>,
+    ) {
+        if let Some(ratio) = &mut self.ratio {
+            weights.add(ratio, weights.values, |n| n * of.compliance[r]);
+        }
+        let share = of.share(r);
+        let pressure = share * of.pressure[r];
+        weights.add(self.weight, weights.values, |n| n * share);
+        weights.add(self.pressure, weights.values, |n| n * pressure);
+    }
+
+    /// Adds particles with the same window.
+    #[inline(always)]
+    fn add_group<const K: usize, const V: usize, const D: usize>(
+        &mut self,
+        stencils: &Stencils,
+        group: Range<usize>,
+        of: &Relaxed<'_>,
+    ) {
+        let place = stencils.place(group.start);
+        let mut weight = place.nodes::<K, V>(self.weight);
+        let mut pressure = place.nodes::<K, V>(self.pressure);
+        let mut ratio = pressure;
+        if let Some(field) = &self.ratio {
+            ratio = place.nodes::<K, V>(field);
+        }
+        for r in group {
+            let (values, share) = (stencils.packed_values::<K, V, D>(r), of.share(r));
+            add_to(&mut weight, &values, share);
+            add_to(&mut pressure, &values, share * of.pressure[r]);
+            add_to(&mut ratio, &values, of.compliance[r]);
+        }
+        place.put::<K, V>(self.weight, &weight);
+        place.put::<K, V>(self.pressure, &pressure);
+        if let Some(field) = &mut self.ratio {
+            place.put::<K, V>(field, &ratio);
+        }
+    }
+}
+
+/// Nodal fields of the relaxation that a particle takes.
+#[derive(Clone, Copy)]
+struct Projected<'a> {
+    /// Projected pressure P and the last term of its series u [Pa].
+    pressure: &'a [f64],
+    last: &'a [f64],
+    /// Mean volume ratio s, if weights are relative to the current volume.
+    ratio: Option<&'a [f64]>,
+}
+
+/// Sums at one particle: N P, N s P, N u, N (u s P).
+type ProjectedSums = [f64; 4];
+
+impl Projected<'_> {
+    /// Sums over a window of any width.
+    #[inline(always)]
+    fn sums<const K: usize, const D: usize>(
+        &self,
+        weights: &ParticleWeights<'_, K, D>,
+    ) -> ProjectedSums {
+        let n = weights.values;
+        // work of a change of volume: P, or the product of P and s
+        let work = |line: usize| -> [f64; K] {
+            let nodal = weights.line(self.pressure, line);
+            let Some(ratio) = self.ratio else { return *nodal };
+            let ratio = weights.line(ratio, line);
+            decomp::array::from_fn(|k| ratio[k] * nodal[k])
+        };
+        let product = weights.sum(n, |line| {
+            let (u, work) = (weights.line(self.last, line), work(line));
+            decomp::array::from_fn(|k| u[k] * work[k])
+        });
+        [weights.dot(n, self.pressure), weights.sum(n, work), weights.dot(n, self.last), product]
+    }
+
+    /// P, s P, u and u s P on a window in vectors.
+    #[inline(always)]
+    fn fetch<const K: usize, const V: usize, const D: usize>(
+        &self,
+        place: WindowPlace,
+    ) -> [[f64x4; V]; 4] {
+        let pressure = place.nodes::<K, V>(self.pressure);
+        let last = place.nodes::<K, V>(self.last);
+        let (mut work, mut product) = (pressure, last);
+        if let Some(ratio) = self.ratio {
+            let ratio = place.nodes::<K, V>(ratio);
+            (0..V).for_each(|l| work[l] = ratio[l] * pressure[l]);
+        }
+        (0..V).for_each(|l| product[l] = last[l] * work[l]);
+        [pressure, work, last, product]
+    }
+}
+
 impl<const D: usize> Scheme<D> {
     /// First term of the series of the pressure, P_L, on the nodes that the patch computes.
     pub(super) fn start_pressure(&self, patch: &mut Patch<D>) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
-            s.scatter_pressure::<K>(patch);
+        fn packed<const K: usize, const V: usize, const D: usize>(
+            patch: &mut Patch<D>,
+            s: &Scheme<D>,
+        ) {
+            s.scatter_pressure(patch, K, |stencils, runs, band, of, sums| {
+                for group in runs.iter().flat_map(|run| stencils.groups(run.clone())) {
+                    sums.add_group::<K, V, D>(stencils, group.clone(), of);
+                    band.add_group::<K, V, D>(stencils, group, |r| of.share(r));
+                }
+            });
         }
-        with_width!(patch.stencils.width, go(patch, self));
+        fn single<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
+            s.scatter_pressure(patch, K, |stencils, runs, band, of, sums| {
+                for r in runs.iter().cloned().flatten() {
+                    let weights = stencils.particle::<K, D>(r);
+                    sums.add(&weights, r, of);
+                    band.add(&weights, of.share(r));
+                }
+            });
+        }
+        let width = patch.stencils.width;
+        with_packed!(width, packed(patch, self), with_width!(width, single(patch, self)));
     }
 
-    fn scatter_pressure<const K: usize>(&self, patch: &mut Patch<D>) {
+    /// The same with the sums over the particles by `add`, in windows of `width` nodes.
+    #[inline(always)]
+    fn scatter_pressure(
+        &self,
+        patch: &mut Patch<D>,
+        width: usize,
+        add: impl FnOnce(&Stencils, &[Range<usize>], &mut Band, &Relaxed<'_>, &mut PressureSums<'_>),
+    ) {
         let [weight, inverse, sum, term] = self.fields.relaxation;
         let particles = patch.block.particles();
         let (Some(p), Some(w)) = (self.columns.pressure_mid, self.columns.compliance) else {
             return;
         };
         let column = |k: usize| &patch.block.columns[k][..particles];
-        let (p, w) = (column(p), column(w));
-        let mut ratio =
-            self.fields.relaxed_ratio.zip(self.columns.jacobian_mid).map(|(field, j)| {
-                let mut ratio = std::mem::take(&mut patch.nodes.fields[field]);
-                ratio.fill(0.0);
-                (ratio, column(j))
-            });
+        let jacobian =
+            self.fields.relaxed_ratio.and(self.columns.jacobian_mid).map_or(&[][..], column);
+        let of = Relaxed { pressure: column(p), compliance: column(w), jacobian };
+        let mut ratio = self.fields.relaxed_ratio.map(|field| {
+            let mut ratio = std::mem::take(&mut patch.nodes.fields[field]);
+            ratio.fill(0.0);
+            ratio
+        });
         let (nodes, stride) =
             (patch.nodes.layers * patch.nodes.nodes.count(), patch.nodes.nodes.extent(0));
-        patch.compliance_band.clear(nodes, K, D, stride);
+        patch.compliance_band.clear(nodes, width, D, stride);
         let [weight, inverse, sum, term] = patch.nodes.fields_mut([weight, inverse, sum, term]);
         weight.fill(0.0);
         inverse.fill(0.0);
         term.fill(0.0);
-        for run in &patch.runs {
-            for (r, weights) in run.clone().zip(patch.stencils.particles::<K, D>(run.clone())) {
-                let mut share = w[r];
-                if let Some((ratio, j)) = &mut ratio {
-                    weights.add(ratio, weights.values, |n| n * w[r]);
-                    share /= j[r];
-                }
-                let pressure = share * p[r];
-                weights.add(weight, weights.values, |n| n * share);
-                weights.add(term, weights.values, |n| n * pressure);
-                patch.compliance_band.add(&weights, share);
-            }
-        }
+        let mut sums = PressureSums { weight, pressure: term, ratio: ratio.as_deref_mut() };
+        add(&patch.stencils, &patch.runs, &mut patch.compliance_band, &of, &mut sums);
         patch.compliance_band.finish();
         for i in patch.active_lines.iter().cloned().flatten() {
             inverse[i] = if weight[i] > 0.0 { 1.0 / weight[i] } else { 0.0 };
             term[i] = cut(term[i] * inverse[i], self.still_pressure);
-            if let Some((ratio, _)) = &mut ratio {
+            if let Some(ratio) = &mut ratio {
                 ratio[i] *= inverse[i];
             }
         }
         if self.contact.is_some() {
             patch.contact.join_scalar(weight, term);
-            if let Some((ratio, _)) = &mut ratio {
+            if let Some(ratio) = &mut ratio {
                 patch.contact.join_scalar(weight, ratio);
             }
         }
         sum.copy_from_slice(term);
-        if let (Some((ratio, _)), Some(field)) = (ratio, self.fields.relaxed_ratio) {
+        if let (Some(ratio), Some(field)) = (ratio, self.fields.relaxed_ratio) {
             patch.nodes.fields[field] = ratio;
         }
     }
@@ -144,21 +295,41 @@ impl<const D: usize> Scheme<D> {
 
     /// Relaxes volume and energy of the own particles.
     fn relax_pressure(&self, patch: &mut Patch<D>, rate: f64) {
-        fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>, rate: f64) {
-            match s.fields.relaxed_ratio {
-                Some(ratio) => s.relax_particles::<K, true>(patch, rate, ratio),
-                None => s.relax_particles::<K, false>(patch, rate, s.fields.relaxation[2]),
-            }
+        fn packed<const K: usize, const V: usize, const D: usize>(
+            patch: &mut Patch<D>,
+            s: &Scheme<D>,
+            rate: f64,
+        ) {
+            let (mut window, mut at) = ([[f64x4::ZERO; V]; 4], u32::MAX);
+            s.relax_particles(patch, rate, |stencils, r, nodal| {
+                if stencils.first[r] != at {
+                    at = stencils.first[r];
+                    window = nodal.fetch::<K, V, D>(stencils.place(r));
+                }
+                let values = stencils.packed_values::<K, V, D>(r);
+                totals::<K>(decomp::array::from_fn(|k| dot(&values, &window[k])))
+            });
         }
-        with_width!(patch.stencils.width, go(patch, self, rate));
+        fn single<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>, rate: f64) {
+            s.relax_particles(patch, rate, |stencils, r, nodal| {
+                nodal.sums(&stencils.particle::<K, D>(r))
+            });
+        }
+        let width = patch.stencils.width;
+        with_packed!(
+            width,
+            packed(patch, self, rate),
+            with_width!(width, single(patch, self, rate))
+        );
     }
 
-    /// The same with the nodal field `ratio` of s, or without `RATIO` with s = 1.
-    fn relax_particles<const K: usize, const RATIO: bool>(
+    /// The same with the `sums` over the nodes of each particle, by its index.
+    #[inline(always)]
+    fn relax_particles(
         &self,
         patch: &mut Patch<D>,
         rate: f64,
-        ratio: usize,
+        mut sums: impl FnMut(&Stencils, usize, &Projected<'_>) -> ProjectedSums,
     ) {
         let [_, _, sum, term] = self.fields.relaxation;
         let c = &self.columns;
@@ -166,36 +337,27 @@ impl<const D: usize> Scheme<D> {
             return;
         };
         let fields = &patch.nodes.fields;
-        let (projected, last, ratio) = (&fields[sum][..], &fields[term][..], &fields[ratio][..]);
+        let nodal = Projected {
+            pressure: &fields[sum],
+            last: &fields[term],
+            ratio: self.fields.relaxed_ratio.map(|ratio| &fields[ratio][..]),
+        };
+        let is_ratio = nodal.ratio.is_some();
         let n = patch.block.own();
+        let columns = [c.jacobian, c.energy, c.mass, c.volume0, p, w, mid];
         let [j, e, mass, volume0, p, w, mid] =
-            patch.block.columns_mut([c.jacobian, c.energy, c.mass, c.volume0, p, w, mid]);
-        for (r, weights) in patch.stencils.particles::<K, D>(0..n).enumerate() {
-            let mean = weights.dot(weights.values, projected);
-            // work of a change of volume: P, or the product of P and s
-            let work = |line: usize| -> [f64; K] {
-                let nodal = weights.line(projected, line);
-                if !RATIO {
-                    return *nodal;
-                }
-                let ratio = weights.line(ratio, line);
-                decomp::array::from_fn(|k| ratio[k] * nodal[k])
-            };
-            let product = weights.sum(weights.values, |line| {
-                let (u, work) = (weights.line(last, line), work(line));
-                decomp::array::from_fn(|k| u[k] * work[k])
-            });
-            let share = if RATIO { rate * w[r] / mid[r] } else { rate * w[r] };
+            patch.block.columns_mut(columns).map(|column| &mut column[..n]);
+        for r in 0..n {
+            let [mean, mean_work, last, product] = sums(&patch.stencils, r, &nodal);
+            let share = if is_ratio { rate * w[r] / mid[r] } else { rate * w[r] };
             let change = share * (p[r] - mean) / volume0[r];
-            let mean_work = weights.sum(weights.values, work);
-            if RATIO {
+            if is_ratio {
                 j[r] *= (1.0 + 0.5 * change) / (1.0 - 0.5 * change);
             } else {
                 j[r] += change;
             }
-            e[r] += (share * (product - weights.dot(weights.values, last) * mean_work)
-                - mean_work * change * volume0[r])
-                / mass[r];
+            e[r] +=
+                (share * (product - last * mean_work) - mean_work * change * volume0[r]) / mass[r];
         }
     }
 

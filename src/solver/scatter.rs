@@ -8,7 +8,8 @@ use super::spin::spin_inertia;
 use crate::shape::{Shape, with_shape, with_width};
 use crate::solver::clock::timed;
 use crate::solver::effect::{Phase, StepContext};
-use crate::solver::particle_weights::{ParticleWeights, add, cut, lines};
+use crate::solver::packed::with_packed;
+use crate::solver::particle_weights::{Offset, ParticleWeights, add, cut, lines};
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 
@@ -84,9 +85,26 @@ impl<const D: usize> Scheme<D> {
                 (false, Some(_)) => s.scatter_width::<K, false, true, false>(patch, force),
             }
         }
+        fn groups<const K: usize, const V: usize, const D: usize>(
+            patch: &mut Patch<D>,
+            s: &Scheme<D>,
+            force: bool,
+        ) {
+            s.scatter_groups::<K, V>(patch, force);
+        }
         self.reflect_ghosts(patch);
         let tensor = self.tensor_stress();
-        with_width!(patch.stencils.width, go(patch, self, force && !tensor, recomputed));
+        let (width, scalar) = (patch.stencils.width, force && !tensor);
+        let is_plain = self.columns.affine.is_none() && !self.axisymmetric;
+        if is_plain && (recomputed || self.contact.is_some()) {
+            with_packed!(
+                width,
+                groups(patch, self, scalar),
+                with_width!(width, go(patch, self, scalar, recomputed))
+            );
+        } else {
+            with_width!(width, go(patch, self, scalar, recomputed));
+        }
         if force && tensor {
             timed(StepPart::StressTensor as usize, patch, |patch| self.scatter_stress(patch));
         }
@@ -147,7 +165,7 @@ impl<const D: usize> Scheme<D> {
                 let m = mass[r];
                 weights.add(nodal_mass, weights.values, |n| n * m);
                 if let Some(spin) = spin {
-                    let place = self.place_of(patch, &weights, r);
+                    let place = self.place_of(patch, r);
                     let inverse = 1.0 / spin_inertia(&weights, place);
                     let (turn, place) = self.reflect_spin(patch, r, spin[r] * inverse, place);
                     self.add_affine_momentum(patch, &weights, r, turn, momentum);
@@ -209,16 +227,16 @@ impl<const D: usize> Scheme<D> {
     ) {
         let column = |k: usize| patch.block.columns[k][r];
         let m = column(self.columns.mass);
-        let offset = self.offset(patch, r, weights.first);
+        let offset = self.offset(patch, r);
         for a in 0..D {
             let mv = m * column(self.columns.velocity + a);
             let mc: [f64; D] = array::from_fn(|b| m * slope[a][b] * self.cell[b]);
             let mut along = [0.0; K];
-            (0..K).for_each(|k| along[k] = mc[0] * (offset[0] + k as f64));
+            (0..K).for_each(|k| along[k] = mc[0] * offset.at(0, k));
             for line in 0..const { lines(K, D) } {
                 let across = match D {
                     1 => mv,
-                    _ => mv + mc[D - 1] * (offset[D - 1] + line as f64),
+                    _ => mv + mc[D - 1] * offset.at(D - 1, line),
                 };
                 let n = &weights.values[line];
                 let mut terms = [0.0; K];
@@ -229,7 +247,7 @@ impl<const D: usize> Scheme<D> {
     }
 
     /// Clears the sums over particles, and the mass matrix with `MATRIX`, of blocks with `SPIN`.
-    fn clear_sums<const K: usize, const MATRIX: bool, const SPIN: bool>(
+    pub(super) fn clear_sums<const K: usize, const MATRIX: bool, const SPIN: bool>(
         &self,
         patch: &mut Patch<D>,
     ) {
@@ -270,21 +288,26 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Start of the window of `particle` with first node `first`, relative to the particle [cells].
+    /// Distances of the nodes of the window of `particle` from it.
     #[inline(always)]
-    pub(crate) fn offset(&self, patch: &Patch<D>, particle: usize, first: usize) -> [f64; D] {
+    pub(crate) fn offset(&self, patch: &Patch<D>, particle: usize) -> Offset<D> {
         let (nodes, cell) = (&patch.nodes.nodes, patch.block.cells[particle]);
-        let stride = patch.stencils.stride;
+        let (stride, first) = (patch.stencils.stride, patch.stencils.first[particle] as usize);
         let first = if patch.nodes.layers > 1 { first % nodes.count() } else { first };
-        array::from_fn(|a| {
+        // whole numbers of cells are added first, so that windows that start at another node give
+        // the same bits
+        let skipped = array::from_fn(|a| i64::from(patch.stencils.skipped[particle] >> a & 1));
+        let first = array::from_fn(|a| {
             let at = match (D, a) {
                 (1, _) => first,
                 (_, 0) => first % stride,
                 _ => first / stride,
             };
             let fraction = patch.block.columns[self.columns.fraction + a][particle];
-            (at as i64 + nodes.lower[a] - i64::from(cell[a])) as f64 - fraction
-        })
+            let weighted = at as i64 + skipped[a];
+            (weighted + nodes.lower[a] - i64::from(cell[a])) as f64 - fraction
+        });
+        Offset { first, skipped: array::map(&skipped, |skipped| skipped as f64) }
     }
 
     /// Lumped velocity and acceleration of the nodes from their sums; negligible values are set to

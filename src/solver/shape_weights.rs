@@ -6,8 +6,13 @@
 use std::ops::Range;
 
 use decomp::Block;
+use wide::f64x4;
 
+use crate::solver::packed::{PACKED, PackedWeights, WindowPlace, pack};
 use crate::solver::particle_weights::{NARROW, ParticleWeights, lines};
+
+/// Numbers after the last weight, so that the last line of a window can be loaded as four numbers.
+const SPARE: usize = PACKED - 1;
 
 /// Weights of all particles of a patch, including ghosts, on windows of `width` nodes along each
 /// direction.
@@ -19,6 +24,8 @@ pub struct Stencils {
     pub stride: usize,
     /// First node of each particle's window, as index in the patch's arrays.
     pub first: Vec<u32>,
+    /// Whether a particle's window starts one node before its first weight, along x (1) and y (2).
+    pub skipped: Vec<u8>,
     /// Whether a particle's weights beyond the first [`NARROW`] nodes are zero, if windows are
     /// wider.
     pub narrow: Vec<bool>,
@@ -42,6 +49,23 @@ struct Kept {
 }
 
 impl Stencils {
+    /// Room for the weights of `particles` on windows of `K` nodes along each direction, in arrays
+    /// with lines of `stride` nodes.
+    pub(super) fn resize<const K: usize, const D: usize>(
+        &mut self,
+        particles: usize,
+        stride: usize,
+    ) {
+        let nodes = const { K * lines(K, D) };
+        self.width = K;
+        self.stride = stride;
+        self.first.resize(particles, 0);
+        self.skipped.resize(particles, 0);
+        self.values.resize(particles * nodes + SPARE, 0.0);
+        self.gradients.resize(particles * nodes * D + SPARE, 0.0);
+        self.narrow.resize(if K > NARROW { particles } else { 0 }, false);
+    }
+
     /// Weights of `particle`.
     #[inline(always)]
     pub fn particle<const K: usize, const D: usize>(
@@ -84,6 +108,60 @@ impl Stencils {
         })
     }
 
+    /// Weights of `particle` in `V` vectors.
+    #[inline(always)]
+    pub fn packed<const K: usize, const V: usize, const D: usize>(
+        &self,
+        particle: usize,
+    ) -> PackedWeights<V, D> {
+        PackedWeights {
+            values: self.packed_values::<K, V, D>(particle),
+            gradients: self.packed_gradients::<K, V, D>(particle),
+        }
+    }
+
+    /// Values of `particle` in `V` vectors.
+    #[inline(always)]
+    pub fn packed_values<const K: usize, const V: usize, const D: usize>(
+        &self,
+        particle: usize,
+    ) -> [f64x4; V] {
+        pack::<K, V>(&self.values[particle * const { K * lines(K, D) }..])
+    }
+
+    /// Gradients of `particle` along each direction in `V` vectors [1/m].
+    #[inline(always)]
+    pub fn packed_gradients<const K: usize, const V: usize, const D: usize>(
+        &self,
+        particle: usize,
+    ) -> [[f64x4; V]; D] {
+        let nodes = const { K * lines(K, D) };
+        let gradients = &self.gradients[particle * nodes * D..];
+        decomp::array::from_fn(|a| pack::<K, V>(&gradients[a * nodes..]))
+    }
+
+    /// Window of `particle`.
+    #[inline(always)]
+    pub fn place(&self, particle: usize) -> WindowPlace {
+        WindowPlace { first: self.first[particle] as usize, stride: self.stride }
+    }
+
+    /// Ranges of consecutive particles of `run` with the same window.
+    #[inline(always)]
+    pub fn groups(&self, run: Range<usize>) -> impl Iterator<Item = Range<usize>> + '_ {
+        let first = &self.first[run.clone()];
+        let mut from = 0;
+        std::iter::from_fn(move || {
+            let window = first.get(from)?;
+            let start = from;
+            from += 1;
+            while first.get(from) == Some(window) {
+                from += 1;
+            }
+            Some(run.start + start..run.start + from)
+        })
+    }
+
     /// Whether the particles of `block`, including ghosts, are those whose weights were last kept.
     pub fn are_kept<const D: usize>(&self, block: &Block<D>) -> bool {
         let cells = &block.cells[..block.particles()];
@@ -117,7 +195,7 @@ impl Stencils {
         let particles = block.particles();
         let nodes = const { K * lines(K, D) };
         let inverse = |k: usize| &block.columns[push + k][..particles];
-        let pairs = (self.gradients.chunks_exact_mut(nodes * D))
+        let pairs = (self.gradients[..particles * nodes * D].chunks_exact_mut(nodes * D))
             .zip(self.kept.gradients.chunks_exact(nodes * D))
             .enumerate();
         if D == 1 {

@@ -19,7 +19,6 @@ use crate::material::Symmetric;
 use crate::material::constitutive::{ConstitutiveModel, PlaneStrain, Strain, TensorColumns};
 use crate::shape::with_width;
 use crate::solver::clock::timed;
-use crate::solver::particle_weights::ParticleWeights;
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 
@@ -266,27 +265,5 @@ impl<const D: usize> Scheme<D> {
             }
         }
         with_width!(patch.stencils.width, go(patch, self));
-    }
-
-    /// S : grad w of a particle [J/s], with the nodal velocity w in the fields `w`.
-    #[inline(always)]
-    pub(super) fn stress_power<const K: usize>(
-        &self,
-        patch: &Patch<D>,
-        weights: &ParticleWeights<'_, K, D>,
-        r: usize,
-        w: impl Fn(usize, usize) -> [f64; K],
-    ) -> f64 {
-        let s = |k: usize| patch.block.columns[self.columns.stress_volume + k][r];
-        let along = |a: usize, b: usize| weights.sum(weights.gradient(b), |line| w(a, line));
-        let (x, y) = (0, D - 1);
-        let plane = s(0) * along(x, x) + s(1) * along(y, y) + s(2) * (along(x, y) + along(y, x));
-        match self.axisymmetric {
-            true => {
-                plane
-                    + s(3) * weights.sum(weights.values, |line| w(x, line)) / self.radius(patch, r)
-            }
-            false => plane,
-        }
     }
 }

@@ -26,34 +26,46 @@
 //! antisymmetric part of the affine velocity of APIC (Jiang, Schroeder & Teran 2017); the symmetric
 //! part is left out, since it makes shocks overshoot.
 
-use decomp::array::from_fn;
+use decomp::array::{from_fn, map};
+use wide::f64x4;
 
 use super::columns::SpinColumns;
 use super::scheme::Scheme;
 use crate::shape::with_width;
 use crate::solver::clock::timed;
-use crate::solver::particle_weights::ParticleWeights;
+use crate::solver::packed::{dot, totals, with_packed};
+use crate::solver::particle_weights::{Distances, ParticleWeights};
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
-
-/// Distance of the first node of a window from the particle, and the distance between nodes [m].
-pub(super) type Place = ([f64; 2], [f64; 2]);
 
 /// Moment of inertia per unit mass of the weights of a particle about it, I [m2].
 #[inline(always)]
 pub(super) fn spin_inertia<const K: usize, const D: usize>(
     weights: &ParticleWeights<'_, K, D>,
-    (first, cell): Place,
+    place: Distances,
 ) -> f64 {
     weights.sum(weights.values, |line| {
-        let across = first[1] + line as f64 * cell[1];
+        let across = place.across(line);
         let mut squares = [0.0; K];
         for k in 0..K {
-            let along = first[0] + k as f64 * cell[0];
+            let along = place.along(k);
             squares[k] = along * along + across * across;
         }
         squares
     })
+}
+
+/// [`spin_inertia`] of a window in vectors, before the sum over the nodes of a line.
+#[inline(always)]
+pub(super) fn packed_inertia<const V: usize>(values: &[f64x4; V], place: Distances) -> f64x4 {
+    let along = place.four_along();
+    dot(
+        values,
+        &from_fn(|line| {
+            let across = f64x4::splat(place.across(line));
+            along * along + across * across
+        }),
+    )
 }
 
 /// Angular momentum per unit mass of the nodal velocity with the components x and y about a
@@ -61,18 +73,29 @@ pub(super) fn spin_inertia<const K: usize, const D: usize>(
 #[inline(always)]
 fn moment_of<const K: usize, const D: usize>(
     weights: &ParticleWeights<'_, K, D>,
-    (first, cell): Place,
+    place: Distances,
     [x, y]: [&[f64]; 2],
 ) -> f64 {
     let mut along = [0.0; K];
-    (0..K).for_each(|k| along[k] = first[0] + k as f64 * cell[0]);
+    (0..K).for_each(|k| along[k] = place.along(k));
     weights.sum(weights.values, |line| {
-        let across = first[1] + line as f64 * cell[1];
+        let across = place.across(line);
         let (x, y) = (weights.line(x, line), weights.line(y, line));
         let mut moments = [0.0; K];
         (0..K).for_each(|k| moments[k] = along[k] * y[k] - across * x[k]);
         moments
     })
+}
+
+/// [`moment_of`] of a window in vectors, before the sum over the nodes of a line.
+#[inline(always)]
+fn packed_moment<const V: usize>(
+    values: &[f64x4; V],
+    place: Distances,
+    [x, y]: &[[f64x4; V]; 2],
+) -> f64x4 {
+    let along = place.four_along();
+    dot(values, &from_fn(|line| along * y[line] - f64x4::splat(place.across(line)) * x[line]))
 }
 
 /// Velocity gradient of a rotation at the rate `omega` [1/s].
@@ -90,41 +113,75 @@ pub(super) fn spin_gradient<const D: usize>(omega: f64) -> [[f64; D]; D] {
 impl<const D: usize> Scheme<D> {
     /// Place of the window of a particle in a plane.
     #[inline(always)]
-    pub(super) fn place_of<const K: usize>(
-        &self,
-        patch: &Patch<D>,
-        weights: &ParticleWeights<'_, K, D>,
-        particle: usize,
-    ) -> Place {
-        let offset = self.offset(patch, particle, weights.first);
+    pub(super) fn place_of(&self, patch: &Patch<D>, particle: usize) -> Distances {
+        let offset = self.offset(patch, particle);
         let cell = [self.cell[0], self.cell[D - 1]];
-        ([offset[0] * cell[0], offset[D - 1] * cell[1]], cell)
+        let [x, y] = [0, D - 1];
+        Distances {
+            first: [offset.first[x] * cell[0], offset.first[y] * cell[1]],
+            skipped: [offset.skipped[x], offset.skipped[y]],
+            cell,
+        }
     }
 
     /// Spin of the own particles at the end of a step from v', and the heat of the filter that
     /// belongs to it; at the start of a run, `primes`, no heat.
     pub(super) fn gather_spin(&self, patch: &mut Patch<D>, primes: bool) {
-        fn go<const K: usize, const D: usize>(
+        fn packed<const K: usize, const V: usize, const D: usize>(
             patch: &mut Patch<D>,
             s: &Scheme<D>,
             spin: SpinColumns,
             primes: bool,
         ) {
-            if const { D > 1 } {
-                s.gather_spin_of::<K>(patch, spin, primes);
+            if const { D == 1 } {
+                return;
             }
+            let (mut window, mut at) = ([[[f64x4::ZERO; V]; 2]; 3], u32::MAX);
+            s.gather_spin_of(patch, spin, primes, |patch, r, place, nodal| {
+                let stencils = &patch.stencils;
+                if stencils.first[r] != at {
+                    at = stencils.first[r];
+                    let place = stencils.place(r);
+                    window = map(nodal, |v| map(&v, |field| place.nodes::<K, V>(field)));
+                }
+                let values = stencils.packed_values::<K, V, D>(r);
+                let moments = map(&window, |v: [[f64x4; V]; 2]| packed_moment(&values, place, &v));
+                let [start, star, residual] = moments;
+                totals::<K>([packed_inertia(&values, place), start, star, residual])
+            });
+        }
+        fn single<const K: usize, const D: usize>(
+            patch: &mut Patch<D>,
+            s: &Scheme<D>,
+            spin: SpinColumns,
+            primes: bool,
+        ) {
+            s.gather_spin_of(patch, spin, primes, |patch, r, place, nodal| {
+                let weights = patch.stencils.particle::<K, D>(r);
+                let [start, star, residual] = map(nodal, |v| moment_of(&weights, place, v));
+                [spin_inertia(&weights, place), start, star, residual]
+            });
         }
         let Some(spin) = self.columns.spin else { return };
         timed(StepPart::Spin as usize, patch, |patch| {
-            with_width!(patch.stencils.width, go(patch, self, spin, primes));
+            let width = patch.stencils.width;
+            with_packed!(
+                width,
+                packed(patch, self, spin, primes),
+                with_width!(width, single(patch, self, spin, primes))
+            );
         });
     }
 
-    fn gather_spin_of<const K: usize>(
+    /// The same with the `sums` over the nodes of each particle, by its index and the place of its
+    /// window: inertia, and the angular momenta of three nodal velocities per unit mass.
+    #[inline(always)]
+    fn gather_spin_of(
         &self,
         patch: &mut Patch<D>,
         spin: SpinColumns,
         primes: bool,
+        mut sums: impl FnMut(&Patch<D>, usize, Distances, &[[&[f64]; 2]; 3]) -> [f64; 4],
     ) {
         let (c, f) = (&self.columns, &self.fields);
         let n = patch.block.own();
@@ -133,22 +190,20 @@ impl<const D: usize> Scheme<D> {
             .map(|k| std::mem::take(&mut columns[k]));
         let fields = &patch.nodes.fields;
         let vector = |k: usize| [&fields[k][..], &fields[k + D - 1][..]];
-        let residual = f.filter_residual.filter(|_| self.filter_heat && !primes).map(vector);
+        let residual = f.filter_residual.filter(|_| self.filter_heat && !primes);
         let (start, star) = (vector(f.velocity), vector(f.velocity_star));
-        for (r, weights) in patch.stencils.particles::<K, D>(0..n).enumerate() {
-            let place = self.place_of(patch, &weights, r);
-            let new_inertia = spin_inertia(&weights, place);
+        let nodal = [start, star, residual.map_or(start, vector)];
+        for r in 0..n {
+            let place = self.place_of(patch, r);
+            let [new_inertia, filtered, new, lost] = sums(patch, r, place, &nodal);
             let inverse = 1.0 / new_inertia;
-            let new = moment_of(&weights, place, star);
             if !primes {
                 let old = moment[r];
                 let mut heat = 0.5 * old * old * (1.0 / inertia[r] - inverse);
-                if let Some(residual) = residual {
-                    let filtered = moment_of(&weights, place, start);
+                if residual.is_some() {
                     let rest = old - filtered;
                     let mean = 0.5 * (filtered + new);
-                    heat +=
-                        (0.5 * rest * rest - moment_of(&weights, place, residual) * mean) * inverse;
+                    heat += (0.5 * rest * rest - lost * mean) * inverse;
                 }
                 energy[r] += heat;
             }

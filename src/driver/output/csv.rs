@@ -191,18 +191,21 @@ fn push_scientific(text: &mut Vec<u8>, fixed: &str) {
         text.push(b'-');
     }
     let (whole, fraction) = unsigned.split_once('.').unwrap_or((unsigned, ""));
-    let digits = || whole.bytes().chain(fraction.bytes());
-    let zeros = digits().take_while(|&d| d == b'0').count();
+    let leading = |digits: &str| digits.len() - digits.trim_start_matches('0').len();
+    let in_whole = leading(whole);
+    let in_fraction = if in_whole == whole.len() { leading(fraction) } else { 0 };
+    let zeros = in_whole + in_fraction;
     let exponent = whole.len() as i32 - 1 - zeros as i32;
     let start = text.len();
-    text.extend(digits().skip(zeros));
+    text.extend_from_slice(&whole.as_bytes()[in_whole..]);
+    text.extend_from_slice(&fraction.as_bytes()[in_fraction..]);
     while text.len() > start + 1 && text.last() == Some(&b'0') {
         text.pop();
     }
     if text.len() > start + 1 {
         text.insert(start + 1, b'.');
     }
-    text.extend_from_slice(format!("e{exponent}").as_bytes());
+    write!(text, "e{exponent}").expect("memory takes all");
 }
 
 /// Contents of a CSV file.

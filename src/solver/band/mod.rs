@@ -4,13 +4,14 @@
 
 mod particles;
 mod products;
+mod spinning;
 
 use std::ops::Range;
 
 use decomp::array::map;
 use wide::f64x4;
 
-use crate::solver::particle_weights::{NARROW, lines};
+use crate::solver::particle_weights::{Distances, NARROW, lines};
 
 /// Number of nodes of which a diagonal is zero or not together, and which are cleared together.
 const BLOCK: usize = 64;
@@ -20,6 +21,20 @@ const PAGE: usize = 512;
 
 /// ... so the entries of a node on successive diagonals are shifted by this many doubles.
 const APART: usize = 24;
+
+/// Greatest number of particles of a group that are added at a time.
+pub const TOGETHER: usize = 4;
+
+/// A particle with spin, see [`Band::add_spin`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Spinning {
+    /// Mass [kg].
+    pub mass: f64,
+    /// Distances of the nodes of the window from the particle.
+    pub place: Distances,
+    /// 1/I [1/m2].
+    pub inverse: f64,
+}
 
 /// Number of entries of a block of two by two: xx, yy, xy, yx.
 const BLOCK_ENTRIES: usize = 4;
@@ -266,6 +281,7 @@ impl Band {
 mod tests {
     use super::*;
     use crate::solver::particle_weights::ParticleWeights;
+    use crate::solver::shape_weights::Stencils;
 
     /// A particle: first node, mass and values.
     type Particle<const K: usize> = (usize, f64, Vec<[f64; K]>);
@@ -361,6 +377,72 @@ mod tests {
         check::<4, 2>([13, 15], &particles, 48..140);
         let line = |a: f64| vec![[a, 0.4, 0.3, 0.3 - a]];
         check::<4, 1>([19, 1], &[(4, 2.0, line(0.1)), (6, 0.5, line(0.2))], 4..14);
+    }
+
+    /// Weights of five particles, four of which have one window of `K` nodes along each direction.
+    fn grouped<const K: usize, const D: usize>(stride: usize) -> Stencils {
+        let mut stencils = Stencils::default();
+        stencils.resize::<K, D>(5, stride);
+        let first = 2 + (D as u32 - 1) * 2 * stride as u32;
+        stencils.first.copy_from_slice(&[first, first, first, first, first + 1]);
+        let number = |k: usize| ((k * k * 31 + k * 17) % 97) as f64 / 97.0;
+        stencils.values.iter_mut().enumerate().for_each(|(k, v)| *v = number(k));
+        stencils
+    }
+
+    #[test]
+    fn groups_have_the_sums_of_single_particles() {
+        fn check<const K: usize, const V: usize, const D: usize>(nodes: usize, stride: usize) {
+            let (stencils, mass) = (grouped::<K, D>(stride), [2.0, 0.3, 1.1, 0.7, 1.9]);
+            let [mut one, mut grouped] = [Band::default(), Band::default()];
+            one.clear(nodes, K, D, stride);
+            grouped.clear(nodes, K, D, stride);
+            for r in 0..5 {
+                one.add::<K, D>(&stencils.particle(r), mass[r]);
+            }
+            for group in stencils.groups(0..5) {
+                grouped.add_group::<K, V, D>(&stencils, group, |r| mass[r]);
+            }
+            assert!(one.rows.iter().any(|m| *m > 0.5));
+            assert_eq!(one.rows, grouped.rows, "{K} nodes");
+            assert_eq!(one.touched, grouped.touched, "{K} nodes");
+        }
+        check::<3, 1, 1>(20, 20);
+        check::<4, 1, 1>(20, 20);
+        check::<3, 3, 2>(120, 12);
+        check::<4, 4, 2>(120, 12);
+    }
+
+    #[test]
+    fn groups_with_spin_too() {
+        fn check<const K: usize, const V: usize>() {
+            let (stencils, stride) = (grouped::<K, 2>(12), 12);
+            let spinning: Vec<Spinning> = (0..5)
+                .map(|r| Spinning {
+                    mass: 2.0 - 0.3 * r as f64,
+                    place: Distances {
+                        first: [-0.9 + 0.1 * r as f64, -0.7],
+                        skipped: [f64::from(u8::from(r == 1)), 0.0],
+                        cell: [0.5, 0.4],
+                    },
+                    inverse: 3.0 + r as f64,
+                })
+                .collect();
+            let [mut one, mut grouped] = [Band::default(), Band::default()];
+            one.clear_blocks(120, K, stride);
+            grouped.clear_blocks(120, K, stride);
+            for (r, p) in spinning.iter().enumerate() {
+                one.add_spin::<K, 2>(&stencils.particle(r), p.mass, p.place, p.inverse);
+            }
+            for group in stencils.groups(0..5) {
+                let some = &spinning[group.clone()];
+                grouped.add_spinning::<K, V, 2>(&stencils, group, some);
+            }
+            assert!(one.rows.iter().any(|m| *m < -0.1));
+            assert_eq!(one.rows, grouped.rows, "{K} nodes");
+        }
+        check::<3, 3>();
+        check::<4, 4>();
     }
 
     /// One matrix used for several sums: a sum contains nothing of the previous one, for narrow

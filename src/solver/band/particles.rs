@@ -1,11 +1,53 @@
 //! Sums over particles: the matrix stored by nodes.
 
+use std::ops::Range;
+
 use decomp::array::map;
 use wide::f64x4;
 
-use super::{BLOCK_ENTRIES, Band, Touched, diagonals};
-use crate::shape::{MOST_NODES, MOST_NODES_IN_PLANE, add_product, fours};
-use crate::solver::particle_weights::{NARROW, ParticleWeights, lines};
+use super::{BLOCK_ENTRIES, Band, TOGETHER, Touched, diagonals};
+use crate::shape::{MOST_NODES, MOST_NODES_IN_PLANE, add_product, fours, vector};
+use crate::solver::packed::{WindowPlace, between};
+use crate::solver::particle_weights::{Distances, NARROW, ParticleWeights, lines, window};
+use crate::solver::shape_weights::Stencils;
+
+/// Adds the products of node `NODE` of line `LINE` with the nodes of its line from itself on, and with
+/// those of later lines, for some particles.
+#[inline(always)]
+fn add_node<
+    const K: usize,
+    const V: usize,
+    const D: usize,
+    const N: usize,
+    const LINE: usize,
+    const NODE: usize,
+>(
+    rows: &mut [f64],
+    values: &[[f64x4; V]; N],
+    terms: &[[[f64; 4]; V]; N],
+) {
+    let count = const { diagonals(K, D) };
+    // on the main line zeros are added to entries of the node before
+    let at = |later: usize| match later {
+        0 => NODE * (count - 1),
+        _ => NODE * count + K + (later - 1) * (2 * K - 1) + K - 1 - NODE,
+    };
+    let mut sums = [f64x4::ZERO; V];
+    for later in 0..const { V.saturating_sub(LINE) } {
+        sums[later] = vector(window(rows, at(later)));
+    }
+    for k in 0..N {
+        let (values, terms) = (&values[k], &terms[k]);
+        let term = f64x4::splat(terms[LINE][NODE]);
+        sums[0] += term * (values[LINE] & between(NODE, K));
+        for later in 1..const { V.saturating_sub(LINE) } {
+            sums[later] += term * values[LINE + later];
+        }
+    }
+    for later in 0..const { V.saturating_sub(LINE) } {
+        rows[at(later)..at(later) + 4].copy_from_slice(sums[later].as_array());
+    }
+}
 
 /// Adds the blocks of a node and a line of `M` nodes to the node's entries xx, yy, xy and yx, each
 /// `count` long, from `first` on. `terms` are the node's value, and its products with the distances
@@ -93,22 +135,112 @@ impl Band {
         }
     }
 
+    /// Adds the particles of `group`, which have the same window of three or four nodes along each
+    /// direction in `V` vectors, with the `mass` of each.
+    #[inline(always)]
+    pub fn add_group<const K: usize, const V: usize, const D: usize>(
+        &mut self,
+        stencils: &Stencils,
+        group: Range<usize>,
+        mass: impl Fn(usize) -> f64,
+    ) {
+        let (place, mut from) = (stencils.place(group.start), group.start);
+        // numbers of particles known at compile time, so that there are no loops over them
+        while from < group.end {
+            let count = TOGETHER.min(group.end - from);
+            match count {
+                1 => self.add_some::<K, V, D, 1>(stencils, place, from, &mass),
+                2 => self.add_some::<K, V, D, 2>(stencils, place, from, &mass),
+                3 => self.add_some::<K, V, D, 3>(stencils, place, from, &mass),
+                _ => self.add_some::<K, V, D, TOGETHER>(stencils, place, from, &mass),
+            }
+            from += count;
+        }
+    }
+
+    /// Adds `N` particles from `from` on.
+    #[inline(always)]
+    fn add_some<const K: usize, const V: usize, const D: usize, const N: usize>(
+        &mut self,
+        stencils: &Stencils,
+        place: WindowPlace,
+        from: usize,
+        mass: &impl Fn(usize) -> f64,
+    ) {
+        let (mut values, mut terms) = ([[f64x4::ZERO; V]; N], [[[0.0; 4]; V]; N]);
+        for k in 0..N {
+            let m = f64x4::splat(mass(from + k));
+            for (l, line) in stencils.packed_values::<K, V, D>(from + k).iter().enumerate() {
+                values[k][l] = *line & between(0, K);
+                terms[k][l] = (m * *line).to_array();
+            }
+        }
+        self.add_terms::<K, V, D, N>(place, &values, &terms);
+    }
+
+    /// Adds the products of the lines of `values` with `terms`, the same lines times the mass.
+    #[inline(always)]
+    fn add_terms<const K: usize, const V: usize, const D: usize, const N: usize>(
+        &mut self,
+        place: WindowPlace,
+        values: &[[f64x4; V]; N],
+        terms: &[[[f64; 4]; V]; N],
+    ) {
+        // constants, so that sums stay in registers
+        self.add_line::<K, V, D, N, 0>(place, values, terms);
+        if const { V > 1 } {
+            self.add_line::<K, V, D, N, 1>(place, values, terms);
+        }
+        if const { V > 2 } {
+            self.add_line::<K, V, D, N, 2>(place, values, terms);
+        }
+        if const { V > 3 } {
+            self.add_line::<K, V, D, N, 3>(place, values, terms);
+        }
+    }
+
+    /// The products of line `LINE` with itself and later lines.
+    #[inline(always)]
+    fn add_line<
+        const K: usize,
+        const V: usize,
+        const D: usize,
+        const N: usize,
+        const LINE: usize,
+    >(
+        &mut self,
+        place: WindowPlace,
+        values: &[[f64x4; V]; N],
+        terms: &[[[f64; 4]; V]; N],
+    ) {
+        let count = const { diagonals(K, D) };
+        let from = place.first + LINE * place.stride;
+        self.touch([from, from + K - 1], Touched::All);
+        // a length known at compile time avoids bounds checks
+        let rows = &mut self.rows[from * count..][..const { K * diagonals(K, D) }];
+        add_node::<K, V, D, N, LINE, 0>(rows, values, terms);
+        add_node::<K, V, D, N, LINE, 1>(rows, values, terms);
+        add_node::<K, V, D, N, LINE, 2>(rows, values, terms);
+        if const { K > 3 } {
+            add_node::<K, V, D, N, LINE, 3>(rows, values, terms);
+        }
+    }
+
     /// Adds a particle of mass `mass` with spin: m (N_i N_j + phi_i phi_j), a block of two by two
     /// for each pair of nodes, with the feature of a rotation phi_i = N_i (-e_y, e_x)/sqrt(I) at
-    /// the distance e of node i from the particle. `first` is the distance of the first node of
-    /// the window [m], `cell` the distance between nodes [m], `inverse` is 1/I [1/m2].
+    /// the distance e of node i from the particle, in `place`; `inverse` is 1/I [1/m2].
     #[inline(always)]
     pub fn add_spin<const K: usize, const D: usize>(
         &mut self,
         weights: &ParticleWeights<'_, K, D>,
         mass: f64,
-        (first, cell): ([f64; 2], [f64; 2]),
+        place: Distances,
         inverse: f64,
     ) {
         if weights.is_narrow() {
-            self.add_spin_part::<K, D, NARROW>(weights, mass, (first, cell), inverse);
+            self.add_spin_part::<K, D, NARROW>(weights, mass, place, inverse);
         } else {
-            self.add_spin_part::<K, D, K>(weights, mass, (first, cell), inverse);
+            self.add_spin_part::<K, D, K>(weights, mass, place, inverse);
         }
     }
 
@@ -118,7 +250,7 @@ impl Band {
         &mut self,
         weights: &ParticleWeights<'_, K, D>,
         mass: f64,
-        (first, cell): ([f64; 2], [f64; 2]),
+        place: Distances,
         inverse: f64,
     ) {
         let count = const { diagonals(K, D) };
@@ -126,10 +258,10 @@ impl Band {
         let mut parts = [[[0.0; M]; K]; 3];
         for line in 0..const { lines(M, D) } {
             let values: [f64; M] = *weights.values[line].first_chunk().expect("as many nodes");
-            let across = first[1] + line as f64 * cell[1];
+            let across = place.across(line);
             for k in 0..M {
                 parts[0][line][k] = values[k];
-                parts[1][line][k] = values[k] * (first[0] + k as f64 * cell[0]);
+                parts[1][line][k] = values[k] * place.along(k);
                 parts[2][line][k] = values[k] * across;
             }
         }

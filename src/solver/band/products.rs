@@ -122,16 +122,27 @@ impl Band {
     /// other nodes.
     #[inline(always)]
     fn filled_diagonals(&self, nodes: Range<usize>) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let count = self.offsets.len();
         let others = self.offsets.iter().copied().enumerate().skip(1);
         others.filter(move |&(d, o)| {
-            let blocks = [nodes.clone(), nodes.start - o..nodes.end - o];
-            blocks.into_iter().any(|nodes| {
-                let blocks = nodes.start / BLOCK..=(nodes.end - 1) / BLOCK;
-                let entry = |block: usize, k: usize| block * self.entries * count + k * count + d;
-                blocks.into_iter().any(|b| (0..self.entries).any(|k| self.filled[entry(b, k)]))
-            })
+            self.is_filled(d, nodes.start, nodes.end)
+                || self.is_filled(d, nodes.start - o, nodes.end - o)
         })
+    }
+
+    /// Whether diagonal `d` has nonzero entries in the blocks of the nodes `from` to before `to`.
+    #[inline(always)]
+    fn is_filled(&self, d: usize, from: usize, to: usize) -> bool {
+        let count = self.offsets.len();
+        let each = self.entries * count;
+        for block in from / BLOCK..=(to - 1) / BLOCK {
+            let filled = &self.filled[block * each..(block + 1) * each];
+            for k in 0..self.entries {
+                if filled[k * count + d] {
+                    return true;
+                }
+            }
+        }
+        false
     }
 
     /// Adds the products of `G` diagonals and their mirror images, with the distances to their other

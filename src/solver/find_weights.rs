@@ -1,0 +1,199 @@
+//! Weights of all particles of a patch: four particles at a time where windows are narrow, else one
+//! after the other, with the same bits.
+
+use decomp::array;
+use wide::f64x4;
+
+use crate::shape::{LANES, ParticleDomain, Plane, PlaneLanes, Shape, Weights, integer, vector};
+use crate::solver::particle_weights::{NARROW, lines};
+use crate::solver::shape_weights::Stencils;
+
+/// Places of particles and their domains.
+pub(super) struct Places<'a, const D: usize> {
+    /// Cells.
+    pub cells: &'a [[i32; D]],
+    /// Positions in the cells [cells].
+    pub fractions: [&'a [f64]; D],
+    /// Columns of the domain: the length on a line, or those of the shape function's extent in a
+    /// plane [cells].
+    pub domains: [&'a [f64]; 4],
+    /// First node of the patch's arrays.
+    pub lower: [i32; D],
+    /// 1/edge of a cell [1/m].
+    pub inverse_cell: [f64; D],
+}
+
+/// First nodes of windows along each direction, relative to the first node of the arrays: the least
+/// and the greatest.
+pub(super) struct Corners<const D: usize> {
+    pub least: [i32; D],
+    pub most: [i32; D],
+}
+
+impl<const D: usize> Corners<D> {
+    #[inline(always)]
+    fn extend(&mut self, corner: [i32; D]) {
+        for a in 0..D {
+            self.least[a] = self.least[a].min(corner[a]);
+            self.most[a] = self.most[a].max(corner[a]);
+        }
+    }
+}
+
+/// Values of four particles of a column from `first` on.
+#[inline(always)]
+fn four(column: &[f64], first: usize) -> f64x4 {
+    vector(column[first..first + LANES].try_into().expect("four particles"))
+}
+
+/// Writes `N` numbers of each of four particles, which follow each other in `out`.
+#[inline(always)]
+fn put(numbers: &[f64x4], out: &mut [f64]) {
+    let count = numbers.len();
+    let out = &mut out[..LANES * count];
+    let (squares, rest) = numbers.as_chunks::<LANES>();
+    for (square, numbers) in squares.iter().enumerate() {
+        for (lane, line) in f64x4::transpose(*numbers).iter().enumerate() {
+            let at = lane * count + LANES * square;
+            out[at..at + LANES].copy_from_slice(line.as_array());
+        }
+    }
+    for (k, number) in rest.iter().enumerate() {
+        for lane in 0..LANES {
+            out[lane * count + LANES * squares.len() + k] = number.as_array()[lane];
+        }
+    }
+}
+
+/// Whether four particles are computed together: the weights on two nodes take fewer instructions one
+/// by one.
+const fn in_lanes(width: usize) -> bool {
+    2 < width && width <= NARROW
+}
+
+impl Stencils {
+    /// Computes the weights of all particles at the places `at`, in arrays with lines of `stride`
+    /// nodes.
+    pub(super) fn fill<S: Shape, const K: usize, const D: usize>(
+        &mut self,
+        at: &Places<'_, D>,
+        stride: usize,
+    ) -> Corners<D> {
+        let n = at.cells.len();
+        self.resize::<K, D>(n, stride);
+        let mut corners = Corners { least: [i32::MAX; D], most: [i32::MIN; D] };
+        let whole = if const { in_lanes(K) } { n - n % LANES } else { 0 };
+        let mut buffer = PlaneLanes::none();
+        for first in (0..whole).step_by(LANES) {
+            if const { in_lanes(K) } {
+                self.fill_four::<S, K, D>(at, first, &mut corners, &mut buffer);
+            }
+        }
+        for particle in whole..n {
+            self.fill_one::<S, K, D>(at, particle, &mut corners);
+        }
+        corners
+    }
+
+    /// Weights of four particles from `first` on.
+    #[inline(always)]
+    fn fill_four<S: Shape, const K: usize, const D: usize>(
+        &mut self,
+        at: &Places<'_, D>,
+        first: usize,
+        corners: &mut Corners<D>,
+        w: &mut PlaneLanes<K>,
+    ) {
+        let nodes = const { K * lines(K, D) };
+        let place = array::map(&at.fractions, |column| four(column, first));
+        let inverse = array::map(&at.inverse_cell, f64x4::splat);
+        let values = &mut self.values[first * nodes..];
+        let gradients = &mut self.gradients[first * nodes * D..];
+        let (from, skipped): ([f64x4; D], [f64x4; 2]) = if D == 1 {
+            let mut w = S::four::<K>(place[0], four(at.domains[0], first));
+            w.gradients.iter_mut().for_each(|g| *g *= inverse[0]);
+            put(&w.values, values);
+            put(&w.gradients, gradients);
+            ([w.first; D], [w.skipped, f64x4::ZERO])
+        } else {
+            let half_edges = S::EXTENT.half_edges(|k| four(at.domains[k], first));
+            S::four_in_plane::<K>([place[0], place[D - 1]], half_edges, w);
+            for (axis, lines) in w.gradients.iter_mut().enumerate() {
+                let inverse = inverse[axis * (D - 1)];
+                lines.as_flattened_mut().iter_mut().for_each(|g| *g *= inverse);
+            }
+            put(w.values.as_flattened(), values);
+            put(w.gradients.as_flattened().as_flattened(), gradients);
+            (array::from_fn(|a| w.first[a]), w.skipped)
+        };
+        let from = array::map(&from, |from: f64x4| from.to_array());
+        let cells = &at.cells[first..first + LANES];
+        let windows = &mut self.first[first..first + LANES];
+        for lane in 0..LANES {
+            let corner: [i32; D] =
+                array::from_fn(|a| cells[lane][a] + integer(from[a][lane]) - at.lower[a]);
+            corners.extend(corner);
+            windows[lane] = index(corner, self.stride);
+        }
+        let [x, y] = array::map(&skipped, |skipped: f64x4| skipped.to_bitmask());
+        for (lane, skipped) in self.skipped[first..first + LANES].iter_mut().enumerate() {
+            *skipped = ((x >> lane & 1) | (y >> lane & 1) << 1) as u8;
+        }
+    }
+
+    /// Weights of one particle.
+    #[inline(always)]
+    fn fill_one<S: Shape, const K: usize, const D: usize>(
+        &mut self,
+        at: &Places<'_, D>,
+        particle: usize,
+        corners: &mut Corners<D>,
+    ) {
+        let nodes = const { K * lines(K, D) };
+        let place = array::map(&at.fractions, |column| column[particle]);
+        let values = &mut self.values[particle * nodes..(particle + 1) * nodes];
+        let gradients = &mut self.gradients[particle * nodes * D..(particle + 1) * nodes * D];
+        let (from, length): ([i32; D], f64) = if D == 1 {
+            let length = at.domains[0][particle];
+            let w: Weights<K> = S::weights(place[0], length);
+            values.copy_from_slice(&w.values);
+            for (out, g) in gradients.iter_mut().zip(w.gradients) {
+                *out = g * at.inverse_cell[0];
+            }
+            ([w.first; D], length)
+        } else {
+            let domain = ParticleDomain::from_columns(S::EXTENT, &at.domains, particle);
+            let (gx, gy) = gradients.split_at_mut(nodes);
+            let mut lines = Plane {
+                values: values.as_chunks_mut::<K>().0,
+                gradients: [gx.as_chunks_mut::<K>().0, gy.as_chunks_mut::<K>().0],
+            };
+            let [width, height] = domain.extent();
+            let (place, length) = ([place[0], place[D - 1]], width.max(height));
+            let corner = match K > NARROW && S::nodes(length) <= NARROW {
+                true => lines.fill_first::<S, NARROW>(place, &domain),
+                false => S::plane(place, &domain, &mut lines),
+            };
+            gx.iter_mut().for_each(|g| *g *= at.inverse_cell[0]);
+            gy.iter_mut().for_each(|g| *g *= at.inverse_cell[D - 1]);
+            (array::from_fn(|a| corner[a]), length)
+        };
+        if K > NARROW {
+            self.narrow[particle] = S::nodes(length) <= NARROW;
+        }
+        let cell = at.cells[particle];
+        let corner: [i32; D] = array::from_fn(|a| cell[a] + from[a] - at.lower[a]);
+        corners.extend(corner);
+        self.first[particle] = index(corner, self.stride);
+        self.skipped[particle] = 0;
+    }
+}
+
+/// Index of a node in arrays with lines of `stride` nodes.
+#[inline(always)]
+fn index<const D: usize>(node: [i32; D], stride: usize) -> u32 {
+    match D {
+        1 => node[0] as u32,
+        _ => (node[0] + stride as i32 * node[D - 1]) as u32,
+    }
+}

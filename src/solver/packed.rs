@@ -1,0 +1,200 @@
+//! Windows of at most four nodes along a direction in vectors of four numbers, for sums over several
+//! particles with one window and for several sums over one particle. A line of the window fills one
+//! vector.
+//!
+//! The sums have the bits of [`ParticleWeights`](super::particle_weights::ParticleWeights).
+//!
+//! This module does not depend on materials, time stepping or messages.
+
+use decomp::array::{from_fn, map};
+use wide::f64x4;
+
+use crate::shape::{fours, vector};
+use crate::solver::particle_weights::window;
+
+/// Greatest number of nodes along a direction of such a window.
+pub const PACKED: usize = 4;
+
+/// Weights of one particle on its window. Numbers beyond the nodes of a line belong to other lines.
+#[derive(Clone, Copy, Debug)]
+pub struct PackedWeights<const V: usize, const D: usize> {
+    /// Values.
+    pub values: [f64x4; V],
+    /// Gradients along each direction [1/m].
+    pub gradients: [[f64x4; V]; D],
+}
+
+/// Lines of `K` numbers that follow each other.
+///
+/// # Panics
+///
+/// If fewer than three numbers follow the last line but one and its own.
+#[inline(always)]
+pub(super) fn pack<const K: usize, const V: usize>(numbers: &[f64]) -> [f64x4; V] {
+    // one check for all lines
+    let numbers = &numbers[..const { (V - 1) * K + PACKED }];
+    from_fn(|line| vector(window(numbers, line * K)))
+}
+
+/// Place of a window in the patch's arrays: its first node, and the distance from a line to the
+/// next.
+#[derive(Clone, Copy, Debug)]
+pub struct WindowPlace {
+    /// First node.
+    pub first: usize,
+    /// Distance from a line to the next.
+    pub stride: usize,
+}
+
+impl WindowPlace {
+    /// Nodes of the window in `field`.
+    #[inline(always)]
+    pub fn nodes<const K: usize, const V: usize>(&self, field: &[f64]) -> [f64x4; V] {
+        from_fn(|line| fours(window::<K>(field, self.first + line * self.stride), 0))
+    }
+
+    /// Writes the nodes of the window to `field`.
+    #[inline(always)]
+    pub fn put<const K: usize, const V: usize>(&self, field: &mut [f64], nodes: &[f64x4; V]) {
+        for (line, nodes) in nodes.iter().enumerate() {
+            let nodes = nodes.to_array();
+            let at = self.first + line * self.stride;
+            field[at..at + K].copy_from_slice(&nodes[..K]);
+        }
+    }
+}
+
+/// All bits in the lanes from `first` to before `end`.
+#[inline(always)]
+pub(super) fn between(first: usize, end: usize) -> f64x4 {
+    let bits = |lane: usize| if first <= lane && lane < end { u64::MAX } else { 0 };
+    f64x4::from(map(&[0, 1, 2, 3], |lane| f64::from_bits(bits(lane))))
+}
+
+/// Adds `term` of each weight to `nodes`.
+#[inline(always)]
+pub fn add_to<const V: usize>(nodes: &mut [f64x4; V], weights: &[f64x4; V], term: f64) {
+    let term = f64x4::splat(term);
+    for (node, weight) in nodes.iter_mut().zip(weights) {
+        *node += *weight * term;
+    }
+}
+
+/// Weights times nodal values, added over the lines: see [`totals`].
+#[inline(always)]
+pub fn dot<const V: usize>(weights: &[f64x4; V], nodes: &[f64x4; V]) -> f64x4 {
+    let mut sum = weights[0] * nodes[0];
+    for line in 1..V {
+        sum += weights[line] * nodes[line];
+    }
+    sum
+}
+
+/// Sums over the nodes of a line of each of four vectors.
+#[inline(always)]
+pub fn totals<const K: usize>(sums: [f64x4; 4]) -> [f64; 4] {
+    let columns = f64x4::transpose(sums);
+    // from +0 on, as sums of one particle
+    let mut total = f64x4::ZERO;
+    for column in &columns[..K] {
+        total += *column;
+    }
+    total.to_array()
+}
+
+/// Calls `$call` with the width of windows of three or four nodes along a direction in a plane, the
+/// number of vectors that hold one and the dimension; evaluates `$other` for others: on a line and
+/// with two nodes the sums of one particle take fewer instructions.
+macro_rules! with_packed {
+    ($width:expr, $call:ident ( $($arg:expr),* ), $other:expr) => {
+        match $width {
+            3 if const { D > 1 } => $call::<3, 3, D>($($arg),*),
+            4 if const { D > 1 } => $call::<4, 4, D>($($arg),*),
+            _ => $other,
+        }
+    };
+}
+pub(crate) use with_packed;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::particle_weights::{ParticleWeights, lines};
+    use crate::solver::shape_weights::Stencils;
+
+    /// Three particles on windows that start at node 5, 5 and 6, in lines of `K + 3` nodes.
+    fn three<const K: usize, const D: usize>() -> (Stencils, Vec<f64>) {
+        let stride = K + 3;
+        let mut stencils = Stencils::default();
+        stencils.resize::<K, D>(3, stride);
+        stencils.first.copy_from_slice(&[5, 5, 6]);
+        let number = |k: usize| ((k * k * 31 + k * 17) % 97) as f64 / 7.0 - 6.0;
+        stencils.values.iter_mut().enumerate().for_each(|(k, v)| *v = number(k));
+        stencils.gradients.iter_mut().enumerate().for_each(|(k, g)| *g = number(k + 5));
+        // the last window ends with the field
+        let nodes = 6 + (lines(K, D) - 1) * stride + K;
+        (stencils, (0..nodes).map(|k| number(3 * k + 1)).collect())
+    }
+
+    fn check<const K: usize, const V: usize, const D: usize>() {
+        let (stencils, field) = three::<K, D>();
+        let groups: Vec<_> = stencils.groups(0..3).collect();
+        assert_eq!(groups, [0..2, 2..3]);
+        // gather: four sums at a time are those of one particle and one field
+        for r in 0..3 {
+            let weights: ParticleWeights<'_, K, D> = stencils.particle(r);
+            let packed = stencils.packed::<K, V, D>(r);
+            let nodes = stencils.place(r).nodes::<K, V>(&field);
+            let slope = dot(&packed.gradients[D - 1], &nodes);
+            let sums = [dot(&packed.values, &nodes), slope, f64x4::ZERO, slope];
+            let expected = [
+                weights.dot(weights.values, &field),
+                weights.dot(weights.gradient(D - 1), &field),
+                0.0,
+                weights.dot(weights.gradient(D - 1), &field),
+            ];
+            assert_eq!(totals::<K>(sums).map(f64::to_bits), expected.map(f64::to_bits));
+        }
+        // scatter: sums over a group are those over one particle after the other
+        let (mut one, mut together) = (field.clone(), field);
+        for group in groups {
+            let place = stencils.place(group.start);
+            let mut nodes = place.nodes::<K, V>(&together);
+            for r in group {
+                let weights: ParticleWeights<'_, K, D> = stencils.particle(r);
+                let term = 0.7 + r as f64;
+                weights.add(&mut one, weights.values, |n| n * term);
+                add_to(&mut nodes, &stencils.packed_values::<K, V, D>(r), term);
+            }
+            place.put::<K, V>(&mut together, &nodes);
+        }
+        assert_eq!(one, together, "{K} nodes");
+    }
+
+    #[test]
+    fn sums_in_vectors_have_the_bits_of_sums_one_by_one() {
+        check::<3, 1, 1>();
+        check::<4, 1, 1>();
+        check::<3, 3, 2>();
+        check::<4, 4, 2>();
+    }
+
+    /// Weights (1/4, 1/2, 1/4) on nodes with 2, 4 and 6: a sum of 4; masses of 2 and 3 kg add up.
+    #[test]
+    fn two_particles_by_hand() {
+        let mut stencils = Stencils::default();
+        stencils.resize::<3, 1>(2, 8);
+        stencils.first.copy_from_slice(&[1, 1]);
+        stencils.values[..6].copy_from_slice(&[0.25, 0.5, 0.25, 0.0, 0.5, 0.5]);
+        let field = [9.0, 2.0, 4.0, 6.0, 9.0, 9.0];
+        let nodes = stencils.place(0).nodes::<3, 1>(&field);
+        let sums = [0, 1, 0, 1].map(|r| dot(&stencils.packed_values::<3, 1, 1>(r), &nodes));
+        assert_eq!(totals::<3>(sums), [4.0, 5.0, 4.0, 5.0]);
+        let mut masses = [0.0; 6];
+        let mut nodes = stencils.place(0).nodes::<3, 1>(&masses);
+        add_to(&mut nodes, &stencils.packed_values::<3, 1, 1>(0), 2.0);
+        add_to(&mut nodes, &stencils.packed_values::<3, 1, 1>(1), 3.0);
+        stencils.place(0).put::<3, 1>(&mut masses, &nodes);
+        assert_eq!(masses, [0.0, 0.5, 2.5, 2.0, 0.0, 0.0]);
+    }
+}

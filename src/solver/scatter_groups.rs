@@ -1,0 +1,235 @@
+//! Particles to grid by groups of particles that follow each other and have the same window: their
+//! sums stay in vectors from one particle to the next.
+
+use std::ops::Range;
+
+use decomp::array;
+
+use wide::f64x4;
+
+use super::band::{Band, Spinning, TOGETHER};
+use super::scheme::Scheme;
+use super::spin::packed_inertia;
+use crate::solver::packed::{add_to, totals};
+use crate::solver::particle_weights::Offset;
+use crate::solver::patch::Patch;
+use crate::solver::shape_weights::Stencils;
+
+/// Columns of particles that are summed.
+struct Summed<'a, const D: usize> {
+    mass: &'a [f64],
+    velocity: [&'a [f64]; D],
+    /// Volume [cells], with an edge mask.
+    filled: &'a [f64],
+    /// Stress times volume [J], if forces are summed.
+    stress: Option<&'a [f64]>,
+}
+
+/// Nodal fields that hold the sums.
+struct Sums<'a, const D: usize> {
+    mass: &'a mut [f64],
+    momentum: [&'a mut [f64]; D],
+    force: [&'a mut [f64]; D],
+    volume: Option<&'a mut [f64]>,
+}
+
+impl<const D: usize> Sums<'_, D> {
+    /// Adds mass and momentum of a group of particles.
+    #[inline(always)]
+    fn add_motion<const K: usize, const V: usize>(
+        &mut self,
+        stencils: &Stencils,
+        group: Range<usize>,
+        of: &Summed<'_, D>,
+    ) {
+        let place = stencils.place(group.start);
+        let mut mass = place.nodes::<K, V>(self.mass);
+        let mut momentum = [mass; D];
+        for a in 0..D {
+            momentum[a] = place.nodes::<K, V>(self.momentum[a]);
+        }
+        for r in group {
+            let (values, m) = (stencils.packed_values::<K, V, D>(r), of.mass[r]);
+            add_to(&mut mass, &values, m);
+            for a in 0..D {
+                add_to(&mut momentum[a], &values, m * of.velocity[a][r]);
+            }
+        }
+        place.put::<K, V>(self.mass, &mass);
+        for a in 0..D {
+            place.put::<K, V>(self.momentum[a], &momentum[a]);
+        }
+    }
+
+    /// The same of particles that turn, in a plane with cells of the edges `cell` \[m\]; `turning`
+    /// gives the distances of a particle's nodes and its rate of rotation \[1/s\].
+    #[inline(always)]
+    fn add_spinning<const K: usize, const V: usize>(
+        &mut self,
+        stencils: &Stencils,
+        group: Range<usize>,
+        of: &Summed<'_, D>,
+        cell: [f64; D],
+        turning: impl Fn(usize) -> (Offset<D>, f64),
+    ) {
+        let place = stencils.place(group.start);
+        let (x, y) = (0, D - 1);
+        let mut mass = place.nodes::<K, V>(self.mass);
+        let mut along_x = place.nodes::<K, V>(self.momentum[x]);
+        let mut along_y = place.nodes::<K, V>(self.momentum[y]);
+        for r in group {
+            let (values, m) = (stencils.packed_values::<K, V, D>(r), of.mass[r]);
+            add_to(&mut mass, &values, m);
+            let (offset, rate) = turning(r);
+            let [vx, vy] = [x, y].map(|a| m * of.velocity[a][r]);
+            let slope = m * -rate * cell[y];
+            for line in 0..V {
+                let term = vx + slope * offset.at(y, line);
+                along_x[line] += values[line] * f64x4::splat(term);
+            }
+            let nodes = f64x4::from([0, 1, 2, 3].map(|k| offset.at(x, k)));
+            let terms = f64x4::splat(vy) + f64x4::splat(m * rate * cell[x]) * nodes;
+            for line in 0..V {
+                along_y[line] += values[line] * terms;
+            }
+        }
+        place.put::<K, V>(self.mass, &mass);
+        place.put::<K, V>(self.momentum[x], &along_x);
+        place.put::<K, V>(self.momentum[y], &along_y);
+    }
+
+    /// Adds volume and force of a group of particles.
+    #[inline(always)]
+    fn add_rest<const K: usize, const V: usize>(
+        &mut self,
+        stencils: &Stencils,
+        group: Range<usize>,
+        of: &Summed<'_, D>,
+    ) {
+        let place = stencils.place(group.start);
+        if let Some(field) = &mut self.volume {
+            let mut volume = place.nodes::<K, V>(field);
+            for r in group.clone() {
+                add_to(&mut volume, &stencils.packed_values::<K, V, D>(r), of.filled[r]);
+            }
+            place.put::<K, V>(field, &volume);
+        }
+        let Some(stress) = of.stress else { return };
+        let mut force = [[f64x4::ZERO; V]; D];
+        for a in 0..D {
+            force[a] = place.nodes::<K, V>(self.force[a]);
+        }
+        for r in group {
+            let gradients = stencils.packed_gradients::<K, V, D>(r);
+            for a in 0..D {
+                add_to(&mut force[a], &gradients[a], stress[r]);
+            }
+        }
+        for a in 0..D {
+            place.put::<K, V>(self.force[a], &force[a]);
+        }
+    }
+}
+
+impl<const D: usize> Scheme<D> {
+    /// [`Scheme::scatter_particles`] without affine velocity and axial symmetry.
+    pub(super) fn scatter_groups<const K: usize, const V: usize>(
+        &self,
+        patch: &mut Patch<D>,
+        force: bool,
+    ) {
+        let (c, f) = (&self.columns, &self.fields);
+        let matrix = self.needs_matrix();
+        match (matrix, c.spin) {
+            (_, Some(_)) => self.clear_sums::<K, true, true>(patch),
+            (true, None) => self.clear_sums::<K, true, false>(patch),
+            (false, None) => self.clear_sums::<K, false, false>(patch),
+        }
+        // matrix and fields are taken out while others are read and written
+        let mut band = std::mem::take(&mut patch.band);
+        let mut take = |k: usize| std::mem::take(&mut patch.nodes.fields[k]);
+        let mut masses = take(f.mass);
+        let mut momenta: [Vec<f64>; D] = array::from_fn(|a| take(f.lumped_velocity + a));
+        let mut forces: [Vec<f64>; D] = array::from_fn(|a| take(f.acceleration + a));
+        let mut volumes = self.edge_mask.map(|_| take(f.volume));
+        // slices of equal length, so that the bounds of a window are checked only once
+        let nodes = masses.len();
+        let mut sums = Sums {
+            mass: &mut masses[..],
+            momentum: array::parts_mut(&mut momenta, nodes),
+            force: array::parts_mut(&mut forces, nodes),
+            volume: volumes.as_mut().map(|field| &mut field[..nodes]),
+        };
+        let particles = patch.block.particles();
+        let column = |k: usize| &patch.block.columns[k][..particles];
+        let of = Summed {
+            mass: column(c.mass),
+            velocity: array::from_fn(|a| column(c.velocity + a)),
+            filled: c.fill_fraction.map_or(&[][..], column),
+            stress: force.then(|| column(c.stress_volume)),
+        };
+        let spin = c.spin.map(|spin| column(spin.angular_momentum));
+        for group in patch.runs.iter().flat_map(|run| patch.stencils.groups(run.clone())) {
+            sums.add_rest::<K, V>(&patch.stencils, group.clone(), &of);
+            match spin {
+                Some(moment) => {
+                    self.add_spinning::<K, V>(&mut sums, patch, &mut band, group, (&of, moment));
+                }
+                None => {
+                    sums.add_motion::<K, V>(&patch.stencils, group.clone(), &of);
+                    if matrix {
+                        let mass = |r: usize| of.mass[r];
+                        band.add_group::<K, V, D>(&patch.stencils, group, mass);
+                    }
+                }
+            }
+        }
+        if matrix {
+            band.finish();
+        }
+        patch.band = band;
+        let fields = &mut patch.nodes.fields;
+        fields[f.mass] = masses;
+        for (a, (momentum, force)) in momenta.into_iter().zip(forces).enumerate() {
+            fields[f.lumped_velocity + a] = momentum;
+            fields[f.acceleration + a] = force;
+        }
+        if let Some(volume) = volumes {
+            fields[f.volume] = volume;
+        }
+    }
+
+    /// Adds motion and blocks of the mass matrix of a group of particles with spin, a few at a time.
+    #[inline(always)]
+    fn add_spinning<const K: usize, const V: usize>(
+        &self,
+        sums: &mut Sums<'_, D>,
+        patch: &Patch<D>,
+        band: &mut Band,
+        group: Range<usize>,
+        (of, moment): (&Summed<'_, D>, &[f64]),
+    ) {
+        let stencils = &patch.stencils;
+        let mut from = group.start;
+        while from < group.end {
+            let count = TOGETHER.min(group.end - from);
+            let mut turning = [0.0; TOGETHER];
+            let mut spinning = [Spinning::default(); TOGETHER];
+            for k in 0..count {
+                let r = from + k;
+                let place = self.place_of(patch, r);
+                let inertia = packed_inertia(&stencils.packed_values::<K, V, D>(r), place);
+                let [inertia, ..] = totals::<K>([inertia; 4]);
+                let inverse = 1.0 / inertia;
+                turning[k] = moment[r] * inverse;
+                spinning[k] = Spinning { mass: of.mass[r], place, inverse };
+            }
+            let some = from..from + count;
+            sums.add_spinning::<K, V>(stencils, some.clone(), of, self.cell, |r| {
+                (self.offset(patch, r), turning[r - from])
+            });
+            band.add_spinning::<K, V, D>(stencils, some, &spinning[..count]);
+            from += count;
+        }
+    }
+}
