@@ -4,7 +4,7 @@
 use decomp::array;
 
 use super::scheme::Scheme;
-use super::spin::spin_inertia;
+use super::spin::{spin_gradient, spin_inertia};
 use crate::shape::{Shape, with_shape, with_width};
 use crate::solver::clock::timed;
 use crate::solver::effect::{Phase, StepContext};
@@ -167,8 +167,8 @@ impl<const D: usize> Scheme<D> {
                 if let Some(spin) = spin {
                     let place = self.place_of(patch, r);
                     let inverse = 1.0 / spin_inertia(&weights, place);
-                    let (turn, place) = self.reflect_spin(patch, r, spin[r] * inverse, place);
-                    self.add_affine_momentum(patch, &weights, r, turn, momentum);
+                    let (rates, place) = self.reflect_spin(patch, r, spin[r] * inverse, place);
+                    self.add_affine_momentum(patch, &weights, r, spin_gradient(rates), momentum);
                     patch.band.add_spin(&weights, m, place, inverse);
                 } else if let Some(affine) = affine {
                     let at = |k: usize| patch.block.columns[affine + k][r];

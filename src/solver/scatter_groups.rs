@@ -62,7 +62,7 @@ impl<const D: usize> Sums<'_, D> {
     }
 
     /// The same of particles that turn, in a plane with cells of the edges `cell` \[m\]; `turning`
-    /// gives the distances of a particle's nodes and its rate of rotation \[1/s\].
+    /// gives the distances of a particle's nodes and the rates of rotation of its two components \[1/s\].
     #[inline(always)]
     fn add_spinning<const K: usize, const V: usize>(
         &mut self,
@@ -70,7 +70,7 @@ impl<const D: usize> Sums<'_, D> {
         group: Range<usize>,
         of: &Summed<'_, D>,
         cell: [f64; D],
-        turning: impl Fn(usize) -> (Offset<D>, f64),
+        turning: impl Fn(usize) -> (Offset<D>, [f64; 2]),
     ) {
         let place = stencils.place(group.start);
         let (x, y) = (0, D - 1);
@@ -80,15 +80,15 @@ impl<const D: usize> Sums<'_, D> {
         for r in group {
             let (values, m) = (stencils.packed_values::<K, V, D>(r), of.mass[r]);
             add_to(&mut mass, &values, m);
-            let (offset, rate) = turning(r);
+            let (offset, rates) = turning(r);
             let [vx, vy] = [x, y].map(|a| m * of.velocity[a][r]);
-            let slope = m * -rate * cell[y];
+            let slope = m * -rates[0] * cell[y];
             for line in 0..V {
                 let term = vx + slope * offset.at(y, line);
                 along_x[line] += values[line] * f64x4::splat(term);
             }
             let nodes = f64x4::from([0, 1, 2, 3].map(|k| offset.at(x, k)));
-            let terms = f64x4::splat(vy) + f64x4::splat(m * rate * cell[x]) * nodes;
+            let terms = f64x4::splat(vy) + f64x4::splat(m * rates[1] * cell[x]) * nodes;
             for line in 0..V {
                 along_y[line] += values[line] * terms;
             }
@@ -213,7 +213,7 @@ impl<const D: usize> Scheme<D> {
         let mut from = group.start;
         while from < group.end {
             let count = TOGETHER.min(group.end - from);
-            let mut turning = [0.0; TOGETHER];
+            let mut turning = [[0.0; 2]; TOGETHER];
             let mut spinning = [Spinning::default(); TOGETHER];
             for k in 0..count {
                 let r = from + k;
@@ -221,7 +221,8 @@ impl<const D: usize> Scheme<D> {
                 let inertia = packed_inertia(&stencils.packed_values::<K, V, D>(r), place);
                 let [inertia, ..] = totals::<K>([inertia; 4]);
                 let inverse = 1.0 / inertia;
-                turning[k] = moment[r] * inverse;
+                let (rates, place) = self.reflect_spin(patch, r, moment[r] * inverse, place);
+                turning[k] = rates;
                 spinning[k] = Spinning { mass: of.mass[r], place, inverse };
             }
             let some = from..from + count;

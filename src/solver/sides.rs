@@ -7,10 +7,9 @@
 use decomp::{IndexBox, Parity};
 
 use super::scheme::Scheme;
-use super::spin::{Place, spin_gradient};
 use crate::scene::{CheckedScene, SideProperties};
 use crate::shape::with_width;
-use crate::solver::particle_weights::ParticleWeights;
+use crate::solver::particle_weights::{Distances, ParticleWeights};
 use crate::solver::patch::{BoundaryWork, Patch, SideForce};
 
 /// Location relative to the mirrors of one direction.
@@ -177,27 +176,28 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Velocity gradient of the spin of a particle at the rate `omega` [1/s], and its `place` for
-    /// the mass matrix. For an image beyond a no-slip wall the components of both along the wall are
-    /// reversed, as those of all its vectors. That component of phi is proportional to the distance
-    /// across the wall.
+    /// Rates of rotation [1/s] of the velocity components x and y of a particle with spin at the
+    /// rate `omega` [1/s], and its `place` for the mass matrix. For an image beyond a no-slip wall
+    /// the components of both along the wall are reversed, as those of all its vectors. That
+    /// component of phi is proportional to the distance across the wall.
     #[inline(always)]
     pub(crate) fn reflect_spin(
         &self,
         patch: &Patch<D>,
         particle: usize,
         omega: f64,
-        (mut first, mut cell): Place,
-    ) -> ([[f64; D]; D], Place) {
-        let mut turn = spin_gradient(omega);
+        mut place: Distances,
+    ) -> ([f64; 2], Distances) {
+        let mut rates = [omega; 2];
         let is_ghost = particle >= patch.block.own();
         for axis in (0..D).filter(|&a| is_ghost && self.no_slip[a]) {
             if self.is_turned(patch, particle, axis) {
-                (0..D).filter(|&a| a != axis).for_each(|a| turn[a] = turn[a].map(|t| -t));
-                (first[axis], cell[axis]) = (-first[axis], -cell[axis]);
+                (0..D).filter(|&a| a != axis).for_each(|a| rates[a] = -rates[a]);
+                place.first[axis] = -place.first[axis];
+                place.cell[axis] = -place.cell[axis];
             }
         }
-        (turn, (first, cell))
+        (rates, place)
     }
 
     /// Reverses the internal force of particles beyond no-slip walls along these walls, after it

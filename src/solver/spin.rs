@@ -98,13 +98,13 @@ fn packed_moment<const V: usize>(
     dot(values, &from_fn(|line| along * y[line] - f64x4::splat(place.across(line)) * x[line]))
 }
 
-/// Velocity gradient of a rotation at the rate `omega` [1/s].
+/// Velocity gradient of a rotation, at the rates `x` and `y` [1/s] of its two components.
 #[inline(always)]
-pub(super) fn spin_gradient<const D: usize>(omega: f64) -> [[f64; D]; D] {
+pub(super) fn spin_gradient<const D: usize>([x, y]: [f64; 2]) -> [[f64; D]; D] {
     from_fn(|a| {
         from_fn(|b| match (a, b) {
-            (0, 1) => -omega,
-            (1, 0) => omega,
+            (0, 1) => -x,
+            (1, 0) => y,
             _ => 0.0,
         })
     })
