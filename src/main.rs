@@ -19,6 +19,7 @@ use decomp::{Comm, Serial};
 use flyer_mpm::driver::checkpoint::fit::CHANGEABLE;
 use flyer_mpm::driver::checkpoint::{Checkpoint, folder};
 use flyer_mpm::driver::default_folder::default_folder;
+use flyer_mpm::driver::memory::check_memory;
 use flyer_mpm::driver::output::OutputError;
 use flyer_mpm::driver::output::compare::compare;
 use flyer_mpm::driver::output::folder::check_writable;
@@ -158,8 +159,8 @@ fn bad(error: impl ToString) -> (u8, String) {
     (BAD_INPUT, error.to_string())
 }
 
-/// Reads and checks a scene on this rank. A scene that is too large is refused before its particles
-/// are made, unless `ignore_memory` is set.
+/// Reads and checks a scene on this rank. A scene whose check takes too much memory is refused before,
+/// unless `ignore_memory` is set.
 fn read_scene(args: &SceneArgs, ignore_memory: bool) -> Outcome<(Vec<u8>, CheckedScene)> {
     let bytes = input::read(&args.scene).map_err(bad)?;
     let name = args.scene.display().to_string();
@@ -227,9 +228,6 @@ fn begin(args: &RunArgs, found: Option<Found>, reading: &AtomicBool) -> Outcome<
         }
         (None, None) => return Err((BAD_INPUT, "a scene is needed; see --help".into())),
     };
-    if !args.ignore_memory {
-        checked.check_memory(input::available_memory()).map_err(bad)?;
-    }
     let maker = Maker::with(origin, &checked);
     reading.store(false, Ordering::Relaxed);
     let (output, lock) = match args.output.clone().or(restarted) {
@@ -326,6 +324,9 @@ fn run_scene(comm: &dyn Comm, args: &RunArgs, started: Instant) -> Outcome<()> {
         }
     };
     let threads = args.threads.unwrap_or(checked.scene.decomposition.threads);
+    if !args.ignore_memory {
+        check_memory(comm, &checked, threads).map_err(|e| (BAD_INPUT, by_first(e.to_string())))?;
+    }
     if comm.rank() == 0 && !args.quiet {
         announce(comm, &checked, threads);
     }
@@ -429,7 +430,6 @@ fn side_command(command: Command) -> Outcome<()> {
         }
         Command::Check { scene } => {
             let (_, checked) = read_scene(&scene, false)?;
-            checked.check_memory(input::available_memory()).map_err(bad)?;
             say(&cli::check::check(&checked).map_err(|e| (FAILED, e.to_string()))?);
             Ok(())
         }

@@ -1,7 +1,9 @@
-//! Ghost particles and migration, in one message per neighbouring rank.
+//! Ghost particles and migration, in one message per neighbouring rank. A particle that several
+//! patches of a rank need travels once.
 
-use crate::packing::{put_particles, put_stir, take};
-use crate::{Block, Comm, Image, IndexBox, Layout};
+use crate::ghost_bundle::{Bundle, GhostReach, MOST_RECEIVERS, Taker};
+use crate::packing::take;
+use crate::{Block, Comm, IndexBox, Layout};
 
 /// Error of the migration of a particle.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -20,41 +22,6 @@ pub enum ParticleError {
     },
 }
 
-/// Distances of ghosts and of motion [cells].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct GhostReach {
-    /// Width of the ghost region around a patch, see [`Layout::halo`].
-    pub depth: i64,
-    /// Largest distance that a particle moves between two exchanges.
-    pub travel: i64,
-    /// Active cells within this distance make a patch stirred; `None`: patches always are.
-    pub notice: Option<i64>,
-}
-
-/// All ways in which particles of one patch appear at another patch.
-#[derive(Clone, Debug)]
-struct Route<const D: usize> {
-    to: usize,
-    taker: Taker,
-    /// Cells of the target patch, those whose particles it sees, and those that make it stirred.
-    home: IndexBox<D>,
-    halo: IndexBox<D>,
-    near: IndexBox<D>,
-    /// Each image with the particles to copy as ghosts and the particles to hand over.
-    images: Vec<(Image<D>, [Vec<u32>; 2])>,
-}
-
-/// Destination of the words of a route.
-#[derive(Clone, Copy, Debug)]
-enum Taker {
-    /// A message, by its index in the list of messages.
-    Message(usize),
-    /// A patch of this rank that receives nothing from other ranks.
-    Inner,
-    /// A patch of this rank that receives from other ranks.
-    Border,
-}
-
 /// Exchange of ghosts and migrating particles between patches.
 ///
 /// One exchange does three things: it hands over own particles whose cell now belongs to another
@@ -66,8 +33,8 @@ pub struct GhostExchange<const D: usize> {
     reach: GhostReach,
     patches: Vec<usize>,
     homes: Vec<IndexBox<D>>,
-    /// For each patch of this rank, the routes to patches that may need its particles.
-    routes: Vec<Vec<Route<D>>>,
+    /// For each patch of this rank, the patches that may need its particles, by destination.
+    bundles: Vec<Vec<Bundle<D>>>,
     /// For each patch of this rank, whether it receives nothing from other ranks.
     inner: Vec<bool>,
     /// Index of each patch in this rank's list.
@@ -84,7 +51,6 @@ pub struct GhostExchange<const D: usize> {
 
 impl<const D: usize> GhostExchange<D> {
     /// Plans the exchange on `rank`.
-    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn new(layout: &Layout<D>, rank: usize, reach: GhostReach) -> Self {
         let GhostReach { depth, travel, notice } = reach;
         let seen = depth.max(notice.unwrap_or(0));
@@ -109,51 +75,41 @@ impl<const D: usize> GhostExchange<D> {
                 }
             }
         }
-        let mut routes = Vec::new();
+        let mut bundles = Vec::new();
         let mut send_ranks = Vec::new();
         for &from in &patches {
             let reachable = boxes[from].grow(travel);
-            let mut takers: Vec<usize> = images
+            let mut takers: Vec<(Taker, usize)> = images
                 .iter()
                 .flat_map(|image| layout.patches_in(&image.cells(&reachable).grow(seen)))
+                .map(|to| match place[to] {
+                    usize::MAX => (Taker::Message(layout.rank_of(to)), to),
+                    k if inner[k] => (Taker::Inner, to),
+                    _ => (Taker::Border, to),
+                })
                 .collect();
             takers.sort_unstable();
             takers.dedup();
-            let route = |to: usize| {
-                let halo = layout.halo(to, depth);
-                let near = boxes[to].grow(notice.unwrap_or(-1));
-                let sees = boxes[to].grow(seen);
-                let taker = match place[to] {
-                    usize::MAX => Taker::Message(layout.rank_of(to)),
-                    k if inner[k] => Taker::Inner,
-                    _ => Taker::Border,
-                };
-                // a particle that has crossed a joined side already carries a cell at the other end
-                let meets = |t: &&Image<D>| !t.cells(layout.domain()).intersect(&sees).is_empty();
-                let images = images.iter().filter(meets).map(|&t| (t, Default::default()));
-                Route { to, taker, home: boxes[to], halo, near, images: images.collect() }
-            };
-            let from_here: Vec<Route<D>> = takers.into_iter().map(route).collect();
-            send_ranks.extend(from_here.iter().filter_map(|r| match r.taker {
+            let alike = takers.chunk_by(|a, b| a.0 == b.0);
+            let from_here: Vec<Bundle<D>> = alike
+                .flat_map(|alike| alike.chunks(MOST_RECEIVERS))
+                .map(|takers| Bundle::new(layout, reach, &images, takers))
+                .collect();
+            send_ranks.extend(from_here.iter().filter_map(|b| match b.taker {
                 Taker::Message(rank) => Some(rank),
                 _ => None,
             }));
-            routes.push(from_here);
+            bundles.push(from_here);
         }
         for ranks in [&mut send_ranks, &mut receive_ranks] {
             ranks.sort_unstable();
             ranks.dedup();
         }
-        for route in routes.iter_mut().flatten() {
-            if let Taker::Message(rank) = &mut route.taker {
-                *rank = send_ranks.binary_search(rank).expect("a rank with a route");
-            }
-        }
         GhostExchange {
             reach,
             homes: patches.iter().map(|&p| boxes[p]).collect(),
             patches,
-            routes,
+            bundles,
             inner,
             place,
             messages: vec![Vec::new(); send_ranks.len()],
@@ -229,27 +185,14 @@ impl<const D: usize> GhostExchange<D> {
         // cells that no other patch sees
         let inner = home.grow(-self.reach.depth);
         self.gone.clear();
-        let GhostExchange { routes, messages, to_inner, to_border, .. } = self;
-        let (routes, patch) = (&mut routes[k], self.patches[k]);
+        let GhostExchange { bundles, messages, send_ranks, to_inner, to_border, .. } = self;
+        let (bundles, patch) = (&mut bundles[k], self.patches[k]);
         for particle in outside(&block.cells[..block.own()], inner) {
             let cell = block.cells[particle].map(i64::from);
             let stays = home.contains(cell);
             let mut owned = stays;
-            for route in routes.iter_mut() {
-                for (image, [ghosts, movers]) in &mut route.images {
-                    let at = image.cell(cell);
-                    if !route.halo.contains(at) {
-                        continue;
-                    }
-                    // a staying particle is not sent to its patch; a leaver may return as a ghost
-                    let original = *image == Image::IDENTITY;
-                    if stays && original && route.to == patch {
-                        continue;
-                    }
-                    let own = original && route.home.contains(at);
-                    owned |= own;
-                    if own { movers.push(particle as u32) } else { ghosts.push(particle as u32) }
-                }
+            for bundle in bundles.iter_mut() {
+                owned |= bundle.sort_in(particle as u32, cell, stays, patch);
             }
             if !owned {
                 let id = block.ids[particle];
@@ -260,22 +203,18 @@ impl<const D: usize> GhostExchange<D> {
             }
         }
         let stirs = self.reach.notice.is_some() && !block.active.is_empty();
-        for route in routes.iter_mut() {
-            let out = match route.taker {
-                Taker::Message(m) => &mut messages[m],
+        for bundle in bundles.iter_mut() {
+            let out = match bundle.taker {
+                Taker::Message(rank) => {
+                    &mut messages[send_ranks.binary_search(&rank).expect("a rank with a bundle")]
+                }
                 Taker::Inner => &mut *to_inner,
                 Taker::Border => &mut *to_border,
             };
-            let near = |t: &Image<D>| !t.cells(&block.active).intersect(&route.near).is_empty();
-            if stirs && route.to != patch && route.images.iter().any(|(t, _)| near(t)) {
-                put_stir(out, route.to);
+            if stirs {
+                bundle.put_stirs(out, block, patch);
             }
-            for (image, [ghosts, movers]) in &mut route.images {
-                put_particles(out, block, movers, route.to, true, image);
-                put_particles(out, block, ghosts, route.to, false, image);
-                movers.clear();
-                ghosts.clear();
-            }
+            bundle.put_particles(out, block);
         }
         if !self.gone.is_empty() {
             self.migrated += self.gone.len() as u64;

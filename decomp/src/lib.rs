@@ -6,11 +6,12 @@
 //!
 //! - [`GhostExchange`] gives each patch copies ("ghosts") of the particles that reach its nodes. It
 //!   also hands over ("migrates") particles that have moved into another patch. Each neighbouring
-//!   rank gets one message.
-//! - [`NodeExchange`] gives each patch finished values of nodes that other patches own.
+//!   rank gets one message, in which a ghost for several of its patches stands once.
+//! - [`NodeExchange`] gives each patch finished values of nodes that other patches own; a node too
+//!   travels once to a rank.
 //!
 //! Both let the caller compute while messages are on their way. [`assign_patches`] assigns patches
-//! to ranks along a space-filling curve, by weight, and [`patch_migration`] moves whole patches.
+//! to ranks along a curve, by weight, [`short_border_order`] chooses the curve, and [`patch_migration`] moves whole patches.
 //! [`Shares`] deals the particles to ranks for files and tables, [`StoredParticles`] holds a share of
 //! them, and [`deal_particles`] hands shares to the patches of any layout.
 //!
@@ -26,26 +27,32 @@ pub mod array;
 mod balance;
 mod bytes;
 pub mod comm;
+mod ghost_bundle;
 mod ghost_exchange;
 mod hilbert;
 mod index_box;
 mod layout;
+mod node_messages;
+mod node_runs;
 mod nodes;
 mod packing;
 mod particle_block;
 mod patch_migration;
+mod patch_order;
 mod reduce;
 mod shares;
 
 pub use balance::{PatchLoads, assign_patches, busiest_share, choose_cuts, even_cuts};
 pub use bytes::{bytes_of, words_of};
 pub use comm::{Comm, Serial, Traffic};
-pub use ghost_exchange::{GhostExchange, GhostReach, ParticleError};
+pub use ghost_bundle::GhostReach;
+pub use ghost_exchange::{GhostExchange, ParticleError};
 pub use hilbert::curve_order;
 pub use index_box::IndexBox;
 pub use layout::{Image, Layout, SideKind};
 pub use nodes::{NodeArrays, NodeExchange, Parity, fold_mirrors};
 pub use particle_block::{Block, ColumnSpec, Mirror};
 pub use patch_migration::{Census, Moved, relocate};
+pub use patch_order::short_border_order;
 pub use reduce::{ExactSum, exact_sums};
 pub use shares::{Shares, StoredParticles, deal_particles};

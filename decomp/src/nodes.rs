@@ -1,6 +1,10 @@
 //! Nodal arrays, and the exchange of finished values from the patch that owns a node.
 
+use std::collections::BTreeMap;
+
 use crate::ghost_exchange::with_sends;
+use crate::node_messages::{Draft, Party, SharedNodes};
+use crate::node_runs::{Run, runs};
 use crate::{Comm, Image, IndexBox, Layout, SideKind};
 
 /// Symmetry of a nodal field at a mirror.
@@ -93,37 +97,14 @@ pub(crate) fn leave_out_mirror<const D: usize>(
     }
 }
 
-/// Nodes that one patch copies from another (or from itself, across a side).
+/// Nodes that one patch copies from another of this rank (or from itself, across a side).
 #[derive(Clone, Debug)]
 struct Copy<const D: usize> {
-    /// Indices of the patches in their ranks' lists; not set for a patch of another rank.
+    /// Indices of the patches in the rank's list.
     from: usize,
     to: usize,
     flip: [bool; D],
     runs: Vec<Run>,
-}
-
-/// Nodes that are contiguous in the source array and in the target array.
-#[derive(Clone, Copy, Debug)]
-struct Run {
-    from: u32,
-    to: u32,
-    length: u32,
-    /// Whether the source is read backwards, starting with its last node (at `from`).
-    reversed: bool,
-}
-
-impl Run {
-    /// Indices in the source array, in reading order.
-    fn sources(self) -> impl Iterator<Item = usize> {
-        let place = move |k: u32| if self.reversed { self.from - k } else { self.from + k };
-        (0..self.length).map(move |k| place(k) as usize)
-    }
-
-    /// Indices in the target array.
-    fn targets(self) -> std::ops::Range<usize> {
-        self.to as usize..(self.to + self.length) as usize
-    }
 }
 
 /// A run between two patches of this rank, copied without change of sign.
@@ -135,26 +116,6 @@ struct PlainRun {
     run: Run,
 }
 
-/// Merges pairs of indices into runs.
-fn runs(pairs: impl Iterator<Item = (u32, u32)>, reversed: bool) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
-    for (from, to) in pairs {
-        if let Some(last) = runs.last_mut() {
-            let next = if reversed {
-                last.from.checked_sub(last.length)
-            } else {
-                Some(last.from + last.length)
-            };
-            if next == Some(from) && last.to + last.length == to {
-                last.length += 1;
-                continue;
-            }
-        }
-        runs.push(Run { from, to, length: 1, reversed });
-    }
-    runs
-}
-
 /// Plan of the exchange of nodal values: which patch copies which nodes from which patch.
 #[derive(Clone, Debug)]
 pub struct NodeExchange<const D: usize> {
@@ -163,11 +124,11 @@ pub struct NodeExchange<const D: usize> {
     plain: Vec<PlainRun>,
     /// All other copies between patches of this rank, or within one.
     local: Vec<Copy<D>>,
-    /// Copies sent to each rank of `send_ranks`.
-    sends: Vec<Vec<Copy<D>>>,
+    /// Nodes sent to each rank of `send_ranks`.
+    sends: Vec<Vec<SharedNodes<D>>>,
     send_ranks: Vec<usize>,
-    /// Copies received from each rank of `receive_ranks`.
-    receives: Vec<Vec<Copy<D>>>,
+    /// Nodes received from each rank of `receive_ranks`.
+    receives: Vec<Vec<SharedNodes<D>>>,
     receive_ranks: Vec<usize>,
     /// For each patch of this rank, whether it receives nothing from other ranks.
     inner: Vec<bool>,
@@ -216,9 +177,10 @@ impl<const D: usize> NodeExchange<D> {
         // the same order on both ranks
         pairs.sort_unstable();
         pairs.dedup();
+        let [mut given, mut taken]: [BTreeMap<usize, Draft<D>>; 2] = Default::default();
         for (to, from) in pairs {
             let (taker, giver) = (layout.rank_of(to), layout.rank_of(from));
-            for image in &images {
+            for (number, image) in images.iter().enumerate() {
                 if from == to && *image == Image::IDENTITY {
                     continue;
                 }
@@ -229,6 +191,18 @@ impl<const D: usize> NodeExchange<D> {
                     continue;
                 }
                 let (giving, taking) = (arrays_of(from), arrays_of(to));
+                if taker != giver {
+                    let party = |patch: usize, arrays| Party { patch: place[patch], arrays };
+                    let (draft, here, there) = match giver == rank {
+                        true => (given.entry(taker), Some(party(from, giving)), None),
+                        false => (taken.entry(giver), None, Some(party(to, taking))),
+                    };
+                    if there.is_some() {
+                        plan.inner[place[to]] = false;
+                    }
+                    draft.or_default().add((from, number), *image, nodes, here, there);
+                    continue;
+                }
                 let nodes = (0..layers).flat_map(|layer| {
                     let (from, to) = (layer * giving.count(), layer * taking.count());
                     let place = move |n| {
@@ -243,21 +217,21 @@ impl<const D: usize> NodeExchange<D> {
                     flip: image.flip,
                     runs: runs(nodes, image.flip[0]),
                 };
-                if taker == giver && from != to && !image.flip.contains(&true) {
+                if from != to && !image.flip.contains(&true) {
                     let (from, to) = (place[from] as u32, place[to] as u32);
                     plan.plain.extend(copy.runs.iter().map(|&run| PlainRun { from, to, run }));
-                } else if taker == giver {
-                    plan.local.push(copy);
-                } else if giver == rank {
-                    add(&mut plan.send_ranks, &mut plan.sends, taker, copy);
                 } else {
-                    plan.inner[place[to]] = false;
-                    add(&mut plan.receive_ranks, &mut plan.receives, giver, copy);
+                    plan.local.push(copy);
                 }
             }
         }
         // any order is valid within a rank; equal lengths in a row are faster
         plan.plain.sort_by_key(|p| p.run.length);
+        let finished = |drafts: BTreeMap<usize, Draft<D>>| {
+            drafts.into_iter().map(|(rank, draft)| (rank, draft.finish(layers))).unzip()
+        };
+        (plan.send_ranks, plan.sends) = finished(given);
+        (plan.receive_ranks, plan.receives) = finished(taken);
         plan.messages = vec![Vec::new(); plan.sends.len()];
         plan.received = vec![Vec::new(); plan.receives.len()];
         plan
@@ -290,13 +264,14 @@ impl<const D: usize> NodeExchange<D> {
                 }
             }
         }
-        for (copies, message) in self.sends.iter().zip(&mut self.messages) {
+        for (shared, message) in self.sends.iter().zip(&mut self.messages) {
             message.clear();
-            for copy in copies {
-                let arrays = patches[copy.from].as_mut();
+            for SharedNodes { flip, given, .. } in shared {
+                let Some((from, runs)) = given else { continue };
+                let arrays = patches[*from].as_mut();
                 for &(field, parity) in fields {
-                    let (values, sign) = (&arrays.fields[field], sign(parity, &copy.flip));
-                    let sources = copy.runs.iter().flat_map(|r| r.sources());
+                    let (values, sign) = (&arrays.fields[field], sign(parity, flip));
+                    let sources = runs.iter().flat_map(|r| r.sources());
                     message.extend(sources.map(|n| (sign * values[n]).to_bits()));
                 }
             }
@@ -316,15 +291,19 @@ impl<const D: usize> NodeExchange<D> {
                 comm.exchange(sends, &self.receive_ranks, &mut self.received, &mut on_this_rank)
             });
         }
-        for (copies, message) in self.receives.iter().zip(&self.received) {
-            let mut words = message.iter();
-            for copy in copies {
-                let arrays = patches[copy.to].as_mut();
+        for (shared, message) in self.receives.iter().zip(&self.received) {
+            let mut words = &message[..];
+            for SharedNodes { count, taken, .. } in shared {
                 for &(field, _) in fields {
-                    let values = &mut arrays.fields[field];
-                    for run in &copy.runs {
-                        for (value, word) in values[run.targets()].iter_mut().zip(&mut words) {
-                            *value = f64::from_bits(*word);
+                    let (these, rest) = words.split_at(*count);
+                    words = rest;
+                    for (to, runs) in taken {
+                        let values = &mut patches[*to].as_mut().fields[field];
+                        for run in runs {
+                            let words = &these[run.from as usize..][..run.length as usize];
+                            for (value, word) in values[run.targets()].iter_mut().zip(words) {
+                                *value = f64::from_bits(*word);
+                            }
                         }
                     }
                 }
@@ -404,20 +383,6 @@ fn copy_fields<const D: usize>(
             to[run.targets()].iter_mut().zip(run.sources()).for_each(|(t, f)| *t = sign * from[f]);
         }
     }
-}
-
-fn add<const D: usize>(
-    ranks: &mut Vec<usize>,
-    lists: &mut Vec<Vec<Copy<D>>>,
-    rank: usize,
-    copy: Copy<D>,
-) {
-    let at = ranks.partition_point(|&r| r < rank);
-    if ranks.get(at) != Some(&rank) {
-        ranks.insert(at, rank);
-        lists.insert(at, Vec::new());
-    }
-    lists[at].push(copy);
 }
 
 /// Factor of a field with this parity in an image. The product is exact; like a negation, it turns

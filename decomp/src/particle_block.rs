@@ -117,6 +117,13 @@ impl<const D: usize> Block<D> {
             .map(|c| c.as_mut_slice())
     }
 
+    /// Makes room for exactly `particles` more own particles.
+    pub fn reserve(&mut self, particles: usize) {
+        self.ids.reserve_exact(particles);
+        self.cells.reserve_exact(particles);
+        self.columns.iter_mut().for_each(|column| column.reserve_exact(particles));
+    }
+
     /// Adds an own particle; `values` holds its columns in order, in their units. Sort afterwards.
     pub fn push(&mut self, id: u64, cell: [i32; D], values: &[f64]) {
         debug_assert_eq!(self.particles(), self.own, "own particles go before ghosts");

@@ -5,7 +5,7 @@ use flyer_mpm::input;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
-    // bodies of a plane are cut into particles one by one as they are read
+    // the particles at the borders of bodies are made as they are read
     if input::check_size(bytes, "scene.json", &[], Some(64 << 20)).is_err() {
         return;
     }

@@ -6,12 +6,14 @@ use std::path::Path;
 use decomp::Serial;
 use flyer_mpm::accuracy::reference;
 use flyer_mpm::driver::figures::{self, WaveRow, plate_name};
+use flyer_mpm::driver::memory::needed_memory;
 use flyer_mpm::driver::output::SUMMARY_FILE;
 use flyer_mpm::driver::output::folder::OutputFolder;
 use flyer_mpm::driver::output::lock::Lock;
 use flyer_mpm::driver::output::origin::Maker;
-use flyer_mpm::effects::{ledger, ledger_lines, ledger_rest};
+use flyer_mpm::effects::{self, ledger, ledger_lines, ledger_rest};
 use flyer_mpm::exact::{Accuracy, Chain, Impact, Plate, Release, Solution, WaveKind};
+use flyer_mpm::input;
 use flyer_mpm::scene::{Body, CheckedScene, Reference};
 use flyer_mpm::simulation::{Compiled, RunError, Simulation};
 use flyer_mpm::solver::Stepper;
@@ -35,8 +37,8 @@ fn check_in<const D: usize>(scene: &CheckedScene) -> Result<String, RunError>
 where
     Stepper<D>: Compiled<D>,
 {
-    let simulation = Simulation::<D>::new(scene, &Serial, 1)?;
-    let dt = simulation.time_step().min(scene.scene.time.end);
+    let stepper = effects::stepper::<D>(scene);
+    let dt = first_step(scene, &stepper)?.min(scene.scene.time.end);
     let mut text = String::new();
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "{name:<20} {value}");
@@ -48,10 +50,10 @@ where
         line("particles per cell", format!("{counts:?} (default): {names}"));
     }
     line("cells", scene.cell_count().to_string());
-    line("memory", format!("{:.1} MB", scene.memory() as f64 / 1e6));
+    line("memory", memory(scene, input::available_memory()));
     line("first time step", format!("{dt:.4e} s"));
     line("steps", format!("about {:.0}", (scene.scene.time.end / dt).ceil()));
-    let columns = simulation.columns();
+    let columns = &stepper.columns;
     let names: Vec<&str> = columns.specs.iter().map(|s| s.name).collect();
     line("columns a particle", format!("{} ({})", names.len(), names.join(", ")));
     line("held by the monitor", format!("{} bytes a particle", columns.state_bytes(D)));
@@ -77,6 +79,38 @@ where
     }
     let _ = writeln!(text, "  {}", ledger_rest(&all));
     Ok(text)
+}
+
+/// Memory of a run on one rank, and how much of it `available` bytes lack.
+fn memory(scene: &CheckedScene, available: Option<u64>) -> String {
+    let megabytes = |bytes: u64| bytes as f64 / 1e6;
+    let needed = needed_memory(scene, 0, 1, scene.scene.decomposition.threads);
+    let text = format!("{:.1} MB", megabytes(needed));
+    match available {
+        Some(available) if available < needed => {
+            format!(
+                "{text}, more than the {:.1} MB that this machine has left",
+                megabytes(available)
+            )
+        }
+        _ => text,
+    }
+}
+
+/// Memory of a run up to which its particles are made to find the first step [bytes].
+const BUILT: u64 = 256 << 20;
+
+/// First time step [s]; of a large scene an estimate from sound speeds and velocities.
+fn first_step<const D: usize>(scene: &CheckedScene, stepper: &Stepper<D>) -> Result<f64, RunError>
+where
+    Stepper<D>: Compiled<D>,
+{
+    if scene.memory() <= BUILT {
+        return Ok(Simulation::<D>::new(scene, &Serial, 1)?.time_step());
+    }
+    let grid = scene.frame::<D>().velocity(0.0);
+    let steps = (0..scene.bodies.len()).map(|body| stepper.starting_step(scene, body, grid));
+    Ok(scene.scene.time.courant * steps.fold(f64::INFINITY, f64::min))
 }
 
 /// Names of the bodies whose number of particles per cell is the default; `None`: there are none.

@@ -9,6 +9,7 @@ mod failure;
 pub mod fields;
 pub mod figures;
 mod measured;
+pub mod memory;
 mod options;
 pub mod output;
 pub mod probes;

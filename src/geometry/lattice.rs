@@ -4,8 +4,22 @@ use super::Point;
 use super::moments::Moments;
 use super::piece::Trapezium;
 
+/// The part of a shape that one particle represents.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tile {
+    /// Centroid [m].
+    pub centre: [f64; 2],
+    /// Area [m2]; on a line the length [m].
+    pub area: f64,
+    /// Edges of the box with the same area that represents the tile [m].
+    pub size: [f64; 2],
+}
+
+/// A box of the grid's cells: the first cell, and the first beyond it, in each direction.
+pub type CellBox = [[i64; 2]; 2];
+
 /// A lattice of tiles.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Lattice {
     /// A corner of the lattice [m].
     pub lower: Point,
@@ -28,6 +42,39 @@ impl Lattice {
     /// Edges of a tile [m].
     pub fn size(&self) -> [f64; 2] {
         [0, 1].map(|d| self.cell[d] / self.per_cell[d] as f64)
+    }
+
+    /// Area of a tile [m2].
+    pub fn area(&self) -> f64 {
+        let [x, y] = self.size();
+        x * y
+    }
+
+    /// Cell of the grid that contains `x` [m].
+    pub fn cell_of(&self, x: Point) -> [i64; 2] {
+        [0, 1].map(|d| ((x[d] - self.lower[d]) * (1.0 / self.cell[d])).floor() as i64)
+    }
+
+    /// Index of the tile that contains the coordinate `x` [m] in direction `d`.
+    pub fn index(&self, d: usize, x: f64) -> i64 {
+        ((x - self.lower[d]) / self.size()[d]).floor() as i64
+    }
+
+    /// Rows and columns of the tiles in a box of cells: the first one, and the first one beyond.
+    pub fn tiles_of(&self, [lower, upper]: CellBox) -> [[i64; 2]; 2] {
+        [1, 0].map(|d| [lower[d], upper[d]].map(|cell| cell * self.per_cell[d] as i64))
+    }
+
+    /// The tile that stands for a cut. Its centre is the centroid of the cut, its edges have the
+    /// proportions of the lattice.
+    pub fn tile(&self, cut: &Cut) -> Tile {
+        let (centre, from) = (self.centre(cut.index), cut.moments.centroid());
+        let scale = (cut.moments.area / self.area()).sqrt();
+        Tile {
+            centre: [0, 1].map(|d| centre[d] + from[d]),
+            area: cut.moments.area,
+            size: self.size().map(|s| s * scale),
+        }
     }
 
     /// Position of the lower side of tile `i` in direction `d` [m].

@@ -9,7 +9,12 @@ use super::piece::Trapezium;
 use super::shape::BoundedRegion;
 
 /// Fraction of a whole tile below which a cut tile is a sliver.
-pub(super) const SLIVER: f64 = 0.02;
+const SLIVER: f64 = 0.02;
+
+/// Area below which a cut tile is a sliver [m2].
+pub(super) fn sliver_area(lattice: &Lattice) -> f64 {
+    SLIVER * lattice.area()
+}
 
 /// Thickness, over a tile's edge, of the boxes that measure the shared part of an edge.
 const THICKNESS: f64 = 1e-6;
@@ -33,8 +38,7 @@ struct Merger<'a> {
 /// of several, into the nearest. If there is none, it is merged across a gap or a corner. A sliver
 /// without neighbours stays. `cuts` are sorted by their index; areas and moments are added exactly.
 pub(super) fn merge(shape: &BoundedRegion, lattice: &Lattice, cuts: &mut Vec<Cut>) {
-    let size = lattice.size();
-    let least = SLIVER * size[0] * size[1];
+    let least = sliver_area(lattice);
     let mut slivers: Vec<usize> =
         (0..cuts.len()).filter(|&i| cuts[i].moments.area < least).collect();
     slivers.sort_by(|&a, &b| cuts[a].moments.area.total_cmp(&cuts[b].moments.area).then(a.cmp(&b)));

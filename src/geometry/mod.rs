@@ -11,9 +11,11 @@
 
 mod boundary;
 mod build;
+mod column;
 mod curve;
 mod ellipse;
 mod fill;
+mod intervals;
 mod lattice;
 mod line;
 mod merge;
@@ -26,14 +28,17 @@ mod shape;
 mod solid;
 #[cfg(test)]
 mod tests;
+mod tiling;
 mod voronoi;
 
 pub use boundary::{BodyBoundary, BoundaryFace};
 pub use build::RegionFault;
-pub use fill::{Tile, fill};
+pub use fill::{TooManyTiles, fill};
+pub use lattice::{CellBox, Tile};
 pub use moments::Moments;
 pub use points::{PointsFault, read_points};
 pub use shape::BoundedRegion;
+pub use tiling::Tiling;
 pub use voronoi::{PointFault, voronoi, voronoi_line};
 
 /// A point or a vector in the plane [m].

@@ -9,7 +9,7 @@ use super::moments::Moments;
 
 /// The area between two curves over an interval of x. The curves do not cross within the interval,
 /// and each is monotonic.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Piece {
     /// Interval of x [m].
     pub x: [f64; 2],
@@ -40,6 +40,14 @@ impl Piece {
         let lower = ordered(x.map(|x| self.lower.y(x)));
         let upper = ordered(x.map(|x| self.upper.y(x)));
         [lower[0], upper[1]]
+    }
+
+    /// Greatest y of the lower curve and least y of the upper one over the interval `x` [m]; the
+    /// first is above the second if no level lies between the curves.
+    pub fn inner_range_y(&self, x: [f64; 2]) -> [f64; 2] {
+        let lower = ordered(x.map(|x| self.lower.y(x)));
+        let upper = ordered(x.map(|x| self.upper.y(x)));
+        [lower[1], upper[0]]
     }
 
     /// Area and moments about `origin`.

@@ -8,11 +8,10 @@ use super::pieces::{NoPieces, pieces};
 use super::region::Region;
 
 /// A region that is bounded and has an area.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct BoundedRegion {
     pieces: Vec<Piece>,
     bounds: [Point; 2],
-    own_box: Option<[Point; 2]>,
 }
 
 impl BoundedRegion {
@@ -34,12 +33,11 @@ impl BoundedRegion {
             let value = serde_json::to_value(region).unwrap_or_default();
             RegionFault::new(key, &value[key], reason)
         })?;
-        let own_box = match region {
-            Region::Box(extent) => Some(build::corners(extent, "box")?),
-            _ => None,
+        let bounds = match region {
+            Region::Box(extent) => build::corners(extent, "box")?,
+            _ => bounds(&pieces),
         };
-        let bounds = own_box.unwrap_or_else(|| bounds(&pieces));
-        Ok(BoundedRegion { pieces, bounds, own_box })
+        Ok(BoundedRegion { pieces, bounds })
     }
 
     /// Whether a point [m] is in the region or, to rounding, on its border.
@@ -52,11 +50,6 @@ impl BoundedRegion {
     /// Lower and upper corner [m] of the smallest box around the region.
     pub fn bounds(&self) -> [[f64; 2]; 2] {
         self.bounds
-    }
-
-    /// Corners [m] of the region if it is given as a box.
-    pub fn own_box(&self) -> Option<[[f64; 2]; 2]> {
-        self.own_box
     }
 
     /// Area [m2].

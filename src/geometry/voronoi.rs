@@ -7,7 +7,7 @@
 use delaunator::{EMPTY, next_halfedge, triangulate};
 
 use super::Point;
-use super::fill::Tile;
+use super::lattice::Tile;
 use super::moments::Moments;
 use super::piece::Trapezium;
 use super::shape::BoundedRegion;

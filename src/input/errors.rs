@@ -79,9 +79,9 @@ pub enum SceneError {
     Memory {
         /// Path of the scene.
         file: String,
-        /// Number of particles of all bodies.
+        /// Number of particles of all bodies, or of those that the check of the scene makes.
         particles: u64,
-        /// Number of cells of the domain; 0: not counted yet.
+        /// Number of cells of the domain; 0: particles are those at the borders of bodies alone.
         cells: u64,
         /// Estimated memory of the run [bytes].
         needed: u64,

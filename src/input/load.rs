@@ -9,8 +9,7 @@ use std::path::Path;
 use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 
-use super::check::BYTES_PER_PARTICLE;
-use super::check::{check as check_relations, tiles};
+use super::check::{BYTES_PER_BORDER_TILE, border_tiles, check as check_relations};
 use super::comments::without_comments;
 use super::errors::{LONGEST_VALUE, SceneError, SceneFault, one_line, shorten};
 use super::faults::Faults;
@@ -110,12 +109,12 @@ pub fn parse(bytes: &[u8], file: &str, sets: &[String]) -> Result<CheckedScene, 
     })
 }
 
-/// Rejects a scene whose individually generated particles, which the check of the scene creates,
-/// need more than `available` bytes. Other faults are left to [`parse`].
+/// Rejects a scene whose particles at the borders of bodies, which the check of the scene makes, need
+/// more than `available` bytes. Other faults are left to [`parse`].
 ///
 /// # Errors
 ///
-/// If the particles need more than `available` bytes.
+/// If these particles need more than `available` bytes.
 pub fn check_size(
     bytes: &[u8],
     file: &str,
@@ -130,8 +129,8 @@ pub fn check_size(
         faults.is_empty().then_some(())?;
         serde_json::from_value(value).ok()
     };
-    let particles = read().map_or(0, |scene| tiles(&scene));
-    let needed = particles.saturating_mul(BYTES_PER_PARTICLE);
+    let particles = read().map_or(0, |scene| border_tiles(&scene));
+    let needed = particles.saturating_mul(BYTES_PER_BORDER_TILE);
     match available {
         Some(available) if needed > available => {
             Err(SceneError::Memory { file: one_line(file), particles, cells: 0, needed, available })

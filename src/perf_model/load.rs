@@ -226,14 +226,15 @@ impl Work {
             exchanges,
             1.0,
         ];
-        let foreign_rows: f64 = mine
-            .iter()
-            .map(|p| {
-                let [below, above] = foreign(p, depth);
-                self.terrain.particles_in(first - below, first)
-                    + self.terrain.particles_in(last, last + above)
-            })
-            .sum();
+        // a particle travels once, however many patches of the rank see it
+        let [below, above] = mine.iter().map(|p| foreign(p, depth)).fold(
+            [0.0f64; 2],
+            |[below, above], [other_below, other_above]| {
+                [below.max(other_below), above.max(other_above)]
+            },
+        );
+        let foreign_rows = self.terrain.particles_in(first - below, first)
+            + self.terrain.particles_in(last, last + above);
         let reach = self.reach.halo() as f64;
         let foreign_nodes: f64 = mine.iter().map(|p| foreign(p, reach).iter().sum::<f64>()).sum();
         let node_bytes = match share.halo {

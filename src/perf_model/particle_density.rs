@@ -37,10 +37,11 @@ impl Terrain {
                 Span { lower, upper, particles_per_cell }
             })
             .collect();
-        let longest = scene.bodies.iter().zip(&spans).map(|(checked, span)| match &checked.tiles {
-            Some(tiles) => tiles.iter().map(|t| t.size[0] / size).fold(0.0, f64::max),
-            None => 1.0 / span.particles_per_cell,
-        });
+        let longest =
+            scene.bodies.iter().zip(&spans).map(|(checked, span)| match &checked.tiling {
+                Some(tiling) => tiling.samples().map(|(_, t)| t.size[0] / size).fold(0.0, f64::max),
+                None => 1.0 / span.particles_per_cell,
+            });
         Terrain {
             cells: scene.cells[0],
             particles: scene.particles as f64,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::motion::Motion;
-use crate::geometry::Tile;
+use crate::geometry::Tiling;
 
 /// Properties of a body that follow from its scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub struct CheckedBody {
     /// number. 1 for other bodies.
     pub lattice: Vec<usize>,
     /// Tiles of the particles of a body that is not a box or has its own `positions`.
-    pub tiles: Option<Arc<Vec<Tile>>>,
+    pub tiling: Option<Arc<Tiling>>,
     /// Total number of particles.
     pub particles: u64,
 }
@@ -33,13 +33,8 @@ pub struct CheckedBody {
 impl CheckedBody {
     /// Number of the particle whose tile contains `at` [m], or else is nearest to it.
     pub fn nearest(&self, at: &[f64]) -> u64 {
-        if let Some(tiles) = &self.tiles {
-            let apart = |tile: &Tile| -> f64 {
-                at.iter().zip(tile.centre).map(|(x, centre)| (x - centre) * (x - centre)).sum()
-            };
-            let nearest =
-                (0..tiles.len()).min_by(|&a, &b| apart(&tiles[a]).total_cmp(&apart(&tiles[b])));
-            return nearest.unwrap_or(0) as u64;
+        if let Some(tiling) = &self.tiling {
+            return tiling.nearest(at);
         }
         let along = |a: usize| {
             let share = (at[a] - self.lower[a]) / (self.upper[a] - self.lower[a]);

@@ -18,6 +18,33 @@ pub(super) struct ExchangePlan<const D: usize> {
     pub(super) deeper: i64,
 }
 
+/// How filters obtain values beyond a patch, and the depths that follow.
+pub(super) struct HaloDepths {
+    pub(super) filter: FilterHalo,
+    /// Depth of the ghost layer around a patch [cells].
+    pub(super) ghosts: i64,
+    /// Layers that a patch computes beyond its own nodes.
+    pub(super) deeper: i64,
+}
+
+/// Depths for a stencil radius on `workers` ranks times threads.
+pub(super) fn halo_depths<const D: usize>(
+    scene: &CheckedScene,
+    layout: &Layout<D>,
+    reach: StencilRadius,
+    workers: usize,
+) -> HaloDepths {
+    let extents = layout.patches().iter().flat_map(|p| (0..D).map(|a| p.extent(a)));
+    let narrowest = extents.min().unwrap_or(0);
+    let choose = || FilterHalo::choose(reach, narrowest, workers);
+    let filter = scene.scene.decomposition.filter_halo.unwrap_or_else(choose);
+    let deeper = match filter {
+        FilterHalo::Exchange => 0,
+        FilterHalo::Redundant => reach.deeper(),
+    };
+    HaloDepths { filter, ghosts: reach.cells() + deeper, deeper }
+}
+
 impl<const D: usize> ExchangePlan<D> {
     pub(super) fn new(
         scene: &CheckedScene,
@@ -27,16 +54,7 @@ impl<const D: usize> ExchangePlan<D> {
         rank: usize,
         workers: usize,
     ) -> Self {
-        let options = &scene.scene.decomposition;
-        let extents = layout.patches().iter().flat_map(|p| (0..D).map(|a| p.extent(a)));
-        let narrowest = extents.min().unwrap_or(0);
-        let choose = || FilterHalo::choose(reach, narrowest, workers);
-        let filter = options.filter_halo.unwrap_or_else(choose);
-        let deeper = match filter {
-            FilterHalo::Exchange => 0,
-            FilterHalo::Redundant => reach.deeper(),
-        };
-        let ghosts = reach.cells() + deeper;
+        let HaloDepths { filter, ghosts, deeper } = halo_depths(scene, layout, reach, workers);
         let notice = scene.skips_quiet().then(|| stepper.influence_radius(reach));
         let particles =
             GhostExchange::new(layout, rank, GhostReach { depth: ghosts, travel: 1, notice });

@@ -1,10 +1,9 @@
 //! Choice of the patches: how many in each direction, and where the domain is cut.
 
-use decomp::{IndexBox, Layout, choose_cuts, even_cuts};
+use decomp::{Block, IndexBox, Layout, choose_cuts, even_cuts, short_border_order};
 
-use crate::geometry::Tile;
 use crate::scene::{CheckedBody, CheckedScene};
-use crate::solver::particles;
+use crate::solver::{Stepper, particles};
 
 /// Narrowest useful patch [cells].
 pub(crate) const LEAST_CELLS: usize = 16;
@@ -18,6 +17,10 @@ const PATCHES_A_WORKER: usize = 8;
 
 /// ... as long as patches are at least this wide [cells]: narrower ones cost more at their edges.
 const SHARED_CELLS: [usize; 2] = [256, 64];
+
+/// Patches per worker below which patches of a plane are cut down to [`SLEEPING_CELLS`]: with fewer a
+/// worker may hold much more than the mean.
+const LEAST_PATCHES_A_WORKER: usize = 4;
 
 /// Number of patches for a scene on the given ranks and threads: as given in the scene; otherwise
 /// at least one for each thread of each rank unless they would be too narrow, and several per
@@ -45,7 +48,9 @@ pub(super) fn patch_parts<const D: usize>(
         1 if may_sleep::<D>(scene) => parts(of_edge(SLEEPING_CELLS)),
         _ if may_sleep::<D>(scene) => {
             let several: usize = of_edge(SHARED_CELLS);
-            parts(several.clamp(workers, PATCHES_A_WORKER * workers))
+            let fine: usize = of_edge(SLEEPING_CELLS);
+            let least = if D > 1 { fine.min(LEAST_PATCHES_A_WORKER * workers) } else { 0 };
+            parts(several.max(least).clamp(workers, PATCHES_A_WORKER * workers))
         }
         1 => [1; D],
         _ => {
@@ -67,15 +72,36 @@ pub(super) fn may_sleep<const D: usize>(scene: &CheckedScene) -> bool {
         && bodies.any(|(b, c)| c.motion.is_none() && c.velocity == velocity && b.pressure == 0.0)
 }
 
+/// The patches of a run on `ranks` ranks with `threads` threads each, dealt to ranks by their
+/// particles, and the order in which they are dealt.
+pub(super) fn deal_patches<const D: usize>(
+    scene: &CheckedScene,
+    ranks: usize,
+    threads: usize,
+) -> (Layout<D>, Vec<usize>) {
+    let layout = cut_domain(scene, ranks, threads);
+    let weights: Vec<u64> = layout.patches().iter().map(|p| count_particles(scene, p)).collect();
+    let (order, of) = short_border_order(&layout, &weights, ranks);
+    (layout.with_ranks(of), order)
+}
+
+/// Particles with which `rank` of `ranks` begins a run, one block per patch of the rank. It needs no
+/// other rank.
+pub fn initial_particles<const D: usize>(
+    scene: &CheckedScene,
+    stepper: &Stepper<D>,
+    rank: usize,
+    ranks: usize,
+) -> Vec<Block<D>> {
+    let (layout, _) = deal_patches(scene, ranks, 1);
+    particles::fill(scene, stepper, &layout, rank, scene.frame().velocity(0.0))
+}
+
 /// Number of particles in the cells of `cells`, counted without creating them.
 pub(super) fn count_particles<const D: usize>(scene: &CheckedScene, cells: &IndexBox<D>) -> u64 {
     let x = |a: usize, cell: i64| scene.scene.domain.lower[a] + cell as f64 * scene.cell_size[a];
-    let inside = |tile: &Tile| {
-        let at = (0..D).map(|a| (x(a, cells.lower[a]), tile.centre[a], x(a, cells.upper[a])));
-        at.into_iter().all(|(lower, at, upper)| lower <= at && at < upper)
-    };
-    let count = |body: &CheckedBody| match &body.tiles {
-        Some(tiles) => tiles.iter().filter(|tile| inside(tile)).count() as f64,
+    let count = |body: &CheckedBody| match &body.tiling {
+        Some(tiling) => tiling.count_in(particles::cell_box(cells)) as f64,
         None => (0..D)
             .map(|a| {
                 let (lower, upper) = (body.lower[a], body.upper[a]);

@@ -3,14 +3,14 @@
 use std::ops::Range;
 use std::time::Instant;
 
-use decomp::{Census, Comm, Layout, assign_patches, curve_order};
+use decomp::{Census, Comm, Layout};
 
 use super::accounts::{CENSUS_EVERY, Counters, RemovedSums, SideBooks};
 use super::error::RunError;
 use super::exchange_plan::ExchangePlan;
 use super::expected_peaks::ExpectedPeaks;
 use super::good_state::{LastGoodState, Start};
-use super::patches::{count_particles, cut_domain};
+use super::patches::deal_patches;
 use crate::effects::EffectRegistry;
 use crate::material::constitutive::CustomModel;
 use crate::scene::moving_frame::Frame;
@@ -148,11 +148,7 @@ impl<'a, const D: usize> Simulation<'a, D> {
     ) -> Result<Self, RunError> {
         let stepper = Stepper::with_models::<EffectRegistry>(scene, outside)
             .map_err(|(material, reason)| RunError::Model { material, reason })?;
-        let layout = cut_domain(scene, comm.size(), threads);
-        let order = curve_order(layout.parts());
-        let weights: Vec<u64> =
-            layout.patches().iter().map(|p| count_particles(scene, p)).collect();
-        let layout = layout.with_ranks(assign_patches(&weights, &order, comm.size()));
+        let (layout, order) = deal_patches(scene, comm.size(), threads);
         let frame = scene.frame();
         let blocks = particles::fill(scene, &stepper, &layout, comm.rank(), frame.velocity(0.0));
         let longest = stepper.longest_at_start(scene);
@@ -198,6 +194,7 @@ impl<'a, const D: usize> Simulation<'a, D> {
             stop_request: 0,
             asked: 0,
         };
+        simulation.set_arrays(reach);
         simulation.follow_reach(longest);
         simulation.census = simulation.count();
         simulation.with_world(|stepper, world| stepper.prime(world))?;
@@ -405,17 +402,22 @@ impl<const D: usize> Simulation<'_, D> {
     pub(super) fn follow_reach(&mut self, longest: f64) {
         let reach = self.stepper.reach(longest).expect("a longer particle is a fault");
         if self.reach != Some(reach) {
-            self.reach = Some(reach);
             self.make_plan(reach);
-            let (fields, layers) = (self.stepper.fields.count, self.stepper.layers);
-            let mine = self.layout.patches_of(self.comm.rank());
-            let (depth, deeper) = (reach.depth(self.plan.ghosts), self.plan.deeper);
-            for (patch, index) in self.patches.iter_mut().zip(mine) {
-                patch.set_arrays(&self.layout, index, depth, deeper, fields, layers);
-            }
+            self.set_arrays(reach);
         }
         let limit = self.stepper.longest_within(reach);
         self.patches.iter_mut().for_each(|p| p.reach_length = limit);
+    }
+
+    /// Allocates the nodal arrays of all patches for the stencil radius of the plan.
+    fn set_arrays(&mut self, reach: StencilRadius) {
+        self.reach = Some(reach);
+        let (fields, layers) = (self.stepper.fields.count, self.stepper.layers);
+        let mine = self.layout.patches_of(self.comm.rank());
+        let (depth, deeper) = (reach.depth(self.plan.ghosts), self.plan.deeper);
+        for (patch, index) in self.patches.iter_mut().zip(mine) {
+            patch.set_arrays(&self.layout, index, depth, deeper, fields, layers);
+        }
     }
 
     /// Rebuilds the exchange plan.

@@ -20,6 +20,7 @@ mod gather_midpoint;
 mod initial_state;
 pub mod leapfrog;
 mod material_state;
+pub mod memory;
 pub mod midpoint;
 mod motion_columns;
 pub mod nodal_fields;

@@ -5,26 +5,69 @@ use nalgebra::SVector;
 
 use super::effect::NewParticle;
 use super::stepper::Stepper;
-use crate::geometry::BodyBoundary;
-use crate::scene::CheckedScene;
+use crate::geometry::{BodyBoundary, CellBox};
+use crate::scene::{CheckedBody, CheckedScene};
 
-/// Centres of the equal boxes that result from cutting a box into `counts` parts along each
-/// direction; the first direction varies fastest.
-fn lattice<const D: usize>(
+/// Equal boxes that result from cutting a body into `counts` parts along each direction; the first
+/// direction varies fastest.
+struct BodyLattice<const D: usize> {
     lower: SVector<f64, D>,
-    upper: SVector<f64, D>,
+    size: SVector<f64, D>,
     counts: [usize; D],
-) -> impl Iterator<Item = SVector<f64, D>> {
-    let size = upper - lower;
-    IndexBox::new([0; D], counts.map(|n| n as i64)).iter().map(move |k| {
-        let share = |a: usize| (2 * k[a] + 1) as f64 / (2 * counts[a]) as f64;
-        lower + size.component_mul(&SVector::from_fn(|a, _| share(a)))
-    })
 }
 
-/// Fills the bodies with particles and keeps those whose patch is on `rank`: one block per patch of
-/// the rank. Ids number the particles of all bodies in order, for any layout. Velocities are
-/// relative to a grid that moves at `grid_velocity` [m/s].
+impl<const D: usize> BodyLattice<D> {
+    fn of(body: &CheckedBody) -> Self {
+        let lower = SVector::from_fn(|a, _| body.lower[a]);
+        let upper = SVector::from_fn(|a, _| body.upper[a]);
+        BodyLattice { lower, size: upper - lower, counts: std::array::from_fn(|a| body.lattice[a]) }
+    }
+
+    /// Centre of the box `k` [m].
+    fn centre(&self, k: [i64; D]) -> [f64; D] {
+        let share = |a: usize| (2 * k[a] + 1) as f64 / (2 * self.counts[a]) as f64;
+        (self.lower + self.size.component_mul(&SVector::from_fn(|a, _| share(a)))).into()
+    }
+
+    /// Edges of a box [m].
+    fn edges(&self) -> [f64; D] {
+        std::array::from_fn(|a| self.size[a] / self.counts[a] as f64)
+    }
+
+    /// Number of the box `k`.
+    fn number(&self, k: [i64; D]) -> u64 {
+        (0..D).rev().fold(0, |number, a| number * self.counts[a] as u64 + k[a] as u64)
+    }
+
+    /// The boxes whose centres lie in `cells`: along a direction, cells ascend with boxes.
+    fn boxes_in(&self, scene: &CheckedScene, cells: &IndexBox<D>) -> IndexBox<D> {
+        let first_from = |a: usize, cell: i64| {
+            let (mut from, mut to) = (0, self.counts[a] as i64);
+            while from < to {
+                let middle = from + (to - from) / 2;
+                let mut k = [0; D];
+                k[a] = middle;
+                let is_below = cell_of(scene, self.centre(k))[a] < cell;
+                if is_below { from = middle + 1 } else { to = middle }
+            }
+            from
+        };
+        let corner = |corner: &[i64; D]| std::array::from_fn(|a| first_from(a, corner[a]));
+        IndexBox::new(corner(&cells.lower), corner(&cells.upper))
+    }
+}
+
+/// A box of cells with two directions, for any dimension.
+pub fn cell_box<const D: usize>(cells: &IndexBox<D>) -> CellBox {
+    let corner =
+        |corner: &[i64; D], other: i64| [corner[0], if D > 1 { corner[D - 1] } else { other }];
+    [corner(&cells.lower, 0), corner(&cells.upper, 1)]
+}
+
+/// Fills the patches of `rank` with the particles whose centres lie in their cells: one block per
+/// patch of the rank. Particles of other patches are not made. Ids number the particles of all
+/// bodies in order, for any layout. Velocities are relative to a grid that moves at `grid_velocity`
+/// [m/s].
 ///
 /// The particles of a body tile it: those of a box have equal volume and mass to rounding.
 pub fn fill<const D: usize>(
@@ -37,47 +80,59 @@ pub fn fill<const D: usize>(
     let columns = &stepper.columns;
     let mine = layout.patches_of(rank);
     let mut blocks: Vec<Block<D>> = mine.iter().map(|_| Block::new(&columns.specs)).collect();
-    let mut place = vec![None; layout.patches().len()];
-    for (k, &p) in mine.iter().enumerate() {
-        place[p] = Some(k);
-    }
     let mut values = vec![0.0; columns.specs.len()];
-    let mut id = 0u64;
+    let mut first_id = 0;
     for (number, checked) in scene.bodies.iter().enumerate() {
         let region = scene.scene.bodies[number].regions().pop().map(|(_, region)| region);
         let boundary = columns.faces.and(region).and_then(|region| BodyBoundary::new(&region));
-        let mut add = |centre: [f64; D], size: [f64; D], volume: f64| {
-            let cell = cell_of(scene, centre);
-            let patch = layout.wrap_cell(cell).map(|c| layout.patch_of(c));
-            id += 1;
-            let Some(block) = patch.and_then(|p| place[p]) else { return };
-            let particle = NewParticle { scene, body: number, centre, size };
-            set_initial_values(stepper, &particle, volume, grid_velocity, &mut values);
-            if let (Some(first), Some(boundary)) = (columns.faces, &boundary) {
-                set_faces(boundary, &particle, &mut values[first..first + 4]);
-            }
-            blocks[block].push(id - 1, cell.map(|c| c as i32), &values);
-        };
-        match &checked.tiles {
-            Some(tiles) => tiles.iter().for_each(|tile| {
-                let first = |v: [f64; 2]| std::array::from_fn(|a| v[a]);
-                add(first(tile.centre), first(tile.size), tile.area);
-            }),
-            None => {
-                let lower = SVector::from(std::array::from_fn::<f64, D, _>(|a| checked.lower[a]));
-                let upper = SVector::from(std::array::from_fn::<f64, D, _>(|a| checked.upper[a]));
-                let counts = std::array::from_fn(|a| checked.lattice[a]);
-                let size = std::array::from_fn(|a| (upper - lower)[a] / counts[a] as f64);
-                for centre in lattice(lower, upper, counts) {
-                    add(centre.into(), size, size.iter().product());
+        for (&patch, block) in mine.iter().zip(&mut blocks) {
+            let cells = &layout.patches()[patch];
+            block.reserve(count_in(scene, checked, cells) as usize);
+            each_particle(scene, checked, cells, &mut |id, centre, size, volume| {
+                let particle = NewParticle { scene, body: number, centre, size };
+                set_initial_values(stepper, &particle, volume, grid_velocity, &mut values);
+                if let (Some(first), Some(boundary)) = (columns.faces, &boundary) {
+                    set_faces(boundary, &particle, &mut values[first..first + 4]);
                 }
-            }
+                let cell = cell_of(scene, centre).map(|c| c as i32);
+                block.push(first_id + id, cell, &values);
+            });
         }
+        first_id += checked.particles;
     }
     for block in &mut blocks {
         block.sort_own();
     }
     blocks
+}
+
+/// Number of particles of `body` whose centres lie in `cells`.
+fn count_in<const D: usize>(scene: &CheckedScene, body: &CheckedBody, cells: &IndexBox<D>) -> u64 {
+    match &body.tiling {
+        Some(tiling) => tiling.count_in(cell_box(cells)),
+        None => BodyLattice::<D>::of(body).boxes_in(scene, cells).count() as u64,
+    }
+}
+
+/// Calls `take` with the number, centre [m], edges [m] and volume [m3] of each particle of `body`
+/// whose centre lies in `cells`.
+fn each_particle<const D: usize>(
+    scene: &CheckedScene,
+    body: &CheckedBody,
+    cells: &IndexBox<D>,
+    take: &mut dyn FnMut(u64, [f64; D], [f64; D], f64),
+) {
+    if let Some(tiling) = &body.tiling {
+        let along = |v: [f64; 2]| std::array::from_fn(|a| v[a]);
+        return tiling.each_in(cell_box(cells), &mut |number, tile| {
+            take(number, along(tile.centre), along(tile.size), tile.area);
+        });
+    }
+    let lattice = BodyLattice::<D>::of(body);
+    let size = lattice.edges();
+    for k in lattice.boxes_in(scene, cells).iter() {
+        take(lattice.number(k), lattice.centre(k), size, size.iter().product());
+    }
 }
 
 /// Writes the initial values of a particle with `volume` [m3], per radian with axial symmetry over its
@@ -172,23 +227,21 @@ fn set_faces<const D: usize>(
 /// Number of particles in each slice of cells normal to `axis`, counted without creating them.
 pub fn slices(scene: &CheckedScene, axis: usize) -> Vec<u64> {
     let (lower, size) = (scene.scene.domain.lower[axis], scene.cell_size[axis]);
-    let mut counts = vec![0.0; scene.cells[axis]];
+    let mut counts = vec![0; scene.cells[axis]];
     for body in &scene.bodies {
-        if let Some(tiles) = &body.tiles {
-            for tile in tiles.iter() {
-                let cell = ((tile.centre[axis] - lower) / size) as usize;
-                counts[cell.min(scene.cells[axis] - 1)] += 1.0;
-            }
+        if let Some(tiling) = &body.tiling {
+            let slices = tiling.slices(axis, counts.len());
+            counts.iter_mut().zip(slices).for_each(|(count, more)| *count += more);
             continue;
         }
         let (from, to) = (body.lower[axis], body.upper[axis]);
         let per_length = body.particles as f64 / (to - from);
         for (cell, count) in counts.iter_mut().enumerate() {
             let x = lower + cell as f64 * size;
-            *count += ((to.min(x + size) - from.max(x)).max(0.0) * per_length).round();
+            *count += ((to.min(x + size) - from.max(x)).max(0.0) * per_length).round() as u64;
         }
     }
-    counts.into_iter().map(|count| count as u64).collect()
+    counts
 }
 
 /// Cell that contains the position `x` [m].
@@ -203,11 +256,16 @@ mod tests {
 
     #[test]
     fn a_lattice_has_the_centres_of_its_boxes() {
-        let lower = SVector::from([-1.0, 0.0]);
-        let places: Vec<_> = lattice(lower, SVector::from([1.0, 3.0]), [2, 3]).collect();
+        let (lower, size) = (SVector::from([-1.0, 0.0]), SVector::from([2.0, 3.0]));
+        let lattice = BodyLattice { lower, size, counts: [2, 3] };
+        let boxes = IndexBox::new([0, 0], [2, 3]);
+        let places: Vec<_> = boxes.iter().map(|k| lattice.centre(k)).collect();
         assert_eq!(places.len(), 6);
-        assert_eq!(places[0], SVector::from([-0.5, 0.5]));
-        assert_eq!(places[1], SVector::from([0.5, 0.5]));
-        assert_eq!(places[5], SVector::from([0.5, 2.5]));
+        assert_eq!(places[0], [-0.5, 0.5]);
+        assert_eq!(places[1], [0.5, 0.5]);
+        assert_eq!(places[5], [0.5, 2.5]);
+        let numbers: Vec<_> = boxes.iter().map(|k| lattice.number(k)).collect();
+        assert_eq!(numbers, [0, 1, 2, 3, 4, 5]);
+        assert_eq!(lattice.edges(), [1.0, 1.0]);
     }
 }

@@ -71,10 +71,12 @@ impl<const D: usize> Scheme<D> {
         bodies
             .map(|c| {
                 let in_cells = |a: usize, length: f64| length / scene.cell_size[a];
-                match &c.tiles {
-                    Some(tiles) => tiles
-                        .iter()
-                        .flat_map(|t| (0..D).map(|a| in_cells(a, t.size[a])))
+                match &c.tiling {
+                    Some(tiling) => tiling
+                        .samples()
+                        .flat_map(|(_, t)| {
+                            std::array::from_fn::<f64, D, _>(|a| in_cells(a, t.size[a]))
+                        })
                         .fold(0.0, f64::max),
                     None => (0..D)
                         .map(|a| in_cells(a, (c.upper[a] - c.lower[a]) / c.lattice[a] as f64))

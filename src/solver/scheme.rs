@@ -103,6 +103,8 @@ pub(super) struct EffectLimits {
     pub diffusion_step: f64,
     /// Greatest number of products with a nodal matrix of an effect.
     pub products: u32,
+    /// Number of nodal matrices of the effects.
+    pub matrices: usize,
 }
 
 /// Fraction of the fastest speed of a scene below which nodal velocities count as zero; the limits

@@ -58,12 +58,14 @@ impl<const D: usize> Stepper<D> {
         let mut fields = Fields::new(D, wanted);
         let mut setup = Setup { scene, columns: &columns, fields: &mut fields, matrices: 0 };
         let effects = Effects::new(R::build(&mut setup));
+        let matrices = setup.matrices;
         let limits = EffectLimits {
             diffusion_step: effects
                 .iter()
                 .map(|e| e.diffusion_step())
                 .fold(f64::INFINITY, f64::min),
             products: effects.iter().map(|e| e.products()).max().unwrap_or(0),
+            matrices,
         };
         Ok(Stepper { scheme: Scheme::new(scene, models, columns, fields, limits), effects })
     }

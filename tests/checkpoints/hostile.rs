@@ -181,15 +181,16 @@ fn too_much_is_reported_before_it_is_taken() {
         let words = ["need about ", "GiB of memory; allowed: 8.0 GiB", "--ignore-memory"];
         assert!(words.iter().all(|w| error.contains(w)), "{error}");
     };
-    // disks are cut into particles one by one as the scene is read
+    // particles at the borders of disks are made as the scene is read
     let size = |set: &str, left| input::check_size(&text("disks"), "s", &[set.to_string()], left);
-    for set in ["domain.cell_size=5e-5", "bodies.lower.particles_per_cell=[300,300]"] {
-        printed(size(set, LEFT));
-        size(set, None).unwrap();
-        size(set, Some(1 << 40)).unwrap();
-    }
-    size("domain.cell_size=0.02", LEFT).unwrap();
+    let border = "bodies.lower.particles_per_cell=[3000000,3000000]";
+    printed(size(border, LEFT));
+    size(border, None).unwrap();
+    size(border, Some(1 << 40)).unwrap();
+    size("domain.cell_size=5e-5", LEFT).unwrap();
     for (name, set) in [
+        ("disks", "domain.cell_size=5e-5"),
+        ("disks", "bodies.lower.particles_per_cell=[300,300]"),
         ("flyer", "bodies.flyer.particles_per_cell=[1000000]"),
         ("flyer", "domain.cell_size=1e-10"),
         ("flyer_2d", "domain.patches=[300,180]"),

@@ -49,7 +49,9 @@ fn check_tells_what_a_run_takes_and_makes_no_file() {
     let bad = home.call(["check", "scene.json", "--set", "time.end=0"]).end();
     bad.failed(&["scene.json", "time.end = 0"]);
     let large = "bodies.flyer.particles_per_cell=[1000000000]";
-    home.call(["check", "scene.json", "--set", large]).end().failed(&["particles", "memory"]);
+    let text = home.call(["check", "scene.json", "--set", large]).end().succeeded();
+    assert!(text.contains("MB that this machine has left"), "{text}");
+    home.call(["scene.json", "--set", large]).end().failed(&["particles", "memory"]);
 }
 
 #[test]

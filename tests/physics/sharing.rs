@@ -75,6 +75,9 @@ fn patches_follow_the_workers() {
     assert_eq!(counts(&plane, 2, 1), [4, 2]);
     assert_eq!(counts(&plane, 2, 2), counts(&plane, 4, 1));
     assert!(counts(&shipped("flyer_2d.json"), 1, 1).iter().product::<usize>() > 1);
+    // several patches for each of many workers, so that none holds much more than the mean
+    let many = counts(&shipped("flyer_2d.json"), 16, 1).iter().product::<usize>();
+    assert!(many > 40, "{many}");
     // halves would be too narrow
     let coarse = with(&plane, &json!({"domain": {"cell_size": 5e-5}}));
     assert_eq!(counts(&coarse, 2, 1), [2, 1]);

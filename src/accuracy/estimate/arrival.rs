@@ -36,8 +36,8 @@ impl Between {
     pub fn new(scene: &CheckedScene, body: usize, at: f64) -> Between {
         let first: u64 = scene.bodies[..body].iter().map(|b| b.particles).sum();
         let own = &scene.bodies[body];
-        if let Some(tiles) = &own.tiles {
-            return Between::of_tiles(tiles, first, at);
+        if let Some(tiling) = &own.tiling {
+            return Between::of_tiles(&tiling.all(), first, at);
         }
         let length = (own.upper[0] - own.lower[0]) / own.particles as f64;
         // in particles, from the centre of the first one

@@ -263,7 +263,7 @@ fn is_mount_point(folder: &Path) -> bool {
 }
 
 /// Name of this machine, to distinguish processes of other machines in names of folders.
-pub(super) fn host() -> String {
+pub(in crate::driver) fn host() -> String {
     let name = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
     name.trim().chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-').collect()
 }

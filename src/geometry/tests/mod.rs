@@ -4,6 +4,7 @@ mod areas;
 mod faults;
 mod random;
 mod tiles;
+mod tiling;
 mod voronoi;
 
 use serde_json::Value;
@@ -17,6 +18,16 @@ fn region(json: Value) -> Region {
 
 fn shape(json: Value) -> BoundedRegion {
     BoundedRegion::new(&region(json)).unwrap()
+}
+
+/// The tiles of a shape, in the order of their numbers.
+fn fill(
+    shape: &BoundedRegion,
+    lower: [f64; 2],
+    cell_size: [f64; 2],
+    per_cell: [usize; 2],
+) -> Vec<Tile> {
+    super::fill(shape.clone(), lower, cell_size, per_cell).unwrap().all()
 }
 
 /// Asserts that `found` is `exact` to `tolerance` times `scale`.

@@ -3,12 +3,12 @@
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-use super::super::{BoundedRegion, fill};
-use super::{close, region, sum};
+use super::super::BoundedRegion;
+use super::{close, fill, region, sum};
 use crate::scene::Region;
 
 /// Boxes, disks, ellipses and triangles near the origin, rotated.
-fn part() -> impl Strategy<Value = Value> {
+pub(super) fn part() -> impl Strategy<Value = Value> {
     // multiples of 1/8 make borders coincide
     let place = || prop_oneof![(-8..=8).prop_map(|k| f64::from(k) / 8.0), -1.0..1.0];
     let radius = || prop_oneof![(1..=8).prop_map(|k| f64::from(k) / 8.0), 0.05..1.0];

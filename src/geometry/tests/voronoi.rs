@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use serde_json::json;
 
-use super::super::{BoundedRegion, fill, voronoi, voronoi_line};
-use super::{close, shape, sum};
+use super::super::{BoundedRegion, voronoi, voronoi_line};
+use super::{close, fill, shape, sum};
 
 fn ring() -> BoundedRegion {
     shape(json!({"difference": [

@@ -10,7 +10,7 @@ use super::super::faults::Faults;
 use super::super::paths::join;
 use super::common::{MOST, check_box, check_length, check_printable};
 use super::{materials, motion};
-use crate::geometry::{BoundedRegion, PointFault, Tile, fill, voronoi, voronoi_line};
+use crate::geometry::{BoundedRegion, PointFault, Tile, Tiling, fill, voronoi, voronoi_line};
 use crate::scene::CheckedBody;
 use crate::scene::TOUCHING;
 use crate::scene::{Body, BoxShape, Positions, Region, Scene};
@@ -91,7 +91,7 @@ fn check_body(
     faults.judge(&[&pressure], || materials::check_pressure(scene, body, &pressure));
     let reads = [&below("velocity")[..], &below("velocity_field")[..], &pressure[..]];
     let motion = faults.judge(&reads, || motion::check_field(scene, body, path, dimension))?;
-    let Filled { lower, upper, lattice, tiles } = filled?;
+    let Filled { lower, upper, lattice, tiling } = filled?;
     if faults.concern(path) {
         return None;
     }
@@ -99,8 +99,8 @@ fn check_body(
         Some(motion) => motion.top_speed(&lower, &upper),
         None => norm(&velocity),
     };
-    let particles = match &tiles {
-        Some(tiles) => tiles.len() as u64,
+    let particles = match &tiling {
+        Some(tiling) => tiling.count(),
         None => lattice.iter().map(|&n| n as u64).product(),
     };
     Some(CheckedBody {
@@ -111,7 +111,7 @@ fn check_body(
         lower,
         upper,
         lattice,
-        tiles,
+        tiling,
         particles,
     })
 }
@@ -143,14 +143,14 @@ struct Filled {
     lower: Vec<f64>,
     upper: Vec<f64>,
     lattice: Vec<usize>,
-    tiles: Option<Arc<Vec<Tile>>>,
+    tiling: Option<Arc<Tiling>>,
 }
 
 impl Filled {
     /// A body whose particles are not known.
     fn unknown(outline: BodyOutline) -> Self {
         let BodyOutline { lower, upper, .. } = outline;
-        Filled { lattice: vec![1; lower.len()], lower, upper, tiles: None }
+        Filled { lattice: vec![1; lower.len()], lower, upper, tiling: None }
     }
 }
 
@@ -242,20 +242,20 @@ impl Fill<'_> {
         let per_cell = self.per_cell()?;
         if let (Region::Box(extent), Some(per_cell)) = (self.region, &per_cell) {
             let lattice = lattice(extent, per_cell, self.path, self.cell_size)?;
-            return Ok(Filled { lower, upper, lattice, tiles: None });
+            return Ok(Filled { lower, upper, lattice, tiling: None });
         }
-        let tiles = match self.cell_size {
+        let tiling = match self.cell_size {
             [_] => self.tiles_on_line(lower[0], upper[0])?,
             _ => {
-                self.tiles_in_plane(&shape.map_or_else(|| self.shape(), Ok)?, per_cell.as_deref())?
+                self.tiles_in_plane(shape.map_or_else(|| self.shape(), Ok)?, per_cell.as_deref())?
             }
         };
         let lattice = vec![1; lower.len()];
-        Ok(Filled { lower, upper, lattice, tiles: Some(Arc::new(tiles)) })
+        Ok(Filled { lower, upper, lattice, tiling: Some(Arc::new(tiling)) })
     }
 
     /// Particles at given positions on a line.
-    fn tiles_on_line(&self, lower: f64, upper: f64) -> Result<Vec<Tile>, SceneFault> {
+    fn tiles_on_line(&self, lower: f64, upper: f64) -> Result<Tiling, SceneFault> {
         let points: Vec<f64> = self.points::<1>()?.into_iter().map(|p| p[0]).collect();
         let tiles = voronoi_line(lower, upper, &points).map_err(|f| self.faulty(f))?;
         let tile = |&(centre, length): &(f64, f64)| Tile {
@@ -263,29 +263,27 @@ impl Fill<'_> {
             area: length,
             size: [length, 0.0],
         };
-        Ok(tiles.iter().map(tile).collect())
+        let (origin, cell) = ([self.scene.domain.lower[0], 0.0], [self.cell_size[0], 1.0]);
+        Ok(Tiling::of_tiles(tiles.iter().map(tile).collect(), origin, cell))
     }
 
     /// Particles in a plane, `per_cell` of them or at given positions.
     fn tiles_in_plane(
         &self,
-        shape: &BoundedRegion,
+        shape: BoundedRegion,
         per_cell: Option<&[usize]>,
-    ) -> Result<Vec<Tile>, SceneFault> {
-        let Some(per_cell) = per_cell else {
-            return voronoi(shape, &self.points::<2>()?).map_err(|f| self.faulty(f));
-        };
-        let cell = [self.cell_size[0], self.cell_size[1]];
-        let counts = [per_cell[0], per_cell[1]];
-        let particles = shape.area() / (cell[0] * cell[1] / (counts[0] * counts[1]) as f64);
-        if particles > MOST_TILES {
-            let reason = format!(
-                "{particles:.1e} particles; allowed: at most {MOST_TILES:e} in a body that is no box"
-            );
-            return Err(SceneFault::new(self.below("particles_per_cell"), per_cell, reason));
-        }
+    ) -> Result<Tiling, SceneFault> {
         let origin = [self.scene.domain.lower[0], self.scene.domain.lower[1]];
-        Ok(fill(shape, origin, cell, counts))
+        let cell = [self.cell_size[0], self.cell_size[1]];
+        let Some(per_cell) = per_cell else {
+            let tiles = voronoi(&shape, &self.points::<2>()?).map_err(|f| self.faulty(f))?;
+            return Ok(Tiling::of_tiles(tiles, origin, cell));
+        };
+        let counts = [per_cell[0], per_cell[1]];
+        fill(shape, origin, cell, counts).map_err(|fault| {
+            let reason = format!("{fault}; allowed: fewer particles_per_cell, or larger cells");
+            SceneFault::new(self.below("particles_per_cell"), per_cell, reason)
+        })
     }
 }
 
@@ -296,9 +294,6 @@ struct BodyOutline {
     /// `None` for a box.
     shape: Option<BoundedRegion>,
 }
-
-/// Maximum number of particles of a body whose tiles are generated one by one.
-const MOST_TILES: f64 = 1e9;
 
 /// Checks that a body, whose region has the key `key`, lies within the domain.
 fn check_inside(

@@ -17,7 +17,8 @@ pub const BYTES_PER_CELL: u64 = 400;
 pub const BYTES_PER_PATCH: [u64; 2] = [40 << 10, 1 << 20];
 
 impl CheckedScene {
-    /// Estimated memory of the run on all ranks together [bytes].
+    /// Estimated memory of the run on all ranks together [bytes], from numbers of particles and cells
+    /// alone; in a plane a run may take twice as much.
     pub fn memory(&self) -> u64 {
         let particles = self.particles.saturating_mul(BYTES_PER_PARTICLE);
         let nodes = self.cell_count().saturating_mul(self.velocity_fields() as u64);
@@ -28,31 +29,42 @@ impl CheckedScene {
         particles.saturating_add(nodes.saturating_mul(BYTES_PER_CELL)).saturating_add(patches)
     }
 
-    /// Rejects a run that needs more than `available` bytes; `None`: unknown, the run is accepted.
+    /// Rejects a run that needs more than `available` bytes on one machine; `None`: unknown, the run
+    /// is accepted.
     ///
-    /// Separate from the other checks because the available memory differs between ranks and over
-    /// time: one rank determines it and informs the others.
+    /// Separate from the other checks because the available memory differs between machines and over
+    /// time.
     ///
     /// # Errors
     ///
     /// If the run needs more than `available` bytes.
     pub fn check_memory(&self, available: Option<u64>) -> Result<(), SceneError> {
         match available {
-            Some(available) if self.memory() > available => Err(SceneError::Memory {
-                file: one_line(&self.file),
-                particles: self.particles,
-                cells: self.cell_count(),
-                needed: self.memory(),
-                available,
-            }),
+            Some(available) if self.memory() > available => {
+                Err(self.lacks_memory(self.memory(), available))
+            }
             _ => Ok(()),
+        }
+    }
+
+    /// The error of a run that needs `needed` bytes where `available` are left.
+    pub fn lacks_memory(&self, needed: u64, available: u64) -> SceneError {
+        SceneError::Memory {
+            file: one_line(&self.file),
+            particles: self.particles,
+            cells: self.cell_count(),
+            needed,
+            available,
         }
     }
 }
 
-/// Number of particles that are generated one by one during the check of a scene in a plane,
-/// estimated from areas; faults are reported elsewhere.
-pub(in super::super) fn tiles(scene: &Scene) -> u64 {
+/// Memory of a tile at the border of a body while a scene is checked [bytes].
+pub(in super::super) const BYTES_PER_BORDER_TILE: u64 = 200;
+
+/// Number of tiles at the borders of bodies that are no box, which the check of a scene in a plane
+/// makes, estimated from the bounds of the bodies; faults are reported elsewhere.
+pub(in super::super) fn border_tiles(scene: &Scene) -> u64 {
     let cell = match &scene.domain.cell_size {
         CellSize::Uniform(size) => [*size; 2],
         CellSize::PerDirection(sizes) => {
@@ -66,8 +78,10 @@ pub(in super::super) fn tiles(scene: &Scene) -> u64 {
         if lattice || counts.len() != 2 || scene.domain.lower.len() != 2 {
             return None;
         }
-        let whole = cell[0] * cell[1] / (counts[0] * counts[1]) as f64;
-        Some(BoundedRegion::new(&region).ok()?.area() / whole)
+        let [lower, upper] = BoundedRegion::new(&region).ok()?.bounds();
+        let along = |a: usize| (upper[a] - lower[a]) / cell[a] * counts[a] as f64;
+        // a border crosses each row and each column twice
+        Some(2.0 * (along(0) + along(1)))
     };
     scene.bodies.iter().filter_map(of_body).sum::<f64>() as u64
 }

@@ -27,7 +27,7 @@ use super::faults::Faults;
 use crate::scene::{CheckedBody, CheckedScene, Scene};
 pub(super) use common::check_printable;
 
-pub(super) use memory::tiles;
+pub(super) use memory::{BYTES_PER_BORDER_TILE, border_tiles};
 pub use memory::{BYTES_PER_CELL, BYTES_PER_PARTICLE, BYTES_PER_PATCH, available_memory};
 
 /// Parts of a scene that its exact solution depends on.

@@ -33,7 +33,7 @@ pub fn likely_cause(scene: &CheckedScene, alarm: Alarm, what: &str) -> String {
     let few = scene
         .bodies
         .iter()
-        .any(|b| b.tiles.is_none() && cells_of(scene, b) > b.particles as f64 * 0.75);
+        .any(|b| b.tiling.is_none() && cells_of(scene, b) > b.particles as f64 * 0.75);
     let hats = all.method.shape.basis() == Basis::Hat;
     let long = all.method.transfer.plan().is_sharp();
     if few && hats && long {

@@ -180,9 +180,9 @@ fn most_in_a_cell(scene: &CheckedScene, body: &crate::scene::CheckedBody) -> f64
     let cells: f64 = (0..scene.dimension)
         .map(|a| ((body.upper[a] - body.lower[a]) / scene.cell_size[a]).max(1.0))
         .product();
-    match &body.tiles {
+    match &body.tiling {
         // tilings are uneven: a cell may hold several times the mean
-        Some(tiles) => 4.0 * (tiles.len() as f64 / cells).max(1.0),
+        Some(tiling) => 4.0 * (tiling.count() as f64 / cells).max(1.0),
         None => (body.particles as f64 / cells).max(1.0),
     }
 }

@@ -124,6 +124,17 @@ fn fours_from(row: &[f64], first: usize) -> f64x4 {
 }
 
 impl Band {
+    /// Memory of the matrix per node for windows of `width` nodes along each of `dimension`
+    /// directions [bytes]: it is held by nodes and by diagonals.
+    pub const fn bytes_per_node(width: usize, dimension: usize) -> usize {
+        2 * size_of::<f64>() * diagonals(width, dimension)
+    }
+
+    /// The same for blocks of two by two, in a plane [bytes].
+    pub const fn block_bytes_per_node(width: usize) -> usize {
+        BLOCK_ENTRIES * Band::bytes_per_node(width, 2)
+    }
+
     /// Prepares a sum over particles with `width` nodes along each of `dimension` directions, on
     /// `nodes` nodes, in arrays with lines of length `stride`.
     pub fn clear(&mut self, nodes: usize, width: usize, dimension: usize, stride: usize) {

@@ -49,6 +49,7 @@ groups!(
     effects,
     hard_cases,
     decomposition,
+    scale,
     reliability,
     resources,
     kernels

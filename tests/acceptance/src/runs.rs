@@ -106,7 +106,7 @@ impl Job {
         Job { counted: Counted::Memory, ..self }
     }
 
-    fn command(&self) -> Command {
+    fn command(&self, subcommand: Option<&str>) -> Command {
         let program = program::path();
         let mut command = if self.counted != Counted::Nothing {
             let mut valgrind = Command::new("valgrind");
@@ -137,10 +137,13 @@ impl Job {
         } else {
             Command::new(program)
         };
+        command.args(subcommand);
         command.arg(program::root().join(format!("{}/{}.json", self.of, self.scene)));
-        command.args(["--threads", &self.threads.to_string()]);
-        // a run that hangs is to say so
-        command.args(["--stall-timeout", "60"]);
+        if subcommand.is_none() {
+            command.args(["--threads", &self.threads.to_string()]);
+            // a run that hangs is to say so
+            command.args(["--stall-timeout", "60"]);
+        }
         if !self.whole {
             command.args(["--set", "output.pictures=false", "--set", "output.hdf5=false"]);
         }
@@ -154,15 +157,9 @@ impl Job {
     pub fn run(&self) -> Result<Outcome, String> {
         let folder = program::folder().join(self.scene);
         let _ = fs::remove_dir_all(&folder);
-        let mut command = self.command();
-        command.arg("--output").arg(&folder).stdin(Stdio::null());
-        let ended = self.ended(&mut command);
-        let ended = ended.map_err(|error| format!("cannot run {command:?}: {error}"))?;
-        if !ended.usage.status.success() {
-            let line = ended.stderr.lines().find(|l| l.starts_with("error: "));
-            let line = line.or_else(|| ended.stderr.lines().find(|l| !l.trim().is_empty()));
-            return Err(format!("{}: {}", ended.usage.status, line.unwrap_or("no message")));
-        }
+        let mut command = self.command(None);
+        command.arg("--output").arg(&folder);
+        let ended = self.succeeded(&mut command)?;
         let summary = Summary::read(&folder).map_err(|e| e.to_string())?;
         Ok(Outcome {
             summary,
@@ -174,6 +171,27 @@ impl Job {
             instructions: collected(&ended.stderr, &["Ir"]),
             memory_bytes: collected(&ended.stderr, &TRAFFIC).map(|lines| lines * LINE),
         })
+    }
+
+    /// Describes the scene by `flyer-mpm check`; the error is what the program said last.
+    pub fn check(&self) -> Result<Described, String> {
+        let ended = self.succeeded(&mut self.command(Some("check")))?;
+        Ok(Described {
+            said: ended.stdout,
+            user_seconds: ended.usage.rusage.utime.as_secs_f64(),
+            peak_bytes: ended.usage.rusage.maxrss,
+        })
+    }
+
+    fn succeeded(&self, command: &mut Command) -> Result<Ended, String> {
+        let ended = self.ended(command.stdin(Stdio::null()));
+        let ended = ended.map_err(|error| format!("cannot run {command:?}: {error}"))?;
+        if !ended.usage.status.success() {
+            let line = ended.stderr.lines().find(|l| l.starts_with("error: "));
+            let line = line.or_else(|| ended.stderr.lines().find(|l| !l.trim().is_empty()));
+            return Err(format!("{}: {}", ended.usage.status, line.unwrap_or("no message")));
+        }
+        Ok(ended)
     }
 
     fn ended(&self, command: &mut Command) -> io::Result<Ended> {
@@ -201,6 +219,16 @@ fn text(file: &mut File) -> io::Result<String> {
     file.rewind()?;
     file.read_to_end(&mut bytes)?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// What `flyer-mpm check` has said and taken.
+pub struct Described {
+    /// What it printed.
+    pub said: String,
+    /// User CPU time [s].
+    pub user_seconds: f64,
+    /// Most memory that it has taken [bytes].
+    pub peak_bytes: u64,
 }
 
 /// What a run has left.

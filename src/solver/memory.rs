@@ -1,0 +1,65 @@
+//! Memory of a patch in the steps, from the declared columns, nodal fields, weights and matrices.
+
+use super::band::Band;
+use super::reach::StencilRadius;
+use super::stepper::Stepper;
+use crate::shape::padded_width;
+
+/// Sizes of a patch that determine its memory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PatchSize {
+    /// Own particles.
+    pub own: u64,
+    /// Copies of particles of other patches, images among them.
+    pub ghosts: u64,
+    /// Cells of the patch along its edges.
+    pub cells: [u64; 2],
+    /// Depth of the ghost layers [cells].
+    pub ghost_layers: i64,
+}
+
+const DOUBLE: usize = size_of::<f64>();
+
+impl<const D: usize> Stepper<D> {
+    /// Memory of a patch [bytes] whose longest particle is `longest` [cells], with the copy of its
+    /// state that the monitor keeps, and the words of its ghosts in messages.
+    pub fn patch_bytes(&self, longest: f64, reach: StencilRadius, size: &PatchSize) -> u64 {
+        let specs = &self.columns.specs;
+        let ghost_columns = specs.iter().filter(|spec| spec.ghost).count();
+        let place = size_of::<u64>() + D * size_of::<i32>();
+        let words = DOUBLE * (1 + D + ghost_columns);
+        let weights = self.weight_bytes(padded_width(self.shape.nodes(longest)));
+        // and one reusable value per particle
+        let own = place + DOUBLE * (specs.len() + 1) + weights + self.columns.state_bytes(D);
+        let ghost = place + DOUBLE * ghost_columns + weights + words;
+        let depth = reach.depth(size.ghost_layers) as u64;
+        let nodes =
+            size.cells[..D].iter().fold(1, |all: u64, n| all.saturating_mul(n + 2 * depth + 1));
+        let node = self.node_bytes(padded_width(self.shape.nodes(longest)));
+        let parts = [(size.own, own), (size.ghosts, ghost), (nodes, node)];
+        parts.into_iter().fold(0, |all: u64, (count, bytes)| {
+            all.saturating_add(count.saturating_mul(bytes as u64))
+        })
+    }
+
+    /// Memory of the weights of a particle on windows of `width` nodes [bytes].
+    fn weight_bytes(&self, width: usize) -> usize {
+        let nodes = width.pow(D as u32);
+        // values, gradients, and the first node
+        let weights = DOUBLE * nodes * (1 + D) + size_of::<u32>();
+        let kept = DOUBLE * nodes * D + size_of::<u64>() + D * size_of::<i32>();
+        if self.total_lagrangian { weights + kept } else { weights }
+    }
+
+    /// Memory of a node: fields and matrices of all layers [bytes].
+    fn node_bytes(&self, width: usize) -> usize {
+        let plain = Band::bytes_per_node(width, D);
+        let mass = match (self.columns.spin, self.needs_matrix()) {
+            (Some(_), _) if D > 1 => Band::block_bytes_per_node(width),
+            (_, true) => plain,
+            _ => 0,
+        };
+        let others = usize::from(self.relaxation.is_some()) + self.of_effects.matrices;
+        self.layers * (DOUBLE * self.fields.count + mass + others * plain)
+    }
+}
