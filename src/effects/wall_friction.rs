@@ -157,8 +157,7 @@ impl WallFriction {
                 let mc: [f64; D] =
                     std::array::from_fn(|b| -m * column(affine + D * axis + b) * s.cell[b]);
                 for line in 0..ParticleWeights::<K, D>::LINES {
-                    let across =
-                        if D == 1 { 0.0 } else { mc[D - 1] * offset.at(D - 1, line) };
+                    let across = if D == 1 { 0.0 } else { mc[D - 1] * offset.at(D - 1, line) };
                     let terms = std::array::from_fn(|k| {
                         weights.values[line][k] * (across + mc[0] * offset.at(0, k))
                     });

@@ -19,7 +19,12 @@ pub fn check(table: &mut Table) {
     let most = decomposition.ranks.iter().map(|rank| rank.particles).max().unwrap_or(0) as f64;
     let mean = run.summary.particles as f64 / decomposition.ranks.len() as f64;
     table.check(name, Some(most / mean), bounds::balance::FULLEST);
-    table.beside("  particle-steps of the busiest over the mean", Some(decomposition.imbalance), "", Unit::One);
+    table.beside(
+        "  particle-steps of the busiest over the mean",
+        Some(decomposition.imbalance),
+        "",
+        Unit::One,
+    );
     let patches = run.summary.patches.iter().product::<usize>() as f64;
     table.beside("  patches", Some(patches), "", Unit::Count);
 }

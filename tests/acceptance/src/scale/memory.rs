@@ -20,7 +20,8 @@ struct Case {
 
 /// Most memory of a rank over its estimate, in a plane and on a line.
 pub fn check(table: &mut Table) {
-    let case = |scene, cell_size, end, ranks, patches| Case { scene, cell_size, end, ranks, patches };
+    let case =
+        |scene, cell_size, end, ranks, patches| Case { scene, cell_size, end, ranks, patches };
     let mut cases = vec![
         case("flyer_2d", "2e-5", "1.5e-8", 1, "[1,1]"),
         case("flyer_2d", "2e-5", "1.5e-8", 1, "[10,6]"),
@@ -41,15 +42,21 @@ pub fn check(table: &mut Table) {
             "decomposition.skip_quiescent=false".into(),
             "reference=null".into(),
         ];
-        let name = format!("{scene}.json, cells of {cell_size} m, patches {patches}, {ranks} ranks");
+        let name =
+            format!("{scene}.json, cells of {cell_size} m, patches {patches}, {ranks} ranks");
         let job = sets.iter().fold(Job::new(scene), |job, set| job.set(set)).ranks(ranks);
         let estimate = estimate(scene, &sets, ranks);
-        let (Some(run), Some(estimate)) = (table.take(&name, job.run()), table.take(&name, estimate))
+        let (Some(run), Some(estimate)) =
+            (table.take(&name, job.run()), table.take(&name, estimate))
         else {
             continue;
         };
         let over = run.peak_bytes as f64 / estimate - 1.0;
-        table.check(&format!("{name}: memory over its estimate, less 1"), Some(over), bounds::memory::MISSED);
+        table.check(
+            &format!("{name}: memory over its estimate, less 1"),
+            Some(over),
+            bounds::memory::MISSED,
+        );
         let a_particle = run.peak_bytes as f64 * ranks as f64 / run.summary.particles as f64;
         table.beside("  bytes per particle", Some(a_particle), "", Unit::Count);
     }

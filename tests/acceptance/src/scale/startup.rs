@@ -73,7 +73,12 @@ fn one_rank(table: &mut Table) {
     // ids, cells and columns of its particles
     let share = (own * (16 + 8 * stepper.columns.specs.len())) as f64;
     let mean = scene.particles as f64 / RANKS as f64;
-    table.beside(&format!("{name}: particles over the mean"), Some(own as f64 / mean), "", Unit::One);
+    table.beside(
+        &format!("{name}: particles over the mean"),
+        Some(own as f64 / mean),
+        "",
+        Unit::One,
+    );
     table.check(&format!("{name}: CPU time"), Some(seconds), bounds::startup::RANK_SECONDS);
     let over = Some(bytes / share);
     table.check(&format!("{name}: memory over its share"), over, bounds::startup::RANK_MEMORY);
@@ -87,7 +92,11 @@ fn described(table: &mut Table) {
     let line = run.said.lines().find_map(|line| line.strip_prefix("particles "));
     let count = line.and_then(|count| count.trim().parse().ok());
     table.beside(&format!("{name}: particles"), count, "", Unit::Count);
-    table.check(&format!("{name}: CPU time"), Some(run.user_seconds), bounds::startup::CHECK_SECONDS);
+    table.check(
+        &format!("{name}: CPU time"),
+        Some(run.user_seconds),
+        bounds::startup::CHECK_SECONDS,
+    );
     let peak = Some(run.peak_bytes as f64);
     table.check(&format!("{name}: memory"), peak, bounds::startup::CHECK_MEMORY);
 }
