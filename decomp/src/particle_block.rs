@@ -117,13 +117,6 @@ impl<const D: usize> Block<D> {
             .map(|c| c.as_mut_slice())
     }
 
-    /// Makes room for exactly `particles` more own particles.
-    pub fn reserve(&mut self, particles: usize) {
-        self.ids.reserve_exact(particles);
-        self.cells.reserve_exact(particles);
-        self.columns.iter_mut().for_each(|column| column.reserve_exact(particles));
-    }
-
     /// Adds an own particle; `values` holds its columns in order, in their units. Sort afterwards.
     pub fn push(&mut self, id: u64, cell: [i32; D], values: &[f64]) {
         debug_assert_eq!(self.particles(), self.own, "own particles go before ghosts");
@@ -280,17 +273,17 @@ impl<const D: usize> Block<D> {
     /// Sorts particles by their keys.
     fn sort_few_or_many(&self, order: &mut [u32]) {
         let key = |particle: u32| self.key(particle as usize);
-        if order.len() > CHUNK {
+        let misplaced = || order.windows(2).filter(|pair| key(pair[0]) > key(pair[1])).count();
+        if order.len() > CHUNK && misplaced() > FEW {
             // most are still in order among themselves: the others are sorted and merged in
             return dmsort::sort_by(order, |&a, &b| key(a).cmp(&key(b)));
         }
         for k in 1..order.len() {
-            let (particle, mut place) = (order[k], k);
-            while place > 0 && key(order[place - 1]) > key(particle) {
-                order[place] = order[place - 1];
-                place -= 1;
+            let particle = order[k];
+            if key(order[k - 1]) > key(particle) {
+                let place = order[..k].partition_point(|&before| key(before) < key(particle));
+                order[place..=k].rotate_right(1);
             }
-            order[place] = particle;
         }
     }
 
@@ -352,9 +345,12 @@ fn partition_point(from: usize, to: usize, below: impl Fn(usize) -> bool) -> usi
     lo - from
 }
 
-/// Number of particles that are compared together, and up to which an insertion sort is cheaper than
-/// another one; it asks for no memory.
+/// Number of particles that are compared together, and up to which they are inserted one by one, which
+/// asks for no memory.
 const CHUNK: usize = 64;
+
+/// Number of misplaced particles of a larger range up to which they are inserted one by one too.
+const FEW: usize = 8;
 
 /// Range of particles that are out of order, and the greatest of their keys.
 #[derive(Clone, Copy, Debug)]

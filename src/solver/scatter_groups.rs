@@ -26,14 +26,14 @@ struct Summed<'a, const D: usize> {
 }
 
 /// Nodal fields that hold the sums.
-struct Sums<'a, const D: usize> {
+struct GroupSums<'a, const D: usize> {
     mass: &'a mut [f64],
     momentum: [&'a mut [f64]; D],
     force: [&'a mut [f64]; D],
     volume: Option<&'a mut [f64]>,
 }
 
-impl<const D: usize> Sums<'_, D> {
+impl<const D: usize> GroupSums<'_, D> {
     /// Adds mass and momentum of a group of particles.
     #[inline(always)]
     fn add_motion<const K: usize, const V: usize>(
@@ -154,7 +154,7 @@ impl<const D: usize> Scheme<D> {
         let mut volumes = self.edge_mask.map(|_| take(f.volume));
         // slices of equal length, so that the bounds of a window are checked only once
         let nodes = masses.len();
-        let mut sums = Sums {
+        let mut sums = GroupSums {
             mass: &mut masses[..],
             momentum: array::parts_mut(&mut momenta, nodes),
             force: array::parts_mut(&mut forces, nodes),
@@ -203,7 +203,7 @@ impl<const D: usize> Scheme<D> {
     #[inline(always)]
     fn add_spinning<const K: usize, const V: usize>(
         &self,
-        sums: &mut Sums<'_, D>,
+        sums: &mut GroupSums<'_, D>,
         patch: &Patch<D>,
         band: &mut Band,
         group: Range<usize>,
