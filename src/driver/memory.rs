@@ -1,4 +1,4 @@
-//! Memory of a run, held against that of each machine before anything is made.
+//! Estimate of the memory of a run, compared with the free memory of each machine before allocation.
 
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
