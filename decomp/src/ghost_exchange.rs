@@ -3,6 +3,7 @@
 
 use crate::ghost_bundle::{Bundle, GhostReach, MOST_RECEIVERS, Taker};
 use crate::packing::take;
+use crate::particle_sort::SortBuffers;
 use crate::{Block, Comm, IndexBox, Layout};
 
 /// Error of the migration of a particle.
@@ -46,6 +47,7 @@ pub struct GhostExchange<const D: usize> {
     to_inner: Vec<u64>,
     to_border: Vec<u64>,
     gone: Vec<usize>,
+    sorting: SortBuffers<D>,
     migrated: u64,
 }
 
@@ -119,6 +121,7 @@ impl<const D: usize> GhostExchange<D> {
             to_inner: Vec::new(),
             to_border: Vec::new(),
             gone: Vec::new(),
+            sorting: SortBuffers::default(),
             migrated: 0,
         }
     }
@@ -159,10 +162,10 @@ impl<const D: usize> GhostExchange<D> {
             block.stirred = self.reach.notice.is_none() || !block.active.is_empty();
             self.give(k, block)?;
         }
-        let GhostExchange { place, inner, received, .. } = self;
+        let GhostExchange { place, inner, received, sorting, .. } = self;
         let mut on_this_rank = || {
             let words = std::slice::from_ref(&self.to_inner);
-            settle(place, words, patches, inner, true);
+            settle(place, words, patches, (inner, true), sorting);
             meanwhile(patches);
         };
         if self.send_ranks.is_empty() && self.receive_ranks.is_empty() {
@@ -174,7 +177,7 @@ impl<const D: usize> GhostExchange<D> {
         }
         // this rank's own words are processed together with the messages of other ranks
         received.push(std::mem::take(&mut self.to_border));
-        settle(place, received, patches, inner, false);
+        settle(place, received, patches, (inner, false), sorting);
         self.to_border = received.pop().expect("it was pushed");
         Ok(())
     }
@@ -267,8 +270,8 @@ fn settle<const D: usize>(
     place: &[usize],
     messages: &[Vec<u64>],
     patches: &mut [impl AsMut<Block<D>>],
-    inner: &[bool],
-    which: bool,
+    (inner, which): (&[bool], bool),
+    sorting: &mut SortBuffers<D>,
 ) {
     for ghosts in [false, true] {
         for words in messages {
@@ -276,7 +279,8 @@ fn settle<const D: usize>(
         }
         for (patch, _) in patches.iter_mut().zip(inner).filter(|(_, i)| **i == which) {
             let block = patch.as_mut();
-            if ghosts { block.sort_ghosts() } else { block.sort_own() }
+            let (own, all) = (block.own(), block.particles());
+            block.sort(if ghosts { own..all } else { 0..own }, sorting);
         }
     }
 }

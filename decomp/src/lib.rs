@@ -37,6 +37,7 @@ mod node_runs;
 mod nodes;
 mod packing;
 mod particle_block;
+mod particle_sort;
 mod patch_migration;
 mod patch_order;
 mod reduce;

@@ -1,4 +1,4 @@
-//! Estimate of the memory of a run, compared with the free memory of each machine before allocation.
+//! Estimate of the memory of a run, compared with the free memory of each machine before it starts.
 
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash, Hasher};

@@ -1,5 +1,7 @@
 //! What makes a shape function: its basis, its weights along one direction and in a plane.
 
+use std::ops::Mul;
+
 use wide::f64x4;
 
 use super::domain::{DomainExtent, ParticleDomain};
@@ -105,6 +107,23 @@ pub trait Shape: Copy + Send + Sync + 'static {
     }
 }
 
+/// Values, and gradients along x and y, of products of weights along x and along y; each is given
+/// with its gradients.
+#[inline(always)]
+fn products<T: Copy + Mul<Output = T>, const K: usize>(
+    [x, slope_x]: [&[T; K]; 2],
+    [y, slope_y]: [&[T; K]; 2],
+    [values, gx, gy]: [&mut [[T; K]]; 3],
+) {
+    for l in 0..K {
+        for k in 0..K {
+            values[l][k] = x[k] * y[l];
+            gx[l][k] = slope_x[k] * y[l];
+            gy[l][k] = x[k] * slope_y[l];
+        }
+    }
+}
+
 /// Weights of a box: products of the weights along each direction.
 #[inline(always)]
 pub(super) fn product<S: Shape, const K: usize>(
@@ -114,13 +133,7 @@ pub(super) fn product<S: Shape, const K: usize>(
 ) -> [i32; 2] {
     let [x, y] = S::box_weights::<K>(fraction, domain.extent());
     let [gx, gy] = &mut out.gradients;
-    for l in 0..K {
-        for k in 0..K {
-            out.values[l][k] = x.values[k] * y.values[l];
-            gx[l][k] = x.gradients[k] * y.values[l];
-            gy[l][k] = x.values[k] * y.gradients[l];
-        }
-    }
+    products([&x.values, &x.gradients], [&y.values, &y.gradients], [out.values, gx, gy]);
     [x.first, y.first]
 }
 
@@ -159,13 +172,7 @@ pub(super) fn four_boxes<S: Shape, const K: usize>(
     let [width, height] = extents(half_edges);
     let (x, y) = (S::four::<K>(fraction[0], width), S::four::<K>(fraction[1], height));
     let [gx, gy] = &mut out.gradients;
-    for l in 0..K {
-        for k in 0..K {
-            out.values[l][k] = x.values[k] * y.values[l];
-            gx[l][k] = x.gradients[k] * y.values[l];
-            gy[l][k] = x.values[k] * y.gradients[l];
-        }
-    }
+    products([&x.values, &x.gradients], [&y.values, &y.gradients], [&mut out.values, gx, gy]);
     out.first = [x.first, y.first];
     out.skipped = [x.skipped, y.skipped];
 }

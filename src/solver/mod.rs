@@ -43,6 +43,7 @@ pub mod sides;
 mod solid;
 mod spin;
 mod stepper;
+mod summed_fields;
 mod tension_free;
 mod total_lagrangian;
 

@@ -138,20 +138,11 @@ impl<const D: usize> Scheme<D> {
         patch: &mut Patch<D>,
         force: bool,
     ) {
-        let (c, f) = (&self.columns, &self.fields);
+        let c = &self.columns;
         self.clear_sums::<K, MATRIX, SPIN>(patch);
         // fields are taken out while others are read and written
-        let mut take = |k: usize| std::mem::take(&mut patch.nodes.fields[k]);
-        let mut masses = take(f.mass);
-        let mut momenta: [Vec<f64>; D] = array::from_fn(|a| take(f.lumped_velocity + a));
-        let mut forces: [Vec<f64>; D] = array::from_fn(|a| take(f.acceleration + a));
-        let mut volumes = self.edge_mask.map(|_| take(f.volume));
-        // slices of equal length, so that the bounds of a window are checked only once
-        let nodes = masses.len();
-        let nodal_mass = &mut masses[..];
-        let momentum = &mut array::parts_mut(&mut momenta, nodes);
-        let nodal_force = &mut array::parts_mut(&mut forces, nodes);
-        let mut volume = volumes.as_mut().map(|field| &mut field[..nodes]);
+        let mut fields = self.take_sums(patch);
+        let mut sums = fields.sums();
         let particles = patch.block.particles();
         let column = |k: usize| &patch.block.columns[k][..particles];
         let vector = |k: usize| -> [&[f64]; D] { array::from_fn(|a| column(k + a)) };
@@ -163,39 +154,45 @@ impl<const D: usize> Scheme<D> {
         for run in &patch.runs {
             for (r, weights) in run.clone().zip(patch.stencils.particles::<K, D>(run.clone())) {
                 let m = mass[r];
-                weights.add(nodal_mass, weights.values, |n| n * m);
+                weights.add(sums.mass, weights.values, |n| n * m);
                 if let Some(spin) = spin {
                     let place = self.place_of(patch, r);
                     let inverse = 1.0 / spin_inertia(&weights, place);
                     let (rates, place) = self.reflect_spin(patch, r, spin[r] * inverse, place);
-                    self.add_affine_momentum(patch, &weights, r, spin_gradient(rates), momentum);
+                    self.add_affine_momentum(
+                        patch,
+                        &weights,
+                        r,
+                        spin_gradient(rates),
+                        &mut sums.momentum,
+                    );
                     patch.band.add_spin(&weights, m, place, inverse);
                 } else if let Some(affine) = affine {
                     let at = |k: usize| patch.block.columns[affine + k][r];
                     let slope = array::from_fn(|a| array::from_fn(|b| at(D * a + b)));
-                    self.add_affine_momentum(patch, &weights, r, slope, momentum);
+                    self.add_affine_momentum(patch, &weights, r, slope, &mut sums.momentum);
                 } else {
                     for a in 0..D {
                         let mv = m * velocity[a][r];
-                        weights.add(momentum[a], weights.values, |n| n * mv);
+                        weights.add(sums.momentum[a], weights.values, |n| n * mv);
                     }
                 }
                 if MATRIX && !SPIN {
                     patch.band.add(&weights, m);
                 }
-                if let Some(volume) = &mut volume {
+                if let Some(volume) = &mut sums.volume {
                     let filled = filled[r];
                     weights.add(volume, weights.values, |n| n * filled);
                 }
                 if force {
                     let s = stress[r];
                     for a in 0..D {
-                        weights.add(nodal_force[a], weights.gradient(a), |g| g * s);
+                        weights.add(sums.force[a], weights.gradient(a), |g| g * s);
                     }
                     // radial motion of a node strains the material in the hoop direction
                     if D > 1 && self.axisymmetric {
                         let hoop = s / self.radius(patch, r);
-                        weights.add(nodal_force[0], weights.values, |n| n * hoop);
+                        weights.add(sums.force[0], weights.values, |n| n * hoop);
                     }
                 }
             }
@@ -203,15 +200,7 @@ impl<const D: usize> Scheme<D> {
         if MATRIX {
             patch.band.finish();
         }
-        let fields = &mut patch.nodes.fields;
-        fields[f.mass] = masses;
-        for (a, (momentum, force)) in momenta.into_iter().zip(forces).enumerate() {
-            fields[f.lumped_velocity + a] = momentum;
-            fields[f.acceleration + a] = force;
-        }
-        if let Some(volume) = volumes {
-            fields[f.volume] = volume;
-        }
+        self.put_sums(patch, fields);
     }
 
     /// Adds the momentum m N (v + C (x_i - x_p)) of a particle with the velocity gradient C,

@@ -14,6 +14,7 @@ use crate::solver::packed::{add_to, totals};
 use crate::solver::particle_weights::Offset;
 use crate::solver::patch::Patch;
 use crate::solver::shape_weights::Stencils;
+use crate::solver::summed_fields::SummedSlices;
 
 /// Columns of particles that are summed.
 struct Summed<'a, const D: usize> {
@@ -25,15 +26,7 @@ struct Summed<'a, const D: usize> {
     stress: Option<&'a [f64]>,
 }
 
-/// Nodal fields that hold the sums.
-struct GroupSums<'a, const D: usize> {
-    mass: &'a mut [f64],
-    momentum: [&'a mut [f64]; D],
-    force: [&'a mut [f64]; D],
-    volume: Option<&'a mut [f64]>,
-}
-
-impl<const D: usize> GroupSums<'_, D> {
+impl<const D: usize> SummedSlices<'_, D> {
     /// Adds mass and momentum of a group of particles.
     #[inline(always)]
     fn add_motion<const K: usize, const V: usize>(
@@ -138,7 +131,7 @@ impl<const D: usize> Scheme<D> {
         patch: &mut Patch<D>,
         force: bool,
     ) {
-        let (c, f) = (&self.columns, &self.fields);
+        let c = &self.columns;
         let matrix = self.needs_matrix();
         match (matrix, c.spin) {
             (_, Some(_)) => self.clear_sums::<K, true, true>(patch),
@@ -147,19 +140,8 @@ impl<const D: usize> Scheme<D> {
         }
         // matrix and fields are taken out while others are read and written
         let mut band = std::mem::take(&mut patch.band);
-        let mut take = |k: usize| std::mem::take(&mut patch.nodes.fields[k]);
-        let mut masses = take(f.mass);
-        let mut momenta: [Vec<f64>; D] = array::from_fn(|a| take(f.lumped_velocity + a));
-        let mut forces: [Vec<f64>; D] = array::from_fn(|a| take(f.acceleration + a));
-        let mut volumes = self.edge_mask.map(|_| take(f.volume));
-        // slices of equal length, so that the bounds of a window are checked only once
-        let nodes = masses.len();
-        let mut sums = GroupSums {
-            mass: &mut masses[..],
-            momentum: array::parts_mut(&mut momenta, nodes),
-            force: array::parts_mut(&mut forces, nodes),
-            volume: volumes.as_mut().map(|field| &mut field[..nodes]),
-        };
+        let mut fields = self.take_sums(patch);
+        let mut sums = fields.sums();
         let particles = patch.block.particles();
         let column = |k: usize| &patch.block.columns[k][..particles];
         let of = Summed {
@@ -188,22 +170,14 @@ impl<const D: usize> Scheme<D> {
             band.finish();
         }
         patch.band = band;
-        let fields = &mut patch.nodes.fields;
-        fields[f.mass] = masses;
-        for (a, (momentum, force)) in momenta.into_iter().zip(forces).enumerate() {
-            fields[f.lumped_velocity + a] = momentum;
-            fields[f.acceleration + a] = force;
-        }
-        if let Some(volume) = volumes {
-            fields[f.volume] = volume;
-        }
+        self.put_sums(patch, fields);
     }
 
     /// Adds motion and blocks of the mass matrix of a group of particles with spin, a few at a time.
     #[inline(always)]
     fn add_spinning<const K: usize, const V: usize>(
         &self,
-        sums: &mut GroupSums<'_, D>,
+        sums: &mut SummedSlices<'_, D>,
         patch: &Patch<D>,
         band: &mut Band,
         group: Range<usize>,

@@ -78,6 +78,17 @@ const fn diagonals(width: usize, dimension: usize) -> usize {
     (lines(2 * width - 1, dimension) * (2 * width - 1)).div_ceil(2)
 }
 
+/// Place of the first entry that node `node` of a line and the `later`-th line from its own on add
+/// to, for windows of `width` nodes; the entries of the node start at `row`. On the node's own line
+/// zeros are added to entries before.
+#[inline(always)]
+const fn first_entry(width: usize, row: usize, node: usize, later: usize) -> usize {
+    match later {
+        0 => row - node,
+        _ => row + width + (later - 1) * (2 * width - 1) + width - 1 - node,
+    }
+}
+
 /// Copies the entries of diagonal `d` from `rows` of `count` entries; returns whether any is not
 /// zero.
 fn turn_one(rows: &[f64], count: usize, d: usize, diagonal: &mut [f64]) -> bool {

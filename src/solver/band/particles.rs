@@ -5,14 +5,14 @@ use std::ops::Range;
 use decomp::array::map;
 use wide::f64x4;
 
-use super::{BLOCK_ENTRIES, Band, TOGETHER, Touched, diagonals};
+use super::{BLOCK_ENTRIES, Band, TOGETHER, Touched, diagonals, first_entry};
 use crate::shape::{MOST_NODES, MOST_NODES_IN_PLANE, add_product, fours, vector};
 use crate::solver::packed::{WindowPlace, between};
 use crate::solver::particle_weights::{Distances, NARROW, ParticleWeights, lines, window};
 use crate::solver::shape_weights::Stencils;
 
-/// Adds the products of node `NODE` of line `LINE` with the nodes of its line from itself on, and with
-/// those of later lines, for some particles.
+/// Adds the products of node `NODE` of line `LINE` with the nodes of its line from itself on, and
+/// with those of later lines, for some particles.
 #[inline(always)]
 fn add_node<
     const K: usize,
@@ -26,12 +26,8 @@ fn add_node<
     values: &[[f64x4; V]; N],
     terms: &[[[f64; 4]; V]; N],
 ) {
-    let count = const { diagonals(K, D) };
-    // on the main line zeros are added to entries of the node before
-    let at = |later: usize| match later {
-        0 => NODE * (count - 1),
-        _ => NODE * count + K + (later - 1) * (2 * K - 1) + K - 1 - NODE,
-    };
+    let row = const { NODE * diagonals(K, D) };
+    let at = |later: usize| first_entry(K, row, NODE, later);
     let mut sums = [f64x4::ZERO; V];
     for later in 0..const { V.saturating_sub(LINE) } {
         sums[later] = vector(window(rows, at(later)));

@@ -5,7 +5,7 @@ use std::ops::Range;
 use decomp::array::map;
 use wide::f64x4;
 
-use super::{BLOCK_ENTRIES, Band, Spinning, TOGETHER, Touched, diagonals};
+use super::{BLOCK_ENTRIES, Band, Spinning, TOGETHER, Touched, diagonals, first_entry};
 use crate::shape::vector;
 use crate::solver::packed::{WindowPlace, between};
 use crate::solver::particle_weights::window;
@@ -56,7 +56,7 @@ impl<const V: usize, const N: usize> Parts<V, N> {
 }
 
 /// Adds the blocks of node `NODE` of line `LINE` and the nodes of its line from itself on, and those
-/// of later lines.
+/// of later lines, for some particles.
 #[inline(always)]
 fn add_node<
     const K: usize,
@@ -71,11 +71,7 @@ fn add_node<
 ) {
     let count = const { diagonals(K, D) };
     for later in 0..const { V.saturating_sub(LINE) } {
-        // on the main line zeros are added to entries before
-        let first = match later {
-            0 => NODE * BLOCK_ENTRIES * count - NODE,
-            _ => NODE * BLOCK_ENTRIES * count + K + (later - 1) * (2 * K - 1) + K - 1 - NODE,
-        };
+        let first = first_entry(K, NODE * BLOCK_ENTRIES * count, NODE, later);
         let kept = if later == 0 { between(NODE, K) } else { between(0, 4) };
         let at = map(&[0, 1, 2, 3], |entry: usize| first + entry * count);
         let [mut xx, mut yy, mut xy, mut yx] = map(&at, |at| vector(window(rows, at)));

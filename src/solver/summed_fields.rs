@@ -1,0 +1,66 @@
+//! Nodal fields that hold sums over particles, taken out of a patch while its other arrays are read.
+
+use decomp::array;
+
+use crate::solver::patch::Patch;
+use crate::solver::scheme::Scheme;
+
+/// The fields, owned.
+pub(super) struct SummedFields<const D: usize> {
+    mass: Vec<f64>,
+    momentum: [Vec<f64>; D],
+    force: [Vec<f64>; D],
+    volume: Option<Vec<f64>>,
+}
+
+/// The fields as slices of equal length, so that the bounds of a window are checked only once.
+pub(super) struct SummedSlices<'a, const D: usize> {
+    /// Mass [kg].
+    pub mass: &'a mut [f64],
+    /// Momentum [kg m/s].
+    pub momentum: [&'a mut [f64]; D],
+    /// Internal force [N].
+    pub force: [&'a mut [f64]; D],
+    /// Filled volume [cells], with an edge mask.
+    pub volume: Option<&'a mut [f64]>,
+}
+
+impl<const D: usize> SummedFields<D> {
+    /// The fields as slices.
+    pub fn sums(&mut self) -> SummedSlices<'_, D> {
+        let nodes = self.mass.len();
+        SummedSlices {
+            mass: &mut self.mass,
+            momentum: array::parts_mut(&mut self.momentum, nodes),
+            force: array::parts_mut(&mut self.force, nodes),
+            volume: self.volume.as_mut().map(|field| &mut field[..nodes]),
+        }
+    }
+}
+
+impl<const D: usize> Scheme<D> {
+    /// Takes the fields of sums out of a patch.
+    pub(super) fn take_sums(&self, patch: &mut Patch<D>) -> SummedFields<D> {
+        let f = &self.fields;
+        let mut take = |k: usize| std::mem::take(&mut patch.nodes.fields[k]);
+        SummedFields {
+            mass: take(f.mass),
+            momentum: array::from_fn(|a| take(f.lumped_velocity + a)),
+            force: array::from_fn(|a| take(f.acceleration + a)),
+            volume: self.edge_mask.map(|_| take(f.volume)),
+        }
+    }
+
+    /// Puts the fields back.
+    pub(super) fn put_sums(&self, patch: &mut Patch<D>, taken: SummedFields<D>) {
+        let (f, fields) = (&self.fields, &mut patch.nodes.fields);
+        fields[f.mass] = taken.mass;
+        for (a, (momentum, force)) in taken.momentum.into_iter().zip(taken.force).enumerate() {
+            fields[f.lumped_velocity + a] = momentum;
+            fields[f.acceleration + a] = force;
+        }
+        if let Some(volume) = taken.volume {
+            fields[f.volume] = volume;
+        }
+    }
+}
