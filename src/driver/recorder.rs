@@ -36,7 +36,7 @@ pub struct Recorder<'a> {
     kept_frames: Option<u64>,
     /// Profiles and the digests of their states.
     pub tables: Vec<(ParticleTable, String)>,
-    /// Particles at the start, if the error evaluation needs them.
+    /// Profile at the start, if the error evaluation needs it.
     pub start: Option<ParticleTable>,
     /// Rows of the x-t diagrams.
     pub waves: Vec<WaveRow>,
@@ -72,7 +72,11 @@ impl<'a> Recorder<'a> {
             fields: FieldSeries::new(scene),
             kept_frames: None,
             tables: Vec::new(),
-            start: if needs_start { simulation.gather().map(|(table, _)| table) } else { None },
+            start: if needs_start {
+                simulation.profile(most_particles(scene)).map(|(table, _)| table)
+            } else {
+                None
+            },
             waves: Vec::new(),
             quantities: Vec::new(),
             bodies: Vec::new(),
@@ -289,10 +293,6 @@ const MOST_PARTICLES: [u64; 2] = [1_000_000, 200_000];
 
 /// Largest number of particles of which a profile of the scene holds each.
 pub fn most_particles(scene: &CheckedScene) -> u64 {
-    if PlaneReference::needs_start(scene) {
-        // each particle is compared with its own start
-        return u64::MAX;
-    }
     let most = scene.scene.output.profiles.max_particles;
     most.unwrap_or(MOST_PARTICLES[scene.dimension - 1])
 }

@@ -7,7 +7,8 @@ use super::run::Simulation;
 use crate::simulation::{ParticleTable, TableColumn};
 
 /// Columns whose mean is weighted by mass; the others are weighted by volume.
-const BY_MASS: [&str; 5] = ["x", "y", "velocity", "specific_internal_energy", "reference"];
+const BY_MASS: [&str; 7] =
+    ["x", "y", "velocity", "specific_internal_energy", "reference", "spin", "spin_inertia"];
 
 /// Number of cells along an edge of a block, for at most about `most` blocks with particles.
 fn block_edge(particles: u64, most: u64, dimension: usize) -> i64 {

@@ -1,8 +1,11 @@
 //! First motions and the exact solutions that follow from them.
 
+use decomp::Serial;
+use flyer_mpm::accuracy::reference::PlaneReference;
+use flyer_mpm::simulation::Simulation;
 use serde_json::{Value, json};
 
-use crate::tools::{at_most, midpoint, run, shipped};
+use crate::tools::{at_most, checked, midpoint, run, shipped};
 
 fn number(score: &Value, name: &str) -> f64 {
     score[name].as_f64().unwrap_or_else(|| panic!("no {name} in {score}"))
@@ -79,4 +82,29 @@ fn apic_keeps_the_rotation_of_a_disk() {
     let outcome = run::<2>(&value);
     assert!(number(&outcome.score, "angular_momentum_loss") > 0.01, "the filter takes rotation");
     at_most("energy", number(&outcome.score, "energy_loss"), 1e-12);
+}
+
+/// Rank 0 needs no more than a bounded table for the score of a free body.
+#[test]
+fn a_disk_is_scored_by_means_over_blocks_too() {
+    let mut value = shipped("spinning_disk.json");
+    value["time"]["end"] = json!(6.8);
+    value["output"]["profiles"]["times"] = json!([6.8]);
+    let scene = checked(&value);
+    let reference = PlaneReference::new(&scene).expect("the scene names one");
+    let mut simulation = Simulation::<2>::new(&scene, &Serial, 1).unwrap();
+    let profiles = |simulation: &Simulation<'_, 2>| {
+        let bins = simulation.profile(scene.particles / 4).unwrap().0;
+        assert!(bins.len() as u64 <= scene.particles / 3, "{}", bins.len());
+        [simulation.gather().unwrap().0, bins]
+    };
+    let first = profiles(&simulation);
+    while simulation.time() < scene.scene.time.end {
+        simulation.advance(scene.scene.time.end).unwrap();
+    }
+    let last = profiles(&simulation);
+    let [all, bins] = [0, 1].map(|k| reference.score(&scene, &last[k], Some(&first[k])).unwrap());
+    for name in ["angular_momentum_loss", "energy_loss"] {
+        at_most(name, number(&all, name) - number(&bins, name), 3e-3);
+    }
 }

@@ -93,13 +93,13 @@ impl PlaneReference {
         Some(PlaneReference { body, solution })
     }
 
-    /// Whether the score needs the particles at time 0.
+    /// Whether the score needs the profile at time 0.
     pub fn needs_start(scene: &CheckedScene) -> bool {
         matches!(scene.scene.reference, Some(scene::Reference::Rotation(_)))
     }
 
-    /// The score of a profile, an object of numbers by name; `start` are the particles at time 0,
-    /// if needed. `None` if no exact solution holds.
+    /// The score of a profile, an object of numbers by name; `start` is the profile at time 0, if
+    /// needed. `None` if no exact solution holds.
     pub fn score(
         &self,
         scene: &CheckedScene,

@@ -160,8 +160,7 @@ impl Default for Checkpoints {
 #[serde(deny_unknown_fields, default)]
 pub struct Profiles {
     /// Largest number of particles of which a profile holds each; of more it holds means over blocks
-    /// of cells, about as many. Scenes whose reference follows particles have all of them. Default: 1e6
-    /// on a line, 2e5 in a plane.
+    /// of cells, about as many. Default: 1e6 on a line, 2e5 in a plane.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1))]
     pub max_particles: Option<u64>,
