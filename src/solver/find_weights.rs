@@ -1,6 +1,8 @@
 //! Weights of all particles of a patch: four particles at a time where windows are narrow, else one
 //! after the other, with the same bits.
 
+use std::ops::Range;
+
 use decomp::array;
 use wide::f64x4;
 
@@ -65,10 +67,10 @@ fn put(numbers: &[f64x4], out: &mut [f64]) {
     }
 }
 
-/// Whether four particles are computed together: the weights on two nodes take fewer instructions one
-/// by one.
-const fn in_lanes(width: usize) -> bool {
-    2 < width && width <= NARROW
+/// Whether four particles are computed together: on a line, and on two nodes, they take fewer
+/// instructions one by one.
+const fn in_lanes(width: usize, dimension: usize) -> bool {
+    dimension > 1 && 2 < width && width <= NARROW
 }
 
 impl Stencils {
@@ -82,20 +84,18 @@ impl Stencils {
         let n = at.cells.len();
         self.resize::<K, D>(n, stride);
         let mut corners = Corners { least: [i32::MAX; D], most: [i32::MIN; D] };
-        let whole = if const { in_lanes(K) } { n - n % LANES } else { 0 };
+        let whole = if const { in_lanes(K, D) } { n - n % LANES } else { 0 };
         let mut buffer = PlaneLanes::none();
         for first in (0..whole).step_by(LANES) {
-            if const { in_lanes(K) } {
+            if const { in_lanes(K, D) } {
                 self.fill_four::<S, K, D>(at, first, &mut corners, &mut buffer);
             }
         }
-        for particle in whole..n {
-            self.fill_one::<S, K, D>(at, particle, &mut corners);
-        }
+        self.fill_rest::<S, K, D>(at, whole..n, &mut corners);
         corners
     }
 
-    /// Weights of four particles from `first` on.
+    /// Weights of four particles from `first` on, in a plane.
     #[inline(always)]
     fn fill_four<S: Shape, const K: usize, const D: usize>(
         &mut self,
@@ -109,23 +109,15 @@ impl Stencils {
         let inverse = array::map(&at.inverse_cell, f64x4::splat);
         let values = &mut self.values[first * nodes..];
         let gradients = &mut self.gradients[first * nodes * D..];
-        let (from, skipped): ([f64x4; D], [f64x4; 2]) = if D == 1 {
-            let mut w = S::four::<K>(place[0], four(at.domains[0], first));
-            w.gradients.iter_mut().for_each(|g| *g *= inverse[0]);
-            put(&w.values, values);
-            put(&w.gradients, gradients);
-            ([w.first; D], [w.skipped, f64x4::ZERO])
-        } else {
-            let half_edges = S::EXTENT.half_edges(|k| four(at.domains[k], first));
-            S::four_in_plane::<K>([place[0], place[D - 1]], half_edges, w);
-            for (axis, lines) in w.gradients.iter_mut().enumerate() {
-                let inverse = inverse[axis * (D - 1)];
-                lines.as_flattened_mut().iter_mut().for_each(|g| *g *= inverse);
-            }
-            put(w.values.as_flattened(), values);
-            put(w.gradients.as_flattened().as_flattened(), gradients);
-            (array::from_fn(|a| w.first[a]), w.skipped)
-        };
+        let half_edges = S::EXTENT.half_edges(|k| four(at.domains[k], first));
+        S::four_in_plane::<K>([place[0], place[D - 1]], half_edges, w);
+        for (axis, lines) in w.gradients.iter_mut().enumerate() {
+            let inverse = inverse[axis * (D - 1)];
+            lines.as_flattened_mut().iter_mut().for_each(|g| *g *= inverse);
+        }
+        put(w.values.as_flattened(), values);
+        put(w.gradients.as_flattened().as_flattened(), gradients);
+        let (from, skipped): ([f64x4; D], [f64x4; 2]) = (array::from_fn(|a| w.first[a]), w.skipped);
         let from = array::map(&from, |from: f64x4| from.to_array());
         let cells = &at.cells[first..first + LANES];
         let windows = &mut self.first[first..first + LANES];
@@ -141,51 +133,72 @@ impl Stencils {
         }
     }
 
-    /// Weights of one particle.
+    /// Weights of `particles`, one after the other.
     #[inline(always)]
-    fn fill_one<S: Shape, const K: usize, const D: usize>(
+    fn fill_rest<S: Shape, const K: usize, const D: usize>(
         &mut self,
         at: &Places<'_, D>,
-        particle: usize,
+        particles: Range<usize>,
         corners: &mut Corners<D>,
     ) {
         let nodes = const { K * lines(K, D) };
-        let place = array::map(&at.fractions, |column| column[particle]);
-        let values = &mut self.values[particle * nodes..(particle + 1) * nodes];
-        let gradients = &mut self.gradients[particle * nodes * D..(particle + 1) * nodes * D];
-        let (from, length): ([i32; D], f64) = if D == 1 {
-            let length = at.domains[0][particle];
+        let (from, stride) = (particles.start, self.stride);
+        self.skipped[particles.clone()].fill(0);
+        // chunks, so that there are no bounds checks
+        let weights = self.values[from * nodes..]
+            .chunks_exact_mut(nodes)
+            .zip(self.gradients[from * nodes * D..].chunks_exact_mut(nodes * D));
+        let windows = self.first[particles.clone()].iter_mut().zip(weights);
+        for ((particle, cell), (first, (values, gradients))) in
+            particles.clone().zip(&at.cells[particles]).zip(windows)
+        {
+            let (from, length) = at.weights::<S, K>(particle, values, gradients);
+            if K > NARROW {
+                self.narrow[particle] = S::nodes(length) <= NARROW;
+            }
+            let corner: [i32; D] = array::from_fn(|a| cell[a] + from[a] - at.lower[a]);
+            corners.extend(corner);
+            *first = index(corner, stride);
+        }
+    }
+}
+
+impl<const D: usize> Places<'_, D> {
+    /// Writes the values and gradients of a particle; returns its first node along each direction,
+    /// relative to the lower node of its cell, and its longest extent [cells].
+    #[inline(always)]
+    fn weights<S: Shape, const K: usize>(
+        &self,
+        particle: usize,
+        values: &mut [f64],
+        gradients: &mut [f64],
+    ) -> ([i32; D], f64) {
+        let nodes = const { K * lines(K, D) };
+        let place = array::map(&self.fractions, |column| column[particle]);
+        if D == 1 {
+            let length = self.domains[0][particle];
             let w: Weights<K> = S::weights(place[0], length);
             values.copy_from_slice(&w.values);
             for (out, g) in gradients.iter_mut().zip(w.gradients) {
-                *out = g * at.inverse_cell[0];
+                *out = g * self.inverse_cell[0];
             }
-            ([w.first; D], length)
-        } else {
-            let domain = ParticleDomain::from_columns(S::EXTENT, &at.domains, particle);
-            let (gx, gy) = gradients.split_at_mut(nodes);
-            let mut lines = Plane {
-                values: values.as_chunks_mut::<K>().0,
-                gradients: [gx.as_chunks_mut::<K>().0, gy.as_chunks_mut::<K>().0],
-            };
-            let [width, height] = domain.extent();
-            let (place, length) = ([place[0], place[D - 1]], width.max(height));
-            let corner = match K > NARROW && S::nodes(length) <= NARROW {
-                true => lines.fill_first::<S, NARROW>(place, &domain),
-                false => S::plane(place, &domain, &mut lines),
-            };
-            gx.iter_mut().for_each(|g| *g *= at.inverse_cell[0]);
-            gy.iter_mut().for_each(|g| *g *= at.inverse_cell[D - 1]);
-            (array::from_fn(|a| corner[a]), length)
-        };
-        if K > NARROW {
-            self.narrow[particle] = S::nodes(length) <= NARROW;
+            return ([w.first; D], length);
         }
-        let cell = at.cells[particle];
-        let corner: [i32; D] = array::from_fn(|a| cell[a] + from[a] - at.lower[a]);
-        corners.extend(corner);
-        self.first[particle] = index(corner, self.stride);
-        self.skipped[particle] = 0;
+        let domain = ParticleDomain::from_columns(S::EXTENT, &self.domains, particle);
+        let (gx, gy) = gradients.split_at_mut(nodes);
+        let mut lines = Plane {
+            values: values.as_chunks_mut::<K>().0,
+            gradients: [gx.as_chunks_mut::<K>().0, gy.as_chunks_mut::<K>().0],
+        };
+        let [width, height] = domain.extent();
+        let (place, length) = ([place[0], place[D - 1]], width.max(height));
+        let corner = match K > NARROW && S::nodes(length) <= NARROW {
+            true => lines.fill_first::<S, NARROW>(place, &domain),
+            false => S::plane(place, &domain, &mut lines),
+        };
+        gx.iter_mut().for_each(|g| *g *= self.inverse_cell[0]);
+        gy.iter_mut().for_each(|g| *g *= self.inverse_cell[D - 1]);
+        (array::from_fn(|a| corner[a]), length)
     }
 }
 

@@ -13,7 +13,6 @@ use crate::solver::packed::with_packed;
 use crate::solver::particle_weights::ParticleWeights;
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
-use crate::solver::shape_weights::Stencils;
 use crate::transfer::VelocityUpdate;
 
 /// Columns of a vector, taken out of their block: they are written while other columns are read.
@@ -74,13 +73,15 @@ impl<const D: usize> Scheme<D> {
             wanted: [bool; 3],
         ) {
             let (mut window, mut at) = (PackedEnds::<V, D>::none(), u32::MAX);
-            s.end_particles(patch, dt, [moves, wanted[1]], |stencils, r, nodal| {
-                // several particles of a cell have the same window
-                if stencils.first[r] != at {
-                    at = stencils.first[r];
-                    window.fetch::<K>(nodal, stencils.place(r));
-                }
-                window.sums::<K>(&stencils.packed::<K, V, D>(r), wanted)
+            patch.with_stencils(|patch, stencils| {
+                s.end_particles(patch, dt, [moves, wanted[1]], |r, nodal| {
+                    // several particles of a cell have the same window
+                    if stencils.first[r] != at {
+                        at = stencils.first[r];
+                        window.fetch::<K>(nodal, stencils.place(r));
+                    }
+                    window.sums::<K>(&stencils.packed::<K, V, D>(r), wanted)
+                });
             });
         }
         fn single<const K: usize, const D: usize>(
@@ -89,13 +90,31 @@ impl<const D: usize> Scheme<D> {
             (dt, moves): (f64, bool),
             wanted: [bool; 3],
         ) {
-            s.end_particles(patch, dt, [moves, wanted[1]], |stencils, r, nodal| {
-                let weights = stencils.particle::<K, D>(r);
-                if const { D == 1 } {
-                    EndSums::one_by_one::<K, 1>(nodal, &weights, wanted)
-                } else {
-                    EndSums::one_by_one::<K, K>(nodal, &weights, wanted)
-                }
+            // in most steps; as a constant it leaves no question in the loop
+            const MOST: [bool; 3] = [true, true, false];
+            if moves && wanted == MOST {
+                one_by_one::<K, D>(patch, s, (dt, true), MOST);
+            } else {
+                one_by_one::<K, D>(patch, s, (dt, moves), wanted);
+            }
+        }
+        #[inline(always)]
+        fn one_by_one<const K: usize, const D: usize>(
+            patch: &mut Patch<D>,
+            s: &Scheme<D>,
+            (dt, moves): (f64, bool),
+            wanted: [bool; 3],
+        ) {
+            patch.with_stencils(|patch, stencils| {
+                let mut all = stencils.particles::<K, D>(0..patch.block.own());
+                s.end_particles(patch, dt, [moves, wanted[1]], |_, nodal| {
+                    let weights = all.next().expect("those of each own particle");
+                    if const { D == 1 } {
+                        EndSums::one_by_one::<K, 1>(nodal, &weights, wanted)
+                    } else {
+                        EndSums::one_by_one::<K, K>(nodal, &weights, wanted)
+                    }
+                });
             });
         }
         fn limiter<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
@@ -115,14 +134,14 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// The same with the `sums` over the nodes of each particle, by its index.
+    /// The same with the `sums` over the nodes of each particle, asked for in their order by the index.
     #[inline(always)]
     fn end_particles(
         &self,
         patch: &mut Patch<D>,
         dt: f64,
         [moves, strains]: [bool; 2],
-        mut sums: impl FnMut(&Stencils, usize, [[&[f64]; D]; 2]) -> EndSums<D>,
+        mut sums: impl FnMut(usize, [[&[f64]; D]; 2]) -> EndSums<D>,
     ) {
         let (c, f) = (&self.columns, &self.fields);
         let n = patch.block.own();
@@ -139,7 +158,7 @@ impl<const D: usize> Scheme<D> {
         let own_divergence = &mut divergence[..n];
         let mut own_gradient = own_tensor(&mut tensor, n);
         for r in 0..n {
-            let at = sums(&patch.stencils, r, nodal);
+            let at = sums(r, nodal);
             for a in 0..if moves { D } else { 0 } {
                 let (old, new, v) = (at.start[a], at.star[a], &mut own_v[a][r]);
                 *v = match self.transfer.update {

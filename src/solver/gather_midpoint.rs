@@ -11,7 +11,6 @@ use crate::solver::clock::timed;
 use crate::solver::packed::with_packed;
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
-use crate::solver::shape_weights::Stencils;
 use crate::transfer::VelocityUpdate;
 
 /// Scales the velocity gradient of a particle, if it exists, by `share`, the ratio of the volumes at
@@ -43,23 +42,28 @@ impl<const D: usize> Scheme<D> {
             dt: f64,
         ) {
             let (mut window, mut at) = (PackedVelocities::<V, D>::none(), u32::MAX);
-            s.gather_particles(patch, dt, |stencils, r, nodal| {
-                // several particles of a cell have the same window
-                if stencils.first[r] != at {
-                    at = stencils.first[r];
-                    window.fetch::<K>(nodal, stencils.place(r));
-                }
-                window.sums::<K>(nodal, &stencils.packed::<K, V, D>(r))
+            patch.with_stencils(|patch, stencils| {
+                s.gather_particles(patch, dt, |r, nodal| {
+                    // several particles of a cell have the same window
+                    if stencils.first[r] != at {
+                        at = stencils.first[r];
+                        window.fetch::<K>(nodal, stencils.place(r));
+                    }
+                    window.sums::<K>(nodal, &stencils.packed::<K, V, D>(r))
+                });
             });
         }
         fn single<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>, dt: f64) {
-            s.gather_particles(patch, dt, |stencils, r, nodal| {
-                let weights = stencils.particle::<K, D>(r);
-                if const { D == 1 } {
-                    NodalSums::one_by_one::<K, 1>(nodal, &weights)
-                } else {
-                    NodalSums::one_by_one::<K, K>(nodal, &weights)
-                }
+            patch.with_stencils(|patch, stencils| {
+                let mut all = stencils.particles::<K, D>(0..patch.block.own());
+                s.gather_particles(patch, dt, |_, nodal| {
+                    let weights = all.next().expect("those of each own particle");
+                    if const { D == 1 } {
+                        NodalSums::one_by_one::<K, 1>(nodal, &weights)
+                    } else {
+                        NodalSums::one_by_one::<K, K>(nodal, &weights)
+                    }
+                });
             });
         }
         fn rest<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
@@ -75,13 +79,14 @@ impl<const D: usize> Scheme<D> {
         with_width!(width, rest(patch, self));
     }
 
-    /// Updates the own particles with the `sums` over the nodes of each, by its index.
+    /// Updates the own particles with the `sums` over the nodes of each, asked for in their order by
+    /// the index.
     #[inline(always)]
     fn gather_particles(
         &self,
         patch: &mut Patch<D>,
         dt: f64,
-        mut sums: impl FnMut(&Stencils, usize, &NodalVelocities<'_, D>) -> NodalSums<D>,
+        mut sums: impl FnMut(usize, &NodalVelocities<'_, D>) -> NodalSums<D>,
     ) {
         let (c, f) = (&self.columns, &self.fields);
         let n = patch.block.own();
@@ -112,15 +117,18 @@ impl<const D: usize> Scheme<D> {
         let column = |k: usize| &patch.block.columns[k][..n];
         let mid = c.jacobian_mid.expect("mid-point stepping has the column");
         let (mass, j_mid) = (column(c.mass), column(mid));
+        // as many as a tensor has; a scalar stress has one
+        let stress: [&[f64]; 4] =
+            from_fn(|k| column(c.stress_volume + k.min(c.stress_volumes - 1)));
         for r in 0..n {
-            let at = sums(&patch.stencils, r, &nodal);
+            let at = sums(r, &nodal);
             let old = from_fn(|a| own_v[a][r]);
             let (new, heat) = self.end_velocity(old, &at);
             self.end_strain(r, &at, (&mut own_deformation, &mut own_gradient), dt);
             let hoop = self.hoop_of(patch, r);
             let plane = trace(&at.mean_gradient);
             let divergence = with_hoop(plane, at.mean[0], hoop);
-            let work_done = self.work_done(patch, r, &at, divergence, dt);
+            let work_done = self.work_done(from_fn(|k| stress[k][r]), &at, divergence, hoop, dt);
             for a in 0..D {
                 own_x[a][r] += match self.transfer.update {
                     // with the grid: the particles' own velocities would break up the tiling
@@ -201,34 +209,30 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Work that the stress of a particle does in a step [J].
+    /// Work that the stress times volume `s` [J] of a particle does in a step [J]; `hoop` is its
+    /// distance from the axis [m], with axial symmetry.
     #[inline(always)]
     fn work_done(
         &self,
-        patch: &Patch<D>,
-        r: usize,
+        s: [f64; 4],
         at: &NodalSums<D>,
         divergence: f64,
+        hoop: Option<f64>,
         dt: f64,
     ) -> f64 {
-        let s = |k: usize| patch.block.columns[self.columns.stress_volume + k][r];
-        let hoop = self.hoop_of(patch, r);
         if self.tensor_stress() {
             let ([x, y], g) = ([0, D - 1], &at.work_gradient);
-            let plane = s(0) * g[x][x] + s(1) * g[y][y] + s(2) * (g[x][y] + g[y][x]);
+            let plane = s[0] * g[x][x] + s[1] * g[y][y] + s[2] * (g[x][y] + g[y][x]);
             return match hoop {
-                Some(radius) => dt * (plane + s(3) * at.work / radius),
+                Some(radius) => dt * (plane + s[3] * at.work / radius),
                 None => dt * plane,
             };
         }
         let working = match self.compatible {
-            true => {
-                let plane = trace(&at.work_gradient);
-                with_hoop(plane, at.work, hoop)
-            }
+            true => with_hoop(trace(&at.work_gradient), at.work, hoop),
             false => divergence,
         };
-        s(0) * dt * working
+        s[0] * dt * working
     }
 
     /// Distance of a particle from the axis [m], with axial symmetry.

@@ -249,6 +249,14 @@ impl<const D: usize> Patch<D> {
 }
 
 impl<const D: usize> Patch<D> {
+    /// Calls `f` with the weights, which are taken out of the patch meanwhile.
+    #[inline(always)]
+    pub(super) fn with_stencils(&mut self, f: impl FnOnce(&mut Self, &Stencils)) {
+        let stencils = std::mem::take(&mut self.stencils);
+        f(self, &stencils);
+        self.stencils = stencils;
+    }
+
     /// Computes the weights of all particles from the columns that start at `fraction` and `domain`
     /// [cells]; `inverse_cell` is 1/edge of a cell [1/m], `layer` the column of each particle's
     /// layer, if there are several.

@@ -100,14 +100,14 @@ struct PressureSums<'a> {
 }
 
 impl PressureSums<'_> {
-    /// Adds a particle.
+    /// Adds a particle; returns its weight.
     #[inline(always)]
     fn add<const K: usize, const D: usize>(
         &mut self,
         weights: &ParticleWeights<'_, K, D>,
         r: usize,
         of: &Relaxed<'_>,
-    ) {
+    ) -> f64 {
         if let Some(ratio) = &mut self.ratio {
             weights.add(ratio, weights.values, |n| n * of.compliance[r]);
         }
@@ -115,6 +115,7 @@ impl PressureSums<'_> {
         let pressure = share * of.pressure[r];
         weights.add(self.weight, weights.values, |n| n * share);
         weights.add(self.pressure, weights.values, |n| n * pressure);
+        share
     }
 
     /// Adds particles with the same window.
@@ -160,9 +161,9 @@ struct Projected<'a> {
 type ProjectedSums = [f64; 4];
 
 impl Projected<'_> {
-    /// Sums over a window of any width.
+    /// Sums over a window of any width; `RATIO` says whether there is a volume ratio.
     #[inline(always)]
-    fn sums<const K: usize, const D: usize>(
+    fn sums<const K: usize, const D: usize, const RATIO: bool>(
         &self,
         weights: &ParticleWeights<'_, K, D>,
     ) -> ProjectedSums {
@@ -170,7 +171,7 @@ impl Projected<'_> {
         // work of a change of volume: P, or the product of P and s
         let work = |line: usize| -> [f64; K] {
             let nodal = weights.line(self.pressure, line);
-            let Some(ratio) = self.ratio else { return *nodal };
+            let Some(ratio) = self.ratio.filter(|_| RATIO) else { return *nodal };
             let ratio = weights.line(ratio, line);
             decomp::array::from_fn(|k| ratio[k] * nodal[k])
         };
@@ -215,10 +216,11 @@ impl<const D: usize> Scheme<D> {
         }
         fn single<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
             s.scatter_pressure(patch, K, |stencils, runs, band, of, sums| {
-                for r in runs.iter().cloned().flatten() {
-                    let weights = stencils.particle::<K, D>(r);
-                    sums.add(&weights, r, of);
-                    band.add(&weights, of.share(r));
+                for run in runs {
+                    for (r, weights) in run.clone().zip(stencils.particles::<K, D>(run.clone())) {
+                        let share = sums.add(&weights, r, of);
+                        band.add(&weights, share);
+                    }
                 }
             });
         }
@@ -301,19 +303,34 @@ impl<const D: usize> Scheme<D> {
             rate: f64,
         ) {
             let (mut window, mut at) = ([[f64x4::ZERO; V]; 4], u32::MAX);
-            s.relax_particles(patch, rate, |stencils, r, nodal| {
-                if stencils.first[r] != at {
-                    at = stencils.first[r];
-                    window = nodal.fetch::<K, V, D>(stencils.place(r));
-                }
-                let values = stencils.packed_values::<K, V, D>(r);
-                totals::<K>(decomp::array::from_fn(|k| dot(&values, &window[k])))
+            patch.with_stencils(|patch, stencils| {
+                s.relax_particles(patch, rate, |r, nodal| {
+                    if stencils.first[r] != at {
+                        at = stencils.first[r];
+                        window = nodal.fetch::<K, V, D>(stencils.place(r));
+                    }
+                    let values = stencils.packed_values::<K, V, D>(r);
+                    totals::<K>(decomp::array::from_fn(|k| dot(&values, &window[k])))
+                });
+            });
+        }
+        fn with_ratio<const K: usize, const D: usize, const RATIO: bool>(
+            patch: &mut Patch<D>,
+            s: &Scheme<D>,
+            rate: f64,
+        ) {
+            patch.with_stencils(|patch, stencils| {
+                let mut all = stencils.particles::<K, D>(0..patch.block.own());
+                s.relax_particles(patch, rate, |_, nodal| {
+                    nodal.sums::<K, D, RATIO>(&all.next().expect("those of each own particle"))
+                });
             });
         }
         fn single<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>, rate: f64) {
-            s.relax_particles(patch, rate, |stencils, r, nodal| {
-                nodal.sums(&stencils.particle::<K, D>(r))
-            });
+            match s.fields.relaxed_ratio {
+                Some(_) => with_ratio::<K, D, true>(patch, s, rate),
+                None => with_ratio::<K, D, false>(patch, s, rate),
+            }
         }
         let width = patch.stencils.width;
         with_packed!(
@@ -323,13 +340,13 @@ impl<const D: usize> Scheme<D> {
         );
     }
 
-    /// The same with the `sums` over the nodes of each particle, by its index.
+    /// The same with the `sums` over the nodes of each particle, asked for in their order by the index.
     #[inline(always)]
     fn relax_particles(
         &self,
         patch: &mut Patch<D>,
         rate: f64,
-        mut sums: impl FnMut(&Stencils, usize, &Projected<'_>) -> ProjectedSums,
+        mut sums: impl FnMut(usize, &Projected<'_>) -> ProjectedSums,
     ) {
         let [_, _, sum, term] = self.fields.relaxation;
         let c = &self.columns;
@@ -348,7 +365,7 @@ impl<const D: usize> Scheme<D> {
         let [j, e, mass, volume0, p, w, mid] =
             patch.block.columns_mut(columns).map(|column| &mut column[..n]);
         for r in 0..n {
-            let [mean, mean_work, last, product] = sums(&patch.stencils, r, &nodal);
+            let [mean, mean_work, last, product] = sums(r, &nodal);
             let share = if is_ratio { rate * w[r] / mid[r] } else { rate * w[r] };
             let change = share * (p[r] - mean) / volume0[r];
             if is_ratio {

@@ -62,6 +62,7 @@ pub(super) fn warnings(checked: &CheckedScene) -> Vec<String> {
     all.extend(bodies(checked));
     all.extend(viscosity(checked, &speeds));
     all.extend(velocities(checked, &speeds));
+    all.extend(no_impact(checked));
     all.extend(duration(checked, fastest));
     all.extend(lengths(checked));
     all.extend(tension::warnings(checked, &speeds));
@@ -160,6 +161,30 @@ fn velocities(checked: &CheckedScene, speeds: &[f64]) -> Option<String> {
              {slowest:.0} m/s; no shock forms; the unit is m/s"
         )
     })
+}
+
+/// Bodies that nothing sets in motion, or that only move away from each other.
+fn no_impact(checked: &CheckedScene) -> Option<String> {
+    let (scene, bodies) = (&checked.scene, &checked.bodies);
+    let is_driven = scene.body_force.is_some()
+        || checked.has_side(|side| side.moves_grid || side.pressure.is_some())
+        || bodies.iter().any(|body| body.motion.is_some())
+        || scene.bodies.iter().any(|body| body.pressure != scene.bodies[0].pressure)
+        || scene.materials.values().any(|m| m.eos.burn().is_some())
+        || scene.materials.values().any(|m| m.thermal.is_some_and(|t| t.conductivity.is_some()));
+    if is_driven {
+        return None;
+    }
+    let is_still = bodies.iter().all(|body| body.velocity.iter().all(|v| *v == 0.0));
+    let meets_side = checked.has_side(|side| side.acts_on_material());
+    let moves = bodies.iter().any(|body| body.velocity != bodies[0].velocity);
+    if is_still || !(moves || meets_side) {
+        return Some("bodies: none moves relative to another, and nothing drives them".into());
+    }
+    // elastic solids have no shocks, and in a plane bodies may enclose each other
+    let is_compared = checked.dimension == 1 && fluids(checked).count() == bodies.len();
+    (is_compared && !meets_side && closing_speed(checked) <= 0.0)
+        .then(|| "bodies: none moves towards another, so that there is no impact".into())
 }
 
 /// Largest speed at which two bodies approach each other along an axis on which they stand apart or

@@ -5,6 +5,7 @@
 //! linear equation of state ([`EquationOfState`]) is also a general one, so that exact solutions
 //! treat all of them alike.
 
+use super::bracket::{Bracket, MOST_STEPS};
 use super::linear::EquationOfState;
 
 /// Pressure, energy derivative and sound speed of an equation of state at one state.
@@ -138,9 +139,6 @@ impl<E: GeneralEos> HistoryEos for E {
     }
 }
 
-/// Maximum number of Newton steps; the search then returns its current value.
-const MOST_STEPS: usize = 80;
-
 /// Solves e + `weight` p(e) = `known` for the energy e [J/kg], starting from `guess` [J/kg], and
 /// returns e and the state there. `weight` is a change of specific volume [m3/kg], `known` an
 /// energy [J/kg]. `at` gives the state at an energy and the fixed volume.
@@ -155,7 +153,7 @@ pub fn energy_of_work<T: Copy>(
     weight: f64,
     guess: f64,
 ) -> (f64, EosPoint, T) {
-    let (mut below, mut above) = (f64::NEG_INFINITY, f64::INFINITY);
+    let mut bracket = Bracket { ends: [f64::NEG_INFINITY, f64::INFINITY] };
     let mut e = guess;
     let mut found = at(e);
     for _ in 0..MOST_STEPS {
@@ -166,20 +164,7 @@ pub fn energy_of_work<T: Copy>(
         if !(rest.abs() > 0.0 && rest.is_finite()) {
             break;
         }
-        if rest > 0.0 {
-            above = e;
-        } else {
-            below = e;
-        }
-        let step = e - rest / slope;
-        let next = if step > below && step < above {
-            step
-        } else if below.is_finite() && above.is_finite() {
-            0.5 * (below + above)
-        } else {
-            // the slope has the wrong sign: move away from the current point
-            e - rest
-        };
+        let next = bracket.next(e, rest, slope);
         let moved = (next - e).abs();
         let rounding = f64::EPSILON * (known.abs() + work.abs());
         e = next;

@@ -5,6 +5,7 @@
 //! Fluids of other forms are in [`general`]. [`elastic`] solids carry shear.
 
 mod bicubic;
+mod bracket;
 pub mod elastic;
 #[cfg(test)]
 mod forwarding;

@@ -22,6 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use serde_json::json;
 
+use super::bracket::{Bracket, MOST_STEPS};
 use super::{
     Eos, EosContext, EosParameters, EosPoint, EosVisitor, EquationOfState, GeneralEos, HistoryEos,
     Made, PlainEosVisitor,
@@ -68,9 +69,6 @@ impl<E: GeneralEos> Porous<E> {
     }
 }
 
-/// Maximum number of steps of the search for the distension; bisection alone would need fewer.
-const MOST_STEPS: usize = 100;
-
 impl<E: GeneralEos> HistoryEos for Porous<E> {
     fn reference_density(&self) -> f64 {
         self.solid.reference_density() / self.distension
@@ -91,7 +89,7 @@ impl<E: GeneralEos> HistoryEos for Porous<E> {
         }
         // p(alpha(r)) - compaction(r) grows with r from below zero to above it
         let range = self.full_compaction_pressure - self.elastic_pressure;
-        let (mut below, mut above, mut r) = (0.0, most, most);
+        let (mut bracket, mut r) = (Bracket { ends: [0.0, most] }, most);
         let mut now = (held, 0.0);
         let mut slope = 0.0;
         for _ in 0..MOST_STEPS {
@@ -100,13 +98,7 @@ impl<E: GeneralEos> HistoryEos for Porous<E> {
             slope = 2.0 * pores * r * by_alpha + range;
             let rest = point.pressure - self.compaction(r);
             now = (point, alpha);
-            if rest > 0.0 {
-                above = r;
-            } else {
-                below = r;
-            }
-            let step = r - rest / slope;
-            let next = if step > below && step < above { step } else { 0.5 * (below + above) };
+            let next = bracket.next(r, rest, slope);
             if rest == 0.0 || (next - r).abs() <= f64::EPSILON * r {
                 break;
             }
