@@ -9,6 +9,8 @@ use super::text;
 const EM: f64 = 19.0;
 const ROW: f64 = 30.0;
 const SWATCH: f64 = 46.0;
+/// Height of the ground of a swatch.
+const SWATCH_HEIGHT: f64 = 20.0;
 const SPACE: f64 = 34.0;
 
 /// Draws names with their styles from `top` downwards between `left` and `right`; returns the lower
@@ -40,7 +42,8 @@ pub(super) fn draw(
 fn swatch(canvas: &mut Canvas, style: &Style, x: f64, y: f64) {
     let end = x + SWATCH;
     if style.outlined {
-        let rect = Rect { left: x, top: y - 10.0, right: end, bottom: y + 10.0 };
+        let half = 0.5 * SWATCH_HEIGHT;
+        let rect = Rect { left: x, top: y - half, right: end, bottom: y + half };
         canvas.fill(rect, DARKEST, 1.0);
     }
     if let Some(stroke) = style.stroke {
@@ -49,10 +52,12 @@ fn swatch(canvas: &mut Canvas, style: &Style, x: f64, y: f64) {
         canvas.line(&[(x + inset, y), (end - inset, y)], style.width, style.color, stroke);
     }
     if let Some(radius) = style.mark {
-        let places: &[f64] = if style.stroke.is_some() { &[0.5] } else { &[0.2, 0.5, 0.8] };
+        // small points stand for a cloud, a large mark for itself
+        let is_cloud = style.stroke.is_none() && radius < 0.3 * SWATCH_HEIGHT;
+        let places: &[f64] = if is_cloud { &[0.2, 0.5, 0.8] } else { &[0.5] };
         for share in places {
             let at = (x + share * SWATCH, y);
-            canvas.mark(at, radius, style);
+            canvas.mark(at, radius.min(0.4 * SWATCH_HEIGHT), style);
         }
     }
 }
