@@ -174,13 +174,21 @@ mod tests {
 
     #[test]
     fn a_guess_is_wider() {
-        let laws = Laws::shipped();
-        let guess = laws.guess;
-        assert!(guess.plateau_pressure >= 1.0 && guess.arrival_time >= 1.0 && guess.l1 >= 1.0);
+        let shipped = Laws::shipped().guess;
+        assert!(
+            shipped.plateau_pressure >= 1.0 && shipped.arrival_time >= 1.0 && shipped.l1 >= 1.0
+        );
+        let guess = GuessFactors { plateau_pressure: 2.0, arrival_time: 3.0, l1: 4.0 };
+        let laws = Laws { guess, ..Laws::shipped() };
         for family in SchemeFamily::ALL {
-            let [inside, outside] = [EstimateBasis::Calibrated, EstimateBasis::Guess]
-                .map(|basis| laws.of(family, basis).plateau_pressure.0[0].factor);
-            assert!((outside / inside - guess.plateau_pressure).abs() < 1e-12);
+            let [inside, outside] =
+                [EstimateBasis::Calibrated, EstimateBasis::Guess].map(|b| laws.of(family, b));
+            let ratio = |of: fn(&FamilyLaws) -> &QuantityLaws| {
+                of(&outside).0[0].factor / of(&inside).0[0].factor
+            };
+            assert!((ratio(|laws| &laws.plateau_pressure) - 2.0).abs() < 1e-12);
+            assert!((ratio(|laws| &laws.arrival_time) - 3.0).abs() < 1e-12);
+            assert!((ratio(|laws| &laws.l1) - 4.0).abs() < 1e-12);
         }
     }
 }
