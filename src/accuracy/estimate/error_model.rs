@@ -4,7 +4,7 @@
 //! a high quantile of ln|error| (Koenker & Bassett 1978), so that uncertain cases get a wider
 //! interval. The factor makes the intervals hold the intended share of cases that were left out of
 //! the fit (conformal calibration, Vovk et al. 2005). Each family of schemes has models of its own.
-//! Scenes outside of the fitted range get wider intervals.
+//! Outside of the fitted range a further factor of at least 1 makes them hold 90 % of the cases.
 //! `scripts/calibrate_estimates.sh` repeats the fit and writes the file of [`DATA`].
 
 use std::collections::BTreeMap;

@@ -9,7 +9,7 @@
 //! reported if the waves have left none of sufficient length ([`impact_waves`]).
 //!
 //! Only for scenes on a line. The models were fitted on impacts of fluids ([`range`]); elsewhere
-//! the intervals are wider and the estimate is marked as a guess.
+//! the estimate is marked as a guess, and its intervals hold in fewer cases.
 
 pub mod arrival;
 pub mod coarse_runs;
