@@ -1,4 +1,5 @@
-//! Fits a law by quantile regression of the logarithms (Koenker & Bassett 1978).
+//! Fits a law by quantile regression of the logarithms (Koenker & Bassett 1978). The factor follows
+//! from cases that were left out of the regression (cross-conformal calibration, Vovk 2015).
 
 use flyer_mpm::accuracy::estimate::error_model::{LEAST, Law};
 use nalgebra::{DMatrix, DVector};
@@ -9,25 +10,53 @@ use crate::estimates::CheckedEstimate;
 const FLOOR: f64 = 1e-8;
 /// Rounds of reweighting.
 const ROUNDS: usize = 200;
-/// The law of this evidence, with intervals that hold `share` of the cases, times a margin;
-/// none where too few have it.
-pub fn law(
-    estimates: &[CheckedEstimate],
-    evidence: &[&str],
-    share: f64,
-    margin: f64,
-) -> Option<Law> {
-    let usable: Vec<&CheckedEstimate> =
-        estimates.iter().filter(|t| evidence.iter().all(|e| t.evidence.contains_key(*e))).collect();
+/// Parts into which the cases are divided; each part is left out of one regression.
+const PARTS: usize = 10;
+
+/// The law with the narrowest intervals of those of several sets of evidence, with intervals that hold
+/// `share` of cases that are left out of the fit; `None` if too few cases have the evidence.
+pub fn narrowest(all: &[&CheckedEstimate], sets: &[&[&str]], share: f64) -> Option<Law> {
+    let laws = sets.iter().filter_map(|evidence| law(all, evidence, share));
+    laws.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(law, _)| law)
+}
+
+/// The law of this evidence, with the median of half-width over error in cases that are left out of
+/// the fit. No two cases have the same scheme, and few the same materials, so that the cases left out
+/// are of other schemes and materials.
+pub fn law(all: &[&CheckedEstimate], evidence: &[&str], share: f64) -> Option<(Law, f64)> {
+    let has = |t: &&CheckedEstimate| evidence.iter().all(|e| t.evidence.contains_key(*e));
+    let usable: Vec<&CheckedEstimate> = all.iter().copied().filter(has).collect();
     if usable.len() < 12 * (evidence.len() + 1) {
         return None;
     }
-    Some(with_factor(weights(&usable, evidence, share), evidence, margin, usable.len()))
+    let of = |weights, factor| Law {
+        evidence: evidence.iter().map(|e| e.to_string()).collect(),
+        weights,
+        factor,
+        cases: usable.len(),
+    };
+    let mut scores = Vec::new();
+    for part in 0..PARTS {
+        let numbered = usable.iter().enumerate();
+        let kept: Vec<&CheckedEstimate> =
+            numbered.clone().filter(|(k, _)| k % PARTS != part).map(|(_, t)| *t).collect();
+        let law = of(weights(&kept, evidence, share), 1.0);
+        let left_out = numbered.filter(|(k, _)| k % PARTS == part).map(|(_, t)| *t);
+        scores.extend(left_out.filter_map(|t| Some(size(t) / law.size(&t.evidence)?)));
+    }
+    // the quantile of finitely many scores that holds the share of further cases
+    let n = scores.len() as f64;
+    let factor = quantile(scores.iter().copied(), (share * (n + 1.0) / n).min(1.0));
+    let ratio = factor / quantile(scores.into_iter(), 0.5);
+    Some((of(weights(&usable, evidence, share), factor), ratio))
 }
 
-fn with_factor(weights: Vec<f64>, evidence: &[&str], factor: f64, cases: usize) -> Law {
-    let evidence = evidence.iter().map(|e| e.to_string()).collect();
-    Law { evidence, weights, factor, cases }
+/// The smallest of the values that `share` of them do not exceed; NaN without values.
+pub fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
+    let mut all: Vec<f64> = values.collect();
+    all.sort_by(f64::total_cmp);
+    let at = ((share * all.len() as f64).ceil() as usize).clamp(1, all.len().max(1));
+    all.get(at - 1).copied().unwrap_or(f64::NAN)
 }
 
 /// True error in the evidence's unit.

@@ -22,7 +22,7 @@ pub fn draw(all: &[Vec<CheckedEstimate>], stem: &Path) -> Result<(), PictureErro
             let (x, y): (Vec<f64>, Vec<f64>) = of.unzip();
             Points::new(x, y)
         };
-        let (cases, held, median) = judge(estimates);
+        let of = judge(estimates);
         let all: Vec<f64> = [points(true), points(false)].into_iter().flat_map(|p| p.x).collect();
         let low = all.iter().copied().fold(f64::INFINITY, f64::min);
         let high = all.iter().copied().fold(0.0, f64::max);
@@ -32,7 +32,12 @@ pub fn draw(all: &[Vec<CheckedEstimate>], stem: &Path) -> Result<(), PictureErro
             .series(Series::new("holds the truth", points(true), mark(Color::palette(0))))
             .series(Series::new("does not", points(false), mark(Color::RED)))
             .series(Series::new("half-width = error", Points::new([low, high], [low, high]), equal))
-            .note(format!("{cases} cases, {:.1} % held, median ratio {median:.1}", 100.0 * held));
+            .note(format!(
+                "{} cases, {:.1} % held, median ratio {:.1}",
+                of.cases,
+                100.0 * of.held,
+                of.ratio
+            ));
         figure = figure.panel(panel);
     }
     draw_figure(&figure, stem)?;

@@ -7,20 +7,31 @@ use std::time::Instant;
 
 use decomp::Serial;
 use flyer_mpm::accuracy::estimate::indicators::Evidence;
+use flyer_mpm::accuracy::estimate::{
+    EstimateBasis, ImpactWaves, LEAST_PLATEAU, PlateauLeft, SchemeFamily,
+};
 use flyer_mpm::driver::output::summary::Summary;
 use flyer_mpm::driver::{Beginning, Options, run};
+use serde::{Deserialize, Serialize};
 
-use super::random_impacts::{Random, RandomImpact, impact};
+use super::random::Random;
+use super::random_impacts::{Draw, RandomImpact, impact};
 
 /// Names of the estimated quantities.
 pub const QUANTITIES: [&str; 3] = ["plateau pressure", "arrival time", "L1"];
 
 /// The estimate of one quantity in one impact, with its true error.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(dead_code, reason = "each program uses a part")]
 pub struct CheckedEstimate {
     /// The impact, in words.
     pub name: String,
+    /// Speed of the flyer \[m/s\].
+    pub speed: f64,
+    /// Family of the scheme.
+    pub family: SchemeFamily,
+    /// Basis of the estimate.
+    pub basis: EstimateBasis,
     /// The evidence.
     pub evidence: Evidence,
     /// True size of the error, in the unit of the half-width.
@@ -29,20 +40,36 @@ pub struct CheckedEstimate {
     pub half_width: Option<f64>,
     /// What sizes are fractions of.
     pub unit: f64,
-    /// The error in cells, of L1 and arrivals; over the plateau's length in cells, of its pressure.
-    pub in_cells: f64,
+    /// Error relative to the exact value.
+    pub relative: f64,
+    /// Length that scales the error \[cells\]: of the plateau, of the way to the position, of the
+    /// pulse.
+    pub cells: f64,
+    /// Exact pressure behind the shock over density times the square of the sound speed.
+    pub strength: f64,
 }
 
-/// Runs `count` impacts on `threads` threads; the estimates by quantity. Impacts
-/// that cannot be run to their end are reported and left out.
-pub fn gather(
-    seed: u64,
-    materials: &[&str],
-    count: usize,
-    threads: usize,
-) -> [Vec<CheckedEstimate>; 3] {
+/// Estimates of some impacts.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[allow(dead_code, reason = "each program uses a part")]
+pub struct Gathered {
+    /// One list per quantity.
+    pub estimates: [Vec<CheckedEstimate>; 3],
+    /// Profiles with a plateau of at least the least reported length.
+    pub plateaus: usize,
+    /// Those of them of which no plateau was reported.
+    pub abstained: usize,
+    /// Profiles in which a plateau was reported that is not there.
+    pub false_plateaus: usize,
+    /// Impacts that could not be run to their end.
+    pub failed: usize,
+}
+
+/// Runs `count` impacts of `draw` on `threads` threads. Impacts that cannot be run to their end are
+/// reported and left out.
+pub fn gather(seed: u64, draw: &Draw<'_>, count: usize, threads: usize) -> Gathered {
     let mut random = Random::new(seed);
-    let impacts: Vec<RandomImpact> = (0..count).map(|_| impact(&mut random, materials)).collect();
+    let impacts: Vec<RandomImpact> = (0..count).map(|_| impact(&mut random, draw)).collect();
     let (next, done) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     let home = tempfile::tempdir().expect("a folder for the runs");
     std::thread::scope(|scope| {
@@ -59,11 +86,9 @@ pub fn gather(
     });
     let mut done = done.into_inner().expect("whole");
     done.sort_by_key(|(k, _)| *k);
-    let mut all: [Vec<CheckedEstimate>; 3] = Default::default();
+    let mut all = Gathered { failed: count - done.len(), ..Gathered::default() };
     for (k, summary) in &done {
-        for (quantity, one) in checked_estimates(&impacts[*k].name, summary) {
-            all[quantity].push(one);
-        }
+        add(&mut all, &impacts[*k], summary);
     }
     all
 }
@@ -96,58 +121,98 @@ fn once(impact: &RandomImpact, folder: &Path) -> Result<Summary, String> {
     summary
 }
 
-/// The estimates of a run, by number of the quantity.
-fn checked_estimates(name: &str, summary: &Summary) -> Vec<(usize, CheckedEstimate)> {
-    let mut all = Vec::new();
-    let Some(estimate) = &summary.error_estimate else { return all };
-    let one = |evidence: &Evidence, error, half_width, unit, in_cells| CheckedEstimate {
-        name: name.to_string(),
+/// Adds the estimates of a run.
+fn add(all: &mut Gathered, impact: &RandomImpact, summary: &Summary) {
+    let Some(estimate) = &summary.error_estimate else { return };
+    let scene = impact.checked().expect("it has been run");
+    let body = scene.estimated_body().expect("it has been estimated");
+    let waves = ImpactWaves::new(&scene, body).expect("a plain impact");
+    let h = scene.cell_size[0];
+    let cell_time = scene.scene.time.end / summary.steps as f64 / scene.scene.time.courant;
+    let stiffness = scene.material_of(body).density * (h / cell_time).powi(2);
+    let one = |basis, evidence: &Evidence, error, half_width, unit| CheckedEstimate {
+        name: impact.name.clone(),
+        speed: impact.speed,
+        family: SchemeFamily::of(&scene.scene.method),
+        basis,
         evidence: evidence.clone(),
         error,
         half_width,
         unit,
-        in_cells,
+        relative: error,
+        cells: f64::NAN,
+        strength: waves.release.states[0].p / stiffness,
     };
-    let h = summary.scene.pointer("/domain/cell_size").and_then(|v| v.as_f64());
-    let h = h.unwrap_or(f64::NAN);
     for (profile, scored) in estimate.profiles.iter().zip(&summary.profiles) {
-        if let Some(bounded) = &profile.plateau_pressure
+        let length = match waves.plateau(profile.time) {
+            PlateauLeft::Length(length) => length / h,
+            _ => 0.0,
+        };
+        let is_long = length >= LEAST_PLATEAU;
+        let told = profile.plateau_pressure.as_ref();
+        all.plateaus += usize::from(is_long);
+        all.abstained += usize::from(is_long && told.is_none());
+        all.false_plateaus += usize::from(!is_long && told.is_some());
+        if let Some(bounded) = told
             && let Some(exact) = bounded.exact
         {
             let error = (bounded.value - exact).abs();
-            let cells = bounded.evidence.get("cells").copied().unwrap_or(f64::NAN);
-            let relative = error / bounded.value * cells;
-            let width = bounded.half_width;
-            all.push((0, one(&bounded.evidence, error, width, bounded.value, relative)));
+            let (width, unit) = (bounded.half_width, bounded.value);
+            let checked = one(profile.basis, &bounded.evidence, error, width, unit);
+            let relative = error / exact;
+            all.estimates[0].push(CheckedEstimate { relative, cells: length, ..checked });
         }
         if let Some(exact) = profile.l1.exact {
-            let cells = scored.error("e1_cells").unwrap_or(f64::NAN);
-            all.push((2, one(&profile.l1.evidence, exact, profile.l1.half_width, 1.0, cells)));
+            let l1 = &profile.l1;
+            let checked = one(profile.basis, &l1.evidence, exact, l1.half_width, 1.0);
+            let cells = scored.error("e1_cells").unwrap_or(f64::NAN) / exact;
+            all.estimates[2].push(CheckedEstimate { cells, ..checked });
         }
     }
-    let courant = summary.scene.pointer("/time/courant").and_then(|v| v.as_f64()).unwrap_or(0.4);
-    let end = summary.scene.pointer("/time/end").and_then(|v| v.as_f64()).unwrap_or(f64::NAN);
-    let cell_time = end / summary.steps as f64 / courant;
     for arrival in &estimate.arrivals {
         if let Some(bounded) = &arrival.time
             && let Some(exact) = bounded.exact
         {
             let error = (bounded.value - exact).abs();
-            let cells = error * arrival.at / exact / h;
-            let width = bounded.half_width;
-            all.push((1, one(&bounded.evidence, error, width, cell_time, cells)));
+            let checked =
+                one(arrival.basis, &bounded.evidence, error, bounded.half_width, cell_time);
+            let (relative, cells) = (error / exact, arrival.at / h);
+            all.estimates[1].push(CheckedEstimate { relative, cells, ..checked });
         }
     }
-    all
 }
 
-/// Number of estimates, share of intervals that contain the true error, the median of half-width over error.
-pub fn judge(all: &[CheckedEstimate]) -> (usize, f64, f64) {
+/// How often intervals contained the true error, and how wide they were.
+#[derive(Clone, Copy, Debug)]
+#[allow(dead_code, reason = "each program uses a part")]
+pub struct Judgement {
+    /// Number of estimates.
+    pub cases: usize,
+    /// Share of intervals that contain the true error.
+    pub held: f64,
+    /// Lower end of the 95 % confidence interval of this share (Wilson 1927).
+    pub held_at_least: f64,
+    /// Median of half-width over error.
+    pub ratio: f64,
+}
+
+/// Judges the estimates that have an interval.
+pub fn judge<'a>(all: impl IntoIterator<Item = &'a CheckedEstimate>) -> Judgement {
     let estimates: Vec<(f64, f64)> =
-        all.iter().filter_map(|t| Some((t.half_width?, t.error))).collect();
+        all.into_iter().filter_map(|t| Some((t.half_width?, t.error))).collect();
     let held = estimates.iter().filter(|(width, error)| error <= width).count();
     let mut ratios: Vec<f64> = estimates.iter().map(|(width, error)| width / error).collect();
     ratios.sort_by(f64::total_cmp);
-    let median = ratios.get(ratios.len() / 2).copied().unwrap_or(f64::NAN);
-    (estimates.len(), held as f64 / estimates.len().max(1) as f64, median)
+    let ratio = ratios.get(ratios.len() / 2).copied().unwrap_or(f64::NAN);
+    let n = estimates.len().max(1) as f64;
+    let share = held as f64 / n;
+    Judgement { cases: estimates.len(), held: share, held_at_least: lower_end(share, n), ratio }
+}
+
+/// Lower end of the 95 % confidence interval of a share of `n` cases (Wilson 1927).
+fn lower_end(share: f64, n: f64) -> f64 {
+    let z = 1.96;
+    let middle = share + z * z / (2.0 * n);
+    let half = z * (share * (1.0 - share) / n + z * z / (4.0 * n * n)).sqrt();
+    (middle - half) / (1.0 + z * z / n)
 }

@@ -1,4 +1,5 @@
-//! Random plate impacts: materials of the library, speeds, thicknesses, schemes, cell sizes.
+//! Random plate impacts: materials, speeds, thicknesses, schemes, cell sizes, position of the
+//! interface on the grid.
 
 use flyer_mpm::accuracy::estimate::FittedRange;
 use flyer_mpm::accuracy::plan;
@@ -9,47 +10,15 @@ use flyer_mpm::material::MieGruneisen;
 use flyer_mpm::scene::CheckedScene;
 use serde_json::{Value, json};
 
-/// Numbers that look random and are the same everywhere (Steele, Lea & Flood 2014, SplitMix64).
-pub struct Random(u64);
+use super::random::Random;
+use super::random_schemes::{self, Schemes};
 
-impl Random {
-    /// Those of a seed.
-    pub fn new(seed: u64) -> Random {
-        Random(seed)
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// Evenly between two numbers.
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn log_between(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
-    }
-
-    /// An integer below `limit`.
-    pub fn below(&mut self, limit: u64) -> u64 {
-        self.next() % limit
-    }
-
-    /// One of some.
-    pub fn one<'a, T>(&mut self, of: &'a [T]) -> &'a T {
-        &of[self.below(of.len() as u64) as usize]
-    }
-}
-
-/// Materials to which laws are fitted, and materials with which they are compared.
+/// Library materials of the fit.
 #[allow(dead_code, reason = "each program uses a part")]
 pub const FITTED: [&str; 7] =
     ["copper", "aluminium_2024", "tantalum", "steel_304", "lead", "pmma", "nickel"];
-/// No material is in both.
+/// Library materials with which the error models are compared. No material is in both lists.
+#[allow(dead_code, reason = "each program uses a part")]
 pub const HELD_OUT: [&str; 8] = [
     "gold",
     "aluminium_6061",
@@ -61,41 +30,61 @@ pub const HELD_OUT: [&str; 8] = [
     "steel_4340",
 ];
 
+/// Density of the materials of the fit \[kg/m3\].
+const DENSITY: [f64; 2] = [900.0, 20_000.0];
+/// Their bulk sound speed \[m/s\].
+const C0: [f64; 2] = [1500.0, 8000.0];
+/// Their slope of the Us-up line.
+const SLOPE: [f64; 2] = [0.75, 2.0];
+/// Their Grueneisen coefficient.
+const GAMMA0: [f64; 2] = [0.5, 3.0];
 /// Speeds of the impacts \[m/s\].
-const SPEED: [f64; 2] = [300.0, 3000.0];
+const SPEED: [f64; 2] = [100.0, 5000.0];
 /// Cells in a flyer.
-const FLYER_CELLS: [f64; 2] = [25.0, 60.0];
+const FLYER_CELLS: [f64; 2] = [10.0, 120.0];
 /// End of the run over the time at which the release from the flyer's rear reaches the interface.
-const DURATION: [f64; 2] = [0.6, 3.0];
+const DURATION: [f64; 2] = [0.6, 4.0];
 /// Place of the arrival over the way of the shock to the end.
 const PLACE: [f64; 2] = [0.3, 0.8];
+/// Most cells that the shock crosses, which limits the cost of a run.
+const MOST_WAY: f64 = 800.0;
 
-/// The range of the impacts of all these materials.
+/// What impacts are drawn from.
+#[derive(Clone, Copy, Debug)]
+pub struct Draw<'a> {
+    /// Names of library materials.
+    pub library: &'a [&'a str],
+    /// Share of bodies of a random material that no library has.
+    pub invented: f64,
+    /// Schemes.
+    pub schemes: Schemes,
+    /// Whether speed or cells are outside of the range of the fit.
+    pub beyond: bool,
+}
+
+/// The range of the impacts of the fit.
 #[allow(dead_code, reason = "each program uses a part")]
 pub fn range() -> FittedRange {
-    let all: Vec<MieGruneisen> =
-        FITTED.iter().chain(&HELD_OUT).map(|name| material(name)).collect();
-    let ends = |of: fn(&MieGruneisen) -> f64| {
-        let values = || all.iter().map(of);
-        [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
-    };
     FittedRange {
-        density: ends(|m| m.rho0),
-        c0: ends(|m| m.c0),
-        s: ends(|m| m.s),
-        gamma0: ends(|m| m.gamma0),
+        density: DENSITY,
+        c0: C0,
+        s: SLOPE,
+        gamma0: GAMMA0,
         speed: SPEED,
         flyer_cells: FLYER_CELLS,
         duration: DURATION,
         place: PLACE,
-        schemes: plan::schemes().into_iter().map(|scheme| scheme.name).collect(),
+        schemes: random_schemes::range(),
     }
 }
 
 /// A random impact.
+#[derive(Clone, Debug)]
 pub struct RandomImpact {
     /// What it is, in words.
     pub name: String,
+    /// Speed of the flyer \[m/s\].
+    pub speed: f64,
     /// Its scene.
     pub scene: Value,
 }
@@ -112,74 +101,100 @@ fn material(name: &str) -> MieGruneisen {
     }
 }
 
-/// The next impact of these materials that a scene can be made of, with any scheme of the
-/// planner's list.
-pub fn impact(random: &mut Random, materials: &[&str]) -> RandomImpact {
+/// A random material: its constants and its entry in a scene.
+fn any_material(random: &mut Random, draw: &Draw<'_>) -> (String, MieGruneisen, Value) {
+    if !random.chance(draw.invented) {
+        let name = *random.one(draw.library);
+        return (name.to_string(), material(name), json!({"library": name}));
+    }
+    let m = MieGruneisen {
+        rho0: random.log_between(DENSITY[0], DENSITY[1]),
+        c0: random.log_between(C0[0], C0[1]),
+        s: random.between(SLOPE[0], SLOPE[1]),
+        gamma0: random.between(GAMMA0[0], GAMMA0[1]),
+    };
+    let name = format!("{:.0} kg/m3 with c0 {:.0} m/s", m.rho0, m.c0);
+    let eos = json!({"type": "mie_gruneisen", "c0": m.c0, "s": m.s, "gamma0": m.gamma0});
+    (name, m, json!({"density": m.rho0, "eos": eos}))
+}
+
+/// The next impact that a scene can be made of.
+pub fn impact(random: &mut Random, draw: &Draw<'_>) -> RandomImpact {
     loop {
-        if let Some(impact) = attempt(random, materials) {
+        if let Some(impact) = attempt(random, draw) {
             return impact;
         }
     }
 }
 
-fn attempt(random: &mut Random, materials: &[&str]) -> Option<RandomImpact> {
-    let (flyer, target) = (*random.one(materials), *random.one(materials));
-    let speed = random.log_between(SPEED[0], SPEED[1]).round();
+/// Speed and cells in the flyer.
+fn speed_and_cells(random: &mut Random, draw: &Draw<'_>) -> [f64; 2] {
+    let speed = random.log_between(SPEED[0], SPEED[1]);
+    let cells = random.log_between(FLYER_CELLS[0], FLYER_CELLS[1]);
+    // an unusual scheme is outside already
+    if !draw.beyond || draw.schemes == Schemes::Unusual {
+        return [speed, cells];
+    }
+    match random.below(4) {
+        0 => [random.between(SPEED[1] + 1.0, 7000.0), cells],
+        1 => [random.log_between(50.0, SPEED[0] - 1.0), cells],
+        2 => [speed, random.between(5.0, FLYER_CELLS[0] - 1.0)],
+        _ => [speed, random.between(FLYER_CELLS[1] + 1.0, 160.0)],
+    }
+}
+
+fn attempt(random: &mut Random, draw: &Draw<'_>) -> Option<RandomImpact> {
+    let (flyer, f, flyer_entry) = any_material(random, draw);
+    let (target, t, target_entry) = any_material(random, draw);
+    let [speed, cells] = speed_and_cells(random, draw);
+    let (speed, cells) = (speed.round(), cells.round());
     let thickness = random.between(0.2e-3, 1e-3);
-    let cells = random.between(FLYER_CELLS[0], FLYER_CELLS[1]).round();
-    let schemes = plan::schemes();
-    let scheme = random.one(&schemes);
-    let duration = random.between(DURATION[0], DURATION[1]);
+    let duration = random.log_between(DURATION[0], DURATION[1]);
     let place = random.between(PLACE[0], PLACE[1]);
-    let (f, t) = (material(flyer), material(target));
+    let offset = random.between(0.0, 1.0);
     let flyer_body = ImpactBody { material: f, lower: -thickness, upper: 0.0, velocity: speed };
     let target_body = ImpactBody { material: t, lower: 0.0, upper: 1.0, velocity: 0.0 };
     let release = Impact::new(flyer_body, target_body).ok()?.release(4).ok()?;
     let end = duration * release.head_time;
     let h = thickness / cells;
     let travel = release.target_shock * end;
+    if travel > MOST_WAY * h {
+        return None;
+    }
     let length = (1.15 * travel / h).ceil() * h;
     let margin = ((speed * end / h).ceil() + 20.0) * h;
-    let named = |name: &str| json!({"library": name});
     let mut names = serde_json::Map::new();
-    names.insert(flyer.into(), named(flyer));
-    names.insert(target.into(), named(target));
-    let body = |name: &str, material: &str, lower: f64, upper: f64, velocity: f64| {
-        json!({"name": name, "material": material, "box": {"lower": [lower], "upper": [upper]},
-               "velocity": [velocity], "particles_per_cell": [2]})
+    names.insert("of flyer".into(), flyer_entry);
+    names.insert("of target".into(), target_entry);
+    let body = |name: &str, lower: f64, upper: f64, velocity: f64| {
+        json!({"name": name, "material": format!("of {name}"), "velocity": [velocity],
+               "box": {"lower": [lower], "upper": [upper]}, "particles_per_cell": [2]})
     };
     let mut scene = plan::standard();
-    let title = format!("{flyer} on {target} at {speed} m/s, {}", scheme.name);
+    // the interface lies anywhere between two grid lines
+    let lower = -thickness - margin - offset * h;
+    let all = ((thickness + margin + length) / h + 12.0).round() * h;
     for (key, value) in [
-        ("title", json!(title)),
-        (
-            "domain",
-            json!({
-                "lower": [-thickness - margin],
-                "upper": [-thickness - margin + ((thickness + margin + length) / h + 10.0).round() * h],
-                "cell_size": h,
-            }),
-        ),
+        ("domain", json!({"lower": [lower], "upper": [lower + all], "cell_size": h})),
         ("time", json!({"end": end, "courant": 0.4})),
         ("materials", Value::Object(names)),
         (
             "bodies",
-            json!([
-                body("flyer", flyer, -thickness, 0.0, speed),
-                body("target", target, 0.0, length, 0.0),
-            ]),
+            json!([body("flyer", -thickness, 0.0, speed), body("target", 0.0, length, 0.0)]),
         ),
         ("output", json!({"pictures": false, "hdf5": false})),
         ("error_estimate", json!({"arrivals": [place * travel]})),
     ] {
         scene[key] = value;
     }
-    scheme.apply(&mut scene);
     // a flyer softer than its target leaves it
     if f.rho0 * f.c0 < t.rho0 * t.c0 {
         scene["contact"] = json!({"type": "frictionless"});
     }
-    let impact = RandomImpact { name: title, scene };
+    let scheme = random_schemes::apply(random, draw.schemes, &mut scene);
+    let name = format!("{flyer} on {target} at {speed} m/s, {cells} cells, {scheme}");
+    scene["title"] = json!(name);
+    let impact = RandomImpact { name, speed, scene };
     impact.checked().is_ok().then_some(impact)
 }
 

@@ -59,14 +59,14 @@ pub fn plan(args: &PlanArgs) -> Outcome<String> {
     };
     Ok(format!(
         "scheme     {}\ncells      {:.4e} m, {} particles a cell, Courant number {}\nerror      \
-         {} to expect, {} at most in 19 of 20 runs; wanted {}\n{guess}seconds    {:.3} of CPU, {:.3} of \
+         {} at most in 19 of 20 runs, {} in half of them; wanted {}\n{guess}seconds    {:.3} of CPU, {:.3} of \
          wall in the time loop on {} ranks (pilots took {:.2} s)\nscene      {}\n",
         plan.scheme,
         plan.cell_size,
         plan.particles_per_cell,
         plan.courant,
         percent(plan.error),
-        percent(plan.error_most),
+        percent(plan.error_median),
         percent(args.error),
         plan.cpu_seconds,
         plan.wall_seconds,

@@ -48,12 +48,12 @@ fn what_was_not_fitted_is_named_and_makes_a_guess() {
     plain["output"]["profiles"] = json!({"times": [1e-7, 1.5e-7]});
     for (path, value, word) in [
         ("/bodies", bodies, "bodies: 3"),
-        ("/bodies/0/velocity", json!([4000.0]), "bodies.flyer.velocity = 4000"),
-        ("/bodies/0/box/lower", json!([-2e-4]), "cells in body flyer = 20"),
+        ("/bodies/0/velocity", json!([7000.0]), "bodies.flyer.velocity = 7000"),
+        ("/bodies/0/box/lower", json!([-5e-5]), "cells in body flyer = 5"),
         ("/bodies/0/box", json!({"lower": [-6e-4], "upper": [-1e-4]}), "a gap"),
         ("/materials/aluminium/strength", strength, "materials.aluminium.strength"),
-        ("/materials/aluminium/density", json!(900.0), "materials.aluminium.density = 900"),
-        ("/artificial_viscosity/linear", json!(0.07), "artificial_viscosity"),
+        ("/materials/aluminium/density", json!(800.0), "materials.aluminium.density = 800"),
+        ("/artificial_viscosity/linear", json!(0.3), "artificial_viscosity.linear = 0.3"),
         ("/boundary", json!({"x_upper": "wall"}), "boundary.x_upper"),
         ("/error_estimate/arrivals", json!([1e-6]), "error_estimate.arrivals[0]"),
         // half of the time in which the release returns to the interface
@@ -73,6 +73,26 @@ fn what_was_not_fitted_is_named_and_makes_a_guess() {
         let late = if path == "/title" { "calibrated" } else { "guess" };
         let late = if path == "/error_estimate/arrivals" { "calibrated" } else { late };
         assert_eq!(estimate["profiles"][1]["basis"], late, "{word}");
+    }
+}
+
+#[test]
+fn no_plateau_is_reported_where_none_is_left() {
+    for (thickness, reason) in
+        [(1e-4, "the plateau is 15 cells long"), (4e-5, "has caught the shock at 1.394e-7 s")]
+    {
+        let mut thin = scene(json!({"body": "target"}));
+        thin["bodies"][0]["box"]["lower"] = json!([-thickness]);
+        let home = Home::with(&thin);
+        let text = one_line(&home.call(["scene.json"]).end().succeeded());
+        assert!(text.contains("no plateau;") && text.contains(reason), "{text}");
+        let estimate = home.results("output/scene").summary["error_estimate"].clone();
+        assert_eq!(estimate["profiles"][0]["plateau_pressure"], Value::Null, "{estimate}");
+        assert!(estimate["notes"].to_string().contains(reason), "{estimate}");
+        let plan = ["plan", "scene.json", "--quantity", "plateau_pressure", "--error", "1%"];
+        if thickness < 1e-4 {
+            home.call(plan).end().failed(&["no plateau pressure at 0.1500 us", reason]);
+        }
     }
 }
 

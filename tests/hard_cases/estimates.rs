@@ -141,9 +141,9 @@ fn fault(summary: &Summary) -> Option<String> {
     if let Some(wrong) = times.find(|b| !(0.0..=end).contains(&b.value)) {
         return Some(format!("an arrival outside of the run: {wrong:?}"));
     }
-    // these materials, lengths and schemes are not those of the fit
-    (estimate.basis != EstimateBasis::Guess || estimate.outside.is_empty())
-        .then(|| "no guess".into())
+    // a guess has its reasons
+    let guess = estimate.basis == EstimateBasis::Guess;
+    (guess == estimate.outside.is_empty()).then(|| "a guess without a reason".into())
 }
 
 #[test]

@@ -2,13 +2,18 @@
 //!
 //! The half-width is exp(w0 + sum of w_k ln(indicator_k)) times a factor. The weights are fitted to
 //! a high quantile of ln|error| (Koenker & Bassett 1978), so that uncertain cases get a wider
-//! interval. The factor is a margin for materials outside of the fit.
+//! interval. The factor makes the intervals hold the intended share of cases that were left out of
+//! the fit (conformal calibration, Vovk et al. 2005). Each family of schemes has models of its own.
+//! Outside of the fitted range a further factor of at least 1 makes them hold 90 % of the cases.
 //! `scripts/calibrate_estimates.sh` repeats the fit and writes the file of [`DATA`].
+
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
 use super::indicators::Evidence;
-use super::range::FittedRange;
+use super::range::{EstimateBasis, FittedRange};
+use super::scheme_family::SchemeFamily;
 
 /// The shipped error models.
 pub const DATA: &str = include_str!("laws.json");
@@ -35,14 +40,10 @@ pub struct Law {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct QuantityLaws(pub Vec<Law>);
 
-/// Error models of all quantities.
+/// Error models of all quantities of one family of schemes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Laws {
-    /// Origin of the fit.
-    pub source: String,
-    /// The range of impacts used for the fit and its validation.
-    pub fitted: FittedRange,
+pub struct FamilyLaws {
     /// Plateau pressure: relative error \[-\].
     pub plateau_pressure: QuantityLaws,
     /// Arrival time: error in sound transit times of a cell \[-\].
@@ -51,11 +52,57 @@ pub struct Laws {
     pub l1: QuantityLaws,
 }
 
+/// Factors on the half-widths of scenes outside of the fitted range \[-\].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GuessFactors {
+    /// Of the plateau pressure \[-\].
+    pub plateau_pressure: f64,
+    /// Of the arrival time \[-\].
+    pub arrival_time: f64,
+    /// Of the L1 of a profile \[-\].
+    pub l1: f64,
+}
+
+impl Default for GuessFactors {
+    fn default() -> GuessFactors {
+        GuessFactors { plateau_pressure: 1.0, arrival_time: 1.0, l1: 1.0 }
+    }
+}
+
+/// Error models of all families of schemes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Laws {
+    /// Origin of the fit.
+    pub source: String,
+    /// The range of impacts used for the fit and its validation.
+    pub fitted: FittedRange,
+    /// Error models by family.
+    pub families: BTreeMap<SchemeFamily, FamilyLaws>,
+    /// Factors on the half-widths outside of this range.
+    pub guess: GuessFactors,
+}
+
 impl Laws {
     /// The shipped error models.
     #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn shipped() -> Laws {
         serde_json::from_str(DATA).expect("the shipped laws are whole")
+    }
+
+    /// The error models of a family with the factors of a basis; empty models, which give no
+    /// half-width, if the family is not in the fit.
+    pub fn of(&self, family: SchemeFamily, basis: EstimateBasis) -> FamilyLaws {
+        let laws = self.families.get(&family).cloned().unwrap_or_default();
+        match basis {
+            EstimateBasis::Calibrated => laws,
+            EstimateBasis::Guess => FamilyLaws {
+                plateau_pressure: laws.plateau_pressure.widened(self.guess.plateau_pressure),
+                arrival_time: laws.arrival_time.widened(self.guess.arrival_time),
+                l1: laws.l1.widened(self.guess.l1),
+            },
+        }
     }
 }
 
@@ -76,6 +123,12 @@ impl QuantityLaws {
     /// [`Laws`]; `None` if there is no such model.
     pub fn half_width(&self, evidence: &Evidence) -> Option<f64> {
         self.0.iter().find_map(|law| Some(law.factor * law.size(evidence)?))
+    }
+
+    /// The same models with half-widths times `factor` \[-\].
+    fn widened(self, factor: f64) -> QuantityLaws {
+        let wider = |law: Law| Law { factor: factor * law.factor, ..law };
+        QuantityLaws(self.0.into_iter().map(wider).collect())
     }
 }
 
@@ -105,14 +158,37 @@ mod tests {
     }
 
     #[test]
-    fn the_shipped_laws_can_be_read() {
+    fn every_family_has_shipped_laws() {
         let laws = Laws::shipped();
-        for quantity in [&laws.plateau_pressure, &laws.arrival_time, &laws.l1] {
-            assert!(!quantity.0.is_empty());
-            for law in &quantity.0 {
-                assert_eq!(law.weights.len(), law.evidence.len() + 1);
-                assert!(law.factor > 0.0 && law.weights.iter().all(|w| w.is_finite()));
+        for family in SchemeFamily::ALL {
+            let of = laws.of(family, EstimateBasis::Calibrated);
+            for quantity in [&of.plateau_pressure, &of.arrival_time, &of.l1] {
+                assert!(!quantity.0.is_empty(), "{family:?}");
+                for law in &quantity.0 {
+                    assert_eq!(law.weights.len(), law.evidence.len() + 1);
+                    assert!(law.factor > 0.0 && law.weights.iter().all(|w| w.is_finite()));
+                }
             }
+        }
+    }
+
+    #[test]
+    fn a_guess_is_wider() {
+        let shipped = Laws::shipped().guess;
+        assert!(
+            shipped.plateau_pressure >= 1.0 && shipped.arrival_time >= 1.0 && shipped.l1 >= 1.0
+        );
+        let guess = GuessFactors { plateau_pressure: 2.0, arrival_time: 3.0, l1: 4.0 };
+        let laws = Laws { guess, ..Laws::shipped() };
+        for family in SchemeFamily::ALL {
+            let [inside, outside] =
+                [EstimateBasis::Calibrated, EstimateBasis::Guess].map(|b| laws.of(family, b));
+            let ratio = |of: fn(&FamilyLaws) -> &QuantityLaws| {
+                of(&outside).0[0].factor / of(&inside).0[0].factor
+            };
+            assert!((ratio(|laws| &laws.plateau_pressure) - 2.0).abs() < 1e-12);
+            assert!((ratio(|laws| &laws.arrival_time) - 3.0).abs() < 1e-12);
+            assert!((ratio(|laws| &laws.l1) - 4.0).abs() < 1e-12);
         }
     }
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use super::plateau::Plateau;
 use super::polyline::Polyline;
+use super::shock_state::ShockState;
 
 /// Indicators by name.
 pub type Evidence = BTreeMap<String, f64>;
@@ -14,9 +15,10 @@ fn named(pairs: impl IntoIterator<Item = (String, f64)>) -> Evidence {
 }
 
 /// Indicators of the plateau pressure \[-\], relative to it: `difference_2`, `difference_4` from
-/// the mean of the coarse runs over the same positions, `noise`, the length in `cells`, and the
-/// deviations from a level plateau `halves`, `wide`. `others` are the coarse runs with their cell
-/// sizes over `h` \[m\], the cell size of the scene.
+/// the mean of the coarse runs over the same positions, `noise`, the length in `cells`, the
+/// deviations from a level plateau `halves`, `wide`, and `spread`, the sum of all deviations with an
+/// eighth of `difference_4`, which no chance agreement of two runs makes small. `others` are the
+/// coarse runs with their cell sizes over `h` \[m\], the cell size of the scene.
 pub fn of_plateau(found: &Plateau, others: &[(f64, &Polyline)], h: f64) -> Evidence {
     let theirs = others.iter().filter_map(|(factor, line)| {
         let reach = found.reach.max(factor * h);
@@ -31,7 +33,32 @@ pub fn of_plateau(found: &Plateau, others: &[(f64, &Polyline)], h: f64) -> Evide
         ("halves", found.halves),
         ("wide", found.wide),
     ];
-    named(own.map(|(name, value)| (name.to_string(), value)).into_iter().chain(theirs))
+    let mut all =
+        named(own.map(|(name, value)| (name.to_string(), value)).into_iter().chain(theirs));
+    if let (Some(near), Some(far)) = (all.get("difference_2"), all.get("difference_4")) {
+        let spread = near + far / 8.0 + found.noise + found.halves + found.wide;
+        all.extend(named([("spread".to_string(), spread)]));
+    }
+    all
+}
+
+/// Indicators of the strength of a shock from the states ahead of and behind it, and the initial state
+/// of the body that strikes \[-\]. They hold for any equation of state:
+/// - `compression` 1 - v/v0 with the specific volume v, and `other_compression`, that of the other
+///   body by the jump condition 1 - v/v0 = rho0 (u - u0)^2/(p - p0);
+/// - `exp_compression`, `exp_other_compression`: their exponentials, since errors of strong shocks
+///   grow faster than a power of the compression.
+pub(super) fn of_shock([ahead, behind, other]: [Option<ShockState>; 3]) -> Evidence {
+    let (Some(ahead), Some(behind)) = (ahead, behind) else { return Evidence::new() };
+    let compression = 1.0 - ahead.density / behind.density;
+    let mut all = vec![("compression", compression), ("exp_compression", compression.exp())];
+    if let Some(other) = other {
+        let rise = behind.pressure - ahead.pressure;
+        let compression = other.density * (other.velocity - behind.velocity).powi(2) / rise;
+        all.push(("other_compression", compression));
+        all.push(("exp_other_compression", compression.min(1.0).exp()));
+    }
+    named(all.into_iter().map(|(name, value)| (name.to_string(), value)))
 }
 
 /// Indicators of a profile \[-\]: `difference_2`, `difference_4`, the relative L1 to the coarse
@@ -95,6 +122,39 @@ fn mean_size(a: f64, b: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn compressions_follow_from_the_jump_conditions() {
+        // u = 1, shock speed 4, density 1 ahead; the same material strikes with twice the velocity
+        let ahead = ShockState { density: 1.0, ..ShockState::default() };
+        let behind = ShockState { density: 4.0 / 3.0, velocity: 1.0, pressure: 4.0 };
+        let other = ShockState { density: 1.0, velocity: 2.0, pressure: 0.0 };
+        let both = of_shock([Some(ahead), Some(behind), Some(other)]);
+        for name in ["compression", "other_compression"] {
+            assert!((both[name] - 0.25).abs() < 1e-12, "{both:?}");
+            assert!((both[&format!("exp_{name}")].ln() - 0.25).abs() < 1e-12, "{both:?}");
+        }
+        assert_eq!(of_shock([Some(ahead), Some(behind), None]).len(), 2);
+        assert!(of_shock([None, Some(behind), Some(other)]).is_empty());
+    }
+
+    #[test]
+    fn the_spread_is_the_sum_of_all_deviations() {
+        let found = Plateau {
+            pressure: 2.0,
+            noise: 0.01,
+            cells: 20.0,
+            halves: 0.02,
+            wide: 0.03,
+            centre: 0.0,
+            reach: 4.0,
+        };
+        let level = |p: f64| -> Polyline { (-9..9).map(|k| (k as f64, p)).collect() };
+        let (near, far) = (level(2.2), level(2.8));
+        let both = of_plateau(&found, &[(2.0, &near), (4.0, &far)], 1.0);
+        assert!((both["spread"] - (0.1 + 0.05 + 0.06)).abs() < 1e-12, "{both:?}");
+        assert!(!of_plateau(&found, &[(2.0, &near)], 1.0).contains_key("spread"));
+    }
 
     #[test]
     fn distances_are_areas() {

@@ -21,8 +21,6 @@ pub struct Plateau {
     pub reach: f64,
 }
 
-/// Shortest plateau with an error estimate \[cells\]; a shorter one contains the foot of the fan.
-const LEAST: usize = 20;
 /// Cells behind the half height of the shock that belong to its rise and overshoot.
 const BEHIND: usize = 3;
 /// Cells of the window that gives the level behind the shock, and is then moved away from it.
@@ -53,18 +51,18 @@ fn from_ahead(mut cells: Polyline) -> Polyline {
     cells
 }
 
-/// The plateau behind the shock in the profile of a body; cells of size `h` \[m\]. `None` if the
-/// pressure is not level over 20 cells.
-pub fn find(line: &Polyline, h: f64) -> Option<Plateau> {
-    find_over(line, h, LEAST)
+/// Index of the first of the cells from ahead of the shock in which the pressure has half of its
+/// greatest value. `None` if no undisturbed material is ahead, so that no shock is visible.
+fn half_height(ahead: &Polyline) -> Option<usize> {
+    let peak = ahead.iter().map(|c| c.1).fold(0.0, f64::max);
+    ahead.iter().position(|c| c.1 >= 0.5 * peak).filter(|&half| half > 0)
 }
 
-/// The same as [`find`] with a minimum length of `least` cells of size `h` \[m\] instead of 20.
-pub fn find_over(line: &Polyline, h: f64, least: usize) -> Option<Plateau> {
+/// The plateau behind the shock in the profile of a body; cells of size `h` \[m\]. `None` if the
+/// pressure is not level over `least` cells.
+pub fn find(line: &Polyline, h: f64, least: usize) -> Option<Plateau> {
     let ahead = from_ahead(cells(line, h));
-    let peak = ahead.iter().map(|c| c.1).fold(0.0, f64::max);
-    // without undisturbed material ahead, no shock is visible
-    let half = ahead.iter().position(|c| c.1 >= 0.5 * peak).filter(|&half| half > 0)?;
+    let half = half_height(&ahead)?;
     let first = half + BEHIND;
     let mean = |from: usize| -> Option<f64> {
         let window = ahead.get(from..from + WINDOW)?;
@@ -82,7 +80,20 @@ pub fn find_over(line: &Polyline, h: f64, least: usize) -> Option<Plateau> {
     if to - from < least {
         return None;
     }
-    let (a, b) = (ahead[from].0, ahead[to].0);
+    between(line, [ahead[from].0, ahead[to].0], (to - from) as f64)
+}
+
+/// The plateau of a known `length` \[m\] behind the shock in the profile of a body; cells of size `h`
+/// \[m\]. `None` without a shock.
+pub fn of_length(line: &Polyline, h: f64, length: f64) -> Option<Plateau> {
+    let ahead = from_ahead(cells(line, h));
+    let shock = ahead[half_height(&ahead)?].0;
+    let direction = (ahead.last()?.0 - ahead.first()?.0).signum();
+    between(line, [shock, shock + direction * length], length / h)
+}
+
+/// The plateau between two positions \[m\].
+fn between(line: &Polyline, [a, b]: [f64; 2], cells: f64) -> Option<Plateau> {
     let (centre, reach) = (0.5 * (a + b), 0.2 * (b - a).abs());
     let inside: Vec<(f64, f64)> =
         line.iter().copied().filter(|q| (q.0 - centre).abs() <= reach).collect();
@@ -97,7 +108,7 @@ pub fn find_over(line: &Polyline, h: f64, least: usize) -> Option<Plateau> {
     let right = mean_of(&|d| d >= 0.0 && d <= reach);
     let halves = (left - right).abs() / pressure.abs();
     let wide = (mean_of(&|d| d.abs() <= 2.0 * reach) / pressure - 1.0).abs();
-    let found = Plateau { pressure, noise, cells: (to - from) as f64, centre, reach, halves, wide };
+    let found = Plateau { pressure, noise, cells, centre, reach, halves, wide };
     Some(found).filter(|p| p.pressure > 0.0)
 }
 
@@ -133,24 +144,39 @@ mod tests {
     fn a_plateau_is_found_from_either_side() {
         let line: Polyline =
             (0..200).map(|k| 0.25 + 0.5 * k as f64).map(|x| (x, pulse(x))).collect();
-        let found = find(&line, 1.0).unwrap();
+        let found = find(&line, 1.0, 20).unwrap();
         assert!((found.pressure - 5.0).abs() < 1e-12 && found.noise < 1e-12, "{found:?}");
         assert!((found.cells - 30.0).abs() < 4.0, "{found:?}");
         let turned: Polyline = line.iter().rev().map(|q| (-q.0, q.1)).collect();
-        assert!((find(&turned, 1.0).unwrap().pressure - 5.0).abs() < 1e-12);
+        assert!((find(&turned, 1.0, 20).unwrap().pressure - 5.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_plateau_of_known_length_is_measured_behind_the_shock() {
+        let line: Polyline =
+            (0..200).map(|k| 0.25 + 0.5 * k as f64).map(|x| (x, pulse(x))).collect();
+        let known = of_length(&line, 1.0, 30.0).unwrap();
+        assert!((known.pressure - 5.0).abs() < 1e-12 && known.cells == 30.0, "{known:?}");
+        assert!(
+            (known.centre - 55.0).abs() < 1.0 && (known.reach - 6.0).abs() < 1e-12,
+            "{known:?}"
+        );
+        let turned: Polyline = line.iter().rev().map(|q| (-q.0, q.1)).collect();
+        assert!((of_length(&turned, 1.0, 30.0).unwrap().centre + 55.0).abs() < 1.0);
+        assert_eq!(of_length(&Polyline::new(), 1.0, 30.0), None);
     }
 
     #[test]
     fn a_spike_has_no_plateau() {
         let line: Polyline =
             (0..100).map(|k| (k as f64, (5.0 - (k as f64 - 50.0).abs()).max(0.0))).collect();
-        assert_eq!(find(&line, 1.0), None);
-        assert_eq!(find(&Polyline::new(), 1.0), None);
+        assert_eq!(find(&line, 1.0, 20), None);
+        assert_eq!(find(&Polyline::new(), 1.0, 20), None);
     }
 
     #[test]
     fn a_level_body_without_a_shock_has_no_plateau() {
         let level: Polyline = (0..100).map(|k| (k as f64, 1e5)).collect();
-        assert_eq!(find(&level, 1.0), None);
+        assert_eq!(find(&level, 1.0, 20), None);
     }
 }

@@ -4,11 +4,12 @@
 //! program that draws the impacts. All inputs that the draw varies or holds fixed are checked.
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
 
-use crate::accuracy::plan::{PlannedScheme, schemes};
-use crate::accuracy::reference::impact_of;
-use crate::scene::{CheckedScene, FlyerImpact, Side};
+use super::fitted_schemes::FittedSchemes;
+use super::impact_waves::{ImpactWaves, PlateauLeft};
+use super::surroundings::surroundings;
+use super::within::check;
+use crate::scene::CheckedScene;
 
 /// Basis of an estimate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -43,8 +44,8 @@ pub struct FittedRange {
     pub duration: [f64; 2],
     /// Depth of an arrival position over the distance of the shock at the end of the run \[-\].
     pub place: [f64; 2],
-    /// Names of the schemes.
-    pub schemes: Vec<String>,
+    /// Schemes.
+    pub schemes: FittedSchemes,
 }
 
 /// Inputs of a scene outside of the range, one line each.
@@ -87,35 +88,10 @@ impl EstimateBasis {
     }
 }
 
-fn within(value: f64, [least, greatest]: [f64; 2]) -> bool {
-    // sizes in cells are quotients with rounding errors
-    (least * (1.0 - 1e-9)..=greatest * (1.0 + 1e-9)).contains(&value)
-}
-
-/// A line that names `what` if `value` is outside of `range`.
-fn check(what: impl Into<String>, value: f64, range: [f64; 2]) -> Option<String> {
-    let [least, greatest] = range;
-    let shown = (value * 1e6).round() / 1e6;
-    let text = || format!("{} = {shown}: fitted from {least} to {greatest}", what.into());
-    (!within(value, range)).then(text)
-}
-
 impl FittedRange {
     /// The inputs of a scene on a line that are outside of the range, for estimates of `body`.
     pub fn outside(&self, scene: &CheckedScene, body: usize) -> OutOfRange {
-        let mut found = self.outside_but_cells(scene, body);
-        if let [_, _] = scene.bodies[..] {
-            let flyer = &scene.bodies[1 - body];
-            let cells = (flyer.upper[0] - flyer.lower[0]) / scene.cell_size[0];
-            let what = format!("cells in body {}", scene.scene.bodies[1 - body].name);
-            found.scene.extend(check(what, cells, self.flyer_cells));
-        }
-        found
-    }
-
-    /// The same, without the cell size.
-    pub fn outside_but_cells(&self, scene: &CheckedScene, body: usize) -> OutOfRange {
-        let mut found = OutOfRange { scene: self.scheme(scene), ..OutOfRange::default() };
+        let mut found = OutOfRange { scene: self.schemes.outside(scene), ..OutOfRange::default() };
         found.scene.extend(surroundings(scene));
         for line in (0..scene.bodies.len()).flat_map(|b| self.material(scene, b)) {
             // both bodies may have the same material
@@ -123,24 +99,19 @@ impl FittedRange {
                 found.scene.push(line);
             }
         }
-        if scene.bodies.len() != 2 {
+        let [_, _] = scene.bodies[..] else {
             let count = scene.bodies.len();
             found.scene.push(format!("bodies: {count}: fitted on a flyer and a target"));
-        } else if let Err(line) = self.impact(scene, body, &mut found) {
+            return found;
+        };
+        if let Err(line) = self.impact(scene, body, &mut found) {
             found.scene.push(line);
         }
+        let flyer = &scene.bodies[1 - body];
+        let cells = (flyer.upper[0] - flyer.lower[0]) / scene.cell_size[0];
+        let what = format!("cells in body {}", scene.scene.bodies[1 - body].name);
+        found.scene.extend(check(what, cells, self.flyer_cells));
         found
-    }
-
-    /// Checks that method, viscosity, Courant number, particles per cell are of one fitted scheme.
-    fn scheme(&self, scene: &CheckedScene) -> Vec<String> {
-        let fitted = |s: &PlannedScheme| self.schemes.contains(&s.name) && is_of(scene, s);
-        if schemes().iter().any(fitted) {
-            return Vec::new();
-        }
-        let line = "method, artificial_viscosity, time.courant and particles_per_cell: not those \
-                    of one scheme that was fitted";
-        vec![line.into()]
     }
 
     /// Checks the material of a body and its initial state.
@@ -205,18 +176,15 @@ impl FittedRange {
             return Err(line);
         }
         // for other materials, no exact release time is available
-        let both = [0, 1].map(|b| scene.material_of(b));
-        if both.iter().any(|m| m.eos.straight(m.density).is_none()) {
-            return Ok(());
-        }
-        let impact = FlyerImpact { flyer: named(1 - body), target: named(body), front: None };
-        let release = impact_of(scene, &impact).and_then(|(impact, _)| impact.release(4));
-        let release = release.map_err(|error| format!("bodies: no plain impact: {error}"))?;
-        let way = target.upper[0] - target.lower[0];
+        let Some(waves) = ImpactWaves::new(scene, body) else {
+            let named = !found.scene.is_empty();
+            return if named { Ok(()) } else { Err("bodies: no plain impact".into()) };
+        };
+        let release = &waves.release;
         let profile = |(k, &t): (usize, &f64)| {
             let what = format!("output.profiles.times[{k}] over {:.4e} s", release.head_time);
             let late = || format!("output.profiles.times[{k}]: the shock has crossed the target");
-            let crossed = release.target_shock * t > way;
+            let crossed = waves.plateau(t) == PlateauLeft::Unknown;
             check(what, t / release.head_time, self.duration).or_else(|| crossed.then(late))
         };
         found.profiles = scene.profile_times.iter().enumerate().map(profile).collect();
@@ -231,41 +199,4 @@ impl FittedRange {
         found.arrivals = arrivals.enumerate().map(arrival).collect();
         Ok(())
     }
-}
-
-/// Sides, forces, contact and effects that the fit does not include.
-fn surroundings(scene: &CheckedScene) -> Vec<String> {
-    let [[lower, upper]] = scene.sides::<1>();
-    let contact = scene.scene.contact.is_some_and(|contact| {
-        contact.condition().is_none_or(|condition| condition.coefficient.is_some())
-    });
-    let all = [
-        ("boundary.x_lower", lower != Side::default()),
-        ("boundary.x_upper", upper != Side::default()),
-        ("boundary.temperature", scene.holds_temperature()),
-        ("body_force", scene.scene.body_force.is_some()),
-        ("contact", contact),
-    ];
-    let outside = all.into_iter().filter(|(_, is)| *is).map(|(key, _)| key);
-    let effects = scene.scene.effects.iter().filter(|(_, value)| !value.is_null());
-    let effects = effects.map(|(key, _)| key.as_str());
-    outside.chain(effects).map(|key| format!("{key}: not in the fit")).collect()
-}
-
-/// Whether a scene has the method, viscosity, Courant number and particles per cell of a scheme.
-fn is_of(scene: &CheckedScene, scheme: &PlannedScheme) -> bool {
-    let whole = &scene.scene;
-    let filled = whole
-        .bodies
-        .iter()
-        .all(|body| body.particles_per_cell.as_deref() == Some(&[scheme.particles_per_cell]));
-    // compare parsed values, so that a missing key equals its written default
-    let mut same = whole.clone();
-    let read = |key: &str| scheme.set.get(key).cloned().unwrap_or(Value::Null);
-    let method = serde_json::from_value(read("method"));
-    let viscosity = serde_json::from_value(read("artificial_viscosity"));
-    let (Ok(method), Ok(viscosity)) = (method, viscosity) else { return false };
-    (same.method, same.artificial_viscosity) = (method, viscosity);
-    let keys = |of: &crate::scene::Scene| json!([of.method, of.artificial_viscosity]);
-    filled && whole.time.courant == scheme.courant && keys(&same) == keys(whole)
 }

@@ -1,4 +1,5 @@
-//! Chooses the cheapest scheme and cell size that reach a target error.
+//! Chooses the cheapest scheme and cell size that reach a target error in 19 of 20 runs, within the
+//! range of the fit.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -7,7 +8,7 @@ use super::data::{Data, SchemeAccuracy};
 use super::pilot::{self, Pilot};
 use super::quantities::ErrorScale;
 use super::schemes::{PlannedScheme, schemes};
-use crate::accuracy::estimate::{EstimateBasis, Laws};
+use crate::accuracy::estimate::{EstimateBasis, ImpactWaves, Laws, PlateauLeft};
 use crate::input;
 use crate::scene::{CheckedScene, PlannedQuantity};
 
@@ -37,10 +38,10 @@ pub struct Plan {
     pub particles_per_cell: usize,
     /// Courant number \[-\].
     pub courant: f64,
-    /// Expected error \[-\].
+    /// Predicted error: 19 of 20 runs do not exceed it \[-\].
     pub error: f64,
-    /// Error that 19 of 20 runs do not exceed \[-\].
-    pub error_most: f64,
+    /// Error that half of the runs do not exceed \[-\].
+    pub error_median: f64,
     /// User CPU time of the time loop \[s\].
     pub cpu_seconds: f64,
     /// Wall time of the time loop \[s\].
@@ -63,7 +64,7 @@ pub enum PlanError {
     Scene(String),
     /// The target cannot be reached; with the smallest error that can.
     #[error(
-        "an error of {} cannot be had within {budget:.3} s of wall time; the best is {}, with {scheme} on cells of {cell_size:.3e} m in {seconds:.3} s",
+        "an error of {} cannot be had within {budget:.3} s of wall time and the range of the fit; the best is {}, with {scheme} on cells of {cell_size:.3e} m in {seconds:.3} s",
         percent(*wanted), percent(*best)
     )]
     Impossible {
@@ -150,12 +151,28 @@ impl Candidate {
     }
 }
 
+/// A scene to plan, with the lengths on which the choice depends.
+struct Task<'a> {
+    scene: Value,
+    file: &'a str,
+    target: &'a ErrorTarget,
+    data: &'a Data,
+    body: usize,
+    place: Option<f64>,
+    /// Length of the domain \[m\].
+    length: f64,
+    /// Particles per cell of the domain, for a scheme with one particle per cell, over the length
+    /// \[1/m\].
+    filled: f64,
+    /// Smallest and largest cell size within the range of the fit \[m\].
+    fitted: [f64; 2],
+}
+
 /// Plans a scene.
 ///
 /// # Errors
 ///
 /// If the scene cannot be planned, or if no scheme reaches the target in the allowed time.
-#[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
 pub fn plan(
     scene: &Value,
     file: &str,
@@ -163,129 +180,43 @@ pub fn plan(
     data: &Data,
 ) -> Result<Plan, PlanError> {
     let fail = |reason: String| PlanError::Scene(reason);
-    let mut scene = scene.clone();
-    if scene.get("error_estimate").is_none_or(Value::is_null) {
-        scene["error_estimate"] = json!({});
-    }
-    if scene.pointer("/domain/lower/1").is_some() {
-        return Err(fail(format!("{file}: plan: a scene in a plane; allowed: a scene on a line")));
-    }
-    if let Some(at) = target.place {
-        scene["error_estimate"]["arrivals"] = json!([at]);
-    }
-    let checked = input::parse(scene.to_string().as_bytes(), file, &[])
-        .map_err(|error| fail(error.to_string()))?;
-    let body = checked.estimated_body().expect("the check has found it");
-    let asked = checked.scene.error_estimate.as_ref().and_then(|e| e.arrivals.first().copied());
-    let place = asked.filter(|_| target.quantity.at_place());
-    if target.quantity.at_place() && place.is_none() {
-        return Err(fail(format!(
-            "{file}: error_estimate.arrivals: missing key; allowed: places, or --at METRES"
-        )));
-    }
     let start = std::time::Instant::now();
-    let length = checked.scene.domain.upper[0] - checked.scene.domain.lower[0];
-    // particles per cell of the domain, for a scheme with one particle per cell
-    let filled = filled(&checked) / length;
-    let mut candidates = Vec::new();
-    let mut scale = None;
-    let mut faults = Vec::new();
-    for scheme in schemes() {
-        let Some(measured) = data.schemes.get(&scheme.name) else { continue };
-        let timed: Result<Vec<Pilot>, String> = PILOTS
-            .iter()
-            .map(|&particles| {
-                let cells = particles as f64 / scheme.particles_per_cell as f64 / filled;
-                let cells = cells.ceil() as usize;
-                let (_, scene) = pilot::with_cells(&scene, file, &scheme, cells)?;
-                pilot::run(&scene, body, place)
-            })
-            .collect();
-        match timed.as_deref() {
-            Ok([coarse, fine]) => {
-                if scale.is_none() {
-                    scale = Some(scale_of(fine, &checked, body, place).map_err(fail)?);
-                }
-                let seconds = |p: &Pilot| (p.cell_size, p.cpu_seconds.max(1e-6));
-                candidates.push(Candidate {
-                    scheme,
-                    measured: *measured,
-                    cost: Cost::through(seconds(coarse), seconds(fine)),
-                    wall: (fine.wall_seconds / fine.cpu_seconds.max(1e-6)).max(1.0),
-                    steps: fine.steps as f64 * fine.cell_size,
-                });
-            }
-            Ok(_) => unreachable!("two pilots"),
-            // a scheme that cannot run the scene cannot be chosen
-            Err(reason) => faults.push(format!("{}: {reason}", scheme.name)),
-        }
+    let (task, checked) = Task::new(scene, file, target, data).map_err(fail)?;
+    let (candidates, scale) = task.candidates(&checked).map_err(fail)?;
+    if let Err(reason) = target.quantity.length(&scale) {
+        return Err(fail(format!("{file}: {reason}")));
     }
-    let Some(scale) = scale else {
-        return Err(fail(format!("no scheme can run the scene: {}", faults.join("; "))));
-    };
-    let extra = data.rank_step_seconds;
-    // the cheapest scheme that reaches the target within the budget, else the smallest error
-    let least = filled_cells_limit(filled, length);
-    let mut best: Option<(&Candidate, f64, f64)> = None;
-    let mut nearest: Option<(&Candidate, f64, f64)> = None;
-    for candidate in &candidates {
-        let Some(h) = target.quantity.cells_for(&candidate.measured, &scale, target.error) else {
-            return Err(fail(format!("{file}: no plateau in the body that a pilot sees")));
-        };
-        let floor = least * candidate.scheme.particles_per_cell as f64;
-        let wall = candidate.wall(h, target.ranks, extra);
-        if h >= floor && wall <= target.budget && best.is_none_or(|b| wall < b.2) {
-            best = Some((candidate, h, wall));
-        }
-        let within = candidate.cost.cells_for(target.budget / candidate.wall * target.ranks as f64);
-        let h = within.max(floor);
-        if let Some(error) = target.quantity.error(&candidate.measured, &scale, h)
-            && nearest.is_none_or(|n| error.most < n.2)
-        {
-            nearest = Some((candidate, h, error.most));
-        }
-    }
-    let Some((candidate, h, _)) = best else {
-        let (candidate, h, error) = nearest.ok_or_else(|| fail("nothing can be had".into()))?;
-        return Err(PlanError::Impossible {
-            wanted: target.error,
-            budget: target.budget,
-            best: error,
-            scheme: candidate.scheme.name.clone(),
-            cell_size: h,
-            seconds: candidate.wall(h, target.ranks, extra),
-        });
-    };
-    let cells = (length / h).ceil() as usize;
+    let (candidate, h) = task.cheapest(&candidates, &scale)?;
+    let cells = (task.length / h).ceil() as usize;
     let (mut chosen, run) =
-        pilot::with_cells(&scene, file, &candidate.scheme, cells).map_err(fail)?;
+        pilot::with_cells(&task.scene, file, &candidate.scheme, cells).map_err(fail)?;
     let h = run.cell_size[0];
-    let cost = last_pilot(&scene, file, candidate, (h, run.particles as f64), body, cells);
-    let (cost, wall_over_cpu, steps) = cost.map_err(fail)?;
-    let candidate = Candidate {
+    let sizes = (h, run.particles as f64);
+    let cost = last_pilot(&task.scene, file, candidate, sizes, task.body, cells);
+    let (cost, wall, steps) = cost.map_err(fail)?;
+    let timed = Candidate {
         scheme: candidate.scheme.clone(),
+        measured: candidate.measured.clone(),
         cost,
-        wall: wall_over_cpu,
+        wall,
         steps,
-        ..*candidate
     };
-    let error =
-        target.quantity.error(&candidate.measured, &scale, h).expect("it has been looked at");
-    // the plan chooses the cell size itself
-    let mut outside = Laws::shipped().fitted.outside_but_cells(&run, body);
+    let error = target.quantity.error(&timed.measured, &scale, h);
+    let error = error.ok_or_else(|| fail(format!("{file}: the error cannot be predicted")))?;
+    let mut outside = Laws::shipped().fitted.outside(&run, task.body);
     match target.quantity.at_place() {
         true => outside.profiles.clear(),
         false => outside.arrivals.clear(),
     }
     let mut plan = Plan {
-        scheme: candidate.scheme.name.clone(),
+        scheme: timed.scheme.name.clone(),
         cell_size: h,
-        particles_per_cell: candidate.scheme.particles_per_cell,
-        courant: candidate.scheme.courant,
-        error: error.median,
-        error_most: error.most,
-        cpu_seconds: candidate.cost.at(h),
-        wall_seconds: candidate.wall(h, target.ranks, extra),
+        particles_per_cell: timed.scheme.particles_per_cell,
+        courant: timed.scheme.courant,
+        error: error.most,
+        error_median: error.median,
+        cpu_seconds: timed.cost.at(h),
+        wall_seconds: timed.wall(h, target.ranks, data.rank_step_seconds),
         pilot_seconds: start.elapsed().as_secs_f64(),
         basis: outside.basis(),
         outside: outside.lines(),
@@ -301,6 +232,133 @@ pub fn plan(
     });
     plan.scene = chosen;
     Ok(plan)
+}
+
+impl<'a> Task<'a> {
+    /// The task with the checked scene; the error is the reason why the scene cannot be planned.
+    fn new(
+        scene: &Value,
+        file: &'a str,
+        target: &'a ErrorTarget,
+        data: &'a Data,
+    ) -> Result<(Task<'a>, CheckedScene), String> {
+        let mut scene = scene.clone();
+        if scene.get("error_estimate").is_none_or(Value::is_null) {
+            scene["error_estimate"] = json!({});
+        }
+        if scene.pointer("/domain/lower/1").is_some() {
+            return Err(format!("{file}: plan: a scene in a plane; allowed: a scene on a line"));
+        }
+        if let Some(at) = target.place {
+            scene["error_estimate"]["arrivals"] = json!([at]);
+        }
+        let checked = input::parse(scene.to_string().as_bytes(), file, &[]);
+        let checked = checked.map_err(|error| error.to_string())?;
+        let body = checked.estimated_body().expect("the check has found it");
+        let asked = checked.scene.error_estimate.as_ref().and_then(|e| e.arrivals.first().copied());
+        let place = asked.filter(|_| target.quantity.at_place());
+        if target.quantity.at_place() && place.is_none() {
+            return Err(format!(
+                "{file}: error_estimate.arrivals: missing key; allowed: places, or --at METRES"
+            ));
+        }
+        let length = checked.scene.domain.upper[0] - checked.scene.domain.lower[0];
+        let filled = filled(&checked) / length;
+        let fitted = fitted_cell_sizes(&checked, body);
+        let task = Task { scene, file, target, data, body, place, length, filled, fitted };
+        Ok((task, checked))
+    }
+
+    /// The schemes that can run the scene, with the lengths and pressure that scale the errors.
+    fn candidates(&self, checked: &CheckedScene) -> Result<(Vec<Candidate>, ErrorScale), String> {
+        let (mut candidates, mut scale, mut faults) = (Vec::new(), None, Vec::new());
+        for scheme in schemes() {
+            let Some(measured) = self.data.schemes.get(&scheme.name) else { continue };
+            let pilots = PILOTS.map(|particles| {
+                let cells = particles as f64 / scheme.particles_per_cell as f64 / self.filled;
+                let cells = cells.ceil() as usize;
+                let (_, scene) = pilot::with_cells(&self.scene, self.file, &scheme, cells)?;
+                pilot::run(&scene, self.body, self.place)
+            });
+            let [coarse, fine] = match pilots {
+                [Ok(coarse), Ok(fine)] => [coarse, fine],
+                // a scheme that cannot run the scene cannot be chosen
+                [Err(reason), _] | [_, Err(reason)] => {
+                    faults.push(format!("{}: {reason}", scheme.name));
+                    continue;
+                }
+            };
+            if scale.is_none() {
+                scale = Some(scale_of(&fine, checked, self.body, self.place)?);
+            }
+            let seconds = |p: &Pilot| (p.cell_size, p.cpu_seconds.max(1e-6));
+            candidates.push(Candidate {
+                scheme,
+                measured: measured.clone(),
+                cost: Cost::through(seconds(&coarse), seconds(&fine)),
+                wall: (fine.wall_seconds / fine.cpu_seconds.max(1e-6)).max(1.0),
+                steps: fine.steps as f64 * fine.cell_size,
+            });
+        }
+        let scale =
+            scale.ok_or_else(|| format!("no scheme can run the scene: {}", faults.join("; ")))?;
+        Ok((candidates, scale))
+    }
+
+    /// The cheapest scheme that reaches the target within the budget, with its cell size \[m\].
+    fn cheapest<'b>(
+        &self,
+        candidates: &'b [Candidate],
+        scale: &ErrorScale,
+    ) -> Result<(&'b Candidate, f64), PlanError> {
+        let (target, extra) = (self.target, self.data.rank_step_seconds);
+        let fewest = filled_cells_limit(self.filled, self.length);
+        let mut best: Option<(&Candidate, f64, f64)> = None;
+        let mut nearest: Option<(&Candidate, f64, f64)> = None;
+        for candidate in candidates {
+            let floor = fewest * candidate.scheme.particles_per_cell as f64;
+            let limits = [floor.max(self.fitted[0]), self.fitted[1]];
+            let measured = &candidate.measured;
+            if let Some(h) = target.quantity.cells_for(measured, scale, target.error, limits) {
+                let wall = candidate.wall(h, target.ranks, extra);
+                if wall <= target.budget && best.is_none_or(|b| wall < b.2) {
+                    best = Some((candidate, h, wall));
+                }
+            }
+            let budget = target.budget / candidate.wall * target.ranks as f64;
+            let h = candidate.cost.cells_for(budget).max(limits[0]);
+            if h <= limits[1]
+                && let Some(error) = target.quantity.error(measured, scale, h)
+                && nearest.is_none_or(|n| error.most < n.2)
+            {
+                nearest = Some((candidate, h, error.most));
+            }
+        }
+        if let Some((candidate, h, _)) = best {
+            return Ok((candidate, h));
+        }
+        let none = || PlanError::Scene("nothing can be had".into());
+        let (candidate, h, error) = nearest.ok_or_else(none)?;
+        Err(PlanError::Impossible {
+            wanted: target.error,
+            budget: target.budget,
+            best: error,
+            scheme: candidate.scheme.name.clone(),
+            cell_size: h,
+            seconds: candidate.wall(h, target.ranks, extra),
+        })
+    }
+}
+
+/// Smallest and largest cell size at which the flyer has as many cells as those of the fit \[m\];
+/// without limits unless the scene has two bodies.
+fn fitted_cell_sizes(scene: &CheckedScene, body: usize) -> [f64; 2] {
+    let [_, _] = scene.bodies[..] else { return [0.0, f64::INFINITY] };
+    let flyer = &scene.bodies[1 - body];
+    let thickness = flyer.upper[0] - flyer.lower[0];
+    let [fewest, most] = Laws::shipped().fitted.flyer_cells;
+    // the domain has whole cells, which are somewhat smaller than those that the plan asks for
+    [1.05 * thickness / most, thickness / fewest]
 }
 
 /// Total length of the bodies \[m\].
@@ -320,13 +378,18 @@ fn scale_of(
     body: usize,
     place: Option<f64>,
 ) -> Result<ErrorScale, String> {
-    let all = 0..pilot.profiles.len();
-    let pulse = all.clone().filter_map(|k| pilot.pulse(k)).fold(f64::INFINITY, f64::min);
+    let pulse =
+        (0..pilot.profiles.len()).filter_map(|k| pilot.pulse(k)).fold(f64::INFINITY, f64::min);
     if !pulse.is_finite() {
         return Err(format!("{}: no pressure in the body at any profile", scene.file));
     }
-    let lengths: Vec<f64> = all.filter_map(|k| pilot.plateau(k)).collect();
-    let plateau = lengths.into_iter().reduce(f64::min);
+    let waves = ImpactWaves::new(scene, body);
+    let plateau = shortest_plateau(pilot, scene, waves.as_ref());
+    let seen = || pilot.profiles.iter().flatten().map(|q| q.1).fold(0.0, f64::max);
+    let pressure = waves.as_ref().map_or_else(seen, |waves| waves.release.states[0].p);
+    let cell_time = scene.scene.time.end / pilot.steps.max(1) as f64 / pilot.courant;
+    let stiffness = scene.material_of(body).density * (pilot.cell_size / cell_time).powi(2);
+    let strength = pressure / stiffness;
     // the wave's way, from the end of the body that it comes from
     let way = place.zip(pilot.arrival).map(|(at, _)| {
         let own = &scene.bodies[body];
@@ -336,7 +399,34 @@ fn scale_of(
     if place.is_some() && way.is_none() {
         return Err(format!("{}: nothing arrives there within the run", scene.file));
     }
-    Ok(ErrorScale { pulse, plateau, way })
+    Ok(ErrorScale { pulse, plateau, way, strength })
+}
+
+/// Length of the shortest plateau of the profiles \[m\], by the exact waves if they are known, else as
+/// the pilot run sees it. Profiles without a plateau do not count; the error is the reason of the
+/// last one if there is no other.
+fn shortest_plateau(
+    pilot: &Pilot,
+    scene: &CheckedScene,
+    waves: Option<&ImpactWaves>,
+) -> Result<f64, String> {
+    let seen = |k: usize| {
+        let none = || "no plateau in the body that a pilot sees".to_string();
+        pilot.plateau(k).ok_or_else(none)
+    };
+    let left = |k: usize| match waves.map(|waves| waves.plateau(scene.profile_times[k])) {
+        Some(PlateauLeft::Length(length)) => Ok(length),
+        Some(PlateauLeft::None(reason)) => {
+            Err(format!("no plateau pressure at {:.4} us: {reason}", 1e6 * scene.profile_times[k]))
+        }
+        Some(PlateauLeft::Unknown) | None => seen(k),
+    };
+    let all: Vec<Result<f64, String>> = (0..pilot.profiles.len()).map(left).collect();
+    let shortest = all.iter().filter_map(|length| length.as_ref().ok().copied());
+    match shortest.reduce(f64::min) {
+        Some(length) => Ok(length),
+        None => all.into_iter().last().unwrap_or_else(|| Err("no profile".into())),
+    }
 }
 
 /// Cost by a pilot run slightly coarser than the run and one with half of its cells; also the wall

@@ -4,37 +4,53 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-/// Distribution of an error: median and 95 % quantile, in the unit that each field of
-/// [`SchemeAccuracy`] names.
+use crate::accuracy::estimate::error_model::Law;
+
+/// Distribution of an error: median and 95 % quantile \[-\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Size {
-    /// Median: half of the runs have a smaller error \[- or cells\].
+    /// Median: half of the runs have a smaller error \[-\].
     pub median: f64,
-    /// 95 % quantile: 19 of 20 runs have a smaller error \[- or cells\].
+    /// 95 % quantile: 19 of 20 runs have a smaller error \[-\].
     pub most: f64,
 }
 
-impl Size {
-    /// Both values times a factor \[-\].
-    pub fn times(self, factor: f64) -> Size {
-        Size { median: self.median * factor, most: self.most * factor }
+/// Error of a quantity, as a function of the indicators [`CELLS`] and [`STRENGTH`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ErrorLaws {
+    /// Median.
+    pub median: Law,
+    /// 95 % quantile.
+    pub most: Law,
+}
+
+/// Indicator: length that scales the error, in cells \[-\].
+pub const CELLS: &str = "cells";
+/// Indicator: pressure behind the shock over the density times the square of the sound speed \[-\].
+pub const STRENGTH: &str = "strength";
+
+impl ErrorLaws {
+    /// The error at a length in cells and a strength of the shock \[-\].
+    pub fn at(&self, cells: f64, strength: f64) -> Option<Size> {
+        let evidence = [(CELLS.to_string(), cells), (STRENGTH.to_string(), strength)].into();
+        let size = |law: &Law| Some(law.factor * law.size(&evidence)?);
+        let median = size(&self.median)?;
+        Some(Size { median, most: size(&self.most)?.max(median) })
     }
 }
 
 /// Measured errors of one scheme.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SchemeAccuracy {
-    /// int |p - p_exact| dx / (P2 dx) \[cells\].
-    pub e1_cells: Size,
-    /// Relative error of the plateau pressure, times the plateau length in cells to the power
-    /// `plateau_order` \[-\].
-    pub plateau: Size,
-    /// Order at which this error decreases with the plateau length in cells \[-\].
-    pub plateau_order: f64,
-    /// Error of an arrival time over the transit time of the shock through a cell \[cells\].
-    pub arrival_cells: Size,
+    /// Relative L1; the length is that of the pulse, int p dx over the pressure behind the shock.
+    pub l1: ErrorLaws,
+    /// Relative error of the plateau pressure; the length is that of the plateau.
+    pub plateau: ErrorLaws,
+    /// Relative error of an arrival time; the length is the distance from the impact.
+    pub arrival: ErrorLaws,
     /// Number of runs.
     pub runs: usize,
 }

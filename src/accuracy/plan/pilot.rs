@@ -25,6 +25,8 @@ pub struct Pilot {
     pub wall_seconds: f64,
     /// Number of steps.
     pub steps: u64,
+    /// Courant number \[-\].
+    pub courant: f64,
     /// Pressures of the body, one line per profile.
     pub profiles: Vec<Polyline>,
     /// Time at which the pressure at the arrival position first passes half of its maximum \[s\].
@@ -91,6 +93,7 @@ pub fn run(scene: &CheckedScene, body: usize, place: Option<f64>) -> Result<Pilo
         cpu_seconds,
         wall_seconds: start.elapsed().as_secs_f64(),
         steps: simulation.steps(),
+        courant: scene.scene.time.courant,
         profiles,
         arrival,
     })
@@ -104,7 +107,7 @@ impl Pilot {
         let area: f64 =
             line.windows(2).map(|w| 0.5 * (w[0].1.abs() + w[1].1.abs()) * (w[1].0 - w[0].0)).sum();
         let level =
-            plateau::find_over(line, self.cell_size, LEAST).map(|p| p.pressure).or_else(|| {
+            plateau::find(line, self.cell_size, LEAST).map(|p| p.pressure).or_else(|| {
                 let mut all: Vec<f64> = line.iter().map(|q| q.1).collect();
                 all.sort_by(|a, b| b.total_cmp(a));
                 let strong = all.iter().filter(|p| **p > 0.1 * all[0]).count();
@@ -115,7 +118,6 @@ impl Pilot {
 
     /// Plateau length of profile `k` \[m\].
     pub fn plateau(&self, k: usize) -> Option<f64> {
-        plateau::find_over(&self.profiles[k], self.cell_size, LEAST)
-            .map(|p| p.cells * self.cell_size)
+        plateau::find(&self.profiles[k], self.cell_size, LEAST).map(|p| p.cells * self.cell_size)
     }
 }

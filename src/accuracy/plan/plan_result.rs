@@ -12,7 +12,7 @@ pub struct Verdict {
     pub quantity: PlannedQuantity,
     /// Target: relative error \[-\].
     pub wanted: f64,
-    /// Predicted error \[-\].
+    /// Predicted error, which 19 of 20 runs do not exceed \[-\].
     pub predicted: f64,
     /// Whether the prediction is a guess, because the schemes were not measured on such scenes.
     #[serde(default)]

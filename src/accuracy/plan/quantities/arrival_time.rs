@@ -1,21 +1,21 @@
 //! Arrival time of the wave at a position.
 
-use super::{ErrorModel, ErrorScale, LEAST_PLATEAU, relative};
+use super::{ErrorModel, ErrorScale, relative};
 use crate::accuracy::estimate::EstimatedErrors;
-use crate::accuracy::plan::data::{SchemeAccuracy, Size};
+use crate::accuracy::plan::data::{ErrorLaws, SchemeAccuracy};
 
 pub(super) struct ArrivalTime;
 
 impl ErrorModel for ArrivalTime {
     const AT_PLACE: bool = true;
+    const LEAST_CELLS: f64 = 20.0;
 
-    fn error(m: &SchemeAccuracy, scale: &ErrorScale, h: f64) -> Option<Size> {
-        Some(m.arrival_cells.times(h / scale.way?))
+    fn laws(m: &SchemeAccuracy) -> &ErrorLaws {
+        &m.arrival
     }
 
-    fn cells_for(m: &SchemeAccuracy, scale: &ErrorScale, error: f64) -> Option<f64> {
-        let way = scale.way?;
-        Some((error * way / m.arrival_cells.most).min(way / LEAST_PLATEAU))
+    fn length(scale: &ErrorScale) -> Result<f64, String> {
+        scale.way.ok_or_else(|| "nothing arrives at the position within the run".into())
     }
 
     fn actual(_: &[f64], estimate: Option<&EstimatedErrors>) -> Vec<(f64, bool)> {

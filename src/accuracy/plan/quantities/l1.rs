@@ -2,17 +2,17 @@
 
 use super::{ErrorModel, ErrorScale};
 use crate::accuracy::estimate::EstimatedErrors;
-use crate::accuracy::plan::data::{SchemeAccuracy, Size};
+use crate::accuracy::plan::data::{ErrorLaws, SchemeAccuracy};
 
 pub(super) struct L1;
 
 impl ErrorModel for L1 {
-    fn error(m: &SchemeAccuracy, scale: &ErrorScale, h: f64) -> Option<Size> {
-        Some(m.e1_cells.times(h / scale.pulse))
+    fn laws(m: &SchemeAccuracy) -> &ErrorLaws {
+        &m.l1
     }
 
-    fn cells_for(m: &SchemeAccuracy, scale: &ErrorScale, error: f64) -> Option<f64> {
-        Some(error * scale.pulse / m.e1_cells.most)
+    fn length(scale: &ErrorScale) -> Result<f64, String> {
+        Ok(scale.pulse)
     }
 
     fn actual(exact_l1: &[f64], estimate: Option<&EstimatedErrors>) -> Vec<(f64, bool)> {

@@ -1,21 +1,20 @@
 //! Error models of the quantities that a plan can target: one file per quantity, one line per quantity
 //! in `scene/model/planned_quantity.rs`.
 
-use super::data::{SchemeAccuracy, Size};
+use super::data::{ErrorLaws, SchemeAccuracy, Size};
 use crate::accuracy::estimate::{Bounded, EstimatedErrors};
 use crate::scene::{PlannedQuantity, planned_quantities};
 
-/// Smallest number of cells of a plateau, or of the distance to an arrival position.
-const LEAST_PLATEAU: f64 = 26.0;
-
-/// Lengths of a scene that scale its errors.
+/// Lengths and pressure of a scene that scale its errors.
 pub(super) struct ErrorScale {
     /// Shortest pulse of the profiles [m].
     pub pulse: f64,
-    /// Shortest plateau [m].
-    pub plateau: Option<f64>,
+    /// Shortest plateau [m], or the reason why there is none.
+    pub plateau: Result<f64, String>,
     /// Distance of the wave to the arrival position [m].
     pub way: Option<f64>,
+    /// Pressure behind the shock over the density times the square of the sound speed [-].
+    pub strength: f64,
 }
 
 /// Error model of a quantity.
@@ -23,11 +22,14 @@ trait ErrorModel {
     /// Whether the quantity belongs to a position of the scene.
     const AT_PLACE: bool = false;
 
-    /// Expected relative error on cells of size `h` [m]; `None` without the length that scales it.
-    fn error(m: &SchemeAccuracy, scale: &ErrorScale, h: f64) -> Option<Size>;
+    /// Smallest number of cells in the length that scales the error.
+    const LEAST_CELLS: f64 = 4.0;
 
-    /// Largest cell size [m] at which the relative error is at most `error` in 19 of 20 runs.
-    fn cells_for(m: &SchemeAccuracy, scale: &ErrorScale, error: f64) -> Option<f64>;
+    /// Measured relative errors of a scheme.
+    fn laws(m: &SchemeAccuracy) -> &ErrorLaws;
+
+    /// Length that scales the error [m]; the error is the reason why there is none.
+    fn length(scale: &ErrorScale) -> Result<f64, String>;
 
     /// Relative errors of a finished run, each with whether it is true and not estimated; `exact_l1`
     /// is the L1 of each profile against the exact solution.
@@ -44,24 +46,18 @@ macro_rules! dispatch {
                 match self { $(PlannedQuantity::$name => $module::$name::AT_PLACE,)+ }
             }
 
-            /// See [`ErrorModel::error`].
-            pub(super) fn error(
-                self,
-                m: &SchemeAccuracy,
-                scale: &ErrorScale,
-                h: f64,
-            ) -> Option<Size> {
-                match self { $(PlannedQuantity::$name => $module::$name::error(m, scale, h),)+ }
+            /// Smallest number of cells in the length that scales the error.
+            fn least_cells(self) -> f64 {
+                match self { $(PlannedQuantity::$name => $module::$name::LEAST_CELLS,)+ }
             }
 
-            /// See [`ErrorModel::cells_for`].
-            pub(super) fn cells_for(
-                self,
-                m: &SchemeAccuracy,
-                scale: &ErrorScale,
-                error: f64,
-            ) -> Option<f64> {
-                match self { $(PlannedQuantity::$name => $module::$name::cells_for(m, scale, error),)+ }
+            fn laws(self, m: &SchemeAccuracy) -> &ErrorLaws {
+                match self { $(PlannedQuantity::$name => $module::$name::laws(m),)+ }
+            }
+
+            /// See [`ErrorModel::length`].
+            pub(super) fn length(self, scale: &ErrorScale) -> Result<f64, String> {
+                match self { $(PlannedQuantity::$name => $module::$name::length(scale),)+ }
             }
 
             /// See [`ErrorModel::actual`].
@@ -76,6 +72,38 @@ macro_rules! dispatch {
     };
 }
 planned_quantities!(dispatch);
+
+impl PlannedQuantity {
+    /// Expected relative error on cells of size `h` [m]; `None` without the length that scales it.
+    pub(super) fn error(self, m: &SchemeAccuracy, scale: &ErrorScale, h: f64) -> Option<Size> {
+        self.laws(m).at(self.length(scale).ok()? / h, scale.strength)
+    }
+
+    /// Largest cell size [m] between `least` and `greatest` [m] at which the relative error is at
+    /// most `error` in 19 of 20 runs; `None` if there is none.
+    pub(super) fn cells_for(
+        self,
+        m: &SchemeAccuracy,
+        scale: &ErrorScale,
+        error: f64,
+        [least, greatest]: [f64; 2],
+    ) -> Option<f64> {
+        let reaches = |h: f64| self.error(m, scale, h).is_some_and(|size| size.most <= error);
+        let greatest = greatest.min(self.length(scale).ok()? / self.least_cells());
+        if greatest < least || !reaches(least) {
+            return None;
+        }
+        if reaches(greatest) {
+            return Some(greatest);
+        }
+        let (mut fine, mut coarse) = (least, greatest);
+        for _ in 0..60 {
+            let middle = (fine * coarse).sqrt();
+            if reaches(middle) { fine = middle } else { coarse = middle }
+        }
+        Some(fine)
+    }
+}
 
 /// Relative error of a value with an exact one, or its relative bound.
 fn relative(b: &Bounded) -> Option<(f64, bool)> {

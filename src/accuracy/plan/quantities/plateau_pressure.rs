@@ -1,21 +1,21 @@
 //! Pressure on the plateau behind the shock.
 
-use super::{ErrorModel, ErrorScale, LEAST_PLATEAU, relative};
-use crate::accuracy::estimate::EstimatedErrors;
-use crate::accuracy::plan::data::{SchemeAccuracy, Size};
+use super::{ErrorModel, ErrorScale, relative};
+use crate::accuracy::estimate::{EstimatedErrors, LEAST_PLATEAU};
+use crate::accuracy::plan::data::{ErrorLaws, SchemeAccuracy};
 
 pub(super) struct PlateauPressure;
 
 impl ErrorModel for PlateauPressure {
-    fn error(m: &SchemeAccuracy, scale: &ErrorScale, h: f64) -> Option<Size> {
-        Some(m.plateau.times((h / scale.plateau?).powf(m.plateau_order)))
+    // the number of cells of the run may be rounded down, and a shorter plateau is not reported
+    const LEAST_CELLS: f64 = 1.05 * LEAST_PLATEAU;
+
+    fn laws(m: &SchemeAccuracy) -> &ErrorLaws {
+        &m.plateau
     }
 
-    fn cells_for(m: &SchemeAccuracy, scale: &ErrorScale, error: f64) -> Option<f64> {
-        // a plateau of fewer cells cannot be evaluated
-        let plateau = scale.plateau?;
-        let h = plateau * (error / m.plateau.most).powf(1.0 / m.plateau_order);
-        Some(h.min(plateau / LEAST_PLATEAU))
+    fn length(scale: &ErrorScale) -> Result<f64, String> {
+        scale.plateau.clone()
     }
 
     fn actual(_: &[f64], estimate: Option<&EstimatedErrors>) -> Vec<(f64, bool)> {

@@ -4,8 +4,12 @@ mod estimate;
 #[path = "../../../../examples/common/estimates.rs"]
 mod estimates;
 mod plan;
+#[path = "../../../../examples/common/random.rs"]
+pub mod random;
 #[path = "../../../../examples/common/random_impacts.rs"]
-pub mod random_impacts;
+mod random_impacts;
+#[path = "../../../../examples/common/random_schemes.rs"]
+mod random_schemes;
 mod schemes;
 
 use crate::section::{Section, quick, usual};

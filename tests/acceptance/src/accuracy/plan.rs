@@ -10,7 +10,9 @@ use flyer_mpm::driver::{Beginning, Options, run};
 use flyer_mpm::input;
 use flyer_mpm::scene::PlannedQuantity;
 
-use super::random_impacts::{HELD_OUT, Random, impact};
+use super::random::Random;
+use super::random_impacts::{Draw, HELD_OUT, impact};
+use super::random_schemes::Schemes;
 use crate::bounds::{Unit, accuracy as bounds};
 use crate::table::Table;
 
@@ -18,6 +20,9 @@ use crate::table::Table;
 const IMPACTS: usize = bounds::plan::RUNS.number() as usize;
 /// Their seed.
 const SEED: u64 = 20_260_404;
+/// What the impacts are drawn from.
+const DRAW: Draw<'static> =
+    Draw { library: &HELD_OUT, invented: 0.5, schemes: Schemes::Default, beyond: false };
 /// A price may be wrong by this factor.
 const FACTOR: f64 = bounds::plan::PRICE_FACTOR.number();
 /// Runs may take so long \[s\].
@@ -40,7 +45,7 @@ pub fn check(table: &mut Table) {
     let mut verdicts: Vec<Verdict> = Vec::new();
     let mut refused = 0;
     while verdicts.len() < IMPACTS && refused < IMPACTS {
-        let impact = impact(&mut random, &HELD_OUT);
+        let impact = impact(&mut random, &DRAW);
         let quantity = *random.one(&quantities);
         let [low, high] = range(quantity);
         let error = random.between(low.ln(), high.ln()).exp();
