@@ -50,10 +50,11 @@ contact_laws! {
     friction::Friction,
 }
 
-/// Greatest adhesion impulse of bodies that were pressed together, as a fraction of rho h u [-],
-/// with the impact speed u of the scene and the cell edge h: oscillations run ahead of a shock, and
-/// an interface that opened at each of them would reflect a part of the shock. Bodies never return
-/// more impulse than their contact impulse, initial value included, so adhesion does not last.
+/// Greatest adhesion impulse of bodies that no wave has pressed together yet, as a fraction of rho h
+/// u [-], with the impact speed u of the scene and the cell edge h: oscillations run ahead of a
+/// shock, and an interface that opened at each of them would reflect a part of the shock. Bodies
+/// never return more impulse than their contact impulse, initial value included, so adhesion does
+/// not last. Bodies that a wave has pressed together carry no tension.
 pub const MAX_ADHESION: f64 = 0.02;
 
 /// Condition at the contact plane between bodies with separate velocity fields.

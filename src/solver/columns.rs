@@ -136,7 +136,7 @@ pub struct Columns {
     pub stress_volume: usize,
     /// Number of components of `stress_volume`.
     pub stress_volumes: usize,
-    /// Impulse of contact pressure on the particle, up to a maximum [Pa s], with contact.
+    /// Impulse of uninterrupted pressure on the particle, up to a maximum [Pa s], with contact.
     pub contact_impulse: Option<usize>,
     /// Faces of the body at a particle [-]: for each of up to two faces, its components in the
     /// coordinates along the half edges, in a plane for normals that use them; zeros: none.

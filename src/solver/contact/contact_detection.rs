@@ -26,6 +26,11 @@ const HOLDS: f64 = 1e-3;
 /// of a cut body.
 const AT_START: f64 = 0.1;
 
+/// Impulse of uninterrupted pressure after which bodies no longer adhere, as a multiple of the
+/// greatest adhesion impulse: 0.2 rho h u. A shock gives it in less than the time in which it
+/// crosses a cell. An oscillation ahead of a shock changes its sign before.
+const PRESSED: f64 = 10.0;
+
 /// Fraction of u at which bodies with only their initial contact impulse separate, and above which
 /// bodies that slide do not adhere: an oscillation opens an interface slowly, while bodies that
 /// really separate do so at once.
@@ -38,6 +43,22 @@ struct BodyEdge {
     stress: f64,
     /// Impulse that it may return as adhesion [Pa s].
     contact_impulse: f64,
+    /// Whether a wave has pressed on it, so that it no longer adheres.
+    is_pressed: bool,
+}
+
+/// Contact impulse of a particle after a step with the impulse `added` of p + q, if it can return
+/// at most `most` as adhesion [all Pa s]. Pressure adds to it without interruption up to
+/// [`PRESSED`], where it stays; tension takes from what the particle can return.
+fn next_contact_impulse(impulse: f64, added: f64, most: f64) -> f64 {
+    let pressed = PRESSED * most;
+    if impulse >= pressed {
+        pressed
+    } else if added >= 0.0 {
+        (impulse + added).min(pressed)
+    } else {
+        (impulse.min(most) + added).max(0.0)
+    }
 }
 
 impl<const D: usize> Scheme<D> {
@@ -49,7 +70,7 @@ impl<const D: usize> Scheme<D> {
     /// m u + A s dt > 0,
     /// ```
     ///
-    /// or if they do not slide, were pressed together and adhere: see
+    /// or if they do not slide, no wave has pressed them together yet, and they adhere: see
     /// [`MAX_ADHESION`](crate::contact::MAX_ADHESION).
     pub(super) fn touch(
         &self,
@@ -64,8 +85,8 @@ impl<const D: usize> Scheme<D> {
             return false;
         }
         let (normal, gap) = (&plane.normal, plane.gap);
-        let first = self.edge(patch, particles.particles[0], normal);
-        let second = self.edge(patch, particles.particles[1], &normal.map(|n| -n));
+        let first = self.edge(patch, particles.particles[0], normal, a.layer);
+        let second = self.edge(patch, particles.particles[1], &normal.map(|n| -n), b.layer);
         let (Some(first), Some(second)) = (first, second) else { return false };
         let stress = 0.5 * (first.stress + second.stress);
         let strain = stress / self.stiffness[a.layer].min(self.stiffness[b.layer]);
@@ -83,7 +104,8 @@ impl<const D: usize> Scheme<D> {
         let start = 2.0 * self.starting_pull(a.layer).max(self.starting_pull(b.layer));
         let slow = -PARTS * self.impact;
         let mass = a.mass * b.mass / (a.mass + b.mass);
-        let held = contact_impulse > least
+        let held = !(first.is_pressed || second.is_pressed)
+            && contact_impulse > least
             && contact_impulse + dt * stress > 0.0
             && (contact_impulse > start || closing > slow);
         mass * closing + self.area(index, [a, b]) * dt * stress > 0.0
@@ -111,8 +133,8 @@ impl<const D: usize> Scheme<D> {
         0.5 * (norm(&a.gradient) + norm(&b.gradient)) * cell * around
     }
 
-    /// Updates the contact impulse of the own particles: the time integral of the mean p + q over a
-    /// step of `dt`, limited to the range from 0 to the greatest adhesion impulse.
+    /// Updates the contact impulse of the own particles by the mean p + q in a step of `dt`: see
+    /// [`next_contact_impulse`].
     pub(in crate::solver) fn find_contact_impulse(
         &self,
         patch: &mut Patch<D>,
@@ -143,17 +165,18 @@ impl<const D: usize> Scheme<D> {
         for r in 0..n {
             let stress = 0.5 * (xx[r] + yy[r]) / (volume0[r] * j[r]);
             let most = self.max_adhesion_impulse[body[r] as usize];
-            impulse[r] = (impulse[r] + dt * stress).clamp(0.0, most);
+            impulse[r] = next_contact_impulse(impulse[r], dt * stress, most);
         }
         patch.block.columns[contact_impulse] = impulse;
     }
 
-    /// Edge along `normal` of a body with `particles` at a node.
+    /// Edge along `normal` of the `body` with `particles` at a node.
     fn edge(
         &self,
         patch: &Patch<D>,
         particles: &[ContactParticle<D>],
         normal: &[f64; D],
+        body: usize,
     ) -> Option<BodyEdge> {
         let (_, particle) = reach(particles, normal)?;
         let (c, r) = (&self.columns, particle as usize);
@@ -161,6 +184,8 @@ impl<const D: usize> Scheme<D> {
         let around = if self.axisymmetric { self.radius(patch, r).abs() } else { 1.0 };
         let volume = column(c.current_volume) * self.cell.iter().product::<f64>() * around;
         let stress = self.pressing(patch, r, normal) / volume;
-        Some(BodyEdge { stress, contact_impulse: column(c.contact_impulse) })
+        let (impulse, most) = (column(c.contact_impulse), self.max_adhesion_impulse[body]);
+        let is_pressed = impulse >= PRESSED * most;
+        Some(BodyEdge { stress, contact_impulse: impulse.min(most), is_pressed })
     }
 }

@@ -18,8 +18,9 @@
 //! Bodies are in contact if the edges of their particles, at the middle of the step, leave no gap,
 //! and if the bodies would overlap by its end without contact. So contact does not start a cell
 //! early, as it does if only the grid decides (Bardenhagen, Brackbill & Sulsky 2000), and bodies do
-//! not stick. Bodies that were pressed together adhere for a short time under tension, as an
-//! interface that opened at each oscillation ahead of a shock would scatter it.
+//! not stick. Until a wave presses bodies together they adhere for a short time under tension, as an
+//! interface that opened at each oscillation ahead of a shock would scatter it. Afterwards they
+//! carry no tension, and part when a release arrives.
 //!
 //! Friction acts on the velocities at the end of a step, when the normal impulse of contact is
 //! known: see [`friction`].

@@ -89,6 +89,12 @@ fn bodies_that_were_pressed_together_adhere_for_a_while() {
         f.set("stress_volume", &[stress, stress]).scatter(0.1);
         assert_eq!(f.patch.contact.constraints.len(), usize::from(adheres), "{stress} Pa");
     }
+    // above 1.2 Pa s a wave has pressed on one of them
+    for (impulse, adheres) in [(1.19, true), (1.21, false)] {
+        let mut f = pair("pic");
+        f.set("velocity", &[-2.0, 1.0]).set("contact_impulse", &[0.1, impulse]).scatter(0.1);
+        assert_eq!(f.patch.contact.constraints.len(), usize::from(adheres), "{impulse} Pa s");
+    }
     // the impulse of the start, a tenth of it, holds against a slow separation alone
     for (speed, adheres) in [(0.1, true), (0.2, false)] {
         let mut f = pair("pic");
@@ -100,16 +106,19 @@ fn bodies_that_were_pressed_together_adhere_for_a_while() {
 #[test]
 fn pressure_adds_to_the_contact_impulse() {
     let mut f = pair("pic");
-    let mut impulse = |stress: [f64; 2]| {
-        f.set("contact_impulse", &[0.05, 0.05]).set("jacobian", &[0.5, 1.0]);
+    let mut impulse = |before: [f64; 2], stress: [f64; 2]| {
+        f.set("contact_impulse", &before).set("jacobian", &[0.5, 1.0]);
         f.set("stress_volume", &stress);
         f.run(0.1, |s, step, patch| s.find_contact_impulse(patch, step.jacobian, step.dt));
         f.get("contact_impulse")
     };
     // 0.05 + 0.1 s of 0.6 Pa, and of -0.2 Pa
-    close(&impulse([0.3, -0.2]), &[0.11, 0.03]);
-    // between none and 0.12 Pa s
-    close(&impulse([3.0, -2.0]), &[0.12, 0.0]);
+    close(&impulse([0.05; 2], [0.3, -0.2]), &[0.11, 0.03]);
+    // tension takes from 0.12 Pa s at most, and leaves no less than 0
+    close(&impulse([0.5; 2], [3.0, -0.2]), &[1.1, 0.1]);
+    close(&impulse([0.05; 2], [-3.0, -2.0]), &[0.0, 0.0]);
+    // 1.2 Pa s without interruption are the most, and stay
+    close(&impulse([0.7, 1.21], [3.0, -2.0]), &[1.2, 1.2]);
 }
 
 /// Two particles of 2 kg below and above y = 4; the upper one slides at 8 m/s and sinks at 2 m/s.
