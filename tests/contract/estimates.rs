@@ -79,7 +79,7 @@ fn what_was_not_fitted_is_named_and_makes_a_guess() {
 #[test]
 fn no_plateau_is_reported_where_none_is_left() {
     for (thickness, reason) in
-        [(1e-4, "the plateau is 15 cells long"), (4e-5, "has caught the shock at 1.394e-7 s")]
+        [(1e-4, "the plateau is 15 cells long"), (4e-5, "has caught the shock at 0.1394 us")]
     {
         let mut thin = scene(json!({"body": "target"}));
         thin["bodies"][0]["box"]["lower"] = json!([-thickness]);

@@ -68,7 +68,8 @@ impl ImpactWaves {
         if since >= release.catch_up_time {
             let caught = self.impact.contact_time + release.catch_up_time;
             return PlateauLeft::None(format!(
-                "the release wave from the rear of the flyer has caught the shock at {caught:.3e} s"
+                "the release wave from the rear of the flyer has caught the shock at {:.4} us",
+                1e6 * caught
             ));
         }
         let head = release.target_head * (since - release.head_time).max(0.0);
@@ -116,7 +117,7 @@ mod tests {
         let waves = ImpactWaves::new(&scene, 1).unwrap();
         assert!(matches!(waves.plateau(0.871e-6), PlateauLeft::Length(l) if l < 1e-5));
         let PlateauLeft::None(reason) = waves.plateau(0.8715e-6) else { panic!("a plateau") };
-        assert!(reason.ends_with("has caught the shock at 8.713e-7 s"), "{reason}");
+        assert!(reason.ends_with("has caught the shock at 0.8713 us"), "{reason}");
         // the shock has reached the end of the target
         let scene = flyer(&[("/bodies/1/box/upper", serde_json::json!([1e-3]))]);
         let waves = ImpactWaves::new(&scene, 1).unwrap();
