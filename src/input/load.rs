@@ -187,7 +187,7 @@ fn complete(value: &mut Value, faults: &mut Faults) -> Result<Option<MethodChoic
     faults.extend(resolve(value));
     // every key of a former format would be a fault
     check_format(value)?;
-    faults.extend(units::convert(value, &full_schema()));
+    faults.extend(units::convert(value, full_schema()));
     let choice = faults.take(preset::expand(value)).flatten();
     faults.extend(conform(value));
     faults.extend(names::check(value));

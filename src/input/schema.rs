@@ -1,5 +1,7 @@
 //! The JSON schema of a scene, generated from its structs.
 
+use std::sync::LazyLock;
+
 use schemars::{Schema, generate::SchemaSettings, transform::RecursiveTransform};
 use serde_json::{Value, json};
 
@@ -18,7 +20,7 @@ pub(super) const LEAST: f64 = 1e-150;
 /// The JSON schema of a scene (draft 2020-12); units are in the descriptions. A number without
 /// bounds of its own has the general bounds.
 pub fn schema() -> Value {
-    let mut schema = full_schema();
+    let mut schema = full_schema().clone();
     units::allow_quantities(&mut schema);
     let generator = SchemaSettings::draft2020_12().into_generator();
     let mut names = generator.into_root_schema_for::<Preset>().to_value();
@@ -53,7 +55,13 @@ pub fn schema() -> Value {
 
 /// The JSON schema of a scene whose method is given in full, as every scene is once its preset is
 /// expanded.
-pub(super) fn full_schema() -> Value {
+pub(super) fn full_schema() -> &'static Value {
+    // once for all scenes that a process reads
+    static SCHEMA: LazyLock<Value> = LazyLock::new(generate);
+    &SCHEMA
+}
+
+fn generate() -> Value {
     let settings = || SchemaSettings::draft2020_12().with_transform(RecursiveTransform(bound));
     let mut root = settings().into_generator().into_root_schema_for::<Scene>().to_value();
     root["additionalProperties"] = json!(false);

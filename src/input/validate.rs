@@ -19,7 +19,7 @@ pub(super) fn conform(scene: &Value) -> Vec<SceneFault> {
     let root = super::schema::full_schema();
     let empty = Map::new();
     let definitions = root.get("$defs").and_then(Value::as_object).unwrap_or(&empty);
-    Conform { definitions, open: RefCell::default() }.check(&root, scene)
+    Conform { definitions, open: RefCell::default() }.check(root, scene)
 }
 
 struct Conform<'a> {
