@@ -23,7 +23,7 @@ use serde_json::json;
 
 use crate::input::paths::join;
 use crate::material::failure::PressureLimit;
-use crate::scene::{CheckedScene, Material};
+use crate::scene::{CheckedScene, Material, Reference};
 
 /// Tension that no solid or liquid withstands in a spall, over its bulk modulus [-]. Metals withstand
 /// 0.5 to 3 % (Antoun et al. 2003, Spall fracture).
@@ -145,7 +145,9 @@ fn unlimited(checked: &CheckedScene, speeds: &[f64]) -> Option<String> {
 
 /// An impact of two plates without contact that would part.
 fn parting(checked: &CheckedScene, speeds: &[f64]) -> Option<String> {
-    if checked.scene.contact.is_some() {
+    // the check of an impact's reference says so by the exact states
+    let is_compared = matches!(checked.scene.reference, Some(Reference::FlyerImpact(_)));
+    if checked.scene.contact.is_some() || is_compared {
         return None;
     }
     let plates = Plates::of(checked, speeds)?;
@@ -157,7 +159,7 @@ fn parting(checked: &CheckedScene, speeds: &[f64]) -> Option<String> {
         parts.then(|| {
             format!(
                 "{}: the rarefaction from its rear reaches {other} after about {:.3} us, and {own} \
-                 would part from {other}; without the key contact they stay joined, under a tension \
+                 would part from {other}; without contact they stay joined, under a tension \
                  of about {}",
                 join("bodies", own),
                 1e6 * time,
