@@ -3,7 +3,6 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use decomp::Serial;
 use flyer_mpm::accuracy::reference;
 use flyer_mpm::driver::figures::{self, WaveRow, plate_name};
 use flyer_mpm::driver::memory::needed_memory;
@@ -11,12 +10,11 @@ use flyer_mpm::driver::output::SUMMARY_FILE;
 use flyer_mpm::driver::output::folder::OutputFolder;
 use flyer_mpm::driver::output::lock::Lock;
 use flyer_mpm::driver::output::origin::Maker;
-use flyer_mpm::effects::{self, ledger, ledger_lines, ledger_rest};
+use flyer_mpm::effects::{ledger, ledger_lines, ledger_rest};
 use flyer_mpm::exact::{Accuracy, Chain, Impact, Plate, Release, Solution, WaveKind};
 use flyer_mpm::input;
 use flyer_mpm::scene::{Body, CheckedScene, Reference};
-use flyer_mpm::simulation::{Compiled, RunError, Simulation};
-use flyer_mpm::solver::Stepper;
+use flyer_mpm::simulation::{Preview, RunError};
 use serde_json::json;
 
 use crate::{FAILED, Outcome, bad};
@@ -27,18 +25,8 @@ use crate::{FAILED, Outcome, bad};
 ///
 /// If the scene cannot be simulated.
 pub fn check(scene: &CheckedScene) -> Result<String, RunError> {
-    match scene.dimension {
-        1 => check_in::<1>(scene),
-        _ => check_in::<2>(scene),
-    }
-}
-
-fn check_in<const D: usize>(scene: &CheckedScene) -> Result<String, RunError>
-where
-    Stepper<D>: Compiled<D>,
-{
-    let stepper = effects::stepper::<D>(scene);
-    let dt = first_step(scene, &stepper)?.min(scene.scene.time.end);
+    let preview = Preview::new(scene)?;
+    let (columns, dt) = (&preview.columns, preview.first_step.min(scene.scene.time.end));
     let mut text = String::new();
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "{name:<20} {value}");
@@ -53,10 +41,12 @@ where
     line("memory", memory(scene, input::available_memory()));
     line("first time step", format!("{dt:.4e} s"));
     line("steps", format!("about {:.0}", (scene.scene.time.end / dt).ceil()));
-    let columns = &stepper.columns;
     let names: Vec<&str> = columns.specs.iter().map(|s| s.name).collect();
     line("columns a particle", format!("{} ({})", names.len(), names.join(", ")));
-    line("held by the monitor", format!("{} bytes a particle", columns.state_bytes(D)));
+    line(
+        "held by the monitor",
+        format!("{} bytes a particle", columns.state_bytes(scene.dimension)),
+    );
     let limit = scene.courant_limit();
     line("courant", format!("{}, this method's limit {limit}", scene.scene.time.courant));
     if let Some(choice) = &scene.method_choice {
@@ -95,22 +85,6 @@ fn memory(scene: &CheckedScene, available: Option<u64>) -> String {
         }
         _ => text,
     }
-}
-
-/// Memory of a run up to which its particles are made to find the first step [bytes].
-const BUILT: u64 = 256 << 20;
-
-/// First time step [s]; of a large scene an estimate from sound speeds and velocities.
-fn first_step<const D: usize>(scene: &CheckedScene, stepper: &Stepper<D>) -> Result<f64, RunError>
-where
-    Stepper<D>: Compiled<D>,
-{
-    if scene.memory() <= BUILT {
-        return Ok(Simulation::<D>::new(scene, &Serial, 1)?.time_step());
-    }
-    let grid = scene.frame::<D>().velocity(0.0);
-    let steps = (0..scene.bodies.len()).map(|body| stepper.starting_step(scene, body, grid));
-    Ok(scene.scene.time.courant * steps.fold(f64::INFINITY, f64::min))
 }
 
 /// Names of the bodies whose number of particles per cell is the default; `None`: there are none.

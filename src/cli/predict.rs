@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use decomp::{Comm, Serial};
+use decomp::Comm;
 use flyer_mpm::driver::output::origin::check_target;
 use flyer_mpm::driver::output::wrap::warning;
 use flyer_mpm::input;
@@ -10,7 +10,7 @@ use flyer_mpm::input::input_file;
 use flyer_mpm::perf_model::calibrate;
 use flyer_mpm::perf_model::{Against, Machine, Network, forecast, machine_table, ranks_to, table};
 use flyer_mpm::scene::{CellSize, CheckedScene};
-use flyer_mpm::simulation::Simulation;
+use flyer_mpm::simulation::Preview;
 use serde_json::Value;
 
 use crate::cli::PredictArgs;
@@ -158,8 +158,8 @@ fn first_time_step(scene: &CheckedScene) -> Outcome<f64> {
     let failed = |e: &dyn std::fmt::Display| (FAILED, e.to_string());
     let coarser = coarsened(scene);
     let (scene, factor) = coarser.as_ref().map_or((scene, 1.0), |(s, f)| (s, *f));
-    let simulation = Simulation::<1>::new(scene, &Serial, 1).map_err(|e| failed(&e))?;
-    Ok((simulation.time_step() / factor).min(scene.scene.time.end))
+    let preview = Preview::new(scene).map_err(|e| failed(&e))?;
+    Ok((preview.first_step / factor).min(scene.scene.time.end))
 }
 
 /// The scene with cells so much larger that it has few particles, and the ratio of cell sizes.
