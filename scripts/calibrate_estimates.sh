@@ -5,4 +5,4 @@
 # results an interrupted or repeated call uses again: remove it after schemes have changed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-cargo run --release --example calibrate_estimates -- "$@"
+cargo run --release -p calibration -- "$@"

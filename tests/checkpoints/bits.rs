@@ -8,7 +8,8 @@ use flyer_mpm::simulation::{Compiled, Saved, Simulation};
 use flyer_mpm::solver::Stepper;
 use serde_json::{Value, json};
 
-use crate::scenes::{shipped, small, small_leapfrog, with};
+use crate::scenes::{shipped, with};
+use crate::small_scenes::{small, small_leapfrog};
 
 /// Steps of each run.
 const STEPS: u64 = 24;

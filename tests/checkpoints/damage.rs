@@ -207,7 +207,7 @@ fn profiles(folder: &Path) -> Vec<PathBuf> {
     entries.filter(is_one).collect()
 }
 
-/// A profile has a file of its own, which is written once, and whose loss or damage is told.
+/// A profile has a file of its own, which is written once, and whose loss or damage is reported.
 #[test]
 fn a_profile_is_written_once() {
     let home = tempfile::tempdir().unwrap();

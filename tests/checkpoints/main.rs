@@ -10,6 +10,9 @@ mod program;
 #[path = "../common/scenes.rs"]
 #[expect(dead_code, reason = "shared with other targets")]
 mod scenes;
+#[path = "../common/small_scenes.rs"]
+#[expect(dead_code, reason = "shared with other targets")]
+mod small_scenes;
 
 mod bits;
 mod damage;

@@ -3,7 +3,8 @@
 use serde_json::{Value, json};
 
 use crate::home::{Home, Results, checkpoints, names};
-use crate::scenes::{small, with};
+use crate::scenes::with;
+use crate::small_scenes::small;
 
 /// A small scene that records all there is, with a checkpoint every so many steps.
 pub fn recorded(every: u64) -> Value {

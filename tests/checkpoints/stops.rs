@@ -37,7 +37,9 @@ impl Unheard {
         // a full pipe takes nothing more
         let room = fcntl(&pipe, FcntlArg::F_GETPIPE_SZ).unwrap();
         pipe.write_all(&vec![b'\n'; room as usize]).unwrap();
-        let mut run = home.call(["scene.json"]).stderr(pipe).start();
+        let mut call = home.call(["scene.json"]);
+        call.stderr = Some(pipe);
+        let mut run = call.start();
         wait(&mut run, || home.at("output/.scene.flyer.lock").exists());
         Unheard { run, said }
     }

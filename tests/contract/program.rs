@@ -71,7 +71,8 @@ pub struct Call {
     args: Vec<OsString>,
     ranks: Option<usize>,
     limit: Duration,
-    stderr: Option<PipeWriter>,
+    /// Receives stderr instead of [`Ended::stderr`].
+    pub stderr: Option<PipeWriter>,
     within: bool,
 }
 
@@ -109,12 +110,6 @@ impl Call {
     /// Runs the call on this many ranks of mpirun.
     pub fn ranks(self, ranks: usize) -> Call {
         Call { ranks: Some(ranks), limit: Duration::from_secs(120), ..self }
-    }
-
-    /// Redirects stderr to a pipe instead of [`Ended::stderr`].
-    #[allow(dead_code, reason = "used by the tests of checkpoints alone")]
-    pub fn stderr(self, pipe: PipeWriter) -> Call {
-        Call { stderr: Some(pipe), ..self }
     }
 
     /// Makes the call within a turn that the test has, beside its other calls.

@@ -41,7 +41,7 @@ fn a_scab_of_the_flyers_thickness_comes_off() {
     let each = 1.25e-5 * 1e18 / (2.0 * 2785.0 * 5386.0f64.powi(2));
     let released = end.released / (failed.len() as f64 * each);
     assert!((0.95..1.5).contains(&released), "{released}");
-    // what has failed bears no tension
+    // what has failed supports no tension
     let pressure = outcome.column("pressure");
     assert!(failed.iter().all(|&r| pressure[r] >= 0.0));
     let whole = run::<1>(&{

@@ -62,5 +62,5 @@ fn what_the_scene_has_no_place_for_is_refused() {
     let error = message(&[], &gas(1.0));
     assert!(error.contains("density = 2790.0") && error.contains("1.0;"), "{error}");
     let error = message(&[none, ("eos", porous)], &gas(2790.0));
-    assert!(error.contains("bears shear or has a history"), "{error}");
+    assert!(error.contains("supports shear or has a history"), "{error}");
 }

@@ -29,7 +29,7 @@ fn strength() {
     refused(&["strength.yield=1e8"], &["strength.yield", "unknown"]);
     refused(
         &["eos={\"type\": \"linear_elastic\", \"youngs_modulus\": 1e9, \"poissons_ratio\": 0.3}"],
-        &["materials.aluminium.strength", "bears shear by itself"],
+        &["materials.aluminium.strength", "supports shear by itself"],
     );
     refused(&[COOK], &["strength.softening", "materials.aluminium.thermal"]);
     refused(

@@ -110,7 +110,7 @@ fn pores_have_closed_behind_the_shock() {
 
 #[test]
 fn tension_stops_at_its_cutoff() {
-    // pulled apart: without a cutoff the state ends the run or bears whatever comes
+    // pulled apart: without a cutoff the state ends the run or supports any tension
     let pulled = |cutoff: Value| {
         let mut value = slab(2785.0, aluminium(json!({"tension_cutoff": cutoff})), 0.0, 5000.0);
         value["boundary"] = json!({});

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use serde_json::{Value, json};
 
-use crate::cases::random::{Verdict, verdict};
+use crate::verdict::{Verdict, verdict};
 
 /// Variants of a class, unless `VARIANTS` gives their number.
 const VARIANTS: u32 = 60;

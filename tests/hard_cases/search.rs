@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use serde_json::{Value, json};
 
-use crate::cases::random::{Verdict, verdict};
 use crate::random_scenes::scene;
+use crate::verdict::{Verdict, verdict};
 
 /// Scenes of one search, unless `PROPTEST_CASES` says otherwise.
 const SCENES: u32 = 1000;

@@ -7,9 +7,9 @@ use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, TestRunner};
 use serde_json::Value;
 
-use crate::cases::random::{Verdict, verdict};
 use crate::impact_scenes;
 use crate::valid_scenes::{calm_scene, scene};
+use crate::verdict::{Verdict, verdict};
 
 /// Scenes of one search, unless `VALID_SCENES` gives their number.
 const SCENES: u32 = 300;

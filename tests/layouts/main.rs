@@ -16,3 +16,5 @@ mod random_scenes;
 #[path = "../common/scenes.rs"]
 mod scenes;
 mod schemes;
+#[path = "../common/small_scenes.rs"]
+mod small_scenes;

@@ -4,7 +4,8 @@ use serde_json::{Value, json};
 
 use crate::in_process::end_of;
 use crate::layouts::Layout;
-use crate::scenes::{SHAPES, ending, shipped, small, small_leapfrog, small_midpoint};
+use crate::scenes::{SHAPES, shipped};
+use crate::small_scenes::{ending, small, small_leapfrog, small_midpoint};
 
 /// Transfers, one of each kind.
 fn transfers() -> [Value; 6] {

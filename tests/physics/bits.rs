@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::scenes::{small, small_leapfrog, small_midpoint};
+use crate::small_scenes::{small, small_leapfrog, small_midpoint};
 use crate::tools::{SHAPES, checked, ending, run_scene, shipped, transfers, with};
 
 const LAYOUTS: [(usize, usize); 4] = [(5, 1), (16, 2), (1, 2), (5, 2)];

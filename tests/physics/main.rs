@@ -17,6 +17,8 @@ mod scenes;
 mod schemes;
 mod sharing;
 mod sides;
+#[path = "../common/small_scenes.rs"]
+mod small_scenes;
 mod times;
 mod tools;
 mod units;

@@ -12,7 +12,8 @@ use flyer_mpm::simulation::Removed;
 use flyer_mpm::simulation::{Simulation, Totals};
 use serde_json::{Value, json};
 
-pub use crate::scenes::{SHAPES, ending, shipped, with};
+pub use crate::scenes::{SHAPES, shipped, with};
+pub use crate::small_scenes::ending;
 
 /// Transfers, one or two of each kind.
 pub fn transfers() -> [Value; 8] {

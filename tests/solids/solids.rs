@@ -60,7 +60,7 @@ fn energy_and_momentum_are_kept_to_rounding() {
                 at_most(&what, outcome.energy_drift(), 1e-13);
                 let scale = outcome.totals[0].absolute_momentum;
                 at_most(&what, outcome.momentum_drift(scale), 1e-13);
-                // the block bears shear
+                // the block supports shear
                 assert!(outcome.greatest("stress_xy") > 0.2, "{what}");
             }
         }
@@ -191,7 +191,7 @@ fn fluids_and_solids_share_a_scene() {
         let rows = (0..outcome.last.len()).filter(own);
         rows.fold(0.0f64, |most, r| most.max(outcome.column("stress_xy")[r].abs()))
     };
-    assert_eq!(shear(0), 0.0, "a fluid bears no shear");
+    assert_eq!(shear(0), 0.0, "a fluid supports no shear");
     assert!(shear(1) > 1e8, "{}", shear(1));
 }
 

@@ -112,8 +112,8 @@ impl Reader {
             return Err(format!("{name} is longer than the file").into());
         }
         let values: Vec<T> = dataset.read_raw()?;
-        let told: FixedAscii<64> = dataset.attr("sha256")?.read_scalar()?;
-        match told.as_str() == digest(&values) {
+        let stored: FixedAscii<64> = dataset.attr("sha256")?.read_scalar()?;
+        match stored.as_str() == digest(&values) {
             true => Ok(values),
             false => Err(format!("the values of {name} are not those that were written").into()),
         }

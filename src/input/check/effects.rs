@@ -78,7 +78,7 @@ fn check_body(scene: &Scene, body: &Body, path: String) -> Result<(), SceneFault
 fn check_strength(path: &str, material: &Material) -> Result<(), SceneFault> {
     let Some(strength) = material.strength else { return Ok(()) };
     if material.eos.is_solid() {
-        let reason = "beside an eos that bears shear by itself; allowed: to leave it out, or the \
+        let reason = "beside an eos that supports shear by itself; allowed: to leave it out, or the \
                       eos of a fluid, such as \"mie_gruneisen\"";
         return Err(SceneFault::new(format!("{path}.strength"), strength, reason));
     }

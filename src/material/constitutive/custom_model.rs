@@ -65,10 +65,12 @@ impl CustomModel {
                 ConstitutiveModel::Solid(_) => false,
             };
             if !plain {
-                return Err("its eos bears shear or has a history, so no equation of state from \
+                return Err(
+                    "its eos supports shear or has a history, so no equation of state from \
                             outside can take its place; allowed: a fluid without a history, such \
                             as \"ideal_gas\""
-                    .into());
+                        .into(),
+                );
             }
             if density != material.density {
                 return Err(format!(

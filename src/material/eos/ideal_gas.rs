@@ -67,7 +67,7 @@ impl EosParameters for IdealGasParameters {
     }
 
     fn check_initial_pressure(&self, _density: f64, pressure: f64) -> Result<(), String> {
-        super::at_least(pressure, 0.0, "since an ideal gas bears no tension")
+        super::at_least(pressure, 0.0, "since an ideal gas supports no tension")
     }
 
     fn visit_plain<V: PlainEosVisitor>(&self, rho0: f64, visitor: V) -> Made<V> {

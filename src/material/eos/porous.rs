@@ -172,7 +172,7 @@ impl EosParameters for PAlphaParameters {
         }
         if self.solid.is_gas() {
             let reason = "a gas has no pores; allowed: \"mie_gruneisen\", \"tillotson\", \
-                          \"tabular\" or another equation of state that bears tension";
+                          \"tabular\" or another equation of state that supports tension";
             return Err(ParameterError::new("solid.type", solid_type(), reason));
         }
         self.solid

@@ -23,8 +23,8 @@ pub fn likely_cause(scene: &CheckedScene, alarm: Alarm, what: &str) -> String {
         );
     }
     if pulled(scene, what) {
-        return "the material is pulled on more than it bears; an eos.tension_cutoff, failure, or \
-                contact where bodies are to part"
+        return "the tension exceeds the range of the equation of state; set eos.tension_cutoff or \
+                failure, or contact if the bodies are to separate"
             .into();
     }
     if all.artificial_viscosity.is_none() {

@@ -3,14 +3,11 @@
 //!
 //! The scheme is that of `inputs/flyer.json`, read when a case is run.
 
-#![allow(dead_code, reason = "the tests and the acceptance program each use a part")]
-
 mod effects;
 mod impacts;
 mod invariance;
 mod particles;
 mod plane;
-pub mod random;
 mod rests;
 #[path = "../../common/scenes.rs"]
 pub mod scenes;
@@ -25,13 +22,6 @@ pub struct Figure {
     pub value: f64,
     /// Its greatest size.
     pub bound: f64,
-}
-
-impl Figure {
-    /// Whether the bound is kept.
-    pub fn holds(&self) -> bool {
-        self.value.abs() <= self.bound
-    }
 }
 
 /// `what` with its `value` and `bound`.

@@ -2,9 +2,9 @@
 
 use flyer_mpm::accuracy::estimate::EstimateBasis;
 
-use super::estimates::{CheckedEstimate, Gathered, QUANTITIES, gather, judge};
-use super::random_impacts::{Draw, HELD_OUT};
-use super::random_schemes::Schemes;
+use calibration::estimates::{CheckedEstimate, Gathered, QUANTITIES, gather, judge};
+use calibration::random_impacts::{Draw, HELD_OUT};
+use calibration::random_schemes::Schemes;
 use crate::bounds::{Unit, accuracy as bounds};
 use crate::table::Table;
 

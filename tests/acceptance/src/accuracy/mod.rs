@@ -1,15 +1,7 @@
 //! Accuracy of the shipped schemes and its cost, error estimates and plans.
 
 mod estimate;
-#[path = "../../../../examples/common/estimates.rs"]
-mod estimates;
 mod plan;
-#[path = "../../../../examples/common/random.rs"]
-pub mod random;
-#[path = "../../../../examples/common/random_impacts.rs"]
-mod random_impacts;
-#[path = "../../../../examples/common/random_schemes.rs"]
-mod random_schemes;
 mod schemes;
 
 use crate::section::{Section, quick, usual};

@@ -10,9 +10,9 @@ use flyer_mpm::driver::{Beginning, Options, run};
 use flyer_mpm::input;
 use flyer_mpm::scene::PlannedQuantity;
 
-use super::random::Random;
-use super::random_impacts::{Draw, HELD_OUT, impact};
-use super::random_schemes::Schemes;
+use calibration::random::Random;
+use calibration::random_impacts::{Draw, HELD_OUT, impact};
+use calibration::random_schemes::Schemes;
 use crate::bounds::{Unit, accuracy as bounds};
 use crate::table::Table;
 

@@ -13,6 +13,8 @@ mod memory;
 mod quiet;
 mod received;
 mod schemes;
+#[path = "../../../common/small_scenes.rs"]
+mod small_scenes;
 mod speed;
 
 use crate::hard_cases::scenes;

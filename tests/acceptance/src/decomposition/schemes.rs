@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 
 use super::in_process::end_of;
 use super::layouts::Layout;
-use super::scenes::{SHAPES, ending, small_leapfrog, small_midpoint};
+use super::scenes::SHAPES;
+use super::small_scenes::{ending, small_leapfrog, small_midpoint};
 use crate::bounds::Unit;
 use crate::table::Table;
 

@@ -7,7 +7,7 @@ use decomp::Serial;
 use flyer_mpm::driver::checkpoint::{CheckpointError, file};
 
 use super::runs::{end, folder, scene, with};
-use crate::accuracy::random::Random;
+use calibration::random::Random;
 use crate::bounds::reliability as bounds;
 use crate::table::Table;
 

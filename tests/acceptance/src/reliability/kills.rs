@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use flyer_mpm::driver::checkpoint::folder::list;
 
 use super::runs::{command, folder, good, left, scene, steps, wait, with};
-use crate::accuracy::random::Random;
+use calibration::random::Random;
 use crate::bounds::{Unit, reliability as bounds};
 use crate::table::Table;
 

@@ -2,7 +2,7 @@
 
 use super::metal::metal;
 use super::runs::{folder, good, left, scene, steps, with};
-use crate::accuracy::random::Random;
+use calibration::random::Random;
 use crate::bounds::reliability as bounds;
 use crate::table::Table;
 

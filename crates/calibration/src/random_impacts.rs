@@ -10,15 +10,13 @@ use flyer_mpm::material::MieGruneisen;
 use flyer_mpm::scene::CheckedScene;
 use serde_json::{Value, json};
 
-use super::random::Random;
-use super::random_schemes::{self, Schemes};
+use crate::random::Random;
+use crate::random_schemes::{self, Schemes};
 
 /// Library materials of the fit.
-#[allow(dead_code, reason = "each program uses a part")]
 pub const FITTED: [&str; 7] =
     ["copper", "aluminium_2024", "tantalum", "steel_304", "lead", "pmma", "nickel"];
 /// Library materials with which the error models are compared. No material is in both lists.
-#[allow(dead_code, reason = "each program uses a part")]
 pub const HELD_OUT: [&str; 8] = [
     "gold",
     "aluminium_6061",
@@ -63,7 +61,6 @@ pub struct Draw<'a> {
 }
 
 /// The range of the impacts of the fit.
-#[allow(dead_code, reason = "each program uses a part")]
 pub fn range() -> FittedRange {
     FittedRange {
         density: DENSITY,
@@ -200,6 +197,10 @@ fn attempt(random: &mut Random, draw: &Draw<'_>) -> Option<RandomImpact> {
 
 impl RandomImpact {
     /// Its scene, checked.
+    ///
+    /// # Errors
+    ///
+    /// If the scene is refused.
     pub fn checked(&self) -> Result<CheckedScene, String> {
         input::parse(self.scene.to_string().as_bytes(), &self.name, &[]).map_err(|e| e.to_string())
     }

@@ -14,15 +14,14 @@ use flyer_mpm::driver::output::summary::Summary;
 use flyer_mpm::driver::{Beginning, Options, run};
 use serde::{Deserialize, Serialize};
 
-use super::random::Random;
-use super::random_impacts::{Draw, RandomImpact, impact};
+use crate::random::Random;
+use crate::random_impacts::{Draw, RandomImpact, impact};
 
 /// Names of the estimated quantities.
 pub const QUANTITIES: [&str; 3] = ["plateau pressure", "arrival time", "L1"];
 
 /// The estimate of one quantity in one impact, with its true error.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[allow(dead_code, reason = "each program uses a part")]
 pub struct CheckedEstimate {
     /// The impact, in words.
     pub name: String,
@@ -51,7 +50,6 @@ pub struct CheckedEstimate {
 
 /// Estimates of some impacts.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-#[allow(dead_code, reason = "each program uses a part")]
 pub struct Gathered {
     /// One list per quantity.
     pub estimates: [Vec<CheckedEstimate>; 3],
@@ -67,6 +65,10 @@ pub struct Gathered {
 
 /// Runs `count` impacts of `draw` on `threads` threads. Impacts that cannot be run to their end are
 /// reported and left out.
+///
+/// # Panics
+///
+/// If no temporary folder can be created.
 pub fn gather(seed: u64, draw: &Draw<'_>, count: usize, threads: usize) -> Gathered {
     let mut random = Random::new(seed);
     let impacts: Vec<RandomImpact> = (0..count).map(|_| impact(&mut random, draw)).collect();
@@ -149,11 +151,11 @@ fn add(all: &mut Gathered, impact: &RandomImpact, summary: &Summary) {
             _ => 0.0,
         };
         let is_long = length >= LEAST_PLATEAU;
-        let told = profile.plateau_pressure.as_ref();
+        let reported = profile.plateau_pressure.as_ref();
         all.plateaus += usize::from(is_long);
-        all.abstained += usize::from(is_long && told.is_none());
-        all.false_plateaus += usize::from(!is_long && told.is_some());
-        if let Some(bounded) = told
+        all.abstained += usize::from(is_long && reported.is_none());
+        all.false_plateaus += usize::from(!is_long && reported.is_some());
+        if let Some(bounded) = reported
             && let Some(exact) = bounded.exact
         {
             let error = (bounded.value - exact).abs();
@@ -184,7 +186,6 @@ fn add(all: &mut Gathered, impact: &RandomImpact, summary: &Summary) {
 
 /// How often intervals contained the true error, and how wide they were.
 #[derive(Clone, Copy, Debug)]
-#[allow(dead_code, reason = "each program uses a part")]
 pub struct Judgement {
     /// Number of estimates.
     pub cases: usize,

@@ -5,11 +5,10 @@ use flyer_mpm::accuracy::plan;
 use flyer_mpm::shape::ShapeKind;
 use serde_json::{Value, json};
 
-use super::random::Random;
+use crate::random::Random;
 
 /// Schemes to draw from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[allow(dead_code, reason = "each program uses a part")]
 pub enum Schemes {
     /// A scene without `method`.
     Default,
@@ -43,7 +42,6 @@ const COURANT: [f64; 2] = [0.25, 0.6];
 const PARTICLES: [u64; 2] = [1, 4];
 
 /// The range of the random schemes.
-#[allow(dead_code, reason = "each program uses a part")]
 pub fn range() -> FittedSchemes {
     let whole = |[low, high]: [u64; 2]| [low as f64, high as f64];
     FittedSchemes {

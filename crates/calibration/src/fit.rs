@@ -4,7 +4,7 @@
 use flyer_mpm::accuracy::estimate::error_model::{LEAST, Law};
 use nalgebra::{DMatrix, DVector};
 
-use crate::estimates::CheckedEstimate;
+use calibration::estimates::CheckedEstimate;
 
 /// Errors below this are rounding \[in the evidence's unit\].
 const FLOOR: f64 = 1e-8;

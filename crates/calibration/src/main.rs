@@ -6,25 +6,17 @@
 //! left in FOLDER (`output/calibration`) are not repeated. `accuracy/estimate` of the acceptance
 //! program compares the result with impacts of other materials.
 
-#[path = "../common/estimates.rs"]
-mod estimates;
 mod fit;
 mod picture;
-#[path = "../common/random.rs"]
-mod random;
-#[path = "../common/random_impacts.rs"]
-mod random_impacts;
-#[path = "../common/random_schemes.rs"]
-mod random_schemes;
 mod scheme_accuracy;
 
 use std::path::{Path, PathBuf};
 
-use estimates::{CheckedEstimate, Gathered, QUANTITIES, gather, judge};
+use calibration::estimates::{CheckedEstimate, Gathered, QUANTITIES, gather, judge};
+use calibration::random_impacts::{self, Draw, FITTED, HELD_OUT};
+use calibration::random_schemes::Schemes;
 use flyer_mpm::accuracy::estimate::error_model::{FamilyLaws, GuessFactors, Laws, QuantityLaws};
 use flyer_mpm::accuracy::estimate::{EstimateBasis, SchemeFamily};
-use random_impacts::{Draw, FITTED, HELD_OUT};
-use random_schemes::Schemes;
 
 /// Seeds of the impacts of the fit, of those outside of its range, of those of the plan's schemes, and
 /// of those of the picture.
@@ -162,7 +154,7 @@ fn main() {
     let number =
         |k: usize, otherwise: usize| argument(k).and_then(|a| a.parse().ok()).unwrap_or(otherwise);
     let (count, threads) = (number(1, 2200), number(2, 2));
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = &Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folder = argument(3).map_or(root.join("output/calibration"), PathBuf::from);
     let of = |schemes, beyond| Draw { library: &FITTED, invented: 0.7, schemes, beyond };
     let runs = |name: &str, seed: u64, draw: Draw<'_>, count: usize| {

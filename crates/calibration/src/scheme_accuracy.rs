@@ -5,8 +5,8 @@ use std::path::Path;
 use flyer_mpm::accuracy::plan::data::{CELLS, ErrorLaws, STRENGTH, SchemeAccuracy};
 use flyer_mpm::accuracy::plan::{self, Data};
 
-use crate::estimates::{CheckedEstimate, Gathered};
 use crate::fit;
+use calibration::estimates::{CheckedEstimate, Gathered};
 
 /// Share of the runs whose error is smaller than the one that a plan predicts.
 const SHARE: f64 = 0.95;

@@ -1,0 +1,7 @@
+//! Random plate impacts with their estimated and true errors. The program of this crate fits the
+//! error models of `flyer-mpm` to them; the acceptance program compares the models with others.
+
+pub mod estimates;
+pub mod random;
+pub mod random_impacts;
+pub mod random_schemes;
