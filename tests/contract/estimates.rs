@@ -23,7 +23,13 @@ fn an_estimate_needs_no_reference_and_is_the_same_with_one() {
     let without = estimate(&scene(asked.clone()));
     let mut with = scene(asked);
     with["reference"] = whole()["reference"].clone();
+    // the default number of particles per cell is the same as the number in this scene
+    for body in with["bodies"].as_array_mut().unwrap() {
+        assert_eq!(body["particles_per_cell"], json!([2]));
+        body.as_object_mut().unwrap().remove("particles_per_cell");
+    }
     let with = estimate(&with);
+    assert_eq!(with["basis"], "calibrated", "{with}");
     let quantities = ["/profiles/0/l1", "/profiles/0/plateau_pressure", "/arrivals/0/time"];
     for path in quantities {
         for key in ["value", "half_width", "evidence"] {

@@ -44,10 +44,13 @@ impl FittedSchemes {
         }
         found.extend(check("time.courant", scene.scene.time.courant, self.courant));
         for body in &scene.scene.bodies {
+            if body.positions.is_some() {
+                found.push(format!("bodies.{}.positions: not in the fit", body.name));
+                continue;
+            }
             let key = format!("bodies.{}.particles_per_cell", body.name);
-            match body.particles_per_cell.as_deref() {
-                Some(&[count]) => found.extend(check(key, count as f64, self.particles_per_cell)),
-                _ => found.push(format!("bodies.{}.positions: not in the fit", body.name)),
+            for count in body.particles_per_cell(scene.dimension) {
+                found.extend(check(&key, count as f64, self.particles_per_cell));
             }
         }
         found

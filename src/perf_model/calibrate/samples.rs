@@ -75,7 +75,10 @@ fn sized(scene: &CheckedScene, finer: i64, denser: usize) -> Option<CheckedScene
     };
     new.domain.cell_size = CellSize::Uniform(size);
     for body in &mut new.bodies {
-        body.particles_per_cell.iter_mut().flatten().for_each(|n| *n *= denser);
+        if body.positions.is_none() {
+            let counts = body.particles_per_cell(scene.dimension);
+            body.particles_per_cell = Some(counts.into_iter().map(|n| n * denser).collect());
+        }
     }
     new.decomposition.skip_quiescent = false;
     input::check(new, &scene.file).ok()
@@ -238,4 +241,24 @@ fn crowd(variant: &Variant, count: usize, seconds: f64) -> Option<f64> {
         let times: Option<Vec<f64>> = times.into_iter().collect();
         times.map(|t| t.iter().sum::<f64>() / t.len() as f64)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_default_number_of_particles_per_cell_is_multiplied_as_a_given_one() {
+        let mut value: serde_json::Value =
+            serde_json::from_str(include_str!("../../../inputs/flyer.json")).unwrap();
+        let particles = |value: &serde_json::Value, denser| {
+            let scene = input::parse(value.to_string().as_bytes(), "flyer.json", &[]).unwrap();
+            sized(&scene, 1, denser).unwrap().particles
+        };
+        let given = particles(&value, 2);
+        for body in value["bodies"].as_array_mut().unwrap() {
+            body.as_object_mut().unwrap().remove("particles_per_cell");
+        }
+        assert_eq!((particles(&value, 1), particles(&value, 2)), (given / 2, given));
+    }
 }

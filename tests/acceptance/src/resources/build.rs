@@ -59,16 +59,16 @@ fn copy_sources(folder: &Path) -> Result<PathBuf, String> {
     Ok(folder.into())
 }
 
-/// Changes the code of the first function of `file` that has a local variable: with incremental
-/// compilation, a later time of change alone compiles nothing.
+/// Adds a local variable before the first one of `file`: with incremental compilation, a later time
+/// of change alone compiles nothing.
 fn change(file: &Path) -> Result<(), String> {
     let failed = |error: std::io::Error| format!("{}: {error}", file.display());
     let text = std::fs::read_to_string(file).map_err(failed)?;
-    let changed = text.replacen(" let ", " let _changed = std::hint::black_box(1); let ", 1);
-    if changed == text {
-        return Err(format!("{}: no local variable to add one to", file.display()));
-    }
-    std::fs::write(file, changed).map_err(failed)
+    let mut lines: Vec<&str> = text.lines().collect();
+    let first = lines.iter().position(|line| line.trim_start().starts_with("let "));
+    let first = first.ok_or(format!("{}: no local variable", file.display()))?;
+    lines.insert(first, "let _changed = std::hint::black_box(1);");
+    std::fs::write(file, lines.join("\n")).map_err(failed)
 }
 
 /// Wall time of a command \[s\] with a target folder and the profiles of Cargo.toml.
