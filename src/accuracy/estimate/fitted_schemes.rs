@@ -81,7 +81,11 @@ impl FittedSchemes {
                 found.extend(check(key, rate, self.relaxation));
             }
             transfer => {
-                not(matches!(transfer, Transfer::FlipPic(_)), "transfer");
+                let fitted = matches!(
+                    transfer,
+                    Transfer::Flip | Transfer::Pic | Transfer::Apic | Transfer::Xpic(_)
+                );
+                not(!fitted, "transfer");
                 not(method.stepping != Stepping::Leapfrog, "stepping");
                 not(method.stress_update != StressUpdate::Last, "stress_update");
                 not(method.energy != EnergyUpdate::Textbook, "energy");

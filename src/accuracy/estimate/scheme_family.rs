@@ -42,7 +42,7 @@ impl SchemeFamily {
             Transfer::Fmpm(_) if method.shape == ShapeKind::Cpdi => SchemeFamily::CpdiFmpm,
             Transfer::Fmpm(_) => SchemeFamily::SplineFmpm,
             Transfer::Flip | Transfer::FlipPic(_) => SchemeFamily::Flip,
-            Transfer::Pic | Transfer::Apic | Transfer::Xpic(_) => SchemeFamily::Damped,
+            _ => SchemeFamily::Damped,
         }
     }
 }
