@@ -56,7 +56,7 @@ where
             bytes_received += traffic.bytes_received - before.bytes_received;
             let waited = traffic.waited - before.waited;
             self.simulation.clock().add(Activity::Wait, waited);
-            self.simulation.clock().add_since(Activity::Output, start, waited);
+            self.simulation.clock().add_since(Activity::Output, Some(start), waited);
             if time >= end {
                 return Ok(bytes_received);
             }

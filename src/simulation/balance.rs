@@ -1,7 +1,5 @@
 //! Load balancing: patches move between ranks so that no rank waits for the busiest.
 
-use std::time::Instant;
-
 use decomp::{PatchLoads, busiest_share, relocate};
 
 use super::run::Simulation;
@@ -47,7 +45,7 @@ impl<const D: usize> Simulation<'_, D> {
         if !self.may_balance() || !self.step.is_multiple_of(every) {
             return;
         }
-        let start = Instant::now();
+        let start = self.clock.now();
         let waited = self.comm.traffic().waited;
         let (costs, particles) = self.gather_costs();
         let (ranks, owners) = (self.comm.size(), self.layout.ranks());
@@ -99,7 +97,7 @@ impl<const D: usize> Simulation<'_, D> {
     }
 
     fn move_patches(&mut self, ranks: Vec<usize>) {
-        let start = Instant::now();
+        let start = self.clock.now();
         let waited = self.comm.traffic().waited;
         let reach = self.reach.expect("known since the start");
         let new = self.layout.clone().with_ranks(ranks);

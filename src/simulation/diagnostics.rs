@@ -154,6 +154,13 @@ impl<const D: usize> Simulation<'_, D> {
         (self.comm.rank() == 0).then_some((table, digest))
     }
 
+    /// The columns that `wanted` names of all particles, sorted by x, at rank 0; `None` on other
+    /// ranks. Collective.
+    pub fn gather_columns(&self, wanted: &dyn Fn(&str) -> bool) -> Option<ParticleTable> {
+        let table = self.table(&self.shares(1), RowOrder::Position, wanted);
+        (self.comm.rank() == 0).then_some(table)
+    }
+
     /// This rank's share of all particles, by id: the shares of the ranks, one after the other, are
     /// all particles in order of id. It has the columns that `wanted` names. Collective.
     pub fn share(&self, wanted: &dyn Fn(&str) -> bool) -> ParticleTable {

@@ -1,7 +1,6 @@
 //! The run: its patches, its clock and its steps.
 
 use std::ops::Range;
-use std::time::Instant;
 
 use decomp::{Census, Comm, Layout};
 
@@ -252,7 +251,7 @@ impl<'a, const D: usize> Simulation<'a, D> {
         self.given_contact.clear();
         let (step, time, stable) = (self.step, self.time, self.stable);
         let sampled = self.samples(step);
-        let timed = sampled || step % EFFECTS_EVERY == 1;
+        let timed = sampled || (step % EFFECTS_EVERY == 1 && !self.clock.is_stopped());
         self.clock.start_step(step, self.traced.contains(&step), timed);
         self.with_world(|stepper, world| stepper.advance(world, time, dt, stable, step))?;
         if sampled {
@@ -371,7 +370,7 @@ impl<const D: usize> Simulation<'_, D> {
     /// Reduces over all ranks the longest stable step, faults, the particles of the busiest rank
     /// and requests, and checks the step of `dt` [s]. Collective.
     fn agree(&mut self, dt: f64) -> Result<(), RunError> {
-        let start = Instant::now();
+        let start = self.clock.now();
         let faulty = self.patches.iter().any(|p| p.report.fault.is_some());
         let shortest =
             self.patches.iter().map(|p| p.report.time_step).fold(f64::INFINITY, f64::min);

@@ -70,6 +70,7 @@ pub struct Clock {
     step: u64,
     traced: bool,
     sampled: bool,
+    stopped: bool,
 }
 
 impl Clock {
@@ -82,7 +83,23 @@ impl Clock {
             step: 0,
             traced: false,
             sampled: false,
+            stopped: false,
         }
+    }
+
+    /// Stops the clock: times that nobody reads cost several per cent of a step of few particles.
+    pub fn stop(&mut self) {
+        self.stopped = true;
+    }
+
+    /// Whether the clock is stopped.
+    pub fn is_stopped(&self) -> bool {
+        self.stopped
+    }
+
+    /// The present time; `None` if the clock is stopped.
+    pub fn now(&self) -> Option<Instant> {
+        (!self.stopped).then(Instant::now)
     }
 
     /// Sets what to record in `step`: timeline events, and the cost of patches.
@@ -96,14 +113,18 @@ impl Clock {
     }
 
     /// Adds the time from `start` to now to an activity, minus the time `other` [s] that is counted
-    /// elsewhere.
-    pub fn add_since(&mut self, activity: Activity, start: Instant, other: f64) {
-        self.add(activity, (start.elapsed().as_secs_f64() - other).max(0.0));
+    /// elsewhere. `start` is that of [`Clock::now`].
+    pub fn add_since(&mut self, activity: Activity, start: Option<Instant>, other: f64) {
+        if let Some(start) = start {
+            self.add(activity, (start.elapsed().as_secs_f64() - other).max(0.0));
+        }
     }
 
     /// Records an event of the rank from `start` to now, if a timeline is recorded.
-    pub fn event(&mut self, name: &'static str, start: Instant) {
-        if self.traced {
+    pub fn event(&mut self, name: &'static str, start: Option<Instant>) {
+        if self.traced
+            && let Some(start) = start
+        {
             let event = self.watcher().event(name, start);
             self.events.push(event);
         }
@@ -258,6 +279,22 @@ mod tests {
         assert!(watch.events[0].length >= 2_000_000);
         watch.end_step();
         assert!(watch.cost().unwrap() >= 2e-3 && watch.spent == 0.0);
+    }
+
+    #[test]
+    fn a_stopped_clock_counts_no_time() {
+        let mut clock = Clock::new();
+        let start = clock.now();
+        std::thread::sleep(std::time::Duration::from_millis(2));
+        clock.add_since(Activity::Compute, start, 0.0);
+        assert!(clock.seconds[Activity::Compute as usize] >= 2e-3);
+        let before = clock.seconds;
+        clock.stop();
+        clock.start_step(1, true, false);
+        let start = clock.now();
+        clock.add_since(Activity::Compute, start, 0.0);
+        clock.event("phase", start);
+        assert_eq!((start, clock.seconds, clock.events.len()), (None, before, 0));
     }
 
     #[test]

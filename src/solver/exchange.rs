@@ -89,7 +89,7 @@ fn for_each<const D: usize>(
 impl<const D: usize> World<'_, D> {
     /// Runs a phase on every patch that is not quiescent.
     pub fn each(&mut self, name: &'static str, phase: impl Fn(&mut Patch<D>) + Send + Sync) {
-        let start = Instant::now();
+        let start = self.clock.now();
         let watcher = self.clock.watcher();
         for_each(self.pool, self.patches, Which::All, &|p| watcher.time(name, p, &phase));
         self.clock.add_since(Activity::Compute, start, 0.0);
@@ -213,15 +213,16 @@ impl Ranks<'_> {
         phase: PatchPhase<'_, D>,
     ) {
         let mut computed = 0.0;
+        let clock_runs = !self.clock.is_stopped();
         let mut compute = |patches: &mut [Patch<D>], is: bool| {
-            let start = Instant::now();
+            let start = clock_runs.then(Instant::now);
             for (patch, _) in patches.iter_mut().zip(inner).filter(|(_, i)| **i == is) {
                 ready(patch);
             }
             for_each(pool, patches, Which::Inner(inner, is), phase);
-            computed += start.elapsed().as_secs_f64();
+            computed += start.map_or(0.0, |start| start.elapsed().as_secs_f64());
         };
-        let start = Instant::now();
+        let start = self.clock.now();
         let waited = self.comm.traffic().waited;
         let overlap = self.overlap;
         exchange(self.comm, patches, &mut |patches| {
@@ -326,7 +327,7 @@ impl<const D: usize> Nodal<'_, D> {
                         &timed,
                     );
                 } else {
-                    let start = Instant::now();
+                    let start = ranks.clock.now();
                     for_each(self.pool, self.patches, Which::All, &timed);
                     ranks.clock.add_since(Activity::Compute, start, 0.0);
                 }

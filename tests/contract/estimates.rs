@@ -43,6 +43,21 @@ fn an_estimate_needs_no_reference_and_is_the_same_with_one() {
     assert_eq!(without["outside"], json!([]));
 }
 
+/// Coarse runs on one worker have wider patches than on several.
+#[test]
+fn an_estimate_is_the_same_on_two_threads() {
+    let mut scene = scene(json!({"arrivals": [5e-4]}));
+    scene["domain"]["cell_size"] = json!(2.5e-6);
+    let home = Home::with(&scene);
+    let [one, two] = ["1", "2"].map(|threads| {
+        home.run(threads, &["--threads", threads]).summary["error_estimate"].clone()
+    });
+    for key in ["profiles", "arrivals", "companions"] {
+        assert_eq!(one[key], two[key], "{key}");
+    }
+    assert!(one["arrivals"][0]["time"]["half_width"].as_f64().unwrap() > 0.0, "{one}");
+}
+
 #[test]
 fn what_was_not_fitted_is_named_and_makes_a_guess() {
     let mut plain = scene(json!({"arrivals": [5e-4], "body": "target"}));

@@ -6,11 +6,15 @@ use super::arrival::{Arrivals, Between, Levels};
 use super::polyline::{Polyline, least_pressure, line};
 use crate::input;
 use crate::scene::{self, CellSize, CheckedScene};
-use crate::simulation::{RunError, Simulation};
+use crate::simulation::{RunError, Simulation, patch_counts};
 use crate::solver::clock::user_cpu_seconds;
 
 /// Cell sizes of the coarse runs over that of the scene \[-\].
 pub const FACTORS: [usize; 2] = [4, 2];
+
+/// Patch width of a coarse run on one worker \[cells\]. More patches of so few cells could be quiescent
+/// if they were narrower, but their edges cost more than this saves.
+const PATCH_CELLS: usize = 128;
 
 /// Results of one coarse run.
 #[derive(Clone, Debug, PartialEq)]
@@ -143,13 +147,18 @@ pub fn run(
     let mut finished: Vec<(f64, f64, Vec<Polyline>, CoarsePeaks)> = Vec::new();
     let mut least = 0.0;
     for factor in FACTORS {
-        let coarse = match coarser(scene, factor) {
+        let mut coarse = match coarser(scene, factor) {
             Ok(coarse) => coarse,
             Err(reason) => {
                 all.notes.push(format!("no companion on cells {factor} times as large: {reason}"));
                 continue;
             }
         };
+        let workers = comm.size() * threads;
+        if workers == 1 {
+            let most = (coarse.cells[0] / PATCH_CELLS).max(1);
+            coarse.scene.domain.patches = Some(vec![patch_counts(&coarse, 1, 1)[0].min(most)]);
+        }
         let between = places.iter().map(|&at| Between::new(&coarse, body, at)).collect();
         let mut peaks =
             CoarsePeaks { places: between, series: vec![Vec::new(); places.len()], least: 0.0 };
@@ -193,6 +202,7 @@ fn one(
     peaks: &mut CoarsePeaks,
 ) -> Result<Vec<Polyline>, RunError> {
     let mut simulation = Simulation::<1>::new(scene, comm, threads)?;
+    simulation.clock().stop();
     let mut profiles = Vec::new();
     let cell_time = simulation.time_step() / scene.scene.time.courant;
     peaks.least = least_pressure(scene, body, cell_time);
@@ -202,8 +212,8 @@ fn one(
             simulation.advance(time)?;
             peaks.look(&simulation);
         }
-        let table = simulation.gather();
-        profiles.push(table.map_or(Polyline::new(), |(table, _)| line(&table, body)));
+        let table = simulation.gather_columns(&|name| ["x", "pressure"].contains(&name));
+        profiles.push(table.map_or(Polyline::new(), |table| line(&table, body)));
     }
     while simulation.time() < scene.scene.time.end {
         simulation.advance(scene.scene.time.end)?;

@@ -1,5 +1,6 @@
 //! Accuracy of the shipped schemes and its cost, error estimates and plans.
 
+mod companions;
 mod estimate;
 mod plan;
 mod schemes;
@@ -10,13 +11,14 @@ use crate::section::{Section, quick, usual};
 pub const TITLE: &str = "Accuracy of the shipped schemes and its cost, error estimates and plans";
 
 /// Sections in the order in which they run.
-pub const SECTIONS: [Section; 8] = [
+pub const SECTIONS: [Section; 9] = [
     quick("standard", schemes::standard),
     usual("order", schemes::order),
     usual("impacts", schemes::impacts),
     quick("noh", schemes::noh),
     quick("smooth", schemes::smooth),
     quick("cost", schemes::cost),
+    usual("companions", companions::check),
     usual("estimate", estimate::check),
     usual("plan", plan::check),
 ];
