@@ -10,6 +10,7 @@ use flyer_mpm::driver::checkpoint::folder::list;
 use super::runs::{command, folder, good, left, scene, steps, wait, with};
 use calibration::random::Random;
 use crate::bounds::{Unit, reliability as bounds};
+use crate::program;
 use crate::table::Table;
 
 /// Kills that are wanted.
@@ -34,7 +35,8 @@ fn ranks_of(mpirun: u32) -> Vec<u32> {
     let all = text.unwrap_or_default();
     let children = all.split_whitespace().filter_map(|id| id.parse().ok());
     let is_ours = |id: &u32| {
-        fs::read_to_string(format!("/proc/{id}/comm")).is_ok_and(|c| c.starts_with("flyer-mpm"))
+        let file = fs::read_link(format!("/proc/{id}/exe"));
+        file.is_ok_and(|file| file.file_name() == program::path().file_name())
     };
     children.filter(is_ours).collect()
 }
