@@ -3,6 +3,7 @@
 mod balance;
 mod bytes;
 mod memory;
+mod ranks;
 mod startup;
 
 use crate::section::{Section, usual};
@@ -11,8 +12,9 @@ use crate::section::{Section, usual};
 pub const TITLE: &str = "Many ranks, patches and particles: start-up, messages and balance";
 
 /// Sections in the order in which they run.
-pub const SECTIONS: [Section; 4] = [
+pub const SECTIONS: [Section; 5] = [
     usual("startup", startup::check),
+    usual("ranks", ranks::check),
     usual("memory", memory::check),
     usual("bytes", bytes::check),
     usual("balance", balance::check),
