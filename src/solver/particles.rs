@@ -86,7 +86,7 @@ pub fn fill<const D: usize>(
         let region = scene.scene.bodies[number].regions().pop().map(|(_, region)| region);
         let boundary = columns.faces.and(region).and_then(|region| BodyBoundary::new(&region));
         for (&patch, block) in mine.iter().zip(&mut blocks) {
-            let cells = &layout.patches()[patch];
+            let cells = &layout.patch(patch);
             each_particle(scene, checked, cells, &mut |id, centre, size, volume| {
                 let particle = NewParticle { scene, body: number, centre, size };
                 set_initial_values(stepper, &particle, volume, grid_velocity, &mut values);
