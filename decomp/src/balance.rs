@@ -1,49 +1,73 @@
 //! Assignment of patches to ranks, and the choice of cuts.
 
-/// Assigns patches to ranks in sections of `order` (patches along a curve). The largest sum of
-/// `weights` per rank is as small as possible for whole patches in this order. A rank may get none.
-/// Returns the rank of each patch.
+/// Assigns patches to ranks in sections of an order. `weights` holds the weight of each patch in this
+/// order; their sum is below 2^63. The largest sum of weights per rank is as small as possible for
+/// whole patches in this order. A rank may get none. Returns the rank of each patch, in the order.
 ///
-/// The smallest bottleneck is found by bisection (chains on chains: Pinar & Aykanat 2004). Within
-/// it, sections end as near to equal shares as possible, so that small changes of the weights move
-/// few patches.
-pub fn assign_patches(weights: &[u64], order: &[usize], ranks: usize) -> Vec<usize> {
-    debug_assert_eq!(weights.len(), order.len(), "one place a patch");
-    let mut of = vec![0; weights.len()];
-    assign_along(weights, order, ranks, &mut of);
-    of
-}
-
-/// Assigns the patches of `order` to ranks in sections; see [`assign_patches`].
-fn assign_along(weights: &[u64], order: &[usize], ranks: usize, of: &mut [usize]) {
-    // if all weights are zero, patches count equally
-    let even = order.iter().all(|&p| weights[p] == 0);
-    let weights: Vec<u128> =
-        order.iter().map(|&p| if even { 1 } else { u128::from(weights[p]) }).collect();
-    let total: u128 = weights.iter().sum();
-    let heaviest = weights.iter().copied().max().unwrap_or(0);
-    let (mut low, mut high) = (heaviest.max(total.div_ceil(ranks as u128)), total);
-    while low < high {
-        let middle = low + (high - low) / 2;
-        if ranks_from(&weights, middle)[0] <= ranks { high = middle } else { low = middle + 1 }
+/// The smallest bottleneck is found by bisection between limits that sums of weights attain (chains
+/// on chains: Pinar & Aykanat 2004). Within it, sections end as near to equal shares as possible, so
+/// that small changes of the weights move few patches.
+pub fn assign_patches(weights: &[u64], ranks: usize) -> Vec<u32> {
+    if weights.iter().all(|&w| w == 0) && !weights.is_empty() {
+        // patches count equally
+        return assign_patches(&vec![1; weights.len()], ranks);
     }
-    let needed = ranks_from(&weights, low);
+    let limit = least_bottleneck(weights, ranks);
+    let total: u64 = weights.iter().sum();
+    let needed = ranks_from(weights, limit);
+    let mut of = Vec::with_capacity(weights.len());
     let (mut rank, mut load, mut before) = (0, 0, 0);
-    for (k, &p) in order.iter().enumerate() {
-        let w = weights[k];
-        // the rank by equal shares, from the middle of the patch's part of the total
-        let wanted = ((2 * before + w) * ranks as u128 / (2 * total)) as usize;
-        let later_ranks_suffice = needed[k] < ranks - rank;
-        if load + w > low || (wanted > rank && later_ranks_suffice) {
+    for (k, &w) in weights.iter().enumerate() {
+        // by equal shares, the middle of the patch's part of the total belongs to a later rank
+        let later = u128::from(2 * before + w) * ranks as u128
+            >= u128::from(2 * total) * u128::from(rank + 1);
+        let later_ranks_suffice = (needed[k] as usize) < ranks - rank as usize;
+        if load + w > limit || (later && later_ranks_suffice) {
             (rank, load) = (rank + 1, 0);
         }
-        of[p] = rank;
+        of.push(rank);
         load += w;
         before += w;
     }
+    of
 }
 
-/// Work and size of the patches in a new assignment.
+/// The smallest possible largest sum of `weights` of a rank.
+fn least_bottleneck(weights: &[u64], ranks: usize) -> u64 {
+    let total: u64 = weights.iter().sum();
+    let heaviest = weights.iter().copied().max().unwrap_or(0);
+    let mean = total.div_ceil(ranks as u64);
+    // with this limit, every section but the last holds more than the mean
+    let (mut low, mut high) = (heaviest.max(mean), total.min(mean + heaviest));
+    while low < high {
+        match try_limit(weights, ranks, low + (high - low) / 2) {
+            Ok(most) => high = most,
+            Err(next) => low = next,
+        }
+    }
+    low
+}
+
+/// Cuts sections that are as full as `limit` admits. Returns the largest sum of a section if there
+/// are at most `ranks`; otherwise the least limit with another result.
+fn try_limit(weights: &[u64], ranks: usize, limit: u64) -> Result<u64, u64> {
+    let (mut sections, mut load, mut most, mut next) = (1, 0, 0, u64::MAX);
+    for &w in weights {
+        load += w;
+        if load > limit {
+            next = next.min(load);
+            most = most.max(load - w);
+            load = w;
+            sections += 1;
+            if sections > ranks {
+                return Err(next);
+            }
+        }
+    }
+    Ok(most.max(load))
+}
+
+/// Work and size of the patches in a new assignment, in the order along which they are dealt.
 #[derive(Clone, Copy, Debug)]
 pub struct PatchLoads<'a> {
     /// Cost of a step of each patch; 0 for a quiescent patch.
@@ -56,43 +80,37 @@ impl PatchLoads<'_> {
     /// New assignment of patches to ranks. `owners` is the present rank of each patch. `most` is the
     /// limit of the particles of a rank, relative to the mean of all ranks [-].
     ///
-    /// Active patches (work > 0) and empty patches are assigned in sections of `order` with equal
+    /// Active patches (work > 0) and empty patches are assigned in sections of the order with equal
     /// work. A quiescent patch (work 0) keeps its rank if the rank then holds at most `most` times the
-    /// mean number of particles. Otherwise it moves to a rank with fewer particles, in the order of
-    /// `order`.
+    /// mean number of particles. Otherwise it moves to a rank with fewer particles, in order.
     ///
     /// The number of particles of a rank exceeds this limit by at most one patch, unless its active
     /// patches alone exceed it.
-    pub fn reassign(
-        &self,
-        order: &[usize],
-        owners: &[usize],
-        ranks: usize,
-        most: f64,
-    ) -> Vec<usize> {
-        let is_quiescent = |p: usize| self.work[p] == 0 && self.particles[p] > 0;
-        let active: Vec<usize> = order.iter().copied().filter(|&p| !is_quiescent(p)).collect();
+    pub fn reassign(&self, owners: &[u32], ranks: usize, most: f64) -> Vec<u32> {
+        let patches = || self.work.iter().zip(self.particles);
+        let is_active = |(&work, &particles): (&u64, &u64)| work > 0 || particles == 0;
         let mut of = owners.to_vec();
-        if active.iter().any(|&p| self.work[p] > 0) {
-            assign_along(self.work, &active, ranks, &mut of);
+        if self.work.iter().any(|&work| work > 0) {
+            let active: Vec<u64> =
+                patches().filter(|&p| is_active(p)).map(|(&work, _)| work).collect();
+            let places = of.iter_mut().zip(patches()).filter(|(_, p)| is_active(*p));
+            let dealt = assign_patches(&active, ranks);
+            places.zip(dealt).for_each(|((of, _), rank)| *of = rank);
         }
         let mut held = vec![0; ranks];
-        for &p in &active {
-            held[of[p]] += self.particles[p];
+        for (&rank, p) in of.iter().zip(patches()).filter(|(_, p)| is_active(*p)) {
+            held[rank as usize] += p.1;
         }
         let mean = self.particles.iter().sum::<u64>() as f64 / ranks as f64;
         let limit = (most * mean).ceil() as u64;
         let mut moving = Vec::new();
-        for &p in order.iter().filter(|&&p| is_quiescent(p)) {
-            if held[of[p]] + self.particles[p] <= limit {
-                held[of[p]] += self.particles[p];
-            } else {
-                moving.push(p);
-            }
+        for (k, p) in patches().enumerate().filter(|(_, p)| !is_active(*p)) {
+            let held = &mut held[of[k] as usize];
+            if *held + p.1 <= limit { *held += p.1 } else { moving.push(k) }
         }
         let mut free = FreeRanks { limit: mean.ceil() as u64, held, rank: 0 };
-        for p in moving {
-            of[p] = free.place(self.particles[p]);
+        for k in moving {
+            of[k] = free.place(self.particles[k]) as u32;
         }
         of
     }
@@ -124,7 +142,7 @@ impl FreeRanks {
 }
 
 /// For each position, the number of ranks that the weights from there on need under `limit`.
-fn ranks_from(weights: &[u128], limit: u128) -> Vec<usize> {
+fn ranks_from(weights: &[u64], limit: u64) -> Vec<u32> {
     let mut needed = vec![0; weights.len() + 1];
     let (mut end, mut load) = (weights.len(), 0);
     for k in (0..weights.len()).rev() {
@@ -139,10 +157,10 @@ fn ranks_from(weights: &[u128], limit: u128) -> Vec<usize> {
 }
 
 /// The largest sum of `weights` over the patches of one rank.
-pub fn busiest_share(weights: &[u64], ranks_of: &[usize], ranks: usize) -> u64 {
+pub fn busiest_share(weights: &[u64], ranks_of: &[u32], ranks: usize) -> u64 {
     let mut loads = vec![0; ranks];
     for (&w, &rank) in weights.iter().zip(ranks_of) {
-        loads[rank] += w;
+        loads[rank as usize] += w;
     }
     loads.into_iter().max().unwrap_or(0)
 }
@@ -193,23 +211,18 @@ pub fn even_cuts(weights: &[u64], parts: usize, least: usize) -> Vec<i64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curve_order;
+    use crate::PatchOrder;
     use proptest::prelude::*;
-
-    fn line(weights: &[u64], ranks: usize) -> Vec<usize> {
-        let order: Vec<usize> = (0..weights.len()).collect();
-        assign_patches(weights, &order, ranks)
-    }
 
     #[test]
     fn shares_follow_the_weights() {
-        assert_eq!(line(&[1, 1, 1, 1], 2), [0, 0, 1, 1]);
-        assert_eq!(line(&[0, 0, 9, 9, 0], 2), [0, 0, 0, 1, 1]);
-        assert_eq!(line(&[0, 0], 2), [0, 1]);
-        assert_eq!(line(&[5], 3).len(), 1);
+        assert_eq!(assign_patches(&[1, 1, 1, 1], 2), [0, 0, 1, 1]);
+        assert_eq!(assign_patches(&[0, 0, 9, 9, 0], 2), [0, 0, 0, 1, 1]);
+        assert_eq!(assign_patches(&[0, 0], 2), [0, 1]);
+        assert_eq!(assign_patches(&[5], 3).len(), 1);
         // the middle of the heavy patch lies before the middle of the total
-        assert_eq!(line(&[5, 3, 3, 3], 2), [0, 0, 1, 1]);
-        assert_eq!(assign_patches(&[1, 5, 1, 5], &[0, 2, 1, 3], 3), [0, 1, 0, 2]);
+        assert_eq!(assign_patches(&[5, 3, 3, 3], 2), [0, 0, 1, 1]);
+        assert_eq!(assign_patches(&[1, 1, 5, 5], 3), [0, 0, 1, 2]);
     }
 
     /// The smallest bottleneck, by trying all cuts.
@@ -229,8 +242,8 @@ mod tests {
             weights in prop::collection::vec(0u64..30, 1..9),
             ranks in 1usize..5,
         ) {
-            let of = line(&weights, ranks);
-            prop_assert!(of.windows(2).all(|w| w[0] <= w[1]) && of.iter().all(|&r| r < ranks));
+            let of = assign_patches(&weights, ranks);
+            prop_assert!(of.windows(2).all(|w| w[0] <= w[1]) && of.iter().all(|&r| (r as usize) < ranks));
             if weights.iter().any(|&w| w > 0) {
                 prop_assert_eq!(busiest_share(&weights, &of, ranks), best(&weights, ranks));
             }
@@ -241,20 +254,20 @@ mod tests {
     #[test]
     fn patches_without_work_do_not_pile_up() {
         let (n, ranks) = (320, 1000);
-        let order = curve_order([n, n]);
+        let order = PatchOrder::hilbert([n, n]).patches();
         let away = |p: usize| {
             let offset = |k: usize| (k as f64 - 0.5 * (n as f64 - 1.0)) / n as f64;
             offset(p % n).hypot(offset(p / n))
         };
         let radius = (0.1 / std::f64::consts::PI).sqrt();
         let particles = vec![64; n * n];
-        let mut owners = assign_patches(&particles, &order, ranks);
+        let mut owners = assign_patches(&particles, ranks);
         // the disk grows to this size, as a wave does
         for growth in [0.2, 0.4, 0.6, 0.8, 1.0] {
             let work: Vec<u64> =
-                (0..n * n).map(|p| if away(p) < growth * radius { 64 } else { 0 }).collect();
+                order.iter().map(|&p| if away(p) < growth * radius { 64 } else { 0 }).collect();
             let loads = PatchLoads { work: &work, particles: &particles };
-            owners = loads.reassign(&order, &owners, ranks, 1.25);
+            owners = loads.reassign(&owners, ranks, 1.25);
             let mean = |all: &[u64]| all.iter().sum::<u64>() as f64 / ranks as f64;
             let most = |all: &[u64]| busiest_share(all, &owners, ranks) as f64 / mean(all);
             assert!(most(&particles) <= 1.5, "{growth}: {}", most(&particles));
@@ -271,11 +284,10 @@ mod tests {
         ) {
             let (work, particles): (Vec<u64>, Vec<u64>) =
                 loads.iter().map(|&(w, n)| (if n > 0 { w } else { 0 }, n)).unzip();
-            let order: Vec<usize> = (0..work.len()).collect();
             let owners = vec![0; work.len()];
             let loads = PatchLoads { work: &work, particles: &particles };
-            let of = loads.reassign(&order, &owners, ranks, 1.25);
-            prop_assert!(of.iter().all(|&rank| rank < ranks));
+            let of = loads.reassign(&owners, ranks, 1.25);
+            prop_assert!(of.iter().all(|&rank| (rank as usize) < ranks));
             let with_work: Vec<u64> =
                 (0..work.len()).map(|p| if work[p] > 0 { particles[p] } else { 0 }).collect();
             let mean = particles.iter().sum::<u64>().div_ceil(ranks as u64);
@@ -288,12 +300,12 @@ mod tests {
     #[test]
     fn patches_without_work_stay_where_they_are_while_there_is_room() {
         let loads = PatchLoads { work: &[0, 0, 8, 8], particles: &[5, 5, 5, 5] };
-        assert_eq!(loads.reassign(&[0, 1, 2, 3], &[1, 0, 0, 1], 2, 1.25), [1, 0, 0, 1]);
+        assert_eq!(loads.reassign(&[1, 0, 0, 1], 2, 1.25), [1, 0, 0, 1]);
         // rank 0 has room for one of its three
-        assert_eq!(loads.reassign(&[0, 1, 2, 3], &[0, 0, 0, 0], 2, 1.0), [0, 1, 0, 1]);
+        assert_eq!(loads.reassign(&[0, 0, 0, 0], 2, 1.0), [0, 1, 0, 1]);
         // nothing has work
         let loads = PatchLoads { work: &[0, 0], particles: &[5, 5] };
-        assert_eq!(loads.reassign(&[0, 1], &[1, 0], 2, 1.25), [1, 0]);
+        assert_eq!(loads.reassign(&[1, 0], 2, 1.25), [1, 0]);
     }
 
     #[test]

@@ -96,12 +96,11 @@ impl<const D: usize> Bundle<D> {
     ) -> Self {
         let GhostReach { depth, notice, .. } = reach;
         let seen = depth.max(notice.unwrap_or(0));
-        let boxes = layout.patches();
         let receiver = |&(_, patch): &(Taker, usize)| Receiver {
             patch,
-            home: boxes[patch],
+            home: layout.patch(patch),
             halo: layout.halo(patch, depth),
-            near: boxes[patch].grow(notice.unwrap_or(-1)),
+            near: layout.patch(patch).grow(notice.unwrap_or(-1)),
         };
         let receivers: Vec<Receiver<D>> = takers.iter().map(receiver).collect();
         let groups = |&image: &Image<D>| {

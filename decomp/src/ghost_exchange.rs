@@ -38,8 +38,6 @@ pub struct GhostExchange<const D: usize> {
     bundles: Vec<Vec<Bundle<D>>>,
     /// For each patch of this rank, whether it receives nothing from other ranks.
     inner: Vec<bool>,
-    /// Index of each patch in this rank's list.
-    place: Vec<usize>,
     send_ranks: Vec<usize>,
     receive_ranks: Vec<usize>,
     messages: Vec<Vec<u64>>,
@@ -58,21 +56,17 @@ impl<const D: usize> GhostExchange<D> {
         let seen = depth.max(notice.unwrap_or(0));
         let images = layout.images(seen + travel);
         let patches = layout.patches_of(rank);
-        let mut place = vec![usize::MAX; layout.patches().len()];
-        patches.iter().enumerate().for_each(|(k, &p)| place[p] = k);
-        let boxes = layout.patches();
 
         // a patch is inner if no patch of another rank has a route to it
         let mut receive_ranks = Vec::new();
         let mut inner = vec![true; patches.len()];
         for (k, &to) in patches.iter().enumerate() {
-            let halo = boxes[to].grow(seen);
+            let halo = layout.patch(to).grow(seen);
             for image in &images {
                 for from in layout.patches_in(&image.source_cells(&halo).grow(travel)) {
-                    let giver = layout.rank_of(from);
-                    if giver != rank {
+                    if patches.binary_search(&from).is_err() {
                         inner[k] = false;
-                        receive_ranks.push(giver);
+                        receive_ranks.push(layout.rank_of(from));
                     }
                 }
             }
@@ -80,14 +74,14 @@ impl<const D: usize> GhostExchange<D> {
         let mut bundles = Vec::new();
         let mut send_ranks = Vec::new();
         for &from in &patches {
-            let reachable = boxes[from].grow(travel);
+            let reachable = layout.patch(from).grow(travel);
             let mut takers: Vec<(Taker, usize)> = images
                 .iter()
                 .flat_map(|image| layout.patches_in(&image.cells(&reachable).grow(seen)))
-                .map(|to| match place[to] {
-                    usize::MAX => (Taker::Message(layout.rank_of(to)), to),
-                    k if inner[k] => (Taker::Inner, to),
-                    _ => (Taker::Border, to),
+                .map(|to| match patches.binary_search(&to) {
+                    Err(_) => (Taker::Message(layout.rank_of(to)), to),
+                    Ok(k) if inner[k] => (Taker::Inner, to),
+                    Ok(_) => (Taker::Border, to),
                 })
                 .collect();
             takers.sort_unstable();
@@ -109,11 +103,10 @@ impl<const D: usize> GhostExchange<D> {
         }
         GhostExchange {
             reach,
-            homes: patches.iter().map(|&p| boxes[p]).collect(),
+            homes: patches.iter().map(|&p| layout.patch(p)).collect(),
             patches,
             bundles,
             inner,
-            place,
             messages: vec![Vec::new(); send_ranks.len()],
             received: vec![Vec::new(); receive_ranks.len()],
             send_ranks,
@@ -162,10 +155,10 @@ impl<const D: usize> GhostExchange<D> {
             block.stirred = self.reach.notice.is_none() || !block.active.is_empty();
             self.give(k, block)?;
         }
-        let GhostExchange { place, inner, received, sorting, .. } = self;
+        let GhostExchange { patches: numbers, inner, received, sorting, .. } = self;
         let mut on_this_rank = || {
             let words = std::slice::from_ref(&self.to_inner);
-            settle(place, words, patches, (inner, true), sorting);
+            settle(numbers, words, patches, (inner, true), sorting);
             meanwhile(patches);
         };
         if self.send_ranks.is_empty() && self.receive_ranks.is_empty() {
@@ -177,7 +170,7 @@ impl<const D: usize> GhostExchange<D> {
         }
         // this rank's own words are processed together with the messages of other ranks
         received.push(std::mem::take(&mut self.to_border));
-        settle(place, received, patches, (inner, false), sorting);
+        settle(numbers, received, patches, (inner, false), sorting);
         self.to_border = received.pop().expect("it was pushed");
         Ok(())
     }
@@ -265,9 +258,10 @@ pub(crate) fn with_sends(
 }
 
 /// Adds the particles of the messages to their blocks and sorts the blocks whose `inner` equals
-/// `which`: first own particles, then ghosts, because a block keeps them apart.
+/// `which`: first own particles, then ghosts, because a block keeps them apart. `numbers` are the
+/// numbers of the patches.
 fn settle<const D: usize>(
-    place: &[usize],
+    numbers: &[usize],
     messages: &[Vec<u64>],
     patches: &mut [impl AsMut<Block<D>>],
     (inner, which): (&[bool], bool),
@@ -275,7 +269,7 @@ fn settle<const D: usize>(
 ) {
     for ghosts in [false, true] {
         for words in messages {
-            take(place, words, patches, ghosts);
+            take(numbers, words, patches, ghosts);
         }
         for (patch, _) in patches.iter_mut().zip(inner).filter(|(_, i)| **i == which) {
             let block = patch.as_mut();
@@ -305,7 +299,7 @@ mod tests {
         particles: &[([i64; D], [i64; D])],
         depth: i64,
     ) -> Vec<Vec<Seen<D>>> {
-        let count = layout.patches().len();
+        let count = layout.count();
         let mut blocks: Vec<Block<D>> = (0..count).map(|_| Block::new(&SPECS)).collect();
         for (id, (cell, _)) in particles.iter().enumerate() {
             let p = layout.patch_of(*cell);

@@ -1,6 +1,7 @@
 //! The domain cut into patches, its sides, and the assignment of patches to ranks.
 
-use crate::IndexBox;
+use crate::owners::Owners;
+use crate::{IndexBox, PatchOrder};
 
 /// Kind of a side of the domain, as far as it concerns copies of particles and nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,14 +92,16 @@ impl<const D: usize> Image<D> {
     }
 }
 
-/// The domain cut into patches, with the rank of each patch. Every rank holds the whole layout.
+/// The domain cut into patches, with the rank of each patch. Every rank holds the whole layout: the
+/// cuts in each direction, and the ranks of runs of patches along an order. It holds nothing for
+/// each patch.
 #[derive(Clone, Debug)]
 pub struct Layout<const D: usize> {
     domain: IndexBox<D>,
     sides: [[SideKind; 2]; D],
-    patches: Vec<IndexBox<D>>,
-    ranks: Vec<usize>,
     cuts: [Vec<i64>; D],
+    order: PatchOrder<D>,
+    owners: Owners,
 }
 
 impl<const D: usize> Layout<D> {
@@ -126,23 +129,19 @@ impl<const D: usize> Layout<D> {
     /// Cuts `domain` at the cells `cuts` in each direction, which include both ends; all patches
     /// are on rank 0.
     pub fn with_cuts(domain: IndexBox<D>, sides: [[SideKind; 2]; D], cuts: [Vec<i64>; D]) -> Self {
-        let parts = IndexBox::new([0; D], std::array::from_fn(|a| cuts[a].len() as i64 - 1));
-        let corner =
-            |k: [i64; D], more: i64| std::array::from_fn(|a| cuts[a][(k[a] + more) as usize]);
-        let patches: Vec<_> =
-            parts.iter().map(|k| IndexBox::new(corner(k, 0), corner(k, 1))).collect();
-        let ranks = vec![0; patches.len()];
-        Layout { domain, sides, patches, ranks, cuts }
+        let parts: [usize; D] = std::array::from_fn(|a| cuts[a].len() - 1);
+        let owners = Owners::new(&vec![0; parts.iter().product()]);
+        Layout { domain, sides, cuts, order: PatchOrder::hilbert(parts), owners }
     }
 
-    /// The same patches with patch k on rank `ranks[k]`.
+    /// The same patches, dealt to ranks along `order`; `ranks` holds the rank at each position.
     ///
     /// # Panics
     ///
     /// If the number of ranks differs from the number of patches.
-    pub fn with_ranks(mut self, ranks: Vec<usize>) -> Self {
-        assert_eq!(ranks.len(), self.patches.len(), "one rank a patch");
-        self.ranks = ranks;
+    pub fn with_ranks(mut self, order: PatchOrder<D>, ranks: &[u32]) -> Self {
+        assert_eq!(ranks.len(), self.count(), "one rank a patch");
+        (self.order, self.owners) = (order, Owners::new(ranks));
         self
     }
 
@@ -151,19 +150,49 @@ impl<const D: usize> Layout<D> {
         &self.domain
     }
 
-    /// The cells of each patch.
-    pub fn patches(&self) -> &[IndexBox<D>] {
-        &self.patches
+    /// Number of patches.
+    pub fn count(&self) -> usize {
+        self.parts().iter().product()
+    }
+
+    /// The cells of `patch`.
+    pub fn patch(&self, patch: usize) -> IndexBox<D> {
+        let (mut rest, mut cells) = (patch, self.domain);
+        for (a, cuts) in self.cuts.iter().enumerate() {
+            let k = rest % (cuts.len() - 1);
+            rest /= cuts.len() - 1;
+            (cells.lower[a], cells.upper[a]) = (cuts[k], cuts[k + 1]);
+        }
+        cells
+    }
+
+    /// Width of the narrowest patch [cells].
+    pub fn narrowest(&self) -> usize {
+        let widths = self.cuts.iter().flat_map(|cuts| cuts.windows(2).map(|w| w[1] - w[0]));
+        widths.min().unwrap_or(0) as usize
+    }
+
+    /// The order of the patches along which they are dealt to ranks.
+    pub fn order(&self) -> PatchOrder<D> {
+        self.order
+    }
+
+    /// The rank of each patch, in the [`order`](Self::order).
+    pub fn ranks(&self) -> Vec<u32> {
+        self.owners.to_vec()
     }
 
     /// The rank of `patch`.
     pub fn rank_of(&self, patch: usize) -> usize {
-        self.ranks[patch]
+        self.owners.rank(self.order.position(patch))
     }
 
-    /// The patches of `rank`, in order.
+    /// The patches of `rank`, ascending.
     pub fn patches_of(&self, rank: usize) -> Vec<usize> {
-        (0..self.patches.len()).filter(|&p| self.ranks[p] == rank).collect()
+        let positions = self.owners.positions_of(rank);
+        let mut patches: Vec<usize> = positions.map(|k| self.order.patch_at(k)).collect();
+        patches.sort_unstable();
+        patches
     }
 
     /// The lower and the upper side of the domain, per direction.
@@ -199,7 +228,7 @@ impl<const D: usize> Layout<D> {
     /// is one cell thinner above the patch than below it. At an upper side of the domain it is not,
     /// because the patch also owns the nodes of that side.
     pub fn halo(&self, patch: usize, depth: i64) -> IndexBox<D> {
-        let home = &self.patches[patch];
+        let home = self.patch(patch);
         let mut halo = home.grow(depth);
         for a in 0..D {
             let at_side = home.upper[a] == self.domain.upper[a];
@@ -230,15 +259,10 @@ impl<const D: usize> Layout<D> {
         std::array::from_fn(|a| self.cuts[a].len() - 1)
     }
 
-    /// The rank of each patch.
-    pub fn ranks(&self) -> &[usize] {
-        &self.ranks
-    }
-
     /// The nodes that `patch` owns: those at the lower corners of its cells, the last nodes at an
     /// upper side, and `depth` nodes more beyond an open side.
     pub fn owned_nodes(&self, patch: usize, depth: i64) -> IndexBox<D> {
-        let mut nodes = self.patches[patch];
+        let mut nodes = self.patch(patch);
         for a in 0..D {
             if nodes.lower[a] == self.domain.lower[a] && self.sides[a][0] == SideKind::Open {
                 nodes.lower[a] -= depth;
@@ -330,7 +354,7 @@ mod tests {
     fn patch_of_agrees_with_the_boxes() {
         let layout = Layout::new(IndexBox::new([-3, 2], [8, 9]), [[SideKind::Open; 2]; 2], [3, 2]);
         for cell in layout.domain().iter() {
-            assert!(layout.patches()[layout.patch_of(cell)].contains(cell));
+            assert!(layout.patch(layout.patch_of(cell)).contains(cell));
         }
     }
 
@@ -342,9 +366,8 @@ mod tests {
         {
             let b = IndexBox::new(lower, upper);
             let met: Vec<usize> = layout.patches_in(&b).collect();
-            let all = layout.patches().iter().enumerate();
-            let expected: Vec<usize> =
-                all.filter(|(_, p)| !p.intersect(&b).is_empty()).map(|(k, _)| k).collect();
+            let meets = |&p: &usize| !layout.patch(p).intersect(&b).is_empty();
+            let expected: Vec<usize> = (0..layout.count()).filter(meets).collect();
             assert_eq!(met, expected, "{b:?}");
         }
     }

@@ -11,7 +11,8 @@
 //!   travels once to a rank.
 //!
 //! Both let the caller compute while messages are on their way. [`assign_patches`] assigns patches
-//! to ranks along a curve, by weight, [`short_border_order`] chooses the curve, and [`patch_migration`] moves whole patches.
+//! to ranks along a [`PatchOrder`], by weight, [`deal_with_short_borders`] chooses the order, and [`relocate`]
+//! moves whole patches.
 //! [`Shares`] deals the particles to ranks for files and tables, [`StoredParticles`] holds a share of
 //! them, and [`deal_particles`] hands shares to the patches of any layout.
 //!
@@ -35,6 +36,7 @@ mod layout;
 mod node_messages;
 mod node_runs;
 mod nodes;
+mod owners;
 mod packing;
 mod particle_block;
 mod particle_sort;
@@ -42,18 +44,19 @@ mod patch_migration;
 mod patch_order;
 mod reduce;
 mod shares;
+mod short_borders;
 
 pub use balance::{PatchLoads, assign_patches, busiest_share, choose_cuts, even_cuts};
 pub use bytes::{bytes_of, words_of};
 pub use comm::{Comm, Serial, Traffic};
 pub use ghost_bundle::GhostReach;
 pub use ghost_exchange::{GhostExchange, ParticleError};
-pub use hilbert::curve_order;
 pub use index_box::IndexBox;
 pub use layout::{Image, Layout, SideKind};
 pub use nodes::{NodeArrays, NodeExchange, Parity, fold_mirrors};
 pub use particle_block::{Block, ColumnSpec, Mirror};
 pub use patch_migration::{Census, Moved, relocate};
-pub use patch_order::short_border_order;
+pub use patch_order::PatchOrder;
 pub use reduce::{ExactSum, exact_sums};
 pub use shares::{Shares, StoredParticles, deal_particles};
+pub use short_borders::deal_with_short_borders;

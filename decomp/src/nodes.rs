@@ -46,7 +46,7 @@ impl<const D: usize> NodeArrays<D> {
         fields: usize,
         layers: usize,
     ) -> Self {
-        let mut nodes = layout.patches()[patch].grow(depth);
+        let mut nodes = layout.patch(patch).grow(depth);
         nodes.upper = nodes.upper.map(|u| u + 1);
         let owned = layout.owned_nodes(patch, depth);
         let fields = vec![vec![0.0; layers * nodes.count()]; fields];
@@ -119,7 +119,8 @@ struct PlainRun {
 /// Plan of the exchange of nodal values: which patch copies which nodes from which patch.
 #[derive(Clone, Debug)]
 pub struct NodeExchange<const D: usize> {
-    layout: Layout<D>,
+    domain: IndexBox<D>,
+    sides: [[SideKind; 2]; D],
     /// Copies between patches of this rank without change of sign.
     plain: Vec<PlainRun>,
     /// All other copies between patches of this rank, or within one.
@@ -144,12 +145,17 @@ impl<const D: usize> NodeExchange<D> {
     }
 
     /// As `new`, for arrays with `layers` values of each field per node.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn layered(layout: &Layout<D>, rank: usize, halo: i64, depth: i64, layers: usize) -> Self {
         let patches = layout.patches_of(rank);
-        let mut place = vec![usize::MAX; layout.patches().len()];
-        patches.iter().enumerate().for_each(|(k, &p)| place[p] = k);
+        let place = |patch| patches.binary_search(&patch).expect("a patch of this rank");
+        let rank_of = |patch| match patches.binary_search(&patch) {
+            Ok(_) => rank,
+            Err(_) => layout.rank_of(patch),
+        };
         let mut plan = NodeExchange {
-            layout: layout.clone(),
+            domain: *layout.domain(),
+            sides: *layout.sides(),
             plain: Vec::new(),
             local: Vec::new(),
             sends: Vec::new(),
@@ -161,12 +167,12 @@ impl<const D: usize> NodeExchange<D> {
             received: Vec::new(),
         };
         let images = layout.images(halo);
-        let halo_of = |patch: usize| with_corners(layout.patches()[patch].grow(halo));
-        let arrays_of = |patch: usize| with_corners(layout.patches()[patch].grow(depth));
+        let halo_of = |patch: usize| with_corners(layout.patch(patch).grow(halo));
+        let arrays_of = |patch: usize| with_corners(layout.patch(patch).grow(depth));
         // a patch that owns a node of the halo has a cell within `halo` + 1 cells
         let mut pairs: Vec<(usize, usize)> = Vec::new();
         for &mine in &patches {
-            let near = layout.patches()[mine].grow(halo + 1);
+            let near = layout.patch(mine).grow(halo + 1);
             for image in &images {
                 let givers = layout.patches_in(&image.source_cells(&near).grow(halo));
                 pairs.extend(givers.map(|giver| (mine, giver)));
@@ -179,7 +185,7 @@ impl<const D: usize> NodeExchange<D> {
         pairs.dedup();
         let [mut given, mut taken]: [BTreeMap<usize, Draft<D>>; 2] = Default::default();
         for (to, from) in pairs {
-            let (taker, giver) = (layout.rank_of(to), layout.rank_of(from));
+            let (taker, giver) = (rank_of(to), rank_of(from));
             for (number, image) in images.iter().enumerate() {
                 if from == to && *image == Image::IDENTITY {
                     continue;
@@ -192,13 +198,13 @@ impl<const D: usize> NodeExchange<D> {
                 }
                 let (giving, taking) = (arrays_of(from), arrays_of(to));
                 if taker != giver {
-                    let party = |patch: usize, arrays| Party { patch: place[patch], arrays };
+                    let party = |patch: usize, arrays| Party { patch: place(patch), arrays };
                     let (draft, here, there) = match giver == rank {
                         true => (given.entry(taker), Some(party(from, giving)), None),
                         false => (taken.entry(giver), None, Some(party(to, taking))),
                     };
                     if there.is_some() {
-                        plan.inner[place[to]] = false;
+                        plan.inner[place(to)] = false;
                     }
                     draft.or_default().add((from, number), *image, nodes, here, there);
                     continue;
@@ -212,13 +218,13 @@ impl<const D: usize> NodeExchange<D> {
                     nodes.iter().map(place)
                 });
                 let copy = Copy {
-                    from: place[from],
-                    to: place[to],
+                    from: place(from),
+                    to: place(to),
                     flip: image.flip,
                     runs: runs(nodes, image.flip[0]),
                 };
                 if from != to && !image.flip.contains(&true) {
-                    let (from, to) = (place[from] as u32, place[to] as u32);
+                    let (from, to) = (copy.from as u32, copy.to as u32);
                     plan.plain.extend(copy.runs.iter().map(|&run| PlainRun { from, to, run }));
                 } else {
                     plan.local.push(copy);
@@ -257,10 +263,10 @@ impl<const D: usize> NodeExchange<D> {
     ) {
         for &(field, parity) in fields {
             if let Parity::Odd(axis) = parity
-                && self.layout.sides()[axis].contains(&SideKind::Mirror)
+                && self.sides[axis].contains(&SideKind::Mirror)
             {
                 for arrays in patches.iter_mut() {
-                    zero_on_mirrors(&self.layout, arrays.as_mut(), field, axis);
+                    zero_on_mirrors(&self.domain, &self.sides, arrays.as_mut(), field, axis);
                 }
             }
         }
@@ -443,23 +449,24 @@ pub fn fold_mirrors<const D: usize>(
     }
     for &(field, parity) in fields {
         if let Parity::Odd(axis) = parity {
-            zero_on_mirrors(layout, arrays, field, axis);
+            zero_on_mirrors(layout.domain(), layout.sides(), arrays, field, axis);
         }
     }
 }
 
 /// Sets a field that is odd in `axis` to zero on the mirrors of that axis.
 fn zero_on_mirrors<const D: usize>(
-    layout: &Layout<D>,
+    domain: &IndexBox<D>,
+    sides: &[[SideKind; 2]; D],
     arrays: &mut NodeArrays<D>,
     field: usize,
     axis: usize,
 ) {
-    for (end, side) in layout.sides()[axis].iter().enumerate() {
+    for (end, side) in sides[axis].iter().enumerate() {
         if *side != SideKind::Mirror {
             continue;
         }
-        let at = if end == 0 { layout.domain().lower[axis] } else { layout.domain().upper[axis] };
+        let at = if end == 0 { domain.lower[axis] } else { domain.upper[axis] };
         let mut plane = arrays.nodes;
         plane.lower[axis] = plane.lower[axis].max(at);
         plane.upper[axis] = plane.upper[axis].min(at + 1);

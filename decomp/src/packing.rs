@@ -60,19 +60,20 @@ pub(crate) fn put_particles<const D: usize>(
     }
 }
 
-/// Adds the particles of a message to their blocks, either ghosts or own particles. `place` gives
-/// the index of each patch of this rank in `patches`.
+/// Adds the particles of a message to their blocks, either ghosts or own particles. `numbers` are the
+/// numbers of `patches`, ascending.
 pub(crate) fn take<const D: usize>(
-    place: &[usize],
+    numbers: &[usize],
     mut words: &[u64],
     patches: &mut [impl AsMut<Block<D>>],
     ghosts: bool,
 ) {
+    let place = |patch: usize| numbers.binary_search(&patch).expect("a patch of this rank");
     while let Some((&head, rest)) = words.split_first() {
         let kind = head & ((1 << KIND_BITS) - 1);
         let others = (head >> KIND_BITS & ((1 << OTHERS_BITS) - 1)) as usize;
         let first = (head >> (KIND_BITS + OTHERS_BITS)) as usize;
-        let block = patches[place[first]].as_mut();
+        let block = patches[place(first)].as_mut();
         words = rest;
         if kind == STIR {
             block.stirred = true;
@@ -90,7 +91,7 @@ pub(crate) fn take<const D: usize>(
         let (ids, stretch) = stretch.split_at(particles);
         let (cells, columns) = stretch.split_at(particles * D);
         for to in std::iter::once(first).chain(others.iter().map(|&to| to as usize)) {
-            let block = patches[place[to]].as_mut();
+            let block = patches[place(to)].as_mut();
             let cells = cells
                 .chunks_exact(D)
                 .map(|c| std::array::from_fn::<i32, D, _>(|a| c[a] as i64 as i32));

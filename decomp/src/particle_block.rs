@@ -115,6 +115,13 @@ impl<const D: usize> Block<D> {
             .map(|c| c.as_mut_slice())
     }
 
+    /// Reserves memory for `more` own particles, and no more.
+    pub fn reserve(&mut self, more: usize) {
+        self.ids.reserve_exact(more);
+        self.cells.reserve_exact(more);
+        self.columns.iter_mut().for_each(|column| column.reserve_exact(more));
+    }
+
     /// Adds an own particle; `values` holds its columns in order, in their units. Sort afterwards.
     pub fn push(&mut self, id: u64, cell: [i32; D], values: &[f64]) {
         debug_assert_eq!(self.particles(), self.own, "own particles go before ghosts");

@@ -1,113 +1,128 @@
-//! Order in which patches are dealt to ranks: the one that gives ranks short borders.
+//! Orders of the patches along which they are dealt to ranks.
 
-use crate::{IndexBox, Layout, assign_patches, curve_order};
+use crate::hilbert;
 
-/// An order of the patches of `layout`, and their assignment to `ranks` ranks in sections of it by
-/// `weights`, see [`assign_patches`].
-///
-/// Sections of a Hilbert curve are compact, but for few ranks and uneven weights their borders are
-/// ragged, and stripes of whole columns or rows of patches have shorter ones. Of these orders the one
-/// with the shortest border between ranks is taken; patches without weight have no border.
-#[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
-pub fn short_border_order<const D: usize>(
-    layout: &Layout<D>,
-    weights: &[u64],
-    ranks: usize,
-) -> (Vec<usize>, Vec<usize>) {
-    let parts = layout.parts();
-    let hilbert = std::iter::once(curve_order(parts));
-    // on a line all orders are one
-    let stripes = (0..D).filter(|_| D > 1 && ranks > 1).map(|axis| striped_order(parts, axis));
-    let dealt = |order: Vec<usize>| {
-        let of = assign_patches(weights, &order, ranks);
-        (border(layout, weights, &of), order, of)
-    };
-    let shortest = hilbert.chain(stripes).map(dealt).min_by_key(|(border, ..)| *border);
-    let (_, order, of) = shortest.expect("there is one order at least");
-    (order, of)
+/// An order of the patches of a box with some number of patches per direction. Positions in it
+/// follow from the numbers of the patches, and no table is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PatchOrder<const D: usize> {
+    parts: [usize; D],
+    path: Path,
 }
 
-/// Flat indices of a box with `parts` entries per direction, stripe by stripe normal to `axis`; every
-/// second stripe runs backwards, so that neighbours in the order are neighbours in space.
-fn striped_order<const D: usize>(parts: [usize; D], axis: usize) -> Vec<usize> {
-    let upper = parts.map(|n| n as i64);
-    let all = IndexBox::new([0; D], upper);
-    let mut places: Vec<([i64; D], usize)> = all.iter().zip(0..).collect();
-    places.sort_by_key(|(place, _)| {
-        let stripe = place[axis];
-        let mut key = *place;
-        key[axis] = 0;
-        if stripe % 2 == 1 {
-            (0..D).for_each(|a| key[a] = -key[a]);
-        }
-        (stripe, key)
-    });
-    places.into_iter().map(|(_, flat)| flat).collect()
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Path {
+    Hilbert,
+    /// Stripe by stripe normal to this axis.
+    Stripes(usize),
 }
 
-/// Number of faces of cells between patches of different ranks, of which at least one has a weight.
-fn border<const D: usize>(layout: &Layout<D>, weights: &[u64], of: &[usize]) -> u64 {
-    let (parts, boxes) = (layout.parts(), layout.patches());
-    let mut faces = 0;
-    for (patch, cells) in boxes.iter().enumerate() {
-        let (mut at, mut stride) = (patch, 1);
-        for (a, n) in parts.iter().enumerate() {
-            let next = patch + stride;
-            let is_last = at % n + 1 == *n;
-            if !is_last && of[patch] != of[next] && weights[patch].max(weights[next]) > 0 {
-                faces += (cells.count() / cells.extent(a).max(1)) as u64;
+impl<const D: usize> PatchOrder<D> {
+    /// The order of the Hilbert curve; on a line, that of the line.
+    ///
+    /// ```
+    /// use decomp::PatchOrder;
+    ///
+    /// let order = PatchOrder::hilbert([2, 2]);
+    /// assert_eq!(order.patches(), [0, 2, 3, 1]);
+    /// assert_eq!((order.position(2), order.patch_at(3)), (1, 1));
+    /// ```
+    pub fn hilbert(parts: [usize; D]) -> Self {
+        PatchOrder { parts, path: Path::Hilbert }
+    }
+
+    /// Stripe by stripe normal to `axis`; every second stripe runs backwards, so that neighbours in
+    /// the order are neighbours in space.
+    pub fn stripes(parts: [usize; D], axis: usize) -> Self {
+        PatchOrder { parts, path: Path::Stripes(axis) }
+    }
+
+    /// Position of `patch` in this order.
+    pub fn position(&self, patch: usize) -> usize {
+        let mut rest = patch;
+        let place = self.parts.map(|n| {
+            let k = rest % n;
+            rest /= n;
+            k
+        });
+        match self.path {
+            Path::Hilbert => hilbert::position(self.parts, place),
+            Path::Stripes(axis) => {
+                let within = self.across(axis).fold(0, |at, a| at * self.parts[a] + place[a]);
+                self.turned(axis, place[axis], within)
             }
-            at /= n;
-            stride *= n;
         }
     }
-    faces
+
+    /// The patch at `position` in this order.
+    pub fn patch_at(&self, position: usize) -> usize {
+        match self.path {
+            Path::Hilbert => self.flat(hilbert::place_at(self.parts, position)),
+            Path::Stripes(axis) => {
+                let length: usize = self.across(axis).map(|a| self.parts[a]).product();
+                let stripe = position / length;
+                let mut within = self.turned(axis, stripe, position % length) % length;
+                let mut place = [stripe; D];
+                for a in self.across(axis).rev() {
+                    place[a] = within % self.parts[a];
+                    within /= self.parts[a];
+                }
+                self.flat(place)
+            }
+        }
+    }
+
+    /// All patches in this order.
+    pub fn patches(&self) -> Vec<usize> {
+        let count = self.parts.iter().product();
+        match self.path {
+            Path::Hilbert => {
+                let mut all = Vec::with_capacity(count);
+                hilbert::walk(self.parts, &mut |place| all.push(self.flat(place)));
+                all
+            }
+            Path::Stripes(_) => (0..count).map(|position| self.patch_at(position)).collect(),
+        }
+    }
+
+    /// The directions of a stripe.
+    fn across(&self, axis: usize) -> impl DoubleEndedIterator<Item = usize> + use<D> {
+        (0..D).filter(move |&a| a != axis)
+    }
+
+    /// Position of the patch `within` a stripe, which runs backwards if its number is odd.
+    fn turned(&self, axis: usize, stripe: usize, within: usize) -> usize {
+        let length: usize = self.across(axis).map(|a| self.parts[a]).product();
+        stripe * length + if stripe % 2 == 1 { length - 1 - within } else { within }
+    }
+
+    fn flat(&self, place: [usize; D]) -> usize {
+        (0..D).rev().fold(0, |at, a| at * self.parts[a] + place[a])
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::SideKind;
-
-    fn square(patches: usize) -> Layout<2> {
-        let cells = IndexBox::new([0, 0], [96, 96]);
-        Layout::new(cells, [[SideKind::Open; 2]; 2], [patches; 2])
-    }
-
-    fn chosen(layout: &Layout<2>, weights: &[u64], ranks: usize) -> u64 {
-        let (order, of) = short_border_order(layout, weights, ranks);
-        let mut all = order.clone();
-        all.sort_unstable();
-        assert!(all.into_iter().eq(0..weights.len()), "every patch once");
-        assert_eq!(of, assign_patches(weights, &order, ranks));
-        border(layout, weights, &of)
-    }
-
-    #[test]
-    fn few_ranks_get_stripes_and_many_get_squares() {
-        let layout = square(12);
-        let even = vec![1; 144];
-        // two cuts through the square
-        assert_eq!(chosen(&layout, &even, 3), 2 * 96);
-        let layout = square(16);
-        let even = vec![1; 256];
-        // four quadrants, sixteen squares
-        assert_eq!(chosen(&layout, &even, 4), 2 * 96);
-        assert_eq!(chosen(&layout, &even, 16), 6 * 96);
-    }
-
-    #[test]
-    fn empty_patches_have_no_border() {
-        let layout = square(4);
-        let lower_rows = (0..16).map(|k| u64::from(k < 8)).collect::<Vec<_>>();
-        // the cut crosses two of four rows, or one patch more
-        assert!(chosen(&layout, &lower_rows, 2) <= 48 + 24);
-        assert_eq!(border(&layout, &lower_rows, &[vec![0; 12], vec![1; 4]].concat()), 0);
-    }
 
     #[test]
     fn stripes_turn_at_their_ends() {
-        assert_eq!(striped_order([3, 2], 1), [0, 1, 2, 5, 4, 3]);
-        assert_eq!(striped_order([2, 3], 0), [0, 2, 4, 5, 3, 1]);
+        assert_eq!(PatchOrder::stripes([3, 2], 1).patches(), [0, 1, 2, 5, 4, 3]);
+        assert_eq!(PatchOrder::stripes([2, 3], 0).patches(), [0, 2, 4, 5, 3, 1]);
+    }
+
+    #[test]
+    fn every_patch_has_one_position() {
+        for parts in [[1, 1], [5, 3], [1, 9], [7, 7]] {
+            let stripes = [0, 1].map(|axis| PatchOrder::stripes(parts, axis));
+            for order in stripes.into_iter().chain([PatchOrder::hilbert(parts)]) {
+                let patches = order.patches();
+                assert_eq!(patches.len(), parts[0] * parts[1]);
+                for (position, patch) in patches.into_iter().enumerate() {
+                    assert_eq!(order.position(patch), position, "{order:?}");
+                    assert_eq!(order.patch_at(position), patch, "{order:?}");
+                }
+            }
+        }
     }
 }

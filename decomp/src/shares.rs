@@ -1,6 +1,8 @@
 //! Particles of all ranks outside the patches: shares of them for files, and their way back to the
 //! patches of any layout.
 
+use std::collections::BTreeMap;
+
 use crate::patch_migration::{pack, unpack_into};
 use crate::{Block, ColumnSpec, Comm, Layout, assign_patches};
 
@@ -204,7 +206,7 @@ fn by_id(ids: &[u64], first: u64) -> Vec<usize> {
 }
 
 /// Deals the particles of all ranks, of which each rank gives the share `given`, to the patches of
-/// `layout`. The patches are assigned to ranks along `order` by their numbers of particles. Returns
+/// `layout`. The patches are assigned to ranks along its order by their numbers of particles. Returns
 /// the layout with these ranks, and the blocks of this rank. Collective.
 ///
 /// # Panics
@@ -213,38 +215,42 @@ fn by_id(ids: &[u64], first: u64) -> Vec<usize> {
 pub fn deal_particles<const D: usize>(
     comm: &dyn Comm,
     layout: Layout<D>,
-    order: &[usize],
     specs: &[ColumnSpec],
     given: &StoredParticles,
 ) -> (Layout<D>, Vec<Block<D>>) {
-    let mut of_patch: Vec<Vec<usize>> = vec![Vec::new(); layout.patches().len()];
+    let mut of_patch: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for r in 0..given.ids.len() {
-        of_patch[layout.patch_of(given.cell(r))].push(r);
+        of_patch.entry(layout.patch_of(given.cell(r))).or_default().push(r);
     }
-    let mut counts: Vec<i64> = of_patch.iter().map(|particles| particles.len() as i64).collect();
+    let order = layout.order();
+    let mut counts = vec![0; layout.count()];
+    for (&patch, particles) in &of_patch {
+        counts[order.position(patch)] = particles.len() as i64;
+    }
     comm.sum(&mut counts);
     let weights: Vec<u64> = counts.iter().map(|&n| n as u64).collect();
-    let ranks = assign_patches(&weights, order, comm.size());
-    let layout = layout.with_ranks(ranks);
     let (rank, size) = (comm.rank(), comm.size());
+    let layout = layout.with_ranks(order, &assign_patches(&weights, size));
     let mine = layout.patches_of(rank);
+    let block = |which: &[usize]| given.block::<D>(specs, which);
     let mut blocks: Vec<Block<D>> =
-        mine.iter().map(|&patch| given.block(specs, &of_patch[patch])).collect();
+        mine.iter().map(|patch| block(&of_patch.remove(patch).unwrap_or_default())).collect();
+    let mut of_rank: BTreeMap<usize, Vec<(usize, Vec<usize>)>> = BTreeMap::new();
+    for (patch, particles) in of_patch {
+        of_rank.entry(layout.rank_of(patch)).or_default().push((patch, particles));
+    }
     let mut received = Vec::new();
     // one rank after the other, to hold only one message at a time
     for far in 1..size {
         let (to, from) = ((rank + far) % size, (rank + size - far) % size);
         let mut words = Vec::new();
-        for patch in layout.patches_of(to) {
-            if !of_patch[patch].is_empty() {
-                pack(&mut words, patch, &given.block::<D>(specs, &of_patch[patch]));
-            }
+        for (patch, particles) in of_rank.remove(&to).into_iter().flatten() {
+            pack(&mut words, patch, &block(&particles));
         }
         comm.exchange(&[(to, &words)], &[from], &mut received, &mut || {});
         let mut words = &received[0][..];
         while let Some((&patch, rest)) = words.split_first() {
-            let place =
-                mine.iter().position(|&p| p == patch as usize).expect("a patch of this rank");
+            let place = mine.binary_search(&(patch as usize)).expect("a patch of this rank");
             words = unpack_into(&mut blocks[place], rest);
         }
     }
@@ -256,7 +262,7 @@ pub fn deal_particles<const D: usize>(
 mod tests {
     use super::*;
     use crate::comm::local::run_ranks;
-    use crate::{IndexBox, Mirror, SideKind, curve_order};
+    use crate::{IndexBox, Mirror, SideKind};
 
     const SPECS: [ColumnSpec; 3] = [
         ColumnSpec { name: "a", unit: "m", ghost: true, state: true, mirror: Mirror::Same },
@@ -310,17 +316,15 @@ mod tests {
                 let all = particles(count);
                 let layout =
                     Layout::new(IndexBox::new([0, 0], [12, 9]), [[SideKind::Open; 2]; 2], parts);
-                let order = curve_order(layout.parts());
                 let end = all.ids.last().map_or(0, |id| id + 1);
                 let ends = run_ranks(ranks, |comm| {
                     let bound = |r: usize| r * all.ids.len() / ranks;
                     let given = section(&all, bound(comm.rank())..bound(comm.rank() + 1));
-                    let (dealt, blocks) =
-                        deal_particles(comm, layout.clone(), &order, &SPECS, &given);
+                    let (dealt, blocks) = deal_particles(comm, layout.clone(), &SPECS, &given);
                     let mine = dealt.patches_of(comm.rank());
                     assert_eq!(blocks.len(), mine.len());
                     for (block, patch) in blocks.iter().zip(mine) {
-                        let home = dealt.patches()[patch];
+                        let home = dealt.patch(patch);
                         assert!(block.cells.iter().all(|c| home.contains(c.map(i64::from))));
                         assert!(block.columns[1].iter().all(|&v| v == 0.0));
                     }

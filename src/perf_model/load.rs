@@ -168,8 +168,7 @@ impl Work {
             false => p.rows.round() as u64,
         };
         let weights: Vec<u64> = all.iter().map(weight).collect();
-        let order: Vec<usize> = (0..patches).collect();
-        let given = assign_patches(&weights, &order, ranks);
+        let given = assign_patches(&weights, ranks);
         let mut starts: Vec<usize> =
             (0..patches).filter(|&k| k == 0 || given[k] != given[k - 1]).collect();
         starts.push(patches);

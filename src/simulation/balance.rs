@@ -35,7 +35,7 @@ impl<const D: usize> Simulation<'_, D> {
 
     fn may_balance(&self) -> bool {
         let every = self.scene.scene.decomposition.balance.every;
-        every > 0 && self.comm.size() > 1 && self.layout.patches().len() > 1
+        every > 0 && self.comm.size() > 1 && self.layout.count() > 1
     }
 
     /// Moves patches if the step is due for it and the accumulated loss exceeds the cost of moving:
@@ -50,8 +50,8 @@ impl<const D: usize> Simulation<'_, D> {
         let (costs, particles) = self.gather_costs();
         let (ranks, owners) = (self.comm.size(), self.layout.ranks());
         let loads = PatchLoads { work: &costs, particles: &particles };
-        let wanted = loads.reassign(&self.order, owners, ranks, MOST_PARTICLES);
-        let now = busiest_share(&costs, owners, ranks);
+        let wanted = loads.reassign(&owners, ranks, MOST_PARTICLES);
+        let now = busiest_share(&costs, &owners, ranks);
         let then = busiest_share(&costs, &wanted, ranks);
         let moved: u64 = (0..particles.len())
             .filter(|&p| wanted[p] != owners[p])
@@ -64,7 +64,7 @@ impl<const D: usize> Simulation<'_, D> {
         self.imbalance_debt += if worth { gain * every as f64 } else { 0.0 };
         let pays = self.imbalance_debt > (MOVE_COST * moved) as f64 * mean;
         // memory does not wait for a gain in time
-        let most = busiest_share(&particles, owners, ranks);
+        let most = busiest_share(&particles, &owners, ranks);
         let crowded = most as f64 > CROWDED * all / ranks as f64
             && busiest_share(&particles, &wanted, ranks) < most;
         let waited = self.comm.traffic().waited - waited;
@@ -73,14 +73,15 @@ impl<const D: usize> Simulation<'_, D> {
         self.clock.add_since(Activity::Balance, start, waited);
         if (worth && pays) || crowded {
             self.imbalance_debt = 0.0;
-            self.move_patches(wanted);
+            self.move_patches(&wanted);
         }
     }
 
-    /// Cost and number of particles of every patch, on every rank. Collective.
+    /// Cost and number of particles of every patch in the order of the layout, on every rank.
+    /// Collective.
     fn gather_costs(&self) -> (Vec<u64>, Vec<u64>) {
         let rule = self.scene.scene.decomposition.balance.cost;
-        let count = self.layout.patches().len();
+        let (count, order) = (self.layout.count(), self.layout.order());
         let mut sums = vec![0; 2 * count];
         let mine = self.layout.patches_of(self.comm.rank());
         for (patch, index) in self.patches.iter().zip(mine) {
@@ -88,19 +89,20 @@ impl<const D: usize> Simulation<'_, D> {
             let computed = if patch.quiescence.is_quiescent() { 0 } else { particles };
             let load = PatchLoad { particles: computed, seconds: patch.stopwatch.cost() };
             // a quiescent patch is measured too, but no step computes it
-            sums[index] = if computed > 0 { rule.of(&load).max(1) as i64 } else { 0 };
-            sums[count + index] = particles as i64;
+            let at = order.position(index);
+            sums[at] = if computed > 0 { rule.of(&load).max(1) as i64 } else { 0 };
+            sums[count + at] = particles as i64;
         }
         self.comm.sum(&mut sums);
         let mut sums = sums.into_iter().map(|t| t as u64);
         (sums.by_ref().take(count).collect(), sums.collect())
     }
 
-    fn move_patches(&mut self, ranks: Vec<usize>) {
+    fn move_patches(&mut self, ranks: &[u32]) {
         let start = self.clock.now();
         let waited = self.comm.traffic().waited;
         let reach = self.reach.expect("known since the start");
-        let new = self.layout.clone().with_ranks(ranks);
+        let new = self.layout.clone().with_ranks(self.layout.order(), ranks);
         let (depth, deeper) = (reach.depth(self.plan.ghosts), self.plan.deeper);
         let (fields, layers) = (self.stepper.fields.count, self.stepper.layers);
         let limit = self.stepper.longest_within(reach);

@@ -34,9 +34,7 @@ pub(super) fn halo_depths<const D: usize>(
     reach: StencilRadius,
     workers: usize,
 ) -> HaloDepths {
-    let extents = layout.patches().iter().flat_map(|p| (0..D).map(|a| p.extent(a)));
-    let narrowest = extents.min().unwrap_or(0);
-    let choose = || FilterHalo::choose(reach, narrowest, workers);
+    let choose = || FilterHalo::choose(reach, layout.narrowest(), workers);
     let filter = scene.scene.decomposition.filter_halo.unwrap_or_else(choose);
     let deeper = match filter {
         FilterHalo::Exchange => 0,

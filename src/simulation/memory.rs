@@ -36,12 +36,12 @@ fn memory_in<const D: usize>(
     threads: usize,
 ) -> u64 {
     let stepper = effects::stepper::<D>(scene);
-    let (layout, _) = deal_patches::<D>(scene, ranks, threads);
+    let layout = deal_patches::<D>(scene, ranks, threads);
     let longest = stepper.longest_at_start(scene);
     let Some(reach) = stepper.reach(longest) else { return scene.memory() / ranks as u64 };
     let ghost_layers = halo_depths(scene, &layout, reach, ranks * threads).ghosts;
     let patch = |patch: usize| {
-        let cells = &layout.patches()[patch];
+        let cells = &layout.patch(patch);
         let own = count_particles(scene, cells);
         let edges = [cells.extent(0) as u64, cells.extent(D - 1) as u64];
         let ghosts = seen(scene, &layout, patch, ghost_layers).saturating_sub(own);

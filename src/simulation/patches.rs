@@ -1,6 +1,6 @@
 //! Choice of the patches: how many in each direction, and where the domain is cut.
 
-use decomp::{Block, IndexBox, Layout, choose_cuts, even_cuts, short_border_order};
+use decomp::{Block, IndexBox, Layout, choose_cuts, deal_with_short_borders, even_cuts};
 
 use crate::scene::{CheckedBody, CheckedScene};
 use crate::solver::{Stepper, particles};
@@ -73,16 +73,16 @@ pub(super) fn may_sleep<const D: usize>(scene: &CheckedScene) -> bool {
 }
 
 /// The patches of a run on `ranks` ranks with `threads` threads each, dealt to ranks by their
-/// particles, and the order in which they are dealt.
+/// particles.
 pub(super) fn deal_patches<const D: usize>(
     scene: &CheckedScene,
     ranks: usize,
     threads: usize,
-) -> (Layout<D>, Vec<usize>) {
+) -> Layout<D> {
     let layout = cut_domain(scene, ranks, threads);
-    let weights: Vec<u64> = layout.patches().iter().map(|p| count_particles(scene, p)).collect();
-    let (order, of) = short_border_order(&layout, &weights, ranks);
-    (layout.with_ranks(of), order)
+    let count = |patch| count_particles(scene, &layout.patch(patch));
+    let weights: Vec<u64> = (0..layout.count()).map(count).collect();
+    deal_with_short_borders(layout, &weights, ranks)
 }
 
 /// Particles with which `rank` of `ranks` begins a run, one block per patch of the rank. It needs no
@@ -93,7 +93,7 @@ pub fn initial_particles<const D: usize>(
     rank: usize,
     ranks: usize,
 ) -> Vec<Block<D>> {
-    let (layout, _) = deal_patches(scene, ranks, 1);
+    let layout = deal_patches(scene, ranks, 1);
     particles::fill(scene, stepper, &layout, rank, scene.frame().velocity(0.0))
 }
 

@@ -28,8 +28,6 @@ pub struct Simulation<'a, const D: usize> {
     pub(super) scene: &'a CheckedScene,
     pub(super) stepper: Stepper<D>,
     pub(super) layout: Layout<D>,
-    /// Patches in the order of the curve along which they are distributed to ranks.
-    pub(super) order: Vec<usize>,
     pub(super) patches: Vec<Patch<D>>,
     /// Known once the lengths of the particles are known.
     pub(super) reach: Option<StencilRadius>,
@@ -147,13 +145,13 @@ impl<'a, const D: usize> Simulation<'a, D> {
     ) -> Result<Self, RunError> {
         let stepper = Stepper::with_models::<EffectRegistry>(scene, outside)
             .map_err(|(material, reason)| RunError::Model { material, reason })?;
-        let (layout, order) = deal_patches(scene, comm.size(), threads);
+        let layout = deal_patches(scene, comm.size(), threads);
         let frame = scene.frame();
         let blocks = particles::fill(scene, &stepper, &layout, comm.rank(), frame.velocity(0.0));
         let longest = stepper.longest_at_start(scene);
         let reach = stepper.reach(longest).expect("a longer particle is a fault");
         let workers = comm.size() * threads;
-        let pool = (threads > 1 && layout.patches().len() > 1).then(|| make_pool(threads));
+        let pool = (threads > 1 && layout.count() > 1).then(|| make_pool(threads));
         let patches = layout.patches_of(comm.rank()).into_iter().zip(blocks);
         let mut simulation = Simulation {
             comm,
@@ -171,7 +169,6 @@ impl<'a, const D: usize> Simulation<'a, D> {
             held: LastGoodState::default(),
             stepper,
             layout,
-            order,
             reach: None,
             threads,
             pool,

@@ -128,7 +128,7 @@ impl<const D: usize> Simulation<'_, D> {
         }
         let specs = &self.stepper.columns.specs;
         let (layout, blocks) =
-            deal_particles(self.comm, self.layout.clone(), &self.order, specs, &saved.particles);
+            deal_particles(self.comm, self.layout.clone(), specs, &saved.particles);
         let mine = layout.patches_of(self.comm.rank()).into_iter().zip(blocks);
         self.patches = mine.map(|(p, block)| Patch::new(&layout, p, block)).collect();
         self.layout = layout;

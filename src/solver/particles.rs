@@ -86,7 +86,8 @@ pub fn fill<const D: usize>(
         let region = scene.scene.bodies[number].regions().pop().map(|(_, region)| region);
         let boundary = columns.faces.and(region).and_then(|region| BodyBoundary::new(&region));
         for (&patch, block) in mine.iter().zip(&mut blocks) {
-            let cells = &layout.patches()[patch];
+            let cells = &layout.patch(patch);
+            block.reserve(count_in(scene, checked, cells));
             each_particle(scene, checked, cells, &mut |id, centre, size, volume| {
                 let particle = NewParticle { scene, body: number, centre, size };
                 set_initial_values(stepper, &particle, volume, grid_velocity, &mut values);
@@ -103,6 +104,18 @@ pub fn fill<const D: usize>(
         block.sort_own();
     }
     blocks
+}
+
+/// Number of particles of `body` whose centres lie in `cells`.
+fn count_in<const D: usize>(
+    scene: &CheckedScene,
+    body: &CheckedBody,
+    cells: &IndexBox<D>,
+) -> usize {
+    match &body.tiling {
+        Some(tiling) => tiling.count_in(cell_box(cells)) as usize,
+        None => BodyLattice::<D>::of(body).boxes_in(scene, cells).count(),
+    }
 }
 
 /// Calls `take` with the number, centre [m], edges [m] and volume [m3] of each particle of `body`

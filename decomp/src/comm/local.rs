@@ -1,10 +1,12 @@
 //! Ranks as threads of one process: for tests, and for programs that run several ranks without MPI.
 
 use std::any::Any;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, VecDeque};
 use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
 use super::watch::{Awaited, Control, StallWatch};
@@ -40,11 +42,25 @@ pub fn run_ranks<R: Send>(size: usize, body: impl Fn(&LocalRank) -> R + Sync) ->
 /// A rank that is a thread of this process.
 pub struct LocalRank {
     rank: usize,
-    /// Channel to each rank.
-    to: Vec<Sender<Vec<u64>>>,
-    /// Channel from each rank.
-    from: Vec<Receiver<Vec<u64>>>,
+    shared: Arc<Shared>,
+    /// Messages of all ranks, as they arrive.
+    from: Receiver<Message>,
+    /// Messages that have arrived before this rank asked for them, by sender.
+    early: RefCell<BTreeMap<usize, VecDeque<Vec<u64>>>>,
     watch: StallWatch<Channel>,
+}
+
+/// Sender and words of a message.
+type Message = (usize, Vec<u64>);
+
+/// State that all ranks share: one channel for messages and one for control messages to each rank.
+struct Shared {
+    messages: Vec<Sender<Message>>,
+    control: Vec<Sender<Message>>,
+    /// Whether each rank has ended.
+    ended: Vec<AtomicBool>,
+    /// Whether a rank has failed.
+    failed: AtomicBool,
 }
 
 /// Panic payload of a thread that ends because another rank has failed.
@@ -52,46 +68,54 @@ struct EndedByAnother;
 
 impl LocalRank {
     fn all(size: usize) -> Vec<Self> {
-        let failed = Arc::new(AtomicBool::new(false));
-        let (mut to, mut from) = (vec![Vec::new(); size], Vec::new());
-        let (mut asks, mut asked) = (Vec::new(), Vec::new());
-        for _ in 0..size {
-            let (senders, receivers): (Vec<_>, Vec<_>) = (0..size).map(|_| channel()).unzip();
-            to.iter_mut().zip(senders).for_each(|(to, sender)| to.push(sender));
-            from.push(receivers);
-            let (sender, receiver) = channel();
-            asks.push(sender);
-            asked.push(receiver);
-        }
-        let ends = to.into_iter().zip(from).zip(asked).enumerate();
-        ends.map(|(rank, ((to, from), asked))| {
-            let (to_control, failed) = (asks.clone(), failed.clone());
-            let watch = StallWatch::new(Channel { rank, to: to_control, from: asked, failed });
-            LocalRank { rank, to, from, watch }
+        let channels = || -> (Vec<_>, Vec<_>) { (0..size).map(|_| channel()).unzip() };
+        let ((messages, from), (control, asked)) = (channels(), channels());
+        let ended = (0..size).map(|_| AtomicBool::new(false)).collect();
+        let failed = AtomicBool::new(false);
+        let shared = Arc::new(Shared { messages, control, ended, failed });
+        let ends = from.into_iter().zip(asked).enumerate();
+        ends.map(|(rank, (from, asked))| {
+            let watch = StallWatch::new(Channel { rank, shared: shared.clone(), from: asked });
+            LocalRank { rank, shared: shared.clone(), from, early: RefCell::default(), watch }
         })
         .collect()
     }
 
     fn send(&self, to: usize, words: Vec<u64>) {
-        if self.to[to].send(words).is_err() {
+        if self.shared.messages[to].send((self.rank, words)).is_err() {
             self.lost(to);
         }
     }
 
     fn receive(&self, source: usize) -> Vec<u64> {
         let mut found = None;
-        self.watch.wait(Awaited::Rank(source), || match self.from[source].try_recv() {
-            Ok(words) => {
-                found = Some(words);
-                true
-            }
-            Err(TryRecvError::Empty) => {
+        self.watch.wait(Awaited::Rank(source), || {
+            // the flag first: after its end a rank sends nothing more
+            let ended = self.shared.ended[source].load(Ordering::Acquire);
+            found = self.arrived_from(source);
+            if found.is_none() {
                 self.watch.control().end_with_others();
-                false
+                if ended {
+                    self.lost(source);
+                }
             }
-            Err(TryRecvError::Disconnected) => self.lost(source),
+            found.is_some()
         });
         found.expect("the wait ends with a message")
+    }
+
+    /// The next message of `source`, if it has arrived.
+    fn arrived_from(&self, source: usize) -> Option<Vec<u64>> {
+        let mut early = self.early.borrow_mut();
+        for (from, words) in self.from.try_iter() {
+            early.entry(from).or_default().push_back(words);
+        }
+        let messages = early.get_mut(&source)?;
+        let words = messages.pop_front();
+        if messages.is_empty() {
+            early.remove(&source);
+        }
+        words
     }
 
     fn lost(&self, other: usize) -> ! {
@@ -123,7 +147,7 @@ impl Comm for LocalRank {
     }
 
     fn size(&self) -> usize {
-        self.to.len()
+        self.shared.messages.len()
     }
 
     fn exchange(
@@ -175,23 +199,23 @@ impl Comm for LocalRank {
 impl Drop for LocalRank {
     fn drop(&mut self) {
         if std::thread::panicking() {
-            self.watch.control().failed.store(true, Ordering::Release);
+            self.shared.failed.store(true, Ordering::Release);
         }
+        self.shared.ended[self.rank].store(true, Ordering::Release);
     }
 }
 
-/// Channels for questions and answers, and a flag for a failed rank.
+/// Channels for questions and answers.
 struct Channel {
     rank: usize,
-    to: Vec<Sender<(usize, Vec<u64>)>>,
-    from: Receiver<(usize, Vec<u64>)>,
-    failed: Arc<AtomicBool>,
+    shared: Arc<Shared>,
+    from: Receiver<Message>,
 }
 
 impl Channel {
     /// Ends this rank without a message if another rank has failed.
     fn end_with_others(&self) {
-        if self.failed.load(Ordering::Acquire) {
+        if self.shared.failed.load(Ordering::Acquire) {
             let quiet: Box<dyn Any + Send> = Box::new(EndedByAnother);
             resume_unwind(quiet);
         }
@@ -204,12 +228,12 @@ impl Control for Channel {
     }
 
     fn size(&self) -> usize {
-        self.to.len()
+        self.shared.control.len()
     }
 
     fn send(&self, to: usize, words: &[u64]) {
         // a rank that has ended does not answer; its end is detected elsewhere
-        let _ = self.to[to].send((self.rank, words.to_vec()));
+        let _ = self.shared.control[to].send((self.rank, words.to_vec()));
     }
 
     fn receive(&self, words: &mut Vec<u64>) -> Option<usize> {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use decomp::comm::local::run_ranks;
 use decomp::{
     Block, ColumnSpec, Comm, GhostExchange, GhostReach, IndexBox, Layout, Mirror, NodeArrays,
-    NodeExchange, Parity, Serial, SideKind, exact_sums, relocate,
+    NodeExchange, Parity, PatchOrder, Serial, SideKind, exact_sums, relocate,
 };
 use proptest::prelude::*;
 
@@ -37,8 +37,9 @@ fn on_ranks<T: Send>(size: usize, body: impl Fn(&dyn Comm) -> Held<T> + Sync) ->
 
 /// The same patches, assigned to ranks 0 to `size - 1` at random.
 fn deal<const D: usize>(layout: &Layout<D>, size: usize, seed: &[usize]) -> Layout<D> {
-    let ranks = (0..layout.patches().len()).map(|p| seed[p % seed.len()] % size).collect();
-    layout.clone().with_ranks(ranks)
+    let ranks: Vec<u32> =
+        (0..layout.count()).map(|p| (seed[p % seed.len()] % size) as u32).collect();
+    layout.clone().with_ranks(PatchOrder::hilbert(layout.parts()), &ranks)
 }
 
 /// Moves and exchanges particles; returns the particles that each patch then holds.

@@ -13,6 +13,7 @@
 mod bound;
 mod bounds;
 mod counts;
+mod heap;
 mod program;
 mod report;
 mod resident;

@@ -2,17 +2,21 @@
 
 mod balance;
 mod bytes;
+mod layout;
 mod memory;
+mod ranks;
 mod startup;
 
-use crate::section::{Section, usual};
+use crate::section::{Section, quick, usual};
 
 /// Subject of the group.
 pub const TITLE: &str = "Many ranks, patches and particles: start-up, messages and balance";
 
 /// Sections in the order in which they run.
-pub const SECTIONS: [Section; 4] = [
+pub const SECTIONS: [Section; 6] = [
     usual("startup", startup::check),
+    quick("layout", layout::check),
+    usual("ranks", ranks::check),
     usual("memory", memory::check),
     usual("bytes", bytes::check),
     usual("balance", balance::check),

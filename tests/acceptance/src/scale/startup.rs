@@ -64,11 +64,13 @@ fn patches(table: &mut Table) {
 fn one_rank(table: &mut Table) {
     const RANKS: usize = 1000;
     let name = "rank 500 of 1000, 1e8 particles";
-    let (before, start) = (resident(), cpu_seconds());
+    let kinds = ["VmRSS:", "RssFile:"];
+    let (before, start) = (kinds.map(memory), cpu_seconds());
     let Some(scene) = table.take(name, scene(&disks(5e7))) else { return };
     let stepper = effects::stepper::<2>(&scene);
     let blocks = initial_particles(&scene, &stepper, RANKS / 2, RANKS);
-    let (seconds, bytes) = (cpu_seconds() - start, resident() - before);
+    let seconds = cpu_seconds() - start;
+    let [bytes, of_program] = std::array::from_fn(|k| memory(kinds[k]) - before[k]);
     let own: usize = blocks.iter().map(|block| block.own()).sum();
     // ids, cells and columns of its particles
     let share = (own * (16 + 8 * stepper.columns.specs.len())) as f64;
@@ -82,6 +84,7 @@ fn one_rank(table: &mut Table) {
     table.check(&format!("{name}: CPU time"), Some(seconds), bounds::startup::RANK_SECONDS);
     let over = Some(bytes / share);
     table.check(&format!("{name}: memory over its share"), over, bounds::startup::RANK_MEMORY);
+    table.beside("  code of the program in it", Some(of_program / share), "", Unit::One);
 }
 
 /// `flyer-mpm check` of a billion particles.
@@ -101,10 +104,10 @@ fn described(table: &mut Table) {
     table.check(&format!("{name}: memory"), peak, bounds::startup::CHECK_MEMORY);
 }
 
-/// Resident memory of this process [bytes].
-fn resident() -> f64 {
+/// Memory of this process on a line of its status, such as the resident one [bytes].
+fn memory(kind: &str) -> f64 {
     let text = fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = text.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    let line = text.lines().find_map(|line| line.strip_prefix(kind));
     let kib = line.and_then(|l| l.trim().strip_suffix("kB")?.trim().parse::<f64>().ok());
     kib.map_or(f64::NAN, |kib| 1024.0 * kib)
 }
