@@ -1,10 +1,10 @@
 //! Estimated errors of runs, on impacts of materials and schemes to which no law was fitted.
 
-use flyer_mpm::accuracy::estimate::EstimateBasis;
-
 use calibration::estimates::{CheckedEstimate, Gathered, QUANTITIES, gather, judge};
 use calibration::random_impacts::{Draw, HELD_OUT};
 use calibration::random_schemes::Schemes;
+use flyer_mpm::accuracy::estimate::EstimateBasis;
+
 use crate::bounds::{Unit, accuracy as bounds};
 use crate::table::Table;
 

@@ -2,6 +2,9 @@
 
 use std::time::Instant;
 
+use calibration::random::Random;
+use calibration::random_impacts::{Draw, HELD_OUT, impact};
+use calibration::random_schemes::Schemes;
 use decomp::Serial;
 use flyer_mpm::accuracy::plan::{Data, ErrorTarget, PlanError, Verdict, plan};
 use flyer_mpm::driver::output::summary::Summary;
@@ -10,9 +13,6 @@ use flyer_mpm::driver::{Beginning, Options, run};
 use flyer_mpm::input;
 use flyer_mpm::scene::PlannedQuantity;
 
-use calibration::random::Random;
-use calibration::random_impacts::{Draw, HELD_OUT, impact};
-use calibration::random_schemes::Schemes;
 use crate::bounds::{Unit, accuracy as bounds};
 use crate::table::Table;
 

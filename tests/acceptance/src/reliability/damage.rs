@@ -3,11 +3,11 @@
 use std::fs;
 use std::panic::catch_unwind;
 
+use calibration::random::Random;
 use decomp::Serial;
 use flyer_mpm::driver::checkpoint::{CheckpointError, file};
 
 use super::runs::{end, folder, scene, with};
-use calibration::random::Random;
 use crate::bounds::reliability as bounds;
 use crate::table::Table;
 

@@ -5,10 +5,10 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
+use calibration::random::Random;
 use flyer_mpm::driver::checkpoint::folder::list;
 
 use super::runs::{command, folder, good, left, scene, steps, wait, with};
-use calibration::random::Random;
 use crate::bounds::{Unit, reliability as bounds};
 use crate::program;
 use crate::table::Table;

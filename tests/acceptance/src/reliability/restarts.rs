@@ -3,6 +3,7 @@
 use super::metal::metal;
 use super::runs::{folder, good, left, scene, steps, with};
 use calibration::random::Random;
+
 use crate::bounds::reliability as bounds;
 use crate::table::Table;
 
