@@ -46,6 +46,8 @@ pub struct CheckedEstimate {
     pub cells: f64,
     /// Exact pressure behind the shock over density times the square of the sound speed.
     pub strength: f64,
+    /// Exact compressions of the struck and of the striking body.
+    pub compressions: Option<[f64; 2]>,
 }
 
 /// Estimates of some impacts.
@@ -144,6 +146,7 @@ fn add(all: &mut Gathered, impact: &RandomImpact, summary: &Summary) {
         relative: error,
         cells: f64::NAN,
         strength: waves.release.states[0].p / stiffness,
+        compressions: waves.compressions(),
     };
     for (profile, scored) in estimate.profiles.iter().zip(&summary.profiles) {
         let length = match waves.plateau(profile.time) {

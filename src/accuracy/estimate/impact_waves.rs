@@ -54,6 +54,17 @@ impl ImpactWaves {
         Some(ImpactWaves { impact, release })
     }
 
+    /// Compressions 1 - rho0/rho of the struck and of the striking body behind the shocks \[-\].
+    pub fn compressions(&self) -> Option<[f64; 2]> {
+        let behind = &self.release.states[0];
+        let compression = |rho0: f64, rho: Option<f64>| Some(1.0 - rho0 / rho?);
+        let Impact { target, flyer, .. } = &self.impact;
+        Some([
+            compression(target.material.rho0, behind.rho_target)?,
+            compression(flyer.material.rho0, behind.rho_flyer)?,
+        ])
+    }
+
     /// The plateau in the struck body at the time `t` of the scene \[s\].
     pub fn plateau(&self, t: f64) -> PlateauLeft {
         let (release, target) = (&self.release, &self.impact.target);
@@ -108,6 +119,15 @@ mod tests {
             assert!((length / (to - from) - 1.0).abs() < 1e-9, "{length} {from} {to}");
         }
         assert_eq!(waves.plateau(0.0), PlateauLeft::None("the bodies have not met yet".into()));
+    }
+
+    #[test]
+    fn compressions_are_those_of_the_impedance_match() {
+        // u/Us of rho_t u (c_t + s_t u) = rho_f (V - u) (c_f + s_f (V - u)), solved by bisection
+        let waves = ImpactWaves::new(&flyer(&[]), 1).unwrap();
+        let [struck, striking] = waves.compressions().unwrap();
+        assert!((struck - 0.109_478_360_181).abs() < 1e-9, "{struck}");
+        assert!((striking - 0.070_238_730_101).abs() < 1e-9, "{striking}");
     }
 
     #[test]

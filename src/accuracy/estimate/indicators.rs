@@ -51,14 +51,22 @@ pub fn of_plateau(found: &Plateau, others: &[(f64, &Polyline)], h: f64) -> Evide
 pub(super) fn of_shock([ahead, behind, other]: [Option<ShockState>; 3]) -> Evidence {
     let (Some(ahead), Some(behind)) = (ahead, behind) else { return Evidence::new() };
     let compression = 1.0 - ahead.density / behind.density;
-    let mut all = vec![("compression", compression), ("exp_compression", compression.exp())];
-    if let Some(other) = other {
-        let rise = behind.pressure - ahead.pressure;
-        let compression = other.density * (other.velocity - behind.velocity).powi(2) / rise;
-        all.push(("other_compression", compression));
-        all.push(("exp_other_compression", compression.min(1.0).exp()));
-    }
-    named(all.into_iter().map(|(name, value)| (name.to_string(), value)))
+    let rise = behind.pressure - ahead.pressure;
+    let other =
+        other.map(|other| other.density * (other.velocity - behind.velocity).powi(2) / rise);
+    // without another body its indicators are left out
+    of_compressions([compression, other.unwrap_or(f64::NAN)])
+}
+
+/// The indicators of [`of_shock`] from the compressions of the struck and of the striking body \[-\].
+pub fn of_compressions([own, other]: [f64; 2]) -> Evidence {
+    let all = [
+        ("compression", own),
+        ("exp_compression", own.exp()),
+        ("other_compression", other),
+        ("exp_other_compression", if other > 1.0 { 1.0 } else { other }.exp()),
+    ];
+    named(all.map(|(name, value)| (name.to_string(), value)))
 }
 
 /// Indicators of a profile \[-\]: `difference_2`, `difference_4`, the relative L1 to the coarse

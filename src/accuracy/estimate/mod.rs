@@ -31,7 +31,7 @@ use serde::{Deserialize, Serialize};
 
 pub use arrival::Arrivals;
 pub use coarse_runs::{Companion, Companions};
-pub use error_model::Laws;
+pub use error_model::{Laws, QuantityLaws};
 pub use fitted_schemes::FittedSchemes;
 pub use impact_waves::{ImpactWaves, PlateauLeft};
 pub use polyline::{Polyline, line};

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::data::{Data, SchemeAccuracy};
+use super::data::{Data, SchemeAccuracy, ShockStrength};
 use super::pilot::{self, Pilot};
 use super::quantities::ErrorScale;
 use super::schemes::{PlannedScheme, schemes};
@@ -97,6 +97,11 @@ const LAST_PILOT: f64 = 0.35;
 /// Largest number of particles of the last pilot run.
 const MOST_PILOT: f64 = 4000.0;
 
+/// Most schemes that are timed by the last pilot runs, and the greatest time of a run with one of them
+/// over that with the cheapest \[-\]: the first pilot runs are too short to tell these apart.
+const TIMED: usize = 3;
+const NEARLY_CHEAPEST: f64 = 1.5;
+
 /// Largest number of particles of a plan, to limit memory and run time.
 const MOST_PARTICLES: f64 = 1e7;
 
@@ -151,6 +156,17 @@ impl Candidate {
     }
 }
 
+/// A candidate on the cells of its run, timed by the last pilot runs.
+struct Timed {
+    candidate: Candidate,
+    /// The scene to run.
+    scene: Value,
+    /// The same, checked.
+    run: CheckedScene,
+    /// Wall time of the run \[s\].
+    wall: f64,
+}
+
 /// A scene to plan, with the lengths on which the choice depends.
 struct Task<'a> {
     scene: Value,
@@ -186,21 +202,10 @@ pub fn plan(
     if let Err(reason) = target.quantity.length(&scale) {
         return Err(fail(format!("{file}: {reason}")));
     }
-    let (candidate, h) = task.cheapest(&candidates, &scale)?;
-    let cells = (task.length / h).ceil() as usize;
-    let (mut chosen, run) =
-        pilot::with_cells(&task.scene, file, &candidate.scheme, cells).map_err(fail)?;
+    let nearly = task.cheapest(&candidates, &scale)?;
+    let Timed { candidate: timed, scene: mut chosen, run, .. } =
+        task.fastest(&nearly).map_err(fail)?;
     let h = run.cell_size[0];
-    let sizes = (h, run.particles as f64);
-    let cost = last_pilot(&task.scene, file, candidate, sizes, task.body, cells);
-    let (cost, wall, steps) = cost.map_err(fail)?;
-    let timed = Candidate {
-        scheme: candidate.scheme.clone(),
-        measured: candidate.measured.clone(),
-        cost,
-        wall,
-        steps,
-    };
     let error = target.quantity.error(&timed.measured, &scale, h);
     let error = error.ok_or_else(|| fail(format!("{file}: the error cannot be predicted")))?;
     let mut outside = Laws::shipped().fitted.outside(&run, task.body);
@@ -305,15 +310,42 @@ impl<'a> Task<'a> {
         Ok((candidates, scale))
     }
 
-    /// The cheapest scheme that reaches the target within the budget, with its cell size \[m\].
+    /// The fastest of these candidates by the last pilot runs. The error is that of the first one, if
+    /// none can be timed.
+    fn fastest(&self, candidates: &[(&Candidate, f64)]) -> Result<Timed, String> {
+        let all = candidates.iter().map(|&(candidate, h)| self.timed(candidate, h));
+        let faster = |best, next: Result<Timed, String>| match (best, next) {
+            (Ok(Timed { wall, .. }), Ok(next)) if next.wall < wall => Ok(next),
+            (Err(_), Ok(next)) => Ok(next),
+            (best, _) => best,
+        };
+        all.reduce(faster).unwrap_or_else(|| Err(format!("{}: no scheme", self.file)))
+    }
+
+    /// A candidate on cells of about `h` \[m\], timed by the last pilot runs.
+    fn timed(&self, candidate: &Candidate, h: f64) -> Result<Timed, String> {
+        let cells = (self.length / h).ceil() as usize;
+        let (scene, run) = pilot::with_cells(&self.scene, self.file, &candidate.scheme, cells)?;
+        let h = run.cell_size[0];
+        let sizes = (h, run.particles as f64);
+        let (cost, wall, steps) =
+            last_pilot(&self.scene, self.file, candidate, sizes, self.body, cells)?;
+        let (scheme, measured) = (candidate.scheme.clone(), candidate.measured.clone());
+        let candidate = Candidate { scheme, measured, cost, wall, steps };
+        let wall = candidate.wall(h, self.target.ranks, self.data.rank_step_seconds);
+        Ok(Timed { candidate, scene, run, wall })
+    }
+
+    /// The cheapest schemes that reach the target within the budget, with their cell sizes \[m\], the
+    /// cheapest first.
     fn cheapest<'b>(
         &self,
         candidates: &'b [Candidate],
         scale: &ErrorScale,
-    ) -> Result<(&'b Candidate, f64), PlanError> {
+    ) -> Result<Vec<(&'b Candidate, f64)>, PlanError> {
         let (target, extra) = (self.target, self.data.rank_step_seconds);
         let fewest = filled_cells_limit(self.filled, self.length);
-        let mut best: Option<(&Candidate, f64, f64)> = None;
+        let mut able: Vec<(&Candidate, f64, f64)> = Vec::new();
         let mut nearest: Option<(&Candidate, f64, f64)> = None;
         for candidate in candidates {
             let floor = fewest * candidate.scheme.particles_per_cell as f64;
@@ -321,8 +353,8 @@ impl<'a> Task<'a> {
             let measured = &candidate.measured;
             if let Some(h) = target.quantity.cells_for(measured, scale, target.error, limits) {
                 let wall = candidate.wall(h, target.ranks, extra);
-                if wall <= target.budget && best.is_none_or(|b| wall < b.2) {
-                    best = Some((candidate, h, wall));
+                if wall <= target.budget {
+                    able.push((candidate, h, wall));
                 }
             }
             let budget = target.budget / candidate.wall * target.ranks as f64;
@@ -334,8 +366,10 @@ impl<'a> Task<'a> {
                 nearest = Some((candidate, h, error.most));
             }
         }
-        if let Some((candidate, h, _)) = best {
-            return Ok((candidate, h));
+        able.sort_by(|a, b| a.2.total_cmp(&b.2));
+        if let Some(&(_, _, least)) = able.first() {
+            let near = able.iter().take(TIMED).filter(|a| a.2 <= NEARLY_CHEAPEST * least);
+            return Ok(near.map(|&(candidate, h, _)| (candidate, h)).collect());
         }
         let none = || PlanError::Scene("nothing can be had".into());
         let (candidate, h, error) = nearest.ok_or_else(none)?;
@@ -389,7 +423,8 @@ fn scale_of(
     let pressure = waves.as_ref().map_or_else(seen, |waves| waves.release.states[0].p);
     let cell_time = scene.scene.time.end / pilot.steps.max(1) as f64 / pilot.courant;
     let stiffness = scene.material_of(body).density * (pilot.cell_size / cell_time).powi(2);
-    let strength = pressure / stiffness;
+    let compressions = waves.as_ref().and_then(ImpactWaves::compressions);
+    let shock = ShockStrength { strength: pressure / stiffness, compressions };
     // the wave's way, from the end of the body that it comes from
     let way = place.zip(pilot.arrival).map(|(at, _)| {
         let own = &scene.bodies[body];
@@ -399,7 +434,7 @@ fn scale_of(
     if place.is_some() && way.is_none() {
         return Err(format!("{}: nothing arrives there within the run", scene.file));
     }
-    Ok(ErrorScale { pulse, plateau, way, strength })
+    Ok(ErrorScale { pulse, plateau, way, shock })
 }
 
 /// Length of the shortest plateau of the profiles \[m\], by the exact waves if they are known, else as

@@ -1,7 +1,7 @@
 //! Error models of the quantities that a plan can target: one file per quantity, one line per quantity
 //! in `scene/model/planned_quantity.rs`.
 
-use super::data::{ErrorLaws, SchemeAccuracy, Size};
+use super::data::{ErrorLaws, SchemeAccuracy, ShockStrength, Size};
 use crate::accuracy::estimate::{Bounded, EstimatedErrors};
 use crate::scene::{PlannedQuantity, planned_quantities};
 
@@ -13,8 +13,8 @@ pub(super) struct ErrorScale {
     pub plateau: Result<f64, String>,
     /// Distance of the wave to the arrival position [m].
     pub way: Option<f64>,
-    /// Pressure behind the shock over the density times the square of the sound speed [-].
-    pub strength: f64,
+    /// Strength of the shock.
+    pub shock: ShockStrength,
 }
 
 /// Error model of a quantity.
@@ -76,7 +76,7 @@ planned_quantities!(dispatch);
 impl PlannedQuantity {
     /// Expected relative error on cells of size `h` [m]; `None` without the length that scales it.
     pub(super) fn error(self, m: &SchemeAccuracy, scale: &ErrorScale, h: f64) -> Option<Size> {
-        self.laws(m).at(self.length(scale).ok()? / h, scale.strength)
+        self.laws(m).at(self.length(scale).ok()? / h, &scale.shock)
     }
 
     /// Largest cell size [m] between `least` and `greatest` [m] at which the relative error is at

@@ -11,7 +11,7 @@ use crate::section::{Section, quick, usual};
 pub const TITLE: &str = "Accuracy of the shipped schemes and its cost, error estimates and plans";
 
 /// Sections in the order in which they run.
-pub const SECTIONS: [Section; 9] = [
+pub const SECTIONS: [Section; 10] = [
     quick("standard", schemes::standard),
     usual("order", schemes::order),
     usual("impacts", schemes::impacts),
@@ -21,4 +21,5 @@ pub const SECTIONS: [Section; 9] = [
     usual("companions", companions::check),
     usual("estimate", estimate::check),
     usual("plan", plan::check),
+    usual("plan_schemes", plan::schemes),
 ];

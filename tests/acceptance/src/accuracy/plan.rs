@@ -1,12 +1,13 @@
-//! Plans of random impacts: whether the wanted error came, and the price.
+//! Plans of random impacts: whether the wanted error came, and the price, also against the prices of all
+//! schemes that the plan could choose.
 
 use std::time::Instant;
 
 use calibration::random::Random;
-use calibration::random_impacts::{Draw, HELD_OUT, impact};
+use calibration::random_impacts::{Draw, HELD_OUT, RandomImpact, impact};
 use calibration::random_schemes::Schemes;
 use decomp::Serial;
-use flyer_mpm::accuracy::plan::{Data, ErrorTarget, PlanError, Verdict, plan};
+use flyer_mpm::accuracy::plan::{Data, ErrorTarget, Plan, PlanError, Verdict, plan};
 use flyer_mpm::driver::output::summary::Summary;
 use flyer_mpm::driver::progress::ProgressChoice;
 use flyer_mpm::driver::{Beginning, Options, run};
@@ -27,6 +28,14 @@ const DRAW: Draw<'static> =
 const FACTOR: f64 = bounds::plan::PRICE_FACTOR.number();
 /// Runs may take so long \[s\].
 const BUDGET: f64 = 20.0;
+/// Impacts of which every scheme is run.
+const TRIED: usize = bounds::plan_schemes::TRIED.number() as usize;
+/// CPU time for which the runs of a scheme are repeated, so that the system measures their mean well
+/// \[s\].
+const TIMED: f64 = 0.1;
+/// A plan whose predicted error is below this share of the target has the largest cells that the fit
+/// allows.
+const COARSEST: f64 = 0.9;
 
 /// Wanted errors are drawn between these.
 fn range(quantity: PlannedQuantity) -> [f64; 2] {
@@ -37,25 +46,31 @@ fn range(quantity: PlannedQuantity) -> [f64; 2] {
     }
 }
 
+/// The next impact, with the error that is wanted of it.
+fn next(random: &mut Random) -> (RandomImpact, ErrorTarget) {
+    let impact = impact(random, &DRAW);
+    let quantities =
+        [PlannedQuantity::L1, PlannedQuantity::PlateauPressure, PlannedQuantity::ArrivalTime];
+    let quantity = *random.one(&quantities);
+    let [low, high] = range(quantity);
+    let error = random.between(low.ln(), high.ln()).exp();
+    (impact, ErrorTarget { quantity, error, budget: BUDGET, ranks: 1, place: None })
+}
+
 /// Plans and runs impacts.
 pub fn check(table: &mut Table) {
     let (mut random, data) = (Random::new(SEED), Data::shipped());
-    let quantities =
-        [PlannedQuantity::L1, PlannedQuantity::PlateauPressure, PlannedQuantity::ArrivalTime];
     let mut verdicts: Vec<Verdict> = Vec::new();
     let mut refused = 0;
     while verdicts.len() < IMPACTS && refused < IMPACTS {
-        let impact = impact(&mut random, &DRAW);
-        let quantity = *random.one(&quantities);
-        let [low, high] = range(quantity);
-        let error = random.between(low.ln(), high.ln()).exp();
-        let target = ErrorTarget { quantity, error, budget: BUDGET, ranks: 1, place: None };
-        match once(&impact.scene, &impact.name, &target, &data) {
+        let (impact, target) = next(&mut random);
+        let wanted =
+            format!("{}, {:?} {:.3} %", impact.name, target.quantity, 100.0 * target.error);
+        let planned = plan(&impact.scene, &impact.name, &target, &data).map_err(|e| e.to_string());
+        match planned.and_then(|plan| once(&plan, &impact.name)) {
             Ok(verdict) => {
                 println!(
-                    "  {}, {quantity:?} {:.3} %: actual {:.3} %, CPU {:.3} s predicted {:.3} s",
-                    impact.name,
-                    100.0 * error,
+                    "  {wanted}: actual {:.3} %, CPU {:.3} s predicted {:.3} s",
                     100.0 * verdict.actual.unwrap_or(f64::NAN),
                     verdict.cpu_seconds,
                     verdict.predicted_cpu_seconds
@@ -63,7 +78,7 @@ pub fn check(table: &mut Table) {
                 verdicts.push(verdict);
             }
             Err(reason) => {
-                println!("  {}, {quantity:?} {:.3} %: {reason}", impact.name, 100.0 * error);
+                println!("  {wanted}: {reason}");
                 refused += 1;
             }
         }
@@ -82,18 +97,98 @@ pub fn check(table: &mut Table) {
         Some(price),
         bounds::plan::PRICE_WITHIN_FACTOR,
     );
+    overkill(table, &verdicts);
     table.beside("refused with the best that can be had", Some(refused as f64), "", Unit::One);
     impossible(table, &data);
 }
 
-/// Plans and runs one impact.
-fn once(
-    scene: &serde_json::Value,
-    name: &str,
+/// Price of the plan's scheme against that of the cheapest found by trying all schemes.
+pub fn schemes(table: &mut Table) {
+    let (mut random, data) = (Random::new(SEED), Data::shipped());
+    let mut prices = Vec::new();
+    for _ in 0..10 * TRIED {
+        if prices.len() == TRIED {
+            break;
+        }
+        let (impact, target) = next(&mut random);
+        let Ok(chosen) = plan(&impact.scene, &impact.name, &target, &data) else { continue };
+        let Some(price) = over_cheapest(&impact, &target, &data, &chosen) else { continue };
+        println!("  {}, {:?}: {} at {price:.3}", impact.name, target.quantity, chosen.scheme);
+        prices.push(price);
+    }
+    prices.sort_by(f64::total_cmp);
+    let tried = Some(prices.len() as f64);
+    table.check("impacts of which every scheme is run", tried, bounds::plan_schemes::TRIED);
+    let bound = bounds::plan_schemes::OVER_CHEAPEST;
+    table.check("price over that of the cheapest, greatest", prices.last().copied(), bound);
+    let within = prices.iter().filter(|&&price| bound.holds(Some(price))).count();
+    table.beside("the same, number within the bound", Some(within as f64), "", Unit::One);
+    table.beside("the same, median", median(prices.into_iter()), "", Unit::One);
+}
+
+/// Median of target over actual error: of all plans, and of those whose cells are not the largest of
+/// the fit.
+fn overkill(table: &mut Table, verdicts: &[Verdict]) {
+    let quantities = [
+        (PlannedQuantity::L1, "L1", None),
+        (PlannedQuantity::PlateauPressure, "plateau", Some(bounds::plan::OVERKILL)),
+        (PlannedQuantity::ArrivalTime, "arrival", Some(bounds::plan::OVERKILL)),
+    ];
+    for (quantity, name, bound) in quantities {
+        let own = || verdicts.iter().filter(move |v| v.quantity == quantity);
+        let free = || own().filter(|v| v.predicted >= COARSEST * v.wanted);
+        let ratio = |v: &Verdict| Some(v.wanted / v.actual?);
+        let figure = format!("{name}: target over actual error, median");
+        let all = median(own().filter_map(ratio));
+        match bound {
+            Some(bound) => table.check(&figure, all, bound),
+            None => table.beside(&figure, all, "", Unit::One),
+        }
+        let note = format!("{} of {} plans", free().count(), own().count());
+        let figure = format!("{name}: the same, unless on the coarsest cells");
+        table.beside(&figure, median(free().filter_map(ratio)), &note, Unit::One);
+    }
+}
+
+/// Median; `None` of no values.
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut all: Vec<f64> = values.collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied()
+}
+
+/// CPU seconds of the plan's scheme over those of the cheapest scheme that reaches the target, each on
+/// the cells that a plan chooses for it; `None` if no scheme reaches the target.
+fn over_cheapest(
+    impact: &RandomImpact,
     target: &ErrorTarget,
     data: &Data,
-) -> Result<Verdict, String> {
-    let plan = plan(scene, name, target, data).map_err(|e| e.to_string())?;
+    chosen: &Plan,
+) -> Option<f64> {
+    let price = |plan: &Plan| {
+        let (mut runs, mut all) = (0.0, 0.0);
+        loop {
+            let verdict = once(plan, &impact.name).ok()?;
+            (runs, all) = (runs + 1.0, all + verdict.cpu_seconds);
+            if all >= TIMED || runs >= 100.0 {
+                return Some(Verdict { cpu_seconds: all / runs, ..verdict });
+            }
+        }
+    };
+    let others = data.schemes.iter().filter(|(name, _)| **name != chosen.scheme);
+    let others = others.filter_map(|(name, measured)| {
+        let schemes = [(name.clone(), measured.clone())].into();
+        let alone = Data { schemes, ..data.clone() };
+        price(&plan(&impact.scene, &impact.name, target, &alone).ok()?)
+    });
+    let own = price(chosen)?;
+    let all: Vec<Verdict> = others.chain([own.clone()]).collect();
+    let met = all.iter().filter(|v| v.actual.is_some_and(|error| error <= v.wanted));
+    Some(own.cpu_seconds / met.map(|v| v.cpu_seconds).reduce(f64::min)?)
+}
+
+/// Runs a planned scene.
+fn once(plan: &Plan, name: &str) -> Result<Verdict, String> {
     let checked =
         input::parse(plan.scene.to_string().as_bytes(), name, &[]).map_err(|e| e.to_string())?;
     let home = tempfile::tempdir().map_err(|e| e.to_string())?;
