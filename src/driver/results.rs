@@ -63,6 +63,8 @@ where
         }
         // the other ranks wait for this rank at the end
         let Some(costs) = costs else { return Ok(None) };
+        // pictures and tables take memory that no other rank needs
+        self.simulation.release_particles();
         let mut warnings = self.scene.warnings.clone();
         let reference = self.reference(&mut warnings);
         comm.heartbeat();

@@ -124,6 +124,11 @@ where
         <Stepper<D> as Compiled<D>>::create(scene, comm, threads, outside)
     }
 
+    /// Frees the particles and the nodes of this rank at the end of a run; counters and peaks remain.
+    pub fn release_particles(&mut self) {
+        (self.patches, self.held) = (Vec::new(), LastGoodState::default());
+    }
+
     /// Advances by one step. The last step before `until` [s] is shortened to end there exactly;
     /// the next step has its usual length again. If a check of the monitor fails, the step is an
     /// error, or is repeated with half the length if the scene asks for that. Collective.

@@ -91,11 +91,12 @@ mod tests {
     fn a_change_is_code_of_the_first_function() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.rs");
-        std::fs::write(&file, "fn f() {\n    let a = 1;\n    let b = a;\n}\n").unwrap();
+        std::fs::write(&file, "fn f() {\n    if let _ = 0 {}\n    let a = 1;\n    let b = a;\n}\n")
+            .unwrap();
         super::change(&file).unwrap();
         let changed = std::fs::read_to_string(&file).unwrap();
         assert_eq!(changed.matches("black_box").count(), 1);
-        assert!(changed.contains("black_box(1); let a = 1;"), "{changed}");
+        assert!(changed.contains("black_box(1);\n    let a = 1;"), "{changed}");
         std::fs::write(&file, "const A: i32 = 1;\n").unwrap();
         assert!(super::change(&file).unwrap_err().contains("no local variable"));
     }
