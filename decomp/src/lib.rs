@@ -11,8 +11,8 @@
 //!   travels once to a rank.
 //!
 //! Both let the caller compute while messages are on their way. [`assign_patches`] assigns patches
-//! to ranks along a [`PatchOrder`], by weight, [`deal_with_short_borders`] chooses the order, and [`relocate`]
-//! moves whole patches.
+//! to ranks along a [`PatchOrder`], by weight, [`deal_with_short_borders`] chooses the order, and
+//! [`relocate`] moves whole patches.
 //! [`Shares`] deals the particles to ranks for files and tables, [`StoredParticles`] holds a share of
 //! them, and [`deal_particles`] hands shares to the patches of any layout.
 //!

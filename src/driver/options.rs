@@ -41,3 +41,21 @@ pub struct Options {
     /// Commit of the sources of the program, for the summary.
     pub commit: Option<&'static str>,
 }
+
+impl Options {
+    /// Options of a run on one thread that prints only errors and writes its results to `output`.
+    pub fn quiet(output: PathBuf) -> Options {
+        Options {
+            output,
+            keep: false,
+            quiet: true,
+            progress: ProgressChoice::Never,
+            verbose: false,
+            threads: 1,
+            trace: None,
+            started: Instant::now(),
+            signal: Arc::default(),
+            commit: None,
+        }
+    }
+}

@@ -16,7 +16,8 @@ const CREATED: u64 = 256 << 20;
 pub struct Preview {
     /// Particle columns.
     pub columns: Columns,
-    /// Time step \[s\] at the start by the Courant condition; of a large scene an estimate from sound speeds and velocities.
+    /// Time step \[s\] at the start by the Courant condition; of a large scene an estimate from sound
+    /// speeds and velocities.
     pub first_step: f64,
 }
 

@@ -87,7 +87,7 @@ impl Clock {
         }
     }
 
-    /// Stops the clock: times that nobody reads cost several per cent of a step of few particles.
+    /// Stops the clock: unread times cost several per cent of a step of few particles.
     pub fn stop(&mut self) {
         self.stopped = true;
     }

@@ -4,7 +4,6 @@
 //! `ESTIMATE_CASES=1000 cargo test --release --test hard_cases estimates` runs more.
 
 use std::path::Path;
-use std::time::Instant;
 
 use decomp::Serial;
 use flyer_mpm::accuracy::estimate::EstimateBasis;
@@ -107,18 +106,7 @@ fn ends(value: &Value, folder: &Path) -> Option<Result<Summary, String>> {
             return None;
         }
     };
-    let options = Options {
-        output: folder.to_path_buf(),
-        keep: false,
-        quiet: true,
-        verbose: false,
-        progress: Default::default(),
-        threads: 1,
-        trace: None,
-        started: Instant::now(),
-        signal: Default::default(),
-        commit: None,
-    };
+    let options = Options::quiet(folder.to_path_buf());
     let ended = run(&Serial, &scene, &options, Beginning::Scene).map_err(|e| e.to_string());
     Some(ended.map(|_| Summary::read(folder).expect("a run writes its summary")))
 }

@@ -1,9 +1,6 @@
 //! Runs random impacts and compares their estimated errors with the true ones.
 
 use std::path::Path;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Instant;
 
 use decomp::Serial;
 use flyer_mpm::accuracy::estimate::indicators::Evidence;
@@ -12,6 +9,8 @@ use flyer_mpm::accuracy::estimate::{
 };
 use flyer_mpm::driver::output::summary::Summary;
 use flyer_mpm::driver::{Beginning, Options, run};
+use rayon::ThreadPoolBuilder;
+use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 
 use crate::random::Random;
@@ -70,55 +69,31 @@ pub struct Gathered {
 ///
 /// # Panics
 ///
-/// If no temporary folder can be created.
+/// If no temporary folder can be created, or no threads can be started.
 pub fn gather(seed: u64, draw: &Draw<'_>, count: usize, threads: usize) -> Gathered {
     let mut random = Random::new(seed);
     let impacts: Vec<RandomImpact> = (0..count).map(|_| impact(&mut random, draw)).collect();
-    let (next, done) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     let home = tempfile::tempdir().expect("a folder for the runs");
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                while let Some((k, impact)) = next_of(&impacts, &next) {
-                    match once(impact, &home.path().join(k.to_string())) {
-                        Ok(summary) => done.lock().expect("whole").push((k, summary)),
-                        Err(reason) => eprintln!("{}: {reason}", impact.name),
-                    }
-                }
-            });
+    let run = |(k, impact): (usize, &RandomImpact)| {
+        let summary = once(impact, &home.path().join(k.to_string()));
+        summary.inspect_err(|reason| eprintln!("{}: {reason}", impact.name)).ok()
+    };
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can start");
+    let runs = || impacts.par_iter().enumerate().map(run).collect::<Vec<_>>();
+    let summaries = pool.install(runs);
+    let mut all = Gathered::default();
+    for (impact, summary) in impacts.iter().zip(summaries) {
+        match summary {
+            Some(summary) => add(&mut all, impact, &summary),
+            None => all.failed += 1,
         }
-    });
-    let mut done = done.into_inner().expect("whole");
-    done.sort_by_key(|(k, _)| *k);
-    let mut all = Gathered { failed: count - done.len(), ..Gathered::default() };
-    for (k, summary) in &done {
-        add(&mut all, &impacts[*k], summary);
     }
     all
 }
 
-fn next_of<'a>(
-    impacts: &'a [RandomImpact],
-    next: &AtomicUsize,
-) -> Option<(usize, &'a RandomImpact)> {
-    let k = next.fetch_add(1, Ordering::Relaxed);
-    impacts.get(k).map(|impact| (k, impact))
-}
-
 fn once(impact: &RandomImpact, folder: &Path) -> Result<Summary, String> {
     let scene = impact.checked()?;
-    let options = Options {
-        output: folder.to_path_buf(),
-        keep: false,
-        quiet: true,
-        verbose: false,
-        progress: Default::default(),
-        threads: 1,
-        trace: None,
-        started: Instant::now(),
-        signal: Default::default(),
-        commit: None,
-    };
+    let options = Options::quiet(folder.to_path_buf());
     run(&Serial, &scene, &options, Beginning::Scene).map_err(|e| e.to_string())?;
     let summary = Summary::read(folder).map_err(|e| e.to_string());
     let _ = std::fs::remove_dir_all(folder);

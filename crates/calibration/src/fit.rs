@@ -1,10 +1,9 @@
 //! Fits a law by quantile regression of the logarithms (Koenker & Bassett 1978). The factor follows
 //! from cases that were left out of the regression (cross-conformal calibration, Vovk 2015).
 
+use calibration::estimates::CheckedEstimate;
 use flyer_mpm::accuracy::estimate::error_model::{LEAST, Law};
 use nalgebra::{DMatrix, DVector};
-
-use calibration::estimates::CheckedEstimate;
 
 /// Errors below this are rounding \[in the evidence's unit\].
 const FLOOR: f64 = 1e-8;

@@ -2,11 +2,10 @@
 
 use std::path::Path;
 
+use calibration::estimates::{CheckedEstimate, QUANTITIES, judge};
 use plot::{
     Axis, Color, Figure, Panel, PictureError, Points, Series, Stroke, Style, draw as draw_figure,
 };
-
-use calibration::estimates::{CheckedEstimate, QUANTITIES, judge};
 
 /// Draws a panel a quantity; cases whose interval does not hold the truth are red.
 pub fn draw(all: &[Vec<CheckedEstimate>], stem: &Path) -> Result<(), PictureError> {

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use calibration::estimates::{CheckedEstimate, Gathered};
 use flyer_mpm::accuracy::estimate::QuantityLaws;
 use flyer_mpm::accuracy::estimate::error_model::Law;
 use flyer_mpm::accuracy::plan::data::{CELLS, ErrorLaws, STRENGTH, SchemeAccuracy, ShockStrength};
 use flyer_mpm::accuracy::plan::{self, Data};
 
 use crate::fit;
-use calibration::estimates::{CheckedEstimate, Gathered};
 
 /// Share of the runs whose error is smaller than the one that a plan predicts: more than the 95 % that
 /// are promised, since a plan chooses the scheme of the smallest prediction.
@@ -52,7 +52,7 @@ fn indicator(scheme: &str) -> String {
 }
 
 /// Laws of a quantity for all schemes. The schemes share the weights of the evidence and differ by a
-/// factor, so that all runs tell of the tail of the errors.
+/// factor, so that all runs contribute to the tail of the errors.
 fn laws(all: &[CheckedEstimate], schemes: &[String]) -> BTreeMap<String, ErrorLaws> {
     let of_scale = |t: &CheckedEstimate| {
         let shock = ShockStrength { strength: t.strength, compressions: t.compressions };

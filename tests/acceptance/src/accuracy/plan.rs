@@ -1,18 +1,16 @@
 //! Plans of random impacts: whether the wanted error came, and the price, also against the prices of all
 //! schemes that the plan could choose.
 
-use std::time::Instant;
-
 use calibration::random::Random;
 use calibration::random_impacts::{Draw, HELD_OUT, RandomImpact, impact};
 use calibration::random_schemes::Schemes;
 use decomp::Serial;
 use flyer_mpm::accuracy::plan::{Data, ErrorTarget, Plan, PlanError, Verdict, plan};
 use flyer_mpm::driver::output::summary::Summary;
-use flyer_mpm::driver::progress::ProgressChoice;
 use flyer_mpm::driver::{Beginning, Options, run};
 use flyer_mpm::input;
 use flyer_mpm::scene::PlannedQuantity;
+use flyer_mpm::study::scaling::statistics::median;
 
 use crate::bounds::{Unit, accuracy as bounds};
 use crate::table::Table;
@@ -123,7 +121,7 @@ pub fn schemes(table: &mut Table) {
     table.check("price over that of the cheapest, greatest", prices.last().copied(), bound);
     let within = prices.iter().filter(|&&price| bound.holds(Some(price))).count();
     table.beside("the same, number within the bound", Some(within as f64), "", Unit::One);
-    table.beside("the same, median", median(prices.into_iter()), "", Unit::One);
+    table.beside("the same, median", median(prices), "", Unit::One);
 }
 
 /// Median of target over actual error: of all plans, and of those whose cells are not the largest of
@@ -148,13 +146,6 @@ fn overkill(table: &mut Table, verdicts: &[Verdict]) {
         let figure = format!("{name}: the same, unless on the coarsest cells");
         table.beside(&figure, median(free().filter_map(ratio)), &note, Unit::One);
     }
-}
-
-/// Median; `None` of no values.
-fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut all: Vec<f64> = values.collect();
-    all.sort_by(f64::total_cmp);
-    all.get(all.len() / 2).copied()
 }
 
 /// CPU seconds of the plan's scheme over those of the cheapest scheme that reaches the target, each on
@@ -192,18 +183,7 @@ fn once(plan: &Plan, name: &str) -> Result<Verdict, String> {
     let checked =
         input::parse(plan.scene.to_string().as_bytes(), name, &[]).map_err(|e| e.to_string())?;
     let home = tempfile::tempdir().map_err(|e| e.to_string())?;
-    let options = Options {
-        output: home.path().join("run"),
-        keep: false,
-        quiet: true,
-        progress: ProgressChoice::Never,
-        verbose: false,
-        threads: 1,
-        trace: None,
-        started: Instant::now(),
-        signal: Default::default(),
-        commit: None,
-    };
+    let options = Options::quiet(home.path().join("run"));
     run(&Serial, &checked, &options, Beginning::Scene).map_err(|e| e.to_string())?;
     let summary = Summary::read(&options.output).map_err(|e| e.to_string())?;
     summary.plan.ok_or_else(|| "the summary has no plan".into())

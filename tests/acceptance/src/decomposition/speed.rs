@@ -1,6 +1,8 @@
 //! What a second rank or thread gains, and what more patches cost: time loops, medians of runs
 //! taken in turn, with every particle computed.
 
+use flyer_mpm::study::scaling::statistics::median;
+
 use crate::bounds::{Unit, decomposition as bounds};
 use crate::runs::{Job, Outcome};
 use crate::table::Table;
@@ -65,15 +67,12 @@ fn in_turn(jobs: &[Job]) -> Result<Vec<Times>, String> {
             runs.push(job.run()?);
         }
     }
+    let of_runs = |runs: &Vec<Outcome>, seconds: fn(&Outcome) -> f64| {
+        median(runs.iter().map(seconds)).expect("a job has runs")
+    };
     let times = runs.iter().map(|runs| Times {
-        wall: median(runs.iter().map(|r| r.summary.loop_wall_seconds)),
-        user: median(runs.iter().map(|r| r.user_seconds)),
+        wall: of_runs(runs, |r| r.summary.loop_wall_seconds),
+        user: of_runs(runs, |r| r.user_seconds),
     });
     Ok(times.collect())
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }
