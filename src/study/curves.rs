@@ -100,7 +100,7 @@ pub fn figure(study: &Study, picture: &CurvesPicture, rows: &[StudyRow]) -> Figu
             let (x, y): (Vec<f64>, Vec<f64>) = front(&all).iter().map(|&k| all[k]).unzip();
             let style = Style { color: Color(0xf3, 0xd0, 0x70), ..Style::line(Color::BLACK) };
             let style = style.width(11.0);
-            panel = panel.series(Series::new("none better (front)", Points::new(x, y), style));
+            panel = panel.series(Series::new("Pareto front", Points::new(x, y), style));
         }
         for (k, name) in names.iter().enumerate() {
             let of = rows.iter().filter(|row| row.first().name(&picture.series) == *name);
@@ -139,7 +139,7 @@ fn with_peers(
         };
         let Some(value) = peer.errors.get(error).and_then(|e| e.iter().find(at)) else { continue };
         if !shown {
-            let whose = "other codes, measured elsewhere on a like machine:";
+            let whose = "other codes, measured on a similar machine:";
             panel = panel.series(Series::new(whose, Points::new([], []), ring(Color::BLACK)));
             shown = true;
         }
