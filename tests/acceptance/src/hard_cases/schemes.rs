@@ -14,15 +14,16 @@ use crate::table::Table;
 const HEAD: &str = "# Schemes in hard cases
 
 Every shape function with every transfer, measured by `cargo run --release -p acceptance -- hard_cases/schemes`. All
-runs have mid-point steps, the viscosity of `inputs/flyer.json`, those of its options that the transfer allows, and a
+runs have mid-point steps, the viscosity of `inputs/flyer.json`, those of its options that the scheme allows, and a
 Courant number of 0.4 unless the column has another.
 
 A number is an error. It is the relative L1 norm of the pressure at 0.2 us in per cent; in columns marked `e` it is the
 drift of the energy in per cent, in columns marked `s` the speed that a block of rubber loses while it slides
 on a base for 20 cells without friction, at 17 degrees to the grid, in per cent, and in those marked `p` the pressure of
-copper blocks that pass each other at a corner at 500 m/s with a gap of half a cell, in per cent of rho c u. **monitor** means that the run-time checks ended the run before its result was wrong;
-the word after it is the reason. **refused** means that the check of the scene refused it. In both cases the exit code
-is not 0. The energy of a transfer in italics is not exact.
+copper blocks that pass each other at a corner at 500 m/s with a gap of half a cell, in per cent of rho c u.
+**monitor** means that the run-time checks ended the run before its result was wrong; the word after it is the reason.
+**refused** means that the check of the scene refused it. In both cases the exit code is not 0. The energy of a transfer
+in italics is not exact.
 
 - state: the state of a particle is outside of its model, mostly by growing tension
 - courant: a time step was too long
@@ -109,6 +110,11 @@ fn scheme(base: &Value, shape: &str, transfer: &Value) -> Value {
     if transfer.get("fmpm").is_none() {
         method.remove("edge_mask");
     }
+    // contact in a plane has spin by default
+    if method.contains_key("spin") {
+        let allowed = transfer.get("fmpm").is_some() && shape != "linear";
+        method.insert("spin".into(), json!(allowed));
+    }
     value
 }
 
@@ -137,7 +143,9 @@ fn cell(name: &str, value: &Value) -> String {
         false => format!("**monitor**, {}", word(&message)),
     };
     let in_plane = |figure: fn(&Measured) -> f64| {
-        run_plane(value).map_or_else(error, |found| format!("{:.2}", 100.0 * figure(&found)))
+        // without the sign of a zero
+        let rounded = |found: &Measured| (1e4 * figure(found)).round() / 100.0 + 0.0;
+        run_plane(value).map_or_else(error, |found| format!("{:.2}", rounded(&found)))
     };
     if name.ends_with(" s") {
         return in_plane(|found| contact::speed_lost(found, 17.0));
