@@ -105,8 +105,12 @@ pub struct CurvesPicture {
     pub x: String,
     /// Errors, one panel each.
     pub y: Vec<String>,
-    /// Time of the profile whose errors are shown \[s\].
-    pub time: f64,
+    /// Time of the profile whose errors are shown \[s\]; the last profile by default.
+    #[serde(default)]
+    pub time: Option<f64>,
+    /// Labels over which the means of the absolute values are shown.
+    #[serde(default)]
+    pub over: Vec<String>,
     /// Labels that distinguish the curves.
     #[serde(default)]
     pub series: Vec<String>,
@@ -138,8 +142,9 @@ pub struct MapPicture {
     pub y: String,
     /// Error to show, as absolute value.
     pub value: String,
-    /// Time of the profile \[s\].
-    pub time: f64,
+    /// Time of the profile \[s\]; the last profile by default.
+    #[serde(default)]
+    pub time: Option<f64>,
     /// Marked points: text, x, y.
     #[serde(default)]
     pub marks: Vec<(String, f64, f64)>,
@@ -169,8 +174,12 @@ pub struct Peer {
 pub struct Choices {
     /// Name of the error.
     pub error: String,
-    /// Time of the profile \[s\].
-    pub time: f64,
+    /// Time of the profile \[s\]; the last profile by default.
+    #[serde(default)]
+    pub time: Option<f64>,
+    /// Labels over which means are taken: the mean of the absolute values must reach a target.
+    #[serde(default)]
+    pub over: Vec<String>,
     /// Target values of the error \[-\].
     pub wanted: Vec<f64>,
 }
@@ -218,9 +227,14 @@ impl Study {
         for left in self.leave_out.iter().flat_map(|l| l.keys()) {
             known("leave_out", left)?;
         }
+        for over in self.choices.iter().flat_map(|choices| &choices.over) {
+            known("choices.over", over)?;
+        }
         for picture in &self.pictures {
             let (name, used, only) = match picture {
-                Picture::Curves(p) => (&p.name, p.series.iter().collect::<Vec<_>>(), &p.only),
+                Picture::Curves(p) => {
+                    (&p.name, p.series.iter().chain(&p.over).collect::<Vec<_>>(), &p.only)
+                }
                 Picture::Map(p) => (&p.name, vec![&p.x, &p.y], &p.only),
             };
             let plain = |c: char| c.is_ascii_alphanumeric() || "_-".contains(c);

@@ -13,7 +13,7 @@ pub fn csv(study: &Study, rows: &[StudyRow]) -> String {
         .collect();
     times.sort_by(f64::total_cmp);
     times.dedup();
-    let has = |name: &str, time: f64| rows.iter().any(|row| row.error(name, time).is_some());
+    let has = |name: &str, time: f64| rows.iter().any(|row| row.error(name, Some(time)).is_some());
     let columns: Vec<(&str, f64)> = times
         .iter()
         .flat_map(|&time| ERRORS.iter().map(move |&name| (name, time)))
@@ -72,7 +72,7 @@ pub fn csv(study: &Study, rows: &[StudyRow]) -> String {
             measured.and_then(|m| m.momentum_drift),
         ];
         line.extend(numbers.map(number));
-        line.extend(columns.iter().map(|&(name, time)| number(row.error(name, time))));
+        line.extend(columns.iter().map(|&(name, time)| number(row.error(name, Some(time)))));
         text += &(line.join(",") + "\n");
     }
     text
