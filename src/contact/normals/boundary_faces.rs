@@ -216,7 +216,7 @@ fn heaviest<const D: usize>(pairs: &[FacePair<D>]) -> Option<[f64; D]> {
 /// Faces of particles near a node.
 fn faces<const D: usize>(particles: &[ContactParticle<D>]) -> SmallVec<[Face<D>; 16]> {
     let mut faces = SmallVec::new();
-    for particle in particles {
+    for particle in particles.iter().filter(|particle| particle.faces != [[0.0; 2]; 2]) {
         let [[ax, ay], [bx, by]] = particle.half_edges.map(|edge| [edge[0], edge[D - 1]]);
         let inverse = 1.0 / (ax * by - ay * bx);
         // m with m.a = s and m.b = t; the face is m.x = 1
