@@ -35,6 +35,7 @@ mod friction;
 mod multi_body_constraint;
 mod patch_contact;
 mod self_contact;
+mod self_contact_search;
 mod vectors;
 
 pub use contact_constraint::{ConstraintJump, ContactConstraint};
