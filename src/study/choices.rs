@@ -1,7 +1,7 @@
 //! The list of cheapest choices: target errors, the cheapest case that reaches each, and its cost.
 
 use super::StudyRow;
-use super::curves::quantity;
+use super::curves::{quantity, swept};
 use super::means::{MeanRow, means};
 use super::spec::{Choices, Study};
 
@@ -47,8 +47,9 @@ pub fn markdown(study: &Study, choices: &Choices, rows: &[StudyRow]) -> String {
 
 /// A swept key and its value, in the unit used for curves.
 fn setting(name: &str, value: &str) -> String {
-    let (label, unit, factor) = quantity(name);
-    let shown = match value.parse::<f64>() {
+    let number = value.parse::<f64>();
+    let (label, unit, factor) = swept(name, number.clone().unwrap_or(0.0));
+    let shown = match number {
         Ok(number) => format!("{}", (number * factor * 1e9).round() / 1e9),
         Err(_) => value.to_string(),
     };

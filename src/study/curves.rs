@@ -16,29 +16,39 @@ pub fn quantity(name: &str) -> (String, &'static str, f64) {
         "plateau" => ("Plateau", true),
         "noise" => ("Noise", true),
         "rise_cells" => return ("Rise".into(), "cells", 1.0),
-        "shock_position_cells" => return ("Shock's place".into(), "cells", 1.0),
+        "shock_position_cells" => return ("Shock position".into(), "cells", 1.0),
         "overshoot" => ("Overshoot", true),
-        "second_plateau" => ("2nd plateau", true),
+        "second_plateau" => ("Second plateau", true),
         "displacement_l2" => ("L2 of displacement", true),
         "velocity_rms" => ("RMS of velocity", true),
         "velocity_l1" => ("L1 of velocity", true),
         "pressure_rms" => ("RMS of pressure", true),
         "density_l1" => ("L1 of density", true),
+        "histories" => ("Difference of histories", true),
+        "kinetic_energy_loss" => ("Loss of kinetic energy", true),
         "energy_drift" => return ("Energy drift".into(), "", 1.0),
         "waves.shock" => ("L1, shock", true),
         "waves.fan" => ("L1, fan", true),
         "waves.plateau_2" => ("L1, plateau 2", true),
-        "waves.second_plateau" => ("L1, plateau 4", true),
+        "waves.second_plateau" => ("L1, second plateau", true),
         "loop_cpu_seconds" => return ("User CPU time of the time loop".into(), "s", 1.0),
         "loop_wall_seconds" => return ("Wall time of the time loop".into(), "s", 1.0),
         "core_seconds" => return ("Wall time of the time loop × cores".into(), "s", 1.0),
-        "domain.cell_size" => return ("Cell size".into(), "um", 1e6),
         "time.courant" => return ("Courant number".into(), "", 1.0),
         "artificial_viscosity.linear" => return ("Linear viscosity a1".into(), "", 1.0),
         "artificial_viscosity.quadratic" => return ("Quadratic viscosity a2".into(), "", 1.0),
         other => return (other.replace(['_', '.'], " "), "", 1.0),
     };
     if percent { (text.into(), "%", 100.0) } else { (text.into(), "", 1.0) }
+}
+
+/// Label of a swept key or of another quantity on an axis, for values up to `largest` in SI units.
+pub fn swept(name: &str, largest: f64) -> (String, &'static str, f64) {
+    match name {
+        "domain.cell_size" if largest < 1e-3 => ("Cell size".into(), "um", 1e6),
+        "domain.cell_size" => ("Cell size".into(), "mm", 1e3),
+        other => quantity(other),
+    }
 }
 
 /// Style of curve `index`: the palette with discs, then dashed with rings, then dotted with discs.
@@ -73,7 +83,8 @@ pub fn figure(study: &Study, picture: &CurvesPicture, rows: &[StudyRow]) -> Figu
             names.push(name);
         }
     }
-    let (x_label, x_unit, x_factor) = quantity(&picture.x);
+    let values = rows.iter().filter_map(|row| row.mean(&picture.x, picture.time));
+    let (x_label, x_unit, x_factor) = swept(&picture.x, values.fold(0.0, f64::max));
     let mut axis = Axis::log(x_label, x_unit);
     let swept = study.labels().contains(&picture.x.as_str());
     if swept {

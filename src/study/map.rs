@@ -2,7 +2,7 @@
 
 use super::StudyRow;
 use super::cases::fits;
-use super::curves::quantity;
+use super::curves::{quantity, swept};
 use super::spec::MapPicture;
 use crate::plot::{Axis, Figure, TileMap};
 
@@ -26,7 +26,7 @@ pub fn figure(picture: &MapPicture, rows: &[StudyRow]) -> Figure {
     let mut values: Vec<Vec<Option<f64>>> =
         ys.iter().map(|&y| xs.iter().map(|&x| value(x, y)).collect()).collect();
     let axis = |key: &str| {
-        let (label, unit, _) = quantity(key);
+        let (label, unit, _) = swept(key, 0.0);
         Axis::linear(label, unit).tight()
     };
     let all = || values.iter().flatten().flatten();

@@ -85,11 +85,12 @@ mod tests {
             energy_drift: None,
             momentum_drift: None,
             profiles: [(1.0, 10.0), (2.0, 1.0)].map(profile).to_vec(),
+            histories: None,
             estimate: None,
         };
         let time = Seconds { loop_cpu: seconds, loop_wall: 0.0, cpu: 0.0, wall: 0.0 };
         let record = StudyRecord { measured: Some(measured), failure: None, seconds: vec![time] };
-        StudyRow { labels, ranks: 1, threads: 1, record }
+        StudyRow { labels, ranks: 1, threads: 1, record, histories: None }
     }
 
     fn study() -> Study {

@@ -8,6 +8,7 @@
 
 pub mod cases;
 pub mod choices;
+pub mod convergence;
 pub mod curves;
 pub mod error;
 pub mod front;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::convergence::HISTORIES;
 use super::record::{Seconds, StudyRecord};
 
 /// A case and its result.
@@ -15,6 +16,8 @@ pub struct StudyRow {
     pub threads: usize,
     /// Stored result.
     pub record: StudyRecord,
+    /// Difference of the histories from those of the reference case \[-\].
+    pub histories: Option<f64>,
 }
 
 /// Errors of each profile in the table, with their names in `summary.json`; a dot selects a key of
@@ -98,6 +101,7 @@ impl StudyRow {
             "momentum_drift" => measured?.momentum_drift,
             "particles" => Some(measured?.particles as f64),
             "steps" => Some(measured?.steps as f64),
+            HISTORIES => self.histories,
             _ => match self.labels.get(name) {
                 Some(label) => label.parse().ok(),
                 None => self.error(name, time),

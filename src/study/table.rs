@@ -1,6 +1,7 @@
 //! The table of a study as CSV: one row per case; failed cases have the reason of the failure.
 
 use super::StudyRow;
+use super::convergence::HISTORIES;
 use super::row::ERRORS;
 use super::spec::Study;
 
@@ -37,6 +38,7 @@ pub fn csv(study: &Study, rows: &[StudyRow]) -> String {
             "wall_seconds",
             "energy_drift",
             "momentum_drift",
+            HISTORIES,
         ]
         .map(String::from),
     );
@@ -70,6 +72,7 @@ pub fn csv(study: &Study, rows: &[StudyRow]) -> String {
             row.seconds(|s| s.wall),
             measured.and_then(|m| m.energy_drift),
             measured.and_then(|m| m.momentum_drift),
+            row.histories,
         ];
         line.extend(numbers.map(number));
         line.extend(columns.iter().map(|&(name, time)| number(row.error(name, Some(time)))));
