@@ -186,7 +186,7 @@ pub fn check(table: &mut Table) {
         sizes.push(40.0);
     }
     let mut found: Vec<Crater> = Vec::new();
-    for cells in sizes {
+    for &cells in &sizes {
         let name = format!("{cells} cells a radius");
         let Some(crater) = table.take(&name, crater(cells, shock)) else { return };
         let figure = |what: &str| format!("{name}: {what}");
@@ -205,14 +205,14 @@ pub fn check(table: &mut Table) {
         }
         found.push(crater);
     }
-    for (pair, cells) in found.windows(2).zip([10, 20, 40]) {
-        for (what, of) in [("depth", depth as fn(&Crater) -> f64), ("radius", radius)] {
-            let change = Some((of(&pair[1]) / of(&pair[0]) - 1.0).abs());
-            let figure = format!("{cells} cells a radius: change of the {what} by half the cells");
-            match cells {
-                10 => table.beside(&figure, change, "", Unit::Fraction),
-                _ => table.check(&figure, change, bounds::CHANGE),
-            }
+    for (what, of) in [("depth", depth as fn(&Crater) -> f64), ("radius", radius)] {
+        let changes: Vec<f64> =
+            found.windows(2).map(|pair| of(&pair[1]) / of(&pair[0]) - 1.0).collect();
+        for (k, change) in changes.iter().enumerate().skip(1) {
+            let figure = format!("{what}: change from {} to {} cells", sizes[k], sizes[k + 1]);
+            table.check(&figure, Some(change.abs()), bounds::CHANGE);
+            let ratio = (change / changes[k - 1]).abs();
+            table.check(&format!("{figure}, over that before"), Some(ratio), bounds::CONVERGES);
         }
     }
 }
