@@ -8,7 +8,9 @@ mod normals;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use normals::{BodyPair, BoundaryPoint, ContactParticle, ContactPlane, Normals, reach};
+pub use normals::{
+    BodyPair, BoundaryParticle, BoundaryPoint, ContactParticle, ContactPlane, Normals, reach,
+};
 
 /// Defines the contact laws from a list of `module::Parameters,`. The module name is the name of
 /// the law in scenes; the struct has the method `condition`.

@@ -228,6 +228,8 @@ where
         let redone = self.simulation.tally().redone_steps;
         let mut all = inaccurate(sums.energy_change, sums.stretched, redone);
         all.extend(self.simulation.peaks().warnings());
+        let bodies = &self.scene.scene.bodies;
+        all.extend(self.simulation.self_contact().map(|e| e.warning(&bodies[e.body].name)));
         all.extend(self.simulation.profile_block(most_particles(self.scene)).map(|edge| {
             format!(
                 "the profiles hold means over blocks of {edge} cells along each edge, for the scene \

@@ -23,6 +23,7 @@ mod peaks;
 mod preview;
 mod run;
 mod run_checks;
+mod self_contact;
 mod snapshot;
 mod state_digest;
 pub mod threads;

@@ -14,7 +14,7 @@ use crate::effects::EffectRegistry;
 use crate::material::constitutive::CustomModel;
 use crate::scene::moving_frame::Frame;
 use crate::scene::{CheckedScene, FilterHalo};
-use crate::simulation::monitor::{Alarm, Limits, Peaks};
+use crate::simulation::monitor::{Alarm, Limits, Peaks, SelfContactEvent};
 use crate::simulation::threads::make_pool;
 use crate::solver::clock::{Activity, Clock, Event};
 use crate::solver::columns::Columns;
@@ -56,6 +56,7 @@ pub struct Simulation<'a, const D: usize> {
     pub(super) least_energies: Vec<f64>,
     pub(super) expected: Vec<ExpectedPeaks<D>>,
     pub(super) peaks: Peaks,
+    pub(super) self_contact: Option<SelfContactEvent>,
     pub(super) start: Start<D>,
     pub(super) held: LastGoodState,
     pub(super) frame: Frame<D>,
@@ -170,6 +171,7 @@ impl<'a, const D: usize> Simulation<'a, D> {
             least_energies: stepper.least_energies(scene),
             expected: ExpectedPeaks::of(scene, &stepper),
             peaks: Peaks::default(),
+            self_contact: None,
             start: Start::NONE,
             held: LastGoodState::default(),
             stepper,
@@ -252,6 +254,8 @@ impl<'a, const D: usize> Simulation<'a, D> {
         self.step += 1;
         self.given_contact.clear();
         let (step, time, stable) = (self.step, self.time, self.stable);
+        let ends = meets.is_some_and(|time| time >= self.scene.scene.time.end);
+        self.seek_self_contact(self.is_monitored(step) || ends);
         let sampled = self.samples(step);
         let timed = sampled || (step % EFFECTS_EVERY == 1 && !self.clock.is_stopped());
         self.clock.start_step(step, self.traced.contains(&step), timed);
@@ -273,10 +277,11 @@ impl<'a, const D: usize> Simulation<'a, D> {
     /// If the step is due for it, checks all particles and stores the state that has passed; the
     /// run ends at `end` [s]. Collective.
     fn pass(&mut self, end: f64) -> Result<(), RunError> {
-        let due = self.step.is_multiple_of(self.scene.scene.monitor.interval);
+        let due = self.is_monitored(self.step);
         if due || self.redoes() || self.time >= end {
             self.check_state()?;
             self.note_peaks();
+            self.note_self_contact();
             if !self.redoes() {
                 self.keep_good_state();
             }
@@ -286,6 +291,11 @@ impl<'a, const D: usize> Simulation<'a, D> {
 }
 
 impl<const D: usize> Simulation<'_, D> {
+    /// Whether the monitor checks the state of all particles after a step.
+    fn is_monitored(&self, step: u64) -> bool {
+        step.is_multiple_of(self.scene.scene.monitor.interval)
+    }
+
     fn with_world<R>(&mut self, call: impl FnOnce(&Stepper<D>, &mut World<'_, D>) -> R) -> R {
         let mut world = World {
             comm: self.comm,

@@ -13,7 +13,7 @@ use super::error::RunError;
 use super::run::Simulation;
 use super::state_digest::StateDigest;
 use crate::scene::CheckedScene;
-use crate::simulation::monitor::Peaks;
+use crate::simulation::monitor::{Peaks, SelfContactEvent};
 use crate::solver::clock::Clock;
 use crate::solver::patch::Patch;
 
@@ -37,6 +37,8 @@ pub struct Saved {
     pub sums: Vec<i128>,
     /// Greatest values so far.
     pub peaks: Peaks,
+    /// First contact of a body with itself.
+    pub self_contact: Option<SelfContactEvent>,
     /// [Digest](Simulation::digest) of the particles of all ranks; empty if they were changed on
     /// purpose.
     pub digest: String,
@@ -100,6 +102,7 @@ impl<const D: usize> Simulation<'_, D> {
             left: left.over_ranks(self.comm),
             sums: sums.iter().map(ExactSum::total).collect(),
             peaks: self.peaks,
+            self_contact: self.self_contact,
             digest: digest.over_ranks(self.comm).to_hexadecimal(),
             particles,
         }
@@ -117,7 +120,7 @@ impl<const D: usize> Simulation<'_, D> {
     pub fn restore(&mut self, saved: &Saved) -> Result<(), RunError> {
         (self.time, self.stable, self.longest, self.step) =
             (saved.time, saved.stable, saved.longest, saved.step);
-        self.peaks = saved.peaks;
+        (self.peaks, self.self_contact) = (saved.peaks, saved.self_contact);
         self.dt = self.scene.scene.time.courant * self.stable;
         self.first_step = self.step;
         if self.comm.rank() == 0 {

@@ -47,6 +47,7 @@ mod summed_fields;
 mod tension_free;
 mod total_lagrangian;
 
+pub use contact::SelfContact;
 pub use exchange::{Nodal, Sleep, World};
 pub use reach::StencilRadius;
 pub use scheme::Scheme;

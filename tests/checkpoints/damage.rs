@@ -14,7 +14,7 @@ use flyer_mpm::driver::output::histories::HistoryTable;
 use flyer_mpm::driver::output::origin::{Origin, RUN};
 use flyer_mpm::scene::{MethodChoice, Preset};
 use flyer_mpm::simulation::Saved;
-use flyer_mpm::simulation::monitor::Peaks;
+use flyer_mpm::simulation::monitor::{Peaks, SelfContactEvent};
 use flyer_mpm::simulation::{BodyRow, ParticleTable, TableColumn};
 
 /// A checkpoint of a few particles with all that one can hold.
@@ -56,6 +56,12 @@ fn example() -> Checkpoint {
             sums: vec![i128::MIN, -1, 0, i128::MAX],
             digest: "0123".into(),
             peaks: Peaks::of([1.5, 2e6, 0.1 + 0.2, 1.0 / 3.0, 0.0, 0.7 / 3.0, 1e-3]),
+            self_contact: Some(SelfContactEvent {
+                time: 0.1 + 0.2,
+                body: 1,
+                place: [1.0 / 3.0, -0.7],
+                gap: 0.9,
+            }),
             particles: StoredParticles {
                 ids: vec![0, 3, u64::MAX],
                 cells: vec![0, 1, 2, 3, -4, i32::MAX],

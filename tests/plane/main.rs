@@ -11,6 +11,7 @@ mod frame;
 mod layouts;
 mod loads;
 mod pistons;
+mod self_contact;
 mod sides;
 mod sphere;
 mod spin;

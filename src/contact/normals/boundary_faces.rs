@@ -33,6 +33,7 @@ pub(super) const USES_FACES: bool = true;
 const FACING: f64 = 0.5;
 
 /// Face of a particle near a node.
+#[derive(Clone, Copy)]
 struct Face<const D: usize> {
     /// Outward unit normal.
     normal: [f64; D],
@@ -141,6 +142,50 @@ fn faces_planes<const D: usize>(pair: &BodyPair<'_, D>) -> (ContactPlanes<D>, bo
     (planes, passing)
 }
 
+/// Faces of a particle at the boundary of its body.
+pub struct BoundaryParticle<const D: usize> {
+    faces: SmallVec<[Face<D>; 2]>,
+}
+
+impl<const D: usize> BoundaryParticle<D> {
+    /// Faces of a particle, of which neither place nor volume counts.
+    pub fn new(particle: &ContactParticle<D>) -> Self {
+        let centred = ContactParticle { place: [0.0; D], ..*particle };
+        BoundaryParticle { faces: faces(&[centred]).into_iter().collect() }
+    }
+
+    /// Narrowest gap between its faces and those of `other`, whose centre is `away` from its own
+    /// \[m\], among faces that face each other across the gap and overlap along it: unit normal
+    /// towards the other particle [-] and width [m], negative if the particles overlap.
+    pub fn gap_to(&self, other: &Self, away: &[f64; D]) -> Option<([f64; D], f64)> {
+        let mut narrowest: Option<([f64; D], f64)> = None;
+        for p in &self.faces {
+            for q in &other.faces {
+                if -dot(&p.normal, &q.normal) <= FACING {
+                    continue;
+                }
+                let normal = unit(std::array::from_fn(|a| p.normal[a] - q.normal[a]));
+                let q = Face {
+                    centre: *away,
+                    foot: std::array::from_fn(|a| away[a] + q.foot[a]),
+                    ..*q
+                };
+                let along = |from: &[f64; D], to: &[f64; D]| dot(to, &normal) - dot(from, &normal);
+                // the two faces of a thin piece look away from each other
+                let is_across = along(&p.centre, &q.foot) > 0.0 && along(&p.foot, &q.centre) > 0.0;
+                let gap = along(&p.foot, &q.foot);
+                if is_across
+                    && overlap(p, &q, &normal) >= OVERLAP
+                    && narrowest.is_none_or(|(_, width)| gap < width)
+                {
+                    narrowest = Some((normal, gap));
+                }
+            }
+        }
+        narrowest
+    }
+}
+
 /// Component of `v` along the tangent of a line with the normal `normal`.
 fn across<const D: usize>(v: &[f64; D], normal: &[f64; D]) -> f64 {
     v[D - 1] * normal[0] - v[0] * normal[D - 1]
@@ -171,7 +216,7 @@ fn heaviest<const D: usize>(pairs: &[FacePair<D>]) -> Option<[f64; D]> {
 /// Faces of particles near a node.
 fn faces<const D: usize>(particles: &[ContactParticle<D>]) -> SmallVec<[Face<D>; 16]> {
     let mut faces = SmallVec::new();
-    for particle in particles {
+    for particle in particles.iter().filter(|particle| particle.faces != [[0.0; 2]; 2]) {
         let [[ax, ay], [bx, by]] = particle.half_edges.map(|edge| [edge[0], edge[D - 1]]);
         let inverse = 1.0 / (ax * by - ay * bx);
         // m with m.a = s and m.b = t; the face is m.x = 1
@@ -261,6 +306,27 @@ mod tests {
         let right = particle([0.25, 0.0], [1.0, 0.0], 0.25);
         assert!(planes_between(&[left], &[right]).is_empty());
         assert!(planes_between(&[right], &[left]).is_empty());
+    }
+
+    #[test]
+    fn a_gap_lies_between_faces_that_face_each_other() {
+        let lower = particle([0.0, -0.5], [0.0, 1.0], 0.25);
+        let upper = particle([0.1, 0.25], [0.0, -1.0], 0.25);
+        let gap = |first: &ContactParticle<2>, second: &ContactParticle<2>| {
+            let away = [0, 1].map(|a| second.place[a] - first.place[a]);
+            BoundaryParticle::new(first).gap_to(&BoundaryParticle::new(second), &away)
+        };
+        assert_eq!(gap(&lower, &upper), Some(([0.0, 1.0], 0.25)));
+        assert_eq!(gap(&upper, &lower), Some(([0.0, -1.0], 0.25)));
+        let aside = particle([0.5, 0.25], [0.0, -1.0], 0.25);
+        assert_eq!(gap(&lower, &aside), None);
+        // two particles of a plate that is one particle thick and bent
+        let plate = |place: [f64; 2]| {
+            let mut plate = particle(place, [0.0, 1.0], 0.25);
+            plate.faces[1] = [0.0, -1.0];
+            plate
+        };
+        assert_eq!(gap(&plate([0.0, 0.0]), &plate([0.3, 0.05])), None);
     }
 
     #[test]

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use body_pair::{BodyPair, BoundaryPoint, ContactParticle, ContactPlane, ContactPlanes, reach};
+pub use boundary_faces::BoundaryParticle;
 
 /// Defines the sources of normals from a list of `module::Name,`. The module name is the name in
 /// scenes; the module has the constants `PLANE_ONLY` and `USES_FACES` and the function `planes`.

@@ -26,7 +26,7 @@ use crate::driver::output::shared_file::{
     Extent, SharedFile, agree, from_first, read_values, reserve,
 };
 use crate::scene::MethodChoice;
-use crate::simulation::monitor::Peaks;
+use crate::simulation::monitor::{Peaks, SelfContactEvent};
 use crate::simulation::{BodyRow, Saved};
 
 /// All scalar values.
@@ -50,6 +50,8 @@ struct Books {
     sums: Vec<String>,
     #[serde(default)]
     peaks: Peaks,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    self_contact: Option<SelfContactEvent>,
     /// Digest of the particles.
     state_sha256: String,
     due: Due,
@@ -75,6 +77,7 @@ impl Books {
             left: [saved.left.particles, saved.left.marks],
             sums: saved.sums.iter().map(i128::to_string).collect(),
             peaks: saved.peaks,
+            self_contact: saved.self_contact,
             state_sha256: saved.digest.clone(),
             due: contents.due.clone(),
             materials: tables.first().map_or(Vec::new(), |t| t.0.materials.clone()),
@@ -364,6 +367,7 @@ fn read_root(
             left: Census { particles: books.left[0], marks: books.left[1] },
             sums: sums.collect::<Result<_, _>>()?,
             peaks: books.peaks,
+            self_contact: books.self_contact,
             digest: books.state_sha256,
             particles: StoredParticles::default(),
         },

@@ -11,10 +11,12 @@
 mod cause;
 mod limits;
 mod peaks;
+mod self_contact;
 
 pub use cause::likely_cause;
 pub use limits::{Energies, Limits, keeps_energy};
 pub use peaks::Peaks;
+pub use self_contact::SelfContactEvent;
 
 /// Kind of a failed check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -34,12 +34,15 @@ mod contact_nodes;
 mod friction;
 mod multi_body_constraint;
 mod patch_contact;
+mod self_contact;
+mod self_contact_search;
 mod vectors;
 
 pub use contact_constraint::{ConstraintJump, ContactConstraint};
 pub use contact_nodes::{Member, Touch};
 pub use multi_body_constraint::MultiBodyConstraint;
 pub use patch_contact::PatchContact;
+pub use self_contact::SelfContact;
 
 use smallvec::SmallVec;
 
@@ -76,6 +79,9 @@ impl<const D: usize> Scheme<D> {
                 s.find_constraints::<K>(patch, &mut found, contact_node, contact, dt);
             }
             s.fill_constrained_nodes(patch, &mut found);
+            if found.seeks_self_contact {
+                found.self_contact = s.find_self_contact(patch);
+            }
             patch.contact = found;
         }
         with_width!(patch.stencils.width, go(patch, self, contact, dt));

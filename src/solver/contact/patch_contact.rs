@@ -3,6 +3,7 @@
 use super::contact_constraint::{ConstraintJump, ContactConstraint};
 use super::contact_nodes::ContactNodes;
 use super::multi_body_constraint::MultiBodyConstraint;
+use super::self_contact::SelfContact;
 use super::vectors::dot;
 use crate::contact::{BoundaryPoint, ContactParticle};
 
@@ -22,6 +23,10 @@ pub struct PatchContact<const D: usize> {
     /// Normal and tangential force of each of the patch's own constraints [N]: the normal force is
     /// positive in compression, the tangential one a magnitude.
     pub forces: Vec<[f64; 2]>,
+    /// Whether this step looks for bodies that touch themselves.
+    pub seeks_self_contact: bool,
+    /// Narrowest gap of a body to itself in such a step.
+    pub self_contact: Option<SelfContact<D>>,
 }
 
 impl<const D: usize> PatchContact<D> {
@@ -30,6 +35,7 @@ impl<const D: usize> PatchContact<D> {
         self.constraints.clear();
         self.multi_body.clear();
         self.forces.clear();
+        self.self_contact = None;
     }
 
     /// Projects a vector with components in `fields` [m/s or m/s2], and adds the jump to its

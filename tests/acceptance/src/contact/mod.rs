@@ -2,6 +2,7 @@
 
 mod bounce;
 mod cost;
+mod crater;
 mod friction;
 mod heat;
 mod hertz;
@@ -20,7 +21,7 @@ pub use sliding::{pass, passing_pressure};
 pub const TITLE: &str = "Contact between bodies: normals, sliding, friction";
 
 /// Sections in the order in which they run.
-pub const SECTIONS: [Section; 9] = [
+pub const SECTIONS: [Section; 10] = [
     usual("normals", normals::check),
     usual("cost", cost::check),
     quick("sliding", sliding::check),
@@ -29,5 +30,6 @@ pub const SECTIONS: [Section; 9] = [
     usual("bounce", bounce::check),
     usual("hertz", hertz::check),
     usual("heat", heat::check),
+    usual("crater", crater::check),
     usual("parting", parting::check),
 ];

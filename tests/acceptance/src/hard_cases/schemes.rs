@@ -14,7 +14,7 @@ use crate::table::Table;
 const HEAD: &str = "# Schemes in hard cases
 
 Every shape function with every transfer, measured by `cargo run --release -p acceptance -- hard_cases/schemes`. All
-runs have mid-point steps, the viscosity of `inputs/flyer.json`, those of its options that the transfer allows, and a
+runs have mid-point steps, the viscosity of `inputs/flyer.json`, those of its options that the scheme allows, and a
 Courant number of 0.4 unless the column has another. The first columns are variations of the flyer plate: without
 viscosity, with 1 and 16 particles per cell, with a grid shifted by 0.37 cells, at higher speeds, with a softer flyer
 and contact. The columns torn and flight have the scenes `inputs/hard/torn.json` and `inputs/hard/flight.json`.
@@ -110,6 +110,11 @@ fn scheme(base: &Value, shape: &str, transfer: &Value) -> Value {
     if transfer.get("fmpm").is_none() {
         method.remove("edge_mask");
     }
+    // contact in a plane has spin by default
+    if method.contains_key("spin") {
+        let allowed = transfer.get("fmpm").is_some() && shape != "linear";
+        method.insert("spin".into(), json!(allowed));
+    }
     value
 }
 
@@ -138,7 +143,9 @@ fn cell(name: &str, value: &Value) -> String {
         false => format!("**monitor**, {}", word(&message)),
     };
     let in_plane = |figure: fn(&Measured) -> f64| {
-        run_plane(value).map_or_else(error, |found| format!("{:.2}", 100.0 * figure(&found)))
+        // without the sign of a zero
+        let rounded = |found: &Measured| (1e4 * figure(found)).round() / 100.0 + 0.0;
+        run_plane(value).map_or_else(error, |found| format!("{:.2}", rounded(&found)))
     };
     if name.ends_with(" s") {
         return in_plane(|found| contact::speed_lost(found, 17.0));
