@@ -12,6 +12,7 @@ pub mod convergence;
 pub mod curves;
 pub mod error;
 pub mod front;
+pub mod histories;
 pub mod map;
 pub mod means;
 pub mod record;

@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::StudyError;
-use super::convergence::{Convergence, Histories};
+use super::histories::CaseHistories;
+use super::spec::Convergence;
 use crate::driver::output::summary::Summary;
 use crate::input::input_file;
 
@@ -51,7 +52,7 @@ pub struct Measured {
     pub profiles: Vec<ProfileErrors>,
     /// Histories that the study compares.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub histories: Option<Histories>,
+    pub histories: Option<CaseHistories>,
     /// Error estimate of the run, if the scene requests it.
     #[serde(default)]
     pub estimate: Option<Value>,
@@ -71,7 +72,7 @@ pub struct StudyRecord {
 impl StudyRecord {
     /// Adds a successful run. Repeats are bitwise identical, so the errors of the first one are
     /// kept.
-    pub fn add(&mut self, summary: &Summary, histories: Option<Histories>) {
+    pub fn add(&mut self, summary: &Summary, histories: Option<CaseHistories>) {
         self.seconds.push(Seconds {
             loop_cpu: summary.loop_cpu_seconds,
             loop_wall: summary.loop_wall_seconds,

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use super::convergence::HISTORIES;
 use super::record::{Seconds, StudyRecord};
 
 /// A case and its result.
@@ -19,6 +18,9 @@ pub struct StudyRow {
     /// Difference of the histories from those of the reference case \[-\].
     pub histories: Option<f64>,
 }
+
+/// Name of the difference of the histories from those of the reference case.
+pub const HISTORIES: &str = "histories";
 
 /// Errors of each profile in the table, with their names in `summary.json`; a dot selects a key of
 /// a nested object.

@@ -15,7 +15,8 @@ use signal_hook::flag;
 use signal_hook::low_level::emulate_default_handler;
 
 use super::cases::{Case, cases};
-use super::convergence::{Histories, compare};
+use super::convergence::compare;
+use super::histories::CaseHistories;
 use super::record::StudyRecord;
 use super::spec::Study;
 use super::{StudyError, StudyRow};
@@ -158,10 +159,12 @@ impl StudyRunner {
             None => match Summary::read(&results) {
                 Ok(summary) => match &study.convergence {
                     None => Ended::Well(Box::new(summary), None),
-                    Some(convergence) => match Histories::read(&results, &convergence.columns) {
-                        Ok(histories) => Ended::Well(Box::new(summary), Some(histories)),
-                        Err(reason) => Ended::Badly { reason },
-                    },
+                    Some(convergence) => {
+                        match CaseHistories::read(&results, &convergence.columns) {
+                            Ok(histories) => Ended::Well(Box::new(summary), Some(histories)),
+                            Err(reason) => Ended::Badly { reason },
+                        }
+                    }
                 },
                 Err(error) => Ended::Badly { reason: error.to_string() },
             },
@@ -271,7 +274,7 @@ fn said(child: &mut Child) -> String {
 
 /// Outcome of a run.
 enum Ended {
-    Well(Box<Summary>, Option<Histories>),
+    Well(Box<Summary>, Option<CaseHistories>),
     Badly { reason: String },
 }
 

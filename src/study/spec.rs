@@ -7,7 +7,6 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::StudyError;
-use super::convergence::Convergence;
 use crate::input::input_file;
 
 /// A study: its cases, their repeats, and the pictures.
@@ -187,6 +186,16 @@ pub struct Choices {
     pub over: Vec<String>,
     /// Target values of the error \[-\].
     pub wanted: Vec<f64>,
+}
+
+/// Comparison of histories with those of a reference case.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Convergence {
+    /// Labels of the reference case, the one with the smallest cells.
+    pub against: BTreeMap<String, Value>,
+    /// Columns of `histories.csv` that are compared.
+    pub columns: Vec<String>,
 }
 
 impl Study {

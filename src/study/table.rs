@@ -1,8 +1,7 @@
 //! The table of a study as CSV: one row per case; failed cases have the reason of the failure.
 
 use super::StudyRow;
-use super::convergence::HISTORIES;
-use super::row::ERRORS;
+use super::row::{ERRORS, HISTORIES};
 use super::spec::Study;
 
 /// The table as CSV. Column heads contain the profile time \[us\].
