@@ -26,6 +26,7 @@
 
 pub mod array;
 mod balance;
+mod bottleneck;
 mod bytes;
 pub mod comm;
 mod ghost_bundle;
