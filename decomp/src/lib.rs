@@ -43,6 +43,7 @@ mod particle_block;
 mod particle_sort;
 mod patch_migration;
 mod patch_order;
+mod planned_words;
 mod reduce;
 mod shares;
 mod short_borders;
