@@ -52,7 +52,7 @@ ANIMATED, FRAMES = "disks", 24
 HEAD = """# Gallery
 
 One picture for each scene of `inputs/` and `inputs/hard/`, as the program draws it. `scripts/gallery.py` runs the
-scenes and writes this page. Below each picture stands the command that makes it.
+scenes and writes this page. The command below each picture makes it.
 """
 
 
@@ -101,9 +101,9 @@ def draw_profiles(quantity, folder):
     for time in results.times:
         profile = results.profile(time)
         axis.plot(profile["x"], profile[quantity], label=f"t = {time:g} s")
-    axis.set_xlabel("x [m]")
-    axis.set_ylabel(f"{quantity} [{results.frames[0].unit(quantity)}]")
-    axis.set_title(results.summary["title"])
+    axis.set_xlabel("Position (m)")
+    axis.set_ylabel(f"{quantity.capitalize()} ({results.frames[0].unit(quantity)})")
+    axis.set_title(results.summary["title"], loc="left", weight="bold")
     axis.legend()
     figure.savefig(folder / f"{quantity}.png", bbox_inches="tight")
     return folder / f"{quantity}.png"

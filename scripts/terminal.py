@@ -34,8 +34,8 @@ SCENES = [
 
 HEAD = """# Terminal output
 
-The lines that a run prints, for five templates of `flyer-mpm new` and a scene of `inputs/`. The [glossary](glossary.md) explains the labels.
-`scripts/terminal.py` writes this page; times, which depend on the machine, are replaced by `T s`.
+The lines that a run prints, for five templates of `flyer-mpm new` and a scene of `inputs/`. The
+[glossary](glossary.md) explains the labels. `scripts/terminal.py` writes this page, with `T s` in place of times.
 """
 
 

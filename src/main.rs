@@ -402,7 +402,11 @@ fn announce(comm: &dyn Comm, scene: &CheckedScene, threads: usize) {
         );
         eprintln!("{}", warning(&text));
     }
-    let chosen = if scene.scene.domain.patches.is_some() { "" } else { " (chosen)" };
+    let chosen = match &scene.scene.domain.patches {
+        None => " (chosen)",
+        Some(given) if *given != patches => " (cut for the threads)",
+        Some(_) => "",
+    };
     // without spaces, so that a line does not end within it
     let patches = patches.iter().map(usize::to_string).collect::<Vec<_>>().join(",");
     let size = format!(

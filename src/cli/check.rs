@@ -42,11 +42,8 @@ pub fn check(scene: &CheckedScene) -> Result<String, RunError> {
     line("first time step", format!("{dt:.4e} s"));
     line("steps", format!("about {:.0}", (scene.scene.time.end / dt).ceil()));
     let names: Vec<&str> = columns.specs.iter().map(|s| s.name).collect();
-    line("columns a particle", format!("{} ({})", names.len(), names.join(", ")));
-    line(
-        "held by the monitor",
-        format!("{} bytes a particle", columns.state_bytes(scene.dimension)),
-    );
+    line("particle columns", format!("{} ({})", names.len(), names.join(", ")));
+    line("last good state", format!("{} bytes per particle", columns.state_bytes(scene.dimension)));
     let limit = scene.courant_limit();
     line("courant", format!("{}, this method's limit {limit}", scene.scene.time.courant));
     if let Some(choice) = &scene.method_choice {
@@ -60,7 +57,7 @@ pub fn check(scene: &CheckedScene) -> Result<String, RunError> {
     for (name, state) in effects(scene) {
         let _ = writeln!(text, "  {name:<22} {state}");
     }
-    text += "what each takes\n";
+    text += "memory and messages of each effect\n";
     let all = ledger(scene, columns, None);
     for line in ledger_lines(&all) {
         // without a run, the shares are unknown

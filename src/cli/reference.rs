@@ -140,7 +140,12 @@ fn type_name(of: &Value) -> String {
 fn range(of: &Value) -> String {
     let bound = |key: &str, sign: &str| {
         let bound = of[key].as_f64().filter(|bound| !GENERAL.contains(&bound.abs()))?;
-        Some(format!(" {sign} {bound}"))
+        match bound.abs() {
+            // the largest number is no bound
+            size if size >= f64::MAX => None,
+            size if size >= 1e9 => Some(format!(" {sign} {bound:e}")),
+            _ => Some(format!(" {sign} {bound}")),
+        }
     };
     let lower = bound("exclusiveMinimum", ">").or(bound("minimum", ">="));
     let upper = bound("exclusiveMaximum", "<").or(bound("maximum", "<="));

@@ -339,10 +339,11 @@ fn allow(schema: &mut Value, above: bool) {
 /// The number of `text` in SI units, if it is a quantity of the dimensions of `target`, whose name is
 /// `name`; `None` for other text.
 fn quantity(text: &str, name: &str, target: ScaledUnit) -> Result<Option<f64>, SceneFault> {
-    let Some((number, own)) = split(text).filter(|(_, own)| !own.is_empty()) else {
-        return Ok(None);
-    };
     let fault = |reason: String| SceneFault::new("", text, reason);
+    let Some((number, own)) = split(text) else { return Ok(None) };
+    if own.is_empty() {
+        return Err(fault(format!("text without a unit; allowed: a number, or \"{text} {name}\"")));
+    }
     if own.starts_with(',') {
         return Err(fault("a decimal comma; allowed: a decimal point".into()));
     }
@@ -398,6 +399,7 @@ mod tests {
             ("3 psi", "unknown unit"),
             ("3 GPa/", "another dimension"),
             ("1e999 GPa", "finite"),
+            ("8930", "without a unit; allowed: a number, or \"8930 Pa\""),
         ] {
             let refused = quantity(text, "Pa", pascal);
             match refused {

@@ -4,7 +4,7 @@ use super::arrival::FirstArrival;
 use crate::scene::{CheckedScene, Eos, SideProperties};
 use crate::solver::Stepper;
 
-/// A particle counts as at the front for this many times the time in which the front passes it.
+/// A particle counts as at the front for this many times the time in which the front passes it [-].
 pub(super) const FRONT_TIMES: f64 = 3.0;
 
 /// Change of velocity of a material that fails, over that in the shock of the impact [-]. A failure

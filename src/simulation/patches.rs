@@ -22,8 +22,8 @@ const SHARED_CELLS: [usize; 2] = [256, 64];
 /// worker may hold much more than the mean.
 const LEAST_PATCHES_A_WORKER: usize = 4;
 
-/// Number of patches for a scene on the given ranks and threads: as given in the scene; otherwise
-/// at least one for each thread of each rank unless they would be too narrow, and several per
+/// Number of patches for a scene on the given ranks and threads: as given in the scene, halved
+/// until each of several threads has one; otherwise at least one for each thread of each rank unless they would be too narrow, and several per
 /// thread if patches may be quiescent or if threads share a plane.
 pub fn patch_counts(scene: &CheckedScene, ranks: usize, threads: usize) -> Vec<usize> {
     match scene.dimension {
@@ -37,11 +37,12 @@ pub(super) fn patch_parts<const D: usize>(
     ranks: usize,
     threads: usize,
 ) -> [usize; D] {
-    if let Some(patches) = &scene.scene.domain.patches {
-        return std::array::from_fn(|a| patches[a]);
-    }
     let cells: [usize; D] = std::array::from_fn(|a| scene.cells[a]);
     let workers = ranks * threads;
+    if let Some(patches) = &scene.scene.domain.patches {
+        let given = std::array::from_fn(|a| patches[a]);
+        return if threads > 1 { shared(cells, given, workers) } else { given };
+    }
     let of_edge = |edge: [usize; 2]| cells.iter().map(|n| (n / edge[D - 1]).max(1)).product();
     let parts = |wanted: usize| choose_cuts(cells, wanted, LEAST_CELLS);
     match workers {
@@ -61,6 +62,21 @@ pub(super) fn patch_parts<const D: usize>(
             if halves { parts.map(|n| 2 * n) } else { parts }
         }
     }
+}
+
+/// The `given` patches, halved along their longer direction until each of several threads has one, if
+/// they do not become narrower than [`LEAST_CELLS`]: threads share a patch by parts of it.
+fn shared<const D: usize>(cells: [usize; D], given: [usize; D], workers: usize) -> [usize; D] {
+    let mut parts = given;
+    while parts.iter().product::<usize>() < workers {
+        let width = |a: usize| cells[a] / parts[a];
+        let longest = (0..D).max_by_key(|&a| width(a)).expect("at least one direction");
+        if width(longest) < 2 * LEAST_CELLS {
+            break;
+        }
+        parts[longest] *= 2;
+    }
+    parts
 }
 
 /// Whether a body is at rest and free of stress, so that patches can be quiescent.
@@ -153,4 +169,22 @@ pub(super) fn cut_domain<const D: usize>(
         even_cuts(&weights, parts[a], LEAST_CELLS)
     });
     Layout::with_cuts(domain, sides, cuts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shared;
+
+    #[test]
+    fn threads_share_a_given_patch_by_parts_of_it() {
+        // enough patches stay as they are
+        assert_eq!(shared([400, 300], [2, 2], 4), [2, 2]);
+        assert_eq!(shared([400, 300], [1, 1], 2), [2, 1]);
+        assert_eq!(shared([400, 300], [1, 1], 4), [2, 2]);
+        assert_eq!(shared([400, 300], [4, 1], 5), [4, 2]);
+        assert_eq!(shared([1000], [3], 4), [6]);
+        // a part is not narrower than 16 cells
+        assert_eq!(shared([60], [1], 8), [2]);
+        assert_eq!(shared([20, 20], [1, 1], 8), [1, 1]);
+    }
 }

@@ -155,8 +155,8 @@ impl<const D: usize> Scheme<D> {
         .collect()
     }
 
-    /// Limits acceleration and velocity, halos included, after their series. Collective between
-    /// neighbours.
+    /// Limits acceleration [m/s2] and velocity [m/s], halos included, after their series in a step
+    /// of `dt` [s]. Collective between neighbours.
     pub(super) fn limit_fluxes(&self, nodal: &mut Nodal<'_, D>, effects: &Effects<D>, dt: f64) {
         let f = &self.fields;
         let Some(limiter) = f.limiter.clone() else { return };

@@ -234,8 +234,8 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Divergence of a velocity: that in the plane, `plane`, plus with axial symmetry the hoop
-    /// strain rate N v_x/x of a particle; `radial` gives v_x for each line of nodes.
+    /// Divergence of a velocity [1/s]: that in the plane, `plane`, plus with axial symmetry the
+    /// hoop strain rate N v_x/x of a particle; `radial` gives v_x [m/s] for each line of nodes.
     #[inline(always)]
     pub(crate) fn with_hoop<const K: usize>(
         &self,
@@ -313,7 +313,8 @@ impl<const D: usize> Scheme<D> {
     }
 }
 
-/// Velocity gradient at a particle; `of` gives the velocity components for each line of nodes.
+/// Velocity gradient at a particle [1/s]; `of` gives the velocity components [m/s] for each line of
+/// nodes.
 #[inline(always)]
 pub(crate) fn tensor_of<const K: usize, const D: usize>(
     weights: &ParticleWeights<'_, K, D>,

@@ -33,8 +33,9 @@ fn with_hoop(plane: f64, radial: f64, radius: Option<f64>) -> f64 {
 }
 
 impl<const D: usize> Scheme<D> {
-    /// Updates the own particles at the end of a mid-point step: volume and energy from the
-    /// gradients of the mean velocity and of w, heat of the filter, velocity, position and domain.
+    /// Updates the own particles at the end of a mid-point step of `dt` [s]: volume and energy from
+    /// the gradients of the mean velocity and of w, heat of the filter, velocity, position and
+    /// domain.
     pub(super) fn gather_midpoint(&self, patch: &mut Patch<D>, dt: f64) {
         fn packed<const K: usize, const V: usize, const D: usize>(
             patch: &mut Patch<D>,

@@ -300,9 +300,9 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Deformation of the own particles after a leapfrog step, (1 + dt L) F: points within a
-    /// particle move with it, by the final velocity gradient and their positions at the start of
-    /// the step.
+    /// Deformation of the own particles [-] after a leapfrog step of `dt` [s], (1 + dt L) F: points
+    /// within a particle move with it, by the final velocity gradient and their positions at the
+    /// start of the step.
     pub(super) fn deform_forward(&self, patch: &mut Patch<D>, dt: f64) {
         #[inline(never)]
         fn go<const L: usize>(f: &mut [&mut [f64]; 4], l: [&[f64]; 4], dt: f64, first: usize) {

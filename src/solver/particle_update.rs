@@ -62,9 +62,10 @@ pub(crate) fn bodies(column: &[f64]) -> impl Iterator<Item = (usize, Range<usize
 }
 
 impl<const D: usize> Scheme<D> {
-    /// Finds the cell of each own particle at x + `ahead` v, its position in the cell, and its
-    /// domain for the shape function at the volume ratio in column `jacobian`. Particles beyond an
-    /// open side are removed. In the total-Lagrangian frame cell and domain are the initial ones.
+    /// Finds the cell of each own particle at x + `ahead` v, with `ahead` [s], its position in the
+    /// cell, and its domain for the shape function at the volume ratio in column `jacobian`.
+    /// Particles beyond an open side are removed. In the total-Lagrangian frame cell and domain are
+    /// the initial ones.
     pub(super) fn find_cells(&self, patch: &mut Patch<D>, ahead: f64, jacobian: usize) {
         patch.block.drop_ghosts();
         let c = &self.columns;
@@ -157,7 +158,7 @@ impl<const D: usize> Scheme<D> {
         patch.block.remove(gone);
     }
 
-    /// Volume ratio at the middle of the step, J_h = J (1 + dt/2 D).
+    /// Volume ratio at the middle of a step of `dt` [s], J_h = J (1 + dt/2 D) [-].
     pub(super) fn half_step_volume(&self, patch: &mut Patch<D>, dt: f64) {
         let c = &self.columns;
         let mid = c.jacobian_mid.expect("mid-point stepping has the column");

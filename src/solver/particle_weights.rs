@@ -23,14 +23,14 @@ pub const NARROW: usize = 4;
 /// Distances of the nodes of a window from their particle [cells].
 #[derive(Clone, Copy, Debug)]
 pub struct Offset<const D: usize> {
-    /// Distance of the first node with a weight.
+    /// Distance of the first node with a weight [cells].
     pub first: [f64; D],
     /// Number of nodes before it.
     pub skipped: [f64; D],
 }
 
 impl<const D: usize> Offset<D> {
-    /// Distance of node or line `k` along a direction.
+    /// Distance of node or line `k` along a direction [cells].
     #[inline(always)]
     pub fn at(&self, axis: usize, k: usize) -> f64 {
         self.first[axis] + (k as f64 - self.skipped[axis])

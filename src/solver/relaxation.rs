@@ -279,8 +279,8 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Relaxes the pressure of the own particles at the rate `pressure`, if this step relaxes, then
-    /// their volumes.
+    /// Relaxes the pressure of the own particles at the rate `pressure` [-], if this step relaxes,
+    /// then their volumes.
     pub(super) fn relax(&self, patch: &mut Patch<D>, pressure: Option<f64>) {
         if pressure.is_none() && self.volume_relaxation.is_none() {
             return;

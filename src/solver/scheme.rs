@@ -226,8 +226,8 @@ impl<const D: usize> Scheme<D> {
         COLD * self.still_pressure
     }
 
-    /// Fraction of the deviation that step number `step` (from 1) with the Courant number `courant`
-    /// relaxes, if it relaxes the pressure.
+    /// Fraction [-] of the deviation that step number `step` (from 1) with the Courant number
+    /// `courant` relaxes, if it relaxes the pressure.
     pub(super) fn relaxes(&self, step: u64, courant: f64) -> Option<f64> {
         let relaxation = self.relaxation.filter(|r| step.is_multiple_of(r.interval as u64))?;
         Some(relaxation.rate * (courant / RELAXATION_COURANT).min(1.0))

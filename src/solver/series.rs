@@ -372,9 +372,9 @@ impl<const D: usize> Scheme<D> {
         self.mask_first(patch, &force);
     }
 
-    /// From the first terms of the series, computes velocity, acceleration and the velocity at the
-    /// end of the step v' = v + dt b, halos included; with `relax` also the nodal pressure.
-    /// Collective between neighbours.
+    /// From the first terms of the series, computes velocity [m/s], acceleration b [m/s2] and the
+    /// velocity at the end of the step v' = v + dt b, halos included; with `relax` also the nodal
+    /// pressure [Pa]. Collective between neighbours.
     pub(super) fn solve_velocity(
         &self,
         nodal: &mut Nodal<'_, D>,

@@ -60,7 +60,7 @@ impl<const D: usize> Scheme<D> {
         Some(boxes)
     }
 
-    /// Adds the force of a side to the force on a node, and records it.
+    /// Adds the force of a side [N] to the force on a node, and records it.
     pub(crate) fn push(&self, patch: &mut Patch<D>, at: usize, index: [i64; D], force: [f64; D]) {
         for (a, force) in force.iter().enumerate() {
             patch.nodes.fields[self.fields.acceleration + a][at] += force;
@@ -68,7 +68,7 @@ impl<const D: usize> Scheme<D> {
         self.record_side_force(patch, at, index, force, false);
     }
 
-    /// Records the force of a side on a node, for its work and impulse.
+    /// Records the force of a side on a node [N], for its work and impulse.
     pub(crate) fn record_side_force(
         &self,
         patch: &mut Patch<D>,
@@ -83,7 +83,8 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Adds `scale` times the internal force of a particle along `axis` to the nodes of `field`.
+    /// Adds `scale` times the internal force of a particle along `axis` [N] to the nodes of
+    /// `field`.
     #[inline(always)]
     pub(crate) fn add_stress<const K: usize>(
         &self,

@@ -194,8 +194,8 @@ impl<const D: usize> Scheme<D> {
         found
     }
 
-    /// Energy of the own particles of solids after `dt` with the velocity gradient in its columns,
-    /// from the volume ratios `before` to the current ones.
+    /// Energy of the own particles of solids [J/kg] after `dt` [s] with the velocity gradient in
+    /// its columns, from the volume ratios `before` to the current ones.
     pub(super) fn work_on_solids(
         &self,
         patch: &mut Patch<D>,

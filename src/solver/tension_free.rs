@@ -124,7 +124,7 @@ impl<const D: usize> Scheme<D> {
         self.failures[body].as_deref().filter(|failure| failure.is_gradual())
     }
 
-    /// Part of the stress that a particle of `body` with `damage` carries.
+    /// Part of the stress that a particle of `body` with `damage` [-] carries.
     pub(crate) fn carried(&self, body: usize, damage: f64) -> Carried {
         self.failures[body].as_ref().map_or(Carried::WHOLE, |failure| failure.carried(damage))
     }

@@ -188,8 +188,8 @@ impl<const D: usize> Scheme<D> {
         out.extend((0..n).map(|r| volume0[r] * j[r] * scale));
     }
 
-    /// Ratio of the current to the initial length of a cell at a particle, along the direction of
-    /// strongest compression, in a plane.
+    /// Ratio of the current to the initial length of a cell at a particle [-], along the direction
+    /// of strongest compression, in a plane.
     #[inline(always)]
     pub(super) fn stretch(&self, patch: &Patch<D>, particle: usize) -> f64 {
         let tensor = |first: Option<usize>| -> [f64; 4] {
@@ -256,7 +256,7 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// F^-1 of a particle at the time of the forces, in the total-Lagrangian frame.
+    /// F^-1 [-] of a particle at the time of the forces, in the total-Lagrangian frame.
     #[inline(always)]
     pub(super) fn push_of(&self, patch: &Patch<D>, particle: usize) -> Option<[[f64; D]; D]> {
         let push = self.columns.inverse_deformation?;

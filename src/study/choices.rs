@@ -1,40 +1,55 @@
 //! The list of cheapest choices: target errors, the cheapest case that reaches each, and its cost.
 
 use super::StudyRow;
-use super::curves::quantity;
-use super::spec::Choices;
+use super::curves::{quantity, swept};
+use super::means::{MeanRow, means};
+use super::spec::{Choices, Study};
 
-/// The list as a Markdown table.
-pub fn markdown(choices: &Choices, rows: &[StudyRow]) -> String {
+/// The list as a Markdown table. With means it also has the greatest error of a choice.
+pub fn markdown(study: &Study, choices: &Choices, rows: &[StudyRow]) -> String {
     let (name, unit, factor) = quantity(&choices.error);
+    let is_mean = !choices.over.is_empty();
+    let [of, more] = match is_mean {
+        true => ["mean ", " greatest |"],
+        false => ["", ""],
+    };
     let mut text = format!(
-        "| {name} wanted | cheapest choice | {name} | CPU seconds of the time loop |\n|---|---|---|---|\n"
+        "| {of}{name} wanted | cheapest choice | {of}{name} |{more} CPU seconds of the time loop |\n"
     );
+    text += if is_mean { "|---|---|---|---|---|\n" } else { "|---|---|---|---|\n" };
+    let means = means(study, rows.iter(), &choices.over);
+    let shown = |v: f64| format!("{:.3} {unit}", v * factor);
     for &wanted in &choices.wanted {
-        let shown = |v: f64| format!("{:.3} {unit}", v * factor);
-        let (choice, error, cost) = match cheapest(choices, rows, wanted) {
-            Some((row, error, cost)) => {
-                let labels: Vec<String> = row
-                    .labels
-                    .iter()
-                    .map(|(name, value)| match name.as_str() {
-                        "scheme" => value.clone(),
-                        _ => setting(name, value),
-                    })
-                    .collect();
-                (labels.join(", "), shown(error), format!("{cost:.3}"))
-            }
-            None => ("none of these".into(), "-".into(), "-".into()),
+        text += &format!("| {:.2} {unit} | ", wanted * factor);
+        let Some((row, error, cost)) = cheapest(choices, &means, wanted) else {
+            text +=
+                if is_mean { "none of these | - | - | - |\n" } else { "none of these | - | - |\n" };
+            continue;
         };
-        text += &format!("| {:.2} {unit} | {choice} | {error} | {cost} |\n", wanted * factor);
+        let labels: Vec<String> = study
+            .labels()
+            .into_iter()
+            .filter(|label| !choices.over.iter().any(|over| over == label))
+            .filter_map(|label| Some((label, row.first().labels.get(label)?)))
+            .map(|(label, value)| match label {
+                "scheme" => value.clone(),
+                _ => setting(label, value),
+            })
+            .collect();
+        text += &format!("{} | {} | ", labels.join(", "), shown(error));
+        if let (true, Some(greatest)) = (is_mean, row.greatest(&choices.error, choices.time)) {
+            text += &format!("{} | ", shown(greatest));
+        }
+        text += &format!("{cost:.3} |\n");
     }
     text
 }
 
 /// A swept key and its value, in the unit used for curves.
 fn setting(name: &str, value: &str) -> String {
-    let (label, unit, factor) = quantity(name);
-    let shown = match value.parse::<f64>() {
+    let number = value.parse::<f64>();
+    let (label, unit, factor) = swept(name, number.clone().unwrap_or(0.0));
+    let shown = match number {
         Ok(number) => format!("{}", (number * factor * 1e9).round() / 1e9),
         Err(_) => value.to_string(),
     };
@@ -42,15 +57,16 @@ fn setting(name: &str, value: &str) -> String {
 }
 
 /// The cheapest row whose error is at most `wanted`, its error and its cost \[s\].
-pub fn cheapest<'a>(
+fn cheapest<'a, 'r>(
     choices: &Choices,
-    rows: &'a [StudyRow],
+    rows: &'a [MeanRow<'r>],
     wanted: f64,
-) -> Option<(&'a StudyRow, f64, f64)> {
+) -> Option<(&'a MeanRow<'r>, f64, f64)> {
     rows.iter()
         .filter_map(|row| {
-            let error = row.number(&choices.error, choices.time)?.abs();
-            Some((row, error, row.seconds(|s| s.loop_cpu)?)).filter(|_| error <= wanted)
+            let error = row.mean(&choices.error, choices.time)?;
+            let cost = row.mean("loop_cpu_seconds", None)?;
+            Some((row, error, cost)).filter(|_| error <= wanted)
         })
         .min_by(|a, b| a.2.total_cmp(&b.2))
 }

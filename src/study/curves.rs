@@ -3,6 +3,7 @@
 use super::StudyRow;
 use super::cases::fits;
 use super::front::front;
+use super::means::{MeanRow, means};
 use super::spec::{CurvesPicture, Study};
 use crate::plot::{Axis, Color, Figure, Panel, Points, Series, Stroke, Style};
 
@@ -15,24 +16,39 @@ pub fn quantity(name: &str) -> (String, &'static str, f64) {
         "plateau" => ("Plateau", true),
         "noise" => ("Noise", true),
         "rise_cells" => return ("Rise".into(), "cells", 1.0),
-        "shock_position_cells" => return ("Shock's place".into(), "cells", 1.0),
+        "shock_position_cells" => return ("Shock position".into(), "cells", 1.0),
         "overshoot" => ("Overshoot", true),
-        "second_plateau" => ("2nd plateau", true),
+        "second_plateau" => ("Second plateau", true),
+        "displacement_l2" => ("L2 of displacement", true),
+        "velocity_rms" => ("RMS of velocity", true),
+        "velocity_l1" => ("L1 of velocity", true),
+        "pressure_rms" => ("RMS of pressure", true),
+        "density_l1" => ("L1 of density", true),
+        "histories" => ("Difference of histories", true),
+        "kinetic_energy_loss" => ("Loss of kinetic energy", true),
         "energy_drift" => return ("Energy drift".into(), "", 1.0),
         "waves.shock" => ("L1, shock", true),
         "waves.fan" => ("L1, fan", true),
         "waves.plateau_2" => ("L1, plateau 2", true),
-        "waves.second_plateau" => ("L1, plateau 4", true),
+        "waves.second_plateau" => ("L1, second plateau", true),
         "loop_cpu_seconds" => return ("User CPU time of the time loop".into(), "s", 1.0),
         "loop_wall_seconds" => return ("Wall time of the time loop".into(), "s", 1.0),
         "core_seconds" => return ("Wall time of the time loop × cores".into(), "s", 1.0),
-        "domain.cell_size" => return ("Cell size".into(), "um", 1e6),
         "time.courant" => return ("Courant number".into(), "", 1.0),
         "artificial_viscosity.linear" => return ("Linear viscosity a1".into(), "", 1.0),
         "artificial_viscosity.quadratic" => return ("Quadratic viscosity a2".into(), "", 1.0),
         other => return (other.replace(['_', '.'], " "), "", 1.0),
     };
     if percent { (text.into(), "%", 100.0) } else { (text.into(), "", 1.0) }
+}
+
+/// Label of a swept key or of another quantity on an axis, for values up to `largest` in SI units.
+pub fn swept(name: &str, largest: f64) -> (String, &'static str, f64) {
+    match name {
+        "domain.cell_size" if largest < 1e-3 => ("Cell size".into(), "um", 1e6),
+        "domain.cell_size" => ("Cell size".into(), "mm", 1e3),
+        other => quantity(other),
+    }
 }
 
 /// Style of curve `index`: the palette with discs, then dashed with rings, then dotted with discs.
@@ -59,20 +75,22 @@ pub fn order(points: &[(f64, f64)]) -> Option<f64> {
 
 /// The figure of these curves.
 pub fn figure(study: &Study, picture: &CurvesPicture, rows: &[StudyRow]) -> Figure {
-    let rows: Vec<&StudyRow> = rows.iter().filter(|row| fits(&row.labels, &picture.only)).collect();
+    let rows = rows.iter().filter(|row| fits(&row.labels, &picture.only));
+    let rows = means(study, rows, &picture.over);
     let mut names: Vec<String> = Vec::new();
-    for name in rows.iter().map(|row| row.name(&picture.series)) {
+    for name in rows.iter().map(|row| row.first().name(&picture.series)) {
         if !names.contains(&name) {
             names.push(name);
         }
     }
-    let (x_label, x_unit, x_factor) = quantity(&picture.x);
+    let values = rows.iter().filter_map(|row| row.mean(&picture.x, picture.time));
+    let (x_label, x_unit, x_factor) = swept(&picture.x, values.fold(0.0, f64::max));
     let mut axis = Axis::log(x_label, x_unit);
     let swept = study.labels().contains(&picture.x.as_str());
     if swept {
         let mut ticks: Vec<f64> = rows
             .iter()
-            .filter_map(|row| row.number(&picture.x, picture.time))
+            .filter_map(|row| row.mean(&picture.x, picture.time))
             .map(|x| (x * x_factor * 1e9).round() / 1e9)
             .collect();
         ticks.sort_by(f64::total_cmp);
@@ -83,21 +101,21 @@ pub fn figure(study: &Study, picture: &CurvesPicture, rows: &[StudyRow]) -> Figu
     for error in &picture.y {
         let (label, unit, factor) = quantity(error);
         let mut panel = Panel::new(Axis::log(label, unit));
-        let place = |row: &StudyRow| {
-            let x = row.number(&picture.x, picture.time)? * x_factor;
-            Some((x, row.number(error, picture.time)?.abs() * factor))
+        let place = |row: &MeanRow<'_>| {
+            let x = row.mean(&picture.x, picture.time)? * x_factor;
+            Some((x, row.mean(error, picture.time)? * factor))
         };
         if picture.front {
-            let all: Vec<(f64, f64)> = rows.iter().filter_map(|row| place(row)).collect();
+            let all: Vec<(f64, f64)> = rows.iter().filter_map(place).collect();
             let all: Vec<(f64, f64)> = all.into_iter().filter(|p| p.1 > 0.0).collect();
             let (x, y): (Vec<f64>, Vec<f64>) = front(&all).iter().map(|&k| all[k]).unzip();
             let style = Style { color: Color(0xf3, 0xd0, 0x70), ..Style::line(Color::BLACK) };
             let style = style.width(11.0);
-            panel = panel.series(Series::new("none better (front)", Points::new(x, y), style));
+            panel = panel.series(Series::new("Pareto front", Points::new(x, y), style));
         }
         for (k, name) in names.iter().enumerate() {
-            let of = rows.iter().filter(|row| row.name(&picture.series) == *name);
-            let mut points: Vec<(f64, f64)> = of.filter_map(|row| place(row)).collect();
+            let of = rows.iter().filter(|row| row.first().name(&picture.series) == *name);
+            let mut points: Vec<(f64, f64)> = of.filter_map(place).collect();
             points.sort_by(|a, b| a.0.total_cmp(&b.0));
             if picture.order
                 && let Some(order) = order(&points)
@@ -127,10 +145,12 @@ fn with_peers(
     let ring = |color: Color| Style { mark: Some(9.0), ..Style::marks(color) }.hollow();
     let mut shown = false;
     for (k, peer) in study.peers.iter().enumerate() {
-        let at = |pair: &&[f64; 2]| (pair[0] - picture.time).abs() <= 1e-9 * picture.time;
+        let at = |pair: &&[f64; 2]| {
+            picture.time.is_some_and(|time| (pair[0] - time).abs() <= 1e-9 * time)
+        };
         let Some(value) = peer.errors.get(error).and_then(|e| e.iter().find(at)) else { continue };
         if !shown {
-            let whose = "other codes, measured elsewhere on a like machine:";
+            let whose = "other codes, measured on a similar machine:";
             panel = panel.series(Series::new(whose, Points::new([], []), ring(Color::BLACK)));
             shown = true;
         }

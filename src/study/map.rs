@@ -2,7 +2,7 @@
 
 use super::StudyRow;
 use super::cases::fits;
-use super::curves::quantity;
+use super::curves::{quantity, swept};
 use super::spec::MapPicture;
 use crate::plot::{Axis, Figure, TileMap};
 
@@ -10,7 +10,7 @@ use crate::plot::{Axis, Figure, TileMap};
 pub fn figure(picture: &MapPicture, rows: &[StudyRow]) -> Figure {
     let rows: Vec<&StudyRow> = rows.iter().filter(|row| fits(&row.labels, &picture.only)).collect();
     let places = |key: &str| {
-        let mut all: Vec<f64> = rows.iter().filter_map(|row| row.number(key, 0.0)).collect();
+        let mut all: Vec<f64> = rows.iter().filter_map(|row| row.number(key, None)).collect();
         all.sort_by(f64::total_cmp);
         all.dedup();
         all
@@ -19,14 +19,14 @@ pub fn figure(picture: &MapPicture, rows: &[StudyRow]) -> Figure {
     let (label, unit, factor) = quantity(&picture.value);
     let value = |x: f64, y: f64| {
         let at = |row: &&&StudyRow| {
-            row.number(&picture.x, 0.0) == Some(x) && row.number(&picture.y, 0.0) == Some(y)
+            row.number(&picture.x, None) == Some(x) && row.number(&picture.y, None) == Some(y)
         };
         Some(rows.iter().find(at)?.number(&picture.value, picture.time)?.abs())
     };
     let mut values: Vec<Vec<Option<f64>>> =
         ys.iter().map(|&y| xs.iter().map(|&x| value(x, y)).collect()).collect();
     let axis = |key: &str| {
-        let (label, unit, _) = quantity(key);
+        let (label, unit, _) = swept(key, 0.0);
         Axis::linear(label, unit).tight()
     };
     let all = || values.iter().flatten().flatten();

@@ -8,10 +8,12 @@
 
 pub mod cases;
 pub mod choices;
+pub mod convergence;
 pub mod curves;
 pub mod error;
 pub mod front;
 pub mod map;
+pub mod means;
 pub mod record;
 pub mod row;
 pub mod runner;
@@ -59,7 +61,7 @@ pub fn write(study: &Study, rows: &[StudyRow], folder: &Path) -> Result<(), Stud
     };
     put(TABLE_FILE, table::csv(study, rows))?;
     if let Some(choices) = &study.choices {
-        put(CHOICES_FILE, choices::markdown(choices, rows))?;
+        put(CHOICES_FILE, choices::markdown(study, choices, rows))?;
     }
     for picture in &study.pictures {
         let (name, figure) = match picture {

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::StudyError;
+use super::convergence::{Convergence, Histories};
 use crate::driver::output::summary::Summary;
 use crate::input::input_file;
 
@@ -48,6 +49,9 @@ pub struct Measured {
     pub momentum_drift: Option<f64>,
     /// Errors, one entry per profile.
     pub profiles: Vec<ProfileErrors>,
+    /// Histories that the study compares.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub histories: Option<Histories>,
     /// Error estimate of the run, if the scene requests it.
     #[serde(default)]
     pub estimate: Option<Value>,
@@ -67,7 +71,7 @@ pub struct StudyRecord {
 impl StudyRecord {
     /// Adds a successful run. Repeats are bitwise identical, so the errors of the first one are
     /// kept.
-    pub fn add(&mut self, summary: &Summary) {
+    pub fn add(&mut self, summary: &Summary, histories: Option<Histories>) {
         self.seconds.push(Seconds {
             loop_cpu: summary.loop_cpu_seconds,
             loop_wall: summary.loop_wall_seconds,
@@ -85,8 +89,17 @@ impl StudyRecord {
             energy_drift: summary.energy.drift,
             momentum_drift: summary.momentum.drift,
             profiles: summary.profiles.iter().map(profile).collect(),
+            histories,
             estimate: None,
         });
+    }
+
+    /// Whether a successful run has the histories that a study compares.
+    pub fn has_histories(&self, convergence: Option<&Convergence>) -> bool {
+        let (Some(convergence), Some(measured)) = (convergence, &self.measured) else {
+            return true;
+        };
+        measured.histories.as_ref().is_some_and(|own| own.have(&convergence.columns))
     }
 
     /// Reads the record of a key; `None` if it is missing or damaged.

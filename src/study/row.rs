@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::convergence::HISTORIES;
 use super::record::{Seconds, StudyRecord};
 
 /// A case and its result.
@@ -15,11 +16,13 @@ pub struct StudyRow {
     pub threads: usize,
     /// Stored result.
     pub record: StudyRecord,
+    /// Difference of the histories from those of the reference case \[-\].
+    pub histories: Option<f64>,
 }
 
 /// Errors of each profile in the table, with their names in `summary.json`; a dot selects a key of
 /// a nested object.
-pub const ERRORS: [&str; 19] = [
+pub const ERRORS: [&str; 26] = [
     "l1",
     "l2",
     "e1_cells",
@@ -39,6 +42,13 @@ pub const ERRORS: [&str; 19] = [
     "waves.fan",
     "waves.plateau_2",
     "waves.second_plateau",
+    "displacement_l2",
+    "velocity_rms",
+    "velocity_l1",
+    "pressure_rms",
+    "kinetic_energy_loss",
+    "energy_loss",
+    "angular_momentum_loss",
 ];
 
 impl StudyRow {
@@ -63,18 +73,22 @@ impl StudyRow {
         })
     }
 
-    /// The error `name` of the profile at `time` \[s\], signed; `None` if undefined.
-    pub fn error(&self, name: &str, time: f64) -> Option<f64> {
-        let measured = self.record.measured.as_ref()?;
-        let near = |t: f64| (t - time).abs() <= 1e-9 * time.abs();
-        let profile = measured.profiles.iter().find(|p| near(p.time))?;
+    /// The error `name` of the profile at `time` \[s\], or of the last profile, signed; `None` if
+    /// undefined.
+    pub fn error(&self, name: &str, time: Option<f64>) -> Option<f64> {
+        let profiles = &self.record.measured.as_ref()?.profiles;
+        let near = |t: f64, time: f64| (t - time).abs() <= 1e-9 * time.abs();
+        let profile = match time {
+            Some(time) => profiles.iter().find(|p| near(p.time, time))?,
+            None => profiles.last()?,
+        };
         name.split('.').try_fold(profile.errors.as_ref()?, |v, key| v.get(key))?.as_f64()
     }
 
     /// A number by its name: `loop_cpu_seconds`, `loop_wall_seconds`, `cpu_seconds`, `core_seconds`
     /// (wall time of the loop times cores), `energy_drift`, `momentum_drift`, `particles`, `steps`,
-    /// a numeric label, or an error at `time` \[s\].
-    pub fn number(&self, name: &str, time: f64) -> Option<f64> {
+    /// a numeric label, or an error at `time` \[s\] or of the last profile.
+    pub fn number(&self, name: &str, time: Option<f64>) -> Option<f64> {
         let measured = self.record.measured.as_ref();
         match name {
             "loop_cpu_seconds" => self.seconds(|s| s.loop_cpu),
@@ -87,6 +101,7 @@ impl StudyRow {
             "momentum_drift" => measured?.momentum_drift,
             "particles" => Some(measured?.particles as f64),
             "steps" => Some(measured?.steps as f64),
+            HISTORIES => self.histories,
             _ => match self.labels.get(name) {
                 Some(label) => label.parse().ok(),
                 None => self.error(name, time),

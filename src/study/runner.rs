@@ -15,6 +15,7 @@ use signal_hook::flag;
 use signal_hook::low_level::emulate_default_handler;
 
 use super::cases::{Case, cases};
+use super::convergence::{Histories, compare};
 use super::record::StudyRecord;
 use super::spec::Study;
 use super::{StudyError, StudyRow};
@@ -77,8 +78,8 @@ impl StudyRunner {
                     continue;
                 }
                 let Ok((scene, key)) = job.scene.clone() else { continue };
-                match self.once(&job.case, &scene, &key, study.limit_seconds)? {
-                    Ended::Well(summary) => job.record.add(&summary),
+                match self.once(&job.case, &scene, &key, study)? {
+                    Ended::Well(summary, histories) => job.record.add(&summary, histories),
                     Ended::Badly { reason, .. } => job.record.failure = Some(reason.clone()),
                 }
                 job.record.write(&records, &key)?;
@@ -92,8 +93,13 @@ impl StudyRunner {
             ranks: job.case.ranks,
             threads: job.case.threads,
             record: job.record,
+            histories: None,
         };
-        Ok(jobs.into_iter().map(row).collect())
+        let mut rows: Vec<StudyRow> = jobs.into_iter().map(row).collect();
+        if let Some(convergence) = &study.convergence {
+            compare(convergence, &mut rows);
+        }
+        Ok(rows)
     }
 
     /// The cases with their stored records.
@@ -112,7 +118,9 @@ impl StudyRunner {
                 (text, case.key(&c, &version))
             });
             let record = match &scene {
-                Ok((_, key)) => StudyRecord::read(records, key).unwrap_or_default(),
+                Ok((_, key)) => StudyRecord::read(records, key)
+                    .filter(|record| record.has_histories(study.convergence.as_ref()))
+                    .unwrap_or_default(),
                 Err(reason) => StudyRecord {
                     failure: Some(format!("refused: {reason}")),
                     ..StudyRecord::default()
@@ -134,15 +142,27 @@ impl StudyRunner {
     }
 
     /// Runs a case once. A run that fails, also one that a signal ends, is recorded as failed.
-    fn once(&self, case: &Case, scene: &str, key: &str, limit: f64) -> Result<Ended, StudyError> {
+    fn once(
+        &self,
+        case: &Case,
+        scene: &str,
+        key: &str,
+        study: &Study,
+    ) -> Result<Ended, StudyError> {
         let place = self.folder.join("running");
         fs::create_dir_all(&place).map_err(StudyError::io("cannot be made", &place))?;
         let (file, results) = (place.join(format!("{key}.json")), place.join(key));
         fs::write(&file, scene).map_err(StudyError::io("cannot be written", &file))?;
-        let ended = self.wait(&mut self.command(case, &file, &results), limit);
+        let ended = self.wait(&mut self.command(case, &file, &results), study.limit_seconds);
         let outcome = match ended? {
             None => match Summary::read(&results) {
-                Ok(summary) => Ended::Well(Box::new(summary)),
+                Ok(summary) => match &study.convergence {
+                    None => Ended::Well(Box::new(summary), None),
+                    Some(convergence) => match Histories::read(&results, &convergence.columns) {
+                        Ok(histories) => Ended::Well(Box::new(summary), Some(histories)),
+                        Err(reason) => Ended::Badly { reason },
+                    },
+                },
                 Err(error) => Ended::Badly { reason: error.to_string() },
             },
             Some(reason) => Ended::Badly { reason },
@@ -251,7 +271,7 @@ fn said(child: &mut Child) -> String {
 
 /// Outcome of a run.
 enum Ended {
-    Well(Box<Summary>),
+    Well(Box<Summary>, Option<Histories>),
     Badly { reason: String },
 }
 

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::StudyError;
+use super::convergence::Convergence;
 use crate::input::input_file;
 
 /// A study: its cases, their repeats, and the pictures.
@@ -23,7 +24,8 @@ pub struct Study {
     /// Overrides for all cases: path of a key and its value.
     #[serde(default)]
     pub set: BTreeMap<String, Value>,
-    /// Axes of the sweep. The cases are all combinations; the last axis changes fastest.
+    /// Axes of the sweep, or `{"file": PATH}` for an axis in a file of its own, relative to the file
+    /// of the study. The cases are all combinations; the last axis changes fastest.
     pub sweep: Vec<StudyAxis>,
     /// Combinations to leave out, given by their labels.
     #[serde(default)]
@@ -43,6 +45,9 @@ pub struct Study {
     /// List of cheapest choices.
     #[serde(default)]
     pub choices: Option<Choices>,
+    /// Comparison of histories with those of a reference case; adds the error `histories`.
+    #[serde(default)]
+    pub convergence: Option<Convergence>,
 }
 
 fn one() -> usize {
@@ -105,8 +110,12 @@ pub struct CurvesPicture {
     pub x: String,
     /// Errors, one panel each.
     pub y: Vec<String>,
-    /// Time of the profile whose errors are shown \[s\].
-    pub time: f64,
+    /// Time of the profile whose errors are shown \[s\]; the last profile by default.
+    #[serde(default)]
+    pub time: Option<f64>,
+    /// Labels over which the means of the absolute values are shown.
+    #[serde(default)]
+    pub over: Vec<String>,
     /// Labels that distinguish the curves.
     #[serde(default)]
     pub series: Vec<String>,
@@ -138,8 +147,9 @@ pub struct MapPicture {
     pub y: String,
     /// Error to show, as absolute value.
     pub value: String,
-    /// Time of the profile \[s\].
-    pub time: f64,
+    /// Time of the profile \[s\]; the last profile by default.
+    #[serde(default)]
+    pub time: Option<f64>,
     /// Marked points: text, x, y.
     #[serde(default)]
     pub marks: Vec<(String, f64, f64)>,
@@ -169,8 +179,12 @@ pub struct Peer {
 pub struct Choices {
     /// Name of the error.
     pub error: String,
-    /// Time of the profile \[s\].
-    pub time: f64,
+    /// Time of the profile \[s\]; the last profile by default.
+    #[serde(default)]
+    pub time: Option<f64>,
+    /// Labels over which means are taken: the mean of the absolute values must reach a target.
+    #[serde(default)]
+    pub over: Vec<String>,
     /// Target values of the error \[-\].
     pub wanted: Vec<f64>,
 }
@@ -185,10 +199,16 @@ impl Study {
         let fail = |reason: String| StudyError::Study { file: path.display().to_string(), reason };
         let text = input_file::read_text(path, input_file::LARGEST_JSON)
             .map_err(|fault| fail(fault.to_string()))?;
-        let mut reader = serde_json::Deserializer::from_str(&text);
-        let mut study: Study = serde_path_to_error::deserialize(&mut reader)
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut value: Value = serde_json::from_str(&text).map_err(|e| fail(e.to_string()))?;
+        for axis in value["sweep"].as_array_mut().into_iter().flatten() {
+            if let Some(file) = axis["file"].as_str().map(|file| folder.join(file)) {
+                *axis = read_axis(&file).map_err(fail)?;
+            }
+        }
+        let mut study: Study = serde_path_to_error::deserialize(value)
             .map_err(|error| fail(format!("{}: {}", error.path(), error.inner())))?;
-        study.scene = path.parent().unwrap_or(Path::new("")).join(&study.scene);
+        study.scene = folder.join(&study.scene);
         study.check().map_err(fail)?;
         Ok(study)
     }
@@ -218,9 +238,20 @@ impl Study {
         for left in self.leave_out.iter().flat_map(|l| l.keys()) {
             known("leave_out", left)?;
         }
+        for label in self.convergence.iter().flat_map(|convergence| convergence.against.keys()) {
+            known("convergence.against", label)?;
+        }
+        if self.convergence.as_ref().is_some_and(|convergence| convergence.columns.is_empty()) {
+            return Err("convergence.columns: empty; allowed: at least one column".into());
+        }
+        for over in self.choices.iter().flat_map(|choices| &choices.over) {
+            known("choices.over", over)?;
+        }
         for picture in &self.pictures {
             let (name, used, only) = match picture {
-                Picture::Curves(p) => (&p.name, p.series.iter().collect::<Vec<_>>(), &p.only),
+                Picture::Curves(p) => {
+                    (&p.name, p.series.iter().chain(&p.over).collect::<Vec<_>>(), &p.only)
+                }
                 Picture::Map(p) => (&p.name, vec![&p.x, &p.y], &p.only),
             };
             let plain = |c: char| c.is_ascii_alphanumeric() || "_-".contains(c);
@@ -235,6 +266,14 @@ impl Study {
         }
         Ok(())
     }
+}
+
+/// The axis in a file of its own, which several studies use. The error is the reason why it cannot be
+/// read.
+fn read_axis(file: &Path) -> Result<Value, String> {
+    let text = input_file::read_text(file, input_file::LARGEST_JSON)
+        .map_err(|fault| format!("sweep.file: {}: {fault}", file.display()))?;
+    serde_json::from_str(&text).map_err(|error| format!("sweep.file: {}: {error}", file.display()))
 }
 
 impl StudyAxis {

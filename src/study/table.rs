@@ -1,6 +1,7 @@
 //! The table of a study as CSV: one row per case; failed cases have the reason of the failure.
 
 use super::StudyRow;
+use super::convergence::HISTORIES;
 use super::row::ERRORS;
 use super::spec::Study;
 
@@ -13,7 +14,7 @@ pub fn csv(study: &Study, rows: &[StudyRow]) -> String {
         .collect();
     times.sort_by(f64::total_cmp);
     times.dedup();
-    let has = |name: &str, time: f64| rows.iter().any(|row| row.error(name, time).is_some());
+    let has = |name: &str, time: f64| rows.iter().any(|row| row.error(name, Some(time)).is_some());
     let columns: Vec<(&str, f64)> = times
         .iter()
         .flat_map(|&time| ERRORS.iter().map(move |&name| (name, time)))
@@ -37,6 +38,7 @@ pub fn csv(study: &Study, rows: &[StudyRow]) -> String {
             "wall_seconds",
             "energy_drift",
             "momentum_drift",
+            HISTORIES,
         ]
         .map(String::from),
     );
@@ -70,9 +72,10 @@ pub fn csv(study: &Study, rows: &[StudyRow]) -> String {
             row.seconds(|s| s.wall),
             measured.and_then(|m| m.energy_drift),
             measured.and_then(|m| m.momentum_drift),
+            row.histories,
         ];
         line.extend(numbers.map(number));
-        line.extend(columns.iter().map(|&(name, time)| number(row.error(name, time))));
+        line.extend(columns.iter().map(|&(name, time)| number(row.error(name, Some(time)))));
         text += &(line.join(",") + "\n");
     }
     text

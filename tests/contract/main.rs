@@ -24,6 +24,7 @@ mod program;
 mod replacing;
 mod scenes;
 mod steps;
+mod study_means;
 mod templates;
 mod terminal;
 

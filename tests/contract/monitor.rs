@@ -114,5 +114,5 @@ fn redone_steps_are_reported() {
 fn the_check_tells_what_is_held() {
     let home = Home::with(&short());
     let text = home.call(["check", "scene.json"]).end().succeeded();
-    assert!(text.contains("held by the monitor") && text.contains("this method's limit"), "{text}");
+    assert!(text.contains("last good state") && text.contains("this method's limit"), "{text}");
 }

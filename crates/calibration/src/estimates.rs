@@ -43,7 +43,7 @@ pub struct CheckedEstimate {
     /// Length that scales the error \[cells\]: of the plateau, of the way to the position, of the
     /// pulse.
     pub cells: f64,
-    /// Exact pressure behind the shock over density times the square of the sound speed.
+    /// Exact pressure behind the shock over density times the square of the sound speed [-].
     pub strength: f64,
     /// Exact compressions of the struck and of the striking body.
     pub compressions: Option<[f64; 2]>,
@@ -171,7 +171,7 @@ pub struct Judgement {
     pub held: f64,
     /// Lower end of the 95 % confidence interval of this share (Wilson 1927).
     pub held_at_least: f64,
-    /// Median of half-width over error.
+    /// Median of half-width over error [-].
     pub ratio: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Half-widths against true errors of the impacts that no law was fitted on.
+//! Half-widths against true errors of impacts that are not in the fit.
 
 use std::path::Path;
 
@@ -7,11 +7,13 @@ use plot::{
     Axis, Color, Figure, Panel, PictureError, Points, Series, Stroke, Style, draw as draw_figure,
 };
 
-/// Draws a panel a quantity; cases whose interval does not hold the truth are red.
+/// Draws a panel per quantity; cases whose interval does not contain the exact value are red.
 pub fn draw(all: &[Vec<CheckedEstimate>], stem: &Path) -> Result<(), PictureError> {
-    let x = Axis::log("True error: fraction of the plateau, of the time through a cell, of L1", "");
-    let mut figure =
-        Figure::new("Estimated errors of runs, on impacts to which no law was fitted", x);
+    let x = Axis::log(
+        "True error relative to the plateau pressure, the transit time of a cell, L1",
+        "",
+    );
+    let mut figure = Figure::new("Estimated errors of impacts that are not in the fit", x);
     for (name, estimates) in QUANTITIES.iter().zip(all) {
         let points = |held: bool| {
             let of = estimates.iter().filter_map(|t| {
@@ -28,11 +30,11 @@ pub fn draw(all: &[Vec<CheckedEstimate>], stem: &Path) -> Result<(), PictureErro
         let mark = |color| Style { mark: Some(4.0), ..Style::marks(color) };
         let equal = Style::line(Color::BLACK).stroke(Stroke::Dashed).width(1.5);
         let panel = Panel::new(Axis::log(format!("± {name}"), ""))
-            .series(Series::new("holds the truth", points(true), mark(Color::palette(0))))
+            .series(Series::new("contains the exact value", points(true), mark(Color::palette(0))))
             .series(Series::new("does not", points(false), mark(Color::RED)))
             .series(Series::new("half-width = error", Points::new([low, high], [low, high]), equal))
             .note(format!(
-                "{} cases, {:.1} % held, median ratio {:.1}",
+                "{} cases, {:.1} % inside, median ratio {:.1}",
                 of.cases,
                 100.0 * of.held,
                 of.ratio

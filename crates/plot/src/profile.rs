@@ -71,7 +71,7 @@ impl ProfileFigure {
     }
 }
 
-/// A time as text, in microseconds below 0.01 s, else in seconds, without trailing zeros.
+/// A time [s] as text, in microseconds below 0.01 s, else in seconds, without trailing zeros.
 pub(super) fn readable(time: f64) -> String {
     let (scale, unit) = if time < 1e-2 { (1e6, "µs") } else { (1.0, "s") };
     let text = format!("{:.4}", time * scale);

@@ -130,7 +130,7 @@ function colourBar(parent, scale, unit) {
   const middle = 0.5 * (scale.low + scale.high);
   element("span", label(scale.low), parent);
   parent.append(canvas);
-  element("span", `middle ${label(middle)}, right ${label(scale.high)} ${shown.unit}`, parent);
+  element("span", `${label(scale.high)} ${shown.unit} (middle: ${label(middle)})`, parent);
 }
 
 function swatch(parent, color, text) {
@@ -496,15 +496,21 @@ function startTables() {
     return [m.name, withUnit(m.time, "s"), withUnit(m.value, m.unit), exact, m.exact ? percent(m.value / m.exact - 1) : "-"];
   }));
   const errors = summary.profiles.filter((profile) => profile.errors);
-  const keys = [...new Set(errors.flatMap((profile) => Object.keys(profile.errors)))];
+  const keys = [...new Set(errors.flatMap((profile) => Object.keys(profile.errors)))]
+    .filter((key) => errors.some((profile) => typeof profile.errors[key] === "number"));
   table("Errors of the profiles", ["error", ...errors.map((profile) => withUnit(profile.time, "s"))],
     keys.map((key) => [words(key), ...errors.map((profile) => profile.errors[key] ?? "-")].map((v) => (typeof v === "object" ? "-" : v))));
   table("Gauges", ["gauge", "quantity", "value", "time"], (summary.gauges ?? []).map((g) =>
     [g.gauge, g.quantity, g.value === null || g.value === undefined ? "-" : withUnit(g.value, g.unit), g.time === null || g.time === undefined ? "-" : withUnit(g.time, "s")]));
   const { energy, momentum } = summary;
+  const { lower, geometry } = summary.scene.domain;
+  const per = lower.length === 1 ? "/m2" : geometry === "axisymmetric" ? "/rad" : "/m";
   table("Conservation", ["", "start", "end", "boundaries", "relative error"], [
-    ["energy", energy.total_start, energy.total_end, energy.boundary_work, energy.drift],
-    ["momentum", short(momentum.start[0]), short(momentum.end[0]), short(momentum.boundary_impulse[0]), momentum.drift],
+    [`energy [J${per}]`, energy.total_start, energy.total_end, energy.boundary_work, energy.drift],
+    ...momentum.start.map((start, k) => [
+      `momentum${lower.length === 1 ? "" : ` along ${"xy"[k]}`} [kg m/s${per}]`,
+      short(start), short(momentum.end[k]), short(momentum.boundary_impulse[k]), k === 0 ? momentum.drift : "",
+    ]),
   ]);
   table("Effects", ["effect", "active", "bytes per particle", "bytes per ghost", "share of step"], summary.effects.map((e) =>
     [e.effect, e.active ? "yes" : "no", e.bytes_per_particle, e.bytes_per_ghost, e.active ? percent(e.step_share) : "-"]));

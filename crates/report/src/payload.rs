@@ -85,7 +85,7 @@ impl Payload {
         let mut payload = Payload { quantities: quantities.collect(), ..Payload::default() };
         let step = file.times.len().div_ceil(MOST_FRAMES).max(1);
         if step > 1 {
-            payload.notes.push(format!("one of {step} frames, and the last"));
+            payload.notes.push(format!("one frame in {step} is shown, and the last one"));
         }
         // the last frame stays
         let last = file.times.len().saturating_sub(1);
@@ -113,7 +113,7 @@ impl Payload {
         let bytes = (particles * (file.columns.len() + 1) * 4) as f64 * BASE64;
         let step = (bytes / LARGEST as f64).ceil().max(1.0) as usize;
         if step > 1 {
-            self.notes.push(format!("one of {step} particles"));
+            self.notes.push(format!("one particle in {step} is shown"));
         }
         for frame in &frames {
             let mut rows: Vec<usize> = (0..frame.points.len()).collect();

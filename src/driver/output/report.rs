@@ -389,7 +389,7 @@ pub(super) fn significant(value: f64) -> String {
     }
 }
 
-/// A time with a suitable unit.
+/// A time [s] as text with a suitable unit.
 pub(super) fn seconds(time: f64) -> String {
     let (unit, scale) = match time {
         t if t >= 0.1 => ("s", 1.0),

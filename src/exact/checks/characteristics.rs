@@ -92,7 +92,7 @@ pub struct Arrival {
     pub flyer_face: f64,
 }
 
-/// The interface until the time `last`, from `n` characteristics in the fan.
+/// The interface until the time `last` [s], from `n` characteristics in the fan.
 pub fn interface(impact: &Impact, last: f64, n: usize) -> Vec<Arrival> {
     let release = impact.release(4).unwrap();
     let flyer = impact.flyer.material;

@@ -45,7 +45,7 @@ impl Tracker {
         TrackedFront { family, t: self.time, speed, ..TrackedFront::fixed(kind, x, right) }
     }
 
-    /// Kind of a single front, its path and its position; a shock starts a path.
+    /// Kind of a single front, its path and its position [m]; a shock starts a path.
     pub(super) fn kind_and_path(
         &mut self,
         x: f64,

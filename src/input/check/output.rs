@@ -14,7 +14,7 @@ use crate::scene::Scene;
 /// Number of rows of the histories if the scene gives no interval.
 const ROWS: f64 = 200.0;
 
-/// Times of the profiles, checked to be strictly increasing and not beyond the end.
+/// Times of the profiles [s], checked to be strictly increasing and not beyond the end.
 pub(super) fn profile_times(scene: &Scene) -> Result<Vec<f64>, SceneFault> {
     let times = &scene.output.profiles.times;
     let end = scene.time.end;

@@ -82,7 +82,7 @@ pub enum MaterialSource {
         /// Name in the library.
         library: String,
     },
-    /// A material in a file beside the scene's; keys beside it override.
+    /// A material in a file in the folder of the scene file; keys beside it override.
     File {
         /// Path of the file, relative to the scene's folder.
         file: String,

@@ -176,7 +176,8 @@ pub fn energy_of_work<T: Copy>(
     (e, found.0, found.1)
 }
 
-/// Energy at which p(e) is `pressure`, by the same method; `at` gives the state at an energy.
+/// Energy [J/kg] at which p(e) is `pressure` [Pa], by the same method; `at` gives the state at an
+/// energy.
 pub(super) fn energy_at_rest(at: impl Fn(f64) -> EosPoint, pressure: f64) -> f64 {
     let mut e = 0.0;
     for _ in 0..MOST_STEPS {

@@ -246,7 +246,7 @@ pub enum BurnWhole {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BurnFront {
-    /// Points from which the front spreads [m]; each place is lit from the nearest one.
+    /// Points from which the front spreads [m]; each particle is ignited from the nearest one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1))]
     pub points: Option<Vec<Vec<f64>>>,

@@ -253,8 +253,8 @@ pub struct TabularParameters {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum TableSource {
-    /// CSV file with the columns density, specific_internal_energy and pressure, beside the scene's
-    /// file.
+    /// CSV file with the columns density, specific_internal_energy and pressure, in the folder of
+    /// the scene file.
     File(String),
     /// The table itself.
     Values(TableValues),

@@ -34,8 +34,8 @@ use serde::{Deserialize, Serialize};
 use super::{Carried, FailureLaw, PressureLimit, RestState, StrengthBeside, StressState};
 
 /// Cochran & Banner (1977): cracks open where the tension exceeds a strength that falls with their
-/// volume, `stress` (1 - D^exponent), and nothing holds when their volume per area reaches
-/// `opening`. The energy per area of a spall does not depend on the cells.
+/// volume, `stress` (1 - D^exponent), and the material carries nothing when their volume per area
+/// reaches `opening`. The energy per area of a spall does not depend on the cells.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CochranBanner {

@@ -4,11 +4,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Estimate of the run's own errors from companion runs with cells two and four times as large,
-/// which take 43 % of the run's time. One dimension only.
+/// which take about a third of the time of the run. One dimension only.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ErrorEstimate {
-    /// Name of the body whose errors are estimated; absent: the body that the reference scores,
+    /// Name of the body whose errors are estimated; absent: the body that the reference compares,
     /// else the only body, else the only body at rest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,

@@ -35,8 +35,8 @@ pub struct Monitor {
     /// larger value a run that becomes unstable ends later.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub courant: f64,
-    /// Smallest stable time step, relative to the time in which that largest speed crosses a cell
-    /// [-]; default 1e-4.
+    /// Smallest stable time step, relative to the time in which the largest initial speed crosses a
+    /// cell, or to the initial stable time step if that is smaller [-]; default 1e-4.
     #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0.0))]
     pub min_time_step_ratio: f64,
     /// Largest number of particles in a cell, relative to the largest number at the start [-];

@@ -159,12 +159,13 @@ impl Default for Checkpoints {
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Profiles {
-    /// Largest number of particles of which a profile holds each; of more it holds means over blocks
-    /// of cells, about as many. Default: 1e6 on a line, 2e5 in a plane.
+    /// Largest number of particles for which a profile has each particle. With more particles it
+    /// has means over about as many blocks of cells. Default: 1e6 on a line, 2e5 in a plane.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1))]
     pub max_particles: Option<u64>,
-    /// Time between profiles [s], from 0, in place of `times`; the end of the run has one as well.
+    /// Time between profiles [s], from time 0, instead of `times`; there is also a profile at the
+    /// end of the run.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub every: Option<f64>,
@@ -219,8 +220,8 @@ pub struct Velocimeter {
     pub name: String,
     /// Name of the body whose surface is measured.
     pub body: String,
-    /// Initial position on the surface [m]; the nearest particle is followed, on a line at a face its
-    /// edge.
+    /// Initial position on the surface [m]; the nearest particle is followed. On a line, at a face
+    /// of the body, the edge of this particle is followed.
     pub at: Vec<f64>,
     /// Velocity per fringe [m/s] (Barker & Hollenbach 1972); adds a column with the number of fringes.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -24,8 +24,9 @@ const RINGS: f64 = 0.15;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Peaks {
-    /// Increase of specific internal energy since the start, less plastic work and the elastic energy
-    /// that failure released, over the energy from one shock in the body that the impacts heat most.
+    /// Increase of specific internal energy since the start, less plastic work and the elastic
+    /// energy that failure released, over the energy from one shock in the body that the impacts
+    /// heat most [-].
     pub heat: f64,
     /// Increase of specific internal energy of that particle since the start [J/kg].
     pub energy: f64,

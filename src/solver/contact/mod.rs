@@ -52,7 +52,7 @@ use crate::solver::patch::Patch;
 
 impl<const D: usize> Scheme<D> {
     /// Finds the pairs of bodies in contact at the nodes that the patch computes, after masses and
-    /// momenta have been summed, in a step of `dt`.
+    /// momenta have been summed, in a step of `dt` [s].
     pub(super) fn find_contact(&self, patch: &mut Patch<D>, contact: &ContactCondition, dt: f64) {
         fn go<const K: usize, const D: usize>(
             patch: &mut Patch<D>,
@@ -81,7 +81,7 @@ impl<const D: usize> Scheme<D> {
         with_width!(patch.stencils.width, go(patch, self, contact, dt));
     }
 
-    /// Finds the constraints of a contact node, in a step of `dt`.
+    /// Finds the constraints of a contact node, in a step of `dt` [s].
     fn find_constraints<const K: usize>(
         &self,
         patch: &Patch<D>,
@@ -280,14 +280,14 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Share of a jump of the nodal velocity that particles adopt: a blend keeps a part of the
+    /// Share of a jump of the nodal velocity that particles adopt [-]: a blend keeps a part of the
     /// particle velocity.
     pub(crate) fn moved(&self) -> f64 {
         self.transfer.taken_share()
     }
 
-    /// Contact at the end of a step of `dt`: transfers the heat of friction to the own particles,
-    /// and records the forces between bodies.
+    /// Contact at the end of a step of `dt` [s]: transfers the heat of friction to the own
+    /// particles, and records the forces between bodies.
     pub(super) fn gather_contact(&self, patch: &mut Patch<D>, dt: f64) {
         if self.fields.heat.is_some() {
             timed(self.friction_part, patch, |patch| self.gather_friction_heat(patch));

@@ -15,14 +15,16 @@ const HEAD: &str = "# Schemes in hard cases
 
 Every shape function with every transfer, measured by `cargo run --release -p acceptance -- hard_cases/schemes`. All
 runs have mid-point steps, the viscosity of `inputs/flyer.json`, those of its options that the transfer allows, and a
-Courant number of 0.4 unless the column has another.
+Courant number of 0.4 unless the column has another. The first columns are variations of the flyer plate: without
+viscosity, with 1 and 16 particles per cell, with a grid shifted by 0.37 cells, at higher speeds, with a softer flyer
+and contact. The columns torn and flight have the scenes `inputs/hard/torn.json` and `inputs/hard/flight.json`.
 
-A number is an error. It is the relative L1 norm of the pressure at 0.2 us in per cent; in columns marked `e` it is the
-drift of the energy in per cent, in columns marked `s` the speed that a block of rubber loses while it slides
-on a base for 20 cells without friction, at 17 degrees to the grid, in per cent, and in those marked `p` the pressure of
-copper blocks that pass each other at a corner at 500 m/s with a gap of half a cell, in per cent of rho c u. **monitor** means that the run-time checks ended the run before its result was wrong;
-the word after it is the reason. **refused** means that the check of the scene refused it. In both cases the exit code
-is not 0. The energy of a transfer in italics is not exact.
+A number is an error in per cent: the relative L1 norm of the pressure at 0.2 us, in columns marked `e` the drift of
+the energy, in columns marked `s` the speed that a block of rubber loses while it slides on a base for 20 cells
+without friction at 17 degrees to the grid, in columns marked `p` the pressure over rho c u of copper blocks that pass
+each other at a corner at 500 m/s with a gap of half a cell. **monitor** means that the run-time checks ended the run
+before its result was wrong; the reason follows. **refused** means that the check of the scene refused it. In both
+cases the exit code is not 0. The energy of a transfer in italics is not exact.
 
 - state: the state of a particle is outside of its model, mostly by growing tension
 - courant: a time step was too long
@@ -32,8 +34,7 @@ is not 0. The energy of a transfer in italics is not exact.
 - crowd: too many particles in one cell
 - step: the stable time step became too small
 
-`src/input/check/courant.rs` has the Courant numbers up to which schemes are stable, as measured by `cargo run --release
---example courant_limits`. Scenes above them are refused unless `monitor.on_courant_exceeded` allows them.
+[Methods](methods.md#courant-number) describes the limits of the Courant number.
 
 ";
 
@@ -65,8 +66,8 @@ fn cases() -> Vec<(&'static str, Value)> {
     vec![
         ("standard", base()),
         ("no viscosity", with(&base(), &json!({"artificial_viscosity": null}))),
-        ("1 a cell", each(&|b| b["particles_per_cell"] = json!([1]))),
-        ("16 a cell", each(&|b| b["particles_per_cell"] = json!([16]))),
+        ("1 per cell", each(&|b| b["particles_per_cell"] = json!([1]))),
+        ("16 per cell", each(&|b| b["particles_per_cell"] = json!([16]))),
         ("grid +0.37", {
             let mut value = base();
             value["domain"]["lower"] = json!([-0.0007 - 0.37e-5]);
