@@ -25,7 +25,8 @@ pub fn assign_patches(weights: &[u64], ranks: usize) -> Vec<u32> {
     for (k, &w) in weights.iter().enumerate() {
         // by equal shares, the middle of the patch's part of the total belongs to a later rank
         let later = 2 * before + w >= shares.end;
-        if load + w > limit || (later && (needed[k] as usize) < ranks - rank as usize) {
+        let later_ranks_suffice = (needed[k] as usize) < ranks - rank as usize;
+        if load + w > limit || (later && later_ranks_suffice) {
             (rank, load) = (rank + 1, 0);
             shares.advance();
         }
