@@ -1,29 +1,34 @@
 //! Assignment of patches to ranks, and the choice of cuts.
 
+use std::ops::Range;
+
+use crate::bottleneck::least_bottleneck;
+
 /// Assigns patches to ranks in sections of an order. `weights` holds the weight of each patch in this
 /// order; their sum is below 2^63. The largest sum of weights per rank is as small as possible for
 /// whole patches in this order. A rank may get none. Returns the rank of each patch, in the order.
 ///
-/// The smallest bottleneck is found by bisection between limits that sums of weights attain (chains
-/// on chains: Pinar & Aykanat 2004). Within it, sections end as near to equal shares as possible, so
+/// The smallest bottleneck is found by probes between limits that sums of weights attain (chains on
+/// chains: Pinar & Aykanat 2004). Within it, sections end as near to equal shares as possible, so
 /// that small changes of the weights move few patches.
 pub fn assign_patches(weights: &[u64], ranks: usize) -> Vec<u32> {
-    if weights.iter().all(|&w| w == 0) && !weights.is_empty() {
+    let total: u64 = weights.iter().sum();
+    if total == 0 && !weights.is_empty() {
         // patches count equally
         return assign_patches(&vec![1; weights.len()], ranks);
     }
     let limit = least_bottleneck(weights, ranks);
-    let total: u64 = weights.iter().sum();
     let needed = ranks_from(weights, limit);
     let mut of = Vec::with_capacity(weights.len());
     let (mut rank, mut load, mut before) = (0, 0, 0);
+    let mut shares = EqualShares::new(2 * total, ranks as u64);
     for (k, &w) in weights.iter().enumerate() {
         // by equal shares, the middle of the patch's part of the total belongs to a later rank
-        let later = u128::from(2 * before + w) * ranks as u128
-            >= u128::from(2 * total) * u128::from(rank + 1);
+        let later = 2 * before + w >= shares.end;
         let later_ranks_suffice = (needed[k] as usize) < ranks - rank as usize;
         if load + w > limit || (later && later_ranks_suffice) {
             (rank, load) = (rank + 1, 0);
+            shares.advance();
         }
         of.push(rank);
         load += w;
@@ -32,39 +37,33 @@ pub fn assign_patches(weights: &[u64], ranks: usize) -> Vec<u32> {
     of
 }
 
-/// The smallest possible largest sum of `weights` of a rank.
-fn least_bottleneck(weights: &[u64], ranks: usize) -> u64 {
-    let total: u64 = weights.iter().sum();
-    let heaviest = weights.iter().copied().max().unwrap_or(0);
-    let mean = total.div_ceil(ranks as u64);
-    // with this limit, every section but the last holds more than the mean
-    let (mut low, mut high) = (heaviest.max(mean), total.min(mean + heaviest));
-    while low < high {
-        match try_limit(weights, ranks, low + (high - low) / 2) {
-            Ok(most) => high = most,
-            Err(next) => low = next,
-        }
-    }
-    low
+/// Ends of equal shares of a total, rounded up, one after the other.
+struct EqualShares {
+    end: u64,
+    /// Numerator of what `end` exceeds the exact end by.
+    excess: u64,
+    ranks: u64,
+    quotient: u64,
+    remainder: u64,
 }
 
-/// Cuts sections that are as full as `limit` admits. Returns the largest sum of a section if there
-/// are at most `ranks`; otherwise the least limit with another result.
-fn try_limit(weights: &[u64], ranks: usize, limit: u64) -> Result<u64, u64> {
-    let (mut sections, mut load, mut most, mut next) = (1, 0, 0, u64::MAX);
-    for &w in weights {
-        load += w;
-        if load > limit {
-            next = next.min(load);
-            most = most.max(load - w);
-            load = w;
-            sections += 1;
-            if sections > ranks {
-                return Err(next);
-            }
-        }
+impl EqualShares {
+    /// At the end of the first share.
+    fn new(total: u64, ranks: u64) -> Self {
+        let (quotient, remainder) = (total / ranks, total % ranks);
+        let mut shares = EqualShares { end: 0, excess: 0, ranks, quotient, remainder };
+        shares.advance();
+        shares
     }
-    Ok(most.max(load))
+
+    fn advance(&mut self) {
+        self.end += self.quotient;
+        if self.remainder > self.excess {
+            self.end += 1;
+            self.excess += self.ranks;
+        }
+        self.excess -= self.remainder;
+    }
 }
 
 /// Work and size of the patches in a new assignment, in the order along which they are dealt.
@@ -87,33 +86,68 @@ impl PatchLoads<'_> {
     /// The number of particles of a rank exceeds this limit by at most one patch, unless its active
     /// patches alone exceed it.
     pub fn reassign(&self, owners: &[u32], ranks: usize, most: f64) -> Vec<u32> {
-        let patches = || self.work.iter().zip(self.particles);
-        let is_active = |(&work, &particles): (&u64, &u64)| work > 0 || particles == 0;
+        let PatchLoads { work, particles } = *self;
         let mut of = owners.to_vec();
-        if self.work.iter().any(|&work| work > 0) {
-            let active: Vec<u64> =
-                patches().filter(|&p| is_active(p)).map(|(&work, _)| work).collect();
-            let places = of.iter_mut().zip(patches()).filter(|(_, p)| is_active(*p));
-            let dealt = assign_patches(&active, ranks);
-            places.zip(dealt).for_each(|((of, _), rank)| *of = rank);
+        let runs = self.runs();
+        let active = || runs.iter().filter(|run| run.is_active).map(|run| run.range.clone());
+        let weights: Vec<&[u64]> = active().map(|run| &work[run]).collect();
+        let weights = weights.concat();
+        if weights.iter().any(|&work| work > 0) {
+            let dealt = assign_patches(&weights, ranks);
+            let mut dealt = &dealt[..];
+            for run in active() {
+                let (these, rest) = dealt.split_at(run.len());
+                of[run].copy_from_slice(these);
+                dealt = rest;
+            }
         }
         let mut held = vec![0; ranks];
-        for (&rank, p) in of.iter().zip(patches()).filter(|(_, p)| is_active(*p)) {
-            held[rank as usize] += p.1;
+        for k in active().flatten() {
+            held[of[k] as usize] += particles[k];
         }
-        let mean = self.particles.iter().sum::<u64>() as f64 / ranks as f64;
+        let mean = particles.iter().sum::<u64>() as f64 / ranks as f64;
         let limit = (most * mean).ceil() as u64;
         let mut moving = Vec::new();
-        for (k, p) in patches().enumerate().filter(|(_, p)| !is_active(*p)) {
+        for k in runs.iter().filter(|run| !run.is_active).flat_map(|run| run.range.clone()) {
             let held = &mut held[of[k] as usize];
-            if *held + p.1 <= limit { *held += p.1 } else { moving.push(k) }
+            if *held + particles[k] <= limit { *held += particles[k] } else { moving.push(k) }
         }
         let mut free = FreeRanks { limit: mean.ceil() as u64, held, rank: 0 };
         for k in moving {
-            of[k] = free.place(self.particles[k]) as u32;
+            of[k] = free.place(particles[k]) as u32;
         }
         of
     }
+
+    /// The runs of active or empty patches and of quiescent ones, in order.
+    fn runs(&self) -> Vec<PatchRun> {
+        let mut runs: Vec<PatchRun> = Vec::new();
+        let mut start = 0;
+        for (work, particles) in self.work.chunks(CHUNK).zip(self.particles.chunks(CHUNK)) {
+            let is_active = |k: usize| (work[k] > 0) | (particles[k] == 0);
+            let count = (0..work.len()).map(|k| usize::from(is_active(k))).sum::<usize>();
+            // most chunks are of one kind, which is found without branches
+            let lengths = if count.is_multiple_of(work.len()) { work.len() } else { 1 };
+            for k in (0..work.len()).step_by(lengths) {
+                let (range, is_active) = (start + k..start + k + lengths, is_active(k));
+                match runs.last_mut() {
+                    Some(run) if run.is_active == is_active => run.range.end = range.end,
+                    _ => runs.push(PatchRun { range, is_active }),
+                }
+            }
+            start += work.len();
+        }
+        runs
+    }
+}
+
+/// Number of patches that are looked at together.
+const CHUNK: usize = 64;
+
+/// Patches next to each other in the order, all active or all quiescent.
+struct PatchRun {
+    range: Range<usize>,
+    is_active: bool,
 }
 
 /// Ranks that have room for particles, filled one after the other.
@@ -248,6 +282,27 @@ mod tests {
                 prop_assert_eq!(busiest_share(&weights, &of, ranks), best(&weights, ranks));
             }
         }
+    }
+
+    proptest! {
+        #[test]
+        fn equal_shares_end_at_the_rounded_multiples(total in 0u64..1 << 63, ranks in 1u64..300) {
+            let mut shares = EqualShares::new(total, ranks);
+            for share in 1..=ranks {
+                let exact = u128::from(total) * u128::from(share);
+                prop_assert_eq!(u128::from(shares.end), exact.div_ceil(u128::from(ranks)));
+                shares.advance();
+            }
+        }
+    }
+
+    #[test]
+    fn runs_of_patches_follow_each_other() {
+        let work: Vec<u64> = (0..300).map(|k| u64::from(k < 130 || k == 200)).collect();
+        let loads = PatchLoads { work: &work, particles: &[7; 300] };
+        let runs: Vec<_> = loads.runs().into_iter().map(|run| (run.range, run.is_active)).collect();
+        let expected = [(0..130, true), (130..200, false), (200..201, true), (201..300, false)];
+        assert_eq!(runs, expected);
     }
 
     /// A tenth of 320 x 320 patches has work: a disk about the middle. 1000 ranks.

@@ -1,6 +1,7 @@
 //! Particles of one patch for the patches of one destination: each is packed once for all of them.
 
 use crate::packing::{put_particles, put_stir};
+use crate::planned_words::{only, packed_words};
 use crate::{Block, Image, IndexBox, Layout};
 
 /// Distances of ghosts and of motion [cells].
@@ -64,7 +65,7 @@ impl<const D: usize> ImageGroups<D> {
 }
 
 /// Indices of the bits that are set.
-fn bits(mut set: u64) -> impl Iterator<Item = usize> {
+pub(crate) fn bits(mut set: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let bit = (set != 0).then(|| set.trailing_zeros() as usize)?;
         set &= set - 1;
@@ -149,6 +150,26 @@ impl<const D: usize> Bundle<D> {
             }
         }
         owned
+    }
+
+    /// Words that the ghosts of `patch` with the cells `home` take in this bundle, of `words` words
+    /// each, if `count` gives the number of particles in a box. No particle leaves the patch, and no
+    /// patch is stirred.
+    pub fn ghost_words(
+        &self,
+        (patch, home): (usize, &IndexBox<D>),
+        words: u64,
+        count: &dyn Fn(&IndexBox<D>) -> u64,
+    ) -> u64 {
+        let of_image = |groups: &ImageGroups<D>| {
+            let original = groups.image == Image::IDENTITY;
+            let others = |(_, r): &(usize, &Receiver<D>)| !original || r.patch != patch;
+            let seers = self.receivers.iter().enumerate().filter(others);
+            let seers = seers.fold(0, |set, (k, _)| set | groups.seers & 1 << k);
+            let seen = self.receivers.iter().map(|r| groups.image.source_cells(&r.halo));
+            packed_words(home, &only(seers, seen), words, count)
+        };
+        self.images.iter().map(of_image).sum()
     }
 
     /// Packs the notice that receivers near the active cells of `block`, of `patch`, are stirred.

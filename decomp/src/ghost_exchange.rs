@@ -129,6 +129,22 @@ impl<const D: usize> GhostExchange<D> {
         &self.inner
     }
 
+    /// Ranks that get a message from this rank in each exchange.
+    pub fn send_ranks(&self) -> &[usize] {
+        &self.send_ranks
+    }
+
+    /// Size of these messages together \[words of 8 bytes\], with `columns` columns of a ghost, while
+    /// no particle changes its patch. `count` gives the number of particles in a box of cells.
+    pub fn ghost_words(&self, columns: usize, count: &dyn Fn(&IndexBox<D>) -> u64) -> u64 {
+        // id, cell and columns
+        let words = (1 + D + columns) as u64;
+        let from = self.patches.iter().copied().zip(&self.homes).zip(&self.bundles);
+        let sent = from.flat_map(|(from, bundles)| bundles.iter().map(move |b| (from, b)));
+        let sent = sent.filter(|(_, bundle)| matches!(bundle.taker, Taker::Message(_)));
+        sent.map(|(from, bundle)| bundle.ghost_words(from, words, count)).sum()
+    }
+
     /// Hands over the particles that have moved and renews all ghosts. `patches` are the patches of
     /// this rank, in order; their particles carry their new cells, within the domain. Afterwards
     /// each block is in canonical order.

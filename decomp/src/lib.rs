@@ -26,6 +26,7 @@
 
 pub mod array;
 mod balance;
+mod bottleneck;
 mod bytes;
 pub mod comm;
 mod ghost_bundle;
@@ -42,6 +43,7 @@ mod particle_block;
 mod particle_sort;
 mod patch_migration;
 mod patch_order;
+mod planned_words;
 mod reduce;
 mod shares;
 mod short_borders;

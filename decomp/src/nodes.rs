@@ -248,6 +248,16 @@ impl<const D: usize> NodeExchange<D> {
         &self.inner
     }
 
+    /// Ranks that get a message from this rank in each exchange.
+    pub fn send_ranks(&self) -> &[usize] {
+        &self.send_ranks
+    }
+
+    /// Number of values of a field in these messages together.
+    pub fn values_sent(&self) -> usize {
+        self.sends.iter().flatten().map(|shared| shared.count).sum()
+    }
+
     /// Fills the halos of `fields` with the owners' values, and sets odd fields to zero on their
     /// mirrors. `patches` are the patches of this rank, in order.
     ///

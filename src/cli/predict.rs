@@ -8,9 +8,11 @@ use flyer_mpm::driver::output::wrap::warning;
 use flyer_mpm::input;
 use flyer_mpm::input::input_file;
 use flyer_mpm::perf_model::calibrate;
-use flyer_mpm::perf_model::{Against, Machine, Network, forecast, machine_table, ranks_to, table};
+use flyer_mpm::perf_model::{
+    Against, Machine, Network, Work, forecast, machine_table, ranks_to, table,
+};
 use flyer_mpm::scene::{CellSize, CheckedScene};
-use flyer_mpm::simulation::Preview;
+use flyer_mpm::simulation::{Preview, may_skip};
 use serde_json::Value;
 
 use crate::cli::PredictArgs;
@@ -46,7 +48,7 @@ pub fn calibrate(comm: &dyn Comm, order: &Order) -> Outcome<()> {
     // rank 0 checks everything that could fail before it sends the scene to the other ranks
     let mine = mine.and_then(|bytes| {
         if comm.rank() == 0 {
-            check_line(&input::parse(&bytes, &name, sets).map_err(bad)?, "calibrate")?;
+            input::parse(&bytes, &name, sets).map_err(bad)?;
             input_file::check_place(output)
                 .map_err(|fault| bad(format!("{}: {fault}", output.display())))?;
             check_target(output, "a machine file of `flyer-mpm perf calibrate`", |text| {
@@ -101,22 +103,9 @@ pub fn calibrate(comm: &dyn Comm, order: &Order) -> Outcome<()> {
     Ok(())
 }
 
-/// Refuses a scene in two dimensions: the performance model counts cells and ghosts along one
-/// direction.
-fn check_line(scene: &CheckedScene, command: &str) -> Outcome<()> {
-    match scene.dimension {
-        1 => Ok(()),
-        d => Err(bad(format!(
-            "{}: {command}: domain.lower has {d} numbers; allowed: a scene on a line",
-            scene.file
-        ))),
-    }
-}
-
 /// Predicts the performance of a scene, or compares predictions with studies.
 pub fn predict(args: &PredictArgs) -> Outcome<String> {
     let (bytes, checked) = read_scene(&args.scene, false)?;
-    check_line(&checked, "predict")?;
     let machine = Machine::read(&args.machine).map_err(bad)?;
     machine.fits(&checked, &args.machine).map_err(bad)?;
     let network = Network::parse(&args.network, &machine.network).map_err(bad)?;
@@ -127,10 +116,15 @@ pub fn predict(args: &PredictArgs) -> Outcome<String> {
         let ranks = ranks_to(&args.ranks);
         let forecast = forecast(&machine, &network, &checked, &ranks, threads);
         let head = format!(
-            "{}: {} particles, {} cells, about {steps:.0} steps, every particle computed\n",
+            "{}: {} particles, {} cells, about {steps:.0} steps; {}; a checkpoint has {:.3} MB\n",
             checked.scene.title,
             checked.particles,
-            checked.cell_count()
+            checked.cell_count(),
+            match may_skip(&checked) {
+                true => "patches at rest are skipped until a wave arrives",
+                false => "every particle computed",
+            },
+            1e-6 * Work::new(&checked).checkpoint_bytes
         );
         return Ok(head + &table(&machine, &network, &forecast, steps));
     }
@@ -142,7 +136,6 @@ pub fn predict(args: &PredictArgs) -> Outcome<String> {
         sets.push("decomposition.skip_quiescent=false".into());
         let file = args.scene.scene.display().to_string();
         let scene = input::parse(&bytes, &file, &sets).map_err(bad)?;
-        check_line(&scene, "predict")?;
         machine.fits(&scene, &args.machine).map_err(bad)?;
         all.extend(study.compare(&machine, &network, &scene, path).map_err(bad)?);
     }
@@ -168,10 +161,17 @@ fn coarsened(scene: &CheckedScene) -> Option<(CheckedScene, f64)> {
         return None;
     }
     let least = scene.particles.div_ceil(MOST_PARTICLES) as usize;
-    let factors = (least..least * 16).filter(|k| scene.cells[0].is_multiple_of(*k));
+    // particles grow with the power of the dimension
+    let least = (least as f64).powf(1.0 / scene.dimension as f64).ceil() as usize;
+    let divides = |k: &usize| scene.cells.iter().all(|cells| cells.is_multiple_of(*k));
+    let factors = (least..least * 16).filter(divides);
     factors.take(8).find_map(|k| {
         let mut new = scene.scene.clone();
-        new.domain.cell_size = CellSize::Uniform(scene.cell_size[0] * k as f64);
+        let sizes: Vec<f64> = scene.cell_size.iter().map(|size| size * k as f64).collect();
+        new.domain.cell_size = match sizes[..] {
+            [size] => CellSize::Uniform(size),
+            _ => CellSize::PerDirection(sizes),
+        };
         new.domain.patches = None;
         input::check(new, &scene.file).ok().map(|checked| (checked, k as f64))
     })

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use flyer_mpm::perf_model::Machine;
 use flyer_mpm::study::scaling::{ScalingError, ScalingKind, ScalingOptions, ScalingPlan};
 use flyer_mpm::study::scaling::{files, table};
 
@@ -54,6 +55,10 @@ pub struct ScalingArgs {
     #[arg(long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
+    /// Constants of the machine from `perf calibrate`: the model's times beside the measured ones.
+    #[arg(long, value_name = "FILE")]
+    pub machine: Option<PathBuf>,
+
     /// Physical cores of the machine [default: the processors that this process may use].
     #[arg(long, value_name = "N", value_parser = count)]
     pub cores: Option<usize>,
@@ -69,7 +74,12 @@ pub fn scaling(args: &ScalingArgs) -> Outcome<String> {
         ScalingError::Scene(_) | ScalingError::Folder(_) => bad(error),
         error => (FAILED, error.to_string()),
     };
+    let machine = match &args.machine {
+        Some(file) => Some((Machine::read(file).map_err(bad)?, file.clone())),
+        None => None,
+    };
     let options = ScalingOptions {
+        machine,
         kind: match args.kind {
             Fixed::Strong => ScalingKind::Strong,
             Fixed::Weak => ScalingKind::Weak,

@@ -15,12 +15,22 @@ use crate::simulation::rank_memory;
 /// line and in a plane, where it also has a parallelogram and a second velocity.
 const BYTES_PER_ROW: [u64; 2] = [180, 300];
 
+/// Memory of rank 0 for messages of all ranks, and the part of each of them [bytes]: buffers of MPI, and
+/// what rank 0 gathers.
+const MESSAGES: u64 = 5 << 20;
+const FROM_A_RANK: u64 = 128 << 10;
+
 /// Estimated memory of `rank` of `ranks` in a run with `threads` threads a rank [bytes]. Rank 0 also
-/// holds the table of a profile.
+/// holds the table of a profile, and what other ranks send it.
 pub fn needed_memory(scene: &CheckedScene, rank: usize, ranks: usize, threads: usize) -> u64 {
-    let rows = if rank == 0 { most_particles(scene).min(scene.particles) } else { 0 };
+    let own = rank_memory(scene, rank, ranks, threads);
+    if rank > 0 {
+        return own;
+    }
+    let rows = most_particles(scene).min(scene.particles);
     let table = BYTES_PER_ROW[scene.dimension - 1].saturating_mul(rows);
-    rank_memory(scene, rank, ranks, threads).saturating_add(table)
+    let messages = if ranks > 1 { MESSAGES + FROM_A_RANK * ranks as u64 } else { 0 };
+    own.saturating_add(table).saturating_add(messages)
 }
 
 /// Memory of one rank, and what its machine has left [bytes]; `available` is 0 where that is not

@@ -1,10 +1,10 @@
 //! The time of a step: counts times measured constants.
 
 use super::fit::dot;
-use super::load::{RankWork, Share, Work};
+use super::load::{RankWork, Sent, Share, Work};
 use super::machine::Machine;
 use super::network::Network;
-use crate::scene::FilterHalo;
+use crate::scene::{CheckedScene, FilterHalo};
 
 /// Predicted time of a step for one distribution of the work.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +33,32 @@ pub struct Prediction {
     pub bytes: f64,
     /// Computing time of the busiest rank over the mean of all ranks \[-\].
     pub imbalance: f64,
+    /// Fraction of the particles that a step does not compute, as their patches are quiescent \[-\].
+    pub skipped: f64,
+    /// Memory of the rank that needs most, without outputs \[B\].
+    pub memory: u64,
+}
+
+impl Prediction {
+    /// Means over several times of a run; the most memory.
+    fn mean(all: &[Prediction]) -> Prediction {
+        let mean =
+            |of: &dyn Fn(&Prediction) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
+        let step = mean(&|p| p.step);
+        let of_time = |of: fn(&Prediction) -> f64| mean(&|p| of(p) * p.step) / step;
+        Prediction {
+            step,
+            compute: of_time(|p| p.compute),
+            exchange: of_time(|p| p.exchange),
+            wait: of_time(|p| p.wait),
+            messages: mean(&|p| p.messages),
+            bytes: mean(&|p| p.bytes),
+            imbalance: of_time(|p| p.imbalance),
+            skipped: mean(&|p| p.skipped),
+            memory: all.iter().map(|p| p.memory).max().unwrap_or(0),
+            ..all[0].clone()
+        }
+    }
 }
 
 /// Predicts the time of a step with `network` between all ranks.
@@ -43,41 +69,38 @@ pub fn predict_with(
     share: &Share,
 ) -> Prediction {
     let works = work.rank_works(share, machine.coefficients.cache);
-    let (ranks, working) = (share.ranks, works.len());
-    let node_workers = (working * share.threads.min(share.patches.len())).min(machine.cores);
-    let exchanges = [
-        work.schedule.row_exchanges,
-        if share.halo == FilterHalo::Exchange { work.schedule.node_exchanges } else { 0.0 },
-    ];
+    let (ranks, layout) = (share.ranks, &share.layout);
+    let node_workers = (layout.working * share.threads.min(layout.patches)).min(machine.cores);
+    let exchanges = work.exchanges(share);
     let forks = match share.threads {
         1 => 0.0,
-        _ if share.patches.len() == 1 => 0.0,
-        _ => work.schedule.forks(share.halo),
+        _ if layout.patches == 1 => 0.0,
+        _ => work.schedule.forks(layout.halo),
     };
     let c = &machine.coefficients;
     let mut total = Total::default();
-    for (k, rank) in works.iter().enumerate() {
+    for (rank, Sent { messages: sent, bytes }) in works.iter().zip(work.sent(share)) {
         let slowing = machine.slowing(node_workers, rank.cold);
-        let mine = (share.starts[k + 1] - share.starts[k]) as f64;
         let compute = slowing * dot(&rank.compute, &c.compute)
-            + forks * (machine.fork_join + mine * machine.fork_patch);
-        let sent: f64 = (0..2).map(|x| exchanges[x] * rank.neighbours[x]).sum();
+            + forks * (machine.fork_join + rank.patches * machine.fork_patch);
         let calls: f64 = (0..2).filter(|&x| rank.neighbours[x] > 0.0).map(|x| exchanges[x]).sum();
         let packing =
             slowing * dot(&rank.serial, &c.serial) + sent * network.overhead + calls * network.call;
         let inner = if work.overlap { slowing * dot(&rank.inner, &c.compute) } else { 0.0 };
         let flight = flight(network, rank, exchanges, inner);
-        total.add(compute, packing, flight, sent, exchanges[0] * rank.bytes[0] + rank.bytes[1]);
+        total.add(compute, packing, flight, sent, bytes);
     }
+    // of very many ranks, some stand for all
+    let total = total.of_all(layout.working as f64 / works.len().max(1) as f64);
     let reduction = network.reduction(ranks);
     let step = total.longest + reduction;
     let all = step * ranks as f64;
     Prediction {
         ranks,
         threads: share.threads,
-        patches: share.patches.len(),
-        working,
-        halo: share.halo,
+        patches: layout.patches,
+        working: layout.working,
+        halo: layout.halo,
         step,
         compute: total.compute / all,
         exchange: total.packing / all,
@@ -85,6 +108,8 @@ pub fn predict_with(
         messages: total.sent,
         bytes: total.bytes,
         imbalance: total.busiest * ranks as f64 / total.compute.max(f64::MIN_POSITIVE),
+        skipped: share.skipped(),
+        memory: share.most_memory(),
     }
 }
 
@@ -107,6 +132,17 @@ impl Total {
         self.bytes += bytes;
         self.busiest = self.busiest.max(compute);
         self.longest = self.longest.max(compute + packing + flight);
+    }
+
+    /// The sums of `times` as many ranks.
+    fn of_all(self, times: f64) -> Self {
+        Total {
+            compute: self.compute * times,
+            packing: self.packing * times,
+            sent: self.sent * times,
+            bytes: self.bytes * times,
+            ..self
+        }
     }
 }
 
@@ -131,6 +167,22 @@ pub fn predict(machine: &Machine, network: &Network, work: &Work, share: &Share)
     predict_with(machine, if within { &machine.network } else { network }, work, share)
 }
 
+/// Predicts the mean time of a step of a run of `scene`, whose work is `work`; `halo` replaces the
+/// method that the program chooses.
+pub fn predict_run(
+    machine: &Machine,
+    network: &Network,
+    (scene, work): (&CheckedScene, &Work),
+    [ranks, threads]: [usize; 2],
+    halo: Option<FilterHalo>,
+) -> Prediction {
+    let at = |time: f64| {
+        predict(machine, network, work, &Work::share(scene, ranks, threads, halo, time))
+    };
+    let all: Vec<Prediction> = Work::times(scene).into_iter().map(at).collect();
+    Prediction::mean(&all)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -145,8 +197,10 @@ mod tests {
     }
 
     fn on(machine: &Machine, network: &Network, ranks: usize, halo: FilterHalo) -> Prediction {
-        let work = Work::new(&flyer(&["decomposition.skip_quiescent=false"]));
-        let share = work.share(ranks.max(8), ranks, 1, halo);
+        let patches = format!("domain.patches=[{}]", ranks.max(8));
+        let scene = flyer(&["decomposition.skip_quiescent=false", &patches]);
+        let work = Work::new(&scene);
+        let share = Work::share(&scene, ranks, 1, Some(halo), 0.0);
         predict_with(machine, network, &work, &share)
     }
 
@@ -216,8 +270,9 @@ mod tests {
             assert!((p.compute + p.exchange + p.wait - 1.0).abs() < 1e-9, "{p:?}");
             assert!(p.imbalance >= 1.0 && p.working <= ranks);
         }
-        let work = Work::new(&flyer(&[]));
-        let share = work.share(4, 100, 1, FilterHalo::Exchange);
+        let scene = flyer(&["domain.patches=[4]"]);
+        let work = Work::new(&scene);
+        let share = Work::share(&scene, 100, 1, Some(FilterHalo::Exchange), 0.0);
         let p = predict_with(&machine(), &Network::assumed(), &work, &share);
         assert_eq!(p.working, 4);
         assert!(p.wait > 0.9, "{p:?}");
@@ -225,11 +280,13 @@ mod tests {
 
     #[test]
     fn two_threads_share_patches_but_not_one() {
-        let work = Work::new(&flyer(&["decomposition.skip_quiescent=false"]));
         let mut quick = machine();
         quick.fork_join = 0.0;
-        let step = |patches, threads| {
-            let share = work.share(patches, 1, threads, FilterHalo::Exchange);
+        let step = |patches: usize, threads| {
+            let patches = format!("domain.patches=[{patches}]");
+            let scene = flyer(&["decomposition.skip_quiescent=false", &patches]);
+            let work = Work::new(&scene);
+            let share = Work::share(&scene, 1, threads, Some(FilterHalo::Exchange), 0.0);
             predict_with(&quick, &Network::assumed(), &work, &share).step
         };
         assert_eq!(step(1, 2), step(1, 1));

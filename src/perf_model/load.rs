@@ -1,49 +1,33 @@
 //! Distribution of the work: patches of a scene with their ghosts and halos, and their ranks.
 
-use decomp::{assign_patches, choose_cuts};
-
 use super::machine::{COMPUTE, SERIAL};
-use super::particle_density::Terrain;
 use super::schedule::StepCounts;
 use crate::effects;
 use crate::scene::{CheckedScene, FilterHalo};
-use crate::simulation::patch_counts;
+use crate::simulation::{
+    CountedLayout, CountedPatch, CountedRank, LEAST_CELLS, WantedLayout, count_layout, may_skip,
+    patch_counts,
+};
 use crate::solver::StencilRadius;
+
+/// Number of times in a run at which quiescent patches are counted.
+const TIMES: usize = 8;
 
 /// Properties of a scene that determine the time of a step.
 #[derive(Clone, Debug)]
 pub struct Work {
-    /// Particles over the cells.
-    pub terrain: Terrain,
+    /// Number of particles \[-\].
+    pub particles: f64,
     /// Counts of a step.
     pub schedule: StepCounts,
     /// Reach of the particles on the grid.
     pub reach: StencilRadius,
     /// Memory of a particle with its weights \[B\].
     pub row_bytes: f64,
-    /// Size of a ghost particle in a message \[B\].
-    pub ghost_bytes: f64,
     /// Whether inner patches are computed while messages are in flight.
     pub overlap: bool,
-    /// Distance at which moving material activates a patch \[cells\]; 0 if no patch is quiescent.
-    notice: f64,
-    /// Whether loads are balanced by measured cost.
-    evened: bool,
-}
-
-/// A patch.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PatchWork {
-    lower: f64,
-    upper: f64,
-    /// Number of own particles \[-\].
-    pub rows: f64,
-    /// Number of ghost particles \[-\].
-    pub ghosts: f64,
-    /// Number of nodes on which the patch computes \[-\].
-    pub nodes: f64,
-    /// Number of nodes with values from other patches \[-\].
-    pub halo: f64,
+    /// Size of a checkpoint, all ranks together \[B\].
+    pub checkpoint_bytes: f64,
 }
 
 /// One distribution of a scene over ranks.
@@ -53,17 +37,15 @@ pub struct Share {
     pub ranks: usize,
     /// Threads of each rank.
     pub threads: usize,
-    /// How filters get values outside of a patch.
-    pub halo: FilterHalo,
-    /// All patches.
-    pub patches: Vec<PatchWork>,
-    /// First patch of each rank that has patches, and the end of the last.
-    pub starts: Vec<usize>,
+    /// Patches and messages of the ranks.
+    pub layout: CountedLayout,
 }
 
 /// Work of one rank in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RankWork {
+    /// Number of its patches \[-\].
+    pub patches: f64,
     /// Numbers of the things that the busiest thread computes, in the order of [`COMPUTE`] \[-\].
     pub compute: [f64; COMPUTE.len()],
     /// Part of these numbers on patches that need no data from other ranks \[-\].
@@ -71,10 +53,9 @@ pub struct RankWork {
     /// Numbers of the things that the rank packs, copies and unpacks, in the order of [`SERIAL`]
     /// \[-\].
     pub serial: [f64; SERIAL.len()],
-    /// Number of ranks from which it receives ghost particles, and nodal values \[-\].
+    /// Number of ranks to which it sends ghost particles, and nodal values \[-\].
     pub neighbours: [f64; 2],
-    /// Bytes received in one exchange of ghost particles, and in all exchanges of nodal values
-    /// \[B\].
+    /// Bytes sent in one exchange of ghost particles, and in all exchanges of nodal values \[B\].
     pub bytes: [f64; 2],
     /// Fraction of its particles that do not stay in cache \[-\].
     pub cold: f64,
@@ -84,196 +65,159 @@ impl Work {
     /// The work of a scene.
     #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
     pub fn new(scene: &CheckedScene) -> Self {
-        let (stepper, terrain) = (effects::stepper::<1>(scene), Terrain::new(scene));
-        let reach = stepper.reach(terrain.longest).expect("the scene check refuses longer ones");
-        let columns = &stepper.columns.specs;
-        let ghost_columns = columns.iter().filter(|c| c.ghost).count();
-        let options = &scene.scene.decomposition;
+        let (columns, state_bytes, reach) = match scene.dimension {
+            1 => particle_sizes::<1>(scene),
+            _ => particle_sizes::<2>(scene),
+        };
+        let reach = reach.expect("the scene check refuses longer particles");
+        let weights = (1 + scene.dimension) * reach.nodes.pow(scene.dimension as u32);
         Work {
-            schedule: StepCounts::of(&scene.scene.method),
+            particles: scene.particles as f64,
+            schedule: StepCounts::of(scene),
             // columns, weights and their gradients, index of the first node, cell and id
-            row_bytes: 8.0 * (columns.len() + 2 * reach.nodes + 2) as f64,
-            // patch and kind, id, cell, columns
-            ghost_bytes: 8.0 * (3 + ghost_columns) as f64,
-            notice: if scene.skips_quiet() { stepper.influence_radius(reach) as f64 } else { 0.0 },
-            overlap: options.overlap,
-            evened: options.balance.every > 0 && options.balance.cost.measures_time(),
+            row_bytes: 8.0 * (columns + weights + 2) as f64,
+            overlap: scene.scene.decomposition.overlap,
             reach,
-            terrain,
+            checkpoint_bytes: scene.particles as f64 * state_bytes as f64,
         }
     }
 
-    /// Halo method that the program chooses for this number of patches.
-    pub fn chosen_halo(
-        &self,
-        scene: &CheckedScene,
-        patches: usize,
-        ranks: usize,
-        threads: usize,
-    ) -> FilterHalo {
-        let narrowest = self.terrain.cells / patches.max(1);
-        let choose = || FilterHalo::choose(self.reach, narrowest, ranks * threads);
-        scene.scene.decomposition.filter_halo.unwrap_or_else(choose)
-    }
-
-    /// Number of patches that the program creates.
-    pub fn patches(scene: &CheckedScene, ranks: usize, threads: usize) -> usize {
-        patch_counts(scene, ranks, threads)[0]
-    }
-
-    /// Number of patches in the scene file, else the largest number that the program creates.
+    /// Largest number of patches: that of the scene file, else the number with the narrowest patches.
     pub fn most_patches(scene: &CheckedScene) -> usize {
         match &scene.scene.domain.patches {
-            Some(patches) => patches[0],
-            None => choose_cuts([scene.cells[0]], usize::MAX, crate::simulation::LEAST_CELLS)[0],
+            Some(patches) => patches.iter().product(),
+            None => {
+                let cells = scene.cells.iter().map(|n| (n / LEAST_CELLS).max(1));
+                cells.product::<usize>().max(patch_counts(scene, 1, 1).iter().product())
+            }
         }
     }
 
-    /// Depth of the ghost layer \[cells\].
-    fn depth(&self, halo: FilterHalo) -> f64 {
-        (self.reach.cells() + if halo == FilterHalo::Redundant { self.reach.deeper() } else { 0 })
-            as f64
+    /// Times of a run \[s\] at which the distribution differs: several if patches may be quiescent.
+    pub fn times(scene: &CheckedScene) -> Vec<f64> {
+        let count = if may_skip(scene) { TIMES } else { 1 };
+        let end = scene.scene.time.end;
+        (0..count).map(|k| end * (k as f64 + 0.5) / count as f64).collect()
     }
 
-    /// Distributes the scene like the program: patches of equal width, consecutive ones on a rank.
-    pub fn share(&self, patches: usize, ranks: usize, threads: usize, halo: FilterHalo) -> Share {
-        let (cells, depth) = (self.terrain.cells, self.depth(halo));
-        let computed = if halo == FilterHalo::Redundant { self.reach.deeper() as f64 } else { 0.0 };
-        let cut = |k: usize| (k * cells / patches) as f64;
-        let all: Vec<PatchWork> = (0..patches)
-            .map(|k| {
-                let (lower, upper) = (cut(k), cut(k + 1));
-                let t = &self.terrain;
-                let filled = t.filled_in(lower - computed, upper + computed);
-                let sides = f64::from(u8::from(k > 0 || t.is_joined()))
-                    + f64::from(u8::from(k + 1 < patches || t.is_joined()));
-                PatchWork {
-                    lower,
-                    upper,
-                    rows: t.particles_in(lower, upper),
-                    ghosts: t.particles_in(lower - depth, lower)
-                        + t.particles_in(upper, upper + depth),
-                    nodes: filled,
-                    halo: if halo == FilterHalo::Redundant {
-                        0.0
-                    } else {
-                        sides * (self.reach.halo() as f64 + 0.5)
-                    },
-                }
-            })
-            .collect();
-        // a patch has a cost besides its particles, and loads are balanced by time
-        let weight = |p: &PatchWork| match self.evened {
-            true => (p.rows + 0.5 * (p.ghosts + p.nodes)).ceil() as u64 + 8,
-            false => p.rows.round() as u64,
-        };
-        let weights: Vec<u64> = all.iter().map(weight).collect();
-        let given = assign_patches(&weights, ranks);
-        let mut starts: Vec<usize> =
-            (0..patches).filter(|&k| k == 0 || given[k] != given[k - 1]).collect();
-        starts.push(patches);
-        Share { ranks, threads, halo, patches: all, starts }
+    /// Distributes the scene as the program does, at a `time` of the run \[s\]; at 0, before a first
+    /// balance of the loads. `halo` replaces the method that the program chooses.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
+    pub fn share(
+        scene: &CheckedScene,
+        ranks: usize,
+        threads: usize,
+        halo: Option<FilterHalo>,
+        time: f64,
+    ) -> Share {
+        let wanted = WantedLayout { ranks, threads, halo, longest: None, time };
+        Self::share_of(scene, &wanted).expect("the scene check refuses longer particles")
     }
 
-    /// Work of each rank that has patches. `cache`: effective cache sizes for particles and for
-    /// patches \[B\].
+    /// Distributes the scene as `wanted`; `None` if particles are longer than any stencil.
+    pub fn share_of(scene: &CheckedScene, wanted: &WantedLayout) -> Option<Share> {
+        let layout = count_layout(scene, wanted)?;
+        Some(Share { ranks: wanted.ranks, threads: wanted.threads, layout })
+    }
+
+    /// Work of each counted rank. `cache`: effective cache sizes for particles and for patches
+    /// \[B\].
     pub fn rank_works(&self, share: &Share, cache: [f64; 2]) -> Vec<RankWork> {
-        let count = share.starts.len() - 1;
-        (0..count).map(|r| self.rank_work(share, r, cache)).collect()
+        share.layout.ranks.iter().map(|rank| self.rank_work(share, rank, cache)).collect()
     }
 
-    fn rank_work(&self, share: &Share, r: usize, cache: [f64; 2]) -> RankWork {
-        let mine = &share.patches[share.starts[r]..share.starts[r + 1]];
-        let (first, last) = (mine[0].lower, mine[mine.len() - 1].upper);
-        let (depth, schedule) = (self.depth(share.halo), &self.schedule);
-        let seen = depth.max(self.notice) + 1.0;
-        let alone = share.starts.len() == 2;
-        let end = self.terrain.cells as f64;
-        let joined = self.terrain.is_joined();
-        // cells within `reach` of a patch that belong to other ranks, below and above
-        let foreign = |p: &PatchWork, reach: f64| {
-            let below = (first - (p.lower - reach)).max(0.0).min(reach);
-            let above = (p.upper + reach - last).max(0.0).min(reach);
-            if alone {
-                return [0.0; 2];
-            }
-            let below = if joined { below } else { below.min(first) };
-            let above = if joined { above } else { above.min(end - last) };
-            [below, above]
-        };
-        let rows: f64 = mine.iter().map(|p| p.rows).sum();
-        let ghosts: f64 = mine.iter().map(|p| p.ghosts).sum();
+    fn rank_work(&self, share: &Share, rank: &CountedRank, cache: [f64; 2]) -> RankWork {
+        let (schedule, halo) = (&self.schedule, share.layout.halo);
+        let sum = |of: fn(&CountedPatch) -> u64| rank.patches.iter().map(of).sum::<u64>() as f64;
+        let (rows, ghosts) = (sum(|p| p.own), sum(|p| p.ghosts));
+        let active = || rank.patches.iter().filter(|p| !p.is_quiescent);
         // each thread sweeps through all of its particles at least once per step
-        let threads = share.threads.min(mine.len()) as f64;
-        let swept = (rows + ghosts) / threads * self.row_bytes;
+        let threads = share.threads.min(rank.patches.len()).max(1) as f64;
+        let swept: f64 = active().map(|p| (p.own + p.ghosts) as f64).sum();
+        let swept = swept / threads * self.row_bytes;
         let [cold, cold_patch] = cache.map(|cache| cold_share(swept, cache));
-        let features = |p: &PatchWork| [p.rows, cold * p.rows, p.ghosts, p.nodes, 1.0, cold_patch];
-        let is_inner = |p: &PatchWork| foreign(p, seen) == [0.0; 2];
-        let inner: Vec<_> = mine.iter().filter(|p| is_inner(p)).map(features).collect();
-        let border: Vec<_> = mine.iter().filter(|p| !is_inner(p)).map(features).collect();
-        let inner = busiest(&inner, share.threads);
-        let border = busiest(&border, share.threads);
-        let compute = std::array::from_fn(|k| inner[k] + border[k]);
-        let halo: f64 = mine.iter().map(|p| p.halo).sum();
-        let exchanges = schedule.exchanges(share.halo);
-        let sends = schedule.row_exchanges;
-        let serial = [
-            sends * rows,
-            sends * ghosts,
-            schedule.node_fields * halo,
-            exchanges * mine.len() as f64,
-            exchanges,
-            1.0,
-        ];
-        // a particle travels once, however many patches of the rank see it
-        let [below, above] = mine.iter().map(|p| foreign(p, depth)).fold(
-            [0.0f64; 2],
-            |[below, above], [other_below, other_above]| {
-                [below.max(other_below), above.max(other_above)]
-            },
-        );
-        let foreign_rows = self.terrain.particles_in(first - below, first)
-            + self.terrain.particles_in(last, last + above);
-        let reach = self.reach.halo() as f64;
-        let foreign_nodes: f64 = mine.iter().map(|p| foreign(p, reach).iter().sum::<f64>()).sum();
-        let node_bytes = match share.halo {
-            FilterHalo::Exchange => 8.0 * schedule.node_fields * foreign_nodes,
-            FilterHalo::Redundant => 0.0,
+        let features = |p: &CountedPatch| {
+            let own = p.own as f64;
+            [own, cold * (p.own + p.ghosts) as f64, p.ghosts as f64, p.nodes, 1.0, cold_patch]
         };
+        let of = |is_inner: bool| {
+            let some: Vec<_> = active().filter(|p| p.is_inner == is_inner).map(features).collect();
+            busiest(&some, share.threads)
+        };
+        let (inner, border) = (of(true), of(false));
+        let exchanges = schedule.exchanges(halo);
+        let sends = schedule.row_exchanges;
         RankWork {
-            compute,
+            patches: rank.patches.len() as f64,
+            compute: std::array::from_fn(|k| inner[k] + border[k]),
             inner,
-            serial,
-            neighbours: [self.neighbours(share, r, seen), self.neighbours(share, r, reach + 1.0)],
-            bytes: [foreign_rows * self.ghost_bytes, node_bytes],
+            serial: [
+                sends * rows,
+                sends * ghosts,
+                schedule.node_fields * sum(|p| p.halo),
+                exchanges * rank.patches.len() as f64,
+                exchanges,
+                1.0,
+            ],
+            neighbours: rank.takers.map(|takers| takers as f64),
+            bytes: [rank.particle_bytes as f64, schedule.node_fields * rank.field_bytes as f64],
             cold,
         }
     }
+}
 
-    /// Number of ranks with cells within `reach` of those of rank `r`.
-    fn neighbours(&self, share: &Share, r: usize, reach: f64) -> f64 {
-        let count = share.starts.len() - 1;
-        let mine = &share.patches[share.starts[r]..share.starts[r + 1]];
-        let (first, last) = (mine[0].lower, mine[mine.len() - 1].upper);
-        let end = self.terrain.cells as f64;
-        // rank that owns a cell
-        let rank_of = |cell: f64| {
-            let patch = share.patches.partition_point(|p| p.upper <= cell);
-            share.starts.partition_point(|&s| s <= patch.min(share.patches.len() - 1)) - 1
-        };
-        let lowest = rank_of((first - reach).max(0.0)).min(r);
-        let highest = rank_of((last + reach - 1.0).min(end - 1.0)).max(r);
-        let mut found = highest - lowest;
-        if self.terrain.is_joined() {
-            if first - reach < 0.0 {
-                found += count - rank_of((first - reach + end).max(0.0)).min(count);
-            }
-            if last + reach > end {
-                found += rank_of((last + reach - 1.0 - end).min(end - 1.0)) + 1;
-            }
-        }
-        found.min(count - 1) as f64
+/// Messages and bytes that a rank sends in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sent {
+    /// Number of messages \[-\].
+    pub messages: f64,
+    /// Size of these messages \[B\].
+    pub bytes: f64,
+}
+
+impl Work {
+    /// Numbers of exchanges of ghost particles and of nodal values in a step \[-\].
+    pub fn exchanges(&self, share: &Share) -> [f64; 2] {
+        let nodes = self.schedule.exchanges(share.layout.halo) - self.schedule.row_exchanges;
+        [self.schedule.row_exchanges, nodes]
     }
+
+    /// Messages and bytes of each counted rank in a step.
+    pub fn sent(&self, share: &Share) -> Vec<Sent> {
+        let [particles, nodes] = self.exchanges(share);
+        let of = |rank: &CountedRank| {
+            let [to_particles, to_nodes] = rank.takers.map(|takers| takers as f64);
+            let fields = self.schedule.node_fields * rank.field_bytes as f64;
+            Sent {
+                messages: particles * to_particles + nodes * to_nodes,
+                bytes: particles * rank.particle_bytes as f64 + fields,
+            }
+        };
+        share.layout.ranks.iter().map(of).collect()
+    }
+}
+
+impl Share {
+    /// Fraction of the particles that no step computes \[-\].
+    pub fn skipped(&self) -> f64 {
+        let patches = || self.layout.ranks.iter().flat_map(|rank| &rank.patches);
+        let all: u64 = patches().map(|p| p.own).sum();
+        let skipped: u64 = patches().filter(|p| p.is_quiescent).map(|p| p.own).sum();
+        skipped as f64 / all.max(1) as f64
+    }
+
+    /// Memory of the rank that needs most, without outputs \[B\].
+    pub fn most_memory(&self) -> u64 {
+        self.layout.ranks.iter().map(|rank| rank.memory).max().unwrap_or(0)
+    }
+}
+
+/// Number of columns of a particle, bytes of its state, and the reach of the particles.
+fn particle_sizes<const D: usize>(scene: &CheckedScene) -> (usize, usize, Option<StencilRadius>) {
+    let stepper = effects::stepper::<D>(scene);
+    let columns = &stepper.columns;
+    let reach = stepper.reach(stepper.longest_at_start(scene));
+    (columns.specs.len(), columns.state_bytes(D), reach)
 }
 
 /// Fraction of `swept` bytes of repeatedly swept data that does not stay in a cache of `cache`

@@ -17,18 +17,16 @@ pub mod fit;
 mod load;
 mod machine;
 mod network;
-mod particle_density;
 mod schedule;
 mod table;
 mod validation;
 
-pub use cost::{Prediction, predict, predict_with};
-pub use load::{PatchWork, RankWork, Share, Work, cold_share};
+pub use cost::{Prediction, predict, predict_run, predict_with};
+pub use load::{RankWork, Sent, Share, Work, cold_share};
 pub use machine::{
     Busy, COMPUTE, Coefficients, FORMAT, Machine, MachineError, Quality, SERIAL, SchemeCosts,
 };
 pub use network::{NETWORKS, Network, NetworkError};
-pub use particle_density::Terrain;
 pub use schedule::{StepCounts, method_name};
 pub use table::{Forecast, ScalingLimits, forecast, machine_table, ranks_to, table};
 pub use validation::{Against, Compared, PredictionError};

@@ -1,11 +1,14 @@
 //! Operations of a step, counted: phases, exchanges of ghost particles and of nodal values.
 //!
-//! The order is that of the phases in [`crate::solver`], so that the two can be compared side by
-//! side; a test compares the counts with the timeline of a real run.
+//! The steps of the scene run on a rank without patches: they request all exchanges, but compute and
+//! send nothing.
 
-use crate::scene::{EnergyUpdate, FilterHalo, FrameKind, Method, Stepping, StressUpdate};
-use crate::solver::relaxation;
-use crate::transfer::TransferPlan;
+use decomp::{GhostExchange, GhostReach, IndexBox, Layout, NodeExchange, Serial, SideKind};
+
+use crate::effects;
+use crate::scene::{CheckedScene, FilterHalo, Method, Stepping};
+use crate::solver::World;
+use crate::solver::clock::{Clock, Operations};
 
 /// Counts per step; not whole numbers if an operation is not done in every step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,15 +26,25 @@ pub struct StepCounts {
 }
 
 impl StepCounts {
-    /// Average counts per step of a method.
-    pub fn of(method: &Method) -> Self {
-        let with = ScheduleRecorder::step(method, true);
-        match method.pressure_relaxation {
-            Some(r) if method.stepping == Stepping::Midpoint => {
-                let share = 1.0 / f64::from(r.interval.max(1));
-                with.times(share).plus(ScheduleRecorder::step(method, false).times(1.0 - share))
-            }
-            _ => with,
+    /// Average counts per step of a scene.
+    pub fn of(scene: &CheckedScene) -> Self {
+        let method = &scene.scene.method;
+        // some phases belong to steps with pressure relaxation alone
+        let steps = match method.pressure_relaxation {
+            Some(relaxation) if method.stepping == Stepping::Midpoint => relaxation.interval.max(1),
+            _ => 1,
+        };
+        let counted = match scene.dimension {
+            1 => operations::<1>(scene, steps),
+            _ => operations::<2>(scene, steps),
+        };
+        let per_step = |count: u64| count as f64 / f64::from(steps);
+        StepCounts {
+            row_exchanges: per_step(counted.particle_exchanges),
+            node_exchanges: per_step(counted.node_exchanges),
+            node_fields: per_step(counted.node_fields),
+            phases: per_step(counted.plain_phases + counted.nodal_phases),
+            plain_phases: per_step(counted.plain_phases),
         }
     }
 
@@ -52,117 +65,37 @@ impl StepCounts {
             FilterHalo::Redundant => self.plain_phases + 2.0 * self.row_exchanges,
         }
     }
-
-    fn times(self, factor: f64) -> Self {
-        StepCounts {
-            row_exchanges: self.row_exchanges * factor,
-            node_exchanges: self.node_exchanges * factor,
-            node_fields: self.node_fields * factor,
-            phases: self.phases * factor,
-            plain_phases: self.plain_phases * factor,
-        }
-    }
-
-    fn plus(self, other: Self) -> Self {
-        StepCounts {
-            row_exchanges: self.row_exchanges + other.row_exchanges,
-            node_exchanges: self.node_exchanges + other.node_exchanges,
-            node_fields: self.node_fields + other.node_fields,
-            phases: self.phases + other.phases,
-            plain_phases: self.plain_phases + other.plain_phases,
-        }
-    }
 }
 
-/// Counts phases as [`crate::solver::Nodal`] runs them: an exchange is requested, and done before
-/// the next phase.
-struct ScheduleRecorder {
-    transfer: TransferPlan,
-    masked: bool,
-    /// Whether the relaxation needs the mean volume ratio.
-    ratio: bool,
-    counted: StepCounts,
-    /// Number of fields of the requested exchange; `None`: no request.
-    pending: Option<usize>,
-}
-
-impl ScheduleRecorder {
-    fn step(method: &Method, relaxes: bool) -> StepCounts {
-        let mut step = ScheduleRecorder {
-            transfer: method.transfer.plan(),
-            masked: method.edge_mask.is_some(),
-            ratio: method.pressure_relaxation.is_some()
-                && method.frame == FrameKind::UpdatedLagrangian,
-            counted: StepCounts::default(),
-            pending: None,
-        };
-        match method.stepping {
-            Stepping::Midpoint => step.midpoint(method, relaxes),
-            Stepping::Leapfrog => step.leapfrog(method.stress_update),
-        }
-        step.counted
+/// Operations of the first `steps` steps on a rank that has no patch.
+fn operations<const D: usize>(scene: &CheckedScene, steps: u32) -> Operations {
+    let stepper = effects::stepper::<D>(scene);
+    let layout = Layout::new(IndexBox::new([0; D], [1; D]), [[SideKind::Open; 2]; D], [1; D]);
+    let without_patches = 1;
+    let reach = GhostReach { depth: 1, travel: 1, notice: None };
+    let mut particles = GhostExchange::new(&layout, without_patches, reach);
+    let mut nodes = NodeExchange::new(&layout, without_patches, 1, 1);
+    let mut clock = Clock::new();
+    let mut world = World {
+        comm: &Serial,
+        layout: &layout,
+        patches: &mut [],
+        particles: &mut particles,
+        nodes: &mut nodes,
+        inner_particles: &[],
+        inner_nodes: &[],
+        filter: FilterHalo::Exchange,
+        overlap: false,
+        sleep: None,
+        pool: None,
+        clock: &mut clock,
+    };
+    for step in 1..=u64::from(steps) {
+        let (dt, stable) = (scene.scene.time.courant, 1.0);
+        let advanced = stepper.advance(&mut world, 0.0, dt, stable, step);
+        advanced.expect("no particle has moved too far");
     }
-
-    fn midpoint(&mut self, method: &Method, relaxes: bool) {
-        self.plain(); // start
-        self.counted.row_exchanges += 1.0;
-        self.each(); // scatter
-        self.solve_velocity(relaxes && method.pressure_relaxation.is_some());
-        if method.energy == EnergyUpdate::Compatible {
-            self.solve_work();
-        }
-        self.each(); // gather
-    }
-
-    fn leapfrog(&mut self, stress: StressUpdate) {
-        self.plain(); // start
-        let passes = if stress == StressUpdate::Last { 1 } else { 2 };
-        for _ in 0..passes {
-            self.counted.row_exchanges += 1.0;
-            self.each(); // scatter
-            self.solve_velocity(false);
-            self.each(); // gather, or update stress
-        }
-        self.plain(); // refresh
-    }
-
-    /// The series of velocity, force and, in a step with relaxation, pressure advance together.
-    fn solve_velocity(&mut self, relaxes: bool) {
-        let (order, force) = (self.transfer.order, self.transfer.force_order());
-        let pressure = if relaxes { relaxation::ORDER } else { 0 };
-        let edge = self.masked && force > 1;
-        let others = 1 + usize::from(edge) + usize::from(relaxes && self.ratio);
-        self.sum_series(&[order, force, pressure], others);
-    }
-
-    fn solve_work(&mut self) {
-        self.sum_series(&[self.transfer.force_order()], 0);
-    }
-
-    fn sum_series(&mut self, orders: &[u32], others: usize) {
-        for l in 0..orders.iter().copied().max().unwrap_or(0) {
-            let going = orders.iter().filter(|&&order| order > l).count();
-            self.refresh(going + if l == 0 { others } else { 0 });
-            self.each();
-        }
-    }
-
-    fn refresh(&mut self, fields: usize) {
-        self.pending = Some(fields);
-    }
-
-    fn each(&mut self) {
-        if let Some(fields) = self.pending.take() {
-            self.counted.node_exchanges += 1.0;
-            self.counted.node_fields += fields as f64;
-        }
-        self.counted.phases += 1.0;
-    }
-
-    fn plain(&mut self) {
-        self.counted.phases += 1.0;
-        self.counted.plain_phases += 1.0;
-    }
+    clock.operations
 }
 
 /// Name of a method for tables, such as `cpdi, fmpm 4, midpoint`.

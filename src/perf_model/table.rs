@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::cost::{Prediction, predict};
+use super::cost::{Prediction, predict_run};
 use super::load::Work;
 use super::machine::{COMPUTE, Machine, SERIAL};
 use super::network::Network;
@@ -55,9 +55,7 @@ pub fn forecast(
 ) -> Forecast {
     let work = Work::new(scene);
     let on = |ranks: usize, threads: usize, halo: Option<FilterHalo>| {
-        let patches = Work::patches(scene, ranks, threads);
-        let halo = halo.unwrap_or_else(|| work.chosen_halo(scene, patches, ranks, threads));
-        predict(machine, network, &work, &work.share(patches, ranks, threads, halo))
+        predict_run(machine, network, (scene, &work), [ranks, threads], halo)
     };
     let base = on(1, 1, None);
     let rows = ranks
@@ -127,6 +125,10 @@ pub fn table(machine: &Machine, network: &Network, forecast: &Forecast, steps: f
         "compute %",
         "exchange %",
         "wait %",
+        "skipped %",
+        "messages",
+        "kB",
+        "MB",
         "halo",
         "cheapest",
     ];
@@ -150,11 +152,16 @@ pub fn table(machine: &Machine, network: &Network, forecast: &Forecast, steps: f
             format!("{:.1}", 100.0 * own.compute),
             format!("{:.1}", 100.0 * own.exchange),
             format!("{:.1}", 100.0 * own.wait),
+            format!("{:.1}", 100.0 * own.skipped),
+            number(own.messages / own.working.max(1) as f64),
+            number(1e-3 * own.bytes / own.working.max(1) as f64),
+            number(1e-6 * own.memory as f64),
             halo_name(own.halo).into(),
             cheapest,
         ]);
     }
     let mut text = aligned(&lines);
+    text += "messages and kB that a rank sends in a step, MB of the rank that needs most memory\n";
     text += "* extrapolated beyond what was measured\n";
     let beyond = format!(
         "messages between nodes: {} ({:.2} us, {:.1} GB/s; {})\n",

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::cost::predict;
+use super::cost::predict_run;
 use super::load::Work;
 use super::machine::Machine;
 use super::network::Network;
@@ -34,6 +34,16 @@ struct ValidationRow {
     particles: u64,
     steps: u64,
     wall_seconds: f64,
+    wall_seconds_min: Option<f64>,
+    wall_seconds_max: Option<f64>,
+    bytes_per_step: Option<f64>,
+    messages_per_step: Option<f64>,
+}
+
+impl ValidationRow {
+    fn spread(&self) -> Option<f64> {
+        Some((self.wall_seconds_max? - self.wall_seconds_min?) / self.wall_seconds)
+    }
 }
 
 /// A study that cannot be used.
@@ -61,6 +71,12 @@ pub struct Compared {
     pub predicted: f64,
     /// Measured time of a step: wall time of the loop over its steps \[s\].
     pub measured: f64,
+    /// Difference of the longest and the shortest run over their median \[-\].
+    pub spread: Option<f64>,
+    /// Predicted over counted bytes of all ranks, minus one \[-\]; the counter includes outputs.
+    pub bytes: Option<f64>,
+    /// Predicted over counted messages, minus one \[-\].
+    pub messages: Option<f64>,
     /// Whether there were more workers than cores, which the model does not describe.
     pub oversubscribed: bool,
 }
@@ -125,16 +141,21 @@ impl Against {
                     ),
                 });
             }
-            let halo = work.chosen_halo(scene, patches, ranks, threads);
-            let share = work.share(patches, ranks, threads, halo);
+            let own = predict_run(machine, network, (scene, &work), [ranks, threads], None);
             found.push(Compared {
                 ranks,
                 threads,
                 patches,
                 particles,
-                halo,
-                predicted: predict(machine, network, &work, &share).step,
+                halo: own.halo,
+                predicted: own.step,
                 measured: row.wall_seconds / row.steps as f64,
+                spread: row.spread(),
+                bytes: row.bytes_per_step.filter(|b| *b > 0.0).map(|b| own.bytes / b - 1.0),
+                messages: row
+                    .messages_per_step
+                    .filter(|m| *m > 0.0)
+                    .map(|m| own.messages / m - 1.0),
                 oversubscribed,
             });
         }
@@ -152,7 +173,12 @@ impl Against {
             "predicted us",
             "measured us",
             "deviation %",
+            "spread %",
+            "bytes %",
+            "messages %",
         ];
+        let percent =
+            |value: Option<f64>| value.map_or("-".into(), |v| format!("{:+.1}", 100.0 * v));
         let mut lines = vec![head.map(String::from).to_vec()];
         for c in all {
             let mark = if extrapolated(machine, c.ranks, c.threads) { "*" } else { "" };
@@ -165,7 +191,10 @@ impl Against {
                 halo_name(c.halo).into(),
                 number(c.predicted * 1e6),
                 number(c.measured * 1e6),
-                format!("{:+.1}{note}", 100.0 * c.deviation()),
+                percent(Some(c.deviation())),
+                c.spread.map_or("-".into(), |spread| format!("{:.1}", 100.0 * spread)),
+                percent(c.bytes),
+                percent(c.messages) + note,
             ]);
         }
         let own = all.iter().filter(|c| !c.oversubscribed);

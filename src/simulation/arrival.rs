@@ -113,6 +113,15 @@ impl<const D: usize> FirstArrival<D> {
         (!sources.is_empty()).then_some(FirstArrival { sources, speed, inner, margin })
     }
 
+    /// Earliest time at which a wave can reach a box with these corners [m], in [s].
+    pub fn earliest(&self, corners: &[[f64; D]; 2]) -> f64 {
+        let from = |source: &Source<D>| {
+            let way = gap(&source.corners, corners) - source.gap;
+            if way <= 0.0 { source.delay } else { source.delay + way / self.speed }
+        };
+        self.sources.iter().map(from).fold(f64::INFINITY, f64::min)
+    }
+
     /// Velocity against all approaching waves [m/s] of a point at the initial position `x` [m] that
     /// moves at `velocity` relative to the body [m/s]; negative if it moves with one of the waves.
     /// None if a wave may have arrived by `time` [s], and in the margins.
@@ -189,6 +198,8 @@ mod tests {
         let arrival = FirstArrival { sources: vec![far], speed: 2.0, inner, margin: 1.0 };
         assert_eq!(arrival.against(&[3.0], &[-1.0], 5.4), Some(1.0));
         assert_eq!(arrival.against(&[3.0], &[-1.0], 5.6), None);
+        assert_eq!(arrival.earliest(&[[3.0], [9.0]]), 5.5);
+        assert_eq!(arrival.earliest(&[[-1.5], [9.0]]), 4.0);
         assert_eq!(gap(&[[0.0, 0.0], [1.0, 1.0]], &[[4.0, 5.0], [6.0, 6.0]]), 5.0);
         assert_eq!(gap(&[[0.0], [2.0]], &[[1.0], [3.0]]), 0.0);
     }

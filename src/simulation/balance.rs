@@ -15,11 +15,11 @@ const SAMPLE_EVERY: u64 = 5;
 const MOVE_COST: u64 = 4;
 
 /// Gains below this fraction of the load of the busiest rank are noise.
-const WORTH: f64 = 0.03;
+pub(super) const WORTH: f64 = 0.03;
 
 /// Particles of a rank over the mean, quiescent ones included, above which quiescent patches move
 /// when patches are assigned anew, ...
-const MOST_PARTICLES: f64 = 1.25;
+pub(super) const MOST_PARTICLES: f64 = 1.25;
 
 /// ... and above which they are assigned anew even if the steps gain nothing.
 const CROWDED: f64 = 1.45;

@@ -19,6 +19,7 @@ pub(super) struct ExchangePlan<const D: usize> {
 }
 
 /// How filters obtain values beyond a patch, and the depths that follow.
+#[derive(Clone, Copy)]
 pub(super) struct HaloDepths {
     pub(super) filter: FilterHalo,
     /// Depth of the ghost layer around a patch [cells].
@@ -35,12 +36,18 @@ pub(super) fn halo_depths<const D: usize>(
     workers: usize,
 ) -> HaloDepths {
     let choose = || FilterHalo::choose(reach, layout.narrowest(), workers);
-    let filter = scene.scene.decomposition.filter_halo.unwrap_or_else(choose);
-    let deeper = match filter {
-        FilterHalo::Exchange => 0,
-        FilterHalo::Redundant => reach.deeper(),
-    };
-    HaloDepths { filter, ghosts: reach.cells() + deeper, deeper }
+    HaloDepths::of(scene.scene.decomposition.filter_halo.unwrap_or_else(choose), reach)
+}
+
+impl HaloDepths {
+    /// Depths for a stencil radius.
+    pub(super) fn of(filter: FilterHalo, reach: StencilRadius) -> Self {
+        let deeper = match filter {
+            FilterHalo::Exchange => 0,
+            FilterHalo::Redundant => reach.deeper(),
+        };
+        HaloDepths { filter, ghosts: reach.cells() + deeper, deeper }
+    }
 }
 
 impl<const D: usize> ExchangePlan<D> {
@@ -50,9 +57,9 @@ impl<const D: usize> ExchangePlan<D> {
         layout: &Layout<D>,
         reach: StencilRadius,
         rank: usize,
-        workers: usize,
+        depths: HaloDepths,
     ) -> Self {
-        let HaloDepths { filter, ghosts, deeper } = halo_depths(scene, layout, reach, workers);
+        let HaloDepths { filter, ghosts, deeper } = depths;
         let notice = scene.skips_quiet().then(|| stepper.influence_radius(reach));
         let particles =
             GhostExchange::new(layout, rank, GhostReach { depth: ghosts, travel: 1, notice });

@@ -7,6 +7,7 @@ use super::patches::{count_particles, deal_patches, patch_counts};
 use crate::effects;
 use crate::scene::CheckedScene;
 use crate::solver::memory::PatchSize;
+use crate::solver::{StencilRadius, Stepper};
 
 /// Memory of the program without particles: code, libraries and buffers [bytes].
 const PROGRAM: u64 = 30 << 20;
@@ -40,11 +41,23 @@ fn memory_in<const D: usize>(
     let longest = stepper.longest_at_start(scene);
     let Some(reach) = stepper.reach(longest) else { return scene.memory() / ranks as u64 };
     let ghost_layers = halo_depths(scene, &layout, reach, ranks * threads).ghosts;
+    memory_of(scene, &stepper, &layout, rank, (reach, ghost_layers))
+}
+
+/// Memory of the patches that `rank` has in `layout` [bytes], with ghosts of `ghost_layers` cells.
+pub(super) fn memory_of<const D: usize>(
+    scene: &CheckedScene,
+    stepper: &Stepper<D>,
+    layout: &Layout<D>,
+    rank: usize,
+    (reach, ghost_layers): (StencilRadius, i64),
+) -> u64 {
+    let longest = stepper.longest_at_start(scene);
     let patch = |patch: usize| {
         let cells = &layout.patch(patch);
         let own = count_particles(scene, cells);
         let edges = [cells.extent(0) as u64, cells.extent(D - 1) as u64];
-        let ghosts = seen(scene, &layout, patch, ghost_layers).saturating_sub(own);
+        let ghosts = seen(scene, layout, patch, ghost_layers).saturating_sub(own);
         let size = PatchSize { own, ghosts, cells: edges, ghost_layers };
         stepper.patch_bytes(longest, reach, &size)
     };
@@ -53,7 +66,12 @@ fn memory_in<const D: usize>(
 }
 
 /// Number of particles and images that `patch` sees, its own among them.
-fn seen<const D: usize>(scene: &CheckedScene, layout: &Layout<D>, patch: usize, depth: i64) -> u64 {
+pub(super) fn seen<const D: usize>(
+    scene: &CheckedScene,
+    layout: &Layout<D>,
+    patch: usize,
+    depth: i64,
+) -> u64 {
     let halo = layout.halo(patch, depth);
     let counts = layout.images(depth).into_iter().map(|image| {
         let source: IndexBox<D> = image.source_cells(&halo).intersect(layout.domain());

@@ -80,6 +80,14 @@ fn shared<const D: usize>(cells: [usize; D], given: [usize; D], workers: usize) 
 }
 
 /// Whether a body is at rest and free of stress, so that patches can be quiescent.
+pub fn may_skip(scene: &CheckedScene) -> bool {
+    match scene.dimension {
+        1 => may_sleep::<1>(scene),
+        _ => may_sleep::<2>(scene),
+    }
+}
+
+/// As [`may_skip`], in `D` dimensions.
 pub(super) fn may_sleep<const D: usize>(scene: &CheckedScene) -> bool {
     let mut bodies = scene.scene.bodies.iter().zip(&scene.bodies);
     let velocity = scene.grid_velocity::<D>();
@@ -115,19 +123,25 @@ pub fn initial_particles<const D: usize>(
 
 /// Number of particles in the cells of `cells`, counted without creating them.
 pub(super) fn count_particles<const D: usize>(scene: &CheckedScene, cells: &IndexBox<D>) -> u64 {
+    scene.bodies.iter().map(|body| count_of_body(scene, body, cells)).sum()
+}
+
+/// Number of particles of `body` in the cells of `cells`, counted without creating them.
+pub(super) fn count_of_body<const D: usize>(
+    scene: &CheckedScene,
+    body: &CheckedBody,
+    cells: &IndexBox<D>,
+) -> u64 {
     let x = |a: usize, cell: i64| scene.scene.domain.lower[a] + cell as f64 * scene.cell_size[a];
-    let count = |body: &CheckedBody| match &body.tiling {
-        Some(tiling) => tiling.count_in(particles::cell_box(cells)) as f64,
-        None => (0..D)
-            .map(|a| {
-                let (lower, upper) = (body.lower[a], body.upper[a]);
-                let inside = upper.min(x(a, cells.upper[a])) - lower.max(x(a, cells.lower[a]));
-                inside.max(0.0) / (upper - lower) * body.lattice[a] as f64
-            })
-            .product::<f64>()
-            .round(),
+    if let Some(tiling) = &body.tiling {
+        return tiling.count_in(particles::cell_box(cells)) as u64;
+    }
+    let along = |a: usize| {
+        let (lower, upper) = (body.lower[a], body.upper[a]);
+        let inside = upper.min(x(a, cells.upper[a])) - lower.max(x(a, cells.lower[a]));
+        inside.max(0.0) / (upper - lower) * body.lattice[a] as f64
     };
-    scene.bodies.iter().map(|body| count(body) as u64).sum()
+    (0..D).map(along).product::<f64>().round() as u64
 }
 
 /// Weight of a particle relative to that of an empty cell when the domain is cut.

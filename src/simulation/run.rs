@@ -6,7 +6,7 @@ use decomp::{Census, Comm, Layout};
 
 use super::accounts::{CENSUS_EVERY, Counters, RemovedSums, SideBooks};
 use super::error::RunError;
-use super::exchange_plan::ExchangePlan;
+use super::exchange_plan::{ExchangePlan, halo_depths};
 use super::expected_peaks::ExpectedPeaks;
 use super::good_state::{LastGoodState, Start};
 use super::patches::deal_patches;
@@ -156,14 +156,14 @@ impl<'a, const D: usize> Simulation<'a, D> {
         let blocks = particles::fill(scene, &stepper, &layout, comm.rank(), frame.velocity(0.0));
         let longest = stepper.longest_at_start(scene);
         let reach = stepper.reach(longest).expect("a longer particle is a fault");
-        let workers = comm.size() * threads;
+        let depths = halo_depths(scene, &layout, reach, comm.size() * threads);
         let pool = (threads > 1 && layout.count() > 1).then(|| make_pool(threads));
         let patches = layout.patches_of(comm.rank()).into_iter().zip(blocks);
         let mut simulation = Simulation {
             comm,
             scene,
             patches: patches.map(|(p, block)| Patch::new(&layout, p, block)).collect(),
-            plan: ExchangePlan::new(scene, &stepper, &layout, reach, comm.rank(), workers),
+            plan: ExchangePlan::new(scene, &stepper, &layout, reach, comm.rank(), depths),
             sleep: stepper.sleep(),
             outflow: RemovedSums::new(scene),
             side_books: SideBooks::new(scene, stepper.fastest),
@@ -345,6 +345,11 @@ impl<const D: usize> Simulation<'_, D> {
         self.dt
     }
 
+    /// Greatest extent of a particle along a direction [cells].
+    pub fn longest(&self) -> f64 {
+        self.longest
+    }
+
     /// Patches and the ranks that own them.
     pub fn layout(&self) -> &Layout<D> {
         &self.layout
@@ -435,8 +440,8 @@ impl<const D: usize> Simulation<'_, D> {
     pub(super) fn make_plan(&mut self, reach: StencilRadius) {
         self.tally.migrated += self.plan.particles.take_migrated();
         let (rank, workers) = (self.comm.rank(), self.comm.size() * self.threads);
-        self.plan =
-            ExchangePlan::new(self.scene, &self.stepper, &self.layout, reach, rank, workers);
+        let depths = halo_depths(self.scene, &self.layout, reach, workers);
+        self.plan = ExchangePlan::new(self.scene, &self.stepper, &self.layout, reach, rank, depths);
     }
 
     /// First fault of the step, the same for any layout, at rank 0. Collective.

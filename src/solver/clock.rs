@@ -59,9 +59,26 @@ pub struct Event {
     pub length: u64,
 }
 
+/// Phases and exchanges that a rank has done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Operations {
+    /// Phases over patches outside of an exchange of particles.
+    pub plain_phases: u64,
+    /// Phases over patches from an exchange of particles to the next, if halos are exchanged.
+    pub nodal_phases: u64,
+    /// Exchanges of particles.
+    pub particle_exchanges: u64,
+    /// Exchanges of nodal values.
+    pub node_exchanges: u64,
+    /// Fields in these exchanges.
+    pub node_fields: u64,
+}
+
 /// Clock of a rank.
 #[derive(Clone, Debug)]
 pub struct Clock {
+    /// Phases and exchanges so far.
+    pub operations: Operations,
     /// Time of each activity, in the order of [`Activity::ALL`] [s].
     pub seconds: [f64; Activity::ALL.len()],
     /// Events of the rank, while a timeline is recorded.
@@ -77,6 +94,7 @@ impl Clock {
     /// A clock that starts now.
     pub fn new() -> Self {
         Clock {
+            operations: Operations::default(),
             seconds: [0.0; Activity::ALL.len()],
             events: Vec::new(),
             origin: Instant::now(),

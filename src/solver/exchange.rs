@@ -89,6 +89,7 @@ fn for_each<const D: usize>(
 impl<const D: usize> World<'_, D> {
     /// Runs a phase on every patch that is not quiescent.
     pub fn each(&mut self, name: &'static str, phase: impl Fn(&mut Patch<D>) + Send + Sync) {
+        self.clock.operations.plain_phases += 1;
         let start = self.clock.now();
         let watcher = self.clock.watcher();
         for_each(self.pool, self.patches, Which::All, &|p| watcher.time(name, p, &phase));
@@ -184,6 +185,7 @@ impl Ranks<'_> {
         settle: Settle<'_, D>,
         phase: PatchPhase<'_, D>,
     ) -> Result<(), ParticleError> {
+        self.clock.operations.particle_exchanges += 1;
         let mut result = Ok(());
         self.around(
             "exchange particles",
@@ -304,6 +306,7 @@ impl<const D: usize> Nodal<'_, D> {
             // such a failure ends the run
             Halo::Exchange { failed: Some(_), .. } => {}
             Halo::Exchange { ranks, inner_particles, inner_nodes, particles, plan, failed } => {
+                ranks.clock.operations.nodal_phases += 1;
                 if let Some((particles, settle)) = particles.take() {
                     let (patches, pool) = (&mut *self.patches, self.pool);
                     *failed = ranks
@@ -317,6 +320,8 @@ impl<const D: usize> Nodal<'_, D> {
                         )
                         .err();
                 } else if let Some(fields) = &fields {
+                    ranks.clock.operations.node_exchanges += 1;
+                    ranks.clock.operations.node_fields += fields.len() as u64;
                     ranks.around(
                         "exchange nodes",
                         self.patches,

@@ -3,8 +3,13 @@
 use decomp::Serial;
 use flyer_mpm::input;
 use flyer_mpm::perf_model::Work;
+use flyer_mpm::scene::CheckedScene;
 use flyer_mpm::simulation::Simulation;
 use serde_json::{Value, json};
+
+fn flyer_plate() -> CheckedScene {
+    input::parse(include_bytes!("../../inputs/flyer.json"), "flyer.json", &[]).expect("a scene")
+}
 
 #[test]
 fn each_position_is_a_particle() {
@@ -15,10 +20,11 @@ fn each_position_is_a_particle() {
     body["positions"] = json!((0..80).map(|k| [-4.97e-4 + 6.25e-6 * k as f64]).collect::<Vec<_>>());
     let scene = input::parse(flyer.to_string().as_bytes(), "positions.json", &[]).expect("a scene");
     // it stopped in an assertion: the body was one particle of its whole length
-    let terrain = Work::new(&scene).terrain;
-    assert!((terrain.longest - 0.625).abs() < 0.1, "{}", terrain.longest);
-    let all = terrain.particles_in(0.0, scene.cells[0] as f64);
-    assert!((all - scene.particles as f64).abs() < 1e-6, "{all}");
+    let work = Work::new(&scene);
+    assert_eq!(work.reach.cells(), Work::new(&flyer_plate()).reach.cells());
+    let share = Work::share(&scene, 2, 1, None, 0.0);
+    let patches = share.layout.ranks.iter().flat_map(|rank| &rank.patches);
+    assert_eq!(patches.map(|patch| patch.own).sum::<u64>(), scene.particles);
 }
 
 /// The check and the step have the same room for long particles: up to the limit a scene runs, beyond

@@ -33,9 +33,6 @@ pub enum CalibrateError {
     /// No variant of the scene can run.
     #[error("{0}: no size of this scene runs a few steps; allowed: a scene that `flyer-mpm` runs")]
     NothingRuns(String),
-    /// The scene is in a plane.
-    #[error("{0}: in a plane; allowed: a scene on a line")]
-    Plane(String),
 }
 
 /// One sample of the fit, for a table.
@@ -60,15 +57,12 @@ pub struct Residual {
 ///
 /// # Errors
 ///
-/// If the scene is in a plane, or if no variant of it can run.
+/// If no variant of the scene can run.
 pub fn calibrate(
     comm: &dyn Comm,
     scene: &CheckedScene,
     seconds: f64,
 ) -> Result<Option<(Machine, Vec<Residual>)>, CalibrateError> {
-    if scene.dimension != 1 {
-        return Err(CalibrateError::Plane(scene.file.clone()));
-    }
     // the other ranks must not use memory or cores while rank 0 computes alone
     let mut received = Vec::new();
     if comm.rank() != 0 {
@@ -202,22 +196,23 @@ fn best_cache(samples: &[MeasuredVariant]) -> (Coefficients, Quality) {
 /// Time of a step on several threads beyond its computing, against the number of forks.
 fn fork_sample(machine: &Machine, m: &MeasuredVariant) -> Sample<2> {
     let work = m.work(machine.coefficients.cache);
-    let slowing = machine.slowing(m.share.threads, work.cold);
+    let slowing = machine.slowing(m.variant.share.threads, work.cold);
     let c = &machine.coefficients;
     let known = slowing * (dot(&work.compute, &c.compute) + dot(&work.serial, &c.serial));
-    let forks = m.variant.work.schedule.forks(m.share.halo);
-    let features = [forks, forks * m.share.patches.len() as f64];
+    let forks = m.variant.work.schedule.forks(m.variant.share.layout.halo);
+    let features = [forks, forks * m.variant.share.layout.patches as f64];
     Sample { features, value: m.total - known, whole: m.total }
 }
 
 fn residual(machine: &Machine, m: &MeasuredVariant) -> Residual {
     let none = Network { reduction_level: 0.0, ..Network::assumed() };
-    let predicted = crate::perf_model::predict_with(machine, &none, &m.variant.work, &m.share);
+    let predicted =
+        crate::perf_model::predict_with(machine, &none, &m.variant.work, &m.variant.share);
     Residual {
-        particles: m.variant.work.terrain.particles,
-        patches: m.share.patches.len(),
-        threads: m.share.threads,
-        halo: m.share.halo,
+        particles: m.variant.work.particles,
+        patches: m.variant.share.layout.patches,
+        threads: m.variant.share.threads,
+        halo: m.variant.share.layout.halo,
         measured: m.total,
         fitted: predicted.step,
     }

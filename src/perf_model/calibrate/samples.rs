@@ -3,16 +3,19 @@
 use std::sync::Barrier;
 use std::time::Instant;
 
-use decomp::Serial;
+use decomp::{Serial, choose_cuts};
 
 use crate::input;
 use crate::perf_model::{Busy, RankWork, Share, Work};
 use crate::scene::{CellSize, CheckedScene, FilterHalo};
-use crate::simulation::{LEAST_CELLS, Simulation};
+use crate::simulation::{Compiled, LEAST_CELLS, Simulation};
+use crate::solver::Stepper;
 use crate::solver::clock::Activity;
 
-/// Approximate numbers of particles of the variants.
+/// Approximate numbers of particles of the variants on a line, and in a plane, where a particle has
+/// about ten times the data.
 const SIZES: [f64; 5] = [300.0, 1700.0, 7000.0, 28_000.0, 110_000.0];
+const SIZES_IN_A_PLANE: [f64; 4] = [400.0, 1700.0, 7000.0, 28_000.0];
 
 /// Numbers of patches of the variants.
 const PATCHES: [usize; 4] = [1, 4, 16, 61];
@@ -31,9 +34,9 @@ pub struct Variant {
     scene: CheckedScene,
     /// Work of the variant.
     pub work: Work,
-    patches: usize,
+    /// Distribution over patches.
+    pub share: Share,
     threads: usize,
-    halo: FilterHalo,
 }
 
 /// Measured times of a variant.
@@ -41,8 +44,6 @@ pub struct Variant {
 pub struct MeasuredVariant<'a> {
     /// The variant.
     pub variant: &'a Variant,
-    /// Distribution over patches.
-    pub share: Share,
     /// Time of a step \[s\].
     pub total: f64,
     /// Time of a step in phases over patches \[s\].
@@ -53,7 +54,7 @@ impl MeasuredVariant<'_> {
     /// Work of the single rank; `cache` are the effective cache sizes for particles and patches
     /// \[B\].
     pub fn work(&self, cache: [f64; 2]) -> RankWork {
-        self.variant.work.rank_works(&self.share, cache)[0]
+        self.variant.work.rank_works(&self.variant.share, cache)[0]
     }
 
     /// Keeps the faster of two measurements of the same variant.
@@ -65,76 +66,122 @@ impl MeasuredVariant<'_> {
 }
 
 /// `scene` with `finer` times smaller cells, or with -`finer` times larger cells if negative, and
-/// with `denser` times the particles per cell; `None` if there is no such scene.
+/// with `denser` times the particles per cell along x; `None` if there is no such scene.
 fn sized(scene: &CheckedScene, finer: i64, denser: usize) -> Option<CheckedScene> {
     let mut new = scene.scene.clone();
-    let size = match finer {
-        1.. => scene.cell_size[0] / finer as f64,
-        _ if scene.cells[0] as i64 % finer == 0 => scene.cell_size[0] * -finer as f64,
+    let factor = match finer {
+        1.. => 1.0 / finer as f64,
+        _ if divides(scene, -finer) => -finer as f64,
         _ => return None,
     };
-    new.domain.cell_size = CellSize::Uniform(size);
+    new.domain.cell_size = match scene.cell_size[..] {
+        [size] => CellSize::Uniform(size * factor),
+        _ => CellSize::PerDirection(scene.cell_size.iter().map(|size| size * factor).collect()),
+    };
     for body in &mut new.bodies {
         if body.positions.is_none() {
-            let counts = body.particles_per_cell(scene.dimension);
-            body.particles_per_cell = Some(counts.into_iter().map(|n| n * denser).collect());
+            let mut counts = body.particles_per_cell(scene.dimension);
+            counts[0] *= denser;
+            body.particles_per_cell = Some(counts);
         }
     }
     new.decomposition.skip_quiescent = false;
     input::check(new, &scene.file).ok()
 }
 
-/// Variants with several sizes, patch counts and both halo methods, for this number of threads.
-pub fn variants(scene: &CheckedScene, threads: usize) -> Vec<Variant> {
-    let now = scene.particles.max(1) as f64;
-    let finer = |target: f64| match target / now {
+/// Whether `k` divides the number of cells in each direction.
+fn divides(scene: &CheckedScene, k: i64) -> bool {
+    scene.cells.iter().all(|&cells| cells as i64 % k == 0)
+}
+
+/// How many times finer the cells of `scene` must be for about `target` particles; negative: coarser.
+fn finer(scene: &CheckedScene, target: f64) -> i64 {
+    let ratio = target / scene.particles.max(1) as f64;
+    match ratio.powf(1.0 / scene.dimension as f64) {
         more if more >= 1.0 => more.round() as i64,
         less => {
             let coarser = (1.0 / less).round() as i64;
-            let divides = |k: &i64| scene.cells[0] as i64 % k == 0;
-            -(coarser..4 * coarser).find(divides).unwrap_or(1)
+            -(coarser..4 * coarser).find(|&k| divides(scene, k)).unwrap_or(1)
         }
-    };
-    let mut sizes: Vec<(i64, usize)> = SIZES.map(|target| (finer(target), 1)).to_vec();
-    sizes.iter_mut().filter(|s| s.0 == -1).for_each(|s| s.0 = 1);
+    }
+}
+
+/// Variants with several sizes, patch counts and both halo methods, for this number of threads.
+pub fn variants(scene: &CheckedScene, threads: usize) -> Vec<Variant> {
+    let targets = if scene.dimension == 1 { &SIZES[..] } else { &SIZES_IN_A_PLANE };
+    let mut sizes: Vec<(i64, usize)> = targets.iter().map(|&t| (finer(scene, t), 1)).collect();
     // other particles per cell separate the costs of particles and nodes
-    sizes.push((finer(3500.0).max(1), 2));
+    sizes.push((finer(scene, 3500.0), 2));
+    sizes.iter_mut().filter(|s| s.0 == -1).for_each(|s| s.0 = 1);
     sizes.dedup();
+    let reach = Work::new(scene).reach;
     let mut all = Vec::new();
     for (finer, denser) in sizes {
         let Some(sized) = sized(scene, finer, denser) else { continue };
         let work = Work::new(&sized);
         // another reach would be another method
-        if work.reach != Work::new(scene).reach {
+        if work.reach != reach {
             continue;
         }
-        let most = (sized.cells[0] / LEAST_CELLS).max(1);
-        let mut counts = PATCHES.map(|p| p.min(most)).to_vec();
+        let mut counts = PATCHES.map(|patches| cuts(&sized, patches)).to_vec();
         counts.dedup();
-        for patches in counts.into_iter().filter(|&p| p >= threads) {
+        let number = |cuts: &Vec<usize>| cuts.iter().product::<usize>();
+        for cuts in counts.into_iter().filter(|cuts| number(cuts) >= threads) {
             for halo in [FilterHalo::Exchange, FilterHalo::Redundant] {
                 // a single patch has no neighbour for exchanges
-                if patches == 1 && halo == FilterHalo::Redundant {
+                if number(&cuts) == 1 && halo == FilterHalo::Redundant {
                     continue;
                 }
                 let mut own = sized.clone();
-                own.scene.domain.patches = Some(vec![patches]);
+                own.scene.domain.patches = Some(cuts.clone());
                 own.scene.decomposition.filter_halo = Some(halo);
-                all.push(Variant { scene: own, work: work.clone(), patches, threads, halo });
+                let share = Work::share(&own, 1, threads, None, 0.0);
+                all.push(Variant { scene: own, work: work.clone(), share, threads });
             }
         }
     }
     all
 }
 
+/// Numbers of patches in each direction, about `patches` together.
+fn cuts(scene: &CheckedScene, patches: usize) -> Vec<usize> {
+    match scene.cells[..] {
+        [x, y] => choose_cuts([x, y], patches, LEAST_CELLS).to_vec(),
+        _ => vec![patches.min((scene.cells[0] / LEAST_CELLS).max(1))],
+    }
+}
+
 /// Runs the steps of a variant in batches; gives total and compute time of a step \[s\].
-struct SampleRunner<'a> {
-    simulation: Simulation<'a, 1>,
+struct SampleRunner<'a, const D: usize> {
+    simulation: Simulation<'a, D>,
     end: f64,
     batch: u64,
 }
 
-impl<'a> SampleRunner<'a> {
+/// A run in batches of steps, in any dimension.
+trait Batches {
+    /// Runs one batch; `None` at the end of the run or if the run fails.
+    fn batch(&mut self) -> Option<(f64, f64)>;
+}
+
+/// The run of a variant; `None` if it does not start.
+fn runner<'a>(variant: &'a Variant) -> Option<Box<dyn Batches + 'a>> {
+    fn boxed<'a, const D: usize>(variant: &'a Variant) -> Option<Box<dyn Batches + 'a>>
+    where
+        Stepper<D>: Compiled<D>,
+    {
+        Some(Box::new(SampleRunner::<D>::new(variant)?))
+    }
+    match variant.scene.dimension {
+        1 => boxed::<1>(variant),
+        _ => boxed::<2>(variant),
+    }
+}
+
+impl<'a, const D: usize> SampleRunner<'a, D>
+where
+    Stepper<D>: Compiled<D>,
+{
     fn new(variant: &'a Variant) -> Option<Self> {
         let mut simulation = Simulation::new(&variant.scene, &Serial, variant.threads).ok()?;
         let end = variant.scene.scene.time.end;
@@ -147,10 +194,14 @@ impl<'a> SampleRunner<'a> {
         let batch = ((BATCH / step).ceil() as u64).clamp(1, 1000).next_multiple_of(every.into());
         Some(SampleRunner { simulation, end, batch })
     }
+}
 
-    /// Runs one batch; `None` at the end of the run or if the run fails.
+impl<const D: usize> Batches for SampleRunner<'_, D>
+where
+    Stepper<D>: Compiled<D>,
+{
     fn batch(&mut self) -> Option<(f64, f64)> {
-        let computed = |s: &mut Simulation<'_, 1>| s.clock().seconds[Activity::Compute as usize];
+        let computed = |s: &mut Simulation<'_, D>| s.clock().seconds[Activity::Compute as usize];
         let before = computed(&mut self.simulation);
         let start = Instant::now();
         for _ in 0..self.batch {
@@ -169,7 +220,7 @@ impl<'a> SampleRunner<'a> {
 /// Times of the fastest batch of a variant within about `seconds` \[s\]; `None` if it does not run.
 pub fn measure(variant: &Variant, seconds: f64) -> Option<MeasuredVariant<'_>> {
     let start = Instant::now();
-    let mut runner = SampleRunner::new(variant)?;
+    let mut runner = runner(variant)?;
     let mut best: Option<(f64, f64)> = None;
     for count in 0.. {
         if count >= LEAST_BATCHES && start.elapsed().as_secs_f64() >= seconds {
@@ -179,9 +230,7 @@ pub fn measure(variant: &Variant, seconds: f64) -> Option<MeasuredVariant<'_>> {
         best = Some(best.map_or(new, |old| if new.0 < old.0 { new } else { old }));
     }
     let (total, compute) = best?;
-    let Variant { work, patches, threads, halo, .. } = variant;
-    let share = work.share(*patches, 1, *threads, *halo);
-    Some(MeasuredVariant { variant, share, total, compute })
+    Some(MeasuredVariant { variant, total, compute })
 }
 
 /// Slowdown of a step while `cores` cores compute, relative to one alone \[-\], measured in about
@@ -197,18 +246,17 @@ pub fn busy(
     if cores < 2 {
         return None;
     }
-    let single = || variants.iter().filter(|v| v.patches == 1 && v.threads == 1);
-    let small = single().min_by_key(|v| (v.work.terrain.particles - 1700.0).abs() as u64)?;
-    let large = single().max_by_key(|v| v.work.terrain.particles as u64)?;
+    let single = || variants.iter().filter(|v| v.share.layout.patches == 1 && v.threads == 1);
+    let small = single().min_by_key(|v| (v.work.particles - 1700.0).abs() as u64)?;
+    let large = single().max_by_key(|v| v.work.particles as u64)?;
     let each = seconds / 4.0;
     let crowd = |variant: &Variant, count: usize| {
         alive();
         crowd(variant, count, each)
     };
     let ratio = |variant: &Variant| Some(crowd(variant, cores)? / crowd(variant, 1)?);
-    let cold = |v: &Variant| {
-        crate::perf_model::cold_share(v.work.terrain.particles * v.work.row_bytes, cache)
-    };
+    let cold =
+        |v: &Variant| crate::perf_model::cold_share(v.work.particles * v.work.row_bytes, cache);
     let warm = ratio(small)?.max(1.0);
     let mixed = ratio(large)?.max(1.0);
     let cold = match cold(large) {
@@ -222,7 +270,7 @@ pub fn busy(
 fn crowd(variant: &Variant, count: usize, seconds: f64) -> Option<f64> {
     let barrier = Barrier::new(count);
     let run = || {
-        let runner = SampleRunner::new(variant);
+        let runner = runner(variant);
         barrier.wait();
         let (mut runner, start) = (runner?, Instant::now());
         let mut times = Vec::new();

@@ -21,6 +21,8 @@ const COLUMNS: &str = "\
 # efficiency: that number of 1 x 1, with the same skip_quiescent, over the row's; speed_up: efficiency
 #   times workers.
 # compute, exchange, migrate, balance, wait, output, rest: shares of the wall time of all ranks.
+# predicted_seconds: the wall time by the performance model, empty without constants of a machine;
+#   predicted_bytes_per_step, predicted_messages_per_step: without outputs.
 # bytes_per_step, messages_per_step: sent by all ranks; imbalance: work of the busiest rank over
 #   the mean; skipped: share of particle-steps. Empty if the program does not count it.
 ";
@@ -74,12 +76,13 @@ fn table(study: &ScalingStudy) -> Result<Vec<u8>, csv::Error> {
 mod tests {
     use super::super::row::ScalingRow;
     use super::super::row::tests::measured;
+    use super::super::row_prediction::RowPrediction;
     use super::*;
 
     #[test]
     fn all_files_hold_the_rows() {
         let (job, runs) = measured(1, &[1.0], false);
-        let rows = vec![ScalingRow::new(&job, &runs, None)];
+        let rows = vec![ScalingRow::new(&job, &runs, &RowPrediction::default(), None)];
         let study = ScalingStudy {
             kind: ScalingKind::Weak,
             title: "Flyer".into(),

@@ -59,6 +59,10 @@ pub fn possible_binding(
     cores: usize,
 ) -> Result<RankBinding, ScalingError> {
     let preferred = RankBinding::of(configuration, cores);
+    if preferred == RankBinding::Oversubscribed {
+        // nothing is bound, and mpirun may wait forever for very many ranks that never start MPI
+        return Ok(preferred);
+    }
     let output = started(mpirun(configuration.ranks, preferred).arg("true"))?;
     Ok(if output.status.success() { preferred } else { RankBinding::None })
 }

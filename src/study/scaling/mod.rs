@@ -13,6 +13,7 @@ pub mod launch;
 pub mod measured_run;
 mod picture;
 pub mod row;
+pub mod row_prediction;
 pub mod statistics;
 pub mod study;
 pub mod table;

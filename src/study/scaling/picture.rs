@@ -37,13 +37,78 @@ pub fn figure(study: &ScalingStudy) -> Figure {
         };
         panel = panel.series(Series::new(name, Points::new(x, y), look));
     }
+    for (index, threads) in threads(&rows).into_iter().enumerate() {
+        let (x, y) = predicted(&rows, threads);
+        if !x.is_empty() {
+            let look = Style::line(Color::palette(index)).stroke(Stroke::Dotted).width(2.0);
+            let name = format!("model, ranks × {threads}");
+            panel = panel.series(Series::new(name, Points::new(x, y), look));
+        }
+    }
     panel = panel.note(format!("median of {}", study.repeats));
     if rows.iter().any(|row| row.oversubscribed) {
         panel = panel.note("over: more workers than cores");
     }
     let x = Axis::log("Workers: ranks × threads", "").ticks(ticks);
-    Figure::new(format!("{title}: {}", study.title), x).panel(panel).bars(bars(&rows))
+    let figure = Figure::new(format!("{title}: {}", study.title), x).panel(panel);
+    let figure = match study.kind {
+        ScalingKind::Strong => figure,
+        ScalingKind::Weak => messages(figure, &rows),
+    };
+    figure.bars(bars(&rows))
 }
+
+/// Workers with `threads` threads a rank, and the predicted speed-up; without a prediction none.
+fn predicted(rows: &[&ScalingRow], threads: usize) -> (Vec<f64>, Vec<f64>) {
+    let per_step = |row: &ScalingRow| {
+        let particle_steps = row.particles as f64 * row.steps as f64;
+        row.predicted_seconds.map(|seconds| seconds / particle_steps)
+    };
+    let base = rows.iter().find(|row| row.workers == 1).and_then(|row| per_step(row));
+    let of = rows.iter().filter(|row| row.threads == threads);
+    let all = of.filter_map(|row| Some((row.workers as f64, base? / per_step(row)?)));
+    all.unzip()
+}
+
+/// `figure` with panels of the bytes and messages of a rank in a step, counted and predicted, of the
+/// rows with one thread a rank.
+fn messages(figure: Figure, rows: &[&ScalingRow]) -> Figure {
+    let of = || rows.iter().filter(|row| row.threads == 1 && row.ranks > 1);
+    let ranks: Vec<f64> = of().map(|row| row.ranks as f64).collect();
+    let panel = |label: &str, unit: &str, scale: f64, counted: Value, predicted: Value| {
+        let each = |value: Value| -> Vec<f64> {
+            of().map(|row| scale * value(row) / row.ranks as f64).collect()
+        };
+        let points = |value| Points::new(&ranks[..], each(value));
+        let line = Style::line(Color::palette(0)).stroke(Stroke::Dotted).width(2.0);
+        let marks = Style { mark: Some(7.0), ..Style::marks(Color::palette(0)) };
+        let panel = Panel::new(Axis::linear(label, unit));
+        panel
+            .series(Series::new("counted, outputs included", points(counted), marks))
+            .series(Series::new("model", points(predicted), line))
+    };
+    if ranks.is_empty() {
+        return figure;
+    }
+    let bytes = panel(
+        "Sent by a rank in a step",
+        "kB",
+        1e-3,
+        |row| row.bytes_per_step.unwrap_or(f64::NAN),
+        |row| row.predicted_bytes_per_step,
+    );
+    let messages = panel(
+        "Messages of a rank in a step",
+        "",
+        1.0,
+        |row| row.messages_per_step.unwrap_or(f64::NAN),
+        |row| row.predicted_messages_per_step,
+    );
+    figure.panel(bytes).panel(messages)
+}
+
+/// A value of a row.
+type Value = fn(&ScalingRow) -> f64;
 
 /// Shares of time, a bar a configuration.
 fn bars(rows: &[&ScalingRow]) -> Bars {

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::configuration::RankBinding;
 use super::launch::ScalingRun;
 use super::measured_run::{MeasuredDecomposition, MeasuredRun};
+use super::row_prediction::RowPrediction;
 use super::statistics::{PARTS, median, shares};
 
 /// Medians of a configuration. Values that the program did not count are absent.
@@ -64,6 +65,12 @@ pub struct ScalingRow {
     pub imbalance: Option<f64>,
     /// Share of particle-steps that were skipped \[-\].
     pub skipped: Option<f64>,
+    /// Predicted wall time of the time loop \[s\]; absent without the constants of a machine.
+    pub predicted_seconds: Option<f64>,
+    /// Predicted bytes sent per step, all ranks, without outputs \[B\].
+    pub predicted_bytes_per_step: f64,
+    /// Predicted number of messages sent per step, all ranks, without outputs \[-\].
+    pub predicted_messages_per_step: f64,
 }
 
 impl ScalingRow {
@@ -73,7 +80,12 @@ impl ScalingRow {
     /// # Panics
     ///
     /// If there is no run.
-    pub fn new(job: &ScalingRun, runs: &[MeasuredRun], base: Option<&ScalingRow>) -> ScalingRow {
+    pub fn new(
+        job: &ScalingRun,
+        runs: &[MeasuredRun],
+        predicted: &RowPrediction,
+        base: Option<&ScalingRow>,
+    ) -> ScalingRow {
         let walls = || runs.iter().map(|run| run.loop_wall_seconds);
         let wall = median(walls()).expect("a job has runs");
         let [first, ..] = runs else { unreachable!("a job has runs") };
@@ -114,6 +126,9 @@ impl ScalingRow {
             messages_per_step: middle(|d| d.messages_per_step),
             imbalance: middle(|d| d.imbalance),
             skipped: middle(MeasuredDecomposition::skipped),
+            predicted_seconds: predicted.step.map(|step| step * first.steps as f64),
+            predicted_bytes_per_step: predicted.bytes,
+            predicted_messages_per_step: predicted.messages,
         }
     }
 
@@ -172,12 +187,12 @@ pub(super) mod tests {
     #[test]
     fn speed_up_is_against_the_base() {
         let (job, runs) = measured(1, &[8.0, 12.0, 9.0], false);
-        let base = ScalingRow::new(&job, &runs, None);
+        let base = ScalingRow::new(&job, &runs, &RowPrediction::default(), None);
         assert_eq!((base.wall_seconds, base.speed_up, base.efficiency), (9.0, 1.0, 1.0));
         assert_eq!(base.spread(), 4.0 / 9.0);
         assert_eq!((base.cpu_seconds, base.shares(), base.skipped), (18.0, [None; 7], None));
         let (job, runs) = measured(4, &[3.0], true);
-        let row = ScalingRow::new(&job, &runs, Some(&base));
+        let row = ScalingRow::new(&job, &runs, &RowPrediction::default(), Some(&base));
         assert!((row.speed_up - 3.0).abs() < 1e-12 && (row.efficiency - 0.75).abs() < 1e-12);
         assert_eq!((row.compute, row.wait, row.skipped), (Some(0.75), Some(0.25), Some(0.25)));
     }
@@ -185,10 +200,10 @@ pub(super) mod tests {
     #[test]
     fn a_weak_row_counts_its_own_particles() {
         let (job, runs) = measured(1, &[2.0], false);
-        let base = ScalingRow::new(&job, &runs, None);
+        let base = ScalingRow::new(&job, &runs, &RowPrediction::default(), None);
         let (job, mut runs) = measured(2, &[2.5], false);
         runs[0].particles = 2000;
-        let row = ScalingRow::new(&job, &runs, Some(&base));
+        let row = ScalingRow::new(&job, &runs, &RowPrediction::default(), Some(&base));
         assert!((row.efficiency - 0.8).abs() < 1e-12 && (row.speed_up - 1.6).abs() < 1e-12);
     }
 }

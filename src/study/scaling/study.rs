@@ -11,11 +11,13 @@ use super::kind::ScalingKind;
 use super::launch::{ScalingRun, possible_binding};
 use super::measured_run::MeasuredRun;
 use super::row::ScalingRow;
+use super::row_prediction::RowPrediction;
 use crate::driver::output::lock::Lock;
 use crate::driver::output::origin::{Origin, claim};
 use crate::input;
+use crate::perf_model::Machine;
 use crate::perf_model::calibrate::processor;
-use crate::scene::{CellSize, CheckedScene};
+use crate::scene::CheckedScene;
 
 /// Folder of the results of one run, within that of the study.
 const RUN_FOLDER: &str = "run";
@@ -39,6 +41,9 @@ pub struct ScalingOptions {
     pub repeats: usize,
     /// Physical cores of the machine; `None`: those that this process may use.
     pub cores: Option<usize>,
+    /// Constants of a machine, from which times are predicted beside the measured ones, and the name
+    /// of their file.
+    pub machine: Option<(Machine, PathBuf)>,
     /// Folder of the results; `None`: `output/<kind>_scaling_<name of the scene>`.
     pub output: Option<PathBuf>,
 }
@@ -57,6 +62,8 @@ pub struct ScalingPlan {
     title: String,
     cores: usize,
     runs: Vec<ScalingRun>,
+    /// Predictions for each of the runs.
+    predicted: Vec<RowPrediction>,
     /// Folder of the results.
     pub output: PathBuf,
 }
@@ -97,12 +104,16 @@ impl ScalingPlan {
         let cores = options.cores.unwrap_or_else(|| {
             std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
         });
-        let mut runs = Vec::new();
+        if let Some((machine, file)) = &options.machine {
+            machine.fits(&unchanged, file).map_err(|e| invalid(&e))?;
+        }
+        let machine = options.machine.as_ref().map(|(machine, _)| machine);
+        let (mut runs, mut predicted) = (Vec::new(), Vec::new());
         for configuration in configurations(&options.ranks, &options.threads) {
             let workers = configuration.workers();
             let grown = match options.kind {
                 ScalingKind::Strong => Vec::new(),
-                ScalingKind::Weak => grown(&unchanged, workers)?,
+                ScalingKind::Weak => grown(&unchanged, workers),
             };
             let all = [&options.sets, &WITHOUT.map(String::from)[..], &grown].concat();
             parse(&all)?;
@@ -110,6 +121,7 @@ impl ScalingPlan {
             for skip_quiescent in [false, true] {
                 let mut sets = all.clone();
                 sets.push(format!("decomposition.skip_quiescent={skip_quiescent}"));
+                predicted.push(RowPrediction::new(&parse(&sets)?, configuration, machine));
                 let scene = options.scene.clone();
                 runs.push(ScalingRun { configuration, binding, skip_quiescent, scene, sets });
             }
@@ -118,7 +130,7 @@ impl ScalingPlan {
             let name = options.scene.file_stem().unwrap_or_default().to_string_lossy();
             Path::new("output").join(format!("{}_{name}", options.kind.name()))
         });
-        Ok(ScalingPlan { title: unchanged.scene.title, cores, runs, output, options })
+        Ok(ScalingPlan { title: unchanged.scene.title, cores, runs, predicted, output, options })
     }
 
     /// Runs all configurations in rounds. `report` gets a line at the start of each round.
@@ -153,44 +165,44 @@ impl ScalingPlan {
             repeats: *repeats,
             cores: self.cores,
             processor: processor(),
-            rows: rows(&self.runs, &measured),
+            rows: rows(&self.runs, &self.predicted, &measured),
         })
     }
 }
 
 /// The rows of all runs, each compared with 1 x 1 with the same skipping.
-fn rows(runs: &[ScalingRun], measured: &[Vec<MeasuredRun>]) -> Vec<ScalingRow> {
+fn rows(
+    runs: &[ScalingRun],
+    predicted: &[RowPrediction],
+    measured: &[Vec<MeasuredRun>],
+) -> Vec<ScalingRow> {
     let mut rows: Vec<ScalingRow> = Vec::new();
-    for (run, measured) in runs.iter().zip(measured) {
+    for ((run, predicted), measured) in runs.iter().zip(predicted).zip(measured) {
         let base = |row: &&ScalingRow| row.workers == 1 && row.skip_quiescent == run.skip_quiescent;
-        let row = ScalingRow::new(run, measured, rows.iter().find(base));
+        let row = ScalingRow::new(run, measured, predicted, rows.iter().find(base));
         rows.push(row);
     }
     rows
 }
 
-/// The overrides that multiply the particles by `workers` and keep the number of steps. The time
+/// The overrides that multiply the particles by about `workers` and keep the number of steps. The time
 /// step shrinks with the cells, so the end time does too, and the waves cover the same number of
-/// cells. There is a profile at the end only, because other profile times may be later.
-fn grown(scene: &CheckedScene, workers: usize) -> Result<Vec<String>, ScalingError> {
-    let refused = || {
-        let reason = "weak scaling divides cells in one dimension; allowed: a scene on a line";
-        Err(ScalingError::Scene(format!("{}: {reason}", scene.file)))
+/// cells. There is a profile at the end only, because other profile times may be later. In a plane the
+/// numbers of cells are whole along both edges, and particles per worker are equal for 1, 4, 16, 64.
+fn grown(scene: &CheckedScene, workers: usize) -> Vec<String> {
+    let finer = (workers as f64).powf(1.0 / scene.dimension as f64);
+    let cells = scene.cells.iter().map(|&cells| (cells as f64 * finer).round());
+    let edges = scene.cell_size.iter().zip(&scene.cells).map(|(size, &n)| size * n as f64);
+    let sizes: Vec<String> = edges.zip(cells).map(|(edge, n)| format!("{:e}", edge / n)).collect();
+    let size = match &sizes[..] {
+        [size] => size.clone(),
+        _ => format!("[{}]", sizes.join(",")),
     };
-    let size = match &scene.scene.domain.cell_size {
-        CellSize::Uniform(size) => *size,
-        CellSize::PerDirection(sizes) if sizes.len() == 1 => sizes[0],
-        CellSize::PerDirection(_) => return refused(),
-    };
-    if scene.dimension != 1 {
-        return refused();
-    }
-    let workers = workers as f64;
-    Ok(vec![
-        format!("domain.cell_size={:e}", size / workers),
-        format!("time.end={:e}", scene.scene.time.end / workers),
+    vec![
+        format!("domain.cell_size={size}"),
+        format!("time.end={:e}", scene.scene.time.end / finer),
         "output.profiles.times=[]".into(),
-    ])
+    ]
 }
 
 #[cfg(test)]
@@ -208,7 +220,10 @@ mod tests {
             jobs.push(ScalingRun { skip_quiescent, ..job });
             runs.push(run);
         }
-        let speed_ups: Vec<f64> = rows(&jobs, &runs).iter().map(|row| row.speed_up).collect();
+        let speed_ups: Vec<f64> = rows(&jobs, &[RowPrediction::default(); 4], &runs)
+            .iter()
+            .map(|row| row.speed_up)
+            .collect();
         for (got, wanted) in speed_ups.iter().zip([1.0, 1.0, 2.0, 1.6]) {
             assert!((got - wanted).abs() < 1e-12, "{speed_ups:?}");
         }
@@ -220,9 +235,23 @@ mod tests {
         let bytes = input::read(path.as_ref()).unwrap();
         let parse = |sets: &[String]| input::parse(&bytes, "flyer", sets).unwrap();
         let one = parse(&[]);
-        let three = parse(&grown(&one, 3).unwrap());
+        let three = parse(&grown(&one, 3));
         assert_eq!(three.particles, 3 * one.particles);
         let cells = |scene: &CheckedScene| scene.scene.time.end / scene.cell_size[0];
         assert!((cells(&three) / cells(&one) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn weak_scaling_in_a_plane_refines_both_edges() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/inputs/flyer_2d.json");
+        let bytes = input::read(path.as_ref()).unwrap();
+        let parse = |sets: &[String]| {
+            let sets = [&["domain.cell_size=4e-5".to_string()], sets].concat();
+            input::parse(&bytes, "flyer_2d", &sets).unwrap()
+        };
+        let one = parse(&[]);
+        let four = parse(&grown(&one, 4));
+        assert_eq!((four.particles, &four.cells[..]), (4 * one.particles, &[300, 180][..]));
+        assert_eq!(four.scene.time.end, 0.5 * one.scene.time.end);
     }
 }

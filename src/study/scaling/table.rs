@@ -57,13 +57,14 @@ fn cells(row: &ScalingRow) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::super::row::tests::measured;
+    use super::super::row_prediction::RowPrediction;
     use super::*;
 
     #[test]
     fn what_is_not_counted_is_a_dash() {
         let rows = [false, true].map(|sections| {
             let (job, runs) = measured(2, &[1.0, 2.0], sections);
-            ScalingRow::new(&job, &runs, None)
+            ScalingRow::new(&job, &runs, &RowPrediction::default(), None)
         });
         let text = text(&rows);
         let lines: Vec<&str> = text.lines().collect();

@@ -9,10 +9,19 @@ use std::time::Duration;
 /// From one look to the next.
 const INTERVAL: Duration = Duration::from_millis(20);
 
+/// Memory that was seen.
+#[derive(Default)]
+pub struct Resident {
+    /// Of all processes together, look after look [bytes].
+    pub together: Vec<u64>,
+    /// The most that one process has taken until it was last looked at [bytes].
+    pub fullest: u64,
+}
+
 /// Looks at a process and those that it has started.
 pub struct Watcher {
     ends: Arc<AtomicBool>,
-    looks: JoinHandle<Vec<u64>>,
+    looks: JoinHandle<Resident>,
 }
 
 impl Watcher {
@@ -21,12 +30,15 @@ impl Watcher {
         let ends = Arc::new(AtomicBool::new(false));
         let until = ends.clone();
         let looks = spawn(move || {
-            let mut found = Vec::new();
+            let mut found = Resident::default();
             while !until.load(Ordering::Relaxed) {
-                let bytes = family(process).iter().map(|&p| resident(p)).sum();
+                let family = family(process);
+                let bytes = family.iter().map(|&p| memory(p, "VmRSS:")).sum();
                 if bytes > 0 {
-                    found.push(bytes);
+                    found.together.push(bytes);
                 }
+                let most = family.iter().map(|&p| memory(p, "VmHWM:")).max();
+                found.fullest = found.fullest.max(most.unwrap_or(0));
                 sleep(INTERVAL);
             }
             found
@@ -34,8 +46,8 @@ impl Watcher {
         Watcher { ends, looks }
     }
 
-    /// What was seen [bytes].
-    pub fn end(self) -> Vec<u64> {
+    /// What was seen.
+    pub fn end(self) -> Resident {
         self.ends.store(true, Ordering::Relaxed);
         self.looks.join().unwrap_or_default()
     }
@@ -54,10 +66,10 @@ fn family(process: u32) -> Vec<u32> {
     .collect()
 }
 
-/// Resident memory of a process [bytes]; 0 once it has ended.
-fn resident(process: u32) -> u64 {
+/// Memory of a process on a `line` of its status [bytes]; 0 once it has ended.
+fn memory(process: u32, line: &str) -> u64 {
     let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    let line = status.lines().find_map(|l| l.strip_prefix(line));
     let kib = line.and_then(|l| l.trim().strip_suffix("kB")?.trim().parse::<u64>().ok());
     kib.unwrap_or(0) * 1024
 }

@@ -10,7 +10,7 @@ use flyer_mpm::driver::output::summary::Summary;
 use wait4::Wait4;
 
 use crate::program;
-use crate::resident::Watcher;
+use crate::resident::{Resident, Watcher};
 
 /// What callgrind counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -167,7 +167,8 @@ impl Job {
             said: ended.stdout,
             user_seconds: ended.usage.rusage.utime.as_secs_f64(),
             peak_bytes: ended.usage.rusage.maxrss,
-            resident: ended.resident,
+            resident: ended.resident.together,
+            fullest: ended.resident.fullest,
             instructions: collected(&ended.stderr, &["Ir"]),
             memory_bytes: collected(&ended.stderr, &TRAFFIC).map(|lines| lines * LINE),
         })
@@ -201,7 +202,7 @@ impl Job {
         let mut child = command.spawn()?;
         let watcher = self.watched.then(|| Watcher::of(child.id()));
         let usage = child.wait4()?;
-        let resident = watcher.map_or(Vec::new(), Watcher::end);
+        let resident = watcher.map_or_else(Resident::default, Watcher::end);
         Ok(Ended { usage, resident, stdout: text(&mut stdout)?, stderr: text(&mut stderr)? })
     }
 }
@@ -209,7 +210,7 @@ impl Job {
 /// How a process ended.
 struct Ended {
     usage: wait4::ResUse,
-    resident: Vec<u64>,
+    resident: Resident,
     stdout: String,
     stderr: String,
 }
@@ -245,6 +246,8 @@ pub struct Outcome {
     pub peak_bytes: u64,
     /// Memory of all its processes, looked at in even intervals if it was watched [bytes].
     pub resident: Vec<u64>,
+    /// The most that one of its processes, without mpirun, has taken if it was watched [bytes].
+    pub fullest: u64,
     /// Instructions of the whole process, where callgrind has counted them.
     pub instructions: Option<u64>,
     /// Bytes that the whole process has moved between L2 cache and memory, where callgrind has

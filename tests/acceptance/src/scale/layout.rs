@@ -59,7 +59,8 @@ pub fn check(table: &mut Table) {
         let _ = std::hint::black_box(loads.reassign(&owners, RANKS, 1.25));
         least = least.min(start.elapsed().as_secs_f64());
     }
-    table.beside(&format!("{name}: new assignment"), Some(least), "", Unit::Seconds);
+    let figure = format!("{name}: new assignment");
+    table.check(&figure, Some(least), bounds::layout::NEW_ASSIGNMENT);
     let wanted = loads.reassign(&owners, RANKS, 1.25);
     drop((order, work, particles, owners, weights));
     let before = heap::held();

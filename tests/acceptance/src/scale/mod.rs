@@ -4,6 +4,7 @@ mod balance;
 mod bytes;
 mod layout;
 mod memory;
+mod prediction;
 mod ranks;
 mod startup;
 
@@ -13,11 +14,12 @@ use crate::section::{Section, quick, usual};
 pub const TITLE: &str = "Many ranks, patches and particles: start-up, messages and balance";
 
 /// Sections in the order in which they run.
-pub const SECTIONS: [Section; 6] = [
+pub const SECTIONS: [Section; 7] = [
     usual("startup", startup::check),
     quick("layout", layout::check),
     usual("ranks", ranks::check),
     usual("memory", memory::check),
+    quick("prediction", prediction::check),
     usual("bytes", bytes::check),
     usual("balance", balance::check),
 ];
