@@ -1,7 +1,7 @@
 //! Particles of one patch for the patches of one destination: each is packed once for all of them.
 
 use crate::packing::{put_particles, put_stir};
-use crate::planned_words::{only, packed_words};
+use crate::planned_words::{bits, only, packed_words};
 use crate::{Block, Image, IndexBox, Layout};
 
 /// Distances of ghosts and of motion [cells].
@@ -62,15 +62,6 @@ impl<const D: usize> ImageGroups<D> {
         }
         ghosts[*last].1.push(particle);
     }
-}
-
-/// Indices of the bits that are set.
-pub(crate) fn bits(mut set: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let bit = (set != 0).then(|| set.trailing_zeros() as usize)?;
-        set &= set - 1;
-        Some(bit)
-    })
 }
 
 /// Destination of the words of a bundle.

@@ -4,7 +4,15 @@
 use std::collections::BTreeMap;
 
 use crate::IndexBox;
-use crate::ghost_bundle::bits;
+
+/// Indices of the bits that are set.
+pub(crate) fn bits(mut set: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let bit = (set != 0).then(|| set.trailing_zeros() as usize)?;
+        set &= set - 1;
+        Some(bit)
+    })
+}
 
 /// Words of one group of ghosts, besides the ghosts: patch and kind, number of ghosts, other patches.
 fn head_words(receivers: u64) -> u64 {

@@ -86,12 +86,12 @@ fn check_hugoniot_and_material_of_every_scene() {
 fn calibrate_and_predict_of_every_scene() {
     let home = Home::new();
     for path in some(&["sod.json"]) {
-        let (file, plane) = (path.to_str().unwrap(), is_plane(&read(&path)));
+        let file = path.to_str().unwrap();
         let code =
             call(&home, &["perf", "calibrate", file, "--seconds", "0.01", "--output", "m.json"]);
-        assert_eq!(code == 2, plane, "{file}: calibrate {code}");
+        assert_eq!(code, 0, "{file}: calibrate");
         let code = call(&home, &["perf", "predict", file, "--machine", "m.json", "--ranks", "2"]);
-        assert_eq!(code == 2, plane, "{file}: predict {code}");
+        assert_eq!(code, 0, "{file}: predict");
     }
 }
 

@@ -58,8 +58,12 @@ fn rows(home: &Home) -> Vec<Vec<(String, String)>> {
     reader.records().map(|row| pairs(row.unwrap())).collect()
 }
 
+/// Number of the last column whose head begins with `head`.
 fn number(row: &[(String, String)], head: &str) -> Option<f64> {
-    row.iter().find(|(name, _)| name.starts_with(head)).and_then(|(_, value)| value.parse().ok())
+    row.iter()
+        .rev()
+        .find(|(name, _)| name.starts_with(head))
+        .and_then(|(_, value)| value.parse().ok())
 }
 
 #[test]
