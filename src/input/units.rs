@@ -342,6 +342,9 @@ fn quantity(text: &str, name: &str, target: ScaledUnit) -> Result<Option<f64>, S
     let fault = |reason: String| SceneFault::new("", text, reason);
     let Some((number, own)) = split(text) else { return Ok(None) };
     if own.is_empty() {
+        if !number.parse::<f64>().is_ok_and(f64::is_finite) {
+            return Ok(None);
+        }
         return Err(fault(format!("text without a unit; allowed: a number, or \"{text} {name}\"")));
     }
     if own.starts_with(',') {
