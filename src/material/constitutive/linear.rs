@@ -1,5 +1,7 @@
 //! Particle loops over an equation of state that is linear in the energy.
 
+use decomp::array::map;
+
 use super::model::{FluidModel, MidStep, VolumeChange};
 use crate::material::{EquationOfState, LinearPressure};
 
@@ -36,14 +38,16 @@ fn put(column: &mut [f64], first: usize, values: &[f64; BLOCK]) {
 impl<E: EquationOfState> FluidModel for LinearEosKernel<E> {
     fn mid_step(&self, mut particles: MidStep<'_>) {
         for first in (0..particles.mass.len()).step_by(BLOCK) {
-            let [mass, volume0, j, j_mid, energy] = [
-                particles.mass,
-                particles.volume0,
-                particles.jacobian,
-                particles.jacobian_mid,
-                particles.energy,
-            ]
-            .map(|column| block(column, first));
+            let [mass, volume0, j, j_mid, energy] = map(
+                &[
+                    particles.mass,
+                    particles.volume0,
+                    particles.jacobian,
+                    particles.jacobian_mid,
+                    particles.energy,
+                ],
+                |column| block(column, first),
+            );
             let q = particles.q.map(|q| block(q, first));
             let against = q.unwrap_or([0.0; BLOCK]);
             let mut pressure = [0.0; BLOCK];
@@ -78,9 +82,10 @@ impl<E: EquationOfState> FluidModel for LinearEosKernel<E> {
 
     fn change_volume(&self, particles: VolumeChange<'_>) {
         for first in (0..particles.mass.len()).step_by(BLOCK) {
-            let [mass, volume0, before, after] =
-                [particles.mass, particles.volume0, particles.before, particles.after]
-                    .map(|column| block(column, first));
+            let [mass, volume0, before, after] = map(
+                &[particles.mass, particles.volume0, particles.before, particles.after],
+                |column| block(column, first),
+            );
             let q = particles.q.map_or([0.0; BLOCK], |q| block(q, first));
             let mut pressures = block(particles.pressure, first);
             let mut energies = block(particles.energy, first);
