@@ -85,7 +85,8 @@ fn check_hugoniot_and_material_of_every_scene() {
 #[test]
 fn calibrate_and_predict_of_every_scene() {
     let home = Home::new();
-    for path in some(&["sod.json"]) {
+    // a prediction counts all patches and their particles, which takes longest in large planes
+    for path in some(&["sod.json"]).into_iter().filter(|path| checked(path).particles < 15_000) {
         let file = path.to_str().unwrap();
         let code =
             call(&home, &["perf", "calibrate", file, "--seconds", "0.01", "--output", "m.json"]);
