@@ -64,11 +64,16 @@ pub(super) fn patch_parts<const D: usize>(
     }
 }
 
-/// The `given` patches, halved along their longer direction until each of several threads has one, if
-/// they do not become narrower than [`LEAST_CELLS`]: threads share a patch by parts of it.
+/// The `given` patches. If there are fewer than workers, they are halved along their longer direction
+/// until each worker has one, or two in a plane, whose halves differ more in their work; they do not
+/// become narrower than [`LEAST_CELLS`]. Threads share a patch by parts of it.
 fn shared<const D: usize>(cells: [usize; D], given: [usize; D], workers: usize) -> [usize; D] {
+    if given.iter().product::<usize>() >= workers {
+        return given;
+    }
+    let wanted = if D > 1 { 2 * workers } else { workers };
     let mut parts = given;
-    while parts.iter().product::<usize>() < workers {
+    while parts.iter().product::<usize>() < wanted {
         let width = |a: usize| cells[a] / parts[a];
         let longest = (0..D).max_by_key(|&a| width(a)).expect("at least one direction");
         if width(longest) < 2 * LEAST_CELLS {
@@ -179,9 +184,9 @@ mod tests {
     fn threads_share_a_given_patch_by_parts_of_it() {
         // enough patches stay as they are
         assert_eq!(shared([400, 300], [2, 2], 4), [2, 2]);
-        assert_eq!(shared([400, 300], [1, 1], 2), [2, 1]);
-        assert_eq!(shared([400, 300], [1, 1], 4), [2, 2]);
-        assert_eq!(shared([400, 300], [4, 1], 5), [4, 2]);
+        assert_eq!(shared([400, 300], [1, 1], 2), [2, 2]);
+        assert_eq!(shared([400, 300], [1, 1], 4), [4, 2]);
+        assert_eq!(shared([400, 300], [4, 1], 5), [4, 4]);
         assert_eq!(shared([1000], [3], 4), [6]);
         // a part is not narrower than 16 cells
         assert_eq!(shared([60], [1], 8), [2]);
