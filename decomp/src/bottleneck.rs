@@ -1,4 +1,4 @@
-//! The smallest possible largest load of a rank, if patches are dealt in sections of an order.
+//! The smallest possible largest load of a rank, if patches are assigned in sections of an order.
 
 /// The smallest possible largest sum of `weights` of a rank, of `ranks` ranks.
 pub(crate) fn least_bottleneck(weights: &[u64], ranks: usize) -> u64 {

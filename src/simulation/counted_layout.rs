@@ -19,14 +19,14 @@ const MOST_COUNTED: usize = 64;
 const FULLEST: usize = 8;
 
 /// Cost of a ghost and of a node relative to a particle, and of a patch: the load by which patches
-/// are dealt when a run measures their times.
+/// are assigned to ranks when a run measures their times.
 const GHOST_COST: f64 = 0.5;
 const PATCH_COST: u64 = 8;
 
 /// Size of a word of a message \[B\].
 const WORD: u64 = 8;
 
-/// Wanted layout of a scene.
+/// Numbers of ranks and threads, halo and time for which the layout of a scene is counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WantedLayout {
     /// Number of ranks.
@@ -140,7 +140,7 @@ impl<'a, const D: usize> Counter<'a, D> {
         }
     }
 
-    /// Deals the patches by their loads, as a run does that has measured them.
+    /// Assigns the patches to ranks by their loads, as a run does once it has measured them.
     fn balance(&mut self) {
         let balance = self.scene.scene.decomposition.balance;
         let ranks = self.wanted.ranks;

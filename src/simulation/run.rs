@@ -255,7 +255,7 @@ impl<'a, const D: usize> Simulation<'a, D> {
         self.given_contact.clear();
         let (step, time, stable) = (self.step, self.time, self.stable);
         let ends = meets.is_some_and(|time| time >= self.scene.scene.time.end);
-        self.seek_self_contact(self.is_monitored(step) || ends);
+        self.set_self_contact_search(self.is_monitored(step) || ends);
         let sampled = self.samples(step);
         let timed = sampled || (step % EFFECTS_EVERY == 1 && !self.clock.is_stopped());
         self.clock.start_step(step, self.traced.contains(&step), timed);

@@ -6,20 +6,20 @@ use crate::solver::SelfContact;
 
 impl<const D: usize> Simulation<'_, D> {
     /// Whether a step that the monitor checks looks for bodies that touch themselves.
-    fn seeks_self_contact(&self) -> bool {
+    fn searches_self_contact(&self) -> bool {
         self.stepper.columns.faces.is_some() && self.self_contact.is_none()
     }
 
     /// Prepares the patches for the next step, after which the monitor checks the state if `checked`.
-    pub(super) fn seek_self_contact(&mut self, checked: bool) {
-        let seeks = checked && self.seeks_self_contact();
-        self.patches.iter_mut().for_each(|p| p.contact.seeks_self_contact = seeks);
+    pub(super) fn set_self_contact_search(&mut self, checked: bool) {
+        let seeks = checked && self.searches_self_contact();
+        self.patches.iter_mut().for_each(|p| p.contact.searches_self_contact = seeks);
     }
 
     /// Stores the narrowest gap that the last step has found, if it is the first of the run.
     /// Collective.
     pub(super) fn note_self_contact(&mut self) {
-        if !self.seeks_self_contact() {
+        if !self.searches_self_contact() {
             return;
         }
         let found = self.patches.iter().filter_map(|p| p.contact.self_contact);

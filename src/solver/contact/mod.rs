@@ -79,7 +79,7 @@ impl<const D: usize> Scheme<D> {
                 s.find_constraints::<K>(patch, &mut found, contact_node, contact, dt);
             }
             s.fill_constrained_nodes(patch, &mut found);
-            if found.seeks_self_contact {
+            if found.searches_self_contact {
                 found.self_contact = s.find_self_contact(patch);
             }
             patch.contact = found;

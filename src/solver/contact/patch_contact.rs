@@ -24,7 +24,7 @@ pub struct PatchContact<const D: usize> {
     /// positive in compression, the tangential one a magnitude.
     pub forces: Vec<[f64; 2]>,
     /// Whether this step looks for bodies that touch themselves.
-    pub seeks_self_contact: bool,
+    pub searches_self_contact: bool,
     /// Narrowest gap of a body to itself in such a step.
     pub self_contact: Option<SelfContact<D>>,
 }

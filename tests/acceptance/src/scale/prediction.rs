@@ -1,4 +1,4 @@
-//! The performance model held against the counters of runs: messages, bytes and memory.
+//! Predicted messages, bytes and memory of the performance model, compared with the counters of runs.
 
 use decomp::Comm;
 use decomp::comm::local::run_ranks;
