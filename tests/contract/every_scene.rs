@@ -42,7 +42,7 @@ fn is_plane(scene: &Value) -> bool {
     scene["domain"]["lower"].as_array().unwrap().len() > 1
 }
 
-/// Representative scenes for slow commands: all in a plane, which are rejected at once, and some in
+/// Representative scenes for slow commands: all in a plane, which `plan` refuses at once, and some in
 /// one dimension.
 fn some(on_a_line: &[&str]) -> Vec<PathBuf> {
     let all = std::env::var("EVERY_SCENE").is_ok_and(|v| v == "all");
