@@ -22,9 +22,10 @@ const SHARED_CELLS: [usize; 2] = [256, 64];
 /// worker may hold much more than the mean.
 const LEAST_PATCHES_A_WORKER: usize = 4;
 
-/// Number of patches for a scene on the given ranks and threads: as given in the scene, halved
-/// until each of several threads has one; otherwise at least one for each thread of each rank unless they would be too narrow, and several per
-/// thread if patches may be quiescent or if threads share a plane.
+/// Number of patches for a scene on the given ranks and threads: as given in the scene, halved if
+/// there are fewer than several threads need; otherwise at least one for each thread of each rank
+/// unless they would be too narrow, and several per thread if patches may be quiescent or if threads
+/// share a plane.
 pub fn patch_counts(scene: &CheckedScene, ranks: usize, threads: usize) -> Vec<usize> {
     match scene.dimension {
         1 => patch_parts::<1>(scene, ranks, threads).to_vec(),
@@ -65,8 +66,8 @@ pub(super) fn patch_parts<const D: usize>(
 }
 
 /// The `given` patches. If there are fewer than workers, they are halved along their longer direction
-/// until each worker has one, or two in a plane, whose halves differ more in their work; they do not
-/// become narrower than [`LEAST_CELLS`]. Threads share a patch by parts of it.
+/// until each worker has one, or two in a plane, where the work of the halves differs more. They do
+/// not become narrower than [`LEAST_CELLS`].
 fn shared<const D: usize>(cells: [usize; D], given: [usize; D], workers: usize) -> [usize; D] {
     if given.iter().product::<usize>() >= workers {
         return given;
