@@ -141,7 +141,7 @@ impl PatchLoads<'_> {
     }
 }
 
-/// Number of patches that are looked at together.
+/// Number of patches that are examined together.
 const CHUNK: usize = 64;
 
 /// Patches next to each other in the order, all active or all quiescent.

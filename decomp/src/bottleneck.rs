@@ -39,7 +39,7 @@ pub(crate) fn least_bottleneck(weights: &[u64], ranks: usize) -> u64 {
                 (low, sections[0]) = (next, Some(count));
             }
         }
-        // where a later guess has not halved the width, the middle does
+        // if a later guess has not halved the width, the middle is taken
         halve = !halve && tries > GUESSES && high.saturating_sub(low) > width / 2;
     }
     low
@@ -48,7 +48,8 @@ pub(crate) fn least_bottleneck(weights: &[u64], ranks: usize) -> u64 {
 /// Number of tries after which guesses must halve the width.
 const GUESSES: usize = 2;
 
-/// A limit near the bottleneck, not below `least`: equal shares, and what a section lacks at its limit.
+/// A limit near the bottleneck, not below `least`: an equal share plus the mean unused part of a
+/// section.
 /// This is about half a weight, and is counted for some of the weights.
 fn first_guess(weights: &[u64], ranks: usize, least: u64) -> u64 {
     let total: u64 = weights.iter().sum();
@@ -60,7 +61,7 @@ fn first_guess(weights: &[u64], ranks: usize, least: u64) -> u64 {
     (share + (limit - mean)) as u64
 }
 
-/// One of how many weights are looked at for a first guess.
+/// Number of weights of which one is examined for a first guess.
 const SAMPLED: usize = 16;
 
 /// Cuts sections that are as full as `limit` admits. Returns the largest sum of a section and the

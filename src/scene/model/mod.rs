@@ -128,7 +128,7 @@ pub struct Domain {
     #[serde(default, skip_serializing_if = "Geometry::is_plane_strain")]
     pub geometry: Geometry,
     /// Number of patches in each direction, which are halved further until each of several threads
-    /// has one; absent: chosen from the number of ranks and threads, and printed.
+    /// has one, or two in a plane; absent: chosen from the number of ranks and threads, and printed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1)))]
     pub patches: Option<Vec<usize>>,
