@@ -30,6 +30,9 @@ pub fn study(file: &Path, output: Option<&Path>, quiet: bool) -> Outcome<String>
         let reason = row.record.failure.as_deref().unwrap_or_default();
         text += &format!("  {}: {reason}\n", row.name(&labels(&study)));
     }
+    if study.convergence.is_some() && rows.iter().all(|row| row.histories.is_none()) {
+        text += "  the reference case has failed: no case has the error `histories`\n";
+    }
     if study.choices.is_some() {
         let path = runner.folder.join(CHOICES_FILE);
         text += &std::fs::read_to_string(&path).unwrap_or_default();

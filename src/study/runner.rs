@@ -14,11 +14,11 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use signal_hook::low_level::emulate_default_handler;
 
-use super::cases::{Case, cases};
+use super::cases::{Case, cases, fits};
 use super::convergence::compare;
 use super::histories::CaseHistories;
 use super::record::StudyRecord;
-use super::spec::Study;
+use super::spec::{Convergence, Study};
 use super::{StudyError, StudyRow};
 use crate::driver::output::summary::Summary;
 use crate::input;
@@ -63,6 +63,14 @@ impl StudyRunner {
         let records = self.folder.join("runs");
         fs::create_dir_all(&records).map_err(StudyError::io("cannot be made", &records))?;
         let mut jobs = self.jobs(study, &records)?;
+        if let Some(Convergence { against, .. }) = &study.convergence
+            && !jobs.iter().any(|job| fits(&job.case.labels, against))
+        {
+            return Err(StudyError::Study {
+                file: study.title.clone(),
+                reason: "convergence.against: no case has these labels".into(),
+            });
+        }
         let left = |jobs: &[Job], from: usize| -> f64 {
             let missing = |j: &Job| match j.is_done(study.repeats) {
                 true => 0.0,

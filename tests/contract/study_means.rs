@@ -102,6 +102,11 @@ fn labels_axes_and_columns_that_do_not_exist_are_named() {
         ("/choices/over", json!(["speed"]), "choices.over: no label `speed`"),
         ("/pictures/0/over", json!(["speed"]), "pictures.cost: no label `speed`"),
         ("/convergence/against", json!({"speed": 1}), "convergence.against: no label `speed`"),
+        (
+            "/convergence/against",
+            json!({"grid": "turned"}),
+            "convergence.against: no case has these labels",
+        ),
         ("/convergence/columns", json!([]), "convergence.columns: empty"),
         ("/sweep/0", json!({"file": "none.json"}), "none.json"),
     ] {
@@ -116,5 +121,7 @@ fn labels_axes_and_columns_that_do_not_exist_are_named() {
     study["convergence"]["columns"] = json!(["gauge_speed"]);
     let home = home(&study);
     let text = home.call(["study", "study.json", "--output", "out"]).end().succeeded();
-    assert!(text.contains("no column `gauge_speed`") && text.contains("gauge_pressure"), "{text}");
+    for part in ["no column `gauge_speed`", "gauge_pressure", "the reference case has failed"] {
+        assert!(text.contains(part), "{text}");
+    }
 }
