@@ -64,8 +64,9 @@ pub(crate) fn bodies(column: &[f64]) -> impl Iterator<Item = (usize, Range<usize
 impl<const D: usize> Scheme<D> {
     /// Finds the cell of each own particle at x + `ahead` v, with `ahead` [s], its position in the
     /// cell, and its domain for the shape function at the volume ratio in column `jacobian`.
-    /// Particles beyond an open side are removed. In the total-Lagrangian frame cell and domain are
-    /// the initial ones.
+    /// Particles beyond an open side are removed. A particle that passes a whole cell is a fault: no
+    /// stable step is that long, and ghosts are exchanged for moves to the next cell. In the
+    /// total-Lagrangian frame cell and domain are the initial ones.
     pub(super) fn find_cells(&self, patch: &mut Patch<D>, ahead: f64, jacobian: usize) {
         patch.block.drop_ghosts();
         let c = &self.columns;
@@ -91,6 +92,13 @@ impl<const D: usize> Scheme<D> {
                 let from = [&x[particles.clone()], &v[particles.clone()]];
                 outside |= find_cells(from, drift, grid, &mut fraction[particles.clone()], cells);
             }
+            let mut far = false;
+            for (r, cell) in patch.block.cells[particles.clone()].iter().enumerate() {
+                far |= (0..D).fold(false, |far, a| far | (cells[a][r].abs_diff(cell[a]) > 1));
+            }
+            if far {
+                self.stop_far_moves(patch, particles.clone(), &mut cells);
+            }
             for (r, cell) in patch.block.cells[particles].iter_mut().enumerate() {
                 *cell = decomp::array::from_fn(|a| cells[a][r]);
             }
@@ -104,6 +112,46 @@ impl<const D: usize> Scheme<D> {
         }
         if outside {
             self.handle_exit(patch);
+        }
+    }
+
+    /// Reports a fault for each of `particles` whose new cell in `cells` is not a neighbour of its
+    /// present one, and leaves it where it is. [`handle_exit`](Self::handle_exit) decides about
+    /// those that leave the domain.
+    #[cold]
+    fn stop_far_moves(
+        &self,
+        patch: &mut Patch<D>,
+        particles: Range<usize>,
+        cells: &mut [[i32; BLOCK]; D],
+    ) {
+        for (r, particle) in particles.enumerate() {
+            let was = patch.block.cells[particle];
+            let leaves = |a: usize| {
+                !self.sides[a][0].is_periodic() && !(0..self.cells[a]).contains(&cells[a][r].into())
+            };
+            if (0..D).any(leaves) {
+                continue;
+            }
+            // across periodic sides by the shorter way
+            let cells_passed = |a: usize| {
+                let count = self.cells[a];
+                let by = (i64::from(cells[a][r]) - i64::from(was[a])).abs();
+                if self.sides[a][0].is_periodic() {
+                    (by % count).min(count - by % count)
+                } else {
+                    by
+                }
+            };
+            let most = (0..D).map(cells_passed).fold(0, i64::max);
+            if most > 1 {
+                let what = format!("it moves by {most} cells in one step, allowed: 1");
+                self.fault(patch, FaultPhase::Locate, particle, what);
+                for a in 0..D {
+                    cells[a][r] = was[a];
+                    patch.block.columns[self.columns.fraction + a][particle] = 0.5;
+                }
+            }
         }
     }
 

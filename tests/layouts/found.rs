@@ -146,3 +146,42 @@ fn two_particles_that_fail_at_once() {
         assert_eq!(end_of(&scene, layout), whole, "{layout}");
     }
 }
+
+/// Gas without viscosity between two solids: a particle is flung over two cells in one step. Ghosts
+/// are exchanged for moves to the next cell, so that narrow patches lost its share of a node.
+#[test]
+fn a_particle_that_passes_a_cell_in_one_step() {
+    let body = |name: &str, material: &str, x: [f64; 2], velocity: f64, pressure: f64| {
+        json!({
+            "name": name,
+            "material": material,
+            "box": {"lower": [x[0]], "upper": [x[1]]},
+            "velocity": [velocity],
+            "pressure": pressure,
+            "particles_per_cell": [if name == "solid" { 2 } else { 1 }],
+        })
+    };
+    let eos = json!({"type": "mie_gruneisen", "c0": 5386.0, "s": 1.339, "gamma0": 2.1});
+    let scene = json!({
+        "title": "gas between solids",
+        "domain": {"lower": [0.0], "upper": [3.3e-4], "cell_size": 1e-5},
+        "time": {"end": 4e-8},
+        "method": {"shape": "linear", "stress_update": "first", "transfer": {"fmpm": 6}},
+        "materials": {
+            "aluminium": {"density": 2785.0, "eos": eos},
+            "gas": {"density": 50.0, "eos": {"type": "ideal_gas", "gamma": 1.4}},
+        },
+        "bodies": [
+            body("striker", "aluminium", [0.0, 6e-5], -725.1184709913746, 0.0),
+            body("gas", "gas", [6e-5, 1.2e-4], 0.0, 1e8),
+            body("solid", "aluminium", [1.2625059405137564e-4, 1.8625059405137564e-4], 0.0, 0.0),
+        ],
+        "boundary": {"x_lower": {"velocity": 400.0}, "x_upper": "outflow"},
+    });
+    let whole = end_of(&scene, &Layout::WHOLE);
+    let far = |message: &String| message.contains("moves by 2 cells in one step");
+    assert!(whole.as_ref().is_err_and(far), "{whole:?}");
+    for layout in Layout::covering().iter().filter(|l| l.patches <= 33) {
+        assert_eq!(end_of(&scene, layout), whole, "{layout}");
+    }
+}

@@ -16,6 +16,18 @@ fn halved(method: Value) -> Fixture<1> {
     }))
 }
 
+/// The same between periodic sides.
+fn periodic(method: Value) -> Fixture<1> {
+    let body = json!({"name": "body", "material": "fluid", "particles_per_cell": [1],
+        "box": {"lower": [1.5], "upper": [2.5]}});
+    Fixture::new(json!({
+        "domain": {"upper": [4.0], "cell_size": 0.5},
+        "bodies": [body],
+        "method": method,
+        "boundary": {"x_lower": "periodic", "x_upper": "periodic"},
+    }))
+}
+
 /// Particles of 2 kg at (1.75, 7) and (2.25, 7) m in cells of 1/2 and 2 m.
 fn oblong(method: Value) -> Fixture<2> {
     let body = json!({"name": "body", "material": "fluid", "particles_per_cell": [1, 1],
@@ -87,6 +99,35 @@ fn places_and_domains_are_in_cells() {
     let mut f = oblong(json!({"shape": "gimp"}));
     f.run(0.1, |s, step, patch| s.find_cells(patch, 0.0, step.jacobian));
     assert_eq!((f.get("cell_width"), f.get("cell_height")), (vec![1.0; 2], vec![1.0; 2]));
+}
+
+#[test]
+fn a_particle_that_passes_a_cell_is_a_fault() {
+    // from the cells 3 and 4 by one cell, and by two
+    for (x, fault) in
+        [([1.25, 2.75], None), ([1.75, 1.25], Some((4, 2))), ([0.75, 2.25], Some((3, 2)))]
+    {
+        let mut f = halved(json!({}));
+        f.set("position", &x);
+        f.run(0.1, |s, step, patch| s.find_cells(patch, 0.0, step.jacobian));
+        let found = f.patch.report.fault.as_ref().map(|f| (f.cell[0], f.what.clone()));
+        let what = |by: i64| format!("it moves by {by} cells in one step, allowed: 1");
+        assert_eq!(found, fault.map(|(cell, by)| (cell, what(by))));
+        // it stays where its patch knows it
+        assert!(fault.is_none_or(|(cell, _)| f.patch.block.cells.contains(&[cell as i32])));
+    }
+}
+
+#[test]
+fn a_particle_moves_across_a_periodic_side_the_shorter_way() {
+    // 8 cells; 15 cells away and wrapped is the next cell
+    for (x, by) in [(1.75 + 8.0, None), (1.25 - 4.0, None), (0.75 + 4.0, Some(2)), (3.9, Some(4))] {
+        let mut f = periodic(json!({}));
+        f.set("position", &[x, 2.25]);
+        f.run(0.1, |s, step, patch| s.find_cells(patch, 0.0, step.jacobian));
+        let what = |by: i64| format!("it moves by {by} cells in one step, allowed: 1");
+        assert_eq!(f.patch.report.fault.as_ref().map(|f| f.what.clone()), by.map(what), "{x}");
+    }
 }
 
 #[test]

@@ -153,6 +153,20 @@ impl<const D: usize> Fixture<D> {
         self
     }
 
+    /// Sets the cells of the own particles to those of their positions, as a step before would have
+    /// left them: the particles may be anywhere.
+    pub(crate) fn place(&mut self) -> &mut Self {
+        let (s, block) = (&self.stepper, &mut self.patch.block);
+        let first = s.columns.reference.unwrap_or(s.columns.position);
+        for r in 0..block.own() {
+            block.cells[r] = std::array::from_fn(|a| {
+                let place = (block.columns[first + a][r] - s.lower[a]) * s.inverse_cell[a];
+                (place.floor() as i64).rem_euclid(s.cells[a]) as i32
+            });
+        }
+        self
+    }
+
     /// A column of the own particles.
     #[track_caller]
     pub(crate) fn get(&self, column: &str) -> Vec<f64> {
@@ -260,6 +274,7 @@ impl<const D: usize> Fixture<D> {
         dt: f64,
         phases: impl Fn(&Stepper<D>, &StepContext<'_, D>, &mut Nodal<'_, D>) + Send + Sync,
     ) -> &mut Self {
+        self.place();
         self.run(dt, |s, step, patch| s.find_cells(patch, 0.0, step.jacobian));
         let time = self.time;
         self.world(|s, world| {

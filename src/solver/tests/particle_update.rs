@@ -23,7 +23,7 @@ fn cells_are_found_ahead() {
 fn beyond(boundary: Value) -> Fixture<1> {
     let mut f = line(json!({"boundary": boundary}));
     f.set("position", &[3.5, 8.5]).set("velocity", &[1.0, 2.0]).set("mass", &[2.0, 4.0]);
-    f.set("specific_internal_energy", &[5.0, 6.0]);
+    f.set("specific_internal_energy", &[5.0, 6.0]).place();
     f.run(0.1, |s, step, patch| s.find_cells(patch, 0.0, step.jacobian));
     f
 }
