@@ -157,7 +157,7 @@ fn one_by_one<S: Shape, const K: usize>(fraction: f64x4, length: f64x4) -> Lanes
 
 /// Extents of domains along x and y [cells].
 #[inline(always)]
-fn extents([r1, r2]: [[f64x4; 2]; 2]) -> [f64x4; 2] {
+pub(crate) fn extents([r1, r2]: [[f64x4; 2]; 2]) -> [f64x4; 2] {
     let two = f64x4::splat(2.0);
     [two * (r1[0].abs() + r2[0].abs()), two * (r1[1].abs() + r2[1].abs())]
 }

@@ -16,6 +16,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use domain::{DomainExtent, ParticleDomain};
+pub(crate) use function::extents;
 pub use function::{Basis, CourantLimits, Shape, Weights};
 pub(crate) use knots::{floor, integer};
 pub use lanes::{LANES, Lanes, PlaneLanes};

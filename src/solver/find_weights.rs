@@ -6,7 +6,9 @@ use std::ops::Range;
 use decomp::array;
 use wide::f64x4;
 
-use crate::shape::{LANES, ParticleDomain, Plane, PlaneLanes, Shape, Weights, integer, vector};
+use crate::shape::{
+    LANES, ParticleDomain, Plane, PlaneLanes, Shape, Weights, extents, integer, vector,
+};
 use crate::solver::particle_weights::{NARROW, lines};
 use crate::solver::shape_weights::Stencils;
 
@@ -68,9 +70,23 @@ fn put(numbers: &[f64x4], out: &mut [f64]) {
 }
 
 /// Whether four particles are computed together: on a line, and on two nodes, they take fewer
-/// instructions one by one.
+/// instructions one by one. In wider windows only those of narrow particles are.
 const fn in_lanes(width: usize, dimension: usize) -> bool {
-    dimension > 1 && 2 < width && width <= NARROW
+    dimension > 1 && 2 < width
+}
+
+/// Writes four lines of four numbers of each of four particles to the first places of the lines of their
+/// windows of `K` nodes in `out`, and zeros to the others.
+#[inline(always)]
+fn put_narrow<const K: usize>(numbers: &[[f64x4; NARROW]; NARROW], out: [&mut [f64]; LANES]) {
+    let turned = array::map(numbers, |line: [f64x4; NARROW]| f64x4::transpose(line));
+    for (lane, out) in out.into_iter().enumerate() {
+        let lines = out.as_chunks_mut::<K>().0;
+        lines.iter_mut().for_each(|line| line.fill(0.0));
+        for (line, turned) in lines.iter_mut().zip(&turned) {
+            line[..NARROW].copy_from_slice(turned[lane].as_array());
+        }
+    }
 }
 
 impl Stencils {
@@ -86,9 +102,16 @@ impl Stencils {
         let mut corners = Corners { least: [i32::MAX; D], most: [i32::MIN; D] };
         let whole = if const { in_lanes(K, D) } { n - n % LANES } else { 0 };
         let mut buffer = PlaneLanes::none();
+        let mut narrow_buffer = PlaneLanes::none();
         for first in (0..whole).step_by(LANES) {
-            if const { in_lanes(K, D) } {
+            if const { in_lanes(K, D) && K <= NARROW } {
                 self.fill_four::<S, K, D>(at, first, &mut corners, &mut buffer);
+            } else if const { in_lanes(K, D) } {
+                if at.are_narrow::<S>(first) {
+                    self.fill_four_narrow::<S, K, D>(at, first, &mut corners, &mut narrow_buffer);
+                } else {
+                    self.fill_rest::<S, K, D>(at, first..first + LANES, &mut corners);
+                }
             }
         }
         self.fill_rest::<S, K, D>(at, whole..n, &mut corners);
@@ -105,18 +128,44 @@ impl Stencils {
         w: &mut PlaneLanes<K>,
     ) {
         let nodes = const { K * lines(K, D) };
-        let place = array::map(&at.fractions, |column| four(column, first));
-        let inverse = array::map(&at.inverse_cell, f64x4::splat);
         let values = &mut self.values[first * nodes..];
         let gradients = &mut self.gradients[first * nodes * D..];
-        let half_edges = S::EXTENT.half_edges(|k| four(at.domains[k], first));
-        S::four_in_plane::<K>([place[0], place[D - 1]], half_edges, w);
-        for (axis, lines) in w.gradients.iter_mut().enumerate() {
-            let inverse = inverse[axis * (D - 1)];
-            lines.as_flattened_mut().iter_mut().for_each(|g| *g *= inverse);
-        }
+        at.four::<S, K>(first, w);
         put(w.values.as_flattened(), values);
         put(w.gradients.as_flattened().as_flattened(), gradients);
+        self.put_corners(at, first, corners, w);
+    }
+
+    /// Weights of four narrow particles from `first` on, in windows of more nodes.
+    #[inline(always)]
+    fn fill_four_narrow<S: Shape, const K: usize, const D: usize>(
+        &mut self,
+        at: &Places<'_, D>,
+        first: usize,
+        corners: &mut Corners<D>,
+        w: &mut PlaneLanes<NARROW>,
+    ) {
+        at.four::<S, NARROW>(first, w);
+        let nodes = const { K * lines(K, D) };
+        let parts = [&w.values, &w.gradients[0], &w.gradients[1]];
+        put_narrow::<K>(parts[0], windows::<1>(&mut self.values[first * nodes..], nodes, 0));
+        for axis in 0..D {
+            let gradients = &mut self.gradients[first * nodes * D..];
+            put_narrow::<K>(parts[1 + axis], windows::<D>(gradients, nodes, axis));
+        }
+        self.narrow[first..first + LANES].fill(true);
+        self.put_corners(at, first, corners, w);
+    }
+
+    /// Writes the first nodes of four particles from `first` on.
+    #[inline(always)]
+    fn put_corners<const K: usize, const D: usize>(
+        &mut self,
+        at: &Places<'_, D>,
+        first: usize,
+        corners: &mut Corners<D>,
+        w: &PlaneLanes<K>,
+    ) {
         let (from, skipped): ([f64x4; D], [f64x4; 2]) = (array::from_fn(|a| w.first[a]), w.skipped);
         let from = array::map(&from, |from: f64x4| from.to_array());
         let cells = &at.cells[first..first + LANES];
@@ -163,7 +212,39 @@ impl Stencils {
     }
 }
 
+/// The part `part` of `N` of each of the first four windows of `nodes` nodes in `numbers`.
+#[inline(always)]
+fn windows<const N: usize>(numbers: &mut [f64], nodes: usize, part: usize) -> [&mut [f64]; LANES] {
+    let mut all = numbers.chunks_exact_mut(N * nodes);
+    array::from_fn(|_| {
+        let window = all.next().expect("those of four particles");
+        &mut window[part * nodes..(part + 1) * nodes]
+    })
+}
+
 impl<const D: usize> Places<'_, D> {
+    /// Writes the weights of four particles from `first` on, in a plane.
+    #[inline(always)]
+    fn four<S: Shape, const K: usize>(&self, first: usize, w: &mut PlaneLanes<K>) {
+        let place = array::map(&self.fractions, |column| four(column, first));
+        let inverse = array::map(&self.inverse_cell, f64x4::splat);
+        let half_edges = S::EXTENT.half_edges(|k| four(self.domains[k], first));
+        S::four_in_plane::<K>([place[0], place[D - 1]], half_edges, w);
+        for (axis, lines) in w.gradients.iter_mut().enumerate() {
+            let inverse = inverse[axis * (D - 1)];
+            lines.as_flattened_mut().iter_mut().for_each(|g| *g *= inverse);
+        }
+    }
+
+    /// Whether four particles from `first` on have weights on at most [`NARROW`] nodes along each
+    /// direction.
+    #[inline(always)]
+    fn are_narrow<S: Shape>(&self, first: usize) -> bool {
+        let [width, height] = extents(S::EXTENT.half_edges(|k| four(self.domains[k], first)));
+        let longest = width.max(height).to_array();
+        longest.into_iter().all(|length| S::nodes(length) <= NARROW)
+    }
+
     /// Writes the values and gradients of a particle; returns its first node along each direction,
     /// relative to the lower node of its cell, and its longest extent [cells].
     #[inline(always)]

@@ -1,6 +1,7 @@
 //! Windows of at most four nodes along a direction in vectors of four numbers, for sums over several
 //! particles with one window and for several sums over one particle. A line of the window fills one
-//! vector.
+//! vector. In a patch with wider windows, `K` is their number of nodes, and narrow particles have
+//! weights on the first four alone.
 //!
 //! The sums have the bits of [`ParticleWeights`](super::particle_weights::ParticleWeights).
 //!
@@ -14,6 +15,11 @@ use crate::solver::particle_weights::window;
 
 /// Greatest number of nodes along a direction of such a window.
 pub const PACKED: usize = 4;
+
+/// Number of nodes with weights along a direction, of the `width` of a window.
+pub(super) const fn packed_nodes(width: usize) -> usize {
+    if width < PACKED { width } else { PACKED }
+}
 
 /// Weights of one particle on its window. Numbers beyond the nodes of a line belong to other lines.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +56,13 @@ impl WindowPlace {
     /// Nodes of the window in `field`.
     #[inline(always)]
     pub fn nodes<const K: usize, const V: usize>(&self, field: &[f64]) -> [f64x4; V] {
-        from_fn(|line| fours(window::<K>(field, self.first + line * self.stride), 0))
+        from_fn(|line| {
+            let at = self.first + line * self.stride;
+            match const { K <= PACKED } {
+                true => fours(window::<K>(field, at), 0),
+                false => fours(window::<PACKED>(field, at), 0),
+            }
+        })
     }
 
     /// Writes the nodes of the window to `field`.
@@ -59,7 +71,8 @@ impl WindowPlace {
         for (line, nodes) in nodes.iter().enumerate() {
             let nodes = nodes.to_array();
             let at = self.first + line * self.stride;
-            field[at..at + K].copy_from_slice(&nodes[..K]);
+            let count = const { packed_nodes(K) };
+            field[at..at + count].copy_from_slice(&nodes[..count]);
         }
     }
 }
@@ -96,20 +109,23 @@ pub fn totals<const K: usize>(sums: [f64x4; 4]) -> [f64; 4] {
     let columns = f64x4::transpose(sums);
     // from +0 on, as sums of one particle
     let mut total = f64x4::ZERO;
-    for column in &columns[..K] {
+    for column in &columns[..const { packed_nodes(K) }] {
         total += *column;
     }
     total.to_array()
 }
 
-/// Calls `$call` with the width of windows of three or four nodes along a direction in a plane, the
-/// number of vectors that hold one and the dimension; evaluates `$other` for others: on a line and
-/// with two nodes the sums of one particle take fewer instructions.
+/// Calls `$call` with the width of windows in a plane, the number of vectors that hold a window of at
+/// most four nodes along a direction, and the dimension. Where windows are wider, only narrow
+/// particles have their weights in so many vectors. Evaluates `$other` on a line and with two nodes:
+/// there the sums of one particle take fewer instructions.
 macro_rules! with_packed {
     ($width:expr, $call:ident ( $($arg:expr),* ), $other:expr) => {
         match $width {
             3 if const { D > 1 } => $call::<3, 3, D>($($arg),*),
             4 if const { D > 1 } => $call::<4, 4, D>($($arg),*),
+            6 if const { D > 1 } => $call::<6, 4, D>($($arg),*),
+            10 if const { D > 1 } => $call::<10, 4, D>($($arg),*),
             _ => $other,
         }
     };
@@ -122,12 +138,14 @@ mod tests {
     use crate::solver::particle_weights::{ParticleWeights, lines};
     use crate::solver::shape_weights::Stencils;
 
-    /// Three particles on windows that start at node 5, 5 and 6, in lines of `K + 3` nodes.
+    /// Three particles on windows that start at node 5, 5 and 6, in lines of `K + 3` nodes; narrow
+    /// ones, if the windows are wider.
     fn three<const K: usize, const D: usize>() -> (Stencils, Vec<f64>) {
         let stride = K + 3;
         let mut stencils = Stencils::default();
         stencils.resize::<K, D>(3, stride);
         stencils.first.copy_from_slice(&[5, 5, 6]);
+        stencils.narrow.fill(true);
         let number = |k: usize| ((k * k * 31 + k * 17) % 97) as f64 / 7.0 - 6.0;
         stencils.values.iter_mut().enumerate().for_each(|(k, v)| *v = number(k));
         stencils.gradients.iter_mut().enumerate().for_each(|(k, g)| *g = number(k + 5));
@@ -138,7 +156,7 @@ mod tests {
 
     fn check<const K: usize, const V: usize, const D: usize>() {
         let (stencils, field) = three::<K, D>();
-        let groups: Vec<_> = stencils.groups(0..3).collect();
+        let groups: Vec<_> = stencils.groups::<K>(0..3).collect();
         assert_eq!(groups, [0..2, 2..3]);
         // gather: four sums at a time are those of one particle and one field
         for r in 0..3 {
@@ -177,6 +195,18 @@ mod tests {
         check::<4, 1, 1>();
         check::<3, 3, 2>();
         check::<4, 4, 2>();
+        check::<6, 4, 2>();
+        check::<10, 4, 2>();
+    }
+
+    #[test]
+    fn narrow_and_wide_particles_are_never_in_one_group() {
+        let (mut stencils, _) = three::<6, 2>();
+        stencils.first.fill(5);
+        stencils.narrow[1] = false;
+        assert_eq!(stencils.groups::<6>(0..3).collect::<Vec<_>>(), [0..1, 1..2, 2..3]);
+        stencils.narrow[0] = false;
+        assert_eq!(stencils.groups::<6>(0..3).collect::<Vec<_>>(), [0..2, 2..3]);
     }
 
     /// Weights (1/4, 1/2, 1/4) on nodes with 2, 4 and 6: a sum of 4; masses of 2 and 3 kg add up.

@@ -56,7 +56,7 @@ use crate::material::constitutive::ConstitutiveModel;
 use crate::shape::with_width;
 use crate::solver::clock::timed;
 use crate::solver::packed::{WindowPlace, add_to, dot, totals, with_packed};
-use crate::solver::particle_weights::{ParticleWeights, cut};
+use crate::solver::particle_weights::{NARROW, ParticleWeights, cut};
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 use crate::solver::shape_weights::Stencils;
@@ -147,6 +147,21 @@ impl PressureSums<'_> {
     }
 }
 
+/// Adds particles one by one to the sums and to the matrix.
+#[inline(always)]
+fn add_particles<const K: usize, const D: usize>(
+    stencils: &Stencils,
+    particles: Range<usize>,
+    band: &mut Band,
+    of: &Relaxed<'_>,
+    sums: &mut PressureSums<'_>,
+) {
+    for (r, weights) in particles.clone().zip(stencils.particles::<K, D>(particles)) {
+        let share = sums.add(&weights, r, of);
+        band.add(&weights, share);
+    }
+}
+
 /// Nodal fields of the relaxation that a particle takes.
 #[derive(Clone, Copy)]
 struct Projected<'a> {
@@ -208,7 +223,11 @@ impl<const D: usize> Scheme<D> {
             s: &Scheme<D>,
         ) {
             s.scatter_pressure(patch, K, |stencils, runs, band, of, sums| {
-                for group in runs.iter().flat_map(|run| stencils.groups(run.clone())) {
+                for group in runs.iter().flat_map(|run| stencils.groups::<K>(run.clone())) {
+                    if const { K > NARROW } && !stencils.is_narrow(group.start) {
+                        add_particles::<K, D>(stencils, group, band, of, sums);
+                        continue;
+                    }
                     sums.add_group::<K, V, D>(stencils, group.clone(), of);
                     band.add_group::<K, V, D>(stencils, group, |r| of.share(r));
                 }
@@ -217,10 +236,7 @@ impl<const D: usize> Scheme<D> {
         fn single<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
             s.scatter_pressure(patch, K, |stencils, runs, band, of, sums| {
                 for run in runs {
-                    for (r, weights) in run.clone().zip(stencils.particles::<K, D>(run.clone())) {
-                        let share = sums.add(&weights, r, of);
-                        band.add(&weights, share);
-                    }
+                    add_particles::<K, D>(stencils, run.clone(), band, of, sums);
                 }
             });
         }
@@ -305,6 +321,13 @@ impl<const D: usize> Scheme<D> {
             let (mut window, mut at) = ([[f64x4::ZERO; V]; 4], u32::MAX);
             patch.with_stencils(|patch, stencils| {
                 s.relax_particles(patch, rate, |r, nodal| {
+                    if const { K > NARROW } && !stencils.is_narrow(r) {
+                        let weights = stencils.particle::<K, D>(r);
+                        return match nodal.ratio {
+                            Some(_) => nodal.sums::<K, D, true>(&weights),
+                            None => nodal.sums::<K, D, false>(&weights),
+                        };
+                    }
                     if stencils.first[r] != at {
                         at = stencils.first[r];
                         window = nodal.fetch::<K, V, D>(stencils.place(r));

@@ -3,6 +3,7 @@
 
 use decomp::array;
 
+use super::band::Band;
 use super::scheme::Scheme;
 use super::spin::{spin_gradient, spin_inertia};
 use crate::shape::{Shape, with_shape, with_width};
@@ -12,6 +13,7 @@ use crate::solver::packed::with_packed;
 use crate::solver::particle_weights::{Offset, ParticleWeights, add, cut, lines};
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
+use crate::solver::summed_fields::{SummedColumns, SummedSlices};
 
 impl<const D: usize> Scheme<D> {
     /// All sums of a patch at new positions of its particles, with or without the force, and the
@@ -138,69 +140,102 @@ impl<const D: usize> Scheme<D> {
         patch: &mut Patch<D>,
         force: bool,
     ) {
-        let c = &self.columns;
         self.clear_sums::<K, MATRIX, SPIN>(patch);
-        // fields are taken out while others are read and written
+        // matrix and fields are taken out while others are read and written
+        let mut band = std::mem::take(&mut patch.band);
         let mut fields = self.take_sums(patch);
         let mut sums = fields.sums();
-        let particles = patch.block.particles();
-        let column = |k: usize| &patch.block.columns[k][..particles];
-        let vector = |k: usize| -> [&[f64]; D] { array::from_fn(|a| column(k + a)) };
-        let (mass, velocity) = (column(c.mass), vector(c.velocity));
-        let stress = column(c.stress_volume);
-        let filled = c.fill_fraction.map_or(&[][..], column);
-        let affine = c.affine.filter(|_| AFFINE);
-        let spin = c.spin.filter(|_| SPIN).map(|spin| column(spin.angular_momentum));
+        let of = self.summed_columns(patch, force);
         for run in &patch.runs {
             for (r, weights) in run.clone().zip(patch.stencils.particles::<K, D>(run.clone())) {
-                let m = mass[r];
-                weights.add(sums.mass, weights.values, |n| n * m);
-                if let Some(spin) = spin {
-                    let place = self.place_of(patch, r);
-                    let inverse = 1.0 / spin_inertia(&weights, place);
-                    let (rates, place) = self.reflect_spin(patch, r, spin[r] * inverse, place);
-                    self.add_affine_momentum(
-                        patch,
-                        &weights,
-                        r,
-                        spin_gradient(rates),
-                        &mut sums.momentum,
-                    );
-                    patch.band.add_spin(&weights, m, place, inverse);
-                } else if let Some(affine) = affine {
-                    let at = |k: usize| patch.block.columns[affine + k][r];
-                    let slope = array::from_fn(|a| array::from_fn(|b| at(D * a + b)));
-                    self.add_affine_momentum(patch, &weights, r, slope, &mut sums.momentum);
-                } else {
-                    for a in 0..D {
-                        let mv = m * velocity[a][r];
-                        weights.add(sums.momentum[a], weights.values, |n| n * mv);
-                    }
-                }
-                if MATRIX && !SPIN {
-                    patch.band.add(&weights, m);
-                }
-                if let Some(volume) = &mut sums.volume {
-                    let filled = filled[r];
-                    weights.add(volume, weights.values, |n| n * filled);
-                }
-                if force {
-                    let s = stress[r];
-                    for a in 0..D {
-                        weights.add(sums.force[a], weights.gradient(a), |g| g * s);
-                    }
-                    // radial motion of a node strains the material in the hoop direction
-                    if D > 1 && self.axisymmetric {
-                        let hoop = s / self.radius(patch, r);
-                        weights.add(sums.force[0], weights.values, |n| n * hoop);
-                    }
-                }
+                self.add_particle::<K, MATRIX, AFFINE, SPIN>(
+                    patch,
+                    (r, &weights),
+                    &of,
+                    &mut sums,
+                    &mut band,
+                );
             }
         }
         if MATRIX {
-            patch.band.finish();
+            band.finish();
         }
+        patch.band = band;
         self.put_sums(patch, fields);
+    }
+
+    /// Columns of the particles of a patch, including ghosts, that are summed.
+    #[inline(always)]
+    pub(super) fn summed_columns<'a>(
+        &self,
+        patch: &'a Patch<D>,
+        force: bool,
+    ) -> SummedColumns<'a, D> {
+        let c = &self.columns;
+        let particles = patch.block.particles();
+        let column = |k: usize| &patch.block.columns[k][..particles];
+        SummedColumns {
+            mass: column(c.mass),
+            velocity: array::from_fn(|a| column(c.velocity + a)),
+            filled: c.fill_fraction.map_or(&[][..], column),
+            stress: force.then(|| column(c.stress_volume)),
+            moment: c.spin.map(|spin| column(spin.angular_momentum)),
+        }
+    }
+
+    /// Adds a particle with the weights on a window of any width to the sums of its patch, and to
+    /// the mass matrix with `MATRIX`.
+    #[inline(always)]
+    pub(super) fn add_particle<
+        const K: usize,
+        const MATRIX: bool,
+        const AFFINE: bool,
+        const SPIN: bool,
+    >(
+        &self,
+        patch: &Patch<D>,
+        (r, weights): (usize, &ParticleWeights<'_, K, D>),
+        of: &SummedColumns<'_, D>,
+        sums: &mut SummedSlices<'_, D>,
+        band: &mut Band,
+    ) {
+        let m = of.mass[r];
+        weights.add(sums.mass, weights.values, |n| n * m);
+        if let Some(moment) = of.moment.filter(|_| SPIN) {
+            let place = self.place_of(patch, r);
+            let inverse = 1.0 / spin_inertia(weights, place);
+            let (rates, place) = self.reflect_spin(patch, r, moment[r] * inverse, place);
+            let slope = spin_gradient(rates);
+            self.add_affine_momentum(patch, weights, r, slope, &mut sums.momentum);
+            band.add_spin(weights, m, place, inverse);
+        } else if let Some(affine) = self.columns.affine.filter(|_| AFFINE) {
+            let at = |k: usize| patch.block.columns[affine + k][r];
+            let slope = array::from_fn(|a| array::from_fn(|b| at(D * a + b)));
+            self.add_affine_momentum(patch, weights, r, slope, &mut sums.momentum);
+        } else {
+            for a in 0..D {
+                let mv = m * of.velocity[a][r];
+                weights.add(sums.momentum[a], weights.values, |n| n * mv);
+            }
+        }
+        if MATRIX && !SPIN {
+            band.add(weights, m);
+        }
+        if let Some(volume) = &mut sums.volume {
+            let filled = of.filled[r];
+            weights.add(volume, weights.values, |n| n * filled);
+        }
+        if let Some(stress) = of.stress {
+            let s = stress[r];
+            for a in 0..D {
+                weights.add(sums.force[a], weights.gradient(a), |g| g * s);
+            }
+            // radial motion of a node strains the material in the hoop direction
+            if D > 1 && self.axisymmetric {
+                let hoop = s / self.radius(patch, r);
+                weights.add(sums.force[0], weights.values, |n| n * hoop);
+            }
+        }
     }
 
     /// Adds the momentum m N (v + C (x_i - x_p)) of a particle with the velocity gradient C,

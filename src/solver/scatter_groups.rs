@@ -3,28 +3,16 @@
 
 use std::ops::Range;
 
-use decomp::array;
-
 use wide::f64x4;
 
 use super::band::{Band, Spinning, TOGETHER};
 use super::scheme::Scheme;
 use super::spin::packed_inertia;
 use crate::solver::packed::{add_to, totals};
-use crate::solver::particle_weights::Offset;
+use crate::solver::particle_weights::{NARROW, Offset};
 use crate::solver::patch::Patch;
 use crate::solver::shape_weights::Stencils;
-use crate::solver::summed_fields::SummedSlices;
-
-/// Columns of particles that are summed.
-struct Summed<'a, const D: usize> {
-    mass: &'a [f64],
-    velocity: [&'a [f64]; D],
-    /// Volume [cells], with an edge mask.
-    filled: &'a [f64],
-    /// Stress times volume [J], if forces are summed.
-    stress: Option<&'a [f64]>,
-}
+use crate::solver::summed_fields::{SummedColumns, SummedSlices};
 
 impl<const D: usize> SummedSlices<'_, D> {
     /// Adds mass and momentum of a group of particles.
@@ -33,7 +21,7 @@ impl<const D: usize> SummedSlices<'_, D> {
         &mut self,
         stencils: &Stencils,
         group: Range<usize>,
-        of: &Summed<'_, D>,
+        of: &SummedColumns<'_, D>,
     ) {
         let place = stencils.place(group.start);
         let mut mass = place.nodes::<K, V>(self.mass);
@@ -61,7 +49,7 @@ impl<const D: usize> SummedSlices<'_, D> {
         &mut self,
         stencils: &Stencils,
         group: Range<usize>,
-        of: &Summed<'_, D>,
+        of: &SummedColumns<'_, D>,
         cell: [f64; D],
         turning: impl Fn(usize) -> (Offset<D>, [f64; 2]),
     ) {
@@ -97,7 +85,7 @@ impl<const D: usize> SummedSlices<'_, D> {
         &mut self,
         stencils: &Stencils,
         group: Range<usize>,
-        of: &Summed<'_, D>,
+        of: &SummedColumns<'_, D>,
     ) {
         let place = stencils.place(group.start);
         if let Some(field) = &mut self.volume {
@@ -131,9 +119,8 @@ impl<const D: usize> Scheme<D> {
         patch: &mut Patch<D>,
         force: bool,
     ) {
-        let c = &self.columns;
         let matrix = self.needs_matrix();
-        match (matrix, c.spin) {
+        match (matrix, self.columns.spin) {
             (_, Some(_)) => self.clear_sums::<K, true, true>(patch),
             (true, None) => self.clear_sums::<K, true, false>(patch),
             (false, None) => self.clear_sums::<K, false, false>(patch),
@@ -142,18 +129,14 @@ impl<const D: usize> Scheme<D> {
         let mut band = std::mem::take(&mut patch.band);
         let mut fields = self.take_sums(patch);
         let mut sums = fields.sums();
-        let particles = patch.block.particles();
-        let column = |k: usize| &patch.block.columns[k][..particles];
-        let of = Summed {
-            mass: column(c.mass),
-            velocity: array::from_fn(|a| column(c.velocity + a)),
-            filled: c.fill_fraction.map_or(&[][..], column),
-            stress: force.then(|| column(c.stress_volume)),
-        };
-        let spin = c.spin.map(|spin| column(spin.angular_momentum));
-        for group in patch.runs.iter().flat_map(|run| patch.stencils.groups(run.clone())) {
+        let of = self.summed_columns(patch, force);
+        for group in patch.runs.iter().flat_map(|run| patch.stencils.groups::<K>(run.clone())) {
+            if const { K > NARROW } && !patch.stencils.is_narrow(group.start) {
+                self.add_wide::<K>(patch, group, &of, &mut sums, &mut band);
+                continue;
+            }
             sums.add_rest::<K, V>(&patch.stencils, group.clone(), &of);
-            match spin {
+            match of.moment {
                 Some(moment) => {
                     self.add_spinning::<K, V>(&mut sums, patch, &mut band, group, (&of, moment));
                 }
@@ -173,6 +156,32 @@ impl<const D: usize> Scheme<D> {
         self.put_sums(patch, fields);
     }
 
+    /// Adds a group of particles whose weights do not fit into vectors.
+    #[cold]
+    fn add_wide<const K: usize>(
+        &self,
+        patch: &Patch<D>,
+        group: Range<usize>,
+        of: &SummedColumns<'_, D>,
+        sums: &mut SummedSlices<'_, D>,
+        band: &mut Band,
+    ) {
+        for (r, weights) in group.clone().zip(patch.stencils.particles::<K, D>(group)) {
+            let one = (r, &weights);
+            match (self.needs_matrix(), of.moment) {
+                (_, Some(_)) => {
+                    self.add_particle::<K, true, false, true>(patch, one, of, sums, band);
+                }
+                (true, None) => {
+                    self.add_particle::<K, true, false, false>(patch, one, of, sums, band);
+                }
+                (false, None) => {
+                    self.add_particle::<K, false, false, false>(patch, one, of, sums, band);
+                }
+            }
+        }
+    }
+
     /// Adds motion and blocks of the mass matrix of a group of particles with spin, a few at a time.
     #[inline(always)]
     fn add_spinning<const K: usize, const V: usize>(
@@ -181,7 +190,7 @@ impl<const D: usize> Scheme<D> {
         patch: &Patch<D>,
         band: &mut Band,
         group: Range<usize>,
-        (of, moment): (&Summed<'_, D>, &[f64]),
+        (of, moment): (&SummedColumns<'_, D>, &[f64]),
     ) {
         let stencils = &patch.stencils;
         let mut from = group.start;

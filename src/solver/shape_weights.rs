@@ -140,22 +140,35 @@ impl Stencils {
         decomp::array::from_fn(|a| pack::<K, V>(&gradients[a * nodes..]))
     }
 
+    /// Whether `particle` has weights on at most the first [`NARROW`] nodes along each direction, if
+    /// windows are wider.
+    #[inline(always)]
+    pub fn is_narrow(&self, particle: usize) -> bool {
+        self.narrow[particle]
+    }
+
     /// Window of `particle`.
     #[inline(always)]
     pub fn place(&self, particle: usize) -> WindowPlace {
         WindowPlace { first: self.first[particle] as usize, stride: self.stride }
     }
 
-    /// Ranges of consecutive particles of `run` with the same window.
+    /// Ranges of consecutive particles of `run` with the same window, all of them narrow or none.
     #[inline(always)]
-    pub fn groups(&self, run: Range<usize>) -> impl Iterator<Item = Range<usize>> + '_ {
+    pub fn groups<const K: usize>(
+        &self,
+        run: Range<usize>,
+    ) -> impl Iterator<Item = Range<usize>> + '_ {
         let first = &self.first[run.clone()];
+        // empty if windows are not wider
+        let narrow = self.narrow.get(run.clone()).unwrap_or_default();
         let mut from = 0;
         std::iter::from_fn(move || {
             let window = first.get(from)?;
             let start = from;
             from += 1;
-            while first.get(from) == Some(window) {
+            while first.get(from) == Some(window) && (K <= NARROW || narrow[from] == narrow[start])
+            {
                 from += 1;
             }
             Some(run.start + start..run.start + from)

@@ -34,7 +34,7 @@ use super::scheme::Scheme;
 use crate::shape::with_width;
 use crate::solver::clock::timed;
 use crate::solver::packed::{dot, totals, with_packed};
-use crate::solver::particle_weights::{Distances, ParticleWeights};
+use crate::solver::particle_weights::{Distances, NARROW, ParticleWeights};
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 
@@ -85,6 +85,17 @@ fn moment_of<const K: usize, const D: usize>(
         (0..K).for_each(|k| moments[k] = along[k] * y[k] - across * x[k]);
         moments
     })
+}
+
+/// Inertia of a particle [m2], and [`moment_of`] three nodal velocities.
+#[inline(always)]
+fn moments_of<const K: usize, const D: usize>(
+    weights: &ParticleWeights<'_, K, D>,
+    place: Distances,
+    nodal: &[[&[f64]; 2]; 3],
+) -> [f64; 4] {
+    let [start, star, residual] = map(nodal, |v| moment_of(weights, place, v));
+    [spin_inertia(weights, place), start, star, residual]
 }
 
 /// [`moment_of`] of a window in vectors, before the sum over the nodes of a line.
@@ -139,6 +150,9 @@ impl<const D: usize> Scheme<D> {
             let (mut window, mut at) = ([[[f64x4::ZERO; V]; 2]; 3], u32::MAX);
             s.gather_spin_of(patch, spin, primes, |patch, r, place, nodal| {
                 let stencils = &patch.stencils;
+                if const { K > NARROW } && !stencils.is_narrow(r) {
+                    return moments_of(&stencils.particle::<K, D>(r), place, nodal);
+                }
                 if stencils.first[r] != at {
                     at = stencils.first[r];
                     let place = stencils.place(r);
@@ -157,9 +171,7 @@ impl<const D: usize> Scheme<D> {
             primes: bool,
         ) {
             s.gather_spin_of(patch, spin, primes, |patch, r, place, nodal| {
-                let weights = patch.stencils.particle::<K, D>(r);
-                let [start, star, residual] = map(nodal, |v| moment_of(&weights, place, v));
-                [spin_inertia(&weights, place), start, star, residual]
+                moments_of(&patch.stencils.particle::<K, D>(r), place, nodal)
             });
         }
         let Some(spin) = self.columns.spin else { return };

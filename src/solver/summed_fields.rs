@@ -1,4 +1,5 @@
-//! Nodal fields that hold sums over particles, taken out of a patch while its other arrays are read.
+//! Columns of particles that are summed, and nodal fields that hold the sums, taken out of a patch
+//! while its other arrays are read.
 
 use decomp::array;
 
@@ -23,6 +24,20 @@ pub(super) struct SummedSlices<'a, const D: usize> {
     pub force: [&'a mut [f64]; D],
     /// Filled volume [cells], with an edge mask.
     pub volume: Option<&'a mut [f64]>,
+}
+
+/// Columns of the particles of a patch, including ghosts, that are summed.
+pub(super) struct SummedColumns<'a, const D: usize> {
+    /// Mass [kg].
+    pub mass: &'a [f64],
+    /// Velocity [m/s].
+    pub velocity: [&'a [f64]; D],
+    /// Volume [cells], with an edge mask.
+    pub filled: &'a [f64],
+    /// Stress times volume [J], if forces are summed.
+    pub stress: Option<&'a [f64]>,
+    /// Angular momentum per unit mass [m2/s], with spin.
+    pub moment: Option<&'a [f64]>,
 }
 
 impl<const D: usize> SummedFields<D> {

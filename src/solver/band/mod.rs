@@ -225,19 +225,23 @@ impl Band {
 
     /// Completes the matrix after all particles have been added.
     pub fn finish(&mut self) {
-        // known to the compiler for windows of 4 nodes on a line, and of 3 and 4 nodes in a plane,
+        // known to the compiler for windows of 4 nodes on a line, and of 3, 4 and 6 nodes in a plane,
         // without and with spin
         const LINE: usize = diagonals(4, 1);
         const THREE: usize = diagonals(3, 2);
         const FOUR: usize = diagonals(4, 2);
+        const SIX: usize = diagonals(6, 2);
         const SPIN_THREE: usize = BLOCK_ENTRIES * THREE;
         const SPIN_FOUR: usize = BLOCK_ENTRIES * FOUR;
+        const SPIN_SIX: usize = BLOCK_ENTRIES * SIX;
         match self.entries * self.offsets.len() {
             LINE => self.turn::<LINE>(),
             THREE => self.turn::<THREE>(),
             FOUR => self.turn::<FOUR>(),
+            SIX => self.turn::<SIX>(),
             SPIN_THREE => self.turn::<SPIN_THREE>(),
             SPIN_FOUR => self.turn::<SPIN_FOUR>(),
+            SPIN_SIX => self.turn::<SPIN_SIX>(),
             _ => self.turn::<0>(),
         }
     }
@@ -407,6 +411,7 @@ mod tests {
         stencils.resize::<K, D>(5, stride);
         let first = 2 + (D as u32 - 1) * 2 * stride as u32;
         stencils.first.copy_from_slice(&[first, first, first, first, first + 1]);
+        stencils.narrow.fill(true);
         let number = |k: usize| ((k * k * 31 + k * 17) % 97) as f64 / 97.0;
         stencils.values.iter_mut().enumerate().for_each(|(k, v)| *v = number(k));
         stencils
@@ -422,7 +427,7 @@ mod tests {
             for r in 0..5 {
                 one.add::<K, D>(&stencils.particle(r), mass[r]);
             }
-            for group in stencils.groups(0..5) {
+            for group in stencils.groups::<K>(0..5) {
                 grouped.add_group::<K, V, D>(&stencils, group, |r| mass[r]);
             }
             assert!(one.rows.iter().any(|m| *m > 0.5));
@@ -433,6 +438,7 @@ mod tests {
         check::<4, 1, 1>(20, 20);
         check::<3, 3, 2>(120, 12);
         check::<4, 4, 2>(120, 12);
+        check::<6, 4, 2>(160, 12);
     }
 
     #[test]
@@ -451,12 +457,12 @@ mod tests {
                 })
                 .collect();
             let [mut one, mut grouped] = [Band::default(), Band::default()];
-            one.clear_blocks(120, K, stride);
-            grouped.clear_blocks(120, K, stride);
+            one.clear_blocks(160, K, stride);
+            grouped.clear_blocks(160, K, stride);
             for (r, p) in spinning.iter().enumerate() {
                 one.add_spin::<K, 2>(&stencils.particle(r), p.mass, p.place, p.inverse);
             }
-            for group in stencils.groups(0..5) {
+            for group in stencils.groups::<K>(0..5) {
                 let some = &spinning[group.clone()];
                 grouped.add_spinning::<K, V, 2>(&stencils, group, some);
             }
@@ -465,6 +471,7 @@ mod tests {
         }
         check::<3, 3>();
         check::<4, 4>();
+        check::<6, 4>();
     }
 
     /// One matrix used for several sums: a sum contains nothing of the previous one, for narrow

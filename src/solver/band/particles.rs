@@ -7,7 +7,7 @@ use wide::f64x4;
 
 use super::{BLOCK_ENTRIES, Band, TOGETHER, Touched, diagonals, first_entry};
 use crate::shape::{MOST_NODES, MOST_NODES_IN_PLANE, add_product, fours, vector};
-use crate::solver::packed::{WindowPlace, between};
+use crate::solver::packed::{WindowPlace, between, packed_nodes};
 use crate::solver::particle_weights::{Distances, NARROW, ParticleWeights, lines, window};
 use crate::solver::shape_weights::Stencils;
 
@@ -131,8 +131,15 @@ impl Band {
         }
     }
 
-    /// Adds the particles of `group`, which have the same window of three or four nodes along each
-    /// direction in `V` vectors, with the `mass` of each.
+    /// Notes that narrow particles change entries of a line from the node `from` on.
+    #[inline(always)]
+    pub(super) fn touch_group<const K: usize>(&mut self, from: usize) {
+        let nodes = [from, from + const { packed_nodes(K) } - 1];
+        self.touch(nodes, if K > NARROW { Touched::Near } else { Touched::All });
+    }
+
+    /// Adds the narrow particles of `group`, which have the same window in `V` vectors, with the
+    /// `mass` of each.
     #[inline(always)]
     pub fn add_group<const K: usize, const V: usize, const D: usize>(
         &mut self,
@@ -211,7 +218,7 @@ impl Band {
     ) {
         let count = const { diagonals(K, D) };
         let from = place.first + LINE * place.stride;
-        self.touch([from, from + K - 1], Touched::All);
+        self.touch_group::<K>(from);
         // a length known at compile time avoids bounds checks
         let rows = &mut self.rows[from * count..][..const { K * diagonals(K, D) }];
         add_node::<K, V, D, N, LINE, 0>(rows, values, terms);

@@ -5,7 +5,7 @@ use std::ops::Range;
 use decomp::array::map;
 use wide::f64x4;
 
-use super::{BLOCK_ENTRIES, Band, Spinning, TOGETHER, Touched, diagonals, first_entry};
+use super::{BLOCK_ENTRIES, Band, Spinning, TOGETHER, diagonals, first_entry};
 use crate::shape::vector;
 use crate::solver::packed::{WindowPlace, between};
 use crate::solver::particle_weights::window;
@@ -95,8 +95,8 @@ fn add_node<
 }
 
 impl Band {
-    /// Adds some particles with spin from `particles.start` on, which have the same window of three
-    /// or four nodes along each direction in `V` vectors.
+    /// Adds some narrow particles with spin from `particles.start` on, which have the same window in
+    /// `V` vectors.
     #[inline(always)]
     pub fn add_spinning<const K: usize, const V: usize, const D: usize>(
         &mut self,
@@ -145,7 +145,7 @@ impl Band {
     ) {
         let count = const { diagonals(K, D) };
         let from = place.first + LINE * place.stride;
-        self.touch([from, from + K - 1], Touched::All);
+        self.touch_group::<K>(from);
         // a length known at compile time avoids bounds checks
         let rows = &mut self.rows[from * BLOCK_ENTRIES * count..]
             [..const { K * BLOCK_ENTRIES * diagonals(K, D) }];

@@ -18,3 +18,4 @@ mod solid;
 mod spin;
 mod steps;
 mod total_lagrangian;
+mod wide_particles;
