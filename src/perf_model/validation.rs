@@ -36,6 +36,9 @@ struct ValidationRow {
     wall_seconds: f64,
     wall_seconds_min: Option<f64>,
     wall_seconds_max: Option<f64>,
+    /// Fraction of the time for outputs, which the model does not contain.
+    #[serde(default)]
+    output: f64,
     bytes_per_step: Option<f64>,
     messages_per_step: Option<f64>,
 }
@@ -69,7 +72,7 @@ pub struct Compared {
     pub halo: FilterHalo,
     /// Predicted time of a step \[s\].
     pub predicted: f64,
-    /// Measured time of a step: wall time of the loop over its steps \[s\].
+    /// Measured time of a step: wall time of the loop without outputs over its steps \[s\].
     pub measured: f64,
     /// Difference of the longest and the shortest run over their median \[-\].
     pub spread: Option<f64>,
@@ -149,7 +152,7 @@ impl Against {
                 particles,
                 halo: own.halo,
                 predicted: own.step,
-                measured: row.wall_seconds / row.steps as f64,
+                measured: row.wall_seconds * (1.0 - row.output) / row.steps as f64,
                 spread: row.spread(),
                 bytes: row.bytes_per_step.filter(|b| *b > 0.0).map(|b| own.bytes / b - 1.0),
                 messages: row

@@ -217,19 +217,18 @@ where
     }
 }
 
-/// Times of the fastest batch of a variant within about `seconds` \[s\]; `None` if it does not run.
+/// Times of the batch of median time of a variant within about `seconds` \[s\]; `None` if it does
+/// not run.
 pub fn measure(variant: &Variant, seconds: f64) -> Option<MeasuredVariant<'_>> {
     let start = Instant::now();
     let mut runner = runner(variant)?;
-    let mut best: Option<(f64, f64)> = None;
-    for count in 0.. {
-        if count >= LEAST_BATCHES && start.elapsed().as_secs_f64() >= seconds {
-            break;
-        }
-        let Some(new) = runner.batch() else { break };
-        best = Some(best.map_or(new, |old| if new.0 < old.0 { new } else { old }));
+    let mut batches = Vec::new();
+    while batches.len() < LEAST_BATCHES || start.elapsed().as_secs_f64() < seconds {
+        let Some(batch) = runner.batch() else { break };
+        batches.push(batch);
     }
-    let (total, compute) = best?;
+    batches.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let &(total, compute) = batches.get(batches.len() / 2)?;
     Some(MeasuredVariant { variant, total, compute })
 }
 
@@ -247,16 +246,19 @@ pub fn busy(
         return None;
     }
     let single = || variants.iter().filter(|v| v.share.layout.patches == 1 && v.threads == 1);
-    let small = single().min_by_key(|v| (v.work.particles - 1700.0).abs() as u64)?;
-    let large = single().max_by_key(|v| v.work.particles as u64)?;
+    let bytes = |v: &Variant| v.work.particles * v.work.row_bytes;
+    // the largest that stays in cache: a smaller one shares nothing with other cores
+    let by_size = |v: &&Variant| v.work.particles as u64;
+    let small = single().filter(|v| bytes(v) <= cache).max_by_key(by_size);
+    let small = small.or_else(|| single().min_by_key(by_size))?;
+    let large = single().max_by_key(by_size)?;
     let each = seconds / 4.0;
     let crowd = |variant: &Variant, count: usize| {
         alive();
         crowd(variant, count, each)
     };
     let ratio = |variant: &Variant| Some(crowd(variant, cores)? / crowd(variant, 1)?);
-    let cold =
-        |v: &Variant| crate::perf_model::cold_share(v.work.particles * v.work.row_bytes, cache);
+    let cold = |v: &Variant| crate::perf_model::cold_share(bytes(v), cache);
     let warm = ratio(small)?.max(1.0);
     let mixed = ratio(large)?.max(1.0);
     let cold = match cold(large) {
@@ -266,7 +268,7 @@ pub fn busy(
     Some(Busy { cores, warm, cold })
 }
 
-/// Lower quartile of the time of a step while `count` threads each run a variant \[s\].
+/// Median time of a step while `count` threads each run a variant \[s\].
 fn crowd(variant: &Variant, count: usize, seconds: f64) -> Option<f64> {
     let barrier = Barrier::new(count);
     let run = || {
@@ -280,7 +282,7 @@ fn crowd(variant: &Variant, count: usize, seconds: f64) -> Option<f64> {
             times.push(total);
         }
         times.sort_by(f64::total_cmp);
-        times.get(times.len() / 4).copied()
+        times.get(times.len() / 2).copied()
     };
     std::thread::scope(|scope| {
         let threads: Vec<_> = (0..count).map(|_| scope.spawn(run)).collect();
