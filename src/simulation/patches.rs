@@ -22,10 +22,9 @@ const SHARED_CELLS: [usize; 2] = [256, 64];
 /// worker may hold much more than the mean.
 const LEAST_PATCHES_A_WORKER: usize = 4;
 
-/// Number of patches for a scene on the given ranks and threads: as given in the scene, halved if
-/// there are fewer than several threads need; otherwise at least one for each thread of each rank
-/// unless they would be too narrow, and several per thread if patches may be quiescent or if threads
-/// share a plane.
+/// Number of patches for a scene on the given ranks and threads: as given in the scene, unless there
+/// are fewer than several threads need; otherwise at least one for each thread of each rank unless
+/// they would be too narrow, and several per thread if patches may be quiescent or in a plane.
 pub fn patch_counts(scene: &CheckedScene, ranks: usize, threads: usize) -> Vec<usize> {
     match scene.dimension {
         1 => patch_parts::<1>(scene, ranks, threads).to_vec(),
@@ -40,9 +39,8 @@ pub(super) fn patch_parts<const D: usize>(
 ) -> [usize; D] {
     let cells: [usize; D] = std::array::from_fn(|a| scene.cells[a]);
     let workers = ranks * threads;
-    if let Some(patches) = &scene.scene.domain.patches {
-        let given = std::array::from_fn(|a| patches[a]);
-        return if threads > 1 { shared(cells, given, workers) } else { given };
+    if let Some(given) = given_parts(scene, ranks, threads) {
+        return given;
     }
     let of_edge = |edge: [usize; 2]| cells.iter().map(|n| (n / edge[D - 1]).max(1)).product();
     let parts = |wanted: usize| choose_cuts(cells, wanted, LEAST_CELLS);
@@ -65,24 +63,16 @@ pub(super) fn patch_parts<const D: usize>(
     }
 }
 
-/// The `given` patches. If there are fewer than workers, they are halved along their longer direction
-/// until each worker has one, or two in a plane, where the work of the halves differs more. They do
-/// not become narrower than [`LEAST_CELLS`].
-fn shared<const D: usize>(cells: [usize; D], given: [usize; D], workers: usize) -> [usize; D] {
-    if given.iter().product::<usize>() >= workers {
-        return given;
-    }
-    let wanted = if D > 1 { 2 * workers } else { workers };
-    let mut parts = given;
-    while parts.iter().product::<usize>() < wanted {
-        let width = |a: usize| cells[a] / parts[a];
-        let longest = (0..D).max_by_key(|&a| width(a)).expect("at least one direction");
-        if width(longest) < 2 * LEAST_CELLS {
-            break;
-        }
-        parts[longest] *= 2;
-    }
-    parts
+/// The patches of the scene file, unless they are fewer than the workers of a run with several threads a
+/// rank: threads without a patch would wait.
+fn given_parts<const D: usize>(
+    scene: &CheckedScene,
+    ranks: usize,
+    threads: usize,
+) -> Option<[usize; D]> {
+    let given = scene.scene.domain.patches.as_ref()?;
+    let enough = threads == 1 || given.iter().product::<usize>() >= ranks * threads;
+    enough.then(|| std::array::from_fn(|a| given[a]))
 }
 
 /// Whether a body is at rest and free of stress, so that patches can be quiescent.
@@ -163,7 +153,7 @@ pub(super) fn cut_domain<const D: usize>(
     let parts = patch_parts::<D>(scene, ranks, threads);
     let domain = IndexBox::new([0; D], std::array::from_fn(|a| scene.cells[a] as i64));
     let sides = scene.side_properties::<D>().map(|ends| ends.map(|side| side.ghosts));
-    if scene.scene.domain.patches.is_some() || parts == [1; D] {
+    if given_parts::<D>(scene, ranks, threads).is_some() || parts == [1; D] {
         return Layout::new(domain, sides, parts);
     }
     let cuts = std::array::from_fn(|a| {
@@ -179,18 +169,32 @@ pub(super) fn cut_domain<const D: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::shared;
+    use super::*;
+    use crate::input;
 
     #[test]
-    fn threads_share_a_given_patch_by_parts_of_it() {
-        // enough patches stay as they are
-        assert_eq!(shared([400, 300], [2, 2], 4), [2, 2]);
-        assert_eq!(shared([400, 300], [1, 1], 2), [2, 2]);
-        assert_eq!(shared([400, 300], [1, 1], 4), [4, 2]);
-        assert_eq!(shared([400, 300], [4, 1], 5), [4, 4]);
-        assert_eq!(shared([1000], [3], 4), [6]);
-        // a part is not narrower than 16 cells
-        assert_eq!(shared([60], [1], 8), [2]);
-        assert_eq!(shared([20, 20], [1, 1], 8), [1, 1]);
+    fn threads_share_a_scene_of_too_few_patches() {
+        let scene = |patches: &str| {
+            let sets = [patches, "domain.cell_size=4e-5"].map(String::from);
+            let text = include_bytes!("../../inputs/flyer_2d.json");
+            input::parse(text, "flyer_2d.json", &sets).unwrap()
+        };
+        let given = scene("domain.patches=[2,2]");
+        assert_eq!(patch_parts::<2>(&given, 2, 1), [2, 2]);
+        // ranks without a patch are as the scene wants it
+        assert_eq!(patch_parts::<2>(&given, 8, 1), [2, 2]);
+        assert_eq!(patch_parts::<2>(&given, 2, 2), [2, 2]);
+        let chosen = patch_parts::<2>(&scene("domain.patches=null"), 2, 4);
+        assert!(chosen.iter().product::<usize>() >= 8);
+        assert_eq!(patch_parts::<2>(&given, 2, 4), chosen);
+        // chosen patches have about equal numbers of particles, given ones equal widths
+        let widths = |threads| {
+            let layout = cut_domain::<2>(&given, 2, threads);
+            let patches = (0..layout.count()).map(|patch| layout.patch(patch).extent(1));
+            let widths: std::collections::BTreeSet<_> = patches.collect();
+            widths.len()
+        };
+        assert_eq!(widths(1), 1);
+        assert!(widths(4) > 1);
     }
 }

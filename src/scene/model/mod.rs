@@ -127,8 +127,8 @@ pub struct Domain {
     /// Coordinate system of a plane; default `plane_strain`.
     #[serde(default, skip_serializing_if = "Geometry::is_plane_strain")]
     pub geometry: Geometry,
-    /// Number of patches in each direction, which are halved further until each of several threads
-    /// has one, or two in a plane; absent: chosen from the number of ranks and threads, and printed.
+    /// Number of patches in each direction; absent, or fewer than there are threads where a rank has
+    /// several: chosen from the number of ranks and threads, and printed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1)))]
     pub patches: Option<Vec<usize>>,
