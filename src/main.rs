@@ -46,17 +46,17 @@ const FAILED: u8 = 3;
 /// The run was stopped on request and can be restarted.
 const STOPPED: u8 = 4;
 
-/// Smallest allocation that gets pages of its own \[B\]: the largest value that every version of glibc
-/// accepts.
-#[cfg(target_env = "gnu")]
+/// Smallest allocation that gets pages of its own \[B\]: the largest value that every version of
+/// glibc accepts with addresses of 64 bits.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
 const OWN_PAGES: i32 = 32 << 20;
 
-/// Places the columns of particles and the nodal fields one after the other on the heap. With pages of
-/// their own, all of them start at the same place of a page, so that the same particle of all columns
-/// competes for the same few lines of the cache.
+/// Places the columns of particles and the nodal fields one after the other on the heap. With pages
+/// of their own, all of them start at the same place of a page, so that the same particle of all
+/// columns competes for the same few lines of the cache.
 fn place_arrays() {
     // SAFETY: the call changes a parameter of the allocator, and no other thread runs yet
-    #[cfg(target_env = "gnu")]
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
     unsafe {
         nix::libc::mallopt(nix::libc::M_MMAP_THRESHOLD, OWN_PAGES);
     }
@@ -420,9 +420,8 @@ fn announce(comm: &dyn Comm, scene: &CheckedScene, threads: usize) {
         eprintln!("{}", warning(&text));
     }
     let chosen = match &scene.scene.domain.patches {
-        None => " (chosen)",
-        Some(given) if *given != patches => " (cut for the threads)",
-        Some(_) => "",
+        Some(given) if *given == patches => "",
+        _ => " (chosen)",
     };
     // without spaces, so that a line does not end within it
     let patches = patches.iter().map(usize::to_string).collect::<Vec<_>>().join(",");

@@ -82,13 +82,16 @@ impl Work {
         }
     }
 
-    /// Largest number of patches: that of the scene file, else the number with the narrowest patches.
-    pub fn most_patches(scene: &CheckedScene) -> usize {
-        match &scene.scene.domain.patches {
-            Some(patches) => patches.iter().product(),
-            None => {
+    /// Largest number of patches with `threads` threads a rank: that of the scene file, which is no
+    /// limit for several threads, else the number with the narrowest patches.
+    pub fn most_patches(scene: &CheckedScene, threads: usize) -> usize {
+        let given = scene.scene.domain.patches.as_ref().map(|p| p.iter().product::<usize>());
+        match given {
+            Some(given) if threads == 1 => given,
+            _ => {
                 let cells = scene.cells.iter().map(|n| (n / LEAST_CELLS).max(1));
-                cells.product::<usize>().max(patch_counts(scene, 1, 1).iter().product())
+                let chosen: usize = patch_counts(scene, 1, 1).iter().product();
+                cells.product::<usize>().max(chosen).max(given.unwrap_or(1))
             }
         }
     }

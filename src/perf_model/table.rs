@@ -72,7 +72,7 @@ pub fn forecast(
         })
         .collect();
     let mut limits =
-        ScalingLimits { patches: Work::most_patches(scene), half: None, fastest: None };
+        ScalingLimits { patches: Work::most_patches(scene, threads), half: None, fastest: None };
     let mut best = (1, f64::INFINITY);
     for ranks in scanned() {
         let step = on(ranks, threads, None).step;

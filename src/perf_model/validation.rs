@@ -36,9 +36,8 @@ struct ValidationRow {
     wall_seconds: f64,
     wall_seconds_min: Option<f64>,
     wall_seconds_max: Option<f64>,
-    /// Fraction of the time for outputs, which the model does not contain.
-    #[serde(default)]
-    output: f64,
+    /// Mean share of the time of a rank for outputs, which the model does not contain \[-\].
+    output: Option<f64>,
     bytes_per_step: Option<f64>,
     messages_per_step: Option<f64>,
 }
@@ -72,7 +71,8 @@ pub struct Compared {
     pub halo: FilterHalo,
     /// Predicted time of a step \[s\].
     pub predicted: f64,
-    /// Measured time of a step: wall time of the loop without outputs over its steps \[s\].
+    /// Measured time of a step: wall time of the loop, less the mean share of outputs, over its steps
+    /// \[s\].
     pub measured: f64,
     /// Difference of the longest and the shortest run over their median \[-\].
     pub spread: Option<f64>,
@@ -109,7 +109,9 @@ impl Against {
             return Err(fail(format!("kind = {kind:?}; allowed: a study of strong scaling")));
         }
         let sound = |r: &ValidationRow| {
-            r.ranks > 0 && r.threads > 0 && r.patches > 0 && r.steps > 0 && r.wall_seconds > 0.0
+            let counts = [r.ranks, r.threads, r.patches, r.steps as usize];
+            let computes = r.output.is_none_or(|share| (0.0..1.0).contains(&share));
+            !counts.contains(&0) && r.wall_seconds > 0.0 && computes
         };
         match study.rows.iter().position(|r| !sound(r)) {
             Some(k) => Err(fail(format!("row {k} has a count or time of 0; allowed: above 0"))),
@@ -152,7 +154,7 @@ impl Against {
                 particles,
                 halo: own.halo,
                 predicted: own.step,
-                measured: row.wall_seconds * (1.0 - row.output) / row.steps as f64,
+                measured: row.wall_seconds * (1.0 - row.output.unwrap_or(0.0)) / row.steps as f64,
                 spread: row.spread(),
                 bytes: row.bytes_per_step.filter(|b| *b > 0.0).map(|b| own.bytes / b - 1.0),
                 messages: row

@@ -12,7 +12,8 @@ use crate::solver::{StencilRadius, Stepper};
 /// Memory of the program without particles: code, libraries and buffers [bytes].
 const PROGRAM: u64 = 30 << 20;
 
-/// Arrays over the unused parts of the heap between them [-]: about 3 % of the memory was measured.
+/// Size of the arrays over that of the gaps between them on the heap [-]; the gaps were measured as
+/// about 3 % of the memory.
 const ARRAYS_PER_GAP: u64 = 32;
 
 /// Numbers of cells along a direction and of patches above which patches are not counted, because the

@@ -32,16 +32,34 @@ pub fn patch_counts(scene: &CheckedScene, ranks: usize, threads: usize) -> Vec<u
     }
 }
 
+/// Number of patches in each direction; see [`patch_counts`].
 pub(super) fn patch_parts<const D: usize>(
     scene: &CheckedScene,
     ranks: usize,
     threads: usize,
 ) -> [usize; D] {
+    let chosen = || chosen_parts(scene, ranks * threads);
+    given_parts(scene, ranks, threads).unwrap_or_else(chosen)
+}
+
+/// The patches of the scene file; `None` if there are none, or if ranks have several threads, there are
+/// fewer patches than threads in total, and the program would choose more.
+fn given_parts<const D: usize>(
+    scene: &CheckedScene,
+    ranks: usize,
+    threads: usize,
+) -> Option<[usize; D]> {
+    let given = scene.scene.domain.patches.as_ref()?;
+    let count = given.iter().product::<usize>();
+    let chosen = || chosen_parts::<D>(scene, ranks * threads).iter().product::<usize>();
+    // threads without a patch would wait
+    let is_kept = threads == 1 || count >= ranks * threads || count >= chosen();
+    is_kept.then(|| std::array::from_fn(|a| given[a]))
+}
+
+/// Number of patches in each direction for `workers` threads of all ranks together.
+fn chosen_parts<const D: usize>(scene: &CheckedScene, workers: usize) -> [usize; D] {
     let cells: [usize; D] = std::array::from_fn(|a| scene.cells[a]);
-    let workers = ranks * threads;
-    if let Some(given) = given_parts(scene, ranks, threads) {
-        return given;
-    }
     let of_edge = |edge: [usize; 2]| cells.iter().map(|n| (n / edge[D - 1]).max(1)).product();
     let parts = |wanted: usize| choose_cuts(cells, wanted, LEAST_CELLS);
     match workers {
@@ -61,18 +79,6 @@ pub(super) fn patch_parts<const D: usize>(
             if halves { parts.map(|n| 2 * n) } else { parts }
         }
     }
-}
-
-/// The patches of the scene file, unless they are fewer than the workers of a run with several threads a
-/// rank: threads without a patch would wait.
-fn given_parts<const D: usize>(
-    scene: &CheckedScene,
-    ranks: usize,
-    threads: usize,
-) -> Option<[usize; D]> {
-    let given = scene.scene.domain.patches.as_ref()?;
-    let enough = threads == 1 || given.iter().product::<usize>() >= ranks * threads;
-    enough.then(|| std::array::from_fn(|a| given[a]))
 }
 
 /// Whether a body is at rest and free of stress, so that patches can be quiescent.
@@ -143,7 +149,7 @@ pub(super) fn count_of_body<const D: usize>(
 /// Weight of a particle relative to that of an empty cell when the domain is cut.
 const PARTICLE_WEIGHT: u64 = 4;
 
-/// Domain cut into patches: of equal width if the scene gives their number, otherwise with about
+/// Domain cut into patches: of equal width if they are those of the scene, otherwise with about
 /// the same initial number of particles in each row and column of patches.
 pub(super) fn cut_domain<const D: usize>(
     scene: &CheckedScene,
@@ -181,12 +187,15 @@ mod tests {
         };
         let given = scene("domain.patches=[2,2]");
         assert_eq!(patch_parts::<2>(&given, 2, 1), [2, 2]);
-        // ranks without a patch are as the scene wants it
+        // with one thread per rank, given patches are kept even if ranks have none
         assert_eq!(patch_parts::<2>(&given, 8, 1), [2, 2]);
         assert_eq!(patch_parts::<2>(&given, 2, 2), [2, 2]);
         let chosen = patch_parts::<2>(&scene("domain.patches=null"), 2, 4);
         assert!(chosen.iter().product::<usize>() >= 8);
         assert_eq!(patch_parts::<2>(&given, 2, 4), chosen);
+        // patches that are narrower than any chosen one are kept, if there are more of them
+        let narrow = scene("domain.patches=[20,10]");
+        assert_eq!(patch_parts::<2>(&narrow, 101, 2), [20, 10]);
         // chosen patches have about equal numbers of particles, given ones equal widths
         let widths = |threads| {
             let layout = cut_domain::<2>(&given, 2, threads);

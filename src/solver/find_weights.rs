@@ -1,4 +1,4 @@
-//! Weights of all particles of a patch: four particles at a time where windows are narrow, else one
+//! Weights of all particles of a patch: four narrow particles at a time in a plane, all others one
 //! after the other, with the same bits.
 
 use std::ops::Range;
@@ -69,8 +69,8 @@ fn put(numbers: &[f64x4], out: &mut [f64]) {
     }
 }
 
-/// Whether four particles are computed together: on a line, and on two nodes, they take fewer
-/// instructions one by one. In wider windows only those of narrow particles are.
+/// Whether four particles are computed together: on a line, and on two nodes, that takes more
+/// instructions. In windows of more than [`NARROW`] nodes it is done for four narrow particles only.
 const fn in_lanes(width: usize, dimension: usize) -> bool {
     dimension > 1 && 2 < width
 }
@@ -148,10 +148,10 @@ impl Stencils {
         at.four::<S, NARROW>(first, w);
         let nodes = const { K * lines(K, D) };
         let parts = [&w.values, &w.gradients[0], &w.gradients[1]];
-        put_narrow::<K>(parts[0], windows::<1>(&mut self.values[first * nodes..], nodes, 0));
+        put_narrow::<K>(parts[0], parts_of_four::<1>(&mut self.values[first * nodes..], nodes, 0));
         for axis in 0..D {
             let gradients = &mut self.gradients[first * nodes * D..];
-            put_narrow::<K>(parts[1 + axis], windows::<D>(gradients, nodes, axis));
+            put_narrow::<K>(parts[1 + axis], parts_of_four::<D>(gradients, nodes, axis));
         }
         self.narrow[first..first + LANES].fill(true);
         self.put_corners(at, first, corners, w);
@@ -212,9 +212,14 @@ impl Stencils {
     }
 }
 
-/// The part `part` of `N` of each of the first four windows of `nodes` nodes in `numbers`.
+/// Of the first four particles in `numbers`, each with `N` parts of `nodes` numbers, the part `part`:
+/// values have one part, gradients one for each direction.
 #[inline(always)]
-fn windows<const N: usize>(numbers: &mut [f64], nodes: usize, part: usize) -> [&mut [f64]; LANES] {
+fn parts_of_four<const N: usize>(
+    numbers: &mut [f64],
+    nodes: usize,
+    part: usize,
+) -> [&mut [f64]; LANES] {
     let mut all = numbers.chunks_exact_mut(N * nodes);
     array::from_fn(|_| {
         let window = all.next().expect("those of four particles");

@@ -10,7 +10,7 @@ use crate::shape::with_width;
 use crate::solver::artificial_viscosity::{self, Nodes};
 use crate::solver::clock::timed;
 use crate::solver::packed::with_packed;
-use crate::solver::particle_weights::{NARROW, ParticleWeights};
+use crate::solver::particle_weights::ParticleWeights;
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 use crate::transfer::VelocityUpdate;
@@ -75,7 +75,7 @@ impl<const D: usize> Scheme<D> {
             let (mut window, mut at) = (PackedEnds::<V, D>::none(), u32::MAX);
             patch.with_stencils(|patch, stencils| {
                 s.end_particles(patch, dt, [moves, wanted[1]], |r, nodal| {
-                    if const { K > NARROW } && !stencils.is_narrow(r) {
+                    if !stencils.is_narrow::<K>(r) {
                         let weights = stencils.particle::<K, D>(r);
                         return EndSums::one_by_one::<K, K>(nodal, &weights, wanted);
                     }

@@ -9,7 +9,6 @@ use super::solid::put_back;
 use crate::shape::with_width;
 use crate::solver::clock::timed;
 use crate::solver::packed::with_packed;
-use crate::solver::particle_weights::NARROW;
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 use crate::transfer::VelocityUpdate;
@@ -46,7 +45,7 @@ impl<const D: usize> Scheme<D> {
             let (mut window, mut at) = (PackedVelocities::<V, D>::none(), u32::MAX);
             patch.with_stencils(|patch, stencils| {
                 s.gather_particles(patch, dt, |r, nodal| {
-                    if const { K > NARROW } && !stencils.is_narrow(r) {
+                    if !stencils.is_narrow::<K>(r) {
                         return NodalSums::one_by_one::<K, K>(nodal, &stencils.particle::<K, D>(r));
                     }
                     // several particles of a cell have the same window

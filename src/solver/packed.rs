@@ -11,10 +11,10 @@ use decomp::array::{from_fn, map};
 use wide::f64x4;
 
 use crate::shape::{fours, vector};
-use crate::solver::particle_weights::window;
+use crate::solver::particle_weights::{NARROW, window};
 
 /// Greatest number of nodes along a direction of such a window.
-pub const PACKED: usize = 4;
+pub const PACKED: usize = NARROW;
 
 /// Number of nodes with weights along a direction, of the `width` of a window.
 pub(super) const fn packed_nodes(width: usize) -> usize {
@@ -34,7 +34,7 @@ pub struct PackedWeights<const V: usize, const D: usize> {
 ///
 /// # Panics
 ///
-/// If fewer than three numbers follow the last line but one and its own.
+/// If `numbers` has fewer than `(V - 1) * K + 4` numbers.
 #[inline(always)]
 pub(super) fn pack<const K: usize, const V: usize>(numbers: &[f64]) -> [f64x4; V] {
     // one check for all lines
@@ -58,6 +58,7 @@ impl WindowPlace {
     pub fn nodes<const K: usize, const V: usize>(&self, field: &[f64]) -> [f64x4; V] {
         from_fn(|line| {
             let at = self.first + line * self.stride;
+            // the nodes in a vector as a constant argument cannot be computed from K
             match const { K <= PACKED } {
                 true => fours(window::<K>(field, at), 0),
                 false => fours(window::<PACKED>(field, at), 0),

@@ -115,10 +115,9 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Reports a fault for each of `particles` whose new cell in `cells` is not a neighbour of its
-    /// present one, and leaves it where it is. [`handle_exit`](Self::handle_exit) decides about
-    /// those that leave the domain.
-    #[cold]
+    /// Reports a fault for each of `particles` whose new cell in `cells` is neither its present one nor
+    /// next to it. Its cell stays the present one until the run ends or the step is repeated.
+    /// [`handle_exit`](Self::handle_exit) decides about those that leave the domain.
     fn stop_far_moves(
         &self,
         patch: &mut Patch<D>,
@@ -133,15 +132,14 @@ impl<const D: usize> Scheme<D> {
             if (0..D).any(leaves) {
                 continue;
             }
-            // across periodic sides by the shorter way
+            // by the shorter way: cells are wrapped across periodic sides, positions are not
             let cells_passed = |a: usize| {
-                let count = self.cells[a];
                 let by = (i64::from(cells[a][r]) - i64::from(was[a])).abs();
-                if self.sides[a][0].is_periodic() {
-                    (by % count).min(count - by % count)
-                } else {
-                    by
+                if by <= 1 || !self.sides[a][0].is_periodic() {
+                    return by;
                 }
+                let by = by % self.cells[a];
+                by.min(self.cells[a] - by)
             };
             let most = (0..D).map(cells_passed).fold(0, i64::max);
             if most > 1 {

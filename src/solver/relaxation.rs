@@ -56,7 +56,7 @@ use crate::material::constitutive::ConstitutiveModel;
 use crate::shape::with_width;
 use crate::solver::clock::timed;
 use crate::solver::packed::{WindowPlace, add_to, dot, totals, with_packed};
-use crate::solver::particle_weights::{NARROW, ParticleWeights, cut};
+use crate::solver::particle_weights::{ParticleWeights, cut};
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 use crate::solver::shape_weights::Stencils;
@@ -224,7 +224,7 @@ impl<const D: usize> Scheme<D> {
         ) {
             s.scatter_pressure(patch, K, |stencils, runs, band, of, sums| {
                 for group in runs.iter().flat_map(|run| stencils.groups::<K>(run.clone())) {
-                    if const { K > NARROW } && !stencils.is_narrow(group.start) {
+                    if !stencils.is_narrow::<K>(group.start) {
                         add_particles::<K, D>(stencils, group, band, of, sums);
                         continue;
                     }
@@ -321,7 +321,7 @@ impl<const D: usize> Scheme<D> {
             let (mut window, mut at) = ([[f64x4::ZERO; V]; 4], u32::MAX);
             patch.with_stencils(|patch, stencils| {
                 s.relax_particles(patch, rate, |r, nodal| {
-                    if const { K > NARROW } && !stencils.is_narrow(r) {
+                    if !stencils.is_narrow::<K>(r) {
                         let weights = stencils.particle::<K, D>(r);
                         return match nodal.ratio {
                             Some(_) => nodal.sums::<K, D, true>(&weights),

@@ -9,7 +9,7 @@ use super::band::{Band, Spinning, TOGETHER};
 use super::scheme::Scheme;
 use super::spin::packed_inertia;
 use crate::solver::packed::{add_to, totals};
-use crate::solver::particle_weights::{NARROW, Offset};
+use crate::solver::particle_weights::Offset;
 use crate::solver::patch::Patch;
 use crate::solver::shape_weights::Stencils;
 use crate::solver::summed_fields::{SummedColumns, SummedSlices};
@@ -131,7 +131,7 @@ impl<const D: usize> Scheme<D> {
         let mut sums = fields.sums();
         let of = self.summed_columns(patch, force);
         for group in patch.runs.iter().flat_map(|run| patch.stencils.groups::<K>(run.clone())) {
-            if const { K > NARROW } && !patch.stencils.is_narrow(group.start) {
+            if !patch.stencils.is_narrow::<K>(group.start) {
                 self.add_wide::<K>(patch, group, &of, &mut sums, &mut band);
                 continue;
             }

@@ -140,11 +140,11 @@ impl Stencils {
         decomp::array::from_fn(|a| pack::<K, V>(&gradients[a * nodes..]))
     }
 
-    /// Whether `particle` has weights on at most the first [`NARROW`] nodes along each direction, if
-    /// windows are wider.
+    /// Whether `particle` has weights on at most the first [`NARROW`] nodes along each direction of its
+    /// window of `K`.
     #[inline(always)]
-    pub fn is_narrow(&self, particle: usize) -> bool {
-        self.narrow[particle]
+    pub fn is_narrow<const K: usize>(&self, particle: usize) -> bool {
+        K <= NARROW || self.narrow[particle]
     }
 
     /// Window of `particle`.

@@ -34,7 +34,7 @@ use super::scheme::Scheme;
 use crate::shape::with_width;
 use crate::solver::clock::timed;
 use crate::solver::packed::{dot, totals, with_packed};
-use crate::solver::particle_weights::{Distances, NARROW, ParticleWeights};
+use crate::solver::particle_weights::{Distances, ParticleWeights};
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 
@@ -150,7 +150,7 @@ impl<const D: usize> Scheme<D> {
             let (mut window, mut at) = ([[[f64x4::ZERO; V]; 2]; 3], u32::MAX);
             s.gather_spin_of(patch, spin, primes, |patch, r, place, nodal| {
                 let stencils = &patch.stencils;
-                if const { K > NARROW } && !stencils.is_narrow(r) {
+                if !stencils.is_narrow::<K>(r) {
                     return moments_of(&stencils.particle::<K, D>(r), place, nodal);
                 }
                 if stencils.first[r] != at {

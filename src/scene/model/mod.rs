@@ -127,8 +127,8 @@ pub struct Domain {
     /// Coordinate system of a plane; default `plane_strain`.
     #[serde(default, skip_serializing_if = "Geometry::is_plane_strain")]
     pub geometry: Geometry,
-    /// Number of patches in each direction; absent, or fewer than there are threads where a rank has
-    /// several: chosen from the number of ranks and threads, and printed.
+    /// Number of patches in each direction. If absent, or if ranks have several threads and there are
+    /// fewer patches than threads in total, the program chooses the patches and prints their numbers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1)))]
     pub patches: Option<Vec<usize>>,

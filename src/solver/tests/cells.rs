@@ -120,7 +120,7 @@ fn a_particle_that_passes_a_cell_is_a_fault() {
 
 #[test]
 fn a_particle_moves_across_a_periodic_side_the_shorter_way() {
-    // 8 cells; 15 cells away and wrapped is the next cell
+    // of 8 cells, from cell 3: 16 cells away is the same cell, 9 the next one, 6 the second one
     for (x, by) in [(1.75 + 8.0, None), (1.25 - 4.0, None), (0.75 + 4.0, Some(2)), (3.9, Some(4))] {
         let mut f = periodic(json!({}));
         f.set("position", &[x, 2.25]);

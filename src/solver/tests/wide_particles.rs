@@ -22,8 +22,8 @@ fn narrow<const K: usize>(f: &Fixture<2>, particle: usize) -> Weights {
     (f.patch.stencils.first[particle], part(weights.values), gradients)
 }
 
-/// Twelve particles in three cells, of which `long` is stretched five times along x, with sheared ones
-/// among the others, after the sums.
+/// Twelve particles in three cells, some of them sheared, after the nodal sums of a step; the particle
+/// `long`, if any, is stretched five times along x.
 fn stretched(long: Option<usize>) -> Fixture<2> {
     let mut f = Fixture::<2>::new(json!({
         "method": {
@@ -44,6 +44,8 @@ fn stretched(long: Option<usize>) -> Fixture<2> {
     let xx: Vec<f64> = (0..12).map(stretch).collect();
     let xy: Vec<f64> = (0..12).map(|r| 0.01 * (r % 5) as f64).collect();
     f.set("deformation_xx", &xx).set("deformation_xy", &xy).set("jacobian_mid", &xx);
+    let velocity: Vec<f64> = (0..12).map(|r| 1.0 + 0.3 * r as f64).collect();
+    f.set("velocity_x", &velocity);
     f.scatter(0.1);
     f
 }
