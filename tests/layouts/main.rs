@@ -10,6 +10,7 @@ mod found;
 mod in_process;
 #[path = "../common/layouts.rs"]
 mod layouts;
+mod plane;
 mod random;
 #[path = "../common/random_scenes.rs"]
 mod random_scenes;
