@@ -6,6 +6,11 @@ use super::fixture::{Fixture, close};
 
 /// Particles of 1 kg at 1.75 and 2.25 m in the cells 3 and 4 of half a metre.
 fn halved(method: Value) -> Fixture<1> {
+    halved_between(method, json!({}))
+}
+
+/// The same with these sides.
+fn halved_between(method: Value, boundary: Value) -> Fixture<1> {
     let body = json!({"name": "body", "material": "fluid", "particles_per_cell": [1],
         "box": {"lower": [1.5], "upper": [2.5]}});
     Fixture::new(json!({
@@ -13,18 +18,7 @@ fn halved(method: Value) -> Fixture<1> {
         "bodies": [body],
         "method": method,
         "artificial_viscosity": {"linear": 0.5, "quadratic": 2.0},
-    }))
-}
-
-/// The same between periodic sides.
-fn periodic(method: Value) -> Fixture<1> {
-    let body = json!({"name": "body", "material": "fluid", "particles_per_cell": [1],
-        "box": {"lower": [1.5], "upper": [2.5]}});
-    Fixture::new(json!({
-        "domain": {"upper": [4.0], "cell_size": 0.5},
-        "bodies": [body],
-        "method": method,
-        "boundary": {"x_lower": "periodic", "x_upper": "periodic"},
+        "boundary": boundary,
     }))
 }
 
@@ -122,7 +116,8 @@ fn a_particle_that_passes_a_cell_is_a_fault() {
 fn a_particle_moves_across_a_periodic_side_the_shorter_way() {
     // of 8 cells, from cell 3: 16 cells away is the same cell, 9 the next one, 6 the second one
     for (x, by) in [(1.75 + 8.0, None), (1.25 - 4.0, None), (0.75 + 4.0, Some(2)), (3.9, Some(4))] {
-        let mut f = periodic(json!({}));
+        let sides = json!({"x_lower": "periodic", "x_upper": "periodic"});
+        let mut f = halved_between(json!({}), sides);
         f.set("position", &[x, 2.25]);
         f.run(0.1, |s, step, patch| s.find_cells(patch, 0.0, step.jacobian));
         let what = |by: i64| format!("it moves by {by} cells in one step, allowed: 1");
