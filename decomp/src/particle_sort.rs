@@ -62,7 +62,12 @@ impl Section {
 impl<const D: usize> Block<D> {
     /// Restores the canonical order of the own particles.
     pub fn sort_own(&mut self) {
-        self.sort(0..self.own(), &mut SortBuffers::default());
+        self.sort_own_from(0);
+    }
+
+    /// Restores the canonical order of the own particles from `first` on.
+    pub fn sort_own_from(&mut self, first: usize) {
+        self.sort(first..self.own(), &mut SortBuffers::default());
     }
 
     /// Restores the canonical order of some `particles`.

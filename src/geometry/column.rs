@@ -73,7 +73,7 @@ impl<'a> Column<'a> {
         if (moments.area - whole).abs() <= ROUNDING * whole {
             moments = full(whole);
         }
-        Cut { index, moments }
+        Cut { index, moments, merged: false }
     }
 
     /// Tiles in which the border of the shape may lie: all that are not `whole`, without those in

@@ -2,10 +2,10 @@
 
 use super::column::Column;
 use super::intervals::{Interval, difference};
-use super::lattice::{Cut, Lattice};
+use super::lattice::{Cut, Lattice, Tile};
 use super::merge::{merge, sliver_area};
 use super::shape::BoundedRegion;
-use super::tiling::{TileRun, Tiling};
+use super::tiling::{TileRun, Tiling, longest};
 
 /// The border of a shape is longer than the number of tiles that can be kept one by one.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -38,9 +38,14 @@ pub fn fill(
     runs.sort_unstable_by_key(|run| (run.row, run.columns[0]));
     add_neighbours(&shape, &lattice, &runs, &mut cuts);
     merge(&shape, &lattice, &mut cuts);
-    let (runs, singles, count) = number(&runs, &cuts);
-    let singles = singles.into_iter().zip(&cuts).map(|(n, cut)| (n, lattice.tile(cut))).collect();
-    Ok(Tiling::new(lattice, Some(shape), runs, singles, count))
+    let whole = runs.iter().map(|_| lattice.size());
+    let longest = longest(cuts.iter().map(|cut| lattice.tile(cut).size).chain(whole));
+    let mut numbered =
+        Numbered { lattice: &lattice, runs: Vec::new(), singles: Vec::new(), next: 0 };
+    numbered.add_all(&runs, &cuts);
+    let Numbered { mut runs, singles, next, .. } = numbered;
+    runs.shrink_to_fit();
+    Ok(Tiling::new(lattice, Some(shape), runs, singles, (next, longest)))
 }
 
 /// The tiles at the border of the shape, and the runs of those inside, not numbered and in any
@@ -107,33 +112,57 @@ fn add_neighbours(shape: &BoundedRegion, lattice: &Lattice, runs: &[TileRun], cu
     cuts.sort_unstable_by_key(|cut| cut.index);
 }
 
-/// Numbers tiles by row, then by column: runs without the tiles that are among `cuts`, the numbers of
-/// the cuts, and the number of all. Runs and cuts are sorted.
-fn number(whole: &[TileRun], cuts: &[Cut]) -> (Vec<TileRun>, Vec<u64>, u64) {
-    let (mut runs, mut singles) = (Vec::with_capacity(whole.len()), Vec::with_capacity(cuts.len()));
-    let mut next = 0;
-    for run in whole {
-        let [mut from, to] = run.columns;
-        while let Some(cut) = cuts.get(singles.len()).filter(|cut| cut.index < [run.row, to]) {
-            let column = cut.index[1];
-            if cut.index[0] == run.row && from < column {
-                runs.push(TileRun { row: run.row, columns: [from, column], first: next });
-                next += (column - from) as u64;
+/// Tiles that have their numbers: by row, then by column.
+struct Numbered<'a> {
+    lattice: &'a Lattice,
+    /// Tiles that the shape alone defines.
+    runs: Vec<TileRun>,
+    /// Tiles with parts of others, and slivers.
+    singles: Vec<(u64, Tile)>,
+    /// Number of the next tile.
+    next: u64,
+}
+
+impl Numbered<'_> {
+    /// Adds the runs of `whole` tiles and the tiles of `cuts`, some of which lie within these runs; both
+    /// are sorted.
+    fn add_all(&mut self, whole: &[TileRun], cuts: &[Cut]) {
+        let mut cuts = cuts.iter().peekable();
+        for run in whole {
+            let [mut from, to] = run.columns;
+            while let Some(cut) = cuts.next_if(|cut| cut.index < [run.row, to]) {
+                let column = cut.index[1];
+                if cut.index[0] == run.row && from < column {
+                    self.add_run(run.row, [from, column]);
+                }
+                if cut.index >= [run.row, from] {
+                    from = column + 1;
+                }
+                self.add_cut(cut);
             }
-            if cut.index >= [run.row, from] {
-                from = column + 1;
+            if from < to {
+                self.add_run(run.row, [from, to]);
             }
-            singles.push(next);
-            next += 1;
         }
-        if from < to {
-            runs.push(TileRun { row: run.row, columns: [from, to], first: next });
-            next += (to - from) as u64;
+        cuts.for_each(|cut| self.add_cut(cut));
+    }
+
+    /// Adds the tiles of a row in some columns, to the last run if they are next to it.
+    fn add_run(&mut self, row: i64, columns: [i64; 2]) {
+        match self.runs.last_mut().filter(|run| run.row == row && run.columns[1] == columns[0]) {
+            Some(run) => run.columns[1] = columns[1],
+            None => self.runs.push(TileRun { row, columns, first: self.next }),
         }
+        self.next += (columns[1] - columns[0]) as u64;
     }
-    while singles.len() < cuts.len() {
-        singles.push(next);
-        next += 1;
+
+    fn add_cut(&mut self, cut: &Cut) {
+        let [row, column] = cut.index;
+        // the centroid of a sliver may be rounded into the next cell
+        if !cut.merged && cut.moments.area >= sliver_area(self.lattice) {
+            return self.add_run(row, [column, column + 1]);
+        }
+        self.singles.push((self.next, self.lattice.tile(cut)));
+        self.next += 1;
     }
-    (runs, singles, next)
 }

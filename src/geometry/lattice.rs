@@ -36,6 +36,8 @@ pub(super) struct Cut {
     pub index: [i64; 2],
     /// Area and moments about the tile's centre.
     pub moments: Moments,
+    /// Whether parts of other tiles were merged into it.
+    pub merged: bool,
 }
 
 impl Lattice {

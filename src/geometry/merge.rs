@@ -71,6 +71,7 @@ impl Merger<'_> {
         let shift = [0, 1].map(|d| (own[1 - d] - other[1 - d]) as f64 * size[d]);
         let moments = self.cuts[tile].moments.shifted(shift);
         self.cuts[target].moments += moments;
+        self.cuts[target].merged = true;
         self.into[tile] = target;
         self.members.entry(target).or_insert_with(|| vec![target]).extend(members);
     }

@@ -1,15 +1,17 @@
 //! The tiles of a body, numbered in a fixed order, and found by the grid's cells.
 //!
-//! Tiles that lie wholly inside of a shape are kept as runs along the rows of the lattice, and made
-//! when they are asked for; those at its border are kept one by one. The tiling of a disk of n tiles
-//! thus takes memory and time of the order of sqrt(n), so that every rank has the tilings of all
-//! bodies and makes the tiles of its own patches alone.
+//! Tiles are kept as runs along the rows of the lattice, and made when they are asked for; those with
+//! merged slivers are kept one by one. The tiling of a disk of n tiles thus takes memory and time of
+//! the order of sqrt(n), so that every rank has the tilings of all bodies and makes the tiles of its
+//! own patches alone.
+
+use std::cmp::Ordering;
 
 use super::column::Column;
 use super::lattice::{CellBox, Lattice, Tile};
 use super::shape::BoundedRegion;
 
-/// Whole tiles next to each other in a row of the lattice.
+/// Tiles next to each other in a row of the lattice, each the part of the shape in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TileRun {
     pub row: i64,
@@ -39,6 +41,8 @@ pub struct Tiling {
     /// Sorted by cell, y first, then by number.
     singles: Vec<Single>,
     tiles: u64,
+    /// Greatest edges of a tile [m].
+    longest: [f64; 2],
 }
 
 impl Tiling {
@@ -47,16 +51,18 @@ impl Tiling {
     pub fn of_tiles(tiles: Vec<Tile>, lower: [f64; 2], cell_size: [f64; 2]) -> Self {
         let lattice = Lattice { lower, cell: cell_size, per_cell: [1, 1] };
         let count = tiles.len() as u64;
-        Tiling::new(lattice, None, Vec::new(), (0..).zip(tiles).collect(), count)
+        let longest = longest(tiles.iter().map(|tile| tile.size));
+        Tiling::new(lattice, None, Vec::new(), (0..).zip(tiles).collect(), (count, longest))
     }
 
-    /// Runs of whole tiles of a shape, sorted, and its other tiles with their numbers.
+    /// Sorted runs of tiles of a shape, its other tiles with their numbers, the number of all tiles, and
+    /// their greatest edges [m].
     pub(super) fn new(
         lattice: Lattice,
         shape: Option<BoundedRegion>,
         runs: Vec<TileRun>,
         singles: Vec<(u64, Tile)>,
-        tiles: u64,
+        (tiles, longest): (u64, [f64; 2]),
     ) -> Self {
         let single = |(number, tile): (u64, Tile)| Single {
             cell: lattice.cell_of(tile.centre),
@@ -65,7 +71,7 @@ impl Tiling {
         };
         let mut singles: Vec<Single> = singles.into_iter().map(single).collect();
         singles.sort_unstable_by_key(|s| (s.cell[1], s.cell[0], s.number));
-        Tiling { lattice, shape, runs, singles, tiles }
+        Tiling { lattice, shape, runs, singles, tiles, longest }
     }
 
     /// Number of tiles.
@@ -144,29 +150,43 @@ impl Tiling {
         }
     }
 
-    /// Tiles that are kept by themselves and those at the ends of runs, with their numbers: all
-    /// sizes of tiles occur among them, except for rounding.
-    pub fn samples(&self) -> impl Iterator<Item = (u64, Tile)> {
-        let ends = self.runs.iter().flat_map(|run| {
-            [run.columns[0], run.columns[1] - 1].map(|column| self.tile_of(run, column))
-        });
-        self.singles.iter().map(|s| (s.number, s.tile)).chain(ends)
+    /// Greatest edges of a tile [m].
+    pub fn longest(&self) -> [f64; 2] {
+        self.longest
     }
 
     /// Number of the tile whose centre is nearest to `at` [m], the least of several; 0 without tiles.
     pub fn nearest(&self, at: &[f64]) -> u64 {
-        let apart = |tile: &Tile| -> f64 {
-            at.iter().zip(tile.centre).map(|(x, centre)| (x - centre) * (x - centre)).sum()
+        type Found = (f64, u64);
+        let found = |(number, tile): (u64, Tile)| -> Found {
+            let along = at.iter().zip(tile.centre);
+            (along.map(|(x, centre)| (x - centre) * (x - centre)).sum(), number)
         };
-        let column = at.first().map_or(0, |x| self.lattice.index(0, *x));
-        // the nearest tile of a row is one of three, since its centre lies within the tile
-        let in_runs = self.runs.iter().flat_map(|run| {
-            let near = [column - 1, column, column + 1];
-            near.map(|c| self.tile_of(run, c.clamp(run.columns[0], run.columns[1] - 1)))
+        let nearer = |a: Found, b: Found| match a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)) {
+            Ordering::Greater => b,
+            _ => a,
+        };
+        let [x, y] = [0, 1].map(|d| at.get(d).copied().unwrap_or(0.0));
+        let column_of = |x: f64| self.lattice.index(0, x);
+        let singles = self.singles.iter().map(|s| found((s.number, s.tile)));
+        // one tile of each run limits the distance
+        let in_runs = self.runs.iter().map(|run| {
+            found(self.tile_of(run, column_of(x).clamp(run.columns[0], run.columns[1] - 1)))
         });
-        let singles = self.singles.iter().map(|s| (s.number, s.tile));
-        let nearest = singles.chain(in_runs).map(|(number, tile)| (apart(&tile), number));
-        nearest.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map_or(0, |(_, n)| n)
+        let mut nearest = singles.chain(in_runs).fold((f64::INFINITY, 0), nearer);
+        for run in &self.runs {
+            // the centre of a tile lies within it
+            let sides = [0, 1].map(|k| self.lattice.side(1, run.row + k));
+            let gap = (sides[0] - y).max(y - sides[1]).max(0.0);
+            if gap * gap > nearest.0 {
+                continue;
+            }
+            let reach = (nearest.0 - gap * gap).sqrt();
+            let near = [column_of(x - reach) - 1, column_of(x + reach) + 2];
+            let [from, to] = clip(run.columns, near);
+            nearest = (from..to).map(|c| found(self.tile_of(run, c))).fold(nearest, nearer);
+        }
+        nearest.1
     }
 
     /// All tiles in the order of their numbers.
@@ -210,6 +230,11 @@ impl Tiling {
             Some(&this[from..to.max(from)])
         })
     }
+}
+
+/// The greatest edges among `sizes` [m].
+pub(super) fn longest(sizes: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
+    sizes.fold([0.0; 2], |most, size| [0, 1].map(|d| f64::max(most[d], size[d])))
 }
 
 /// The part of an interval within another; possibly empty.

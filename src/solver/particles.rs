@@ -88,15 +88,19 @@ pub fn fill<const D: usize>(
         for (&patch, block) in mine.iter().zip(&mut blocks) {
             let cells = &layout.patch(patch);
             block.reserve(count_in(scene, checked, cells));
-            each_particle(scene, checked, cells, &mut |id, centre, size, volume| {
-                let particle = NewParticle { scene, body: number, centre, size };
-                set_initial_values(stepper, &particle, volume, grid_velocity, &mut values);
-                if let (Some(first), Some(boundary)) = (columns.faces, &boundary) {
-                    set_faces(boundary, &particle, &mut values[first..first + 4]);
-                }
-                let cell = cell_of(scene, centre).map(|c| c as i32);
-                block.push(first_id + id, cell, &values);
-            });
+            for strip in strips(cells) {
+                let first = block.own();
+                each_particle(scene, checked, &strip, &mut |id, centre, size, volume| {
+                    let particle = NewParticle { scene, body: number, centre, size };
+                    set_initial_values(stepper, &particle, volume, grid_velocity, &mut values);
+                    if let (Some(first), Some(boundary)) = (columns.faces, &boundary) {
+                        set_faces(boundary, &particle, &mut values[first..first + 4]);
+                    }
+                    let cell = cell_of(scene, centre).map(|c| c as i32);
+                    block.push(first_id + id, cell, &values);
+                });
+                block.sort_own_from(first);
+            }
         }
         first_id += checked.particles;
     }
@@ -104,6 +108,20 @@ pub fn fill<const D: usize>(
         block.sort_own();
     }
     blocks
+}
+
+/// Cells along the last direction of a strip.
+const STRIP: i64 = 16;
+
+/// Cuts a box of cells along its last direction, so that the memory for sorting is that of a strip.
+fn strips<const D: usize>(cells: &IndexBox<D>) -> impl Iterator<Item = IndexBox<D>> {
+    let cells = *cells;
+    (cells.lower[D - 1]..cells.upper[D - 1]).step_by(STRIP as usize).map(move |first| {
+        let mut strip = cells;
+        strip.lower[D - 1] = first;
+        strip.upper[D - 1] = cells.upper[D - 1].min(first + STRIP);
+        strip
+    })
 }
 
 /// Number of particles of `body` whose centres lie in `cells`.

@@ -3,7 +3,7 @@
 use super::exchange::Sleep;
 use super::relaxation;
 use super::scheme::Scheme;
-use crate::scene::{CheckedScene, FilterHalo, Stepping, StressUpdate};
+use crate::scene::{CheckedBody, CheckedScene, FilterHalo, Stepping, StressUpdate};
 use crate::shape::{most_nodes, padded_width};
 
 /// Ratio by which a particle may be longer at the middle of a step than at its start.
@@ -67,23 +67,12 @@ impl FilterHalo {
 impl<const D: usize> Scheme<D> {
     /// Greatest initial extent of particles along a direction [cells].
     pub fn longest_at_start(&self, scene: &CheckedScene) -> f64 {
-        let bodies = scene.bodies.iter();
-        bodies
-            .map(|c| {
-                let in_cells = |a: usize, length: f64| length / scene.cell_size[a];
-                match &c.tiling {
-                    Some(tiling) => tiling
-                        .samples()
-                        .flat_map(|(_, t)| {
-                            std::array::from_fn::<f64, D, _>(|a| in_cells(a, t.size[a]))
-                        })
-                        .fold(0.0, f64::max),
-                    None => (0..D)
-                        .map(|a| in_cells(a, (c.upper[a] - c.lower[a]) / c.lattice[a] as f64))
-                        .fold(0.0, f64::max),
-                }
-            })
-            .fold(0.0, f64::max)
+        let extent = |body: &CheckedBody, a: usize| match &body.tiling {
+            Some(tiling) => tiling.longest()[a],
+            None => (body.upper[a] - body.lower[a]) / body.lattice[a] as f64,
+        };
+        let extents = scene.bodies.iter().flat_map(|body| (0..D).map(move |a| (body, a)));
+        extents.map(|(body, a)| extent(body, a) / scene.cell_size[a]).fold(0.0, f64::max)
     }
 
     /// Stencil radius of particles up to `length` long [cells], with room to stretch in a step;

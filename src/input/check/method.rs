@@ -186,9 +186,10 @@ pub(super) fn check_positions(checked: &CheckedScene) -> Result<(), SceneFault> 
     let method = &checked.scene.method;
     let Some(limit) = longest_particle(method, checked.dimension) else { return Ok(()) };
     for (body, own) in checked.scene.bodies.iter().zip(&checked.bodies) {
-        let tiles = own.tiling.iter().flat_map(|tiling| tiling.samples());
-        let lengths = tiles.flat_map(|(_, t)| t.size.into_iter().zip(&checked.cell_size));
-        let longest = lengths.map(|(size, cell)| size / cell).fold(0.0, f64::max);
+        let Some(tiling) = &own.tiling else { continue };
+        let in_cells =
+            tiling.longest().into_iter().zip(&checked.cell_size).map(|(l, cell)| l / cell);
+        let longest = in_cells.fold(0.0, f64::max);
         if longest > limit {
             let reason = format!(
                 "too few: a particle is {longest:.1} cells long; allowed: up to {limit:.1} with \
