@@ -9,6 +9,8 @@ use std::process::{Child, Command, ExitStatus};
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use tempfile::TempDir;
+
 #[cfg(feature = "mpi")]
 use crate::home::Home;
 
@@ -92,6 +94,7 @@ pub struct Started {
     limit: Duration,
     what: String,
     _turn: Option<Turn>,
+    _sessions: TempDir,
 }
 
 impl Call {
@@ -141,6 +144,9 @@ impl Call {
         // files rather than pipes: a rank that outlives mpirun cannot block the test
         let (stdout, stderr) = (tempfile::tempfile().unwrap(), tempfile::tempfile().unwrap());
         let mut command = self.command();
+        // one that ends removes the folder of the user's sessions while another is about to use it
+        let sessions = tempfile::tempdir().unwrap();
+        command.env("OMPI_MCA_orte_tmpdir_base", sessions.path());
         command.current_dir(&self.folder).stdin(std::process::Stdio::null());
         command.stdout(stdout.try_clone().unwrap());
         match self.stderr.take() {
@@ -150,7 +156,8 @@ impl Call {
         let since = Instant::now();
         let what = format!("{command:?}");
         let child = command.spawn().unwrap_or_else(|e| panic!("{what}: {e}"));
-        Started { child, stdout, stderr, since, limit: self.limit, what, _turn: turn }
+        let (limit, _turn, _sessions) = (self.limit, turn, sessions);
+        Started { child, stdout, stderr, since, limit, what, _turn, _sessions }
     }
 
     /// Runs the call to its end.
