@@ -23,6 +23,8 @@ pub(crate) struct Bundle<const D: usize> {
     /// At most [`MOST_RECEIVERS`].
     receivers: Vec<Receiver<D>>,
     images: Vec<ImageGroups<D>>,
+    /// The packed groups of the last exchange.
+    pub words: Vec<u64>,
 }
 
 /// A patch that may need particles of another.
@@ -69,10 +71,18 @@ impl<const D: usize> ImageGroups<D> {
 pub(crate) enum Taker {
     /// A message to a rank.
     Message(usize),
-    /// A patch of this rank that receives nothing from other ranks.
-    Inner,
-    /// A patch of this rank that receives from other ranks.
-    Border,
+    /// Patches of this rank.
+    Here,
+}
+
+impl Taker {
+    /// The rank, if it is another one.
+    pub fn rank(self) -> Option<usize> {
+        match self {
+            Taker::Message(rank) => Some(rank),
+            Taker::Here => None,
+        }
+    }
 }
 
 /// Greatest number of receivers of a bundle: a set of them is the bits of a number.
@@ -111,7 +121,7 @@ impl<const D: usize> Bundle<D> {
             })
         };
         let images = images.iter().filter_map(groups).collect();
-        Bundle { taker: takers[0].0, receivers, images }
+        Bundle { taker: takers[0].0, receivers, images, words: Vec::new() }
     }
 
     /// Notes the receivers that need `particle` of `patch`, in `cell`; `stays` says whether the cell
@@ -164,29 +174,30 @@ impl<const D: usize> Bundle<D> {
     }
 
     /// Packs the notice that receivers near the active cells of `block`, of `patch`, are stirred.
-    pub fn put_stirs(&self, out: &mut Vec<u64>, block: &Block<D>, patch: usize) {
-        for (k, receiver) in self.receivers.iter().enumerate().filter(|(_, r)| r.patch != patch) {
+    pub fn put_stirs(&mut self, block: &Block<D>, patch: usize) {
+        let Bundle { receivers, images, words, .. } = self;
+        for (k, receiver) in receivers.iter().enumerate().filter(|(_, r)| r.patch != patch) {
             let near = |groups: &ImageGroups<D>| {
                 let active = groups.image.cells(&block.active);
                 groups.seers >> k & 1 == 1 && !active.intersect(&receiver.near).is_empty()
             };
-            if self.images.iter().any(near) {
-                put_stir(out, receiver.patch);
+            if images.iter().any(near) {
+                put_stir(words, receiver.patch);
             }
         }
     }
 
     /// Packs the noted particles of `block` and forgets them.
-    pub fn put_particles(&mut self, out: &mut Vec<u64>, block: &Block<D>) {
-        let Bundle { receivers, images, .. } = self;
+    pub fn put_particles(&mut self, block: &Block<D>) {
+        let Bundle { receivers, images, words, .. } = self;
         for ImageGroups { image, movers, ghosts, .. } in images {
             for (receiver, movers) in receivers.iter().zip(movers) {
-                put_particles(out, block, movers, std::iter::once(receiver.patch), true, image);
+                put_particles(words, block, movers, std::iter::once(receiver.patch), true, image);
                 movers.clear();
             }
             for (set, ghosts) in ghosts {
                 let patches = bits(*set).map(|k| receivers[k].patch);
-                put_particles(out, block, ghosts, patches, false, image);
+                put_particles(words, block, ghosts, patches, false, image);
                 ghosts.clear();
             }
         }

@@ -1,9 +1,12 @@
 //! Ghost particles and migration, in one message per neighbouring rank. A particle that several
 //! patches of a rank need travels once.
 
+use rayon::ThreadPool;
+
 use crate::ghost_bundle::{Bundle, GhostReach, MOST_RECEIVERS, Taker};
-use crate::packing::take;
-use crate::particle_sort::SortBuffers;
+use crate::ghost_merge::{self, ArrivalBuffers, Ring};
+use crate::packing::{Group, PackedColumns};
+use crate::threads::for_each_pair;
 use crate::{Block, Comm, IndexBox, Layout};
 
 /// Error of the migration of a particle.
@@ -29,24 +32,87 @@ pub enum ParticleError {
 /// patch, copies particles to every patch within their reach, and informs patches near active cells
 /// that they are stirred. Copies beyond a mirror or a joined side are images: they carry the cell
 /// of the image, and their columns change as declared.
+///
+/// Each patch packs its particles, and each receives its own: both on all threads. In between, this
+/// thread lists the packed groups of each patch and exchanges messages.
 #[derive(Clone, Debug)]
 pub struct GhostExchange<const D: usize> {
     reach: GhostReach,
+    /// Numbers of the patches of this rank, ascending.
     patches: Vec<usize>,
-    homes: Vec<IndexBox<D>>,
-    /// For each patch of this rank, the patches that may need its particles, by destination.
-    bundles: Vec<Vec<Bundle<D>>>,
+    departures: Vec<Departure<D>>,
+    arrivals: Vec<Arrival<D>>,
     /// For each patch of this rank, whether it receives nothing from other ranks.
     inner: Vec<bool>,
     send_ranks: Vec<usize>,
     receive_ranks: Vec<usize>,
     messages: Vec<Vec<u64>>,
     received: Vec<Vec<u64>>,
-    to_inner: Vec<u64>,
-    to_border: Vec<u64>,
+    /// Indices of the particles that leave a patch.
     gone: Vec<usize>,
-    sorting: SortBuffers<D>,
+    buffers: ArrivalBuffers<D>,
     migrated: u64,
+}
+
+/// What one patch sends.
+#[derive(Clone, Debug)]
+struct Departure<const D: usize> {
+    patch: usize,
+    home: IndexBox<D>,
+    /// The patches that may need its particles, by destination.
+    bundles: Vec<Bundle<D>>,
+    /// Number of particles that left the patch in the last exchange.
+    migrated: u64,
+    fault: Option<ParticleError>,
+}
+
+/// What one patch receives.
+#[derive(Clone, Debug)]
+struct Arrival<const D: usize> {
+    ring: Ring<D>,
+    groups: Vec<GroupPlace>,
+}
+
+/// Place of a packed group of particles.
+#[derive(Clone, Copy, Debug)]
+struct GroupPlace {
+    source: Source,
+    /// Index of its first word.
+    at: usize,
+}
+
+/// Words that hold packed groups.
+#[derive(Clone, Copy, Debug)]
+enum Source {
+    /// Those of a patch of this rank, and of one of its bundles.
+    Here(usize, usize),
+    /// A message of another rank.
+    Message(usize),
+}
+
+/// The packed groups of an exchange.
+struct PackedGroups<'a, const D: usize> {
+    /// Those of the patches of this rank.
+    departures: &'a [Departure<D>],
+    /// Those of other ranks.
+    received: &'a [Vec<u64>],
+    columns: PackedColumns,
+}
+
+impl<'a, const D: usize> PackedGroups<'a, D> {
+    fn group(&self, place: &GroupPlace) -> Group<'a, D> {
+        let words = match place.source {
+            Source::Here(k, b) => &self.departures[k].bundles[b].words,
+            Source::Message(m) => &self.received[m],
+        };
+        Group::split_first(&words[place.at..], self.columns).expect("a listed group").0
+    }
+
+    /// Adds the groups of `arrival` to `block`.
+    fn receive(&self, arrival: &Arrival<D>, block: &mut Block<D>, buffers: &mut ArrivalBuffers<D>) {
+        let groups = arrival.groups.iter().map(|place| self.group(place));
+        ghost_merge::receive(block, &arrival.ring, groups, buffers);
+    }
 }
 
 impl<const D: usize> GhostExchange<D> {
@@ -71,7 +137,7 @@ impl<const D: usize> GhostExchange<D> {
                 }
             }
         }
-        let mut bundles = Vec::new();
+        let mut departures = Vec::new();
         let mut send_ranks = Vec::new();
         for &from in &patches {
             let reachable = layout.patch(from).grow(travel);
@@ -80,41 +146,40 @@ impl<const D: usize> GhostExchange<D> {
                 .flat_map(|image| layout.patches_in(&image.cells(&reachable).grow(seen)))
                 .map(|to| match patches.binary_search(&to) {
                     Err(_) => (Taker::Message(layout.rank_of(to)), to),
-                    Ok(k) if inner[k] => (Taker::Inner, to),
-                    Ok(_) => (Taker::Border, to),
+                    Ok(_) => (Taker::Here, to),
                 })
                 .collect();
             takers.sort_unstable();
             takers.dedup();
             let alike = takers.chunk_by(|a, b| a.0 == b.0);
-            let from_here: Vec<Bundle<D>> = alike
+            let bundles: Vec<Bundle<D>> = alike
                 .flat_map(|alike| alike.chunks(MOST_RECEIVERS))
                 .map(|takers| Bundle::new(layout, reach, &images, takers))
                 .collect();
-            send_ranks.extend(from_here.iter().filter_map(|b| match b.taker {
-                Taker::Message(rank) => Some(rank),
-                _ => None,
-            }));
-            bundles.push(from_here);
+            send_ranks.extend(bundles.iter().filter_map(|bundle| bundle.taker.rank()));
+            let home = layout.patch(from);
+            departures.push(Departure { patch: from, home, bundles, migrated: 0, fault: None });
         }
         for ranks in [&mut send_ranks, &mut receive_ranks] {
             ranks.sort_unstable();
             ranks.dedup();
         }
+        let arrival = |&patch: &usize| {
+            let ring = Ring { home: layout.patch(patch), halo: layout.halo(patch, depth) };
+            Arrival { ring, groups: Vec::new() }
+        };
         GhostExchange {
             reach,
-            homes: patches.iter().map(|&p| layout.patch(p)).collect(),
+            arrivals: patches.iter().map(arrival).collect(),
             patches,
-            bundles,
+            departures,
             inner,
             messages: vec![Vec::new(); send_ranks.len()],
             received: vec![Vec::new(); receive_ranks.len()],
             send_ranks,
             receive_ranks,
-            to_inner: Vec::new(),
-            to_border: Vec::new(),
             gone: Vec::new(),
-            sorting: SortBuffers::default(),
+            buffers: ArrivalBuffers::default(),
             migrated: 0,
         }
     }
@@ -139,15 +204,17 @@ impl<const D: usize> GhostExchange<D> {
     pub fn ghost_words(&self, columns: usize, count: &dyn Fn(&IndexBox<D>) -> u64) -> u64 {
         // id, cell and columns
         let words = (1 + D + columns) as u64;
-        let from = self.patches.iter().copied().zip(&self.homes).zip(&self.bundles);
-        let sent = from.flat_map(|(from, bundles)| bundles.iter().map(move |b| (from, b)));
-        let sent = sent.filter(|(_, bundle)| matches!(bundle.taker, Taker::Message(_)));
-        sent.map(|(from, bundle)| bundle.ghost_words(from, words, count)).sum()
+        let of_patch = |from: &Departure<D>| {
+            let sent = from.bundles.iter().filter(|bundle| bundle.taker != Taker::Here);
+            sent.map(|bundle| bundle.ghost_words((from.patch, &from.home), words, count))
+                .sum::<u64>()
+        };
+        self.departures.iter().map(of_patch).sum()
     }
 
     /// Hands over the particles that have moved and renews all ghosts. `patches` are the patches of
     /// this rank, in order; their particles carry their new cells, within the domain. Afterwards
-    /// each block is in canonical order.
+    /// each block is in canonical order. The threads of `pool` share the work on the patches.
     ///
     /// `meanwhile` is called once, with all patches, while messages are on their way;
     /// [`inner`](Self::inner) patches are complete by then. Collective between neighbours.
@@ -155,26 +222,32 @@ impl<const D: usize> GhostExchange<D> {
     /// # Errors
     ///
     /// If a particle has moved past the neighbours of its patch.
-    #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
-    pub fn run<P: AsMut<Block<D>>>(
+    pub fn run<P: AsMut<Block<D>> + Send>(
         &mut self,
         comm: &dyn Comm,
         patches: &mut [P],
+        pool: Option<&ThreadPool>,
         meanwhile: &mut dyn FnMut(&mut [P]),
     ) -> Result<(), ParticleError> {
-        self.messages.iter_mut().for_each(Vec::clear);
-        self.to_inner.clear();
-        self.to_border.clear();
-        for (k, patch) in patches.iter_mut().enumerate() {
-            let block = patch.as_mut();
-            block.drop_ghosts();
-            block.stirred = self.reach.notice.is_none() || !block.active.is_empty();
-            self.give(k, block)?;
-        }
-        let GhostExchange { patches: numbers, inner, received, sorting, .. } = self;
+        self.pack(patches, pool)?;
+        let Some(columns) = patches.first_mut().map(|patch| PackedColumns::of(patch.as_mut()))
+        else {
+            meanwhile(patches);
+            return Ok(());
+        };
+        self.gather_messages();
+        self.list_own_groups(columns);
+        let GhostExchange { received, departures, arrivals, buffers, inner, .. } = self;
+        let mut receive = |which, arrivals: &mut [_], received: &[_], patches: &mut [P]| {
+            let packed = PackedGroups { departures, received, columns };
+            for_each_pair(pool, arrivals, patches, buffers, |buffers, k, arrival, patch| {
+                if inner[k] == which {
+                    packed.receive(arrival, patch.as_mut(), buffers);
+                }
+            });
+        };
         let mut on_this_rank = || {
-            let words = std::slice::from_ref(&self.to_inner);
-            settle(numbers, words, patches, (inner, true), sorting);
+            receive(true, arrivals, &[], patches);
             meanwhile(patches);
         };
         if self.send_ranks.is_empty() && self.receive_ranks.is_empty() {
@@ -184,59 +257,121 @@ impl<const D: usize> GhostExchange<D> {
                 comm.exchange(sends, &self.receive_ranks, received, &mut on_this_rank)
             });
         }
-        // this rank's own words are processed together with the messages of other ranks
-        received.push(std::mem::take(&mut self.to_border));
-        settle(numbers, received, patches, (inner, false), sorting);
-        self.to_border = received.pop().expect("it was pushed");
+        for (m, words) in received.iter().enumerate() {
+            list_groups(&self.patches, arrivals, words, Source::Message(m), columns);
+        }
+        receive(false, arrivals, received, patches);
         Ok(())
     }
 
-    /// Packs the particles of `block` that other patches need and removes those that left it.
-    fn give(&mut self, k: usize, block: &mut Block<D>) -> Result<(), ParticleError> {
-        let home = self.homes[k];
+    /// Packs the particles that other patches need and removes those that left their patch.
+    fn pack<P: AsMut<Block<D>> + Send>(
+        &mut self,
+        patches: &mut [P],
+        pool: Option<&ThreadPool>,
+    ) -> Result<(), ParticleError> {
+        let GhostExchange { reach, departures, gone, migrated, .. } = self;
+        for_each_pair(pool, departures, patches, gone, |gone, _, departure, patch| {
+            let block = patch.as_mut();
+            block.drop_ghosts();
+            block.stirred = reach.notice.is_none() || !block.active.is_empty();
+            departure.pack(block, *reach, gone);
+        });
+        for departure in departures {
+            if let Some(fault) = departure.fault.take() {
+                return Err(fault);
+            }
+            *migrated += departure.migrated;
+        }
+        Ok(())
+    }
+
+    /// Lists the packed groups of this rank's patches for each other.
+    fn list_own_groups(&mut self, columns: PackedColumns) {
+        let GhostExchange { patches, arrivals, departures, .. } = self;
+        arrivals.iter_mut().for_each(|arrival| arrival.groups.clear());
+        for (k, departure) in departures.iter().enumerate() {
+            for (b, bundle) in departure.bundles.iter().enumerate() {
+                if bundle.taker == Taker::Here {
+                    list_groups(patches, arrivals, &bundle.words, Source::Here(k, b), columns);
+                }
+            }
+        }
+    }
+
+    /// Joins the packed groups for other ranks to one message for each.
+    fn gather_messages(&mut self) {
+        self.messages.iter_mut().for_each(Vec::clear);
+        for bundle in self.departures.iter().flat_map(|departure| &departure.bundles) {
+            if let Some(rank) = bundle.taker.rank() {
+                let at = self.send_ranks.binary_search(&rank).expect("a rank with a bundle");
+                self.messages[at].extend_from_slice(&bundle.words);
+            }
+        }
+    }
+}
+
+/// Lists the groups in `words` at the patches that they are for. `numbers` are the numbers of the
+/// patches.
+fn list_groups<const D: usize>(
+    numbers: &[usize],
+    arrivals: &mut [Arrival<D>],
+    words: &[u64],
+    source: Source,
+    columns: PackedColumns,
+) {
+    let mut rest = words;
+    let mut at = 0;
+    while let Some((group, after)) = Group::<D>::split_first(rest, columns) {
+        for patch in group.patches() {
+            let k = numbers.binary_search(&patch).expect("a patch of this rank");
+            arrivals[k].groups.push(GroupPlace { source, at });
+        }
+        at += rest.len() - after.len();
+        rest = after;
+    }
+}
+
+impl<const D: usize> Departure<D> {
+    /// Packs the particles of `block` that other patches need and removes those that left it, which
+    /// are in `gone` afterwards, ascending.
+    fn pack(&mut self, block: &mut Block<D>, reach: GhostReach, gone: &mut Vec<usize>) {
+        let Departure { patch, home, bundles, migrated, fault } = self;
         // cells that no other patch sees
-        let inner = home.grow(-self.reach.depth);
-        self.gone.clear();
-        let GhostExchange { bundles, messages, send_ranks, to_inner, to_border, .. } = self;
-        let (bundles, patch) = (&mut bundles[k], self.patches[k]);
+        let inner = home.grow(-reach.depth);
+        gone.clear();
         for particle in outside(&block.cells[..block.own()], inner) {
             let cell = block.cells[particle].map(i64::from);
             let stays = home.contains(cell);
             let mut owned = stays;
             for bundle in bundles.iter_mut() {
-                owned |= bundle.sort_in(particle as u32, cell, stays, patch);
+                owned |= bundle.sort_in(particle as u32, cell, stays, *patch);
             }
             if !owned {
-                let id = block.ids[particle];
-                return Err(ParticleError::MovedTooFar { id, patch, cell: cell.to_vec() });
+                let (id, cell) = (block.ids[particle], cell.to_vec());
+                *fault = Some(ParticleError::MovedTooFar { id, patch: *patch, cell });
+                return;
             }
             if !stays {
-                self.gone.push(particle);
+                gone.push(particle);
             }
         }
-        let stirs = self.reach.notice.is_some() && !block.active.is_empty();
-        for bundle in bundles.iter_mut() {
-            let out = match bundle.taker {
-                Taker::Message(rank) => {
-                    &mut messages[send_ranks.binary_search(&rank).expect("a rank with a bundle")]
-                }
-                Taker::Inner => &mut *to_inner,
-                Taker::Border => &mut *to_border,
-            };
+        let stirs = reach.notice.is_some() && !block.active.is_empty();
+        for bundle in bundles {
+            bundle.words.clear();
             if stirs {
-                bundle.put_stirs(out, block, patch);
+                bundle.put_stirs(block, *patch);
             }
-            bundle.put_particles(out, block);
+            bundle.put_particles(block);
         }
-        if !self.gone.is_empty() {
-            self.migrated += self.gone.len() as u64;
-            block.remove(&self.gone);
+        *migrated = gone.len() as u64;
+        if !gone.is_empty() {
+            block.remove(gone);
         }
-        Ok(())
     }
 }
 
-/// Number of cells that are looked at together.
+/// Number of cells that are compared together.
 const TOGETHER: usize = 16;
 
 /// Indices of the `cells` that lie outside of `inner`.
@@ -271,28 +406,6 @@ pub(crate) fn with_sends(
     let pairs = ranks.iter().zip(messages).map(|(&r, m)| (r, &m[..]));
     let sends: smallvec::SmallVec<[(usize, &[u64]); NEIGHBOURS]> = pairs.collect();
     exchange(&sends);
-}
-
-/// Adds the particles of the messages to their blocks and sorts the blocks whose `inner` equals
-/// `which`: first own particles, then ghosts, because a block keeps them apart. `numbers` are the
-/// numbers of the patches.
-fn settle<const D: usize>(
-    numbers: &[usize],
-    messages: &[Vec<u64>],
-    patches: &mut [impl AsMut<Block<D>>],
-    (inner, which): (&[bool], bool),
-    sorting: &mut SortBuffers<D>,
-) {
-    for ghosts in [false, true] {
-        for words in messages {
-            take(numbers, words, patches, ghosts);
-        }
-        for (patch, _) in patches.iter_mut().zip(inner).filter(|(_, i)| **i == which) {
-            let block = patch.as_mut();
-            let (own, all) = (block.own(), block.particles());
-            block.sort(if ghosts { own..all } else { 0..own }, sorting);
-        }
-    }
 }
 
 #[cfg(test)]
@@ -335,7 +448,7 @@ mod tests {
                     block.cells[particle] = to.map(|c| c as i32);
                 }
             }
-            exchange.run(&Serial, &mut blocks, &mut |_| {}).unwrap();
+            exchange.run(&Serial, &mut blocks, None, &mut |_| {}).unwrap();
         }
         blocks
             .iter()
@@ -405,7 +518,7 @@ mod tests {
         blocks[0].push(5, [30], &[0.0, 0.0]);
         let reach = GhostReach { depth: 2, travel: 1, notice: None };
         let mut exchange = GhostExchange::new(&layout, 0, reach);
-        let error = exchange.run(&Serial, &mut blocks, &mut |_| {}).unwrap_err();
+        let error = exchange.run(&Serial, &mut blocks, None, &mut |_| {}).unwrap_err();
         assert!(error.to_string().contains("particle 5"), "{error}");
     }
 }

@@ -77,6 +77,22 @@ impl<const D: usize> IndexBox<D> {
         at
     }
 
+    /// Number of the indices of this box before `index`, which may be outside, in canonical order.
+    #[inline]
+    pub fn count_before(&self, index: [i64; D]) -> usize {
+        let mut before = 0;
+        for a in (0..D).rev() {
+            let extent = self.extent(a) as i64;
+            let passed = (index[a] - self.lower[a]).clamp(0, extent);
+            let others: usize = (0..a).map(|b| self.extent(b)).product();
+            before += passed as usize * others;
+            if index[a] - self.lower[a] != passed || passed == extent {
+                break;
+            }
+        }
+        before
+    }
+
     /// Flat indices of this box in an array over `whole`, which must contain it: one range per line
     /// along the first direction.
     pub fn lines_in(&self, whole: &Self) -> impl Iterator<Item = std::ops::Range<usize>> + use<D> {
@@ -143,6 +159,14 @@ mod tests {
             let places: Vec<usize> = inner.lines_in(&a).flatten().collect();
             let expected: Vec<usize> = inner.iter().map(|i| a.flat(i)).collect();
             prop_assert_eq!(places, expected);
+        }
+
+        #[test]
+        fn places_before_an_index_are_counted(a in boxes()) {
+            for index in a.grow(2).iter() {
+                let before = a.iter().filter(|i| [i[1], i[0]] < [index[1], index[0]]).count();
+                prop_assert_eq!(a.count_before(index), before, "{:?}", index);
+            }
         }
 
         #[test]

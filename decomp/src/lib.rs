@@ -31,6 +31,7 @@ mod bytes;
 pub mod comm;
 mod ghost_bundle;
 mod ghost_exchange;
+mod ghost_merge;
 mod hilbert;
 mod index_box;
 mod layout;
@@ -47,6 +48,7 @@ mod planned_words;
 mod reduce;
 mod shares;
 mod short_borders;
+mod threads;
 
 pub use balance::{PatchLoads, assign_patches, busiest_share, choose_cuts, even_cuts};
 pub use bytes::{bytes_of, words_of};

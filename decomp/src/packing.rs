@@ -1,25 +1,31 @@
 //! Groups of particles in messages, column after column: packed and read at the cost of a copy.
 
-use crate::{Block, Image};
+use crate::{Block, Image, array};
 
-/// Kind of a group: ghosts, migrating particles, or notice that a patch is stirred.
-const GHOST: u64 = 0;
-const OWN: u64 = 1;
-const STIR: u64 = 2;
+/// Kind of a group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Copies of particles.
+    Ghost,
+    /// Migrating particles.
+    Own,
+    /// Notice that a patch is stirred.
+    Stir,
+}
 
 /// Bits of the first word of a group: the kind, then the number of patches after the first one, then
 /// the first patch.
 const KIND_BITS: u32 = 2;
 const OTHERS_BITS: u32 = 6;
 
-fn head(first: usize, others: usize, kind: u64) -> u64 {
+fn head(first: usize, others: usize, kind: Kind) -> u64 {
     debug_assert!(others < 1 << OTHERS_BITS, "too many patches of a group");
-    (((first as u64) << OTHERS_BITS) | others as u64) << KIND_BITS | kind
+    (((first as u64) << OTHERS_BITS) | others as u64) << KIND_BITS | kind as u64
 }
 
 /// Adds the notice to patch `to` that it is stirred.
 pub(crate) fn put_stir(out: &mut Vec<u64>, to: usize) {
-    out.push(head(to, 0, STIR));
+    out.push(head(to, 0, Kind::Stir));
 }
 
 /// Packs the particles with indices `particles` of `block`, as they appear in `image`, for all
@@ -34,11 +40,13 @@ pub(crate) fn put_particles<const D: usize>(
     image: &Image<D>,
 ) {
     let (false, Some(first)) = (particles.is_empty(), to.next()) else { return };
+    let columns = if own { block.columns.len() } else { block.ghost_columns().len() };
     let start = out.len();
+    out.reserve(2 + to.size_hint().0 + particles.len() * (1 + D + columns));
     out.extend([0, particles.len() as u64]);
     out.extend(to.map(|patch| patch as u64));
     let others = out.len() - start - 2;
-    out[start] = head(first, others, if own { OWN } else { GHOST });
+    out[start] = head(first, others, if own { Kind::Own } else { Kind::Ghost });
     out.extend(particles.iter().map(|&r| block.ids[r as usize]));
     for &particle in particles {
         out.extend(image.cell(block.cells[particle as usize].map(i64::from)).map(|c| c as u64));
@@ -60,46 +68,78 @@ pub(crate) fn put_particles<const D: usize>(
     }
 }
 
-/// Adds the particles of a message to their blocks, either ghosts or own particles. `numbers` are the
-/// numbers of `patches`, ascending.
-pub(crate) fn take<const D: usize>(
-    numbers: &[usize],
-    mut words: &[u64],
-    patches: &mut [impl AsMut<Block<D>>],
-    ghosts: bool,
-) {
-    let place = |patch: usize| numbers.binary_search(&patch).expect("a patch of this rank");
-    while let Some((&head, rest)) = words.split_first() {
-        let kind = head & ((1 << KIND_BITS) - 1);
+/// Numbers of columns of packed particles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PackedColumns {
+    /// Of a migrating particle.
+    pub own: usize,
+    /// Of a ghost.
+    pub ghost: usize,
+}
+
+impl PackedColumns {
+    /// Of the particles of `block`.
+    pub fn of<const D: usize>(block: &Block<D>) -> Self {
+        PackedColumns { own: block.columns.len(), ghost: block.ghost_columns().len() }
+    }
+}
+
+/// A group of particles in a message.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Group<'a, const D: usize> {
+    pub kind: Kind,
+    /// Ids of the particles.
+    pub ids: &'a [u64],
+    /// Section of words for each column.
+    pub columns: &'a [u64],
+    cells: &'a [u64],
+    first: usize,
+    others: &'a [u64],
+}
+
+impl<'a, const D: usize> Group<'a, D> {
+    /// The group at the start of `words`, and the words after it; `None` if there are no words.
+    pub fn split_first(words: &'a [u64], columns: PackedColumns) -> Option<(Self, &'a [u64])> {
+        let (&head, rest) = words.split_first()?;
         let others = (head >> KIND_BITS & ((1 << OTHERS_BITS) - 1)) as usize;
         let first = (head >> (KIND_BITS + OTHERS_BITS)) as usize;
-        let block = patches[place(first)].as_mut();
-        words = rest;
-        if kind == STIR {
-            block.stirred = true;
-            continue;
-        }
-        let own = kind == OWN;
-        let particles = words[0] as usize;
-        let columns = if own { block.columns.len() } else { block.ghost_columns().len() };
-        let (others, rest) = words[1..].split_at(others);
-        let (stretch, rest) = rest.split_at(particles * (1 + D + columns));
-        words = rest;
-        if own == ghosts {
-            continue;
-        }
-        let (ids, stretch) = stretch.split_at(particles);
-        let (cells, columns) = stretch.split_at(particles * D);
-        for to in std::iter::once(first).chain(others.iter().map(|&to| to as usize)) {
-            let block = patches[place(to)].as_mut();
-            let cells = cells
-                .chunks_exact(D)
-                .map(|c| std::array::from_fn::<i32, D, _>(|a| c[a] as i64 as i32));
-            if own {
-                block.extend_own(ids, cells, columns)
-            } else {
-                block.extend_ghosts(ids, cells, columns)
+        let (kind, columns) = match head & ((1 << KIND_BITS) - 1) {
+            kind if kind == Kind::Own as u64 => (Kind::Own, columns.own),
+            kind if kind == Kind::Ghost as u64 => (Kind::Ghost, columns.ghost),
+            _ => {
+                let none = Group {
+                    kind: Kind::Stir,
+                    ids: &[],
+                    columns: &[],
+                    cells: &[],
+                    first,
+                    others: &[],
+                };
+                return Some((none, rest));
             }
-        }
+        };
+        let particles = rest[0] as usize;
+        let (others, rest) = rest[1..].split_at(others);
+        let (ids, rest) = rest.split_at(particles);
+        let (cells, rest) = rest.split_at(particles * D);
+        let (columns, rest) = rest.split_at(particles * columns);
+        Some((Group { kind, ids, columns, cells, first, others }, rest))
+    }
+
+    /// Numbers of the patches that the group is for.
+    pub fn patches(&self) -> impl Iterator<Item = usize> + 'a {
+        let others = self.others.iter().map(|&patch| patch as usize);
+        std::iter::once(self.first).chain(others)
+    }
+
+    /// Cells of the particles.
+    pub fn cells(&self) -> impl Iterator<Item = [i32; D]> + use<'a, D> {
+        let cells = self.cells.chunks_exact(D);
+        cells.map(|cell| array::from_fn(|a| cell[a] as i64 as i32))
+    }
+
+    /// Section of words of the column with index `k` among those that the particles carry.
+    pub fn column(&self, k: usize) -> &'a [u64] {
+        &self.columns[k * self.ids.len()..][..self.ids.len()]
     }
 }

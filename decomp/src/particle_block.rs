@@ -64,7 +64,7 @@ pub struct Block<const D: usize> {
     pub stirred: bool,
     specs: Vec<ColumnSpec>,
     /// Indices of the columns that ghosts carry.
-    ghost_columns: Vec<usize>,
+    pub(crate) ghost_columns: Vec<usize>,
     own: usize,
 }
 
@@ -157,20 +157,6 @@ impl<const D: usize> Block<D> {
             column.extend(words.iter().map(|&w| f64::from_bits(w)));
         }
         self.own += ids.len();
-    }
-
-    /// Adds ghosts; `columns` holds one section of words per ghost column.
-    pub(crate) fn extend_ghosts(
-        &mut self,
-        ids: &[u64],
-        cells: impl Iterator<Item = [i32; D]>,
-        columns: &[u64],
-    ) {
-        self.ids.extend_from_slice(ids);
-        self.cells.extend(cells);
-        for (&c, words) in self.ghost_columns.iter().zip(columns.chunks_exact(ids.len())) {
-            self.columns[c].extend(words.iter().map(|&w| f64::from_bits(w)));
-        }
     }
 
     /// Removes the own particles with the ascending indices `gone`. There must be no ghosts.
@@ -309,11 +295,11 @@ mod tests {
     #[test]
     fn runs_interleave_own_particles_and_ghosts_by_cell() {
         let mut block = Block::<2>::new(&SPECS);
-        for (id, x, y) in [(1, 2, 0), (2, 3, 0), (3, 2, 1), (4, 3, 1)] {
+        let own = [(1, 2, 0), (2, 3, 0), (3, 2, 1), (4, 3, 1)];
+        for (id, x, y) in own.into_iter().chain([(5, 1, 0), (6, 4, 0), (7, 1, 1)]) {
             block.push(id, [x, y], &[0.0, 0.0]);
         }
-        let cells = [[1, 0], [4, 0], [1, 1]].into_iter();
-        block.extend_ghosts(&[5, 6, 7], cells, &[0; 3]);
+        block.own = own.len();
         let mut runs = Vec::new();
         block.runs(&mut runs);
         let ids: Vec<u64> = runs.iter().cloned().flatten().map(|r| block.ids[r]).collect();

@@ -67,13 +67,12 @@ impl<const D: usize> Block<D> {
 
     /// Restores the canonical order of the own particles from `first` on.
     pub fn sort_own_from(&mut self, first: usize) {
-        self.sort(first..self.own(), &mut SortBuffers::default());
+        self.sort(first, &mut SortBuffers::default());
     }
 
-    /// Restores the canonical order of some `particles`.
-    pub(crate) fn sort(&mut self, particles: Range<usize>, buffers: &mut SortBuffers<D>) {
-        let to = particles.end;
-        self.find_disorder(particles, &mut buffers.ranges);
+    /// The same with buffers of former sorts.
+    pub(crate) fn sort(&mut self, first: usize, buffers: &mut SortBuffers<D>) {
+        self.find_disorder(first..self.own(), &mut buffers.ranges);
         // most steps keep the order or move few particles
         if buffers.ranges.is_empty() {
             return;
@@ -82,7 +81,7 @@ impl<const D: usize> Block<D> {
         let SortBuffers { moved, words, cells, numbers, .. } = buffers;
         permute(&mut self.ids, moved, words);
         permute(&mut self.cells, moved, cells);
-        for column in self.columns.iter_mut().filter(|column| column.len() >= to) {
+        for column in &mut self.columns {
             permute(column, moved, numbers);
         }
     }

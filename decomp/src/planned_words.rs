@@ -100,7 +100,7 @@ mod tests {
             let mut exchange = GhostExchange::new(&layout, comm.rank(), reach);
             let count = |b: &IndexBox<2>| b.iter().filter(|&cell| filled(cell)).count() as u64;
             let planned = exchange.ghost_words(1, &count);
-            exchange.run(comm, &mut blocks, &mut |_| {}).unwrap();
+            exchange.run(comm, &mut blocks, None, &mut |_| {}).unwrap();
             assert_eq!(comm.traffic().messages as usize, exchange.send_ranks().len());
             [comm.traffic().bytes / 8, planned]
         })

@@ -192,7 +192,7 @@ impl Ranks<'_> {
             patches,
             pool,
             inner,
-            |comm, patches, meanwhile| result = particles.run(comm, patches, meanwhile),
+            |comm, patches, meanwhile| result = particles.run(comm, patches, pool, meanwhile),
             &|patch| settle(patch),
             phase,
         );

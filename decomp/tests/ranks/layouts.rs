@@ -1,6 +1,7 @@
 //! The same patches give the same result on any number of ranks.
 
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 use decomp::comm::local::run_ranks;
 use decomp::{
@@ -30,6 +31,10 @@ type Held<T> = BTreeMap<usize, T>;
 /// Stirred flag, number of own particles, cells, ids and columns of a block, in its own order.
 type Table<const D: usize> = (bool, usize, Vec<[i32; D]>, Vec<u64>, Vec<Vec<u64>>);
 
+/// Threads that work on the patches of the ranks.
+static THREADS: LazyLock<rayon::ThreadPool> =
+    LazyLock::new(|| rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap());
+
 /// Merges the results of `body` for the patches of all ranks.
 fn on_ranks<T: Send>(size: usize, body: impl Fn(&dyn Comm) -> Held<T> + Sync) -> Held<T> {
     run_ranks(size, |comm| body(comm)).into_iter().flatten().collect()
@@ -48,6 +53,7 @@ fn particles_held<const D: usize>(
     layout: &Layout<D>,
     particles: &[Particle<D>],
     (depth, notice): (i64, i64),
+    pool: Option<&rayon::ThreadPool>,
 ) -> Held<Table<D>> {
     let mine = layout.patches_of(comm.rank());
     let mut blocks: Vec<Block<D>> = mine.iter().map(|_| Block::new(&SPECS)).collect();
@@ -80,7 +86,7 @@ fn particles_held<const D: usize>(
         let inner = exchange.inner().to_vec();
         let mut early = Vec::new();
         exchange
-            .run(comm, &mut blocks, &mut |blocks| {
+            .run(comm, &mut blocks, pool, &mut |blocks| {
                 let inner = blocks.iter().zip(&inner).filter(|(_, i)| **i);
                 early = inner.map(|(b, _)| (b.stirred, b.ids.clone())).collect();
             })
@@ -134,9 +140,12 @@ fn check_particles<const D: usize>(
     size: usize,
     seed: &[usize],
 ) {
-    let alone = particles_held(&Serial, &layout, particles, reach);
+    let alone = particles_held(&Serial, &layout, particles, reach, None);
     let dealt = deal(&layout, size, seed);
-    assert_eq!(on_ranks(size, |comm| particles_held(comm, &dealt, particles, reach)), alone);
+    for pool in [None, Some(&*THREADS)] {
+        let held = on_ranks(size, |comm| particles_held(comm, &dealt, particles, reach, pool));
+        assert_eq!(held, alone);
+    }
 }
 
 proptest! {

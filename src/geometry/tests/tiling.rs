@@ -57,9 +57,9 @@ fn check(tiling: &Tiling, tiles: &[Tile], lattice: &Lattice) {
     let longest = |tiles: &mut dyn Iterator<Item = Tile>| {
         tiles.fold([0.0; 2], |most: [f64; 2], t| [0, 1].map(|d| most[d].max(t.size[d])))
     };
-    let (told, longest) = (tiling.longest(), longest(&mut tiles.iter().copied()));
+    let (found, longest) = (tiling.longest(), longest(&mut tiles.iter().copied()));
     for d in 0..2 {
-        assert!((told[d] - longest[d]).abs() <= 1e-9 * longest[d], "{told:?} {longest:?}");
+        assert!((found[d] - longest[d]).abs() <= 1e-9 * longest[d], "{found:?} {longest:?}");
     }
     for k in 0..7 {
         let at = [0, 1].map(|d| {
