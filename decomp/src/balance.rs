@@ -66,7 +66,7 @@ impl EqualShares {
     }
 }
 
-/// Work and size of the patches in a new assignment, in the order along which they are dealt.
+/// Work and size of the patches in a new assignment, in the order along which they are assigned.
 #[derive(Clone, Copy, Debug)]
 pub struct PatchLoads<'a> {
     /// Cost of a step of each patch; 0 for a quiescent patch.
@@ -93,12 +93,12 @@ impl PatchLoads<'_> {
         let weights: Vec<&[u64]> = active().map(|run| &work[run]).collect();
         let weights = weights.concat();
         if weights.iter().any(|&work| work > 0) {
-            let dealt = assign_patches(&weights, ranks);
-            let mut dealt = &dealt[..];
+            let assigned = assign_patches(&weights, ranks);
+            let mut assigned = &assigned[..];
             for run in active() {
-                let (these, rest) = dealt.split_at(run.len());
+                let (these, rest) = assigned.split_at(run.len());
                 of[run].copy_from_slice(these);
-                dealt = rest;
+                assigned = rest;
             }
         }
         let mut held = vec![0; ranks];

@@ -134,7 +134,7 @@ impl<const D: usize> Layout<D> {
         Layout { domain, sides, cuts, order: PatchOrder::hilbert(parts), owners }
     }
 
-    /// The same patches, dealt to ranks along `order`; `ranks` holds the rank at each position.
+    /// The same patches, assigned to ranks along `order`; `ranks` holds the rank at each position.
     ///
     /// # Panics
     ///
@@ -172,7 +172,7 @@ impl<const D: usize> Layout<D> {
         widths.min().unwrap_or(0) as usize
     }
 
-    /// The order of the patches along which they are dealt to ranks.
+    /// The order of the patches along which they are assigned to ranks.
     pub fn order(&self) -> PatchOrder<D> {
         self.order
     }

@@ -11,10 +11,10 @@
 //!   travels once to a rank.
 //!
 //! Both let the caller compute while messages are on their way. [`assign_patches`] assigns patches
-//! to ranks along a [`PatchOrder`], by weight, [`deal_with_short_borders`] chooses the order, and
+//! to ranks along a [`PatchOrder`], by weight, [`assign_with_short_borders`] chooses the order, and
 //! [`relocate`] moves whole patches.
-//! [`Shares`] deals the particles to ranks for files and tables, [`StoredParticles`] holds a share of
-//! them, and [`deal_particles`] hands shares to the patches of any layout.
+//! [`Shares`] distributes the particles over ranks for files and tables, [`StoredParticles`] holds a share of
+//! them, and [`distribute_particles`] hands shares to the patches of any layout.
 //!
 //! Particles are kept in canonical order, by global cell and then by id. Every patch that sums
 //! particle terms into a node thus adds the same terms in the same order: the result is bitwise the
@@ -62,5 +62,5 @@ pub use particle_block::{Block, ColumnSpec, Mirror};
 pub use patch_migration::{Census, Moved, relocate};
 pub use patch_order::PatchOrder;
 pub use reduce::{ExactSum, exact_sums};
-pub use shares::{Shares, StoredParticles, deal_particles};
-pub use short_borders::deal_with_short_borders;
+pub use shares::{Shares, StoredParticles, distribute_particles};
+pub use short_borders::assign_with_short_borders;

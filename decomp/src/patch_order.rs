@@ -1,4 +1,4 @@
-//! Orders of the patches along which they are dealt to ranks.
+//! Orders of the patches along which they are assigned to ranks.
 
 use crate::hilbert;
 

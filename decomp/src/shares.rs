@@ -72,7 +72,7 @@ impl StoredParticles {
     }
 }
 
-/// The own particles of all ranks, dealt to some of the ranks in order of a key and then of the id.
+/// The own particles of all ranks, distributed over some of the ranks in order of a key and then of the id.
 ///
 /// Columns are fetched one by one, which limits the memory of each rank to little more than its
 /// share of the columns that it keeps.
@@ -212,7 +212,7 @@ fn by_id(ids: &[u64], first: u64) -> Vec<usize> {
 /// # Panics
 ///
 /// If a cell is outside the domain.
-pub fn deal_particles<const D: usize>(
+pub fn distribute_particles<const D: usize>(
     comm: &dyn Comm,
     layout: Layout<D>,
     specs: &[ColumnSpec],
@@ -320,11 +320,12 @@ mod tests {
                 let ends = run_ranks(ranks, |comm| {
                     let bound = |r: usize| r * all.ids.len() / ranks;
                     let given = section(&all, bound(comm.rank())..bound(comm.rank() + 1));
-                    let (dealt, blocks) = deal_particles(comm, layout.clone(), &SPECS, &given);
-                    let mine = dealt.patches_of(comm.rank());
+                    let (assigned, blocks) =
+                        distribute_particles(comm, layout.clone(), &SPECS, &given);
+                    let mine = assigned.patches_of(comm.rank());
                     assert_eq!(blocks.len(), mine.len());
                     for (block, patch) in blocks.iter().zip(mine) {
-                        let home = dealt.patch(patch);
+                        let home = assigned.patch(patch);
                         assert!(block.cells.iter().all(|c| home.contains(c.map(i64::from))));
                         assert!(block.columns[1].iter().all(|&v| v == 0.0));
                     }

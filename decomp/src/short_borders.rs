@@ -1,15 +1,15 @@
-//! Choice of the order in which patches are dealt to ranks: the one that gives ranks short borders.
+//! Choice of the order in which patches are assigned to ranks: the one that gives ranks short borders.
 
 use crate::{Layout, PatchOrder, assign_patches};
 
-/// The patches of `layout`, dealt to `ranks` ranks in sections of an order by `weights`, the weight of
+/// The patches of `layout`, assigned to `ranks` ranks in sections of an order by `weights`, the weight of
 /// each patch; see [`assign_patches`].
 ///
 /// Sections of a Hilbert curve are compact, but for few ranks and uneven weights their borders are
 /// ragged, and stripes of whole columns or rows of patches have shorter ones. Of these orders the one
 /// with the shortest border between ranks is taken; patches without weight have no border.
 #[expect(clippy::missing_panics_doc, reason = "an invariant of this crate")]
-pub fn deal_with_short_borders<const D: usize>(
+pub fn assign_with_short_borders<const D: usize>(
     layout: Layout<D>,
     weights: &[u64],
     ranks: usize,
@@ -19,7 +19,7 @@ pub fn deal_with_short_borders<const D: usize>(
     let stripes = (0..D).filter(|_| D > 1 && ranks > 1);
     let orders = std::iter::once(PatchOrder::hilbert(parts))
         .chain(stripes.map(|axis| PatchOrder::stripes(parts, axis)));
-    let dealt = |order: PatchOrder<D>| {
+    let assigned = |order: PatchOrder<D>| {
         let patches = order.patches();
         let along: Vec<u64> = patches.iter().map(|&patch| weights[patch]).collect();
         let ranks = assign_patches(&along, ranks);
@@ -27,7 +27,7 @@ pub fn deal_with_short_borders<const D: usize>(
         patches.iter().zip(&ranks).for_each(|(&patch, &rank)| of[patch] = rank);
         (border(&layout, weights, &of), order, ranks)
     };
-    let shortest = orders.map(dealt).min_by_key(|(border, ..)| *border);
+    let shortest = orders.map(assigned).min_by_key(|(border, ..)| *border);
     let (_, order, ranks) = shortest.expect("there is one order at least");
     layout.with_ranks(order, &ranks)
 }
@@ -64,10 +64,10 @@ mod tests {
     }
 
     fn chosen(layout: &Layout<2>, weights: &[u64], ranks: usize) -> u64 {
-        let dealt = deal_with_short_borders(layout.clone(), weights, ranks);
-        let along: Vec<u64> = dealt.order().patches().iter().map(|&p| weights[p]).collect();
-        assert_eq!(dealt.ranks(), assign_patches(&along, ranks));
-        let of: Vec<u32> = (0..dealt.count()).map(|p| dealt.rank_of(p) as u32).collect();
+        let assigned = assign_with_short_borders(layout.clone(), weights, ranks);
+        let along: Vec<u64> = assigned.order().patches().iter().map(|&p| weights[p]).collect();
+        assert_eq!(assigned.ranks(), assign_patches(&along, ranks));
+        let of: Vec<u32> = (0..assigned.count()).map(|p| assigned.rank_of(p) as u32).collect();
         border(layout, weights, &of)
     }
 

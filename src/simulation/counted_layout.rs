@@ -6,7 +6,7 @@ use decomp::{IndexBox, Layout, PatchLoads, SideKind, busiest_share};
 use super::balance::{MOST_PARTICLES, WORTH};
 use super::exchange_plan::{ExchangePlan, HaloDepths, halo_depths};
 use super::memory::{memory_of, seen};
-use super::patches::{count_of_body, count_particles, deal_patches};
+use super::patches::{assign_domain, count_of_body, count_particles};
 use super::quiescence::ActiveFrom;
 use crate::effects;
 use crate::scene::{CheckedScene, FilterHalo};
@@ -112,7 +112,7 @@ impl<'a, const D: usize> Counter<'a, D> {
         let stepper = effects::stepper::<D>(scene);
         let longest = wanted.longest.unwrap_or_else(|| stepper.longest_at_start(scene));
         let reach = stepper.reach(longest)?;
-        let layout = deal_patches::<D>(scene, wanted.ranks, wanted.threads);
+        let layout = assign_domain::<D>(scene, wanted.ranks, wanted.threads);
         let active_from = ActiveFrom::new(scene, &stepper, reach);
         let depths = match wanted.halo {
             Some(filter) => HaloDepths::of(filter, reach),

@@ -3,7 +3,7 @@
 use decomp::{IndexBox, Layout};
 
 use super::exchange_plan::halo_depths;
-use super::patches::{count_particles, deal_patches, patch_counts};
+use super::patches::{assign_domain, count_particles, patch_counts};
 use crate::effects;
 use crate::scene::CheckedScene;
 use crate::solver::memory::PatchSize;
@@ -41,7 +41,7 @@ fn memory_in<const D: usize>(
     threads: usize,
 ) -> u64 {
     let stepper = effects::stepper::<D>(scene);
-    let layout = deal_patches::<D>(scene, ranks, threads);
+    let layout = assign_domain::<D>(scene, ranks, threads);
     let longest = stepper.longest_at_start(scene);
     let Some(reach) = stepper.reach(longest) else { return scene.memory() / ranks as u64 };
     let ghost_layers = halo_depths(scene, &layout, reach, ranks * threads).ghosts;

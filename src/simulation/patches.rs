@@ -1,6 +1,9 @@
 //! Choice of the patches: how many in each direction, and where the domain is cut.
 
-use decomp::{Block, IndexBox, Layout, choose_cuts, deal_with_short_borders, even_cuts};
+use decomp::{
+    Block, IndexBox, Layout, SideKind, assign_patches, assign_with_short_borders, busiest_share,
+    choose_cuts, even_cuts,
+};
 
 use crate::scene::{CheckedBody, CheckedScene};
 use crate::solver::{Stepper, particles};
@@ -11,6 +14,13 @@ pub(crate) const LEAST_CELLS: usize = 16;
 /// Patch width at which one worker loses little at the edges of quiescent patches [cells]: on a
 /// line and in a plane.
 const SLEEPING_CELLS: [usize; 2] = [64, 32];
+
+/// Patches per worker in a plane where no patch becomes quiescent, at most.
+const MOST_BUSY_PATCHES: usize = 4;
+
+/// Width from which such patches are at least two per worker [cells]: one is computed while the
+/// messages of the other travel. Narrower ones cost more at their edges.
+const BUSY_CELLS: usize = 32;
 
 /// Patches per worker, if several workers have patches that become quiescent or move, ...
 const PATCHES_A_WORKER: usize = 8;
@@ -71,14 +81,25 @@ fn chosen_parts<const D: usize>(scene: &CheckedScene, workers: usize) -> [usize;
             parts(several.max(least).clamp(workers, PATCHES_A_WORKER * workers))
         }
         1 => [1; D],
+        _ if D == 1 => parts(workers),
         _ => {
-            // in a plane four per worker: a long particle then widens the windows of fewer others,
-            // and patch interiors are computed while messages travel
-            let parts = parts(workers);
-            let halves = D > 1 && (0..D).all(|a| cells[a] / parts[a] >= 2 * SHARED_CELLS[D - 1]);
-            if halves { parts.map(|n| 2 * n) } else { parts }
+            let pairs = parts(2 * workers);
+            let is_wide = (0..D).all(|a| cells[a] / pairs[a] >= BUSY_CELLS);
+            // in steps of a quarter of the workers
+            let quarters = if is_wide { 8 } else { 4 }..=4 * MOST_BUSY_PATCHES;
+            let choices = quarters.map(|quarters| parts((quarters * workers).div_ceil(4)));
+            let work = |&parts: &[usize; D]| work_of_busiest(scene, parts, workers);
+            choices.min_by_key(work).expect("a range with an end above its start")
         }
     }
+}
+
+/// Work of the busiest of `workers` if the domain is cut into `parts` patches; see [`patch_work`].
+fn work_of_busiest<const D: usize>(scene: &CheckedScene, parts: [usize; D], workers: usize) -> u64 {
+    let layout = cut_by_work(scene, parts);
+    let patches = layout.order().patches();
+    let work: Vec<u64> = patches.iter().map(|&p| patch_work(scene, &layout.patch(p))).collect();
+    busiest_share(&work, &assign_patches(&work, workers), workers)
 }
 
 /// Whether a body is at rest and free of stress, so that patches can be quiescent.
@@ -92,23 +113,48 @@ pub fn may_skip(scene: &CheckedScene) -> bool {
 /// As [`may_skip`], in `D` dimensions.
 pub(super) fn may_sleep<const D: usize>(scene: &CheckedScene) -> bool {
     let mut bodies = scene.scene.bodies.iter().zip(&scene.bodies);
-    let velocity = scene.grid_velocity::<D>();
     scene.skips_quiet()
         && scene.scene.body_force.is_none()
-        && bodies.any(|(b, c)| c.motion.is_none() && c.velocity == velocity && b.pressure == 0.0)
+        && bodies.any(|(b, c)| is_at_rest::<D>(scene, c) && b.pressure == 0.0)
 }
 
-/// The patches of a run on `ranks` ranks with `threads` threads each, dealt to ranks by their
-/// particles.
-pub(super) fn deal_patches<const D: usize>(
+/// Whether `body` is at rest relative to the grid at the start.
+fn is_at_rest<const D: usize>(scene: &CheckedScene, body: &CheckedBody) -> bool {
+    body.motion.is_none() && body.velocity == scene.grid_velocity::<D>()
+}
+
+/// The patches of a run on `ranks` ranks with `threads` threads each, assigned to ranks by their work
+/// in a step.
+pub(super) fn assign_domain<const D: usize>(
     scene: &CheckedScene,
     ranks: usize,
     threads: usize,
 ) -> Layout<D> {
     let layout = cut_domain(scene, ranks, threads);
-    let count = |patch| count_particles(scene, &layout.patch(patch));
-    let weights: Vec<u64> = (0..layout.count()).map(count).collect();
-    deal_with_short_borders(layout, &weights, ranks)
+    let work: Vec<u64> = (0..layout.count()).map(|p| patch_work(scene, &layout.patch(p))).collect();
+    assign_with_short_borders(layout, &work, ranks)
+}
+
+/// Depth of the ghosts that [`patch_work`] counts: those of quadratic functions [cells].
+const GHOST_CELLS: i64 = 3;
+
+/// Expected work of a patch with the cells `cells` in a step: a ghost and the nodes around it cost
+/// three quarters of an own particle.
+fn patch_work<const D: usize>(scene: &CheckedScene, cells: &IndexBox<D>) -> u64 {
+    let work = |cells: &IndexBox<D>| -> u64 {
+        let of_body = |body| particle_work::<D>(scene, body) * count_of_body(scene, body, cells);
+        scene.bodies.iter().map(of_body).sum()
+    };
+    match work(cells) {
+        0 => 0,
+        own => own + 3 * work(&cells.grow(GHOST_CELLS)),
+    }
+}
+
+/// Work of a particle of `body` in a step, in quarters of that of a particle that lies still: one that
+/// moves over the grid is often near more nodes, and has a stress.
+fn particle_work<const D: usize>(scene: &CheckedScene, body: &CheckedBody) -> u64 {
+    if is_at_rest::<D>(scene, body) { 4 } else { 5 }
 }
 
 /// Particles with which `rank` of `ranks` begins a run, one block per patch of the rank. It needs no
@@ -119,7 +165,7 @@ pub fn initial_particles<const D: usize>(
     rank: usize,
     ranks: usize,
 ) -> Vec<Block<D>> {
-    let layout = deal_patches(scene, ranks, 1);
+    let layout = assign_domain(scene, ranks, 1);
     particles::fill(scene, stepper, &layout, rank, scene.frame().velocity(0.0))
 }
 
@@ -146,31 +192,40 @@ pub(super) fn count_of_body<const D: usize>(
     (0..D).map(along).product::<f64>().round() as u64
 }
 
-/// Weight of a particle relative to that of an empty cell when the domain is cut.
-const PARTICLE_WEIGHT: u64 = 4;
-
-/// Domain cut into patches: of equal width if they are those of the scene, otherwise with about
-/// the same initial number of particles in each row and column of patches.
+/// Domain cut into patches: of equal width if they are those of the scene, otherwise with about the
+/// same initial work in each row and column of patches.
 pub(super) fn cut_domain<const D: usize>(
     scene: &CheckedScene,
     ranks: usize,
     threads: usize,
 ) -> Layout<D> {
-    let parts = patch_parts::<D>(scene, ranks, threads);
-    let domain = IndexBox::new([0; D], std::array::from_fn(|a| scene.cells[a] as i64));
-    let sides = scene.side_properties::<D>().map(|ends| ends.map(|side| side.ghosts));
-    if given_parts::<D>(scene, ranks, threads).is_some() || parts == [1; D] {
-        return Layout::new(domain, sides, parts);
+    match given_parts::<D>(scene, ranks, threads) {
+        Some(parts) => {
+            let (domain, sides) = domain_and_sides(scene);
+            Layout::new(domain, sides, parts)
+        }
+        None => cut_by_work(scene, chosen_parts(scene, ranks * threads)),
     }
+}
+
+/// Domain cut into `parts` patches with about the same initial work in each row and column.
+fn cut_by_work<const D: usize>(scene: &CheckedScene, parts: [usize; D]) -> Layout<D> {
+    let (domain, sides) = domain_and_sides(scene);
+    let work = |body: &CheckedBody| particle_work::<D>(scene, body);
     let cuts = std::array::from_fn(|a| {
-        let across = domain.count() as u64 / scene.cells[a] as u64;
-        let weights: Vec<u64> = particles::slices(scene, a)
-            .into_iter()
-            .map(|particles| across + PARTICLE_WEIGHT * particles)
-            .collect();
+        // an empty cell costs about a quarter of a particle
+        let empty = domain.count() as u64 / scene.cells[a] as u64;
+        let mut weights = particles::slices(scene, a, work);
+        weights.iter_mut().for_each(|weight| *weight += empty);
         even_cuts(&weights, parts[a], LEAST_CELLS)
     });
     Layout::with_cuts(domain, sides, cuts)
+}
+
+/// The cells of the domain, and the kinds of its sides.
+fn domain_and_sides<const D: usize>(scene: &CheckedScene) -> (IndexBox<D>, [[SideKind; 2]; D]) {
+    let domain = IndexBox::new([0; D], std::array::from_fn(|a| scene.cells[a] as i64));
+    (domain, scene.side_properties::<D>().map(|ends| ends.map(|side| side.ghosts)))
 }
 
 #[cfg(test)]
@@ -205,5 +260,35 @@ mod tests {
         };
         assert_eq!(widths(1), 1);
         assert!(widths(4) > 1);
+    }
+
+    #[test]
+    fn chosen_patches_share_the_particles_of_a_plane() {
+        let sets = ["domain.cell_size=1.6e-5", "decomposition.skip_quiescent=false"];
+        let text = include_bytes!("../../inputs/flyer_2d.json");
+        let scene = input::parse(text, "flyer_2d.json", &sets.map(String::from)).unwrap();
+        for workers in [2, 3, 4, 8, 16, 32, 64] {
+            let layout = assign_domain::<2>(&scene, workers, 1);
+            assert!((workers..=5 * workers).contains(&layout.count()), "{workers}");
+            let patches = layout.order().patches().into_iter();
+            let particles: Vec<u64> =
+                patches.map(|p| count_particles(&scene, &layout.patch(p))).collect();
+            let most = busiest_share(&particles, &layout.ranks(), workers) as f64;
+            let mean = particles.iter().sum::<u64>() as f64 / workers as f64;
+            assert!(most < 1.3 * mean, "{workers}: {}", most / mean);
+        }
+    }
+
+    #[test]
+    fn particles_in_motion_count_more() {
+        let text = include_bytes!("../../inputs/flyer_2d.json");
+        let scene = input::parse(text, "flyer_2d.json", &[]).unwrap();
+        // a box of cells inside the flyer and one of the same size inside the target
+        let work =
+            |lower: [i64; 2]| patch_work(&scene, &IndexBox::new(lower, lower.map(|cell| cell + 8)));
+        assert_eq!(4 * work([45, 20]), 5 * work([100, 20]));
+        // half of the cells hold nothing
+        assert!(work([31, 20]) < work([45, 20]));
+        assert_eq!(work([0, 170]), 0);
     }
 }

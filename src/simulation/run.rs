@@ -9,7 +9,7 @@ use super::error::RunError;
 use super::exchange_plan::{ExchangePlan, halo_depths};
 use super::expected_peaks::ExpectedPeaks;
 use super::good_state::{LastGoodState, Start};
-use super::patches::deal_patches;
+use super::patches::assign_domain;
 use crate::effects::EffectRegistry;
 use crate::material::constitutive::CustomModel;
 use crate::scene::moving_frame::Frame;
@@ -151,7 +151,7 @@ impl<'a, const D: usize> Simulation<'a, D> {
     ) -> Result<Self, RunError> {
         let stepper = Stepper::with_models::<EffectRegistry>(scene, outside)
             .map_err(|(material, reason)| RunError::Model { material, reason })?;
-        let layout = deal_patches(scene, comm.size(), threads);
+        let layout = assign_domain(scene, comm.size(), threads);
         let frame = scene.frame();
         let blocks = particles::fill(scene, &stepper, &layout, comm.rank(), frame.velocity(0.0));
         let longest = stepper.longest_at_start(scene);

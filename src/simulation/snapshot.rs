@@ -5,7 +5,7 @@
 //! each step, as it is for a patch that has moved to another rank. The sums over removed particles
 //! and over the work of sides are exact, so that one rank can continue with the sums of all ranks.
 
-use decomp::{Census, ExactSum, StoredParticles, deal_particles};
+use decomp::{Census, ExactSum, StoredParticles, distribute_particles};
 
 use super::accounts::Counters;
 use super::accounts::left_sums;
@@ -131,7 +131,7 @@ impl<const D: usize> Simulation<'_, D> {
         }
         let specs = &self.stepper.columns.specs;
         let (layout, blocks) =
-            deal_particles(self.comm, self.layout.clone(), specs, &saved.particles);
+            distribute_particles(self.comm, self.layout.clone(), specs, &saved.particles);
         let mine = layout.patches_of(self.comm.rank()).into_iter().zip(blocks);
         self.patches = mine.map(|(p, block)| Patch::new(&layout, p, block)).collect();
         self.layout = layout;

@@ -246,21 +246,24 @@ fn set_faces<const D: usize>(
     }
 }
 
-/// Number of particles in each slice of cells normal to `axis`, counted without creating them.
-pub fn slices(scene: &CheckedScene, axis: usize) -> Vec<u64> {
+/// Number of particles in each slice of cells normal to `axis`, each particle counted `weight` times,
+/// without creating them.
+pub fn slices(scene: &CheckedScene, axis: usize, weight: impl Fn(&CheckedBody) -> u64) -> Vec<u64> {
     let (lower, size) = (scene.scene.domain.lower[axis], scene.cell_size[axis]);
     let mut counts = vec![0; scene.cells[axis]];
     for body in &scene.bodies {
+        let weight = weight(body);
         if let Some(tiling) = &body.tiling {
             let slices = tiling.slices(axis, counts.len());
-            counts.iter_mut().zip(slices).for_each(|(count, more)| *count += more);
+            counts.iter_mut().zip(slices).for_each(|(count, more)| *count += weight * more);
             continue;
         }
         let (from, to) = (body.lower[axis], body.upper[axis]);
         let per_length = body.particles as f64 / (to - from);
         for (cell, count) in counts.iter_mut().enumerate() {
             let x = lower + cell as f64 * size;
-            *count += ((to.min(x + size) - from.max(x)).max(0.0) * per_length).round() as u64;
+            let inside = (to.min(x + size) - from.max(x)).max(0.0);
+            *count += weight * (inside * per_length).round() as u64;
         }
     }
     counts

@@ -72,14 +72,14 @@ fn patches_follow_the_workers() {
     let plane = with(&shipped("flyer_2d.json"), &awake);
     assert_eq!(plane["domain"]["patches"], Value::Null);
     assert_eq!(counts(&plane, 1, 1), [1, 1]);
-    assert_eq!(counts(&plane, 2, 1), [4, 2]);
+    assert_eq!(counts(&plane, 2, 1), [2, 2]);
     assert_eq!(counts(&plane, 2, 2), counts(&plane, 4, 1));
     assert!(counts(&shipped("flyer_2d.json"), 1, 1).iter().product::<usize>() > 1);
     // several patches for each of many workers, so that none holds much more than the mean
     let many = counts(&shipped("flyer_2d.json"), 16, 1).iter().product::<usize>();
     assert!(many > 40, "{many}");
-    // halves would be too narrow
-    let coarse = with(&plane, &json!({"domain": {"cell_size": 5e-5}}));
+    // two patches for each worker would be too narrow
+    let coarse = with(&plane, &json!({"domain": {"cell_size": 1e-4}}));
     assert_eq!(counts(&coarse, 2, 1), [2, 1]);
     let line = with(&shipped("flyer.json"), &awake);
     assert_eq!(counts(&line, 2, 1), [2]);

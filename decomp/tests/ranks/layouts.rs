@@ -41,7 +41,7 @@ fn on_ranks<T: Send>(size: usize, body: impl Fn(&dyn Comm) -> Held<T> + Sync) ->
 }
 
 /// The same patches, assigned to ranks 0 to `size - 1` at random.
-fn deal<const D: usize>(layout: &Layout<D>, size: usize, seed: &[usize]) -> Layout<D> {
+fn with_ranks_of<const D: usize>(layout: &Layout<D>, size: usize, seed: &[usize]) -> Layout<D> {
     let ranks: Vec<u32> =
         (0..layout.count()).map(|p| (seed[p % seed.len()] % size) as u32).collect();
     layout.clone().with_ranks(PatchOrder::hilbert(layout.parts()), &ranks)
@@ -141,9 +141,9 @@ fn check_particles<const D: usize>(
     seed: &[usize],
 ) {
     let alone = particles_held(&Serial, &layout, particles, reach, None);
-    let dealt = deal(&layout, size, seed);
+    let assigned = with_ranks_of(&layout, size, seed);
     for pool in [None, Some(&*THREADS)] {
-        let held = on_ranks(size, |comm| particles_held(comm, &dealt, particles, reach, pool));
+        let held = on_ranks(size, |comm| particles_held(comm, &assigned, particles, reach, pool));
         assert_eq!(held, alone);
     }
 }
@@ -192,8 +192,8 @@ proptest! {
     ) {
         let layout = Layout::new(IndexBox::new([0], [10]), [KINDS[kind]], [parts]);
         let alone = nodes_held(&Serial, &layout, depth);
-        let dealt = deal(&layout, size, &seed);
-        prop_assert_eq!(on_ranks(size, |comm| nodes_held(comm, &dealt, depth)), alone);
+        let assigned = with_ranks_of(&layout, size, &seed);
+        prop_assert_eq!(on_ranks(size, |comm| nodes_held(comm, &assigned, depth)), alone);
     }
 
     #[test]
@@ -220,10 +220,10 @@ proptest! {
 fn patches_move_with_all_their_particles() {
     let layout = Layout::new(IndexBox::new([0], [24]), [KINDS[0]], [7]);
     for size in 1..=5 {
-        let deals: Vec<Layout<1>> =
-            (0..4).map(|k| deal(&layout, size, &[k, 3 * k + 1, 4, 2 * k])).collect();
+        let layouts: Vec<Layout<1>> =
+            (0..4).map(|k| with_ranks_of(&layout, size, &[k, 3 * k + 1, 4, 2 * k])).collect();
         let held = run_ranks(size, |comm| {
-            let mine = deals[0].patches_of(comm.rank());
+            let mine = layouts[0].patches_of(comm.rank());
             let mut blocks: Vec<Block<1>> = mine
                 .into_iter()
                 .map(|p| {
@@ -234,12 +234,12 @@ fn patches_move_with_all_their_particles() {
                 })
                 .collect();
             let mut migrated = 0;
-            for pair in deals.windows(2) {
+            for pair in layouts.windows(2) {
                 let (moved, counts) =
                     relocate(comm, &pair[0], &pair[1], blocks, &SPECS, |_, block| block);
                 (blocks, migrated) = (moved, migrated + counts.particles);
             }
-            let last = deals[3].patches_of(comm.rank());
+            let last = layouts[3].patches_of(comm.rank());
             (last.into_iter().zip(blocks).collect::<Vec<_>>(), migrated)
         });
         for (patch, block) in held.iter().flat_map(|h| &h.0) {

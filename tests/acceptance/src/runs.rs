@@ -40,6 +40,7 @@ pub struct Job {
     threads: usize,
     whole: bool,
     own_cores: bool,
+    core: Option<usize>,
     watched: bool,
     counted: Counted,
 }
@@ -55,6 +56,7 @@ impl Job {
             threads: 1,
             whole: false,
             own_cores: false,
+            core: None,
             watched: false,
             counted: Counted::Nothing,
         }
@@ -89,6 +91,11 @@ impl Job {
     /// Started by mpirun even on one rank, each rank bound to a core of its own.
     pub fn on_own_cores(self) -> Job {
         Job { own_cores: true, ..self }
+    }
+
+    /// On one rank, bound to this core; jobs on different cores can run at the same time.
+    pub fn on_core(self, core: usize) -> Job {
+        Job { core: Some(core), ..self }
     }
 
     /// With its memory looked at while it runs.
@@ -134,6 +141,10 @@ impl Job {
             }
             mpirun.args(["-n", &self.ranks.to_string()]).arg(program);
             mpirun
+        } else if let Some(core) = self.core {
+            let mut taskset = Command::new("taskset");
+            taskset.args(["--cpu-list", &core.to_string()]).arg(program);
+            taskset
         } else {
             Command::new(program)
         };
@@ -155,7 +166,8 @@ impl Job {
 
     /// Runs it; the error is what the program said last.
     pub fn run(&self) -> Result<Outcome, String> {
-        let folder = program::folder().join(self.scene);
+        let core = self.core.map_or_else(String::new, |core| format!("_core_{core}"));
+        let folder = program::folder().join(format!("{}{core}", self.scene));
         let _ = fs::remove_dir_all(&folder);
         let mut command = self.command(None);
         command.arg("--output").arg(&folder);

@@ -84,9 +84,15 @@ impl Table {
 
     /// A figure with a bound.
     pub fn check(&mut self, figure: &str, value: Option<f64>, bound: Bound) {
-        let sign = if bound.at_most.is_some() { "<=" } else { ">=" };
-        let limit = format!("{sign} {}", shown(Some(bound.number()), bound.unit));
-        self.row(figure, shown(value, bound.unit), limit, verdict(bound.holds(value)));
+        self.row(figure, shown(value, bound.unit), limit(bound), verdict(bound.holds(value)));
+    }
+
+    /// Two figures, of which one must keep its bound.
+    pub fn either(&mut self, figure: &str, figures: [(Option<f64>, Bound); 2]) {
+        let measured = figures.map(|(value, bound)| shown(value, bound.unit)).join(", ");
+        let bounds = figures.map(|(_, bound)| limit(bound)).join(" or ");
+        let ok = figures.iter().any(|(value, bound)| bound.holds(*value));
+        self.row(figure, measured, bounds, verdict(ok));
     }
 
     /// A figure without a bound, beside another one.
@@ -130,6 +136,11 @@ impl Table {
 
 fn verdict(ok: bool) -> Verdict {
     if ok { Verdict::Held } else { Verdict::Missed }
+}
+
+fn limit(bound: Bound) -> String {
+    let sign = if bound.at_most.is_some() { "<=" } else { ">=" };
+    format!("{sign} {}", shown(Some(bound.number()), bound.unit))
 }
 
 fn shown(value: Option<f64>, unit: Unit) -> String {

@@ -1,4 +1,4 @@
-//! Particles of a rank on many ranks: quiescent patches are dealt by memory.
+//! Particles of a rank on many ranks: quiescent patches are assigned by memory.
 
 use crate::bounds::{Unit, scale as bounds};
 use crate::runs::Job;

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use decomp::{
     GhostExchange, GhostReach, IndexBox, Layout, NodeExchange, PatchLoads, SideKind,
-    deal_with_short_borders,
+    assign_with_short_borders,
 };
 
 use crate::bounds::{Unit, scale as bounds};
@@ -34,7 +34,7 @@ pub fn check(table: &mut Table) {
     let cells = IndexBox::new([0; 2], [(PATCHES * CELLS) as i64; 2]);
     let before = heap::held();
     let layout = Layout::new(cells, [[SideKind::Mirror, SideKind::Open]; 2], [PATCHES; 2]);
-    let layout = deal_with_short_borders(layout, &weights, RANKS);
+    let layout = assign_with_short_borders(layout, &weights, RANKS);
     let name = "1e6 patches on 125 000 ranks";
     let held = held_by(&layout, before);
     let figure = format!("{name}: layout and plans of a rank");
