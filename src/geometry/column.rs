@@ -69,11 +69,7 @@ impl<'a> Column<'a> {
                 moments += piece.overlap(&trapezium, centre);
             }
         }
-        let whole = self.lattice.area();
-        if (moments.area - whole).abs() <= ROUNDING * whole {
-            moments = full(whole);
-        }
-        Cut { index, moments, merged: false }
+        Cut { index, moments: rounded(moments, self.lattice.area()), merged: false }
     }
 
     /// Tiles in which the border of the shape may lie: all that are not `whole`, without those in
@@ -85,11 +81,14 @@ impl<'a> Column<'a> {
     }
 }
 
-/// Area and moments of a full tile about its centre.
+/// The moments, or those of the whole tile about its centre if they are equal except for rounding.
 // a call of its own: inlined, the area may be moved in a form that valgrind does not know
 #[inline(never)]
-fn full(area: f64) -> Moments {
-    Moments { area, first: [0.0; 2] }
+fn rounded(moments: Moments, whole: f64) -> Moments {
+    match (moments.area - whole).abs() <= ROUNDING * whole {
+        true => Moments { area: whole, first: [0.0; 2] },
+        false => moments,
+    }
 }
 
 /// The part of the interval of a piece that is within `x` [m].

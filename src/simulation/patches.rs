@@ -16,7 +16,10 @@ pub(crate) const LEAST_CELLS: usize = 16;
 const SLEEPING_CELLS: [usize; 2] = [64, 32];
 
 /// Patches per worker in a plane where no patch becomes quiescent, at most.
-const MOST_BUSY_PATCHES: usize = 4;
+const MOST_BUSY_PATCHES: usize = 8;
+
+/// Number of workers above which fewer numbers of patches are compared: each takes time for all patches.
+const MANY_WORKERS: usize = 64;
 
 /// Width from which such patches are at least two per worker [cells]: one is computed while the
 /// messages of the other travel. Narrower ones cost more at their edges.
@@ -85,13 +88,23 @@ fn chosen_parts<const D: usize>(scene: &CheckedScene, workers: usize) -> [usize;
         _ => {
             let pairs = parts(2 * workers);
             let is_wide = (0..D).all(|a| cells[a] / pairs[a] >= BUSY_CELLS);
-            // in steps of a quarter of the workers
+            // in steps of a quarter of the workers, of twice all workers if there are many
             let quarters = if is_wide { 8 } else { 4 }..=4 * MOST_BUSY_PATCHES;
-            let choices = quarters.map(|quarters| parts((quarters * workers).div_ceil(4)));
+            let quarters = quarters.step_by(if workers > MANY_WORKERS { 8 } else { 1 });
+            // patches without particles do not count
+            let (filled, all) = (filled_patches(scene, pairs), pairs.iter().product::<usize>());
+            let choices = quarters.map(|k| parts((k * workers * all).div_ceil(4 * filled)));
             let work = |&parts: &[usize; D]| work_of_busiest(scene, parts, workers);
             choices.min_by_key(work).expect("a range with an end above its start")
         }
     }
+}
+
+/// Number of patches with particles if the domain is cut into `parts` patches, at least 1.
+fn filled_patches<const D: usize>(scene: &CheckedScene, parts: [usize; D]) -> usize {
+    let layout = cut_by_work(scene, parts);
+    let is_filled = |&p: &usize| count_particles(scene, &layout.patch(p)) > 0;
+    (0..layout.count()).filter(is_filled).count().max(1)
 }
 
 /// Work of the busiest of `workers` if the domain is cut into `parts` patches; see [`patch_work`].
@@ -264,18 +277,23 @@ mod tests {
 
     #[test]
     fn chosen_patches_share_the_particles_of_a_plane() {
-        let sets = ["domain.cell_size=1.6e-5", "decomposition.skip_quiescent=false"];
-        let text = include_bytes!("../../inputs/flyer_2d.json");
-        let scene = input::parse(text, "flyer_2d.json", &sets.map(String::from)).unwrap();
-        for workers in [2, 3, 4, 8, 16, 32, 64] {
-            let layout = assign_domain::<2>(&scene, workers, 1);
-            assert!((workers..=5 * workers).contains(&layout.count()), "{workers}");
-            let patches = layout.order().patches().into_iter();
-            let particles: Vec<u64> =
-                patches.map(|p| count_particles(&scene, &layout.patch(p))).collect();
-            let most = busiest_share(&particles, &layout.ranks(), workers) as f64;
-            let mean = particles.iter().sum::<u64>() as f64 / workers as f64;
-            assert!(most < 1.3 * mean, "{workers}: {}", most / mean);
+        let plate = include_bytes!("../../inputs/flyer_2d.json").as_slice();
+        let disks = include_bytes!("../../inputs/disks.json").as_slice();
+        // the disks fill a quarter of the domain
+        for (text, cell, most_patches) in [(plate, 1.6e-5, 5), (disks, 2e-3, 16)] {
+            let sets =
+                [format!("domain.cell_size={cell}"), "decomposition.skip_quiescent=false".into()];
+            let scene = input::parse(text, "plane.json", &sets).unwrap();
+            for workers in [2, 3, 4, 8, 16, 32, 64] {
+                let layout = assign_domain::<2>(&scene, workers, 1);
+                assert!((workers..=most_patches * workers).contains(&layout.count()), "{workers}");
+                let patches = layout.order().patches().into_iter();
+                let particles: Vec<u64> =
+                    patches.map(|p| count_particles(&scene, &layout.patch(p))).collect();
+                let most = busiest_share(&particles, &layout.ranks(), workers) as f64;
+                let mean = particles.iter().sum::<u64>() as f64 / workers as f64;
+                assert!(most < 1.3 * mean, "{cell}, {workers}: {}", most / mean);
+            }
         }
     }
 
