@@ -178,9 +178,8 @@ impl Job {
             folder,
             said: ended.stdout,
             user_seconds: ended.usage.rusage.utime.as_secs_f64(),
-            peak_bytes: ended.usage.rusage.maxrss,
+            peak_bytes: ended.resident.fullest,
             resident: ended.resident.together,
-            fullest: ended.resident.fullest,
             instructions: collected(&ended.stderr, &["Ir"]),
             memory_bytes: collected(&ended.stderr, &TRAFFIC).map(|lines| lines * LINE),
         })
@@ -192,7 +191,7 @@ impl Job {
         Ok(Described {
             said: ended.stdout,
             user_seconds: ended.usage.rusage.utime.as_secs_f64(),
-            peak_bytes: ended.usage.rusage.maxrss,
+            peak_bytes: ended.resident.fullest,
         })
     }
 
@@ -240,7 +239,7 @@ pub struct Described {
     pub said: String,
     /// User CPU time [s].
     pub user_seconds: f64,
-    /// Most memory that it has taken [bytes].
+    /// Most memory that it has taken if it was watched [bytes].
     pub peak_bytes: u64,
 }
 
@@ -254,12 +253,11 @@ pub struct Outcome {
     pub said: String,
     /// User CPU time of all its processes [s], as the system counts it.
     pub user_seconds: f64,
-    /// Most memory that one of its processes has taken [bytes].
+    /// Most memory that one of its processes, without mpirun, has taken if it was watched [bytes].
+    // the system's own figure for an ended process includes the peak of the process that started it
     pub peak_bytes: u64,
     /// Memory of all its processes, looked at in even intervals if it was watched [bytes].
     pub resident: Vec<u64>,
-    /// The most that one of its processes, without mpirun, has taken if it was watched [bytes].
-    pub fullest: u64,
     /// Instructions of the whole process, where callgrind has counted them.
     pub instructions: Option<u64>,
     /// Bytes that the whole process has moved between L2 cache and memory, where callgrind has

@@ -44,7 +44,7 @@ pub fn check(table: &mut Table) {
         ];
         let name =
             format!("{scene}.json, cells of {cell_size} m, patches {patches}, {ranks} ranks");
-        let job = sets.iter().fold(Job::new(scene), |job, set| job.set(set)).ranks(ranks);
+        let job = sets.iter().fold(Job::new(scene), |job, set| job.set(set)).ranks(ranks).watched();
         let estimate = estimate(scene, &sets, ranks);
         let (Some(run), Some(estimate)) =
             (table.take(&name, job.run()), table.take(&name, estimate))

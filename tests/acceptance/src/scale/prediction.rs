@@ -145,8 +145,8 @@ fn memory(table: &mut Table, (name, sets): (&'static str, &[&str]), end: &str, r
     let (Some(run), Some(scene)) = (run, scene) else { return };
     let of = |rank| needed_memory(&scene, rank, ranks, 1) as f64;
     let predicted = (0..ranks).map(of).fold(0.0, f64::max);
-    let over = predicted / run.fullest as f64 - 1.0;
+    let over = predicted / run.peak_bytes as f64 - 1.0;
     let figure = format!("{case} of the fullest process, predicted, less 1");
     table.check(&figure, Some(over), bounds::prediction::MEMORY);
-    table.beside("  memory", Some(run.fullest as f64), "", Unit::Bytes);
+    table.beside("  memory", Some(run.peak_bytes as f64), "", Unit::Bytes);
 }

@@ -90,7 +90,7 @@ fn one_rank(table: &mut Table) {
 /// `flyer-mpm check` of a billion particles.
 fn described(table: &mut Table) {
     let name = "check of 1e9 particles";
-    let job = disks(5e8).into_iter().fold(Job::new("disks"), Job::set);
+    let job = disks(5e8).into_iter().fold(Job::new("disks"), Job::set).watched();
     let Some(run) = table.take(name, job.check()) else { return };
     let line = run.said.lines().find_map(|line| line.strip_prefix("particles "));
     let count = line.and_then(|count| count.trim().parse().ok());
