@@ -13,8 +13,8 @@
 //! Both let the caller compute while messages are on their way. [`assign_patches`] assigns patches
 //! to ranks along a [`PatchOrder`], by weight, [`assign_with_short_borders`] chooses the order, and
 //! [`relocate`] moves whole patches.
-//! [`Shares`] distributes the particles over ranks for files and tables, [`StoredParticles`] holds a share of
-//! them, and [`distribute_particles`] hands shares to the patches of any layout.
+//! [`Shares`] distributes the particles over ranks for files and tables, [`StoredParticles`] holds a
+//! share of them, and [`distribute_particles`] hands shares to the patches of any layout.
 //!
 //! Particles are kept in canonical order, by global cell and then by id. Every patch that sums
 //! particle terms into a node thus adds the same terms in the same order: the result is bitwise the

@@ -72,7 +72,8 @@ impl StoredParticles {
     }
 }
 
-/// The own particles of all ranks, distributed over some of the ranks in order of a key and then of the id.
+/// The own particles of all ranks, distributed over some of the ranks in order of a key and then of
+/// the id.
 ///
 /// Columns are fetched one by one, which limits the memory of each rank to little more than its
 /// share of the columns that it keeps.

@@ -1,9 +1,10 @@
-//! Choice of the order in which patches are assigned to ranks: the one that gives ranks short borders.
+//! Choice of the order in which patches are assigned to ranks: the one that gives ranks short
+//! borders.
 
 use crate::{Layout, PatchOrder, assign_patches};
 
-/// The patches of `layout`, assigned to `ranks` ranks in sections of an order by `weights`, the weight of
-/// each patch; see [`assign_patches`].
+/// The patches of `layout`, assigned to `ranks` ranks in sections of an order by `weights`, the
+/// weight of each patch; see [`assign_patches`].
 ///
 /// Sections of a Hilbert curve are compact, but for few ranks and uneven weights their borders are
 /// ragged, and stripes of whole columns or rows of patches have shorter ones. Of these orders the one

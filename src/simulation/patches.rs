@@ -15,7 +15,7 @@ pub(crate) const LEAST_CELLS: usize = 16;
 /// line and in a plane.
 const SLEEPING_CELLS: [usize; 2] = [64, 32];
 
-/// Patches per worker in a plane where no patch becomes quiescent, at most.
+/// Patches with particles per worker in a plane where no patch becomes quiescent, at most.
 const MOST_BUSY_PATCHES: usize = 8;
 
 /// Number of workers above which fewer numbers of patches are compared: each takes time for all patches.

@@ -100,7 +100,8 @@ fn described(table: &mut Table) {
         Some(run.user_seconds),
         bounds::startup::CHECK_SECONDS,
     );
-    let peak = Some(run.peak_bytes as f64);
+    // a process that was never seen has no figure
+    let peak = (run.peak_bytes > 0).then_some(run.peak_bytes as f64);
     table.check(&format!("{name}: memory"), peak, bounds::startup::CHECK_MEMORY);
 }
 
