@@ -5,27 +5,29 @@ use std::ops::Range;
 use crate::bottleneck::least_bottleneck;
 
 /// Assigns patches to ranks in sections of an order. `weights` holds the weight of each patch in this
-/// order; their sum is below 2^63. The largest sum of weights per rank is as small as possible for
-/// whole patches in this order. A rank may get none. Returns the rank of each patch, in the order.
+/// order; their sum is below 2^63. The largest sum of weights per rank exceeds the smallest possible one
+/// for whole patches in this order by at most 1/4096. A rank may get none. Returns the rank of each
+/// patch, in the order.
 ///
 /// The smallest bottleneck is found by probes between limits that sums of weights attain (chains on
 /// chains: Pinar & Aykanat 2004). Within it, sections end as near to equal shares as possible, so
 /// that small changes of the weights move few patches.
 pub fn assign_patches(weights: &[u64], ranks: usize) -> Vec<u32> {
-    let total: u64 = weights.iter().sum();
+    let (total, heaviest) =
+        weights.iter().fold((0, 0), |(sum, most): (u64, u64), &w| (sum + w, most.max(w)));
     if total == 0 && !weights.is_empty() {
         // patches count equally
         return assign_patches(&vec![1; weights.len()], ranks);
     }
-    let limit = least_bottleneck(weights, ranks);
-    let needed = ranks_from(weights, limit);
+    let limit = least_bottleneck(weights, total, heaviest, ranks);
+    let sufficient = sufficient_from(weights, limit, ranks);
     let mut of = Vec::with_capacity(weights.len());
     let (mut rank, mut load, mut before) = (0, 0, 0);
     let mut shares = EqualShares::new(2 * total, ranks as u64);
     for (k, &w) in weights.iter().enumerate() {
         // by equal shares, the middle of the patch's part of the total belongs to a later rank
         let later = 2 * before + w >= shares.end;
-        let later_ranks_suffice = (needed[k] as usize) < ranks - rank as usize;
+        let later_ranks_suffice = k >= sufficient[ranks - 1 - rank as usize];
         if load + w > limit || (later && later_ranks_suffice) {
             (rank, load) = (rank + 1, 0);
             shares.advance();
@@ -87,30 +89,36 @@ impl PatchLoads<'_> {
     /// patches alone exceed it.
     pub fn reassign(&self, owners: &[u32], ranks: usize, most: f64) -> Vec<u32> {
         let PatchLoads { work, particles } = *self;
-        let mut of = owners.to_vec();
         let runs = self.runs();
         let active = || runs.iter().filter(|run| run.is_active).map(|run| run.range.clone());
         let weights: Vec<&[u64]> = active().map(|run| &work[run]).collect();
         let weights = weights.concat();
-        if weights.iter().any(|&work| work > 0) {
-            let assigned = assign_patches(&weights, ranks);
-            let mut assigned = &assigned[..];
-            for run in active() {
-                let (these, rest) = assigned.split_at(run.len());
-                of[run].copy_from_slice(these);
+        let is_at_rest = weights.iter().all(|&work| work == 0);
+        let assigned = if is_at_rest { Vec::new() } else { assign_patches(&weights, ranks) };
+        let (mut of, mut assigned) = (Vec::with_capacity(work.len()), &assigned[..]);
+        for run in &runs {
+            if run.is_active && !is_at_rest {
+                let (these, rest) = assigned.split_at(run.range.len());
+                of.extend_from_slice(these);
                 assigned = rest;
+            } else {
+                of.extend_from_slice(&owners[run.range.clone()]);
             }
         }
         let mut held = vec![0; ranks];
-        for k in active().flatten() {
-            held[of[k] as usize] += particles[k];
+        for (rank, section) in active().flat_map(|run| sections(&of, run)) {
+            held[rank] += particles[section].iter().sum::<u64>();
         }
-        let mean = particles.iter().sum::<u64>() as f64 / ranks as f64;
+        let mean = runs.iter().map(|run| run.particles).sum::<u64>() as f64 / ranks as f64;
         let limit = (most * mean).ceil() as u64;
         let mut moving = Vec::new();
-        for k in runs.iter().filter(|run| !run.is_active).flat_map(|run| run.range.clone()) {
-            let held = &mut held[of[k] as usize];
-            if *held + particles[k] <= limit { *held += particles[k] } else { moving.push(k) }
+        let quiescent = runs.iter().filter(|run| !run.is_active).map(|run| run.range.clone());
+        for (rank, section) in quiescent.flat_map(|run| sections(&of, run)) {
+            let mut load = held[rank];
+            for k in section {
+                if load + particles[k] <= limit { load += particles[k] } else { moving.push(k) }
+            }
+            held[rank] = load;
         }
         let mut free = FreeRanks { limit: mean.ceil() as u64, held, rank: 0 };
         for k in moving {
@@ -130,15 +138,28 @@ impl PatchLoads<'_> {
             let lengths = if count.is_multiple_of(work.len()) { work.len() } else { 1 };
             for k in (0..work.len()).step_by(lengths) {
                 let (range, is_active) = (start + k..start + k + lengths, is_active(k));
+                let particles = particles[k..k + lengths].iter().sum();
                 match runs.last_mut() {
-                    Some(run) if run.is_active == is_active => run.range.end = range.end,
-                    _ => runs.push(PatchRun { range, is_active }),
+                    Some(run) if run.is_active == is_active => {
+                        run.range.end = range.end;
+                        run.particles += particles;
+                    }
+                    _ => runs.push(PatchRun { range, is_active, particles }),
                 }
             }
             start += work.len();
         }
         runs
     }
+}
+
+/// The parts of `run` that have one rank each, with this rank.
+fn sections(of: &[u32], run: Range<usize>) -> impl Iterator<Item = (usize, Range<usize>)> {
+    let mut start = run.start;
+    of[run].chunk_by(|a, b| a == b).map(move |section| {
+        start += section.len();
+        (section[0] as usize, start - section.len()..start)
+    })
 }
 
 /// Number of patches that are examined together.
@@ -148,6 +169,7 @@ const CHUNK: usize = 64;
 struct PatchRun {
     range: Range<usize>,
     is_active: bool,
+    particles: u64,
 }
 
 /// Ranks that have room for particles, filled one after the other.
@@ -175,19 +197,20 @@ impl FreeRanks {
     }
 }
 
-/// For each position, the number of ranks that the weights from there on need under `limit`.
-fn ranks_from(weights: &[u64], limit: u64) -> Vec<u32> {
-    let mut needed = vec![0; weights.len() + 1];
-    let (mut end, mut load) = (weights.len(), 0);
-    for k in (0..weights.len()).rev() {
-        load += weights[k];
-        while load > limit {
-            end -= 1;
-            load -= weights[end];
+/// For each number of ranks up to `ranks`, the first position from which on so many suffice for the
+/// weights under `limit`.
+fn sufficient_from(weights: &[u64], limit: u64, ranks: usize) -> Vec<usize> {
+    let mut from = vec![0; ranks + 1];
+    from[0] = weights.len();
+    let (mut count, mut load) = (1, 0);
+    for (k, &w) in weights.iter().enumerate().rev() {
+        load += w;
+        if load > limit {
+            from[count] = k + 1;
+            (count, load) = (count + 1, w);
         }
-        needed[k] = 1 + needed[end];
     }
-    needed
+    from
 }
 
 /// The largest sum of `weights` over the patches of one rank.
@@ -300,8 +323,14 @@ mod tests {
     fn runs_of_patches_follow_each_other() {
         let work: Vec<u64> = (0..300).map(|k| u64::from(k < 130 || k == 200)).collect();
         let loads = PatchLoads { work: &work, particles: &[7; 300] };
-        let runs: Vec<_> = loads.runs().into_iter().map(|run| (run.range, run.is_active)).collect();
-        let expected = [(0..130, true), (130..200, false), (200..201, true), (201..300, false)];
+        let runs = loads.runs().into_iter().map(|run| (run.range, run.is_active, run.particles));
+        let runs: Vec<_> = runs.collect();
+        let expected = [
+            (0..130, true, 7 * 130),
+            (130..200, false, 7 * 70),
+            (200..201, true, 7),
+            (201..300, false, 7 * 99),
+        ];
         assert_eq!(runs, expected);
     }
 
