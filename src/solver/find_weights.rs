@@ -69,10 +69,10 @@ fn put(numbers: &[f64x4], out: &mut [f64]) {
     }
 }
 
-/// Whether four particles are computed together: on a line, and on two nodes, that takes more
-/// instructions. In windows of more than [`NARROW`] nodes it is done for four narrow particles only.
-const fn in_lanes(width: usize, dimension: usize) -> bool {
-    dimension > 1 && 2 < width
+/// Whether four particles are computed together: on a line that takes more instructions. In windows of
+/// more than [`NARROW`] nodes it is done for four narrow particles only.
+const fn in_lanes(dimension: usize) -> bool {
+    dimension > 1
 }
 
 /// Writes four lines of four numbers of each of four particles to the first places of the lines of their
@@ -100,13 +100,13 @@ impl Stencils {
         let n = at.cells.len();
         self.resize::<K, D>(n, stride);
         let mut corners = Corners { least: [i32::MAX; D], most: [i32::MIN; D] };
-        let whole = if const { in_lanes(K, D) } { n - n % LANES } else { 0 };
+        let whole = if const { in_lanes(D) } { n - n % LANES } else { 0 };
         let mut buffer = PlaneLanes::none();
         let mut narrow_buffer = PlaneLanes::none();
         for first in (0..whole).step_by(LANES) {
-            if const { in_lanes(K, D) && K <= NARROW } {
+            if const { in_lanes(D) && K <= NARROW } {
                 self.fill_four::<S, K, D>(at, first, &mut corners, &mut buffer);
-            } else if const { in_lanes(K, D) } {
+            } else if const { in_lanes(D) } {
                 if at.are_narrow::<S>(first) {
                     self.fill_four_narrow::<S, K, D>(at, first, &mut corners, &mut narrow_buffer);
                 } else {

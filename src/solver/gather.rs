@@ -41,6 +41,10 @@ pub(super) fn own_tensor(columns: &mut [Vec<f64>], particles: usize) -> OwnTenso
     (!columns.is_empty()).then(|| own(columns, particles))
 }
 
+/// Sums that most leapfrog steps need: velocities, and of their gradient the trace. As a constant it
+/// leaves no question in a loop.
+const USUAL: [bool; 3] = [true, true, false];
+
 impl<const D: usize> Scheme<D> {
     /// Updates the own particles at the end of a leapfrog step: velocity by the transfer scheme,
     /// its affine part, and position x += dt N v'; with `strain` also the results of
@@ -94,10 +98,8 @@ impl<const D: usize> Scheme<D> {
             (dt, moves): (f64, bool),
             wanted: [bool; 3],
         ) {
-            // in most steps; as a constant it leaves no question in the loop
-            const MOST: [bool; 3] = [true, true, false];
-            if moves && wanted == MOST {
-                one_by_one::<K, D>(patch, s, (dt, true), MOST);
+            if moves && wanted == USUAL {
+                one_by_one::<K, D>(patch, s, (dt, true), USUAL);
             } else {
                 one_by_one::<K, D>(patch, s, (dt, moves), wanted);
             }
@@ -128,14 +130,34 @@ impl<const D: usize> Scheme<D> {
         // hoop strain needs the velocity at the particle
         let velocities = moves || self.axisymmetric;
         let wanted = [velocities, strains, self.columns.velocity_gradient.is_some()];
-        with_packed!(
-            width,
-            packed(patch, self, (dt, moves), wanted),
-            with_width!(width, single(patch, self, (dt, moves), wanted))
-        );
+        if D > 1 && width == 2 && moves && wanted == USUAL {
+            self.gather_squares(patch, dt);
+        } else {
+            with_packed!(
+                width,
+                packed(patch, self, (dt, moves), wanted),
+                with_width!(width, single(patch, self, (dt, moves), wanted))
+            );
+        }
         if strains {
             with_width!(width, limiter(patch, self));
         }
+    }
+
+    /// Moves the own particles and computes the divergence of their velocities in one pass, for windows
+    /// of two nodes along each direction of a plane.
+    fn gather_squares(&self, patch: &mut Patch<D>, dt: f64) {
+        let (mut window, mut at) = (PackedEnds::<1, D>::none(), u32::MAX);
+        patch.with_stencils(|patch, stencils| {
+            let mut all = stencils.squares(0..patch.block.own());
+            self.end_particles(patch, dt, [true, USUAL[1]], |r, nodal| {
+                if stencils.first[r] != at {
+                    at = stencils.first[r];
+                    window.fetch::<2>(nodal, stencils.place(r));
+                }
+                window.sums::<2>(&all.next().expect("those of each own particle"), USUAL)
+            });
+        });
     }
 
     /// The same with the `sums` over the nodes of each particle, asked for in their order by the index.

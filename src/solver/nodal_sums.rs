@@ -3,7 +3,7 @@
 use decomp::array::from_fn;
 use wide::f64x4;
 
-use crate::solver::packed::{PackedWeights, WindowPlace, dot, totals};
+use crate::solver::packed::{PackedWeights, WindowPlace, dot, is_one_vector, total, totals};
 use crate::solver::particle_weights::ParticleWeights;
 
 /// Nodal velocities of a step [m/s].
@@ -223,8 +223,12 @@ impl<const V: usize, const D: usize> PackedEnds<V, D> {
         }
         if strained {
             let zero = f64x4::ZERO;
-            let mixed = if tensors { [along(x, y), along(y, x)] } else { [zero; 2] };
-            gradient = totals::<K>([along(x, x), mixed[0], mixed[1], along(y, y)]);
+            if const { is_one_vector(K) } && !tensors {
+                [gradient[0], gradient[3]] = [total(along(x, x)), total(along(y, y))];
+            } else {
+                let mixed = if tensors { [along(x, y), along(y, x)] } else { [zero; 2] };
+                gradient = totals::<K>([along(x, x), mixed[0], mixed[1], along(y, y)]);
+            }
         }
         EndSums {
             start: from_fn(|a| ends[a]),

@@ -1,7 +1,8 @@
 //! Windows of at most four nodes along a direction in vectors of four numbers, for sums over several
 //! particles with one window and for several sums over one particle. A line of the window fills one
-//! vector. In a patch with wider windows, `K` is their number of nodes, and narrow particles have
-//! weights on the first four alone.
+//! vector, and a window of two nodes along each direction of a plane fills one too. In a patch with
+//! wider windows, `K` is their number of nodes, and narrow particles have weights on the first four
+//! alone.
 //!
 //! The sums have the bits of [`ParticleWeights`](super::particle_weights::ParticleWeights).
 //!
@@ -19,6 +20,11 @@ pub const PACKED: usize = NARROW;
 /// Number of nodes with weights along a direction, of the `width` of a window.
 pub(super) const fn packed_nodes(width: usize) -> usize {
     if width < PACKED { width } else { PACKED }
+}
+
+/// Whether one vector holds all four nodes of a window in a plane, of `width` nodes along a direction.
+pub(super) const fn is_one_vector(width: usize) -> bool {
+    width == 2
 }
 
 /// Weights of one particle on its window. Numbers beyond the nodes of a line belong to other lines.
@@ -56,6 +62,10 @@ impl WindowPlace {
     /// Nodes of the window in `field`.
     #[inline(always)]
     pub fn nodes<const K: usize, const V: usize>(&self, field: &[f64]) -> [f64x4; V] {
+        if const { is_one_vector(K) } {
+            let [[a, b], [c, d]] = [0, self.stride].map(|to| *window::<2>(field, self.first + to));
+            return [f64x4::from([a, b, c, d]); V];
+        }
         from_fn(|line| {
             let at = self.first + line * self.stride;
             // the nodes in a vector as a constant argument cannot be computed from K
@@ -69,6 +79,13 @@ impl WindowPlace {
     /// Writes the nodes of the window to `field`.
     #[inline(always)]
     pub fn put<const K: usize, const V: usize>(&self, field: &mut [f64], nodes: &[f64x4; V]) {
+        if const { is_one_vector(K) } {
+            let lines = nodes[0].to_array();
+            for (to, line) in [0, self.stride].into_iter().zip(lines.as_chunks::<2>().0) {
+                field[self.first + to..][..2].copy_from_slice(line);
+            }
+            return;
+        }
         for (line, nodes) in nodes.iter().enumerate() {
             let nodes = nodes.to_array();
             let at = self.first + line * self.stride;
@@ -104,10 +121,21 @@ pub fn dot<const V: usize>(weights: &[f64x4; V], nodes: &[f64x4; V]) -> f64x4 {
     sum
 }
 
+/// Sum over the nodes of a window that is one vector, over its lines first.
+#[inline(always)]
+pub fn total(sum: f64x4) -> f64 {
+    let [a, b, c, d] = sum.to_array();
+    0.0 + (a + c) + (b + d)
+}
+
 /// Sums over the nodes of a line of each of four vectors.
 #[inline(always)]
 pub fn totals<const K: usize>(sums: [f64x4; 4]) -> [f64; 4] {
     let columns = f64x4::transpose(sums);
+    if const { is_one_vector(K) } {
+        // over the lines first
+        return (f64x4::ZERO + (columns[0] + columns[2]) + (columns[1] + columns[3])).to_array();
+    }
     // from +0 on, as sums of one particle
     let mut total = f64x4::ZERO;
     for column in &columns[..const { packed_nodes(K) }] {
@@ -116,10 +144,10 @@ pub fn totals<const K: usize>(sums: [f64x4; 4]) -> [f64; 4] {
     total.to_array()
 }
 
-/// Calls `$call` with the width of windows in a plane, the number of vectors that hold a window of at
-/// most four nodes along a direction, and the dimension. Where windows are wider, only narrow
-/// particles have their weights in so many vectors. Evaluates `$other` on a line and with two nodes:
-/// there the sums of one particle take fewer instructions.
+/// Calls `$call` with the width of windows in a plane, the number of vectors that hold a window of three
+/// or four nodes along a direction, and the dimension. Where windows are wider, only narrow particles
+/// have their weights in so many vectors. Evaluates `$other` on a line and with two nodes: there most
+/// sums of one particle take fewer instructions.
 macro_rules! with_packed {
     ($width:expr, $call:ident ( $($arg:expr),* ), $other:expr) => {
         match $width {
@@ -173,6 +201,9 @@ mod tests {
                 weights.dot(weights.gradient(D - 1), &field),
             ];
             assert_eq!(totals::<K>(sums).map(f64::to_bits), expected.map(f64::to_bits));
+            if is_one_vector(K) {
+                assert_eq!(sums.map(|sum| total(sum).to_bits()), expected.map(f64::to_bits));
+            }
         }
         // scatter: sums over a group are those over one particle after the other
         let (mut one, mut together) = (field.clone(), field);
@@ -194,6 +225,7 @@ mod tests {
     fn sums_in_vectors_have_the_bits_of_sums_one_by_one() {
         check::<3, 1, 1>();
         check::<4, 1, 1>();
+        check::<2, 1, 2>();
         check::<3, 3, 2>();
         check::<4, 4, 2>();
         check::<6, 4, 2>();

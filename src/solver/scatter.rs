@@ -98,7 +98,11 @@ impl<const D: usize> Scheme<D> {
         let tensor = self.tensor_stress();
         let (width, scalar) = (patch.stencils.width, force && !tensor);
         let is_plain = self.columns.affine.is_none() && !self.axisymmetric;
-        if is_plain && (recomputed || self.contact.is_some()) {
+        let in_vectors = is_plain && (recomputed || self.contact.is_some());
+        let of_squares = D > 1 && width == 2 && !self.needs_matrix() && self.edge_mask.is_none();
+        if in_vectors && of_squares && scalar {
+            self.scatter_squares(patch);
+        } else if in_vectors {
             with_packed!(
                 width,
                 groups(patch, self, scalar),

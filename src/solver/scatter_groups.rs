@@ -3,18 +3,47 @@
 
 use std::ops::Range;
 
+use decomp::array;
 use wide::f64x4;
 
 use super::band::{Band, Spinning, TOGETHER};
 use super::scheme::Scheme;
 use super::spin::packed_inertia;
-use crate::solver::packed::{add_to, totals};
+use crate::solver::packed::{WindowPlace, add_to, totals};
 use crate::solver::particle_weights::Offset;
 use crate::solver::patch::Patch;
 use crate::solver::shape_weights::Stencils;
 use crate::solver::summed_fields::{SummedColumns, SummedSlices};
 
+/// Sums on a window of two nodes along each direction of a plane.
+struct SquareSums<const D: usize> {
+    mass: [f64x4; 1],
+    momentum: [[f64x4; 1]; D],
+    force: [[f64x4; 1]; D],
+}
+
 impl<const D: usize> SummedSlices<'_, D> {
+    /// Sums of mass, momentum and force on a window of two nodes along each direction.
+    #[inline(always)]
+    fn square(&self, place: WindowPlace) -> SquareSums<D> {
+        let nodes = |field: &[f64]| place.nodes::<2, 1>(field);
+        SquareSums {
+            mass: nodes(self.mass),
+            momentum: array::from_fn(|a| nodes(self.momentum[a])),
+            force: array::from_fn(|a| nodes(self.force[a])),
+        }
+    }
+
+    /// Writes them.
+    #[inline(always)]
+    fn put_square(&mut self, place: WindowPlace, sums: &SquareSums<D>) {
+        place.put::<2, 1>(self.mass, &sums.mass);
+        for a in 0..D {
+            place.put::<2, 1>(self.momentum[a], &sums.momentum[a]);
+            place.put::<2, 1>(self.force[a], &sums.force[a]);
+        }
+    }
+
     /// Adds mass and momentum of a group of particles.
     #[inline(always)]
     fn add_motion<const K: usize, const V: usize>(
@@ -153,6 +182,45 @@ impl<const D: usize> Scheme<D> {
             band.finish();
         }
         patch.band = band;
+        self.put_sums(patch, fields);
+    }
+
+    /// Mass, momentum and force of the nodes, without matrix and volume, for windows of two nodes along
+    /// each direction of a plane. The sums of a window stay in vectors as long as the next particle has
+    /// the same window.
+    pub(super) fn scatter_squares(&self, patch: &mut Patch<D>) {
+        self.clear_sums::<2, false, false>(patch);
+        let mut fields = self.take_sums(patch);
+        let mut nodal = fields.sums();
+        let of = self.summed_columns(patch, true);
+        let stress = of.stress.expect("the force is summed");
+        let columns = [of.mass, of.velocity[0], of.velocity[D - 1], stress];
+        let stencils = &patch.stencils;
+        for run in &patch.runs {
+            let of_run = |column: usize| &columns[column][run.clone()];
+            let velocities = of_run(1).iter().zip(of_run(2));
+            let particles = of_run(0).iter().zip(velocities).zip(of_run(3));
+            let weights = stencils.squares::<D>(run.clone());
+            let mut place = stencils.place(run.start);
+            let mut sums = nodal.square(place);
+            for ((weights, &first), ((&m, (&vx, &vy)), &stress)) in
+                weights.zip(&stencils.first[run.clone()]).zip(particles)
+            {
+                if first as usize != place.first {
+                    nodal.put_square(place, &sums);
+                    place.first = first as usize;
+                    sums = nodal.square(place);
+                }
+                add_to(&mut sums.mass, &weights.values, m);
+                for (momentum, v) in sums.momentum.iter_mut().zip([vx, vy]) {
+                    add_to(momentum, &weights.values, m * v);
+                }
+                for (force, gradient) in sums.force.iter_mut().zip(&weights.gradients) {
+                    add_to(force, gradient, stress);
+                }
+            }
+            nodal.put_square(place, &sums);
+        }
         self.put_sums(patch, fields);
     }
 
