@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use crate::bottleneck::least_bottleneck;
+use crate::bottleneck::bottleneck_limit;
 
 /// Assigns patches to ranks in sections of an order. `weights` holds the weight of each patch in this
 /// order; their sum is below 2^63. The largest sum of weights per rank exceeds the smallest possible one
-/// for whole patches in this order by at most 1/4096. A rank may get none. Returns the rank of each
-/// patch, in the order.
+/// for whole patches in this order by at most 1/4096 of it. A rank may get none. Returns the rank of
+/// each patch, in the order.
 ///
-/// The smallest bottleneck is found by probes between limits that sums of weights attain (chains on
+/// A limit close to the smallest bottleneck is found by probes between limits that sums of weights attain (chains on
 /// chains: Pinar & Aykanat 2004). Within it, sections end as near to equal shares as possible, so
 /// that small changes of the weights move few patches.
 pub fn assign_patches(weights: &[u64], ranks: usize) -> Vec<u32> {
@@ -19,7 +19,7 @@ pub fn assign_patches(weights: &[u64], ranks: usize) -> Vec<u32> {
         // patches count equally
         return assign_patches(&vec![1; weights.len()], ranks);
     }
-    let limit = least_bottleneck(weights, total, heaviest, ranks);
+    let limit = bottleneck_limit(weights, total, heaviest, ranks);
     let sufficient = sufficient_from(weights, limit, ranks);
     let mut of = Vec::with_capacity(weights.len());
     let (mut rank, mut load, mut before) = (0, 0, 0);
@@ -153,7 +153,7 @@ impl PatchLoads<'_> {
     }
 }
 
-/// The parts of `run` that have one rank each, with this rank.
+/// The longest parts of `run` whose patches have the same rank: this rank, and the patches.
 fn sections(of: &[u32], run: Range<usize>) -> impl Iterator<Item = (usize, Range<usize>)> {
     let mut start = run.start;
     of[run].chunk_by(|a, b| a == b).map(move |section| {
@@ -197,8 +197,8 @@ impl FreeRanks {
     }
 }
 
-/// For each number of ranks up to `ranks`, the first position from which on so many suffice for the
-/// weights under `limit`.
+/// Entry n is the first position from which on n ranks can hold all weights, each at most `limit`.
+/// `ranks` ranks must suffice for all weights.
 fn sufficient_from(weights: &[u64], limit: u64, ranks: usize) -> Vec<usize> {
     let mut from = vec![0; ranks + 1];
     from[0] = weights.len();

@@ -1,12 +1,12 @@
-//! The smallest possible largest load of a rank, if patches are assigned in sections of an order, or
-//! one a little above it.
+//! A limit of the load of a rank under which sections of an order suffice, at most 1/4096 above the
+//! smallest one.
 
-/// A limit above the smallest one by less than the fraction 2^-12 is not refined.
+/// The search ends when its limits differ by at most the fraction 2^-12 of the lower one.
 const PRECISION: u32 = 12;
 
 /// A limit of the sum of `weights` of a rank under which `ranks` ranks suffice: the smallest one, or
 /// above it by at most 1/4096 of it. `total` is the sum of all weights, and `heaviest` the greatest one.
-pub(crate) fn least_bottleneck(weights: &[u64], total: u64, heaviest: u64, ranks: usize) -> u64 {
+pub(crate) fn bottleneck_limit(weights: &[u64], total: u64, heaviest: u64, ranks: usize) -> u64 {
     let mean = total.div_ceil(ranks as u64);
     // with the upper limit, every section but the last holds more than the mean
     let (mut low, mut high) = (heaviest.max(mean), total.min(mean + heaviest));
@@ -107,14 +107,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn guesses_lead_to_the_smallest_bottleneck(
+        fn the_limit_is_at_most_a_4096th_above_the_smallest(
             (weights, heavy) in (prop::collection::vec(0u64..1000, 1..600), 1u64..5000),
             ranks in 1usize..200,
         ) {
             let mut weights = weights;
             weights[0] += heavy;
             let heaviest = *weights.iter().max().unwrap();
-            let found = least_bottleneck(&weights, weights.iter().sum(), heaviest, ranks);
+            let found = bottleneck_limit(&weights, weights.iter().sum(), heaviest, ranks);
             let least = bisected(&weights, ranks);
             prop_assert!((least..=least + least / 4096).contains(&found), "{found} for {least}");
         }

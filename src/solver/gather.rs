@@ -41,8 +41,8 @@ pub(super) fn own_tensor(columns: &mut [Vec<f64>], particles: usize) -> OwnTenso
     (!columns.is_empty()).then(|| own(columns, particles))
 }
 
-/// Sums that most leapfrog steps need: velocities, and of their gradient the trace. As a constant it
-/// leaves no question in a loop.
+/// Sums of most leapfrog steps: velocities and the trace of their gradient, not the full gradient. As a
+/// constant it leaves no branch in a loop.
 const USUAL: [bool; 3] = [true, true, false];
 
 impl<const D: usize> Scheme<D> {
@@ -150,7 +150,7 @@ impl<const D: usize> Scheme<D> {
         let (mut window, mut at) = (PackedEnds::<1, D>::none(), u32::MAX);
         patch.with_stencils(|patch, stencils| {
             let mut all = stencils.squares(0..patch.block.own());
-            self.end_particles(patch, dt, [true, USUAL[1]], |r, nodal| {
+            self.end_particles(patch, dt, [true, true], |r, nodal| {
                 if stencils.first[r] != at {
                     at = stencils.first[r];
                     window.fetch::<2>(nodal, stencils.place(r));
@@ -160,7 +160,8 @@ impl<const D: usize> Scheme<D> {
         });
     }
 
-    /// The same with the `sums` over the nodes of each particle, asked for in their order by the index.
+    /// [`Self::gather_end`] with `sums`, which gives the sums over the nodes of a particle by its index and
+    /// is called once for each own particle, in order.
     #[inline(always)]
     fn end_particles(
         &self,

@@ -22,12 +22,14 @@ pub(super) const fn packed_nodes(width: usize) -> usize {
     if width < PACKED { width } else { PACKED }
 }
 
-/// Whether one vector holds all four nodes of a window in a plane, of `width` nodes along a direction.
+/// Whether a window in a plane, of `width` nodes along each direction, fills one vector. On a line no
+/// window does.
 pub(super) const fn is_one_vector(width: usize) -> bool {
     width == 2
 }
 
-/// Weights of one particle on its window. Numbers beyond the nodes of a line belong to other lines.
+/// Weights of one particle on its window. Numbers beyond the nodes of a line belong to other lines; with
+/// two nodes along each direction the second half of the vector is the second line.
 #[derive(Clone, Copy, Debug)]
 pub struct PackedWeights<const V: usize, const D: usize> {
     /// Values.
@@ -128,7 +130,8 @@ pub fn total(sum: f64x4) -> f64 {
     0.0 + (a + c) + (b + d)
 }
 
-/// Sums over the nodes of a line of each of four vectors.
+/// Sums over the nodes for each of four vectors, which [`dot`] has added over the lines; a window of two
+/// nodes along each direction is added over its lines here.
 #[inline(always)]
 pub fn totals<const K: usize>(sums: [f64x4; 4]) -> [f64; 4] {
     let columns = f64x4::transpose(sums);
@@ -146,8 +149,8 @@ pub fn totals<const K: usize>(sums: [f64x4; 4]) -> [f64; 4] {
 
 /// Calls `$call` with the width of windows in a plane, the number of vectors that hold a window of three
 /// or four nodes along a direction, and the dimension. Where windows are wider, only narrow particles
-/// have their weights in so many vectors. Evaluates `$other` on a line and with two nodes: there most
-/// sums of one particle take fewer instructions.
+/// have their weights in so many vectors. Evaluates `$other` on a line and for two nodes: there most sums
+/// take fewer instructions one by one.
 macro_rules! with_packed {
     ($width:expr, $call:ident ( $($arg:expr),* ), $other:expr) => {
         match $width {

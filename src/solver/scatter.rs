@@ -99,8 +99,9 @@ impl<const D: usize> Scheme<D> {
         let (width, scalar) = (patch.stencils.width, force && !tensor);
         let is_plain = self.columns.affine.is_none() && !self.axisymmetric;
         let in_vectors = is_plain && (recomputed || self.contact.is_some());
-        let of_squares = D > 1 && width == 2 && !self.needs_matrix() && self.edge_mask.is_none();
-        if in_vectors && of_squares && scalar {
+        // matrix, volume and spin need more sums
+        let more = self.needs_matrix() || self.edge_mask.is_some() || self.columns.spin.is_some();
+        if const { D > 1 } && width == 2 && in_vectors && scalar && !more {
             self.scatter_squares(patch);
         } else if in_vectors {
             with_packed!(
@@ -139,7 +140,12 @@ impl<const D: usize> Scheme<D> {
         with_width!(patch.stencils.width, go(patch, self, from));
     }
 
-    fn scatter_width<const K: usize, const MATRIX: bool, const AFFINE: bool, const SPIN: bool>(
+    pub(super) fn scatter_width<
+        const K: usize,
+        const MATRIX: bool,
+        const AFFINE: bool,
+        const SPIN: bool,
+    >(
         &self,
         patch: &mut Patch<D>,
         force: bool,

@@ -34,7 +34,7 @@ impl<const D: usize> SummedSlices<'_, D> {
         }
     }
 
-    /// Writes them.
+    /// Writes these sums to the nodes.
     #[inline(always)]
     fn put_square(&mut self, place: WindowPlace, sums: &SquareSums<D>) {
         place.put::<2, 1>(self.mass, &sums.mass);

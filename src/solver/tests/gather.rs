@@ -45,6 +45,28 @@ fn transfers_of_velocity_in_a_leapfrog_step() {
 }
 
 #[test]
+fn one_pass_in_a_plane_has_the_bits_of_two() {
+    let mut f = super::scatter::moved_square();
+    let star = f.stepper.fields.velocity_star;
+    for (k, field) in f.patch.nodes.fields[star..star + 2].iter_mut().enumerate() {
+        let number = |i: usize| ((i * i * 13 + i * 29 + k) % 89) as f64 / 9.0 - 5.0;
+        field.iter_mut().enumerate().for_each(|(i, v)| *v = number(i));
+    }
+    let bits = |f: &Fixture<2>| {
+        ["position_x", "position_y", "velocity_x", "velocity_y", "velocity_gradient"]
+            .map(|name| f.get(name).into_iter().map(f64::to_bits).collect::<Vec<_>>())
+    };
+    let before = f.patch.block.columns.clone();
+    f.run(0.1, |s, step, patch| s.gather_leapfrog(patch, step.dt, true));
+    let in_one = bits(&f);
+    f.patch.block.columns = before;
+    // sums one by one
+    f.run(0.1, |s, _, patch| s.gather_gradient(patch));
+    f.run(0.1, |s, step, patch| s.gather_leapfrog(patch, step.dt, false));
+    assert_eq!(in_one, bits(&f));
+}
+
+#[test]
 fn positions_in_a_mid_point_step() {
     for (transfer, velocity, moved) in [
         // dt N (v + v')/2

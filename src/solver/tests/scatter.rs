@@ -55,6 +55,46 @@ fn single(mut f: Fixture<2>) -> Fixture<2> {
     f
 }
 
+/// 24 particles in 3 x 2 cells of a plane, four in each, which have moved by up to half a cell: some windows
+/// follow each other, some come back later.
+pub(super) fn moved_square() -> Fixture<2> {
+    let body = json!([{
+        "name": "body",
+        "material": "fluid",
+        "box": {"lower": [3.0, 3.0], "upper": [6.0, 5.0]},
+        "particles_per_cell": [2, 2],
+    }]);
+    let mut f = Fixture::<2>::new(json!({"bodies": body}));
+    let number = |k: usize| ((k * k * 31 + k * 17) % 97) as f64 / 97.0 - 0.5;
+    let all = |from: usize, scale: f64| -> Vec<f64> {
+        (from..from + 24).map(|k| scale * number(k)).collect()
+    };
+    let moved = |at: Vec<f64>, by: Vec<f64>| -> Vec<f64> {
+        at.iter().zip(by).map(|(at, by)| at + by).collect()
+    };
+    let [x, y] = ["position_x", "position_y"].map(|name| f.get(name));
+    f.set("position_x", &moved(x, all(0, 1.0))).set("position_y", &moved(y, all(100, 1.0)));
+    f.set("velocity_x", &all(200, 7.0)).set("velocity_y", &all(300, 7.0));
+    f.set("mass", &moved(vec![1.0; 24], all(400, 1.0))).set("stress_volume", &all(500, 90.0));
+    f.scatter(0.1);
+    f
+}
+
+#[test]
+fn sums_of_whole_windows_are_those_one_by_one() {
+    let mut f = moved_square();
+    let at = &f.stepper.fields;
+    let [mass, momentum, force] = [at.mass, at.lumped_velocity, at.acceleration];
+    let bits = |f: &Fixture<2>| -> Vec<u64> {
+        let fields = [mass, momentum, momentum + 1, force, force + 1].into_iter();
+        fields.flat_map(|k| &f.patch.nodes.fields[k]).map(|v| v.to_bits()).collect()
+    };
+    f.run(0.1, |s, _, patch| s.scatter_squares(patch));
+    let squares = bits(&f);
+    f.run(0.1, |s, _, patch| s.scatter_width::<2, false, false, false>(patch, true));
+    assert!(squares == bits(&f) && squares.iter().filter(|v| **v != 0).count() > 60);
+}
+
 /// Values of a field at the nodes (3, 3), (4, 3), (3, 4) and (4, 4).
 fn corners(f: &Fixture<2>, field: &str) -> [f64; 4] {
     [[3, 3], [4, 3], [3, 4], [4, 4]].map(|index| f.node(field, index))

@@ -85,7 +85,12 @@ fn one_rank(table: &mut Table) {
     table.check(&format!("{name}: CPU time"), Some(seconds), bounds::startup::RANK_SECONDS);
     let over = Some(bytes / share);
     table.check(&format!("{name}: own memory over its share"), over, bounds::startup::RANK_MEMORY);
-    table.beside("  mapped code of the program besides", Some(of_program / share), "", Unit::One);
+    table.beside(
+        "  mapped code of the program, not counted",
+        Some(of_program / share),
+        "",
+        Unit::One,
+    );
 }
 
 /// `flyer-mpm check` of a billion particles.
@@ -106,7 +111,7 @@ fn described(table: &mut Table) {
     table.check(&format!("{name}: memory"), peak, bounds::startup::CHECK_MEMORY);
 }
 
-/// Memory of this process on a line of its status, such as its own resident one [bytes].
+/// The entry `kind` of this process's status, such as `RssAnon:` [bytes].
 fn memory(kind: &str) -> f64 {
     let text = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = text.lines().find_map(|line| line.strip_prefix(kind));
