@@ -9,9 +9,9 @@ use crate::bottleneck::bottleneck_limit;
 /// for whole patches in this order by at most 1/4096 of it. A rank may get none. Returns the rank of
 /// each patch, in the order.
 ///
-/// A limit close to the smallest bottleneck is found by probes between limits that sums of weights attain (chains on
-/// chains: Pinar & Aykanat 2004). Within it, sections end as near to equal shares as possible, so
-/// that small changes of the weights move few patches.
+/// A limit close to the smallest bottleneck is found by probes between limits that sums of
+/// weights attain (chains on chains: Pinar & Aykanat 2004). Within it, sections end as near to
+/// equal shares as possible, so that small changes of the weights move few patches.
 pub fn assign_patches(weights: &[u64], ranks: usize) -> Vec<u32> {
     let (total, heaviest) =
         weights.iter().fold((0, 0), |(sum, most): (u64, u64), &w| (sum + w, most.max(w)));
