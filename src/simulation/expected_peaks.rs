@@ -1,6 +1,9 @@
 //! Values that the scene explains: energy, velocity and pressure that particles of a body may reach.
 
+use std::sync::Arc;
+
 use super::arrival::FirstArrival;
+use crate::material::constitutive::RestIsentrope;
 use crate::scene::{CheckedScene, Eos, SideProperties};
 use crate::solver::Stepper;
 
@@ -16,6 +19,8 @@ const RELEASED: f64 = 2.0;
 pub(super) struct ExpectedPeaks<const D: usize> {
     /// Initial specific internal energy [J/kg].
     pub(super) energy: f64,
+    /// Isentrope of the body's material, if it has one and the heat is checked.
+    pub(super) isentrope: Option<Arc<RestIsentrope>>,
     /// Energy from one shock in the body that the impacts heat most [J/kg], four times this where the
     /// material can fail; infinite where gases, explosives or forces drive the bodies.
     pub(super) heat: f64,
@@ -64,10 +69,17 @@ impl<const D: usize> ExpectedPeaks<D> {
         };
         // a particle at an interface shares nodes, and so heat, with those of the other body
         let strongest = heat.iter().copied().fold(0.0, f64::max);
+        let mut isentropes = vec![None; scene.scene.materials.len()];
+        let mut isentrope = |i: usize| -> Option<Arc<RestIsentrope>> {
+            let of = |i| stepper.isentrope(scene, i).filter(|_| strongest.is_finite());
+            let material = &mut isentropes[scene.bodies[i].material];
+            material.get_or_insert_with(|| of(i).map(Arc::new)).clone()
+        };
         let can_fail = |i: usize| scene.material_of(i).failure.is_some();
         bodies
             .map(|(i, body)| ExpectedPeaks {
                 energy: stepper.starting_energy(i, body.pressure, body.temperature),
+                isentrope: isentrope(i),
                 heat: strongest * if can_fail(i) { RELEASED * RELEASED } else { 1.0 },
                 front: front(scene, i),
                 velocity: std::array::from_fn(|a| scene.bodies[i].velocity[a]),

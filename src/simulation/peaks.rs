@@ -28,6 +28,8 @@ impl<const D: usize> Simulation<'_, D> {
         let plastic = |strain| self.stepper.plastic_heat(block, r, strain);
         let released = |energy| column(energy) / column(c.mass);
         let unexplained = energy
+            - self.stepper.elastic_energy(block, r, expected.isentrope.as_deref())
+            - c.friction_heat.map_or(0.0, column)
             - c.plastic_strain.map_or(0.0, plastic)
             - c.released_energy.map_or(0.0, released);
         let mut peaks = Peaks {

@@ -57,11 +57,16 @@ pub struct Columns {
     pub plastic_strain: Option<usize>,
     /// Elastic energy that failure has released as heat [J], if a material can fail.
     pub released_energy: Option<usize>,
+    /// Energy after a mid-point step with the work at the mean nodal velocity alone [J/kg], between
+    /// the gather and [`Gathered`](super::effect::Phase::Gathered), if an effect needs it.
+    pub mean_work_energy: Option<usize>,
     /// Temperature [K]; 0 in bodies without thermal properties.
     pub temperature: Option<usize>,
     /// Plastic work that is stored and does not heat [J/kg], if any.
     pub stored_work: Option<usize>,
     /// Part of a step whose friction at sides heats the material.
+    pub friction_part: Option<usize>,
+    /// Accumulated heat of friction [J/kg], with friction between bodies or at sides.
     pub friction_heat: Option<usize>,
     /// Position x [m], a vector.
     pub position: usize,

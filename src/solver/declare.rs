@@ -174,6 +174,11 @@ impl<'a> Declare<'a> {
         self.columns.released_energy = Some(column);
     }
 
+    /// Sets [`Columns::mean_work_energy`].
+    pub fn mean_work_energy(&mut self, column: usize) {
+        self.columns.mean_work_energy = Some(column);
+    }
+
     /// Sets [`Columns::temperature`].
     pub fn temperature(&mut self, column: usize) {
         self.columns.temperature = Some(column);
@@ -186,7 +191,7 @@ impl<'a> Declare<'a> {
 
     /// Requests the heat of friction at sides.
     pub fn friction_heat(&mut self) {
-        self.columns.friction_heat = self.owner;
+        self.columns.friction_part = self.owner;
     }
 
     /// Requests the body index of ghosts.

@@ -2,9 +2,12 @@
 
 use std::ops::Range;
 
+use decomp::Block;
+
 use super::scheme::Scheme;
-use crate::material::constitutive::Deviators;
+use crate::material::constitutive::{ConstitutiveModel, Deviators, RestIsentrope};
 use crate::material::strength::MaterialState;
+use crate::scene::CheckedScene;
 use crate::solver::patch::Patch;
 
 impl<const D: usize> Scheme<D> {
@@ -34,7 +37,7 @@ impl<const D: usize> Scheme<D> {
 
     /// Plastic work per unit mass that the plastic strain of own particle `r`, in column `strain`,
     /// needs at the present yield stress of the particle [J/kg]; 0 without strength.
-    pub fn plastic_heat(&self, block: &decomp::Block<D>, r: usize, strain: usize) -> f64 {
+    pub fn plastic_heat(&self, block: &Block<D>, r: usize, strain: usize) -> f64 {
         let c = &self.columns;
         let column = |k: usize| block.columns[k][r];
         let Some(strength) = &self.strengths[column(c.body) as usize] else { return 0.0 };
@@ -49,9 +52,47 @@ impl<const D: usize> Scheme<D> {
         strength.yield_stress(strain, &at) * strain * volume / column(c.mass)
     }
 
+    /// Isentrope of body `body` through its material at rest; `None` for elastic solids, and for
+    /// materials with a history, which have no single isentrope.
+    pub fn isentrope(&self, scene: &CheckedScene, body: usize) -> Option<RestIsentrope> {
+        match &self.models[body] {
+            ConstitutiveModel::Fluid(model) if model.first_history().is_none() => {
+                Some(RestIsentrope::new(model.as_ref(), scene.material_of(body).density))
+            }
+            _ => None,
+        }
+    }
+
+    /// Elastic energy of own particle `r` per unit mass [J/kg]: that of an elastic solid; of a fluid
+    /// that of its `isentrope` in compression, and at least -p (J - 1)/(2 rho0) in tension, which a
+    /// failure or a limit of the tension makes smaller than that of the isentrope.
+    pub fn elastic_energy(
+        &self,
+        block: &Block<D>,
+        r: usize,
+        isentrope: Option<&RestIsentrope>,
+    ) -> f64 {
+        let c = &self.columns;
+        let column = |k: usize| block.columns[k][r];
+        let jacobian = column(c.jacobian);
+        match &self.models[column(c.body) as usize] {
+            ConstitutiveModel::Solid(solid) => {
+                let strain = self.strain(block, r..r + 1, 0.0, &block.columns[c.jacobian]);
+                solid.stored_energy(strain, 0)
+            }
+            ConstitutiveModel::Fluid(_) if jacobian < 1.0 => {
+                isentrope.map_or(0.0, |isentrope| isentrope.at(jacobian)[0])
+            }
+            ConstitutiveModel::Fluid(_) => {
+                let tension = (-column(c.pressure)).max(0.0);
+                0.5 * tension * (jacobian - 1.0) * column(c.volume0) / column(c.mass)
+            }
+        }
+    }
+
     /// Heat that own particle `r` lacks to reach absolute zero, per unit mass [J/kg]: cv max(0,
     /// -T); `None` without a temperature.
-    pub fn heat_below_zero_kelvin(&self, block: &decomp::Block<D>, r: usize) -> Option<f64> {
+    pub fn heat_below_zero_kelvin(&self, block: &Block<D>, r: usize) -> Option<f64> {
         let temperature = block.columns[self.columns.temperature?][r];
         let thermal = self.thermals[block.columns[self.columns.body][r] as usize].as_ref()?;
         // max() would ignore NaN

@@ -65,6 +65,7 @@ impl Columns {
         declare_relaxation(&mut d);
         declare_stress(&mut d, &needs);
         declare_contact(&mut d, &needs);
+        declare_friction(&mut d, &needs);
         declare_affine(&mut d, &needs);
         declare_spin(&mut d);
         declare_domains(&mut d, &needs);
@@ -149,6 +150,17 @@ fn declare_contact(d: &mut Declare<'_>, needs: &Needs) {
         d.columns.current_volume = Some(d.scalar("current_volume", "", GhostScratch));
         let names = ["displacement", "displacement_x", "displacement_y"];
         d.columns.displacement = Some(d.vector(names, "m", GhostScratch));
+    }
+}
+
+fn declare_friction(d: &mut Declare<'_>, needs: &Needs) {
+    let contact = d.scene.scene.contact.and_then(|contact| contact.condition());
+    let coefficient = contact.and_then(|contact| contact.coefficient);
+    let between_bodies = needs.plane && needs.touching && coefficient.is_some();
+    let own_part = between_bodies.then_some(StepPart::Contact as usize);
+    if let Some(part) = own_part.or(d.columns.friction_part) {
+        d.set_owner(Some(part));
+        d.columns.friction_heat = Some(d.scalar("friction_heat", "J/kg", State));
     }
 }
 

@@ -147,7 +147,7 @@ impl<const D: usize> Scheme<D> {
             false => volume.powf(1.0 / D as f64),
         };
         let contact = contact_condition(scene);
-        let friction_part = if rubs::<D>(contact) { None } else { columns.friction_heat };
+        let friction_part = if rubs::<D>(contact) { None } else { columns.friction_part };
         let owner = |column: usize| columns.owners[column].expect("a force is an effect's");
         let fastest = waves.fastest;
         Scheme {

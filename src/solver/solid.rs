@@ -13,6 +13,8 @@
 
 use std::ops::Range;
 
+use decomp::Block;
+
 use super::particle_update::bodies;
 use super::scheme::Scheme;
 use crate::material::Symmetric;
@@ -64,16 +66,16 @@ impl<const D: usize> Scheme<D> {
 
     /// Deformation of `particles`: in a plane F extrapolated by the time `ahead` [s], otherwise the
     /// volume ratios `jacobian`.
-    fn strain<'a>(
+    pub(super) fn strain<'a>(
         &self,
-        patch: &'a Patch<D>,
+        block: &'a Block<D>,
         particles: Range<usize>,
         ahead: f64,
         jacobian: &'a [f64],
     ) -> Strain<'a> {
         let c = &self.columns;
         let tensor = |first: usize| -> [&'a [f64]; 4] {
-            decomp::array::from_fn(|k| &patch.block.columns[first + k][particles.clone()])
+            decomp::array::from_fn(|k| &block.columns[first + k][particles.clone()])
         };
         let (Some(deformation), Some(gradient)) = (c.deformation, c.velocity_gradient) else {
             return Strain::Line(&jacobian[particles]);
@@ -134,7 +136,7 @@ impl<const D: usize> Scheme<D> {
                     }
                 }
                 ConstitutiveModel::Solid(solid) => {
-                    let strain = self.strain(patch, particles.clone(), ahead, j);
+                    let strain = self.strain(&patch.block, particles.clone(), ahead, j);
                     let out = tensor_columns(&mut s, particles.clone());
                     solid.stress_volume(strain, &volume0[particles.clone()], out);
                     let Some(q) = c.viscosity.map(column) else { continue };
@@ -180,7 +182,7 @@ impl<const D: usize> Scheme<D> {
                 }
                 ConstitutiveModel::Solid(solid) => {
                     let j = &patch.block.columns[c.jacobian];
-                    let strain = self.strain(patch, particles.clone(), 0.0, j);
+                    let strain = self.strain(&patch.block, particles.clone(), 0.0, j);
                     let (p, speed) =
                         (&mut pressure[particles.clone()], &mut speed[particles.clone()]);
                     let fault = solid.refresh(strain, out, p, speed);
@@ -215,8 +217,8 @@ impl<const D: usize> Scheme<D> {
         let (mass, volume0, after) = (column(c.mass), column(c.volume0), column(c.jacobian));
         for (body, particles) in bodies(column(c.body)) {
             let ConstitutiveModel::Solid(solid) = &self.models[body] else { continue };
-            let from = self.strain(patch, particles.clone(), 0.0, before);
-            let to = self.strain(patch, particles.clone(), dt, after);
+            let from = self.strain(&patch.block, particles.clone(), 0.0, before);
+            let to = self.strain(&patch.block, particles.clone(), dt, after);
             solid.work(from, to, &volume0[particles.clone()], &mut work[particles.clone()]);
             for r in particles {
                 let q = c.viscosity.map_or(0.0, |q| patch.block.columns[q][r]);

@@ -7,7 +7,7 @@ use super::columns::Columns;
 use super::effect::{Effects, Registry, Setup, StepContext};
 use super::exchange::World;
 use super::nodal_fields::{Fields, Wanted};
-use super::scheme::{EffectLimits, Scheme, contact_condition, relaxes_ratio, rubs};
+use super::scheme::{EffectLimits, Scheme, relaxes_ratio};
 use crate::material::constitutive::CustomModel;
 use crate::scene::{CheckedScene, Stepping};
 
@@ -51,8 +51,8 @@ impl<const D: usize> Stepper<D> {
             masked: method.edge_mask.is_some(),
             relaxed: method.pressure_relaxation.is_some(),
             relaxes_ratio: relaxes_ratio(scene),
-            has_friction: rubs::<D>(contact_condition(scene)) || columns.friction_heat.is_some(),
-            has_wall_friction: columns.friction_heat.is_some(),
+            has_friction: columns.friction_heat.is_some(),
+            has_wall_friction: columns.friction_part.is_some(),
             limiter: method.flux_limiter.map(|limiter| limiter.neighbours as usize),
         };
         let mut fields = Fields::new(D, wanted);

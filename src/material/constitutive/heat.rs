@@ -17,16 +17,16 @@ const POINTS: usize = 2000;
 /// Smallest and greatest J of the isentrope.
 const RANGE: [f64; 2] = [0.25, 1.5];
 
-/// Isentrope through the state at rest, interpolated by cubics between points.
+/// Energy and temperature on the isentrope through the state at rest, interpolated by cubics between points.
 #[derive(Clone, Debug)]
-pub struct TemperatureIsentrope {
+pub struct RestIsentrope {
     lower: f64,
     spacing: f64,
     /// es [J/kg] and its derivative by J, ln(Ts/T0) and its derivative by J.
     points: Vec<[f64; 4]>,
 }
 
-impl TemperatureIsentrope {
+impl RestIsentrope {
     /// Isentrope of `model` with density `rho0` [kg/m3] at rest, as far as the model is valid.
     pub fn new(model: &dyn FluidModel, rho0: f64) -> Self {
         let state = |j: f64, e: f64| -> Option<[f64; 2]> {
@@ -79,7 +79,7 @@ impl TemperatureIsentrope {
             // a model that is invalid at rest is reported with its first state
             points.push([0.0; 4]);
         }
-        TemperatureIsentrope { lower, spacing: -spacing, points }
+        RestIsentrope { lower, spacing: -spacing, points }
     }
 
     /// es [J/kg] and Ts/T0 at `jacobian`; extrapolated along the tangents beyond the ends.
@@ -116,8 +116,8 @@ pub struct ThermalModel {
     pub taylor_quinney: f64,
     /// Thermal conductivity [W/(m K)]; `None` if the scene leaves it out.
     pub conductivity: Option<f64>,
-    /// Isentrope through the state at rest; `None` if only plastic work heats.
-    pub isentrope: Option<TemperatureIsentrope>,
+    /// RestIsentrope through the state at rest; `None` if only plastic work heats.
+    pub isentrope: Option<RestIsentrope>,
 }
 
 impl ThermalModel {
@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn the_isentrope_is_that_of_the_equation_of_state() {
-        let isentrope = TemperatureIsentrope::new(&LinearEosKernel(COPPER), 8930.0);
+        let isentrope = RestIsentrope::new(&LinearEosKernel(COPPER), 8930.0);
         for (j, ratio) in [(0.8f64, (1.96f64 * 0.2).exp()), (1.0, 1.0), (1.05, (-0.098f64).exp())] {
             let [e, t] = isentrope.at(j);
             assert!((t / ratio - 1.0).abs() < 1e-9, "{j}: {t} {ratio}");
@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn temperature_is_that_at_rest_and_grows_by_the_heat() {
-        let isentrope = Some(TemperatureIsentrope::new(&LinearEosKernel(COPPER), 8930.0));
+        let isentrope = Some(RestIsentrope::new(&LinearEosKernel(COPPER), 8930.0));
         let copper = ThermalModel {
             specific_heat: 385.0,
             rest: 293.0,

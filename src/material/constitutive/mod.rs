@@ -40,7 +40,7 @@ pub use custom_model::CustomModel;
 pub use damage_update::{DamageUpdate, FailureModel};
 pub use deviatoric_update::{Deviators, StrengthModel, StrengthUpdate, VelocityGradients};
 pub use erosion::ErosionCriterion;
-pub use heat::{TemperatureIsentrope, ThermalModel};
+pub use heat::{RestIsentrope, ThermalModel};
 pub use least_energy::least_energy;
 pub use model::{ConstitutiveModel, FluidModel, MidStep, VolumeChange};
 pub use registry::{build, equation};
@@ -92,7 +92,7 @@ pub fn thermal_of(material: &Material, matter: &ConstitutiveModel) -> Option<The
     let named = material.thermal?;
     let isentrope = match (named.source, matter) {
         (HeatSource::Energy, ConstitutiveModel::Fluid(model)) => {
-            Some(TemperatureIsentrope::new(model.as_ref(), material.density))
+            Some(RestIsentrope::new(model.as_ref(), material.density))
         }
         _ => None,
     };

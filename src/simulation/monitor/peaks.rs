@@ -24,9 +24,9 @@ const RINGS: f64 = 0.15;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Peaks {
-    /// Increase of specific internal energy since the start, less plastic work and the elastic
-    /// energy that failure released, over the energy from one shock in the body that the impacts
-    /// heat most [-].
+    /// Increase of specific internal energy since the start, less elastic energy, heat of friction,
+    /// plastic work and the elastic energy that failure released, over the energy from one shock in
+    /// the body that the impacts heat most [-].
     pub heat: f64,
     /// Increase of specific internal energy of that particle since the start [J/kg].
     pub energy: f64,
@@ -68,11 +68,12 @@ impl Peaks {
         if self.heat > HOT {
             all.push(format!(
                 "some particles are hotter than one shock can make them: they have gained up to \
-                 {:.3e} J/kg, without plastic work and failure up to {:.1} times the energy of one \
-                 shock of the strongest impact. Most such particles are at the interface of an impact, above all \
-                 at the edge of a growing contact. There a part of the heat is real (Lesser 1981) \
-                 and a part is an error of the method. Do not use their temperature. To see whether \
-                 other results depend on it, compare with a run with --set \
+                 {:.3e} J/kg, without elastic energy, friction, plastic work and failure up to \
+                 {:.1} times the energy of one shock of the strongest impact. Most such particles are at the \
+                 interface of an impact, above all at the edge of a growing contact. There a part \
+                 of the heat is real (Lesser 1981) and a part is an error of the method. Do not use \
+                 their temperature. If the method has no heat_spreading, use it. To see whether \
+                 other results depend on the heat, compare with a run with --set \
                  heat_mixing.coefficient=20",
                 self.energy, self.heat
             ));

@@ -135,15 +135,21 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Transfers the heat of friction to the own particles.
+    /// Adds the heat of friction to the energy of the own particles.
     pub(super) fn gather_friction_heat(&self, patch: &mut Patch<D>) {
         fn go<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
-            let Some(field) = s.fields.heat else { return };
+            let (Some(field), Some(total)) = (s.fields.heat, s.columns.friction_heat) else {
+                return;
+            };
             let n = patch.block.own();
-            let energy = &mut patch.block.columns[s.columns.energy][..n];
-            for (r, e) in energy.iter_mut().enumerate() {
+            let columns = &mut patch.block.columns;
+            let [energy, total] =
+                columns.get_disjoint_mut([s.columns.energy, total]).expect("columns differ");
+            for r in 0..n {
                 let weights = patch.stencils.particle::<K, D>(r);
-                *e += weights.dot(weights.values, &patch.nodes.fields[field]);
+                let heat = weights.dot(weights.values, &patch.nodes.fields[field]);
+                energy[r] += heat;
+                total[r] += heat;
             }
         }
         with_width!(patch.stencils.width, go(patch, self));

@@ -194,6 +194,7 @@ fn friction_heats_both_bodies() {
     f.run(0.1, |s, step, patch| s.gather_contact(patch, step.dt));
     // N = 1/4 at each of the two nodes
     close(&f.get("specific_internal_energy"), &heat.map(|heat| 0.5 * heat));
+    close(&f.get("friction_heat"), &heat.map(|heat| 0.5 * heat));
 }
 
 #[test]
