@@ -340,9 +340,9 @@ impl<const D: usize> Nodal<'_, D> {
         }
     }
 
-    /// Requests an exchange of nodal values beyond the patches before the next phase.
+    /// Requests that nodal values beyond the patches are exchanged before the next phase, together
+    /// with those that are already requested.
     pub fn refresh(&mut self, fields: &[(usize, Parity)]) {
-        debug_assert!(self.pending.is_none(), "a phase comes between two exchanges");
-        self.pending = Some(fields.into());
+        self.pending.get_or_insert_default().extend_from_slice(fields);
     }
 }
