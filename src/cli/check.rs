@@ -109,6 +109,7 @@ fn effects(scene: &CheckedScene) -> Vec<(&'static str, String)> {
         ("stress update", plain(&method.stress_update)),
         ("energy", plain(&method.energy)),
         ("filter heat", if method.filter_heat { "on".into() } else { off() }),
+        ("heat spreading", method.heat_spreading.as_ref().map_or_else(off, |s| plain(s))),
         ("pressure relaxation", method.pressure_relaxation.as_ref().map_or_else(off, |r| plain(r))),
         ("volume relaxation", method.volume_relaxation.map_or_else(off, |r| r.to_string())),
         ("edge mask", method.edge_mask.map_or_else(off, |m| m.to_string())),

@@ -55,6 +55,7 @@ pub struct EffectRegistry;
 
 // In each phase, effects act in this order.
 packages![
+    heat_spreading::HeatSpreading,
     body_force::BodyForceEffect,
     accelerated_grid::Inertia,
     transmitting_sides::Transmitting,

@@ -76,10 +76,11 @@ const RULES: &[Rule] = &[
         changes: || {
             let relaxation = json!({"rate": 0.2, "interval": 1});
             let method = json!({"transfer": {"fmpm": 4}, "edge_mask": 0.3, "domain_limit": 1.0,
-                "pressure_relaxation": relaxation});
+                "heat_spreading": {"steps": 50}, "pressure_relaxation": relaxation});
             [method, json!({"linear": 0.1, "quadratic": 0.75, "growth": null})]
         },
-        reason: "a lower transfer order and a domain limit, since the scene has two dimensions",
+        reason: "a lower transfer order, a domain limit and spreading of heat, since the scene has two \
+                 dimensions",
     },
     Rule {
         applies: |c| c.plane && !(c.axisymmetric || c.gas || (c.body_force && !c.contact)),
@@ -95,9 +96,10 @@ const RULES: &[Rule] = &[
         applies: |c| c.plane && c.gas && !c.burn,
         changes: || {
             let viscosity = json!({"linear": 0.1, "quadratic": 0.5, "limited": "both"});
-            [json!({"transfer": {"fmpm": 2}}), viscosity]
+            [json!({"transfer": {"fmpm": 2}, "heat_spreading": null}), viscosity]
         },
-        reason: "a low transfer order, since gas may flow towards a point or an axis",
+        reason: "a low transfer order without spreading of heat, since gas may flow towards a point or \
+                 an axis",
     },
     Rule {
         applies: |c| c.plane && c.burn,
@@ -126,8 +128,8 @@ const RULES: &[Rule] = &[
     },
     Rule {
         applies: |c| !c.fluid,
-        changes: || [json!({"pressure_relaxation": null}), json!({})],
-        reason: "no pressure relaxation, since every body is elastic",
+        changes: || [json!({"heat_spreading": null, "pressure_relaxation": null}), json!({})],
+        reason: "no pressure relaxation and no spreading of heat, since every body is elastic",
     },
 ];
 
@@ -296,6 +298,7 @@ fn override_keys(method: &mut Map<String, Value>, explicit: Map<String, Value>) 
         excluded.extend([
             "energy",
             "filter_heat",
+            "heat_spreading",
             "pressure_relaxation",
             "edge_mask",
             "spin",
@@ -308,6 +311,14 @@ fn override_keys(method: &mut Map<String, Value>, explicit: Map<String, Value>) 
             excluded.extend(["edge_mask", "spin", "flux_limiter"]);
         }
         excluded.extend(plan.is_affine().then_some("energy"));
+    }
+    // without either there is no numerical heat
+    let is_off = |key: &str| {
+        let off = [Value::Null, Value::Bool(false), json!("textbook")];
+        excluded.contains(&key) || explicit.get(key).is_some_and(|value| off.contains(value))
+    };
+    if is_off("energy") && is_off("filter_heat") {
+        excluded.push("heat_spreading");
     }
     if is("frame", "total_lagrangian") || is("shape", "linear") {
         excluded.push("spin");

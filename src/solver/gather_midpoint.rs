@@ -32,6 +32,25 @@ fn with_hoop(plane: f64, radial: f64, radius: Option<f64>) -> f64 {
     }
 }
 
+/// Work of the components xx, yy, xy and zz of stress times volume `s` [J] in a step of `dt` [s] at a
+/// velocity with the gradient `g` [1/s], whose component along x is `radial` [m/s] at the distance
+/// `hoop` from an axis [m].
+#[inline(always)]
+fn tensor_work<const D: usize>(
+    s: [f64; 4],
+    g: &[[f64; D]; D],
+    radial: f64,
+    hoop: Option<f64>,
+    dt: f64,
+) -> f64 {
+    let [x, y] = [0, D - 1];
+    let plane = s[0] * g[x][x] + s[1] * g[y][y] + s[2] * (g[x][y] + g[y][x]);
+    match hoop {
+        Some(radius) => dt * (plane + s[3] * radial / radius),
+        None => dt * plane,
+    }
+}
+
 impl<const D: usize> Scheme<D> {
     /// Updates the own particles at the end of a mid-point step of `dt` [s]: volume and energy from
     /// the gradients of the mean velocity and of w, heat of the filter, velocity, position and
@@ -42,9 +61,19 @@ impl<const D: usize> Scheme<D> {
             s: &Scheme<D>,
             dt: f64,
         ) {
+            match s.columns.mean_work_energy {
+                Some(_) => packed_with::<K, V, D, true>(patch, s, dt),
+                None => packed_with::<K, V, D, false>(patch, s, dt),
+            }
+        }
+        fn packed_with<const K: usize, const V: usize, const D: usize, const MEAN: bool>(
+            patch: &mut Patch<D>,
+            s: &Scheme<D>,
+            dt: f64,
+        ) {
             let (mut window, mut at) = (PackedVelocities::<V, D>::none(), u32::MAX);
             patch.with_stencils(|patch, stencils| {
-                s.gather_particles(patch, dt, |r, nodal| {
+                s.gather_particles::<MEAN>(patch, dt, |r, nodal| {
                     if !stencils.is_narrow::<K>(r) {
                         return NodalSums::one_by_one::<K, K>(nodal, &stencils.particle::<K, D>(r));
                     }
@@ -58,9 +87,19 @@ impl<const D: usize> Scheme<D> {
             });
         }
         fn single<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>, dt: f64) {
+            match s.columns.mean_work_energy {
+                Some(_) => single_with::<K, D, true>(patch, s, dt),
+                None => single_with::<K, D, false>(patch, s, dt),
+            }
+        }
+        fn single_with<const K: usize, const D: usize, const MEAN: bool>(
+            patch: &mut Patch<D>,
+            s: &Scheme<D>,
+            dt: f64,
+        ) {
             patch.with_stencils(|patch, stencils| {
                 let mut all = stencils.particles::<K, D>(0..patch.block.own());
-                s.gather_particles(patch, dt, |_, nodal| {
+                s.gather_particles::<MEAN>(patch, dt, |_, nodal| {
                     let weights = all.next().expect("those of each own particle");
                     if const { D == 1 } {
                         NodalSums::one_by_one::<K, 1>(nodal, &weights)
@@ -84,34 +123,25 @@ impl<const D: usize> Scheme<D> {
     }
 
     /// Updates the own particles with the `sums` over the nodes of each, asked for in their order by
-    /// the index.
+    /// the index. With `MEAN`, [`Columns::mean_work_energy`](super::columns::Columns) is written.
     #[inline(always)]
-    fn gather_particles(
+    fn gather_particles<const MEAN: bool>(
         &self,
         patch: &mut Patch<D>,
         dt: f64,
         mut sums: impl FnMut(usize, &NodalVelocities<'_, D>) -> NodalSums<D>,
     ) {
-        let (c, f) = (&self.columns, &self.fields);
+        let c = &self.columns;
         let n = patch.block.own();
-        let fields = &patch.nodes.fields;
-        // slices of equal length, so that the bounds of a window are checked only once
-        let nodes = fields[f.mass].len();
-        let vector = |k: usize| from_fn::<&[f64], D, _>(|a| &fields[k + a][..nodes]);
-        let is_blend = matches!(self.transfer.update, VelocityUpdate::Blend(_));
-        let nodal = NodalVelocities {
-            start: vector(f.velocity),
-            star: vector(f.velocity_star),
-            work: self.compatible.then(|| vector(f.work)),
-            lost: f.filter_residual.filter(|_| self.filter_heat).map(vector),
-            squares: is_blend && self.filter_heat,
-            tensors: c.velocity_gradient.is_some(),
-            work_tensor: self.tensor_stress() || self.axisymmetric,
-        };
+        let nodal = self.nodal_velocities(&patch.nodes.fields);
         let columns = &mut patch.block.columns;
         let [mut x, mut v] = [c.position, c.velocity].map(|k| take_vector::<D>(columns, k));
         let [mut j, mut e, mut d] =
             [c.jacobian, c.energy, c.divergence].map(|k| std::mem::take(&mut columns[k]));
+        let mut mean_work_energy = match c.mean_work_energy {
+            Some(k) if MEAN => std::mem::take(&mut columns[k]),
+            _ => Vec::new(),
+        };
         let [mut deformation, mut gradient] =
             [c.deformation, c.velocity_gradient].map(|k| take_tensor(columns, k, D * D));
         let (own_x, own_v) = (&mut own::<D>(&mut x, n), &mut own::<D>(&mut v, n));
@@ -132,7 +162,12 @@ impl<const D: usize> Scheme<D> {
             let hoop = self.hoop_of(patch, r);
             let plane = trace(&at.mean_gradient);
             let divergence = with_hoop(plane, at.mean[0], hoop);
-            let work_done = self.work_done(from_fn(|k| stress[k][r]), &at, divergence, hoop, dt);
+            let s = from_fn(|k| stress[k][r]);
+            let work_done = self.work_done(s, &at, divergence, hoop, dt);
+            if MEAN {
+                let work = self.mean_work(s, &at, divergence, hoop, dt);
+                mean_work_energy[r] = own_e[r] - work / mass[r];
+            }
             for a in 0..D {
                 own_x[a][r] += match self.transfer.update {
                     // with the grid: the particles' own velocities would break up the tiling
@@ -157,10 +192,32 @@ impl<const D: usize> Scheme<D> {
         columns[c.jacobian] = j;
         columns[c.energy] = e;
         columns[c.divergence] = d;
+        if let Some(k) = c.mean_work_energy {
+            columns[k] = mean_work_energy;
+        }
         for (first, taken) in [(c.deformation, deformation), (c.velocity_gradient, gradient)] {
             if let Some(first) = first {
                 put_back(columns, first, taken);
             }
+        }
+    }
+
+    /// Nodal velocities that the gather needs.
+    #[inline(always)]
+    fn nodal_velocities<'a>(&self, fields: &'a [Vec<f64>]) -> NodalVelocities<'a, D> {
+        let f = &self.fields;
+        // slices of equal length, so that the bounds of a window are checked only once
+        let nodes = fields[f.mass].len();
+        let vector = |k: usize| from_fn::<&[f64], D, _>(|a| &fields[k + a][..nodes]);
+        let is_blend = matches!(self.transfer.update, VelocityUpdate::Blend(_));
+        NodalVelocities {
+            start: vector(f.velocity),
+            star: vector(f.velocity_star),
+            work: self.compatible.then(|| vector(f.work)),
+            lost: f.filter_residual.filter(|_| self.filter_heat).map(vector),
+            squares: is_blend && self.filter_heat,
+            tensors: self.columns.velocity_gradient.is_some(),
+            work_tensor: self.tensor_stress() || self.axisymmetric,
         }
     }
 
@@ -213,8 +270,9 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Work that the stress times volume `s` [J] of a particle does in a step [J]; `hoop` is its
-    /// distance from the axis [m], with axial symmetry.
+    /// Work that the stress times volume `s` [J] of a particle does in a step [J], with the
+    /// `divergence` of the mean nodal velocity [1/s]; `hoop` is its distance from the axis [m], with
+    /// axial symmetry.
     #[inline(always)]
     fn work_done(
         &self,
@@ -225,18 +283,29 @@ impl<const D: usize> Scheme<D> {
         dt: f64,
     ) -> f64 {
         if self.tensor_stress() {
-            let ([x, y], g) = ([0, D - 1], &at.work_gradient);
-            let plane = s[0] * g[x][x] + s[1] * g[y][y] + s[2] * (g[x][y] + g[y][x]);
-            return match hoop {
-                Some(radius) => dt * (plane + s[3] * at.work / radius),
-                None => dt * plane,
-            };
+            return tensor_work(s, &at.work_gradient, at.work, hoop, dt);
         }
         let working = match self.compatible {
             true => with_hoop(trace(&at.work_gradient), at.work, hoop),
             false => divergence,
         };
         s[0] * dt * working
+    }
+
+    /// The same work at the mean nodal velocity.
+    #[inline(always)]
+    fn mean_work(
+        &self,
+        s: [f64; 4],
+        at: &NodalSums<D>,
+        divergence: f64,
+        hoop: Option<f64>,
+        dt: f64,
+    ) -> f64 {
+        match self.tensor_stress() {
+            true => tensor_work(s, &at.mean_gradient, at.mean[0], hoop, dt),
+            false => s[0] * dt * divergence,
+        }
     }
 
     /// Distance of a particle from the axis [m], with axial symmetry.

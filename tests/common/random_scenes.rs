@@ -84,6 +84,9 @@ pub fn method() -> impl Strategy<Value = Value> {
         if mask && transfer.get("fmpm").is_some() {
             method["edge_mask"] = json!(0.3);
         }
+        if mask && (method["energy"] == "compatible" || method["filter_heat"] == true) {
+            method["heat_spreading"] = json!({"steps": 5});
+        }
         if interval > 0 {
             method["pressure_relaxation"] = json!({"rate": 0.2, "interval": interval});
         }

@@ -54,8 +54,10 @@ fn on_a_line() {
 
 #[test]
 fn about_an_axis_and_in_a_plane() {
+    let mut spreading = midpoint("cpdi_bspline_quadratic", json!({"fmpm": 2}));
+    spreading["heat_spreading"] = json!({"steps": 10});
     for (geometry, method) in [
-        ("axisymmetric", midpoint("cpdi_bspline_quadratic", json!({"fmpm": 2}))),
+        ("axisymmetric", spreading),
         ("plane_strain", json!({"shape": "gimp", "transfer": "apic"})),
     ] {
         let scene = json!({

@@ -75,6 +75,8 @@ fn each_option_of_the_default_changes_the_run() {
         method(json!({"transfer": {"xpic": 6}, "edge_mask": null})),
         method(json!({"energy": "textbook"})),
         method(json!({"filter_heat": false})),
+        method(json!({"heat_spreading": {"steps": 1}})),
+        method(json!({"heat_spreading": {"steps": 10}})),
         method(json!({"pressure_relaxation": null})),
         method(json!({"pressure_relaxation": {"rate": 0.2}})),
         method(json!({"pressure_relaxation": {"interval": 3}})),

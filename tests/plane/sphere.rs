@@ -1,4 +1,5 @@
-//! A sphere that strikes a block: hot edges of the contact are warned of.
+//! Particles that are too hot: at the edge of the contact of a sphere and a block, and at the rims of
+//! plates.
 
 use std::path::Path;
 
@@ -66,6 +67,59 @@ fn template(name: &str, sets: &[&str]) -> CheckedScene {
     let bytes = input::read(&folder.join(name)).unwrap();
     let sets: Vec<String> = sets.iter().map(|set| set.to_string()).collect();
     input::parse(&bytes, name, &sets).unwrap()
+}
+
+/// Two plates of nickel about an axis, by the default method with `spreading` of heat. The upper one
+/// is wider, so that the rim of the lower one is pressed outwards.
+fn plates(spreading: &Value) -> Vec<String> {
+    let value = json!({
+        "title": "plates",
+        "domain": {"lower": [0.0, -0.0024], "upper": [0.0026, 0.0016], "cell_size": 1e-4,
+            "geometry": "axisymmetric"},
+        "time": {"end": 3e-7},
+        "method": {"preset": "default", "heat_spreading": spreading},
+        "materials": {"nickel": {"library": "nickel"}},
+        "boundary": {"x_lower": "symmetry"},
+        "contact": {"type": "friction", "coefficient": 0.25},
+        "bodies": [
+            {"name": "flyer", "material": "nickel", "velocity": [0.0, -444.0],
+                "box": {"lower": [0.0, 0.0], "upper": [0.0018, 0.0009]}},
+            {"name": "target", "material": "nickel",
+                "box": {"lower": [0.0, -0.0017], "upper": [0.0016, 0.0]}},
+        ],
+    });
+    let scene = input::parse(value.to_string().as_bytes(), "plates.json", &[]).unwrap();
+    warnings_of::<2>(&scene)
+}
+
+#[test]
+fn numerical_heat_at_a_rim_is_warned_of_unless_it_is_spread() {
+    let alone = plates(&Value::Null);
+    assert!(alone.len() == 1 && alone[0].contains("hotter than one shock"), "{alone:?}");
+    assert_eq!(plates(&json!({"steps": 50})), Vec::<String>::new());
+}
+
+/// The energy of elastic solids, and that of a tension that a joint bears, is no heat.
+#[test]
+fn elastic_energy_is_not_warned_of() {
+    let disks = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/disks.json");
+    let coarse = ["domain.cell_size=0.025".to_string(), "output={}".to_string()];
+    let disks = input::parse(&input::read(&disks).unwrap(), "disks.json", &coarse).unwrap();
+    assert_eq!(warnings_of::<2>(&disks), Vec::<String>::new());
+    let plates = json!({
+        "title": "joined plates",
+        "domain": {"lower": [-0.0027, -0.0025], "upper": [0.0027, 0.0013], "cell_size": 1e-4},
+        "time": {"end": 3.7e-7},
+        "materials": {"aluminium": {"library": "aluminium_2024"}, "tungsten": {"library": "tungsten"}},
+        "bodies": [
+            {"name": "flyer", "material": "aluminium", "velocity": [0.0, -357.0],
+                "box": {"lower": [-0.0011, 0.0], "upper": [0.0011, 0.00095]}},
+            {"name": "target", "material": "tungsten",
+                "box": {"lower": [-0.00225, -0.0021], "upper": [0.00225, 0.0]}},
+        ],
+    });
+    let scene = input::parse(plates.to_string().as_bytes(), "plates.json", &[]).unwrap();
+    assert_eq!(warnings_of::<2>(&scene), Vec::<String>::new());
 }
 
 /// Seven times the heat of the shock is plastic work in the foot of a bar; four times this heat is

@@ -97,6 +97,31 @@ fn bodies_in_two_dimensions_get_a_domain_limit_and_elastic_ones_no_relaxation() 
 }
 
 #[test]
+fn heat_is_spread_in_two_dimensions_where_there_is_numerical_heat_of_fluids() {
+    let steps = |name: &str, mut method: Value| {
+        method["preset"] = json!("default");
+        let scene = with(name, &[&format!("method={method}")]).unwrap();
+        scene.scene.method.heat_spreading.map(|spreading| spreading.steps)
+    };
+    let plane = |method: Value| steps("oblique_impact.json", method);
+    assert_eq!(plane(json!({})), Some(50.0));
+    assert_eq!(plane(json!({"heat_spreading": {"steps": 3}})), Some(3.0));
+    assert_eq!(plane(json!({"filter_heat": false})), Some(50.0));
+    for without in [
+        json!({"stepping": "leapfrog"}),
+        json!({"transfer": "apic"}),
+        json!({"energy": "textbook", "filter_heat": false}),
+        json!({"heat_spreading": null}),
+    ] {
+        assert_eq!(plane(without.clone()), None, "{without}");
+    }
+    // on a line, of elastic solids, and of gases
+    for name in ["flyer.json", "disks.json", "noh_axis.json"] {
+        assert_eq!(steps(name, json!({})), None, "{name}");
+    }
+}
+
+#[test]
 fn bodies_that_may_turn_have_spin() {
     let spin = |more: &[&str]| {
         let edits: Vec<&str> = ["method=default"].iter().chain(more).copied().collect();

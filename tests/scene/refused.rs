@@ -125,6 +125,10 @@ fn options_that_cannot_go_together_are_named() {
         ("method.filter_heat=true", ["method.filter_heat = true", "false"]),
         ("method.edge_mask=0.3", ["method.edge_mask = 0.3", "leave it out"]),
         (
+            "method.heat_spreading={\"steps\": 10}",
+            ["method.heat_spreading = {\"steps\":10.0}", "leave it out"],
+        ),
+        (
             "method.pressure_relaxation={\"rate\": 0.2, \"interval\": 5}",
             ["method.pressure_relaxation = {", "leave it out"],
         ),
@@ -137,6 +141,11 @@ fn options_that_cannot_go_together_are_named() {
         refused("flyer.json", &sets, &["method.filter_heat = true", &value, "{\"xpic\": m}"]);
     }
     edit("method.transfer=apic", &["method.energy = \"compatible\"", "method.transfer = \"apic\""]);
+    let sets =
+        ["method.heat_spreading.steps=1", "method.energy=textbook", "method.filter_heat=false"];
+    let fragments = ["method.heat_spreading = {\"steps\":1.0}", "method.energy = \"textbook\""];
+    refused("flyer.json", &sets, &fragments);
+    edit("method.heat_spreading.steps=0.5", &["method.heat_spreading.steps = 0.5", "at least 1"]);
     edit("method.transfer=pic", &["method.edge_mask = 0.4", "method.transfer = \"pic\""]);
     refused(
         "flyer_uintah.json",

@@ -66,6 +66,7 @@ impl FittedSchemes {
         };
         not(!self.shapes.contains(&method.shape), "shape");
         not(method.flux_limiter.is_some(), "flux_limiter");
+        not(method.heat_spreading.is_some(), "heat_spreading");
         not(method.volume_relaxation.is_some(), "volume_relaxation");
         not(method.domain_limit.is_some(), "domain_limit");
         let compatible = method.energy == EnergyUpdate::Compatible && method.filter_heat;

@@ -245,6 +245,13 @@ fn check_midpoint(scene: &Scene) -> Result<(), SceneFault> {
                        {\"fmpm\": m}";
         return Err(conflict(("method.filter_heat", true), transfer, allowed));
     }
+    let exact = method.energy == EnergyUpdate::Compatible || method.filter_heat;
+    if let Some(spreading) = method.heat_spreading.filter(|_| !exact) {
+        let energy = ("method.energy", method.energy);
+        let allowed = "to leave it out, or method.energy = \"compatible\", or \
+                       method.filter_heat = true";
+        return Err(conflict(("method.heat_spreading", spreading), energy, allowed));
+    }
     match method.edge_mask {
         Some(mask) if !method.transfer.plan().full_mass_matrix => {
             let allowed = "to leave it out, or method.transfer {\"fmpm\": m}";
@@ -267,6 +274,9 @@ fn check_leapfrog(scene: &Scene) -> Result<(), SceneFault> {
         return Err(conflict(("method.filter_heat", true), stepping, &allowed));
     }
     let allowed = format!("to leave it out, or {MIDPOINT}");
+    if let Some(spreading) = method.heat_spreading {
+        return Err(conflict(("method.heat_spreading", spreading), stepping, &allowed));
+    }
     if let Some(relaxation) = method.pressure_relaxation {
         return Err(conflict(("method.pressure_relaxation", relaxation), stepping, &allowed));
     }

@@ -30,6 +30,12 @@ pub struct Method {
     /// same particle, as heat; default false.
     #[serde(default)]
     pub filter_heat: bool,
+    /// Spreading of numerical heat over particles that share nodes, against particles at edges and
+    /// in jets that are too hot; absent: none. Numerical heat is what the internal energy gains
+    /// beyond the work at the mean nodal velocity. Requires `midpoint` stepping, and `filter_heat` or
+    /// the energy `compatible`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub heat_spreading: Option<HeatSpreadingOptions>,
     /// Each particle carries the angular momentum of its own rotation, which takes part in the mass
     /// matrix: angular momentum is then conserved to rounding by FMPM of any order; default false.
     /// Requires a plane without axial symmetry, `midpoint` stepping and a transfer `fmpm`.
@@ -120,6 +126,17 @@ pub enum EnergyUpdate {
     /// Work with the nodal velocity that conserves the sum of kinetic and internal energy to
     /// rounding.
     Compatible,
+}
+
+/// Spreading of numerical heat over particles that share nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "HeatSpreading")]
+pub struct HeatSpreadingOptions {
+    /// Mean number of steps in which the heat of a step is spread [-]. With 50 it is spread over some
+    /// cells.
+    #[schemars(range(min = 1.0, max = 1000.0))]
+    pub steps: f64,
 }
 
 /// Relaxation of the particle pressure towards its projection on the grid.
