@@ -26,6 +26,7 @@ use crate::solver::Scheme;
 use crate::solver::declare::{Declare, Role};
 use crate::solver::effect::{Effect, Package, Phase, Setup, StepContext};
 use crate::solver::exchange::Nodal;
+use crate::solver::particle_weights::cut;
 use crate::solver::patch::Patch;
 
 /// Spreading of numerical heat.
@@ -144,7 +145,8 @@ impl HeatSpreading {
             .expect("columns differ");
         let (heat, spread, energy) = (&mut heat[..n], &spread[..n], &energy[..n]);
         for r in 0..n {
-            heat[r] = energy[r] - heat[r] + self.share * spread[r];
+            // a remainder stays where it is, so that particles can come to rest
+            heat[r] = cut(energy[r] - heat[r] + self.share * spread[r], s.still_heat);
         }
     }
 }

@@ -93,6 +93,8 @@ pub struct Scheme<const D: usize> {
     pub(super) quiescent_speed: f64,
     /// Acceleration that brings a node to that speed while the fastest wave crosses a cell [m/s2].
     pub(super) still_acceleration: f64,
+    /// Numerical heat below which a particle has none [J/kg].
+    pub(crate) still_heat: f64,
     /// Nodal pressure below which a node counts as free of stress [Pa].
     pub(super) still_pressure: f64,
 }
@@ -108,7 +110,7 @@ pub(super) struct EffectLimits {
 }
 
 /// Fraction of the fastest speed of a scene below which nodal velocities count as zero; the limits
-/// of acceleration and pressure follow from it. It applies to all patches, quiescent or not.
+/// of acceleration, heat and pressure follow from it. It applies to all patches, quiescent or not.
 const STILL: f64 = 1.0 / (1u64 << 50) as f64;
 
 /// Smallest stiffness of a gas in pressure relaxation, over the pressure that counts as zero: 2^-30
@@ -198,6 +200,7 @@ impl<const D: usize> Scheme<D> {
             // the wave
             quiescent_speed: fastest * STILL,
             still_acceleration: fastest * fastest * STILL / smallest,
+            still_heat: fastest * fastest * STILL,
             still_pressure: densest * fastest * fastest * STILL,
         }
     }

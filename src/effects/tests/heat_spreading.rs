@@ -27,6 +27,26 @@ fn energies_follow_the_means_and_their_sum_stays() {
     close(&f.get("specific_internal_energy"), &[100.0 + 17.5 - 10.0, 200.0 + 27.5 - 30.0]);
 }
 
+#[test]
+fn a_share_of_the_spread_heat_is_spread_again() {
+    let mut method = method(json!({"fmpm": 2}), true);
+    method["heat_spreading"]["steps"] = json!(4);
+    let mut f = Fixture::<1>::new(json!({"method": method}));
+    // before the phase the column has the energies without numerical heat
+    let mut heat = |without: [f64; 2], spread: [f64; 2]| {
+        f.set("numerical_heat", &without).set("specific_internal_energy", &[10.0, 20.0]);
+        f.run(DT, |s, _, patch| {
+            let column = s.columns.get("spread_heat");
+            patch.block.columns[column] = spread.to_vec();
+        });
+        f.act(Phase::Gathered, DT).get("numerical_heat")
+    };
+    close(&heat([9.0, 18.0], [4.0, 8.0]), &[1.0 + 0.75 * 4.0, 2.0 + 0.75 * 8.0]);
+    // a remainder far below the squares of the speeds of the scene ends
+    assert_eq!(heat([10.0, 20.0], [1e-15, 0.0]), [0.0, 0.0]);
+    assert!(heat([10.0, 20.0 - 1e-9], [0.0, 0.0])[1] > 0.0);
+}
+
 /// Six particles whose velocities the grid does not represent.
 fn six(changes: Value) -> Fixture<2> {
     let body = json!({"name": "body", "material": "fluid", "particles_per_cell": [1, 1],
