@@ -10,6 +10,9 @@ use crate::material::strength::MaterialState;
 use crate::scene::CheckedScene;
 use crate::solver::patch::Patch;
 
+/// Number of points of isentropes for elastic energies on each side of rest.
+const ISENTROPE_POINTS: usize = 100;
+
 impl<const D: usize> Scheme<D> {
     /// Columns of the deviator, from `first` on.
     pub(crate) fn deviator<'a>(
@@ -52,20 +55,21 @@ impl<const D: usize> Scheme<D> {
         strength.yield_stress(strain, &at) * strain * volume / column(c.mass)
     }
 
-    /// Isentrope of body `body` through its material at rest; `None` for elastic solids, and for
-    /// materials with a history, which have no single isentrope.
+    /// Isentrope of body `body` through its material at rest, for elastic energies; `None` for elastic
+    /// solids, and for materials with a history, which have no single isentrope.
     pub fn isentrope(&self, scene: &CheckedScene, body: usize) -> Option<RestIsentrope> {
         match &self.models[body] {
             ConstitutiveModel::Fluid(model) if model.first_history().is_none() => {
-                Some(RestIsentrope::new(model.as_ref(), scene.material_of(body).density))
+                let density = scene.material_of(body).density;
+                Some(RestIsentrope::with_points(model.as_ref(), density, ISENTROPE_POINTS))
             }
             _ => None,
         }
     }
 
     /// Elastic energy of own particle `r` per unit mass [J/kg]: that of an elastic solid; of a fluid
-    /// that of its `isentrope` in compression, and at least -p (J - 1)/(2 rho0) in tension, which a
-    /// failure or a limit of the tension makes smaller than that of the isentrope.
+    /// that of its `isentrope` in compression, and -p (J - 1)/(2 rho0) in tension. The latter is a
+    /// lower bound, which is also valid where a failure or a limit has reduced the tension.
     pub fn elastic_energy(
         &self,
         block: &Block<D>,

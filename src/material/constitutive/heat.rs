@@ -11,7 +11,7 @@
 
 use super::model::FluidModel;
 
-/// Number of points of the isentrope on each side of rest.
+/// Number of points of the isentrope on each side of rest for temperatures.
 const POINTS: usize = 2000;
 
 /// Smallest and greatest J of the isentrope.
@@ -27,8 +27,14 @@ pub struct RestIsentrope {
 }
 
 impl RestIsentrope {
-    /// Isentrope of `model` with density `rho0` [kg/m3] at rest, as far as the model is valid.
+    /// Isentrope of `model` with density `rho0` [kg/m3] at rest, as far as the model is valid, for
+    /// temperatures.
     pub fn new(model: &dyn FluidModel, rho0: f64) -> Self {
+        Self::with_points(model, rho0, POINTS)
+    }
+
+    /// The same with `count` points on each side of rest.
+    pub fn with_points(model: &dyn FluidModel, rho0: f64, count: usize) -> Self {
         let state = |j: f64, e: f64| -> Option<[f64; 2]> {
             let at = |e: f64| {
                 let (mut p, mut c) = ([0.0], [0.0]);
@@ -40,10 +46,10 @@ impl RestIsentrope {
         };
         let slope = |j: f64, e: f64| state(j, e).map(|[p, factor]| [-p / rho0, -factor / rho0]);
         let walk = |to: f64| {
-            let h = (to - 1.0) / POINTS as f64;
+            let h = (to - 1.0) / count as f64;
             let (mut e, mut log) = (0.0, 0.0);
             let mut all = Vec::new();
-            for k in 0..=POINTS {
+            for k in 0..=count {
                 let j = 1.0 + h * k as f64;
                 let Some(first) = slope(j, e) else { break };
                 all.push([e, first[0], log, first[1]]);
