@@ -1,9 +1,9 @@
 //! Spreading of the numerical heat of a step over the particles that share nodes.
 //!
 //! The internal energy of a particle changes by the work of its stress at the mean nodal velocity,
-//! and by numerical heat: the kinetic energy that the filter of the transfer removes, and the
-//! difference between the works at w and at the mean velocity, which makes the sum of kinetic and
-//! internal energy exact. Kinetic energy is lost between particles that share nodes, and
+//! and by numerical heat: the kinetic energy that the filter of the transfer removes, with the
+//! corrections for spin and for the flux limiter, and the difference between the works at w and at
+//! the mean velocity. Kinetic energy is lost between particles that share nodes, and
 //! conservation alone does not decide which of them is heated. If each keeps the heat d that is
 //! computed for it, single particles at the rims of plates and in jets get far too hot. Here each
 //! step spreads a heat h over the particles of one velocity field,
@@ -14,7 +14,7 @@
 //! h = d + (1 - 1/steps) g
 //! ```
 //!
-//! so that heat is spread in as many steps as the option `steps` says, in the mean. The sum of m e
+//! so that each amount of heat is spread `steps` times on average. The sum of m e
 //! does not change, because the weights N of a particle sum to 1. We know of no publication of this
 //! method.
 
@@ -144,9 +144,10 @@ impl HeatSpreading {
             .get_disjoint_mut([self.heat, self.spread, s.columns.energy])
             .expect("columns differ");
         let (heat, spread, energy) = (&mut heat[..n], &spread[..n], &energy[..n]);
+        let still = s.still_heat();
         for r in 0..n {
             // a remainder stays where it is, so that particles can come to rest
-            heat[r] = cut(energy[r] - heat[r] + self.share * spread[r], s.still_heat);
+            heat[r] = cut(energy[r] - heat[r] + self.share * spread[r], still);
         }
     }
 }

@@ -41,7 +41,7 @@ impl Package for WallFriction {
     }
 
     fn declare(_: &CheckedScene, d: &mut Declare<'_>) {
-        d.friction_heat();
+        d.wall_friction_heat();
     }
 
     fn build<const D: usize>(setup: &mut Setup<'_, D>) -> Box<dyn Effect<D>> {

@@ -103,8 +103,8 @@ const RULES: &[Rule] = &[
     },
     Rule {
         applies: |c| c.plane && c.burn,
-        changes: || [json!({}), moderate()],
-        reason: "a moderate viscosity, since a body is an explosive",
+        changes: || [json!({"heat_spreading": null}), moderate()],
+        reason: "a moderate viscosity without spreading of heat, since a body is an explosive",
     },
     Rule {
         applies: |c| c.burn,
@@ -312,7 +312,7 @@ fn override_keys(method: &mut Map<String, Value>, explicit: Map<String, Value>) 
         }
         excluded.extend(plan.is_affine().then_some("energy"));
     }
-    // without either there is no numerical heat
+    // without compatible energy and heat of the filter there is no numerical heat
     let is_off = |key: &str| {
         let off = [Value::Null, Value::Bool(false), json!("textbook")];
         excluded.contains(&key) || explicit.get(key).is_some_and(|value| off.contains(value))

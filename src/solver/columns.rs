@@ -64,8 +64,8 @@ pub struct Columns {
     pub temperature: Option<usize>,
     /// Plastic work that is stored and does not heat [J/kg], if any.
     pub stored_work: Option<usize>,
-    /// Part of a step whose friction at sides heats the material.
-    pub friction_part: Option<usize>,
+    /// [Part](parts) of a step to which friction at sides belongs, if a side has friction.
+    pub wall_friction_part: Option<usize>,
     /// Accumulated heat of friction [J/kg], with friction between bodies or at sides.
     pub friction_heat: Option<usize>,
     /// Position x [m], a vector.

@@ -190,8 +190,8 @@ impl<'a> Declare<'a> {
     }
 
     /// Requests the heat of friction at sides.
-    pub fn friction_heat(&mut self) {
-        self.columns.friction_part = self.owner;
+    pub fn wall_friction_heat(&mut self) {
+        self.columns.wall_friction_part = self.owner;
     }
 
     /// Requests the body index of ghosts.

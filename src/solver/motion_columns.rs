@@ -158,7 +158,7 @@ fn declare_friction(d: &mut Declare<'_>, needs: &Needs) {
     let coefficient = contact.and_then(|contact| contact.coefficient);
     let between_bodies = needs.plane && needs.touching && coefficient.is_some();
     let own_part = between_bodies.then_some(StepPart::Contact as usize);
-    if let Some(part) = own_part.or(d.columns.friction_part) {
+    if let Some(part) = own_part.or(d.columns.wall_friction_part) {
         d.set_owner(Some(part));
         d.columns.friction_heat = Some(d.scalar("friction_heat", "J/kg", State));
     }

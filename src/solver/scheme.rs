@@ -93,8 +93,6 @@ pub struct Scheme<const D: usize> {
     pub(super) quiescent_speed: f64,
     /// Acceleration that brings a node to that speed while the fastest wave crosses a cell [m/s2].
     pub(super) still_acceleration: f64,
-    /// Numerical heat below which a particle has none [J/kg].
-    pub(crate) still_heat: f64,
     /// Nodal pressure below which a node counts as free of stress [Pa].
     pub(super) still_pressure: f64,
 }
@@ -121,6 +119,11 @@ const COLD: f64 = (1u64 << 20) as f64;
 const RELAXATION_COURANT: f64 = 0.4;
 
 impl<const D: usize> Scheme<D> {
+    /// Numerical heat below which it is no longer spread [J/kg].
+    pub(crate) fn still_heat(&self) -> f64 {
+        self.fastest * self.fastest * STILL
+    }
+
     /// Scheme of `scene` with the `models` of its bodies, and the columns and nodal fields that the
     /// effects have completed.
     pub(super) fn new(
@@ -149,7 +152,7 @@ impl<const D: usize> Scheme<D> {
             false => volume.powf(1.0 / D as f64),
         };
         let contact = contact_condition(scene);
-        let friction_part = if rubs::<D>(contact) { None } else { columns.friction_part };
+        let friction_part = if rubs::<D>(contact) { None } else { columns.wall_friction_part };
         let owner = |column: usize| columns.owners[column].expect("a force is an effect's");
         let fastest = waves.fastest;
         Scheme {
@@ -200,7 +203,6 @@ impl<const D: usize> Scheme<D> {
             // the wave
             quiescent_speed: fastest * STILL,
             still_acceleration: fastest * fastest * STILL / smallest,
-            still_heat: fastest * fastest * STILL,
             still_pressure: densest * fastest * fastest * STILL,
         }
     }

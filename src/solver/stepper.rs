@@ -52,7 +52,7 @@ impl<const D: usize> Stepper<D> {
             relaxed: method.pressure_relaxation.is_some(),
             relaxes_ratio: relaxes_ratio(scene),
             has_friction: columns.friction_heat.is_some(),
-            has_wall_friction: columns.friction_part.is_some(),
+            has_wall_friction: columns.wall_friction_part.is_some(),
             limiter: method.flux_limiter.map(|limiter| limiter.neighbours as usize),
         };
         let mut fields = Fields::new(D, wanted);

@@ -145,6 +145,11 @@ fn options_that_cannot_go_together_are_named() {
         ["method.heat_spreading.steps=1", "method.energy=textbook", "method.filter_heat=false"];
     let fragments = ["method.heat_spreading = {\"steps\":1.0}", "method.energy = \"textbook\""];
     refused("flyer.json", &sets, &fragments);
+    let sets = ["method.heat_spreading.steps=1", "method.transfer=apic", "method.energy=textbook"];
+    let off =
+        ["method.filter_heat=false", "method.edge_mask=null", "method.pressure_relaxation=null"];
+    let fragments = ["method.heat_spreading = {\"steps\":1.0}", "method.transfer = \"apic\""];
+    refused("flyer.json", &[&sets[..], &off].concat(), &fragments);
     edit("method.heat_spreading.steps=0.5", &["method.heat_spreading.steps = 0.5", "at least 1"]);
     edit("method.transfer=pic", &["method.edge_mask = 0.4", "method.transfer = \"pic\""]);
     refused(

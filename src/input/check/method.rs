@@ -247,6 +247,10 @@ fn check_midpoint(scene: &Scene) -> Result<(), SceneFault> {
     }
     let exact = method.energy == EnergyUpdate::Compatible || method.filter_heat;
     if let Some(spreading) = method.heat_spreading.filter(|_| !exact) {
+        if method.transfer.plan().is_affine() {
+            let allowed = "to leave it out, or another method.transfer";
+            return Err(conflict(("method.heat_spreading", spreading), transfer, allowed));
+        }
         let energy = ("method.energy", method.energy);
         let allowed = "to leave it out, or method.energy = \"compatible\", or \
                        method.filter_heat = true";

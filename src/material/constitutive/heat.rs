@@ -17,7 +17,8 @@ const POINTS: usize = 2000;
 /// Smallest and greatest J of the isentrope.
 const RANGE: [f64; 2] = [0.25, 1.5];
 
-/// Energy and temperature on the isentrope through the state at rest, interpolated by cubics between points.
+/// Energy and temperature on the isentrope through the state at rest, interpolated by cubics between
+/// points.
 #[derive(Clone, Debug)]
 pub struct RestIsentrope {
     lower: f64,
@@ -122,7 +123,7 @@ pub struct ThermalModel {
     pub taylor_quinney: f64,
     /// Thermal conductivity [W/(m K)]; `None` if the scene leaves it out.
     pub conductivity: Option<f64>,
-    /// RestIsentrope through the state at rest; `None` if only plastic work heats.
+    /// Isentrope through the state at rest; `None` if only plastic work heats.
     pub isentrope: Option<RestIsentrope>,
 }
 

@@ -31,8 +31,9 @@ pub struct Method {
     #[serde(default)]
     pub filter_heat: bool,
     /// Spreading of numerical heat over particles that share nodes, against particles at edges and
-    /// in jets that are too hot; absent: none. Numerical heat is what the internal energy gains
-    /// beyond the work at the mean nodal velocity. Requires `midpoint` stepping, and `filter_heat` or
+    /// in jets that are too hot; absent: none. Numerical heat is the change of the internal
+    /// energy by the filter, and by the difference between the work of the method and the work at the
+    /// mean nodal velocity. Requires `midpoint` stepping, and `filter_heat` or
     /// the energy `compatible`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub heat_spreading: Option<HeatSpreadingOptions>,
@@ -133,8 +134,8 @@ pub enum EnergyUpdate {
 #[serde(deny_unknown_fields)]
 #[schemars(title = "HeatSpreading")]
 pub struct HeatSpreadingOptions {
-    /// Mean number of steps in which the heat of a step is spread [-]. With 50 it is spread over some
-    /// cells.
+    /// Mean number of steps over which numerical heat is spread [-]. 50 steps spread it over about
+    /// five cells.
     #[schemars(range(min = 1.0, max = 1000.0))]
     pub steps: f64,
 }
