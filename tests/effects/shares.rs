@@ -92,6 +92,8 @@ fn every_active_effect_has_a_share_of_the_step() {
     let disk = std::fs::read(format!("{inputs}/spinning_disk.json")).unwrap();
     let mut disk: Value = serde_json::from_slice(&disk).unwrap();
     disk["method"]["spin"] = json!(true);
+    disk["method"]["filter_heat"] = json!(true);
+    disk["method"]["heat_spreading"] = json!({"steps": 10});
     disk["method"]["transfer"] = json!({"fmpm": 2});
     disk["output"] = json!({});
     scenes.push(("disk with spin".into(), disk));

@@ -69,23 +69,23 @@ fn template(name: &str, sets: &[&str]) -> CheckedScene {
     input::parse(&bytes, name, &sets).unwrap()
 }
 
-/// Two plates of nickel about an axis, by the default method with `spreading` of heat. The upper one
-/// is wider, so that the rim of the lower one is pressed outwards.
+/// Two plates of iron about an axis, by the default method with `spreading` of heat. The lower one is
+/// wider, and the rim of the upper one is pressed outwards.
 fn plates(spreading: &Value) -> Vec<String> {
     let value = json!({
         "title": "plates",
-        "domain": {"lower": [0.0, -0.0024], "upper": [0.0026, 0.0016], "cell_size": 1e-4,
+        "domain": {"lower": [0.0, -0.0021], "upper": [0.003, 0.0018], "cell_size": 7.5e-5,
             "geometry": "axisymmetric"},
-        "time": {"end": 3e-7},
+        "time": {"end": 2.7e-7},
         "method": {"preset": "default", "heat_spreading": spreading},
-        "materials": {"nickel": {"library": "nickel"}},
+        "materials": {"iron": {"library": "iron"}},
         "boundary": {"x_lower": "symmetry"},
-        "contact": {"type": "friction", "coefficient": 0.25},
+        "contact": {"type": "frictionless"},
         "bodies": [
-            {"name": "flyer", "material": "nickel", "velocity": [0.0, -444.0],
-                "box": {"lower": [0.0, 0.0], "upper": [0.0018, 0.0009]}},
-            {"name": "target", "material": "nickel",
-                "box": {"lower": [0.0, -0.0017], "upper": [0.0016, 0.0]}},
+            {"name": "flyer", "material": "iron", "velocity": [0.0, -957.0],
+                "box": {"lower": [0.0, 0.0], "upper": [0.0021, 0.0009]}},
+            {"name": "target", "material": "iron",
+                "box": {"lower": [0.0, -0.0015], "upper": [0.0024, 0.0]}},
         ],
     });
     let scene = input::parse(value.to_string().as_bytes(), "plates.json", &[]).unwrap();
