@@ -30,7 +30,7 @@ def masked(text):
     text = re.sub(r"(rank|thread)(s?): \S+ s$", r"\1\2: T s", text, flags=re.MULTILINE)
     text = re.sub(r"[\d.]+ M particle-steps", "T M particle-steps", text)
     # digits of rounding errors
-    return re.sub(r"(energy|momentum) \d(\.\d+)?e-1\d", r"\1 1e-1x", text)
+    return re.sub(r"(energy|momentum) (\d(\.\d+)?e-1\d|0\.0e0)", r"\1 1e-1x", text)
 
 
 def environment(folder):
