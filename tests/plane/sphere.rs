@@ -99,7 +99,7 @@ fn numerical_heat_at_a_rim_is_warned_of_unless_it_is_spread() {
     assert_eq!(plates(&json!({"steps": 50})), Vec::<String>::new());
 }
 
-/// The energy of elastic solids, and that of a tension that a joint bears, is no heat.
+/// Elastic energy is not heat: neither in elastic solids nor in joined plates under tension.
 #[test]
 fn elastic_energy_is_not_warned_of() {
     let disks = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/disks.json");
