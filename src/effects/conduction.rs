@@ -22,10 +22,10 @@ use decomp::{Block, Parity};
 use crate::scene::CheckedScene;
 use crate::shape::with_width;
 use crate::solver::Scheme;
-use crate::solver::band::Band;
 use crate::solver::declare::{Declare, Role};
 use crate::solver::effect::{Account, Effect, Package, Phase, Setup, StepContext};
 use crate::solver::exchange::Nodal;
+use crate::solver::nodal_matrix::NodalMatrix;
 use crate::solver::patch::Patch;
 use crate::solver::series::ScalarSeries;
 
@@ -243,19 +243,18 @@ impl<const D: usize> HeatConduction<D> {
             e: &HeatConduction<D>,
         ) {
             let f = e.fields;
-            let (nodes, stride) =
-                (patch.nodes.layers * patch.nodes.nodes.count(), patch.nodes.nodes.extent(0));
-            if patch.bands.len() <= e.matrix {
-                patch.bands.resize_with(e.matrix + 1, Band::default);
+            let nodes = patch.nodes.layers * patch.nodes.nodes.count();
+            if patch.matrices.len() <= e.matrix {
+                patch.matrices.resize_with(e.matrix + 1, NodalMatrix::default);
             }
-            let band = &mut patch.bands[e.matrix];
-            band.clear(nodes, K, D, stride);
+            let matrix = &mut patch.matrices[e.matrix];
+            let capacity = &patch.block.columns[e.capacity][..patch.block.particles()];
+            matrix.clear::<K, D>(nodes, capacity.iter().copied());
             let [inverse, temperature, projected] =
                 patch.nodes.fields_mut([f.inverse, f.temperature, f.projected]);
             inverse.fill(0.0);
             temperature.fill(0.0);
-            let column = |k: usize| &patch.block.columns[k];
-            let (capacity, t) = (column(e.capacity), column(e.temperature));
+            let t = &patch.block.columns[e.temperature];
             for r in patch.runs.iter().cloned().flatten() {
                 if capacity[r] == 0.0 {
                     continue;
@@ -270,9 +269,9 @@ impl<const D: usize> HeatConduction<D> {
                 let (weights, c) = (patch.stencils.particle::<K, D>(r), capacity[r]);
                 weights.add(inverse, weights.values, |n| n * c);
                 weights.add(temperature, weights.values, |n| n * (c * of));
-                band.add(&weights, c);
+                matrix.add(&weights, c);
             }
-            band.finish();
+            matrix.finish::<D>();
             for i in patch.active_lines.iter().cloned().flatten() {
                 inverse[i] = if inverse[i] > 0.0 { 1.0 / inverse[i] } else { 0.0 };
                 temperature[i] *= inverse[i];

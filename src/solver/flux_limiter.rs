@@ -245,7 +245,7 @@ impl<const D: usize> Scheme<D> {
             }
             let (mut fluxes, mut curvature) = ([0.0; 2], 0.0);
             let here = series(i);
-            patch.band.each_neighbour(i, |j, m| {
+            patch.mass_matrix.band.each_neighbour(i, |j, m| {
                 let flux = m * (here - series(j));
                 fluxes[usize::from(flux < 0.0)] += flux;
                 curvature += m * (stress[j] - stress[i]);
@@ -314,7 +314,7 @@ impl<const D: usize> Scheme<D> {
         let mut taken = vec![0.0; x.len()];
         for i in patch.active_lines.iter().cloned().flatten() {
             let mut sum = 0.0;
-            patch.band.each_neighbour(i, |j, m| {
+            patch.mass_matrix.band.each_neighbour(i, |j, m| {
                 let share = shares.of(i, j, series[i] - series[j]);
                 if share < 1.0 {
                     sum += (1.0 - share) * m * (x[i] - x[j]);
@@ -345,7 +345,7 @@ impl<const D: usize> Scheme<D> {
         let taken = self.taken(patch, limiter, Limited::Force, series, &g);
         let mut product = vec![0.0; g.len()];
         for line in &patch.active_lines {
-            patch.band.product([&g[..]], line.clone(), [&mut product[..]]);
+            patch.mass_matrix.band.product([&g[..]], line.clone(), [&mut product[..]]);
         }
         let inverse = &patch.nodes.fields[f.inverse];
         for i in patch.active_lines.iter().cloned().flatten() {

@@ -1,9 +1,12 @@
 //! Memory of a patch in the steps, from the declared columns, nodal fields, weights and matrices.
 
-use super::band::Band;
+use decomp::array;
+
+use super::nodal_matrix::NodalMatrix;
 use super::reach::StencilRadius;
 use super::stepper::Stepper;
 use crate::shape::padded_width;
+use crate::solver::shape_weights::Group;
 
 /// Sizes of a patch that determine its memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,24 +45,31 @@ impl<const D: usize> Stepper<D> {
         })
     }
 
-    /// Memory of the weights of a particle on windows of `width` nodes [bytes].
+    /// Memory of the weights of a particle, and of the matrices, on windows of `width` nodes [bytes].
     fn weight_bytes(&self, width: usize) -> usize {
         let nodes = width.pow(D as u32);
-        // values, gradients, and the first node
-        let weights = DOUBLE * nodes * (1 + D) + size_of::<u32>();
+        // values, gradients, the first node, and at most a group of its own
+        let group = if D > 1 { size_of::<Group>() } else { 0 };
+        let weights = DOUBLE * nodes * (1 + D) + size_of::<u32>() + group;
+        let [_, matrices] = self.matrix_bytes(width);
         let kept = DOUBLE * nodes * D + size_of::<u64>() + D * size_of::<i32>();
-        if self.total_lagrangian { weights + kept } else { weights }
+        if self.total_lagrangian { weights + kept + matrices } else { weights + matrices }
     }
 
     /// Memory of a node: fields and matrices of all layers [bytes].
     fn node_bytes(&self, width: usize) -> usize {
-        let plain = Band::bytes_per_node(width, D);
-        let mass = match (self.columns.spin, self.needs_matrix()) {
-            (Some(_), _) if D > 1 => Band::block_bytes_per_node(width),
-            (_, true) => plain,
-            _ => 0,
-        };
+        let [matrices, _] = self.matrix_bytes(width);
+        self.layers * (DOUBLE * self.fields.count + matrices)
+    }
+
+    /// Memory of the matrices per node and per particle [bytes].
+    fn matrix_bytes(&self, width: usize) -> [usize; 2] {
         let others = usize::from(self.relaxation.is_some()) + self.of_effects.matrices;
-        self.layers * (DOUBLE * self.fields.count + mass + others * plain)
+        let mass = match self.needs_matrix() {
+            true => NodalMatrix::bytes(width, D, self.columns.spin.is_some()),
+            false => [0; 2],
+        };
+        let other = NodalMatrix::bytes(width, D, false);
+        array::from_fn(|k| mass[k] + others * other[k])
     }
 }

@@ -8,7 +8,7 @@
 //!
 //! This module does not depend on materials, time stepping or messages.
 
-use decomp::array::{from_fn, map};
+use decomp::array::from_fn;
 use wide::f64x4;
 
 use crate::shape::{fours, vector};
@@ -51,13 +51,13 @@ pub(super) fn pack<const K: usize, const V: usize>(numbers: &[f64]) -> [f64x4; V
 }
 
 /// Place of a window in the patch's arrays: its first node, and the distance from a line to the
-/// next.
+/// next, in 32 bits each, so that no index of a node overflows.
 #[derive(Clone, Copy, Debug)]
 pub struct WindowPlace {
     /// First node.
-    pub first: usize,
+    pub first: u32,
     /// Distance from a line to the next.
-    pub stride: usize,
+    pub stride: u32,
 }
 
 impl WindowPlace {
@@ -65,17 +65,38 @@ impl WindowPlace {
     #[inline(always)]
     pub fn nodes<const K: usize, const V: usize>(&self, field: &[f64]) -> [f64x4; V] {
         if const { is_one_vector(K) } {
-            let [[a, b], [c, d]] = [0, self.stride].map(|to| *window::<2>(field, self.first + to));
+            let [[a, b], [c, d]] = [0, 1].map(|line| *window::<2>(field, self.line(line)));
             return [f64x4::from([a, b, c, d]); V];
         }
+        self.check::<K, V>(field);
         from_fn(|line| {
-            let at = self.first + line * self.stride;
+            let at = self.line(line);
+            // SAFETY: `check` has found the last line within the field
+            let line = unsafe { field.get_unchecked(at..at + const { packed_nodes(K) }) };
             // the nodes in a vector as a constant argument cannot be computed from K
             match const { K <= PACKED } {
-                true => fours(window::<K>(field, at), 0),
-                false => fours(window::<PACKED>(field, at), 0),
+                true => fours(window::<K>(line, 0), 0),
+                false => fours(window::<PACKED>(line, 0), 0),
             }
         })
+    }
+
+    /// First node of a line.
+    #[inline(always)]
+    fn line(&self, line: usize) -> usize {
+        const { assert!(usize::BITS >= 64, "32 bits hold no index of a node") };
+        self.first as usize + line * self.stride as usize
+    }
+
+    /// One check for all lines of the window instead of one for each.
+    ///
+    /// # Panics
+    ///
+    /// If the last line of the window ends beyond `field`.
+    #[inline(always)]
+    fn check<const K: usize, const V: usize>(&self, field: &[f64]) {
+        let end = self.line(V - 1) + const { packed_nodes(K) };
+        assert!(end <= field.len(), "a window beyond the field");
     }
 
     /// Writes the nodes of the window to `field`.
@@ -83,25 +104,21 @@ impl WindowPlace {
     pub fn put<const K: usize, const V: usize>(&self, field: &mut [f64], nodes: &[f64x4; V]) {
         if const { is_one_vector(K) } {
             let lines = nodes[0].to_array();
-            for (to, line) in [0, self.stride].into_iter().zip(lines.as_chunks::<2>().0) {
-                field[self.first + to..][..2].copy_from_slice(line);
+            for (line, numbers) in lines.as_chunks::<2>().0.iter().enumerate() {
+                field[self.line(line)..][..2].copy_from_slice(numbers);
             }
             return;
         }
+        self.check::<K, V>(field);
         for (line, nodes) in nodes.iter().enumerate() {
             let nodes = nodes.to_array();
-            let at = self.first + line * self.stride;
+            let at = self.line(line);
             let count = const { packed_nodes(K) };
-            field[at..at + count].copy_from_slice(&nodes[..count]);
+            // SAFETY: `check` has found the last line within the field
+            let line = unsafe { field.get_unchecked_mut(at..at + count) };
+            line.copy_from_slice(&nodes[..count]);
         }
     }
-}
-
-/// All bits in the lanes from `first` to before `end`.
-#[inline(always)]
-pub(super) fn between(first: usize, end: usize) -> f64x4 {
-    let bits = |lane: usize| if first <= lane && lane < end { u64::MAX } else { 0 };
-    f64x4::from(map(&[0, 1, 2, 3], |lane| f64::from_bits(bits(lane))))
 }
 
 /// Adds `term` of each weight to `nodes`.
@@ -187,8 +204,9 @@ mod tests {
     }
 
     fn check<const K: usize, const V: usize, const D: usize>() {
-        let (stencils, field) = three::<K, D>();
-        let groups: Vec<_> = stencils.groups::<K>(0..3).collect();
+        let (mut stencils, field) = three::<K, D>();
+        stencils.find_groups::<K>(&[0..3]);
+        let groups: Vec<_> = stencils.groups.iter().map(|group| group.particles()).collect();
         assert_eq!(groups, [0..2, 2..3]);
         // gather: four sums at a time are those of one particle and one field
         for r in 0..3 {
@@ -240,9 +258,14 @@ mod tests {
         let (mut stencils, _) = three::<6, 2>();
         stencils.first.fill(5);
         stencils.narrow[1] = false;
-        assert_eq!(stencils.groups::<6>(0..3).collect::<Vec<_>>(), [0..1, 1..2, 2..3]);
+        let groups = |stencils: &mut Stencils| {
+            stencils.find_groups::<6>(&[0..3]);
+            let groups = stencils.groups.iter();
+            groups.map(|group| (group.particles(), group.narrow())).collect::<Vec<_>>()
+        };
+        assert_eq!(groups(&mut stencils), [(0..1, 1), (1..2, 0), (2..3, 1)]);
         stencils.narrow[0] = false;
-        assert_eq!(stencils.groups::<6>(0..3).collect::<Vec<_>>(), [0..2, 2..3]);
+        assert_eq!(groups(&mut stencils), [(0..2, 0), (2..3, 1)]);
     }
 
     /// Weights (1/4, 1/2, 1/4) on nodes with 2, 4 and 6: a sum of 4; masses of 2 and 3 kg add up.
@@ -262,5 +285,12 @@ mod tests {
         add_to(&mut nodes, &stencils.packed_values::<3, 1, 1>(1), 3.0);
         stencils.place(0).put::<3, 1>(&mut masses, &nodes);
         assert_eq!(masses, [0.0, 0.5, 2.5, 2.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    #[should_panic(expected = "a window beyond the field")]
+    fn a_window_beyond_the_field_is_refused() {
+        let place = WindowPlace { first: 5, stride: 10 };
+        place.nodes::<4, 4>(&[0.0; 38]);
     }
 }

@@ -5,10 +5,11 @@ use std::ops::Range;
 use decomp::{Block, IndexBox, Layout, NodeArrays};
 
 use crate::shape::Shape;
-use crate::solver::band::Band;
 use crate::solver::clock::Stopwatch;
 use crate::solver::contact::PatchContact;
 use crate::solver::find_weights::{Corners, Places};
+use crate::solver::nodal_matrix::{MatrixSpace, NodalMatrix};
+use crate::solver::packed::is_one_vector;
 use crate::solver::shape_weights::Stencils;
 
 /// Results of a patch in one step.
@@ -108,11 +109,11 @@ pub struct Patch<const D: usize> {
     /// Weights of its particles.
     pub stencils: Stencils,
     /// Mass matrix.
-    pub band: Band,
+    pub mass_matrix: NodalMatrix,
     /// Matrix of compliances, for pressure relaxation.
-    pub compliance_band: Band,
+    pub compliance_matrix: NodalMatrix,
     /// Matrices of effects.
-    pub bands: Vec<Band>,
+    pub matrices: Vec<NodalMatrix>,
     /// Ranges of particles in canonical order.
     pub runs: Vec<Range<usize>>,
     /// Computed nodes that hold material, one box per layer; with deep ghosts a patch also computes
@@ -188,9 +189,9 @@ impl<const D: usize> Patch<D> {
             block,
             nodes: NodeArrays::new(layout, index, 0, 0),
             stencils: Stencils::default(),
-            band: Band::default(),
-            compliance_band: Band::default(),
-            bands: Vec::new(),
+            mass_matrix: NodalMatrix::default(),
+            compliance_matrix: NodalMatrix::default(),
+            matrices: Vec::new(),
             runs: Vec::new(),
             active: Vec::new(),
             active_lines: Vec::new(),
@@ -249,6 +250,11 @@ impl<const D: usize> Patch<D> {
 }
 
 impl<const D: usize> Patch<D> {
+    /// Particles and computed nodes, for products with matrices.
+    pub fn matrix_space(&self) -> MatrixSpace<'_> {
+        MatrixSpace { stencils: &self.stencils, runs: &self.runs, lines: &self.active_lines }
+    }
+
     /// Calls `f` with the weights, which are taken out of the patch meanwhile.
     #[inline(always)]
     pub(super) fn with_stencils(&mut self, f: impl FnOnce(&mut Self, &Stencils)) {
@@ -280,6 +286,9 @@ impl<const D: usize> Patch<D> {
         let Corners { least, most } =
             self.stencils.fill::<S, K, D>(&at, self.nodes.nodes.extent(0));
         self.find_runs(layer, K as i64, least, most);
+        if const { D > 1 && !is_one_vector(K) } {
+            self.stencils.find_groups::<K>(&self.runs);
+        }
     }
 
     /// Finds the ranges of particles in canonical order, and the nodes within their reach.

@@ -49,7 +49,7 @@ use std::ops::Range;
 
 use wide::f64x4;
 
-use super::band::Band;
+use super::nodal_matrix::NodalMatrix;
 use super::particle_update::bodies;
 use super::scheme::Scheme;
 use crate::material::constitutive::ConstitutiveModel;
@@ -152,13 +152,13 @@ impl PressureSums<'_> {
 fn add_particles<const K: usize, const D: usize>(
     stencils: &Stencils,
     particles: Range<usize>,
-    band: &mut Band,
+    matrix: &mut NodalMatrix,
     of: &Relaxed<'_>,
     sums: &mut PressureSums<'_>,
 ) {
     for (r, weights) in particles.clone().zip(stencils.particles::<K, D>(particles)) {
         let share = sums.add(&weights, r, of);
-        band.add(&weights, share);
+        matrix.add(&weights, share);
     }
 }
 
@@ -222,21 +222,19 @@ impl<const D: usize> Scheme<D> {
             patch: &mut Patch<D>,
             s: &Scheme<D>,
         ) {
-            s.scatter_pressure(patch, K, |stencils, runs, band, of, sums| {
-                for group in runs.iter().flat_map(|run| stencils.groups::<K>(run.clone())) {
-                    if !stencils.is_narrow::<K>(group.start) {
-                        add_particles::<K, D>(stencils, group, band, of, sums);
-                        continue;
+            s.scatter_pressure::<K>(patch, |stencils, _, matrix, of, sums| {
+                for group in &stencils.groups {
+                    match group.narrow() {
+                        0 => add_particles::<K, D>(stencils, group.particles(), matrix, of, sums),
+                        _ => sums.add_group::<K, V, D>(stencils, group.particles(), of),
                     }
-                    sums.add_group::<K, V, D>(stencils, group.clone(), of);
-                    band.add_group::<K, V, D>(stencils, group, |r| of.share(r));
                 }
             });
         }
         fn single<const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
-            s.scatter_pressure(patch, K, |stencils, runs, band, of, sums| {
+            s.scatter_pressure::<K>(patch, |stencils, runs, matrix, of, sums| {
                 for run in runs {
-                    add_particles::<K, D>(stencils, run.clone(), band, of, sums);
+                    add_particles::<K, D>(stencils, run.clone(), matrix, of, sums);
                 }
             });
         }
@@ -244,13 +242,19 @@ impl<const D: usize> Scheme<D> {
         with_packed!(width, packed(patch, self), with_width!(width, single(patch, self)));
     }
 
-    /// The same with the sums over the particles by `add`, in windows of `width` nodes.
+    /// The same with the sums over the particles by `add`, in windows of `K` nodes along each
+    /// direction.
     #[inline(always)]
-    fn scatter_pressure(
+    fn scatter_pressure<const K: usize>(
         &self,
         patch: &mut Patch<D>,
-        width: usize,
-        add: impl FnOnce(&Stencils, &[Range<usize>], &mut Band, &Relaxed<'_>, &mut PressureSums<'_>),
+        add: impl FnOnce(
+            &Stencils,
+            &[Range<usize>],
+            &mut NodalMatrix,
+            &Relaxed<'_>,
+            &mut PressureSums<'_>,
+        ),
     ) {
         let [weight, inverse, sum, term] = self.fields.relaxation;
         let particles = patch.block.particles();
@@ -266,16 +270,15 @@ impl<const D: usize> Scheme<D> {
             ratio.fill(0.0);
             ratio
         });
-        let (nodes, stride) =
-            (patch.nodes.layers * patch.nodes.nodes.count(), patch.nodes.nodes.extent(0));
-        patch.compliance_band.clear(nodes, width, D, stride);
+        let nodes = patch.nodes.layers * patch.nodes.nodes.count();
+        patch.compliance_matrix.clear::<K, D>(nodes, (0..particles).map(|r| of.share(r)));
         let [weight, inverse, sum, term] = patch.nodes.fields_mut([weight, inverse, sum, term]);
         weight.fill(0.0);
         inverse.fill(0.0);
         term.fill(0.0);
         let mut sums = PressureSums { weight, pressure: term, ratio: ratio.as_deref_mut() };
-        add(&patch.stencils, &patch.runs, &mut patch.compliance_band, &of, &mut sums);
-        patch.compliance_band.finish();
+        add(&patch.stencils, &patch.runs, &mut patch.compliance_matrix, &of, &mut sums);
+        patch.compliance_matrix.finish::<D>();
         for i in patch.active_lines.iter().cloned().flatten() {
             inverse[i] = if weight[i] > 0.0 { 1.0 / weight[i] } else { 0.0 };
             term[i] = cut(term[i] * inverse[i], self.still_pressure);

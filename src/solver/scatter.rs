@@ -3,9 +3,9 @@
 
 use decomp::array;
 
-use super::band::Band;
+use super::nodal_matrix::NodalMatrix;
+use super::particle_matrix::{Spinning, add_arms, spin_inertia};
 use super::scheme::Scheme;
-use super::spin::{spin_gradient, spin_inertia};
 use crate::shape::{Shape, with_shape, with_width};
 use crate::solver::clock::timed;
 use crate::solver::effect::{Phase, StepContext};
@@ -150,9 +150,9 @@ impl<const D: usize> Scheme<D> {
         patch: &mut Patch<D>,
         force: bool,
     ) {
-        self.clear_sums::<K, MATRIX, SPIN>(patch);
+        self.clear_sums::<K, MATRIX>(patch);
         // matrix and fields are taken out while others are read and written
-        let mut band = std::mem::take(&mut patch.band);
+        let mut matrix = std::mem::take(&mut patch.mass_matrix);
         let mut fields = self.take_sums(patch);
         let mut sums = fields.sums();
         let of = self.summed_columns(patch, force);
@@ -163,14 +163,14 @@ impl<const D: usize> Scheme<D> {
                     (r, &weights),
                     &of,
                     &mut sums,
-                    &mut band,
+                    &mut matrix,
                 );
             }
         }
         if MATRIX {
-            band.finish();
+            matrix.finish::<D>();
         }
-        patch.band = band;
+        patch.mass_matrix = matrix;
         self.put_sums(patch, fields);
     }
 
@@ -207,17 +207,16 @@ impl<const D: usize> Scheme<D> {
         (r, weights): (usize, &ParticleWeights<'_, K, D>),
         of: &SummedColumns<'_, D>,
         sums: &mut SummedSlices<'_, D>,
-        band: &mut Band,
+        matrix: &mut NodalMatrix,
     ) {
         let m = of.mass[r];
         weights.add(sums.mass, weights.values, |n| n * m);
         if let Some(moment) = of.moment.filter(|_| SPIN) {
-            let place = self.place_of(patch, r);
-            let inverse = 1.0 / spin_inertia(weights, place);
-            let (rates, place) = self.reflect_spin(patch, r, moment[r] * inverse, place);
-            let slope = spin_gradient(rates);
-            self.add_affine_momentum(patch, weights, r, slope, &mut sums.momentum);
-            band.add_spin(weights, m, place, inverse);
+            let place = self.reflect_spin(patch, r, self.place_of(patch, r));
+            let spinning = Spinning::new(place, spin_inertia(weights, &place));
+            let (x, y) = sums.momentum.split_at_mut(D - 1);
+            add_arms(weights, &place, [x[0], y[0]], of.motion(r, moment[r] / spinning.inertia));
+            matrix.particles.spinning[r] = spinning;
         } else if let Some(affine) = self.columns.affine.filter(|_| AFFINE) {
             let at = |k: usize| patch.block.columns[affine + k][r];
             let slope = array::from_fn(|a| array::from_fn(|b| at(D * a + b)));
@@ -228,8 +227,8 @@ impl<const D: usize> Scheme<D> {
                 weights.add(sums.momentum[a], weights.values, |n| n * mv);
             }
         }
-        if MATRIX && !SPIN {
-            band.add(weights, m);
+        if MATRIX {
+            matrix.add(weights, m);
         }
         if let Some(volume) = &mut sums.volume {
             let filled = of.filled[r];
@@ -280,11 +279,8 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Clears the sums over particles, and the mass matrix with `MATRIX`, of blocks with `SPIN`.
-    pub(super) fn clear_sums<const K: usize, const MATRIX: bool, const SPIN: bool>(
-        &self,
-        patch: &mut Patch<D>,
-    ) {
+    /// Clears the sums over particles, and the mass matrix with `MATRIX`.
+    pub(super) fn clear_sums<const K: usize, const MATRIX: bool>(&self, patch: &mut Patch<D>) {
         let f = &self.fields;
         let scalars = [f.mass].into_iter().chain(f.scratch..f.scratch + f.scratches);
         let vectors = [f.lumped_velocity, f.acceleration].into_iter().chain(f.residuals());
@@ -293,13 +289,14 @@ impl<const D: usize> Scheme<D> {
         for field in scalars.chain(components).chain(volume) {
             patch.nodes.fields[field].fill(0.0);
         }
+        if self.columns.spin.is_some() {
+            let spinning = &mut patch.mass_matrix.particles.spinning;
+            spinning.resize(patch.block.particles(), Spinning::default());
+        }
         if MATRIX {
             let nodes = patch.nodes.layers * patch.nodes.nodes.count();
-            let stride = patch.nodes.nodes.extent(0);
-            match SPIN {
-                true => patch.band.clear_blocks(nodes, K, stride),
-                false => patch.band.clear(nodes, K, D, stride),
-            }
+            let mass = &patch.block.columns[self.columns.mass][..patch.block.particles()];
+            patch.mass_matrix.clear::<K, D>(nodes, mass.iter().copied());
         }
     }
 

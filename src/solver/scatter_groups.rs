@@ -6,11 +6,10 @@ use std::ops::Range;
 use decomp::array;
 use wide::f64x4;
 
-use super::band::{Band, Spinning, TOGETHER};
+use super::nodal_matrix::NodalMatrix;
+use super::particle_matrix::{PackedArms, Spinning, packed_inertia};
 use super::scheme::Scheme;
-use super::spin::packed_inertia;
 use crate::solver::packed::{WindowPlace, add_to, totals};
-use crate::solver::particle_weights::Offset;
 use crate::solver::patch::Patch;
 use crate::solver::shape_weights::Stencils;
 use crate::solver::summed_fields::{SummedColumns, SummedSlices};
@@ -71,41 +70,29 @@ impl<const D: usize> SummedSlices<'_, D> {
         }
     }
 
-    /// The same of particles that turn, in a plane with cells of the edges `cell` \[m\]; `turning`
-    /// gives the distances of a particle's nodes and the rates of rotation of its two components \[1/s\].
+    /// The same of particles with spin; `spinning` gives a particle and its rate of rotation [1/s].
     #[inline(always)]
     fn add_spinning<const K: usize, const V: usize>(
         &mut self,
         stencils: &Stencils,
         group: Range<usize>,
         of: &SummedColumns<'_, D>,
-        cell: [f64; D],
-        turning: impl Fn(usize) -> (Offset<D>, [f64; 2]),
+        mut spinning: impl FnMut(usize, &[f64x4; V]) -> (Spinning, f64),
     ) {
         let place = stencils.place(group.start);
-        let (x, y) = (0, D - 1);
+        let axes = [0, D - 1];
         let mut mass = place.nodes::<K, V>(self.mass);
-        let mut along_x = place.nodes::<K, V>(self.momentum[x]);
-        let mut along_y = place.nodes::<K, V>(self.momentum[y]);
+        let mut momentum = array::map(&axes, |a| place.nodes::<K, V>(self.momentum[a]));
         for r in group {
-            let (values, m) = (stencils.packed_values::<K, V, D>(r), of.mass[r]);
-            add_to(&mut mass, &values, m);
-            let (offset, rates) = turning(r);
-            let [vx, vy] = [x, y].map(|a| m * of.velocity[a][r]);
-            let slope = m * -rates[0] * cell[y];
-            for line in 0..V {
-                let term = vx + slope * offset.at(y, line);
-                along_x[line] += values[line] * f64x4::splat(term);
-            }
-            let nodes = f64x4::from([0, 1, 2, 3].map(|k| offset.at(x, k)));
-            let terms = f64x4::splat(vy) + f64x4::splat(m * rates[1] * cell[x]) * nodes;
-            for line in 0..V {
-                along_y[line] += values[line] * terms;
-            }
+            let values = stencils.packed_values::<K, V, D>(r);
+            add_to(&mut mass, &values, of.mass[r]);
+            let (particle, omega) = spinning(r, &values);
+            PackedArms::new(values, &particle).add(&mut momentum, of.motion(r, omega));
         }
         place.put::<K, V>(self.mass, &mass);
-        place.put::<K, V>(self.momentum[x], &along_x);
-        place.put::<K, V>(self.momentum[y], &along_y);
+        for (a, momentum) in axes.into_iter().zip(&momentum) {
+            place.put::<K, V>(self.momentum[a], momentum);
+        }
     }
 
     /// Adds volume and force of a group of particles.
@@ -148,40 +135,41 @@ impl<const D: usize> Scheme<D> {
         patch: &mut Patch<D>,
         force: bool,
     ) {
-        let matrix = self.needs_matrix();
-        match (matrix, self.columns.spin) {
-            (_, Some(_)) => self.clear_sums::<K, true, true>(patch),
-            (true, None) => self.clear_sums::<K, true, false>(patch),
-            (false, None) => self.clear_sums::<K, false, false>(patch),
+        let needs_matrix = self.needs_matrix();
+        match needs_matrix {
+            true => self.clear_sums::<K, true>(patch),
+            false => self.clear_sums::<K, false>(patch),
         }
         // matrix and fields are taken out while others are read and written
-        let mut band = std::mem::take(&mut patch.band);
+        let mut matrix = std::mem::take(&mut patch.mass_matrix);
         let mut fields = self.take_sums(patch);
         let mut sums = fields.sums();
         let of = self.summed_columns(patch, force);
-        for group in patch.runs.iter().flat_map(|run| patch.stencils.groups::<K>(run.clone())) {
-            if !patch.stencils.is_narrow::<K>(group.start) {
-                self.add_wide::<K>(patch, group, &of, &mut sums, &mut band);
+        for group in &patch.stencils.groups {
+            let (is_wide, group) = (group.narrow() == 0, group.particles());
+            if is_wide {
+                self.add_wide::<K>(patch, group, &of, &mut sums, &mut matrix);
                 continue;
             }
             sums.add_rest::<K, V>(&patch.stencils, group.clone(), &of);
             match of.moment {
                 Some(moment) => {
-                    self.add_spinning::<K, V>(&mut sums, patch, &mut band, group, (&of, moment));
+                    let spinning = &mut matrix.particles.spinning;
+                    self.add_spinning::<K, V>(
+                        &mut sums,
+                        patch,
+                        spinning,
+                        group.clone(),
+                        (&of, moment),
+                    );
                 }
-                None => {
-                    sums.add_motion::<K, V>(&patch.stencils, group.clone(), &of);
-                    if matrix {
-                        let mass = |r: usize| of.mass[r];
-                        band.add_group::<K, V, D>(&patch.stencils, group, mass);
-                    }
-                }
+                None => sums.add_motion::<K, V>(&patch.stencils, group.clone(), &of),
             }
         }
-        if matrix {
-            band.finish();
+        if needs_matrix {
+            matrix.finish::<D>();
         }
-        patch.band = band;
+        patch.mass_matrix = matrix;
         self.put_sums(patch, fields);
     }
 
@@ -189,7 +177,7 @@ impl<const D: usize> Scheme<D> {
     /// each direction of a plane. The sums of a window stay in vectors as long as the next particle has
     /// the same window.
     pub(super) fn scatter_squares(&self, patch: &mut Patch<D>) {
-        self.clear_sums::<2, false, false>(patch);
+        self.clear_sums::<2, false>(patch);
         let mut fields = self.take_sums(patch);
         let mut nodal = fields.sums();
         let of = self.summed_columns(patch, true);
@@ -206,9 +194,9 @@ impl<const D: usize> Scheme<D> {
             for ((weights, &first), ((&m, (&vx, &vy)), &stress)) in
                 weights.zip(&stencils.first[run.clone()]).zip(particles)
             {
-                if first as usize != place.first {
+                if first != place.first {
                     nodal.put_square(place, &sums);
-                    place.first = first as usize;
+                    place.first = first;
                     sums = nodal.square(place);
                 }
                 add_to(&mut sums.mass, &weights.values, m);
@@ -232,56 +220,41 @@ impl<const D: usize> Scheme<D> {
         group: Range<usize>,
         of: &SummedColumns<'_, D>,
         sums: &mut SummedSlices<'_, D>,
-        band: &mut Band,
+        matrix: &mut NodalMatrix,
     ) {
         for (r, weights) in group.clone().zip(patch.stencils.particles::<K, D>(group)) {
             let one = (r, &weights);
             match (self.needs_matrix(), of.moment) {
                 (_, Some(_)) => {
-                    self.add_particle::<K, true, false, true>(patch, one, of, sums, band);
+                    self.add_particle::<K, true, false, true>(patch, one, of, sums, matrix);
                 }
                 (true, None) => {
-                    self.add_particle::<K, true, false, false>(patch, one, of, sums, band);
+                    self.add_particle::<K, true, false, false>(patch, one, of, sums, matrix);
                 }
                 (false, None) => {
-                    self.add_particle::<K, false, false, false>(patch, one, of, sums, band);
+                    self.add_particle::<K, false, false, false>(patch, one, of, sums, matrix);
                 }
             }
         }
     }
 
-    /// Adds motion and blocks of the mass matrix of a group of particles with spin, a few at a time.
+    /// Adds the motion of a group of particles with spin, and lists them for products with the mass
+    /// matrix.
     #[inline(always)]
     fn add_spinning<const K: usize, const V: usize>(
         &self,
         sums: &mut SummedSlices<'_, D>,
         patch: &Patch<D>,
-        band: &mut Band,
+        spinning: &mut [Spinning],
         group: Range<usize>,
         (of, moment): (&SummedColumns<'_, D>, &[f64]),
     ) {
         let stencils = &patch.stencils;
-        let mut from = group.start;
-        while from < group.end {
-            let count = TOGETHER.min(group.end - from);
-            let mut turning = [[0.0; 2]; TOGETHER];
-            let mut spinning = [Spinning::default(); TOGETHER];
-            for k in 0..count {
-                let r = from + k;
-                let place = self.place_of(patch, r);
-                let inertia = packed_inertia(&stencils.packed_values::<K, V, D>(r), place);
-                let [inertia, ..] = totals::<K>([inertia; 4]);
-                let inverse = 1.0 / inertia;
-                let (rates, place) = self.reflect_spin(patch, r, moment[r] * inverse, place);
-                turning[k] = rates;
-                spinning[k] = Spinning { mass: of.mass[r], place, inverse };
-            }
-            let some = from..from + count;
-            sums.add_spinning::<K, V>(stencils, some.clone(), of, self.cell, |r| {
-                (self.offset(patch, r), turning[r - from])
-            });
-            band.add_spinning::<K, V, D>(stencils, some, &spinning[..count]);
-            from += count;
-        }
+        sums.add_spinning::<K, V>(stencils, group, of, |r, values| {
+            let place = self.reflect_spin(patch, r, self.place_of(patch, r));
+            let [inertia, ..] = totals::<K>([packed_inertia(values, &place); 4]);
+            spinning[r] = Spinning::new(place, inertia);
+            (spinning[r], moment[r] / inertia)
+        });
     }
 }

@@ -158,25 +158,18 @@ impl<const D: usize> Scheme<D> {
 
     /// Lists the nodes beside the edge, once the values of `edge` beyond the patch are known.
     fn find_beside_edge(&self, patch: &mut Patch<D>) {
+        let mut product = [std::mem::take(&mut patch.nodes.fields[self.fields.scratch])];
         let fields = &patch.nodes.fields;
         let (edge, inverse) = (&fields[self.fields.edge], &fields[self.fields.inverse]);
-        let beside = &mut patch.beside_edge;
-        beside.clear();
-        for i in patch.span_lines.iter().cloned().flatten().filter(|&i| edge[i] != 0.0) {
-            let others = patch.band.distances().map(|o| i.wrapping_add_signed(o));
-            beside.extend(others.map(|other| (other, 0.0)));
-        }
-        beside.sort_unstable_by_key(|(i, _)| *i);
-        beside.dedup_by_key(|(i, _)| *i);
-        let mut lines = patch.active_lines.iter().peekable();
-        beside.retain_mut(|(i, share)| {
-            while lines.next_if(|line| line.end <= *i).is_some() {}
-            if lines.peek().is_none_or(|line| *i < line.start) || edge[*i] != 0.0 {
-                return false;
-            }
-            *share = patch.band.product_at(edge, *i) * inverse[*i];
-            *share > 0.0
-        });
+        let space = patch.matrix_space();
+        patch.mass_matrix.products::<D>(space, &[edge], &mut product);
+        let [mut product] = product;
+        let nodes = patch.active_lines.iter().cloned().flatten();
+        let shares = nodes.filter(|&i| edge[i] == 0.0).map(|i| (i, product[i] * inverse[i]));
+        patch.beside_edge.clear();
+        patch.beside_edge.extend(shares.filter(|(_, share)| *share > 0.0));
+        product.fill(0.0);
+        patch.nodes.fields[self.fields.scratch] = product;
     }
 
     /// Masks the first term of a series.
@@ -252,21 +245,19 @@ impl<const D: usize> Scheme<D> {
 
     /// Next sums of series of one matrix, each vector into its own scratch field.
     fn next_terms<const V: usize>(&self, patch: &mut Patch<D>, all: [ProductSeries; V]) {
-        let (band, inverse) = match all[0].matrix {
-            Matrix::Mass => (&patch.band, self.fields.inverse),
-            Matrix::Compliance => (&patch.compliance_band, self.fields.relaxation[1]),
-            Matrix::Effect(number, inverse) => (&patch.bands[number], inverse),
-        };
         let fields = &mut patch.nodes.fields;
         let mut next: [Vec<f64>; V] =
             decomp::array::from_fn(|v| std::mem::take(&mut fields[self.fields.scratch + v]));
+        let fields = &patch.nodes.fields;
         let (x, t) = (all.map(|s| &fields[s.sum][..]), all.map(|s| &fields[s.first][..]));
-        for line in &patch.active_lines {
-            let y = next.each_mut().map(|y| &mut y[..]);
-            band.next_sums(x, &fields[inverse], t, line.clone(), y);
-        }
+        let (matrix, inverse) = match all[0].matrix {
+            Matrix::Mass => (&patch.mass_matrix, self.fields.inverse),
+            Matrix::Compliance => (&patch.compliance_matrix, self.fields.relaxation[1]),
+            Matrix::Effect(number, inverse) => (&patch.matrices[number], inverse),
+        };
+        matrix.next_sums::<D, V>(patch.matrix_space(), x, &fields[inverse], t, &mut next);
         for (v, next) in next.into_iter().enumerate() {
-            fields[self.fields.scratch + v] = next;
+            patch.nodes.fields[self.fields.scratch + v] = next;
         }
     }
 
@@ -472,11 +463,9 @@ impl<const D: usize> Scheme<D> {
         let fields = &mut patch.nodes.fields;
         let mut work: [Vec<f64>; D] =
             decomp::array::from_fn(|a| std::mem::take(&mut fields[f.work + a]));
-        work.iter_mut().for_each(|w| w.fill(0.0));
+        let fields = &patch.nodes.fields;
         let star: [&[f64]; D] = decomp::array::from_fn(|a| &fields[f.velocity_star + a][..]);
-        for line in &patch.active_lines {
-            patch.band.product(star, line.clone(), work.each_mut().map(|w| &mut w[..]));
-        }
+        patch.mass_matrix.products::<D>(patch.matrix_space(), &star, &mut work);
         for (a, work) in work.into_iter().enumerate() {
             patch.nodes.fields[f.work + a] = work;
             let [inverse, lumped, w, first] =
@@ -495,19 +484,15 @@ impl<const D: usize> Scheme<D> {
         for i in 0..x.len() {
             x[i] = (1.0 - a) * lumped[i] + 0.5 * (star[i] - lumped[i]);
         }
-        let [inverse, lumped, x, y, w] = patch.nodes.fields_mut([
-            f.inverse,
-            f.lumped_velocity + axis,
-            f.first + axis,
-            f.scratch,
-            f.work + axis,
-        ]);
-        w.fill(0.0);
-        for line in &patch.active_lines {
-            patch.band.product([&*x], line.clone(), [&mut *y]);
-            for i in line.clone() {
-                w[i] = a * lumped[i] + inverse[i] * y[i];
-            }
+        let mut product = [std::mem::take(&mut patch.nodes.fields[f.work + axis])];
+        let x = &patch.nodes.fields[f.first + axis][..];
+        patch.mass_matrix.products::<D>(patch.matrix_space(), &[x], &mut product);
+        let [product] = product;
+        patch.nodes.fields[f.work + axis] = product;
+        let [inverse, lumped, w] =
+            patch.nodes.fields_mut([f.inverse, f.lumped_velocity + axis, f.work + axis]);
+        for i in patch.active_lines.iter().cloned().flatten() {
+            w[i] = a * lumped[i] + inverse[i] * w[i];
         }
     }
 

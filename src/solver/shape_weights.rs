@@ -11,6 +11,9 @@ use wide::f64x4;
 use crate::solver::packed::{PACKED, PackedWeights, WindowPlace, pack};
 use crate::solver::particle_weights::{NARROW, ParticleWeights, lines};
 
+/// Greatest number of particles in a group.
+pub const TOGETHER: usize = 4;
+
 /// Numbers after the last weight, so that the last line of a window can be loaded as four numbers.
 const SPARE: usize = PACKED - 1;
 
@@ -33,8 +36,39 @@ pub struct Stencils {
     pub values: Vec<f64>,
     /// Gradients [1/m], `width`^D per particle and direction.
     pub gradients: Vec<f64>,
+    /// Groups of particles in canonical order, in a plane for windows of more than two nodes along
+    /// a direction.
+    pub groups: Vec<Group>,
     /// Data kept by the total-Lagrangian frame.
     kept: Kept,
+}
+
+/// At most [`TOGETHER`] consecutive particles with the same window, all of them narrow or none.
+#[derive(Clone, Copy, Debug)]
+pub struct Group {
+    first: u32,
+    count: u8,
+    narrow: bool,
+}
+
+impl Group {
+    /// First particle.
+    #[inline(always)]
+    pub fn first(self) -> usize {
+        self.first as usize
+    }
+
+    /// Particles.
+    #[inline(always)]
+    pub fn particles(self) -> Range<usize> {
+        self.first()..self.first() + usize::from(self.count)
+    }
+
+    /// Number of particles, if they are narrow, else 0.
+    #[inline(always)]
+    pub fn narrow(self) -> usize {
+        if self.narrow { usize::from(self.count) } else { 0 }
+    }
 }
 
 /// Data that the total-Lagrangian frame keeps from step to step: the weights of a particle or its
@@ -129,6 +163,18 @@ impl Stencils {
         pack::<K, V>(&self.values[particle * const { K * lines(K, D) }..])
     }
 
+    /// Values of `N` particles from `first` on, each in `V` vectors.
+    #[inline(always)]
+    pub fn packed_group<const K: usize, const V: usize, const D: usize, const N: usize>(
+        &self,
+        first: usize,
+    ) -> [[f64x4; V]; N] {
+        let nodes = const { K * lines(K, D) };
+        // a length known at compile time: one check for all of them
+        let numbers = &self.values[first * nodes..][..const { N * K * lines(K, D) + SPARE }];
+        decomp::array::from_fn(|k| pack::<K, V>(&numbers[k * nodes..]))
+    }
+
     /// Gradients of `particle` along each direction in `V` vectors [1/m].
     #[inline(always)]
     pub fn packed_gradients<const K: usize, const V: usize, const D: usize>(
@@ -166,29 +212,36 @@ impl Stencils {
     /// Window of `particle`.
     #[inline(always)]
     pub fn place(&self, particle: usize) -> WindowPlace {
-        WindowPlace { first: self.first[particle] as usize, stride: self.stride }
+        WindowPlace { first: self.first[particle], stride: self.stride as u32 }
     }
 
-    /// Ranges of consecutive particles of `run` with the same window, all of them narrow or none.
-    #[inline(always)]
-    pub fn groups<const K: usize>(
-        &self,
-        run: Range<usize>,
-    ) -> impl Iterator<Item = Range<usize>> + '_ {
-        let first = &self.first[run.clone()];
-        // empty if windows are not wider
-        let narrow = self.narrow.get(run.clone()).unwrap_or_default();
-        let mut from = 0;
-        std::iter::from_fn(move || {
-            let window = first.get(from)?;
-            let start = from;
-            from += 1;
-            while first.get(from) == Some(window) && (K <= NARROW || narrow[from] == narrow[start])
-            {
-                from += 1;
+    /// Finds the groups of particles in `runs`, the ranges of particles in canonical order.
+    pub(super) fn find_groups<const K: usize>(&mut self, runs: &[Range<usize>]) {
+        let Stencils { groups, first, narrow, .. } = self;
+        groups.clear();
+        for run in runs {
+            // empty if windows are not wider
+            let narrow = narrow.get(run.clone()).unwrap_or_default();
+            let is_narrow = |at: usize| K <= NARROW || narrow[at];
+            let mut group: Option<Group> = None;
+            for (at, window) in first[run.clone()].iter().enumerate() {
+                match &mut group {
+                    Some(group)
+                        if usize::from(group.count) < TOGETHER
+                            && first[group.first as usize] == *window
+                            && group.narrow == is_narrow(at) =>
+                    {
+                        group.count += 1;
+                    }
+                    _ => {
+                        groups.extend(group);
+                        let start = (run.start + at) as u32;
+                        group = Some(Group { first: start, count: 1, narrow: is_narrow(at) });
+                    }
+                }
             }
-            Some(run.start + start..run.start + from)
-        })
+            groups.extend(group);
+        }
     }
 
     /// Whether the particles of `block`, including ghosts, are those whose weights were last kept.

@@ -177,28 +177,24 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Rates of rotation [1/s] of the velocity components x and y of a particle with spin at the
-    /// rate `omega` [1/s], and its `place` for the mass matrix. For an image beyond a no-slip wall
-    /// the components of both along the wall are reversed, as those of all its vectors. That
-    /// component of phi is proportional to the distance across the wall.
+    /// `place` of the window of a particle with spin. For an image beyond a no-slip wall the component
+    /// of phi along the wall is reversed, as those of all its vectors; it is proportional to the
+    /// distance across the wall.
     #[inline(always)]
     pub(crate) fn reflect_spin(
         &self,
         patch: &Patch<D>,
         particle: usize,
-        omega: f64,
         mut place: Distances,
-    ) -> ([f64; 2], Distances) {
-        let mut rates = [omega; 2];
+    ) -> Distances {
         let is_ghost = particle >= patch.block.own();
         for axis in (0..D).filter(|&a| is_ghost && self.no_slip[a]) {
             if self.is_turned(patch, particle, axis) {
-                (0..D).filter(|&a| a != axis).for_each(|a| rates[a] = -rates[a]);
                 place.first[axis] = -place.first[axis];
                 place.cell[axis] = -place.cell[axis];
             }
         }
-        (rates, place)
+        place
     }
 
     /// Reverses the internal force of particles beyond no-slip walls along these walls, after it

@@ -40,6 +40,15 @@ pub(super) struct SummedColumns<'a, const D: usize> {
     pub moment: Option<&'a [f64]>,
 }
 
+impl<const D: usize> SummedColumns<'_, D> {
+    /// Momentum of a particle in a plane along x and y [kg m/s], and its mass times its rate of
+    /// rotation `omega` [1/s].
+    #[inline(always)]
+    pub fn motion(&self, r: usize, omega: f64) -> [f64; 3] {
+        array::map(&[self.velocity[0][r], self.velocity[D - 1][r], omega], |v| self.mass[r] * v)
+    }
+}
+
 impl<const D: usize> SummedFields<D> {
     /// The fields as slices.
     pub fn sums(&mut self) -> SummedSlices<'_, D> {

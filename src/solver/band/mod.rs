@@ -1,17 +1,16 @@
-//! Symmetric matrices over the nodes of a patch, such as the mass matrix.
+//! Symmetric matrices over the nodes of a line, such as the mass matrix.
 //!
 //! This module does not depend on materials or messages.
 
-mod particles;
 mod products;
-mod spinning;
 
 use std::ops::Range;
 
 use decomp::array::map;
 use wide::f64x4;
 
-use crate::solver::particle_weights::{Distances, NARROW, lines};
+use crate::shape::{MOST_NODES, add_product};
+use crate::solver::particle_weights::{NARROW, ParticleWeights};
 
 /// Number of nodes of which a diagonal is zero or not together, and which are cleared together.
 const BLOCK: usize = 64;
@@ -22,26 +21,8 @@ const PAGE: usize = 512;
 /// ... so the entries of a node on successive diagonals are shifted by this many doubles.
 const APART: usize = 24;
 
-/// Greatest number of particles of a group that are added at a time.
-pub const TOGETHER: usize = 4;
-
-/// A particle with spin, see [`Band::add_spin`].
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Spinning {
-    /// Mass [kg].
-    pub mass: f64,
-    /// Distances of the nodes of the window from the particle.
-    pub place: Distances,
-    /// 1/I [1/m2].
-    pub inverse: f64,
-}
-
-/// Number of entries of a block of two by two: xx, yy, xy, yx.
-const BLOCK_ENTRIES: usize = 4;
-
-/// Symmetric matrix M_ij = sum_p m_p N_ip N_jp over the nodes of a patch, stored by diagonals: a
-/// diagonal holds M_(i,i+offset) at i, for offsets to later nodes. With spin an entry is a block of
-/// two by two, and the diagonals of its entries follow each other.
+/// Symmetric matrix M_ij = sum_p w_p N_ip N_jp over the nodes of a line, stored by diagonals:
+/// diagonal d holds M_(i,i+d) at i.
 #[derive(Clone, Debug, Default)]
 pub struct Band {
     /// The matrix stored by nodes, while particles are added; otherwise zeros.
@@ -53,12 +34,8 @@ pub struct Band {
     stride: usize,
     /// For each block of nodes, the diagonals with nonzero entries.
     filled: Vec<bool>,
-    /// Distance from a node to the other node of each diagonal, in the patch's arrays.
-    offsets: Vec<usize>,
-    /// Number of entries per pair of nodes: 1, or 4 for blocks of two by two.
-    entries: usize,
-    /// Whether narrow particles contribute to each diagonal.
-    near: Vec<bool>,
+    /// Number of diagonals.
+    count: usize,
 }
 
 /// Entries that particles have changed.
@@ -71,22 +48,6 @@ enum Touched {
     Near,
     /// All diagonals.
     All,
-}
-
-/// Number of diagonals for windows of `width` nodes along each of `dimension` directions.
-const fn diagonals(width: usize, dimension: usize) -> usize {
-    (lines(2 * width - 1, dimension) * (2 * width - 1)).div_ceil(2)
-}
-
-/// Place of the first entry that node `node` of a line and the `later`-th line from its own on add
-/// to, for windows of `width` nodes; the entries of the node start at `row`. On the node's own line
-/// zeros are added to entries before.
-#[inline(always)]
-const fn first_entry(width: usize, row: usize, node: usize, later: usize) -> usize {
-    match later {
-        0 => row - node,
-        _ => row + width + (later - 1) * (2 * width - 1) + width - 1 - node,
-    }
 }
 
 /// Copies the entries of diagonal `d` from `rows` of `count` entries; returns whether any is not
@@ -135,71 +96,70 @@ fn fours_from(row: &[f64], first: usize) -> f64x4 {
 }
 
 impl Band {
-    /// Memory of the matrix per node for windows of `width` nodes along each of `dimension`
-    /// directions [bytes]: it is held by nodes and by diagonals.
-    pub const fn bytes_per_node(width: usize, dimension: usize) -> usize {
-        2 * size_of::<f64>() * diagonals(width, dimension)
+    /// Memory of the matrix per node for windows of `width` nodes [bytes]: it is held by nodes and by
+    /// diagonals.
+    pub const fn bytes_per_node(width: usize) -> usize {
+        2 * size_of::<f64>() * width
     }
 
-    /// The same for blocks of two by two, in a plane [bytes].
-    pub const fn block_bytes_per_node(width: usize) -> usize {
-        BLOCK_ENTRIES * Band::bytes_per_node(width, 2)
-    }
-
-    /// Prepares a sum over particles with `width` nodes along each of `dimension` directions, on
-    /// `nodes` nodes, in arrays with lines of length `stride`.
-    pub fn clear(&mut self, nodes: usize, width: usize, dimension: usize, stride: usize) {
-        self.clear_entries(nodes, width, dimension, stride, 1);
-    }
-
-    /// Prepares a sum of blocks of two by two over particles with [`Band::add_spin`], with the
-    /// arguments of [`Band::clear`] in a plane.
-    pub fn clear_blocks(&mut self, nodes: usize, width: usize, stride: usize) {
-        self.clear_entries(nodes, width, 2, stride, BLOCK_ENTRIES);
-    }
-
-    fn clear_entries(
-        &mut self,
-        nodes: usize,
-        width: usize,
-        dimension: usize,
-        stride: usize,
-        entries: usize,
-    ) {
-        let count = entries * diagonals(width, dimension);
-        let across = if dimension == 1 { 1 } else { width };
-        let place = |line: usize, k: usize| match line {
-            0 => k,
-            _ => line * stride + k + 1 - width,
-        };
-        let lengths = (0..across).map(|line| (line, if line == 0 { width } else { 2 * width - 1 }));
-        let places = lengths.flat_map(|(line, length)| (0..length).map(move |k| (line, k)));
-        let offsets = places.clone().map(|(line, k)| place(line, k));
-        if self.rows.len() == nodes * count && offsets.clone().eq(self.offsets.iter().copied()) {
+    /// Prepares a sum over particles with `width` nodes, on `nodes` nodes.
+    pub fn clear(&mut self, nodes: usize, width: usize) {
+        if self.rows.len() == nodes * width && self.count == width {
             // the last sum has left zeros
             return;
         }
-        self.entries = entries;
-        self.offsets.clear();
-        self.offsets.extend(offsets);
-        debug_assert_eq!(entries * self.offsets.len(), count);
-        let is_near = |(line, k): (usize, usize)| match line {
-            0 => k < NARROW,
-            _ => line < NARROW && (k + 1).abs_diff(width) < NARROW,
-        };
-        self.near.clear();
-        let near = places.map(is_near);
-        (0..entries).for_each(|_| self.near.extend(near.clone()));
+        self.count = width;
         let blocks = nodes.div_ceil(BLOCK);
         self.touched.clear();
         self.touched.resize(blocks, Touched::No);
         self.filled.clear();
-        self.filled.resize(blocks * count, false);
+        self.filled.resize(blocks * width, false);
         self.rows.clear();
-        self.rows.resize(nodes * count, 0.0);
+        self.rows.resize(nodes * width, 0.0);
         self.stride = nodes.next_multiple_of(PAGE) + APART;
         self.diagonals.clear();
-        self.diagonals.resize(self.stride * count, 0.0);
+        self.diagonals.resize(self.stride * width, 0.0);
+    }
+
+    /// Adds a particle of weight `w`, such as its mass [kg].
+    #[inline(always)]
+    pub fn add<const K: usize, const D: usize>(
+        &mut self,
+        weights: &ParticleWeights<'_, K, D>,
+        w: f64,
+    ) {
+        if weights.is_narrow() {
+            self.add_part::<K, D, NARROW>(weights, w);
+        } else {
+            self.add_part::<K, D, K>(weights, w);
+        }
+    }
+
+    /// Adds the products of the first `M` nodes.
+    #[inline(always)]
+    fn add_part<const K: usize, const D: usize, const M: usize>(
+        &mut self,
+        weights: &ParticleWeights<'_, K, D>,
+        w: f64,
+    ) {
+        let (from, values) = (weights.first, &weights.values[0]);
+        self.touch([from, from + M - 1], if M < K { Touched::Near } else { Touched::All });
+        // a length known at compile time avoids bounds checks
+        let rows = &mut self.rows[from * K..][..const { K * K }];
+        // zeros after the last node, so that all nodes add as many terms
+        let mut padded = [0.0; 2 * MOST_NODES];
+        padded[..M].copy_from_slice(&values[..M]);
+        for i in 0..M {
+            let term = w * values[i];
+            if M == NARROW {
+                let shifted: &[f64; M] = padded[i..].first_chunk().expect("room for zeros");
+                add_product(rows, i * K, term, shifted);
+            } else {
+                for k in i..M {
+                    rows[i * K + k - i] += term * values[k];
+                }
+            }
+        }
     }
 
     /// Entries of a diagonal for some nodes.
@@ -225,30 +185,16 @@ impl Band {
 
     /// Completes the matrix after all particles have been added.
     pub fn finish(&mut self) {
-        // known to the compiler for windows of 4 nodes on a line, and of 3, 4 and 6 nodes in a plane,
-        // without and with spin
-        const LINE: usize = diagonals(4, 1);
-        const THREE: usize = diagonals(3, 2);
-        const FOUR: usize = diagonals(4, 2);
-        const SIX: usize = diagonals(6, 2);
-        const SPIN_THREE: usize = BLOCK_ENTRIES * THREE;
-        const SPIN_FOUR: usize = BLOCK_ENTRIES * FOUR;
-        const SPIN_SIX: usize = BLOCK_ENTRIES * SIX;
-        match self.entries * self.offsets.len() {
-            LINE => self.turn::<LINE>(),
-            THREE => self.turn::<THREE>(),
-            FOUR => self.turn::<FOUR>(),
-            SIX => self.turn::<SIX>(),
-            SPIN_THREE => self.turn::<SPIN_THREE>(),
-            SPIN_FOUR => self.turn::<SPIN_FOUR>(),
-            SPIN_SIX => self.turn::<SPIN_SIX>(),
+        match self.count {
+            // known to the compiler for the windows of splines
+            4 => self.turn::<4>(),
             _ => self.turn::<0>(),
         }
     }
 
     /// Turns the matrix stored by nodes into diagonals, of which there are `COUNT` if it is not 0.
     fn turn<const COUNT: usize>(&mut self) {
-        let count = if COUNT > 0 { COUNT } else { self.entries * self.offsets.len() };
+        let count = if COUNT > 0 { COUNT } else { self.count };
         let nodes = self.rows.len() / count;
         let blocks = self.touched.iter_mut().zip(self.filled.chunks_exact_mut(count));
         for (block, (touched, filled)) in blocks.enumerate() {
@@ -259,12 +205,9 @@ impl Band {
             let rows = &mut self.rows[from * count..to * count];
             let mut first = 0;
             for diagonals in self.diagonals.chunks_mut(4 * self.stride) {
-                let some = first..count.min(first + 4);
-                let filled = &mut filled[some.clone()];
+                let filled = &mut filled[first..count.min(first + 4)];
                 let mut parts = diagonals.chunks_exact_mut(self.stride).map(|d| &mut d[from..to]);
-                if touched == Touched::No
-                    || (touched == Touched::Near && !self.near[some].contains(&true))
-                {
+                if touched == Touched::No || (touched == Touched::Near && first >= NARROW) {
                     for (part, filled) in parts.zip(filled) {
                         if std::mem::take(filled) {
                             part.fill(0.0);
@@ -286,60 +229,46 @@ impl Band {
         }
     }
 
-    /// Calls `act` with each other node of a line that shares particles with node `i`, and the
-    /// entry of both [kg].
+    /// Calls `act` with each other node that shares particles with node `i`, and the entry of both
+    /// [kg].
     #[inline(always)]
     pub fn each_neighbour(&self, i: usize, mut act: impl FnMut(usize, f64)) {
-        for (d, &o) in self.offsets.iter().enumerate().skip(1) {
-            act(i + o, self.diagonals[d * self.stride + i]);
-            act(i - o, self.diagonals[d * self.stride + i - o]);
+        for d in 1..self.count {
+            act(i + d, self.diagonals[d * self.stride + i]);
+            act(i - d, self.diagonals[d * self.stride + i - d]);
         }
-    }
-
-    /// Distances from a node to the others with which it may have an entry, in the patch's arrays.
-    pub fn distances(&self) -> impl Iterator<Item = isize> + Clone + '_ {
-        let later = self.offsets.iter().skip(1).map(|&o| o as isize);
-        later.clone().chain(later.map(|o| -o))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::particle_weights::ParticleWeights;
-    use crate::solver::shape_weights::Stencils;
 
     /// A particle: first node, mass and values.
-    type Particle<const K: usize> = (usize, f64, Vec<[f64; K]>);
+    type Particle<const K: usize> = (usize, f64, [f64; K]);
 
     /// Adds particles to `band` and compares its products with several vectors at a time with the
     /// products of a full matrix.
-    fn check_with<const K: usize, const D: usize>(
+    fn check_with<const K: usize>(
         band: &mut Band,
-        extent: [usize; 2],
+        nodes: usize,
         particles: &[Particle<K>],
         inner: Range<usize>,
     ) {
-        let nodes = extent[0] * extent[1];
-        band.clear(nodes, K, D, extent[0]);
+        band.clear(nodes, K);
         let mut full = vec![vec![0.0; nodes]; nodes];
         for (first, mass, values) in particles {
-            let beyond = |l: usize, k: usize| l >= NARROW || k >= NARROW;
-            let mut places = (0..values.len()).flat_map(|l| (0..K).map(move |k| (l, k)));
-            let narrow = K > NARROW && places.all(|(l, k)| !beyond(l, k) || values[l][k] == 0.0);
-            let weights: ParticleWeights<'_, K, D> = ParticleWeights {
+            let narrow = K > NARROW && values[NARROW.min(K)..].iter().all(|n| *n == 0.0);
+            let weights: ParticleWeights<'_, K, 1> = ParticleWeights {
                 first: *first,
-                stride: extent[0],
+                stride: nodes,
                 narrow,
-                values,
+                values: std::slice::from_ref(values),
                 gradients: &[],
             };
             band.add(&weights, *mass);
-            let place = |l: usize, k: usize| first + l * extent[0] + k;
-            for (l, k) in (0..values.len()).flat_map(|l| (0..K).map(move |k| (l, k))) {
-                for (m, j) in (0..values.len()).flat_map(|m| (0..K).map(move |j| (m, j))) {
-                    full[place(l, k)][place(m, j)] += mass * values[l][k] * values[m][j];
-                }
+            for (k, j) in (0..K).flat_map(|k| (0..K).map(move |j| (k, j))) {
+                full[first + k][first + j] += mass * values[k] * values[j];
             }
         }
         band.finish();
@@ -355,123 +284,22 @@ mod tests {
         }
         let (d, mut next) = (vector(4), [vec![0.0; nodes], vec![0.0; nodes]]);
         let into = next.each_mut().map(|y| &mut y[..]);
-        band.next_sums(
-            x.each_ref().map(|x| &x[..]),
-            &d,
-            t.each_ref().map(|t| &t[..]),
-            inner.clone(),
-            into,
-        );
+        let [x_fields, t_fields] = [&x, &t].map(|all| all.each_ref().map(|x| &x[..]));
+        band.next_sums(x_fields, &d, t_fields, inner.clone(), into);
         for (v, i) in (0..2).flat_map(|v| inner.clone().map(move |i| (v, i))) {
             let exact = t[v][i] + (x[v][i] - d[i] * of(i, &x[v]));
             assert!(is_close(next[v][i], exact), "vector {v}, node {i}: {} {exact}", next[v][i]);
         }
     }
 
-    fn check<const K: usize, const D: usize>(
-        extent: [usize; 2],
-        particles: &[Particle<K>],
-        inner: Range<usize>,
-    ) {
-        check_with::<K, D>(&mut Band::default(), extent, particles, inner);
-    }
-
     #[test]
     fn the_band_is_the_matrix_of_products() {
-        let particles = [
-            (3, 2.0, vec![[0.2, 0.5, 0.3]]),
-            (4, 1.5, vec![[0.1, 0.6, 0.3]]),
-            (3, 0.7, vec![[0.0, 0.4, 0.6]]),
-        ];
-        check::<3, 1>([12, 1], &particles, 3..9);
-    }
-
-    #[test]
-    fn in_a_plane_too() {
-        let lines = |a: f64| vec![[0.1, 0.2, 0.05], [a, 0.25, 0.1], [0.0, 0.07, 0.3 - a]];
-        let particles = [(40, 2.0, lines(0.1)), (41, 1.5, lines(0.2)), (52, 0.7, lines(0.05))];
-        check::<3, 2>([12, 9], &particles, 36..80);
-    }
-
-    #[test]
-    fn with_four_nodes_a_line_too() {
-        let lines = |a: f64| -> Vec<[f64; 4]> {
-            (0..4).map(|l| decomp::array::from_fn(|k| a + (l * 5 + k * 3) as f64 / 40.0)).collect()
-        };
+        let three =
+            [(3, 2.0, [0.2, 0.5, 0.3]), (4, 1.5, [0.1, 0.6, 0.3]), (3, 0.7, [0.0, 0.4, 0.6])];
+        check_with(&mut Band::default(), 12, &three, 3..9);
         // nodes in a number that neither four nor a block divides
-        let particles = [(45, 2.0, lines(0.1)), (46, 1.5, lines(0.2)), (71, 0.7, lines(0.05))];
-        check::<4, 2>([13, 15], &particles, 48..140);
-        let line = |a: f64| vec![[a, 0.4, 0.3, 0.3 - a]];
-        check::<4, 1>([19, 1], &[(4, 2.0, line(0.1)), (6, 0.5, line(0.2))], 4..14);
-    }
-
-    /// Weights of five particles, four of which have one window of `K` nodes along each direction.
-    fn grouped<const K: usize, const D: usize>(stride: usize) -> Stencils {
-        let mut stencils = Stencils::default();
-        stencils.resize::<K, D>(5, stride);
-        let first = 2 + (D as u32 - 1) * 2 * stride as u32;
-        stencils.first.copy_from_slice(&[first, first, first, first, first + 1]);
-        stencils.narrow.fill(true);
-        let number = |k: usize| ((k * k * 31 + k * 17) % 97) as f64 / 97.0;
-        stencils.values.iter_mut().enumerate().for_each(|(k, v)| *v = number(k));
-        stencils
-    }
-
-    #[test]
-    fn groups_have_the_sums_of_single_particles() {
-        fn check<const K: usize, const V: usize, const D: usize>(nodes: usize, stride: usize) {
-            let (stencils, mass) = (grouped::<K, D>(stride), [2.0, 0.3, 1.1, 0.7, 1.9]);
-            let [mut one, mut grouped] = [Band::default(), Band::default()];
-            one.clear(nodes, K, D, stride);
-            grouped.clear(nodes, K, D, stride);
-            for r in 0..5 {
-                one.add::<K, D>(&stencils.particle(r), mass[r]);
-            }
-            for group in stencils.groups::<K>(0..5) {
-                grouped.add_group::<K, V, D>(&stencils, group, |r| mass[r]);
-            }
-            assert!(one.rows.iter().any(|m| *m > 0.5));
-            assert_eq!(one.rows, grouped.rows, "{K} nodes");
-            assert_eq!(one.touched, grouped.touched, "{K} nodes");
-        }
-        check::<3, 1, 1>(20, 20);
-        check::<4, 1, 1>(20, 20);
-        check::<3, 3, 2>(120, 12);
-        check::<4, 4, 2>(120, 12);
-        check::<6, 4, 2>(160, 12);
-    }
-
-    #[test]
-    fn groups_with_spin_too() {
-        fn check<const K: usize, const V: usize>() {
-            let (stencils, stride) = (grouped::<K, 2>(12), 12);
-            let spinning: Vec<Spinning> = (0..5)
-                .map(|r| Spinning {
-                    mass: 2.0 - 0.3 * r as f64,
-                    place: Distances {
-                        first: [-0.9 + 0.1 * r as f64, -0.7],
-                        skipped: [f64::from(u8::from(r == 1)), 0.0],
-                        cell: [0.5, 0.4],
-                    },
-                    inverse: 3.0 + r as f64,
-                })
-                .collect();
-            let [mut one, mut grouped] = [Band::default(), Band::default()];
-            one.clear_blocks(160, K, stride);
-            grouped.clear_blocks(160, K, stride);
-            for (r, p) in spinning.iter().enumerate() {
-                one.add_spin::<K, 2>(&stencils.particle(r), p.mass, p.place, p.inverse);
-            }
-            for group in stencils.groups::<K>(0..5) {
-                let some = &spinning[group.clone()];
-                grouped.add_spinning::<K, V, 2>(&stencils, group, some);
-            }
-            assert!(one.rows.iter().any(|m| *m < -0.1));
-            assert_eq!(one.rows, grouped.rows, "{K} nodes");
-        }
-        check::<3, 3>();
-        check::<4, 4>();
-        check::<6, 4>();
+        let line = |a: f64| [a, 0.4, 0.3, 0.3 - a];
+        check_with(&mut Band::default(), 71, &[(4, 2.0, line(0.1)), (6, 0.5, line(0.2))], 4..66);
     }
 
     /// One matrix used for several sums: a sum contains nothing of the previous one, for narrow
@@ -479,26 +307,22 @@ mod tests {
     #[test]
     fn a_matrix_holds_its_last_sum_alone() {
         const K: usize = 6;
-        let extent = [40, 23];
-        let values = |nodes: usize, seed: usize| -> Vec<[f64; K]> {
-            let value = |l: usize, k: usize| {
-                if l.max(k) < nodes { ((l * 7 + k * 5 + seed) % 11) as f64 / 40.0 } else { 0.0 }
-            };
-            (0..K).map(|l| decomp::array::from_fn(|k| value(l, k))).collect()
+        let values = |nodes: usize, seed: usize| -> [f64; K] {
+            decomp::array::from_fn(|k| {
+                if k < nodes { ((k * 5 + seed) % 11) as f64 / 40.0 } else { 0.0 }
+            })
         };
-        let inner = 6 * extent[0]..16 * extent[0];
-        let at = |x: usize, y: usize| y * extent[0] + x;
-        let narrow = |x, y| (at(x, y), 1.5, values(NARROW, x));
-        let wide = |x, y| (at(x, y), 0.8, values(K, y));
+        let narrow = |x: usize| (x, 1.5, values(NARROW, x));
+        let wide = |x: usize| (x, 0.8, values(K, x));
         let mut band = Band::default();
         for particles in [
-            vec![narrow(4, 7), narrow(5, 7), wide(20, 8), wide(7, 9)],
-            vec![narrow(4, 7), narrow(21, 8), narrow(30, 10)],
-            vec![wide(11, 10)],
+            vec![narrow(8), narrow(9), wide(200), wide(70)],
+            vec![narrow(8), narrow(210), narrow(130)],
+            vec![wide(110)],
             vec![],
-            vec![narrow(30, 12)],
+            vec![narrow(130)],
         ] {
-            check_with::<K, 2>(&mut band, extent, &particles, inner.clone());
+            check_with::<K>(&mut band, 300, &particles, 6..290);
         }
     }
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use decomp::array::map;
 
-use super::{BLOCK, BLOCK_ENTRIES, Band};
+use super::{BLOCK, Band};
 
 /// Greatest number of nodes whose sums are computed at a time, so that they stay in the L1 cache.
 const SEGMENT: usize = 128;
@@ -36,21 +36,9 @@ fn by_segments<const V: usize>(
 
 impl Band {
     /// y = M x on the nodes `range`, which must be at least the width of the band away from the
-    /// ends, for several vectors at a time; with blocks of two by two, x and y are the two
-    /// components of vectors. M is in [kg], so that y has the unit of x times [kg].
+    /// ends, for several vectors at a time. M is in [kg], so that y has the unit of x times [kg].
     pub fn product<const V: usize>(&self, x: [&[f64]; V], range: Range<usize>, y: [&mut [f64]; V]) {
         self.each_product(x, range, y, |product, _, _| product);
-    }
-
-    /// (M x)_i at node `i`, which must be at least the width of the band away from the ends, in the
-    /// unit of x times [kg].
-    pub fn product_at(&self, x: &[f64], i: usize) -> f64 {
-        let mut sum = self.diagonal(0, i..i + 1)[0] * x[i];
-        for (d, &o) in self.offsets.iter().enumerate().skip(1) {
-            sum += self.diagonal(d, i..i + 1)[0] * x[i + o];
-            sum += self.diagonal(d, i - o..i - o + 1)[0] * x[i - o];
-        }
-        sum
     }
 
     /// y = t + x - d M x on the nodes `range` for several vectors at a time, with a diagonal matrix
@@ -78,10 +66,7 @@ impl Band {
         y: [&mut [f64]; V],
         f: impl Fn(f64, usize, usize) -> f64,
     ) {
-        if self.entries == BLOCK_ENTRIES {
-            return self.products_of_blocks(x, range, y, f);
-        }
-        match self.offsets.len() {
+        match self.count {
             3 => self.products_of::<3, V>(x, range, y, f),
             4 => self.products_of::<4, V>(x, range, y, f),
             _ => self.products_by_diagonals(x, range, y, f),
@@ -118,50 +103,38 @@ impl Band {
         });
     }
 
-    /// Diagonals other than the main one with nonzero entries of `nodes`, and the distances to their
-    /// other nodes.
+    /// Diagonals other than the main one with nonzero entries of `nodes`.
     #[inline(always)]
-    fn filled_diagonals(&self, nodes: Range<usize>) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let others = self.offsets.iter().copied().enumerate().skip(1);
-        others.filter(move |&(d, o)| {
+    fn filled_diagonals(&self, nodes: Range<usize>) -> impl Iterator<Item = usize> + '_ {
+        (1..self.count).filter(move |&d| {
             self.is_filled(d, nodes.start, nodes.end)
-                || self.is_filled(d, nodes.start - o, nodes.end - o)
+                || self.is_filled(d, nodes.start - d, nodes.end - d)
         })
     }
 
     /// Whether diagonal `d` has nonzero entries in the blocks of the nodes `from` to before `to`.
     #[inline(always)]
     fn is_filled(&self, d: usize, from: usize, to: usize) -> bool {
-        let count = self.offsets.len();
-        let each = self.entries * count;
-        for block in from / BLOCK..=(to - 1) / BLOCK {
-            let filled = &self.filled[block * each..(block + 1) * each];
-            for k in 0..self.entries {
-                if filled[k * count + d] {
-                    return true;
-                }
-            }
-        }
-        false
+        (from / BLOCK..=(to - 1) / BLOCK).any(|block| self.filled[block * self.count + d])
     }
 
-    /// Adds the products of `G` diagonals and their mirror images, with the distances to their other
-    /// nodes, to the sums of `nodes`, one diagonal after the other.
+    /// Adds the products of `G` diagonals and their mirror images to the sums of `nodes`, one
+    /// diagonal after the other.
     #[inline(always)]
     fn add_diagonals<const G: usize, const V: usize>(
         &self,
-        diagonals: [(usize, usize); G],
+        diagonals: [usize; G],
         x: [&[f64]; V],
         nodes: Range<usize>,
         sums: &mut [[f64; SEGMENT]; V],
     ) {
         let n = nodes.end - nodes.start;
-        let before = |o: usize| nodes.start - o..nodes.end - o;
-        let above = map(&diagonals, |(d, _)| self.diagonal(d, nodes.clone()));
-        let below = map(&diagonals, |(d, o)| self.diagonal(d, before(o)));
+        let before = |d: usize| nodes.start - d..nodes.end - d;
+        let above = map(&diagonals, |d| self.diagonal(d, nodes.clone()));
+        let below = map(&diagonals, |d| self.diagonal(d, before(d)));
         for v in 0..V {
-            let x_above = map(&diagonals, |(_, o)| &x[v][nodes.start + o..nodes.end + o]);
-            let x_below = map(&diagonals, |(_, o)| &x[v][before(o)]);
+            let x_above = map(&diagonals, |d| &x[v][nodes.start + d..nodes.end + d]);
+            let x_below = map(&diagonals, |d| &x[v][before(d)]);
             let sums = &mut sums[v][..n];
             for i in 0..n {
                 let mut sum = sums[i];
@@ -172,49 +145,6 @@ impl Band {
                 sums[i] = sum;
             }
         }
-    }
-
-    /// The sums of blocks of two by two for vectors in a plane, each two consecutive fields, diagonal
-    /// by diagonal.
-    #[inline(always)]
-    fn products_of_blocks<const V: usize>(
-        &self,
-        x: [&[f64]; V],
-        range: Range<usize>,
-        y: [&mut [f64]; V],
-        f: impl Fn(f64, usize, usize) -> f64,
-    ) {
-        let count = self.offsets.len();
-        let blocks = |d: usize, nodes: Range<usize>| -> [&[f64]; BLOCK_ENTRIES] {
-            decomp::array::from_fn(|k| self.diagonal(k * count + d, nodes.clone()))
-        };
-        by_segments(range, y, f, |nodes, sums| {
-            let (from, to, n) = (nodes.start, nodes.end, nodes.end - nodes.start);
-            let [xx, yy, xy, yx] = blocks(0, from..to);
-            for (sums, x) in sums.as_chunks_mut::<2>().0.iter_mut().zip(x.as_chunks::<2>().0) {
-                let ([sum_x, sum_y], [ux, uy]) = (sums, x.map(|x| &x[from..to]));
-                for i in 0..n {
-                    sum_x[i] += xx[i] * ux[i] + xy[i] * uy[i];
-                    sum_y[i] += yx[i] * ux[i] + yy[i] * uy[i];
-                }
-            }
-            for (d, o) in self.filled_diagonals(from..to) {
-                let (above, below) = (blocks(d, from..to), blocks(d, from - o..to - o));
-                for (sums, x) in sums.as_chunks_mut::<2>().0.iter_mut().zip(x.as_chunks::<2>().0) {
-                    let [sum_x, sum_y] = sums;
-                    let [ux, uy] = x.map(|x| &x[from + o..to + o]);
-                    let [wx, wy] = x.map(|x| &x[from - o..to - o]);
-                    let ([xx, yy, xy, yx], [zxx, zyy, zxy, zyx]) = (above, below);
-                    for i in 0..n {
-                        sum_x[i] += xx[i] * ux[i] + xy[i] * uy[i];
-                        sum_y[i] += yx[i] * ux[i] + yy[i] * uy[i];
-                        // transposed blocks below the diagonal
-                        sum_x[i] += zxx[i] * wx[i] + zyx[i] * wy[i];
-                        sum_y[i] += zxy[i] * wx[i] + zyy[i] * wy[i];
-                    }
-                }
-            }
-        });
     }
 
     /// The same sums in the same order, for a few diagonals known at compile time, so that

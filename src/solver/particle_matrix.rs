@@ -1,0 +1,388 @@
+//! Symmetric matrices over the nodes of a plane, M_ij = sum_p w_p (N_i N_j + phi_i phi_j), by their
+//! particles. phi is the feature of a rotation of [`spin`](super::spin), for matrices with spin.
+//!
+//! Such a matrix is never assembled: a product M x adds w (N.x) N and w (phi.x) phi particle by
+//! particle, from the weights that the patch holds anyway. Assembled, it would have 49 entries per
+//! node, and four times as many with spin, which take more operations to sum, and more memory.
+//!
+//! This module does not depend on materials, time stepping or messages.
+
+use std::ops::Range;
+
+use decomp::array::{from_fn, map};
+use wide::f64x4;
+
+use crate::shape::with_width;
+use crate::solver::packed::{add_to, dot, totals, with_packed};
+use crate::solver::particle_weights::{Distances, ParticleWeights, add, lines};
+use crate::solver::shape_weights::{Stencils, TOGETHER};
+
+/// A particle with spin.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Spinning {
+    /// Distances of the nodes of its window from it.
+    pub place: Distances,
+    /// Moment of inertia per unit mass, I [m2].
+    pub inertia: f64,
+    /// Distances of the first four nodes along x [m].
+    along: f64x4,
+    /// Distances of the first four lines along y [m].
+    across: [f64; 4],
+    /// 1/I [1/m2].
+    inverse: f64,
+}
+
+impl Spinning {
+    /// A particle whose nodes are at `place`, with I = `inertia` [m2].
+    #[inline(always)]
+    pub fn new(place: Distances, inertia: f64) -> Self {
+        let across = from_fn(|line| place.across(line));
+        Spinning { place, inertia, along: place.four_along(), across, inverse: 1.0 / inertia }
+    }
+}
+
+/// Weights of a narrow particle, and what its angular momentum needs of them: one vector per line.
+pub(super) struct PackedArms<const V: usize> {
+    values: [f64x4; V],
+    /// Values times the distances along y [m].
+    across: [f64x4; V],
+    /// Distances along x [m].
+    along: f64x4,
+}
+
+impl<const V: usize> PackedArms<V> {
+    #[inline(always)]
+    pub(super) fn new(values: [f64x4; V], particle: &Spinning) -> Self {
+        let across = from_fn(|line| values[line] * f64x4::splat(particle.across[line]));
+        PackedArms { values, across, along: particle.along }
+    }
+
+    /// Sums of the nodal vector (x, y) over the lines: N.x, N.y, and the angular momentum about the
+    /// particle [m times the unit of x].
+    #[inline(always)]
+    pub(super) fn sums(&self, [x, y]: &[[f64x4; V]; 2]) -> [f64x4; 3] {
+        let mean_y = dot(&self.values, y);
+        [dot(&self.values, x), mean_y, self.along * mean_y - dot(&self.across, x)]
+    }
+
+    /// Adds N times the vector of the first two terms, and N (-e_y, e_x) times the third.
+    #[inline(always)]
+    pub(super) fn add(&self, [x, y]: &mut [[f64x4; V]; 2], terms: [f64; 3]) {
+        let [mean_x, mean_y, turn] = terms.map(f64x4::splat);
+        let mean_y = mean_y + self.along * turn;
+        for line in 0..V {
+            x[line] += self.values[line] * mean_x - self.across[line] * turn;
+            y[line] += self.values[line] * mean_y;
+        }
+    }
+}
+
+/// Moment of inertia per unit mass of the weights of a particle about it, I [m2].
+#[inline(always)]
+pub(super) fn spin_inertia<const K: usize, const D: usize>(
+    weights: &ParticleWeights<'_, K, D>,
+    place: &Distances,
+) -> f64 {
+    weights.sum(weights.values, |line| {
+        let across = place.across(line);
+        let mut squares = [0.0; K];
+        for k in 0..K {
+            let along = place.along(k);
+            squares[k] = along * along + across * across;
+        }
+        squares
+    })
+}
+
+/// [`spin_inertia`] of a window in vectors, before the sum over the nodes of a line.
+#[inline(always)]
+pub(super) fn packed_inertia<const V: usize>(values: &[f64x4; V], place: &Distances) -> f64x4 {
+    let along = place.four_along();
+    dot(
+        values,
+        &from_fn(|line| {
+            let across = f64x4::splat(place.across(line));
+            along * along + across * across
+        }),
+    )
+}
+
+/// The sums of [`PackedArms::sums`] over the nodes of a window of any width.
+#[inline(always)]
+pub(super) fn arm_sums<const K: usize, const D: usize>(
+    weights: &ParticleWeights<'_, K, D>,
+    place: &Distances,
+    [x, y]: [&[f64]; 2],
+) -> [f64; 3] {
+    let (mut mean, mut across_x) = ([[0.0; K]; 2], [0.0; K]);
+    for line in 0..const { lines(K, D) } {
+        let (values, across) = (&weights.values[line], place.across(line));
+        let (x, y) = (weights.line(x, line), weights.line(y, line));
+        for k in 0..K {
+            mean[0][k] += values[k] * x[k];
+            mean[1][k] += values[k] * y[k];
+            across_x[k] += values[k] * across * x[k];
+        }
+    }
+    let mut sums = [0.0; 3];
+    for k in 0..K {
+        let moment = place.along(k) * mean[1][k] - across_x[k];
+        for (sum, term) in sums.iter_mut().zip([mean[0][k], mean[1][k], moment]) {
+            *sum += term;
+        }
+    }
+    sums
+}
+
+/// [`PackedArms::add`] for a window of any width.
+#[inline(always)]
+pub(super) fn add_arms<const K: usize, const D: usize>(
+    weights: &ParticleWeights<'_, K, D>,
+    place: &Distances,
+    [x, y]: [&mut [f64]; 2],
+    [mean_x, mean_y, turn]: [f64; 3],
+) {
+    for line in 0..const { lines(K, D) } {
+        let (values, across) = (&weights.values[line], place.across(line));
+        let first = weights.first + line * weights.stride;
+        let term_x = |k: usize| values[k] * mean_x - values[k] * across * turn;
+        add::<K>(x, first, from_fn(term_x));
+        add::<K>(y, first, from_fn(|k| values[k] * (mean_y + place.along(k) * turn)));
+    }
+}
+
+/// A matrix by its particles, in a plane.
+#[derive(Clone, Debug, Default)]
+pub struct ParticleMatrix {
+    /// Weights w of all particles of the patch, including ghosts, such as their masses \[kg\].
+    pub weights: Vec<f64>,
+    /// The same particles with spin; empty for a matrix without.
+    pub spinning: Vec<Spinning>,
+}
+
+impl ParticleMatrix {
+    /// Memory per particle \[bytes\], with or without spin.
+    pub const fn bytes_per_particle(spin: bool) -> usize {
+        size_of::<f64>() + if spin { size_of::<Spinning>() } else { 0 }
+    }
+
+    /// `y` = M x for each of several fields over the nodes; with spin each two fields are the
+    /// components of a vector along x and y. `runs` are the ranges of particles in canonical order.
+    /// A product is right on nodes all of whose neighbours within the windows have values in `x`.
+    ///
+    /// # Panics
+    ///
+    /// If `x` and `y` have different lengths.
+    pub fn products<const D: usize>(
+        &self,
+        stencils: &Stencils,
+        runs: &[Range<usize>],
+        x: &[&[f64]],
+        y: &mut [Vec<f64>],
+    ) {
+        fn packed<const K: usize, const V: usize, const D: usize>(
+            matrix: &ParticleMatrix,
+            stencils: &Stencils,
+            x: &[&[f64]],
+            y: &mut [Vec<f64>],
+        ) {
+            for group in &stencils.groups {
+                let first = group.first();
+                // numbers of particles known at compile time, so that there are no loops over them
+                match group.narrow() {
+                    0 => matrix.add_each::<K, D>(stencils, group.particles(), x, y),
+                    1 => matrix.add_some::<K, V, D, 1>(stencils, first, x, y),
+                    2 => matrix.add_some::<K, V, D, 2>(stencils, first, x, y),
+                    3 => matrix.add_some::<K, V, D, 3>(stencils, first, x, y),
+                    _ => matrix.add_some::<K, V, D, TOGETHER>(stencils, first, x, y),
+                }
+            }
+        }
+        fn single<const K: usize, const D: usize>(
+            matrix: &ParticleMatrix,
+            stencils: &Stencils,
+            runs: &[Range<usize>],
+            x: &[&[f64]],
+            y: &mut [Vec<f64>],
+        ) {
+            runs.iter().cloned().for_each(|run| matrix.add_each::<K, D>(stencils, run, x, y));
+        }
+        assert_eq!(x.len(), y.len());
+        y.iter_mut().for_each(|y| y.fill(0.0));
+        let width = stencils.width;
+        with_packed!(
+            width,
+            packed(self, stencils, x, y),
+            with_width!(width, single(self, stencils, runs, x, y))
+        );
+    }
+
+    /// Adds the terms of `N` narrow particles with the same window, from `first` on.
+    #[inline(always)]
+    fn add_some<const K: usize, const V: usize, const D: usize, const N: usize>(
+        &self,
+        stencils: &Stencils,
+        first: usize,
+        x: &[&[f64]],
+        y: &mut [Vec<f64>],
+    ) {
+        let place = stencils.place(first);
+        let weights: &[f64; N] = self.weights[first..].first_chunk().expect("N particles");
+        let values: [[f64x4; V]; N] = stencils.packed_group::<K, V, D, N>(first);
+        if self.spinning.is_empty() {
+            for (x, y) in x.iter().zip(y) {
+                let nodes = place.nodes::<K, V>(x);
+                let sums = totals::<K>(four(|k| dot(&values[k % N], &nodes), N));
+                let mut nodes = place.nodes::<K, V>(y);
+                for k in 0..N {
+                    add_to(&mut nodes, &values[k], weights[k] * sums[k]);
+                }
+                place.put::<K, V>(y, &nodes);
+            }
+            return;
+        }
+        let spinning: &[Spinning; N] = self.spinning[first..].first_chunk().expect("N particles");
+        let arms: [PackedArms<V>; N] = from_fn(|k| PackedArms::new(values[k], &spinning[k]));
+        for (x, y) in x.as_chunks::<2>().0.iter().zip(y.as_chunks_mut::<2>().0) {
+            let nodes = map(x, |x| place.nodes::<K, V>(x));
+            let all: [[f64x4; 3]; N] = from_fn(|k| arms[k].sums(&nodes));
+            let [x_sums, y_sums, moments]: [[f64; 4]; 3] =
+                from_fn(|part| totals::<K>(four(|k| all[k % N][part], N)));
+            let mut nodes = from_fn(|a| place.nodes::<K, V>(&y[a]));
+            for k in 0..N {
+                let sums = [x_sums[k], y_sums[k], moments[k] * spinning[k].inverse];
+                arms[k].add(&mut nodes, map(&sums, |sum| weights[k] * sum));
+            }
+            for (y, nodes) in y.iter_mut().zip(&nodes) {
+                place.put::<K, V>(y, nodes);
+            }
+        }
+    }
+
+    /// Adds the terms of particles one by one.
+    fn add_each<const K: usize, const D: usize>(
+        &self,
+        stencils: &Stencils,
+        particles: Range<usize>,
+        x: &[&[f64]],
+        y: &mut [Vec<f64>],
+    ) {
+        for r in particles {
+            let (weights, w) = (stencils.particle::<K, D>(r), self.weights[r]);
+            let Some(Spinning { place, inverse, .. }) = self.spinning.get(r) else {
+                for (x, y) in x.iter().zip(&mut *y) {
+                    let term = w * weights.dot(weights.values, x);
+                    weights.add(y, weights.values, |n| n * term);
+                }
+                continue;
+            };
+            for (x, y) in x.as_chunks::<2>().0.iter().zip(y.as_chunks_mut::<2>().0) {
+                let [x_sum, y_sum, moment] = arm_sums(&weights, place, *x);
+                let terms = map(&[x_sum, y_sum, moment * inverse], |sum| w * sum);
+                add_arms(&weights, place, y.each_mut().map(|y| &mut y[..]), terms);
+            }
+        }
+    }
+}
+
+/// The vectors of the first `count` of four numbers, and zeros.
+#[inline(always)]
+fn four(of: impl Fn(usize) -> f64x4, count: usize) -> [f64x4; 4] {
+    from_fn(|k| if k < count { of(k) } else { f64x4::ZERO })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STRIDE: usize = 12;
+    const NODES: usize = 160;
+
+    fn number(k: usize) -> f64 {
+        ((k * k * 31 + k * 17) % 97) as f64 / 97.0
+    }
+
+    /// Weights of six particles in two groups, of which the second is wide if windows are, and the
+    /// matrix of their masses, with or without spin.
+    fn six<const K: usize>(spin: bool) -> (Stencils, ParticleMatrix) {
+        let mut stencils = Stencils::default();
+        stencils.resize::<K, 2>(6, STRIDE);
+        let first = 2 + 2 * STRIDE as u32;
+        stencils.first.copy_from_slice(&[first, first, first, first, first, first + 1]);
+        stencils.values.iter_mut().enumerate().for_each(|(k, v)| *v = number(k));
+        for (r, narrow) in stencils.narrow.iter_mut().enumerate() {
+            *narrow = r < 5;
+            let values = &mut stencils.values[r * K * K..(r + 1) * K * K];
+            for (k, value) in values.iter_mut().enumerate() {
+                if *narrow && (k % K >= 4 || k / K >= 4) {
+                    *value = 0.0;
+                }
+            }
+        }
+        stencils.find_groups::<K>(&[0..6]);
+        let spinning = |r: usize| {
+            let place = Distances {
+                first: [-0.9 + 0.1 * r as f64, -0.7],
+                skipped: [f64::from(u8::from(r == 1)), 0.0],
+                cell: [0.5, 0.4],
+            };
+            Spinning::new(place, spin_inertia(&stencils.particle::<K, 2>(r), &place))
+        };
+        let spinning = if spin { (0..6).map(spinning).collect() } else { Vec::new() };
+        let matrix = ParticleMatrix { weights: vec![2.0, 0.3, 1.1, 0.7, 1.9, 0.4], spinning };
+        (stencils, matrix)
+    }
+
+    /// Products with four fields by groups, one by one, and with the full matrix.
+    fn check<const K: usize>(spin: bool) {
+        let (stencils, matrix) = six::<K>(spin);
+        let fields: Vec<Vec<f64>> =
+            (0..4).map(|f| (0..NODES).map(|i| number(i * 7 + f * 13) - 0.4).collect()).collect();
+        let x: Vec<&[f64]> = fields.iter().map(|field| &field[..]).collect();
+        let mut y = vec![vec![f64::NAN; NODES]; 4];
+        matrix.products::<2>(&stencils, &[0..6], &x, &mut y);
+        let mut one_by_one = vec![vec![0.0; NODES]; 4];
+        matrix.add_each::<K, 2>(&stencils, 0..6, &x, &mut one_by_one);
+        assert_eq!(y, one_by_one, "{K} nodes, spin {spin}");
+        // N and phi of a particle for two components on all nodes
+        let mut exact = vec![vec![0.0; NODES]; 4];
+        for r in 0..6 {
+            let weights = stencils.particle::<K, 2>(r);
+            let at = |l: usize, k: usize| weights.first + l * STRIDE + k;
+            let all = (0..K).flat_map(|l| (0..K).map(move |k| (l, k)));
+            for (l, k) in all.clone() {
+                for (m, j) in all.clone() {
+                    let both = weights.values[l][k] * weights.values[m][j];
+                    let turn = |l: usize, k: usize| {
+                        let place = &matrix.spinning[r].place;
+                        [-place.across(l), place.along(k)]
+                    };
+                    for f in 0..4 {
+                        let mut term = both * x[f][at(m, j)];
+                        if spin {
+                            let (here, there) = (turn(l, k), turn(m, j));
+                            let [vx, vy] = [x[f & 2][at(m, j)], x[(f & 2) + 1][at(m, j)]];
+                            let inertia = matrix.spinning[r].inertia;
+                            term += both * here[f & 1] * (there[0] * vx + there[1] * vy) / inertia;
+                        }
+                        exact[f][at(l, k)] += matrix.weights[r] * term;
+                    }
+                }
+            }
+        }
+        for (y, exact) in y.iter().flatten().zip(exact.iter().flatten()) {
+            assert!((y - exact).abs() < 1e-12 * exact.abs().max(1.0), "{K} nodes: {y} {exact}");
+        }
+        assert!(exact.iter().all(|field| field.iter().any(|y| y.abs() > 0.1)));
+    }
+
+    #[test]
+    fn products_are_those_of_the_full_matrix() {
+        for spin in [false, true] {
+            check::<3>(spin);
+            check::<4>(spin);
+            check::<6>(spin);
+            check::<10>(spin);
+        }
+    }
+}
