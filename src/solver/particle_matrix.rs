@@ -12,7 +12,7 @@ use std::ops::Range;
 use decomp::array::{from_fn, map};
 use wide::f64x4;
 
-use crate::shape::with_width;
+use crate::shape::{vector, with_width};
 use crate::solver::packed::{add_to, dot, totals, with_packed};
 use crate::solver::particle_weights::{Distances, ParticleWeights, add, lines};
 use crate::solver::shape_weights::{Stencils, TOGETHER};
@@ -20,12 +20,10 @@ use crate::solver::shape_weights::{Stencils, TOGETHER};
 /// A particle with spin.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Spinning {
-    /// Distances of the nodes of its window from it.
-    pub place: Distances,
     /// Moment of inertia per unit mass, I [m2].
     pub inertia: f64,
     /// Distances of the first four nodes along x [m].
-    along: f64x4,
+    along: [f64; 4],
     /// Distances of the first four lines along y [m].
     across: [f64; 4],
     /// 1/I [1/m2].
@@ -35,9 +33,9 @@ pub struct Spinning {
 impl Spinning {
     /// A particle whose nodes are at `place`, with I = `inertia` [m2].
     #[inline(always)]
-    pub fn new(place: Distances, inertia: f64) -> Self {
-        let across = from_fn(|line| place.across(line));
-        Spinning { place, inertia, along: place.four_along(), across, inverse: 1.0 / inertia }
+    pub fn new(place: &Distances, inertia: f64) -> Self {
+        let (along, across) = (place.four_along().to_array(), from_fn(|line| place.across(line)));
+        Spinning { inertia, along, across, inverse: 1.0 / inertia }
     }
 }
 
@@ -54,7 +52,7 @@ impl<const V: usize> PackedArms<V> {
     #[inline(always)]
     pub(super) fn new(values: [f64x4; V], particle: &Spinning) -> Self {
         let across = from_fn(|line| values[line] * f64x4::splat(particle.across[line]));
-        PackedArms { values, across, along: particle.along }
+        PackedArms { values, across, along: vector(&particle.along) }
     }
 
     /// Sums of the nodal vector (x, y) over the lines: N.x, N.y, and the angular momentum about the
@@ -158,12 +156,15 @@ pub struct ParticleMatrix {
     pub weights: Vec<f64>,
     /// The same particles with spin; empty for a matrix without.
     pub spinning: Vec<Spinning>,
+    /// Distances of the nodes of their windows from them, for windows of any width.
+    pub places: Vec<Distances>,
 }
 
 impl ParticleMatrix {
     /// Memory per particle \[bytes\], with or without spin.
     pub const fn bytes_per_particle(spin: bool) -> usize {
-        size_of::<f64>() + if spin { size_of::<Spinning>() } else { 0 }
+        let spinning = size_of::<Spinning>() + size_of::<Distances>();
+        size_of::<f64>() + if spin { spinning } else { 0 }
     }
 
     /// `y` = M x for each of several fields over the nodes; with spin each two fields are the
@@ -269,7 +270,7 @@ impl ParticleMatrix {
     ) {
         for r in particles {
             let (weights, w) = (stencils.particle::<K, D>(r), self.weights[r]);
-            let Some(Spinning { place, inverse, .. }) = self.spinning.get(r) else {
+            let Some((place, spinning)) = self.places.get(r).zip(self.spinning.get(r)) else {
                 for (x, y) in x.iter().zip(&mut *y) {
                     let term = w * weights.dot(weights.values, x);
                     weights.add(y, weights.values, |n| n * term);
@@ -278,7 +279,7 @@ impl ParticleMatrix {
             };
             for (x, y) in x.as_chunks::<2>().0.iter().zip(y.as_chunks_mut::<2>().0) {
                 let [x_sum, y_sum, moment] = arm_sums(&weights, place, *x);
-                let terms = map(&[x_sum, y_sum, moment * inverse], |sum| w * sum);
+                let terms = map(&[x_sum, y_sum, moment * spinning.inverse], |sum| w * sum);
                 add_arms(&weights, place, y.each_mut().map(|y| &mut y[..]), terms);
             }
         }
@@ -320,16 +321,17 @@ mod tests {
             }
         }
         stencils.find_groups::<K>(&[0..6]);
-        let spinning = |r: usize| {
-            let place = Distances {
-                first: [-0.9 + 0.1 * r as f64, -0.7],
-                skipped: [f64::from(u8::from(r == 1)), 0.0],
-                cell: [0.5, 0.4],
-            };
-            Spinning::new(place, spin_inertia(&stencils.particle::<K, 2>(r), &place))
+        let place = |r: usize| Distances {
+            first: [-0.9 + 0.1 * r as f64, -0.7],
+            skipped: [f64::from(u8::from(r == 1)), 0.0],
+            cell: [0.5, 0.4],
         };
-        let spinning = if spin { (0..6).map(spinning).collect() } else { Vec::new() };
-        let matrix = ParticleMatrix { weights: vec![2.0, 0.3, 1.1, 0.7, 1.9, 0.4], spinning };
+        let places: Vec<Distances> = (0..if spin { 6 } else { 0 }).map(place).collect();
+        let spinning =
+            |(r, place)| Spinning::new(place, spin_inertia(&stencils.particle::<K, 2>(r), place));
+        let spinning = places.iter().enumerate().map(spinning).collect();
+        let weights = vec![2.0, 0.3, 1.1, 0.7, 1.9, 0.4];
+        let matrix = ParticleMatrix { weights, spinning, places };
         (stencils, matrix)
     }
 
@@ -354,7 +356,7 @@ mod tests {
                 for (m, j) in all.clone() {
                     let both = weights.values[l][k] * weights.values[m][j];
                     let turn = |l: usize, k: usize| {
-                        let place = &matrix.spinning[r].place;
+                        let place = &matrix.places[r];
                         [-place.across(l), place.along(k)]
                     };
                     for f in 0..4 {

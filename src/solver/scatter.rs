@@ -10,7 +10,7 @@ use crate::shape::{Shape, with_shape, with_width};
 use crate::solver::clock::timed;
 use crate::solver::effect::{Phase, StepContext};
 use crate::solver::packed::with_packed;
-use crate::solver::particle_weights::{Offset, ParticleWeights, add, cut, lines};
+use crate::solver::particle_weights::{Distances, Offset, ParticleWeights, add, cut, lines};
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 use crate::solver::summed_fields::{SummedColumns, SummedSlices};
@@ -213,10 +213,11 @@ impl<const D: usize> Scheme<D> {
         weights.add(sums.mass, weights.values, |n| n * m);
         if let Some(moment) = of.moment.filter(|_| SPIN) {
             let place = self.reflect_spin(patch, r, self.place_of(patch, r));
-            let spinning = Spinning::new(place, spin_inertia(weights, &place));
+            let spinning = Spinning::new(&place, spin_inertia(weights, &place));
             let (x, y) = sums.momentum.split_at_mut(D - 1);
             add_arms(weights, &place, [x[0], y[0]], of.motion(r, moment[r] / spinning.inertia));
             matrix.particles.spinning[r] = spinning;
+            matrix.particles.places[r] = place;
         } else if let Some(affine) = self.columns.affine.filter(|_| AFFINE) {
             let at = |k: usize| patch.block.columns[affine + k][r];
             let slope = array::from_fn(|a| array::from_fn(|b| at(D * a + b)));
@@ -290,8 +291,9 @@ impl<const D: usize> Scheme<D> {
             patch.nodes.fields[field].fill(0.0);
         }
         if self.columns.spin.is_some() {
-            let spinning = &mut patch.mass_matrix.particles.spinning;
-            spinning.resize(patch.block.particles(), Spinning::default());
+            let (matrix, count) = (&mut patch.mass_matrix.particles, patch.block.particles());
+            matrix.spinning.resize(count, Spinning::default());
+            matrix.places.resize(count, Distances::default());
         }
         if MATRIX {
             let nodes = patch.nodes.layers * patch.nodes.nodes.count();

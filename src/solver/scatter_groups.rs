@@ -7,7 +7,7 @@ use decomp::array;
 use wide::f64x4;
 
 use super::nodal_matrix::NodalMatrix;
-use super::particle_matrix::{PackedArms, Spinning, packed_inertia};
+use super::particle_matrix::{PackedArms, ParticleMatrix, Spinning, packed_inertia};
 use super::scheme::Scheme;
 use crate::solver::packed::{WindowPlace, add_to, totals};
 use crate::solver::patch::Patch;
@@ -154,14 +154,9 @@ impl<const D: usize> Scheme<D> {
             sums.add_rest::<K, V>(&patch.stencils, group.clone(), &of);
             match of.moment {
                 Some(moment) => {
-                    let spinning = &mut matrix.particles.spinning;
-                    self.add_spinning::<K, V>(
-                        &mut sums,
-                        patch,
-                        spinning,
-                        group.clone(),
-                        (&of, moment),
-                    );
+                    let of = (&of, moment);
+                    let matrix = &mut matrix.particles;
+                    self.add_spinning::<K, V>(&mut sums, patch, matrix, group, of);
                 }
                 None => sums.add_motion::<K, V>(&patch.stencils, group.clone(), &of),
             }
@@ -245,7 +240,7 @@ impl<const D: usize> Scheme<D> {
         &self,
         sums: &mut SummedSlices<'_, D>,
         patch: &Patch<D>,
-        spinning: &mut [Spinning],
+        matrix: &mut ParticleMatrix,
         group: Range<usize>,
         (of, moment): (&SummedColumns<'_, D>, &[f64]),
     ) {
@@ -253,8 +248,9 @@ impl<const D: usize> Scheme<D> {
         sums.add_spinning::<K, V>(stencils, group, of, |r, values| {
             let place = self.reflect_spin(patch, r, self.place_of(patch, r));
             let [inertia, ..] = totals::<K>([packed_inertia(values, &place); 4]);
-            spinning[r] = Spinning::new(place, inertia);
-            (spinning[r], moment[r] / inertia)
+            matrix.places[r] = place;
+            matrix.spinning[r] = Spinning::new(&place, inertia);
+            (matrix.spinning[r], moment[r] / inertia)
         });
     }
 }

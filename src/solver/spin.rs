@@ -40,6 +40,9 @@ use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 use crate::solver::shape_weights::Stencils;
 
+/// A particle with spin, and the place of its window.
+type SpinningAt<'a> = (&'a Spinning, &'a Distances);
+
 impl<const D: usize> Scheme<D> {
     /// Place of the window of a particle in a plane.
     #[inline(always)]
@@ -67,10 +70,10 @@ impl<const D: usize> Scheme<D> {
                 return;
             }
             let (mut window, mut at) = ([[[f64x4::ZERO; V]; 2]; 3], u32::MAX);
-            s.gather_spin_of(patch, spin, primes, |stencils, r, one, nodal| {
+            s.gather_spin_of(patch, spin, primes, |stencils, r, (one, place), nodal| {
                 if !stencils.is_narrow::<K>(r) {
                     let weights = stencils.particle::<K, D>(r);
-                    return map(nodal, |v| arm_sums(&weights, &one.place, v)[2]);
+                    return map(nodal, |v| arm_sums(&weights, place, v)[2]);
                 }
                 if stencils.first[r] != at {
                     at = stencils.first[r];
@@ -89,9 +92,9 @@ impl<const D: usize> Scheme<D> {
             spin: SpinColumns,
             primes: bool,
         ) {
-            s.gather_spin_of(patch, spin, primes, |stencils, r, one, nodal| {
+            s.gather_spin_of(patch, spin, primes, |stencils, r, (_, place), nodal| {
                 let weights = stencils.particle::<K, D>(r);
-                map(nodal, |v| arm_sums(&weights, &one.place, v)[2])
+                map(nodal, |v| arm_sums(&weights, place, v)[2])
             });
         }
         let Some(spin) = self.columns.spin else { return };
@@ -113,7 +116,7 @@ impl<const D: usize> Scheme<D> {
         patch: &mut Patch<D>,
         spin: SpinColumns,
         primes: bool,
-        mut moments: impl FnMut(&Stencils, usize, &Spinning, &[[&[f64]; 2]; 3]) -> [f64; 3],
+        mut moments: impl FnMut(&Stencils, usize, SpinningAt<'_>, &[[&[f64]; 2]; 3]) -> [f64; 3],
     ) {
         let (c, f) = (&self.columns, &self.fields);
         let n = patch.block.own();
@@ -124,9 +127,11 @@ impl<const D: usize> Scheme<D> {
         let residual = f.filter_residual.filter(|_| self.filter_heat && !primes);
         let (start, star) = (vector(f.velocity), vector(f.velocity_star));
         let nodal = [start, star, residual.map_or(start, vector)];
-        for (r, spinning) in patch.mass_matrix.particles.spinning[..n].iter().enumerate() {
-            let [filtered, new, lost] = moments(&patch.stencils, r, spinning, &nodal);
-            let inverse = 1.0 / spinning.inertia;
+        let matrix = &patch.mass_matrix.particles;
+        for (r, one) in matrix.spinning[..n].iter().zip(&matrix.places[..n]).enumerate() {
+            let [filtered, new, lost] = moments(&patch.stencils, r, one, &nodal);
+            let new_inertia = one.0.inertia;
+            let inverse = 1.0 / new_inertia;
             if !primes {
                 let old = moment[r];
                 let mut heat = 0.5 * old * old * (1.0 / inertia[r] - inverse);
@@ -138,7 +143,7 @@ impl<const D: usize> Scheme<D> {
                 energy[r] += heat;
             }
             moment[r] = new;
-            inertia[r] = spinning.inertia;
+            inertia[r] = new_inertia;
         }
     }
 
