@@ -80,7 +80,7 @@ impl<const V: usize, const D: usize> PackedVelocities<V, D> {
     }
 
     /// Fetches the nodes of the window at `place`.
-    #[inline(always)]
+    #[inline(never)]
     pub fn fetch<const K: usize>(&mut self, nodal: &NodalVelocities<'_, D>, place: WindowPlace) {
         let nodes = |field: &[f64]| place.nodes::<K, V>(field);
         for a in 0..D {

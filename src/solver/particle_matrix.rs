@@ -40,7 +40,7 @@ impl Spinning {
 }
 
 /// Weights of a narrow particle, and what its angular momentum needs of them: one vector per line.
-pub(super) struct PackedArms<const V: usize> {
+pub(super) struct PackedSpin<const V: usize> {
     values: [f64x4; V],
     /// Values times the distances along y [m].
     across: [f64x4; V],
@@ -48,11 +48,11 @@ pub(super) struct PackedArms<const V: usize> {
     along: f64x4,
 }
 
-impl<const V: usize> PackedArms<V> {
+impl<const V: usize> PackedSpin<V> {
     #[inline(always)]
     pub(super) fn new(values: [f64x4; V], particle: &Spinning) -> Self {
         let across = from_fn(|line| values[line] * f64x4::splat(particle.across[line]));
-        PackedArms { values, across, along: vector(&particle.along) }
+        PackedSpin { values, across, along: vector(&particle.along) }
     }
 
     /// Sums of the nodal vector (x, y) over the lines: N.x, N.y, and the angular momentum about the
@@ -105,9 +105,9 @@ pub(super) fn packed_inertia<const V: usize>(values: &[f64x4; V], place: &Distan
     )
 }
 
-/// The sums of [`PackedArms::sums`] over the nodes of a window of any width.
+/// The sums of [`PackedSpin::sums`] over the nodes of a window of any width.
 #[inline(always)]
-pub(super) fn arm_sums<const K: usize, const D: usize>(
+pub(super) fn spin_sums<const K: usize, const D: usize>(
     weights: &ParticleWeights<'_, K, D>,
     place: &Distances,
     [x, y]: [&[f64]; 2],
@@ -132,9 +132,9 @@ pub(super) fn arm_sums<const K: usize, const D: usize>(
     sums
 }
 
-/// [`PackedArms::add`] for a window of any width.
+/// [`PackedSpin::add`] for a window of any width.
 #[inline(always)]
-pub(super) fn add_arms<const K: usize, const D: usize>(
+pub(super) fn add_spin<const K: usize, const D: usize>(
     weights: &ParticleWeights<'_, K, D>,
     place: &Distances,
     [x, y]: [&mut [f64]; 2],
@@ -229,30 +229,34 @@ impl ParticleMatrix {
     ) {
         let place = stencils.place(first);
         let weights: &[f64; N] = self.weights[first..].first_chunk().expect("N particles");
+        let weights = f64x4::from(padded(|k| weights[k % N], N));
         let values: [[f64x4; V]; N] = stencils.packed_group::<K, V, D, N>(first);
         if self.spinning.is_empty() {
             for (x, y) in x.iter().zip(y) {
                 let nodes = place.nodes::<K, V>(x);
-                let sums = totals::<K>(four(|k| dot(&values[k % N], &nodes), N));
+                let sums = totals::<K>(padded(|k| dot(&values[k % N], &nodes), N));
+                let terms = (weights * f64x4::from(sums)).to_array();
                 let mut nodes = place.nodes::<K, V>(y);
                 for k in 0..N {
-                    add_to(&mut nodes, &values[k], weights[k] * sums[k]);
+                    add_to(&mut nodes, &values[k], terms[k]);
                 }
                 place.put::<K, V>(y, &nodes);
             }
             return;
         }
         let spinning: &[Spinning; N] = self.spinning[first..].first_chunk().expect("N particles");
-        let arms: [PackedArms<V>; N] = from_fn(|k| PackedArms::new(values[k], &spinning[k]));
+        let inverse = f64x4::from(padded(|k| spinning[k % N].inverse, N));
+        let spin: [PackedSpin<V>; N] = from_fn(|k| PackedSpin::new(values[k], &spinning[k]));
         for (x, y) in x.as_chunks::<2>().0.iter().zip(y.as_chunks_mut::<2>().0) {
             let nodes = map(x, |x| place.nodes::<K, V>(x));
-            let all: [[f64x4; 3]; N] = from_fn(|k| arms[k].sums(&nodes));
-            let [x_sums, y_sums, moments]: [[f64; 4]; 3] =
-                from_fn(|part| totals::<K>(four(|k| all[k % N][part], N)));
+            let all: [[f64x4; 3]; N] = from_fn(|k| spin[k].sums(&nodes));
+            let [x_sums, y_sums, moments]: [f64x4; 3] =
+                from_fn(|part| f64x4::from(totals::<K>(padded(|k| all[k % N][part], N))));
+            let terms = [weights * x_sums, weights * y_sums, weights * (moments * inverse)];
+            let terms = map(&terms, |terms| terms.to_array());
             let mut nodes = from_fn(|a| place.nodes::<K, V>(&y[a]));
             for k in 0..N {
-                let sums = [x_sums[k], y_sums[k], moments[k] * spinning[k].inverse];
-                arms[k].add(&mut nodes, map(&sums, |sum| weights[k] * sum));
+                spin[k].add(&mut nodes, map(&terms, |terms| terms[k]));
             }
             for (y, nodes) in y.iter_mut().zip(&nodes) {
                 place.put::<K, V>(y, nodes);
@@ -278,18 +282,18 @@ impl ParticleMatrix {
                 continue;
             };
             for (x, y) in x.as_chunks::<2>().0.iter().zip(y.as_chunks_mut::<2>().0) {
-                let [x_sum, y_sum, moment] = arm_sums(&weights, place, *x);
+                let [x_sum, y_sum, moment] = spin_sums(&weights, place, *x);
                 let terms = map(&[x_sum, y_sum, moment * spinning.inverse], |sum| w * sum);
-                add_arms(&weights, place, y.each_mut().map(|y| &mut y[..]), terms);
+                add_spin(&weights, place, y.each_mut().map(|y| &mut y[..]), terms);
             }
         }
     }
 }
 
-/// The vectors of the first `count` of four numbers, and zeros.
+/// `of(0)`, `of(1)`, ... for the first `count` of four entries, and zeros.
 #[inline(always)]
-fn four(of: impl Fn(usize) -> f64x4, count: usize) -> [f64x4; 4] {
-    from_fn(|k| if k < count { of(k) } else { f64x4::ZERO })
+fn padded<T: Default>(of: impl Fn(usize) -> T, count: usize) -> [T; 4] {
+    from_fn(|k| if k < count { of(k) } else { T::default() })
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 use decomp::array;
 
 use super::nodal_matrix::NodalMatrix;
-use super::particle_matrix::{Spinning, add_arms, spin_inertia};
+use super::particle_matrix::{Spinning, add_spin, spin_inertia};
 use super::scheme::Scheme;
 use crate::shape::{Shape, with_shape, with_width};
 use crate::solver::clock::timed;
@@ -215,7 +215,7 @@ impl<const D: usize> Scheme<D> {
             let place = self.reflect_spin(patch, r, self.place_of(patch, r));
             let spinning = Spinning::new(&place, spin_inertia(weights, &place));
             let (x, y) = sums.momentum.split_at_mut(D - 1);
-            add_arms(weights, &place, [x[0], y[0]], of.motion(r, moment[r] / spinning.inertia));
+            add_spin(weights, &place, [x[0], y[0]], of.motion(r, moment[r] / spinning.inertia));
             matrix.particles.spinning[r] = spinning;
             matrix.particles.places[r] = place;
         } else if let Some(affine) = self.columns.affine.filter(|_| AFFINE) {

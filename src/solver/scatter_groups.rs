@@ -7,7 +7,7 @@ use decomp::array;
 use wide::f64x4;
 
 use super::nodal_matrix::NodalMatrix;
-use super::particle_matrix::{PackedArms, ParticleMatrix, Spinning, packed_inertia};
+use super::particle_matrix::{PackedSpin, ParticleMatrix, Spinning, packed_inertia};
 use super::scheme::Scheme;
 use crate::solver::packed::{WindowPlace, add_to, totals};
 use crate::solver::patch::Patch;
@@ -87,7 +87,7 @@ impl<const D: usize> SummedSlices<'_, D> {
             let values = stencils.packed_values::<K, V, D>(r);
             add_to(&mut mass, &values, of.mass[r]);
             let (particle, omega) = spinning(r, &values);
-            PackedArms::new(values, &particle).add(&mut momentum, of.motion(r, omega));
+            PackedSpin::new(values, &particle).add(&mut momentum, of.motion(r, omega));
         }
         place.put::<K, V>(self.mass, &mass);
         for (a, momentum) in axes.into_iter().zip(&momentum) {

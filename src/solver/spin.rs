@@ -34,7 +34,7 @@ use super::scheme::Scheme;
 use crate::shape::with_width;
 use crate::solver::clock::timed;
 use crate::solver::packed::{totals, with_packed};
-use crate::solver::particle_matrix::{PackedArms, Spinning, arm_sums};
+use crate::solver::particle_matrix::{PackedSpin, Spinning, spin_sums};
 use crate::solver::particle_weights::Distances;
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
@@ -73,15 +73,15 @@ impl<const D: usize> Scheme<D> {
             s.gather_spin_of(patch, spin, primes, |stencils, r, (one, place), nodal| {
                 if !stencils.is_narrow::<K>(r) {
                     let weights = stencils.particle::<K, D>(r);
-                    return map(nodal, |v| arm_sums(&weights, place, v)[2]);
+                    return map(nodal, |v| spin_sums(&weights, place, v)[2]);
                 }
                 if stencils.first[r] != at {
                     at = stencils.first[r];
                     let place = stencils.place(r);
                     window = map(nodal, |v| map(&v, |field| place.nodes::<K, V>(field)));
                 }
-                let arms = PackedArms::new(stencils.packed_values::<K, V, D>(r), one);
-                let [start, star, residual] = map(&window, |v: [[f64x4; V]; 2]| arms.sums(&v)[2]);
+                let spin = PackedSpin::new(stencils.packed_values::<K, V, D>(r), one);
+                let [start, star, residual] = map(&window, |v: [[f64x4; V]; 2]| spin.sums(&v)[2]);
                 let [start, star, residual, _] = totals::<K>([start, star, residual, f64x4::ZERO]);
                 [start, star, residual]
             });
@@ -94,7 +94,7 @@ impl<const D: usize> Scheme<D> {
         ) {
             s.gather_spin_of(patch, spin, primes, |stencils, r, (_, place), nodal| {
                 let weights = stencils.particle::<K, D>(r);
-                map(nodal, |v| arm_sums(&weights, place, v)[2])
+                map(nodal, |v| spin_sums(&weights, place, v)[2])
             });
         }
         let Some(spin) = self.columns.spin else { return };
