@@ -205,7 +205,7 @@ mod tests {
 
     fn check<const K: usize, const V: usize, const D: usize>() {
         let (mut stencils, field) = three::<K, D>();
-        stencils.find_groups::<K>(&[0..3]);
+        stencils.find_groups::<K>(std::slice::from_ref(&(0..3)));
         let groups: Vec<_> = stencils.groups.iter().map(|group| group.particles()).collect();
         assert_eq!(groups, [0..2, 2..3]);
         // gather: four sums at a time are those of one particle and one field
@@ -259,7 +259,7 @@ mod tests {
         stencils.first.fill(5);
         stencils.narrow[1] = false;
         let groups = |stencils: &mut Stencils| {
-            stencils.find_groups::<6>(&[0..3]);
+            stencils.find_groups::<6>(std::slice::from_ref(&(0..3)));
             let groups = stencils.groups.iter();
             groups.map(|group| (group.particles(), group.narrow())).collect::<Vec<_>>()
         };

@@ -324,7 +324,7 @@ mod tests {
                 }
             }
         }
-        stencils.find_groups::<K>(&[0..6]);
+        stencils.find_groups::<K>(std::slice::from_ref(&(0..6)));
         let place = |r: usize| Distances {
             first: [-0.9 + 0.1 * r as f64, -0.7],
             skipped: [f64::from(u8::from(r == 1)), 0.0],
@@ -346,7 +346,7 @@ mod tests {
             (0..4).map(|f| (0..NODES).map(|i| number(i * 7 + f * 13) - 0.4).collect()).collect();
         let x: Vec<&[f64]> = fields.iter().map(|field| &field[..]).collect();
         let mut y = vec![vec![f64::NAN; NODES]; 4];
-        matrix.products::<2>(&stencils, &[0..6], &x, &mut y);
+        matrix.products::<2>(&stencils, std::slice::from_ref(&(0..6)), &x, &mut y);
         let mut one_by_one = vec![vec![0.0; NODES]; 4];
         matrix.add_each::<K, 2>(&stencils, 0..6, &x, &mut one_by_one);
         assert_eq!(y, one_by_one, "{K} nodes, spin {spin}");

@@ -233,9 +233,15 @@ impl Band {
     /// [kg].
     #[inline(always)]
     pub fn each_neighbour(&self, i: usize, mut act: impl FnMut(usize, f64)) {
-        for d in 1..self.count {
-            act(i + d, self.diagonals[d * self.stride + i]);
-            act(i - d, self.diagonals[d * self.stride + i - d]);
+        let mut both = |d: usize| {
+            let diagonal = &self.diagonals[d * self.stride..];
+            act(i + d, diagonal[i]);
+            act(i - d, diagonal[i - d]);
+        };
+        match self.count {
+            // known to the compiler for the windows of splines
+            4 => [1, 2, 3].into_iter().for_each(both),
+            count => (1..count).for_each(&mut both),
         }
     }
 }

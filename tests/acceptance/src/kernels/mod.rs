@@ -167,7 +167,7 @@ const BENCHES: [Bench; 11] = [
         speed: bounds::speed::PLANE_DEFAULT,
         fast: "-",
         least: FMPM,
-        memory: None,
+        memory: Some(bounds::memory::PLANE_DEFAULT),
     },
 ];
 
