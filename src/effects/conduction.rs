@@ -249,7 +249,7 @@ impl<const D: usize> HeatConduction<D> {
             }
             let matrix = &mut patch.matrices[e.matrix];
             let capacity = &patch.block.columns[e.capacity][..patch.block.particles()];
-            matrix.clear::<K, D>(nodes, capacity.iter().copied());
+            matrix.start::<K, D>(nodes, capacity.iter().copied());
             let [inverse, temperature, projected] =
                 patch.nodes.fields_mut([f.inverse, f.temperature, f.projected]);
             inverse.fill(0.0);

@@ -31,7 +31,7 @@ impl<const D: usize> Stepper<D> {
         let ghost_columns = specs.iter().filter(|spec| spec.ghost).count();
         let place = size_of::<u64>() + D * size_of::<i32>();
         let words = DOUBLE * (1 + D + ghost_columns);
-        let weights = self.weight_bytes(padded_width(self.shape.nodes(longest)));
+        let weights = self.weight_and_matrix_bytes(padded_width(self.shape.nodes(longest)));
         // and one reusable value per particle
         let own = place + DOUBLE * (specs.len() + 1) + weights + self.columns.state_bytes(D);
         let ghost = place + DOUBLE * ghost_columns + weights + words;
@@ -46,9 +46,9 @@ impl<const D: usize> Stepper<D> {
     }
 
     /// Memory of the weights of a particle, and of the matrices, on windows of `width` nodes [bytes].
-    fn weight_bytes(&self, width: usize) -> usize {
+    fn weight_and_matrix_bytes(&self, width: usize) -> usize {
         let nodes = width.pow(D as u32);
-        // values, gradients, the first node, and at most a group of its own
+        // values, gradients, the first node, and at most one group per particle
         let group = if D > 1 { size_of::<Group>() } else { 0 };
         let weights = DOUBLE * nodes * (1 + D) + size_of::<u32>() + group;
         let [_, matrices] = self.matrix_bytes(width);
@@ -65,8 +65,9 @@ impl<const D: usize> Stepper<D> {
     /// Memory of the matrices per node and per particle [bytes].
     fn matrix_bytes(&self, width: usize) -> [usize; 2] {
         let others = usize::from(self.relaxation.is_some()) + self.of_effects.matrices;
-        let mass = match self.needs_matrix() {
-            true => NodalMatrix::bytes(width, D, self.columns.spin.is_some()),
+        let spin = self.columns.spin.is_some();
+        let mass = match self.needs_matrix() || spin {
+            true => NodalMatrix::bytes(width, D, spin),
             false => [0; 2],
         };
         let other = NodalMatrix::bytes(width, D, false);

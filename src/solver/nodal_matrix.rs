@@ -1,5 +1,5 @@
 //! Symmetric matrices over the nodes of a patch, M_ij = sum_p w_p N_ip N_jp, such as the mass matrix:
-//! on a line by their diagonals, in a plane by their particles.
+//! banded on a line, matrix-free in a plane.
 //!
 //! This module does not depend on materials, time stepping or messages.
 
@@ -10,9 +10,9 @@ use super::particle_matrix::ParticleMatrix;
 use crate::solver::particle_weights::ParticleWeights;
 use crate::solver::shape_weights::Stencils;
 
-/// Particles of a patch and the nodes that it computes.
+/// Particles and computed nodes of a patch, for products.
 #[derive(Clone, Copy)]
-pub struct MatrixSpace<'a> {
+pub struct ProductContext<'a> {
     /// Weights of its particles.
     pub stencils: &'a Stencils,
     /// Ranges of particles in canonical order.
@@ -21,7 +21,7 @@ pub struct MatrixSpace<'a> {
     pub lines: &'a [Range<usize>],
 }
 
-/// A matrix.
+/// Symmetric matrix over the nodes of a patch: banded on a line, matrix-free in a plane.
 #[derive(Clone, Debug, Default)]
 pub struct NodalMatrix {
     /// The matrix on a line.
@@ -40,9 +40,10 @@ impl NodalMatrix {
         }
     }
 
-    /// Prepares a sum over particles of the weights `w`, ghosts included, on windows of `K` nodes
-    /// along each direction and on `nodes` nodes.
-    pub fn clear<const K: usize, const D: usize>(
+    /// Starts the matrix, on windows of `K` nodes along each direction and on `nodes` nodes: in a
+    /// plane stores the weights `w` of all particles, ghosts included; on a line sets all entries to
+    /// 0, and [`add`](Self::add) adds each particle.
+    pub fn start<const K: usize, const D: usize>(
         &mut self,
         nodes: usize,
         w: impl Iterator<Item = f64>,
@@ -54,7 +55,7 @@ impl NodalMatrix {
         self.particles.weights.extend(w);
     }
 
-    /// Adds a particle of the weight `w`, which in a plane has been added by [`clear`](Self::clear).
+    /// Adds a particle of the weight `w` on a line.
     #[inline(always)]
     pub fn add<const K: usize, const D: usize>(
         &mut self,
@@ -66,51 +67,51 @@ impl NodalMatrix {
         }
     }
 
-    /// Completes the sum.
+    /// Completes the matrix on a line.
     pub fn finish<const D: usize>(&mut self) {
         if const { D == 1 } {
             self.band.finish();
         }
     }
 
-    /// `y` = M x on the computed nodes and 0 elsewhere, for several fields at a time; with spin each
-    /// two fields are the components of a vector. The unit of y is that of x times that of w.
+    /// `y` = M x on the computed nodes and 0 elsewhere, for several fields at a time. With spin,
+    /// fields 2k and 2k + 1 are the components of a vector. The unit of y is that of x times that of w.
     pub fn products<const D: usize>(
         &self,
-        space: MatrixSpace<'_>,
+        context: ProductContext<'_>,
         x: &[&[f64]],
         y: &mut [Vec<f64>],
     ) {
         if const { D > 1 } {
-            self.particles.products::<D>(space.stencils, space.runs, x, y);
+            self.particles.products::<D>(context.stencils, context.runs, x, y);
         }
         for (x, y) in x.iter().zip(y) {
-            clear_others(space.lines, y);
+            clear_others(context.lines, y);
             if const { D == 1 } {
-                space.lines.iter().for_each(|line| self.band.product([x], line.clone(), [y]));
+                context.lines.iter().for_each(|line| self.band.product([x], line.clone(), [y]));
             }
         }
     }
 
-    /// `y` = t + x - d M x on the computed nodes and 0 elsewhere, for several fields at a time, with
-    /// a diagonal matrix d: from one sum of a series to the next by Horner's rule. t, x and y have
-    /// the same unit.
+    /// `y` = t + x - d M x on the computed nodes, for several fields at a time, with a diagonal
+    /// matrix d: from one sum of a series to the next by Horner's rule. In a plane other nodes are
+    /// set to 0, on a line they keep their values. t, x and y have the same unit.
     pub fn next_sums<const D: usize, const V: usize>(
         &self,
-        space: MatrixSpace<'_>,
+        context: ProductContext<'_>,
         x: [&[f64]; V],
         d: &[f64],
         t: [&[f64]; V],
         y: &mut [Vec<f64>; V],
     ) {
         if const { D == 1 } {
-            for line in space.lines {
+            for line in context.lines {
                 self.band.next_sums(x, d, t, line.clone(), y.each_mut().map(|y| &mut y[..]));
             }
             return;
         }
-        self.products::<D>(space, &x, y);
-        for line in space.lines {
+        self.products::<D>(context, &x, y);
+        for line in context.lines {
             let d = &d[line.clone()];
             for v in 0..V {
                 let [x, t] = [x[v], t[v]].map(|field| &field[line.clone()]);

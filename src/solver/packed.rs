@@ -71,7 +71,8 @@ impl WindowPlace {
         self.check::<K, V>(field);
         from_fn(|line| {
             let at = self.line(line);
-            // SAFETY: `check` has found the last line within the field
+            // SAFETY: no line ends beyond the last one, which `check` has found within the field, as
+            // sums of 32-bit numbers do not overflow 64 bits
             let line = unsafe { field.get_unchecked(at..at + const { packed_nodes(K) }) };
             // the nodes in a vector as a constant argument cannot be computed from K
             match const { K <= PACKED } {
@@ -84,7 +85,12 @@ impl WindowPlace {
     /// First node of a line.
     #[inline(always)]
     fn line(&self, line: usize) -> usize {
-        const { assert!(usize::BITS >= 64, "32 bits hold no index of a node") };
+        const {
+            assert!(
+                usize::BITS >= 64,
+                "indices of 64 bits, so that first + line * stride does not overflow"
+            )
+        };
         self.first as usize + line * self.stride as usize
     }
 
@@ -114,7 +120,7 @@ impl WindowPlace {
             let nodes = nodes.to_array();
             let at = self.line(line);
             let count = const { packed_nodes(K) };
-            // SAFETY: `check` has found the last line within the field
+            // SAFETY: as in `nodes`
             let line = unsafe { field.get_unchecked_mut(at..at + count) };
             line.copy_from_slice(&nodes[..count]);
         }
@@ -261,7 +267,7 @@ mod tests {
         let groups = |stencils: &mut Stencils| {
             stencils.find_groups::<6>(std::slice::from_ref(&(0..3)));
             let groups = stencils.groups.iter();
-            groups.map(|group| (group.particles(), group.narrow())).collect::<Vec<_>>()
+            groups.map(|group| (group.particles(), group.packed_count())).collect::<Vec<_>>()
         };
         assert_eq!(groups(&mut stencils), [(0..1, 1), (1..2, 0), (2..3, 1)]);
         stencils.narrow[0] = false;

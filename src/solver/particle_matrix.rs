@@ -1,9 +1,11 @@
-//! Symmetric matrices over the nodes of a plane, M_ij = sum_p w_p (N_i N_j + phi_i phi_j), by their
-//! particles. phi is the feature of a rotation of [`spin`](super::spin), for matrices with spin.
+//! Matrix-free products with symmetric matrices over the nodes of a plane,
+//! M_ij = sum_p w_p (N_i N_j + phi_i phi_j), where phi_i = N_i (-e_y, e_x)/sqrt(I) belongs to the
+//! [`spin`](super::spin) of a particle, for matrices with spin.
 //!
-//! Such a matrix is never assembled: a product M x adds w (N.x) N and w (phi.x) phi particle by
-//! particle, from the weights that the patch holds anyway. Assembled, it would have 49 entries per
-//! node, and four times as many with spin, which take more operations to sum, and more memory.
+//! M is never assembled: each particle adds w (N.x) N and w (phi.x) phi to a product, with the
+//! weights that the patch holds anyway. An assembled matrix would have 49 entries per node for
+//! windows of four nodes along each direction, and four times as many with spin. Its assembly would
+//! take more operations, and more memory.
 //!
 //! This module does not depend on materials, time stepping or messages.
 
@@ -15,11 +17,11 @@ use wide::f64x4;
 use crate::shape::{vector, with_width};
 use crate::solver::packed::{add_to, dot, totals, with_packed};
 use crate::solver::particle_weights::{Distances, ParticleWeights, add, lines};
-use crate::solver::shape_weights::{Stencils, TOGETHER};
+use crate::solver::shape_weights::{GROUP_SIZE, Stencils};
 
-/// A particle with spin.
+/// Moment of inertia of a particle with spin, and distances of its nodes.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Spinning {
+pub struct ParticleSpin {
     /// Moment of inertia per unit mass, I [m2].
     pub inertia: f64,
     /// Distances of the first four nodes along x [m].
@@ -30,16 +32,17 @@ pub struct Spinning {
     inverse: f64,
 }
 
-impl Spinning {
-    /// A particle whose nodes are at `place`, with I = `inertia` [m2].
+impl ParticleSpin {
+    /// A particle with nodes at `distances`, and with I = `inertia` [m2].
     #[inline(always)]
-    pub fn new(place: &Distances, inertia: f64) -> Self {
-        let (along, across) = (place.four_along().to_array(), from_fn(|line| place.across(line)));
-        Spinning { inertia, along, across, inverse: 1.0 / inertia }
+    pub fn new(distances: &Distances, inertia: f64) -> Self {
+        let (along, across) =
+            (distances.four_along().to_array(), from_fn(|line| distances.across(line)));
+        ParticleSpin { inertia, along, across, inverse: 1.0 / inertia }
     }
 }
 
-/// Weights of a narrow particle, and what its angular momentum needs of them: one vector per line.
+/// Weights of a narrow particle and their products with distances, one vector per line.
 pub(super) struct PackedSpin<const V: usize> {
     values: [f64x4; V],
     /// Values times the distances along y [m].
@@ -50,7 +53,7 @@ pub(super) struct PackedSpin<const V: usize> {
 
 impl<const V: usize> PackedSpin<V> {
     #[inline(always)]
-    pub(super) fn new(values: [f64x4; V], particle: &Spinning) -> Self {
+    pub(super) fn new(values: [f64x4; V], particle: &ParticleSpin) -> Self {
         let across = from_fn(|line| values[line] * f64x4::splat(particle.across[line]));
         PackedSpin { values, across, along: vector(&particle.along) }
     }
@@ -79,13 +82,13 @@ impl<const V: usize> PackedSpin<V> {
 #[inline(always)]
 pub(super) fn spin_inertia<const K: usize, const D: usize>(
     weights: &ParticleWeights<'_, K, D>,
-    place: &Distances,
+    distances: &Distances,
 ) -> f64 {
     weights.sum(weights.values, |line| {
-        let across = place.across(line);
+        let across = distances.across(line);
         let mut squares = [0.0; K];
         for k in 0..K {
-            let along = place.along(k);
+            let along = distances.along(k);
             squares[k] = along * along + across * across;
         }
         squares
@@ -94,12 +97,12 @@ pub(super) fn spin_inertia<const K: usize, const D: usize>(
 
 /// [`spin_inertia`] of a window in vectors, before the sum over the nodes of a line.
 #[inline(always)]
-pub(super) fn packed_inertia<const V: usize>(values: &[f64x4; V], place: &Distances) -> f64x4 {
-    let along = place.four_along();
+pub(super) fn packed_inertia<const V: usize>(values: &[f64x4; V], distances: &Distances) -> f64x4 {
+    let along = distances.four_along();
     dot(
         values,
         &from_fn(|line| {
-            let across = f64x4::splat(place.across(line));
+            let across = f64x4::splat(distances.across(line));
             along * along + across * across
         }),
     )
@@ -109,12 +112,12 @@ pub(super) fn packed_inertia<const V: usize>(values: &[f64x4; V], place: &Distan
 #[inline(always)]
 pub(super) fn spin_sums<const K: usize, const D: usize>(
     weights: &ParticleWeights<'_, K, D>,
-    place: &Distances,
+    distances: &Distances,
     [x, y]: [&[f64]; 2],
 ) -> [f64; 3] {
     let (mut mean, mut across_x) = ([[0.0; K]; 2], [0.0; K]);
     for line in 0..const { lines(K, D) } {
-        let (values, across) = (&weights.values[line], place.across(line));
+        let (values, across) = (&weights.values[line], distances.across(line));
         let (x, y) = (weights.line(x, line), weights.line(y, line));
         for k in 0..K {
             mean[0][k] += values[k] * x[k];
@@ -124,7 +127,7 @@ pub(super) fn spin_sums<const K: usize, const D: usize>(
     }
     let mut sums = [0.0; 3];
     for k in 0..K {
-        let moment = place.along(k) * mean[1][k] - across_x[k];
+        let moment = distances.along(k) * mean[1][k] - across_x[k];
         for (sum, term) in sums.iter_mut().zip([mean[0][k], mean[1][k], moment]) {
             *sum += term;
         }
@@ -136,44 +139,44 @@ pub(super) fn spin_sums<const K: usize, const D: usize>(
 #[inline(always)]
 pub(super) fn add_spin<const K: usize, const D: usize>(
     weights: &ParticleWeights<'_, K, D>,
-    place: &Distances,
+    distances: &Distances,
     [x, y]: [&mut [f64]; 2],
     [mean_x, mean_y, turn]: [f64; 3],
 ) {
     for line in 0..const { lines(K, D) } {
-        let (values, across) = (&weights.values[line], place.across(line));
+        let (values, across) = (&weights.values[line], distances.across(line));
         let first = weights.first + line * weights.stride;
         let term_x = |k: usize| values[k] * mean_x - values[k] * across * turn;
         add::<K>(x, first, from_fn(term_x));
-        add::<K>(y, first, from_fn(|k| values[k] * (mean_y + place.along(k) * turn)));
+        add::<K>(y, first, from_fn(|k| values[k] * (mean_y + distances.along(k) * turn)));
     }
 }
 
-/// A matrix by its particles, in a plane.
+/// Matrix-free symmetric matrix over the nodes of a plane: the weight of each particle, and its spin.
 #[derive(Clone, Debug, Default)]
 pub struct ParticleMatrix {
     /// Weights w of all particles of the patch, including ghosts, such as their masses \[kg\].
     pub weights: Vec<f64>,
     /// The same particles with spin; empty for a matrix without.
-    pub spinning: Vec<Spinning>,
-    /// Distances of the nodes of their windows from them, for windows of any width.
-    pub places: Vec<Distances>,
+    pub spinning: Vec<ParticleSpin>,
+    /// Distances of the nodes from these particles, for the sums over wide windows.
+    pub distances: Vec<Distances>,
 }
 
 impl ParticleMatrix {
     /// Memory per particle \[bytes\], with or without spin.
     pub const fn bytes_per_particle(spin: bool) -> usize {
-        let spinning = size_of::<Spinning>() + size_of::<Distances>();
+        let spinning = size_of::<ParticleSpin>() + size_of::<Distances>();
         size_of::<f64>() + if spin { spinning } else { 0 }
     }
 
-    /// `y` = M x for each of several fields over the nodes; with spin each two fields are the
+    /// `y` = M x for each of several fields over the nodes. With spin, fields 2k and 2k + 1 are the
     /// components of a vector along x and y. `runs` are the ranges of particles in canonical order.
-    /// A product is right on nodes all of whose neighbours within the windows have values in `x`.
+    /// The product is valid at a node if `x` is valid at all nodes of the windows that contain it.
     ///
     /// # Panics
     ///
-    /// If `x` and `y` have different lengths.
+    /// If `x` and `y` have different lengths, or with spin an odd length.
     pub fn products<const D: usize>(
         &self,
         stencils: &Stencils,
@@ -190,12 +193,12 @@ impl ParticleMatrix {
             for group in &stencils.groups {
                 let first = group.first();
                 // numbers of particles known at compile time, so that there are no loops over them
-                match group.narrow() {
-                    0 => matrix.add_each::<K, D>(stencils, group.particles(), x, y),
-                    1 => matrix.add_some::<K, V, D, 1>(stencils, first, x, y),
-                    2 => matrix.add_some::<K, V, D, 2>(stencils, first, x, y),
-                    3 => matrix.add_some::<K, V, D, 3>(stencils, first, x, y),
-                    _ => matrix.add_some::<K, V, D, TOGETHER>(stencils, first, x, y),
+                match group.packed_count() {
+                    0 => matrix.add_one_by_one::<K, D>(stencils, group.particles(), x, y),
+                    1 => matrix.add_packed::<K, V, D, 1>(stencils, first, x, y),
+                    2 => matrix.add_packed::<K, V, D, 2>(stencils, first, x, y),
+                    3 => matrix.add_packed::<K, V, D, 3>(stencils, first, x, y),
+                    _ => matrix.add_packed::<K, V, D, GROUP_SIZE>(stencils, first, x, y),
                 }
             }
         }
@@ -206,9 +209,11 @@ impl ParticleMatrix {
             x: &[&[f64]],
             y: &mut [Vec<f64>],
         ) {
-            runs.iter().cloned().for_each(|run| matrix.add_each::<K, D>(stencils, run, x, y));
+            runs.iter().cloned().for_each(|run| matrix.add_one_by_one::<K, D>(stencils, run, x, y));
         }
         assert_eq!(x.len(), y.len());
+        let is_paired = x.len().is_multiple_of(2);
+        assert!(self.spinning.is_empty() || is_paired, "with spin, fields are pairs of components");
         y.iter_mut().for_each(|y| y.fill(0.0));
         let width = stencils.width;
         with_packed!(
@@ -220,7 +225,7 @@ impl ParticleMatrix {
 
     /// Adds the terms of `N` narrow particles with the same window, from `first` on.
     #[inline(always)]
-    fn add_some<const K: usize, const V: usize, const D: usize, const N: usize>(
+    fn add_packed<const K: usize, const V: usize, const D: usize, const N: usize>(
         &self,
         stencils: &Stencils,
         first: usize,
@@ -229,12 +234,12 @@ impl ParticleMatrix {
     ) {
         let place = stencils.place(first);
         let weights: &[f64; N] = self.weights[first..].first_chunk().expect("N particles");
-        let weights = f64x4::from(padded(|k| weights[k % N], N));
+        let weights = f64x4::from(four_of(|k| weights[k % N], N));
         let values: [[f64x4; V]; N] = stencils.packed_group::<K, V, D, N>(first);
         if self.spinning.is_empty() {
             for (x, y) in x.iter().zip(y) {
                 let nodes = place.nodes::<K, V>(x);
-                let sums = totals::<K>(padded(|k| dot(&values[k % N], &nodes), N));
+                let sums = totals::<K>(four_of(|k| dot(&values[k % N], &nodes), N));
                 let terms = (weights * f64x4::from(sums)).to_array();
                 let mut nodes = place.nodes::<K, V>(y);
                 for k in 0..N {
@@ -244,14 +249,15 @@ impl ParticleMatrix {
             }
             return;
         }
-        let spinning: &[Spinning; N] = self.spinning[first..].first_chunk().expect("N particles");
-        let inverse = f64x4::from(padded(|k| spinning[k % N].inverse, N));
+        let spinning: &[ParticleSpin; N] =
+            self.spinning[first..].first_chunk().expect("N particles");
+        let inverse = f64x4::from(four_of(|k| spinning[k % N].inverse, N));
         let spin: [PackedSpin<V>; N] = from_fn(|k| PackedSpin::new(values[k], &spinning[k]));
         for (x, y) in x.as_chunks::<2>().0.iter().zip(y.as_chunks_mut::<2>().0) {
             let nodes = map(x, |x| place.nodes::<K, V>(x));
             let all: [[f64x4; 3]; N] = from_fn(|k| spin[k].sums(&nodes));
             let [x_sums, y_sums, moments]: [f64x4; 3] =
-                from_fn(|part| f64x4::from(totals::<K>(padded(|k| all[k % N][part], N))));
+                from_fn(|part| f64x4::from(totals::<K>(four_of(|k| all[k % N][part], N))));
             let terms = [weights * x_sums, weights * y_sums, weights * (moments * inverse)];
             let terms = map(&terms, |terms| terms.to_array());
             let mut nodes = from_fn(|a| place.nodes::<K, V>(&y[a]));
@@ -265,7 +271,7 @@ impl ParticleMatrix {
     }
 
     /// Adds the terms of particles one by one.
-    fn add_each<const K: usize, const D: usize>(
+    fn add_one_by_one<const K: usize, const D: usize>(
         &self,
         stencils: &Stencils,
         particles: Range<usize>,
@@ -274,7 +280,7 @@ impl ParticleMatrix {
     ) {
         for r in particles {
             let (weights, w) = (stencils.particle::<K, D>(r), self.weights[r]);
-            let Some((place, spinning)) = self.places.get(r).zip(self.spinning.get(r)) else {
+            let Some((distances, spin)) = self.distances.get(r).zip(self.spinning.get(r)) else {
                 for (x, y) in x.iter().zip(&mut *y) {
                     let term = w * weights.dot(weights.values, x);
                     weights.add(y, weights.values, |n| n * term);
@@ -282,9 +288,9 @@ impl ParticleMatrix {
                 continue;
             };
             for (x, y) in x.as_chunks::<2>().0.iter().zip(y.as_chunks_mut::<2>().0) {
-                let [x_sum, y_sum, moment] = spin_sums(&weights, place, *x);
-                let terms = map(&[x_sum, y_sum, moment * spinning.inverse], |sum| w * sum);
-                add_spin(&weights, place, y.each_mut().map(|y| &mut y[..]), terms);
+                let [x_sum, y_sum, moment] = spin_sums(&weights, distances, *x);
+                let terms = map(&[x_sum, y_sum, moment * spin.inverse], |sum| w * sum);
+                add_spin(&weights, distances, y.each_mut().map(|y| &mut y[..]), terms);
             }
         }
     }
@@ -292,7 +298,7 @@ impl ParticleMatrix {
 
 /// `of(0)`, `of(1)`, ... for the first `count` of four entries, and zeros.
 #[inline(always)]
-fn padded<T: Default>(of: impl Fn(usize) -> T, count: usize) -> [T; 4] {
+fn four_of<T: Default>(of: impl Fn(usize) -> T, count: usize) -> [T; 4] {
     from_fn(|k| if k < count { of(k) } else { T::default() })
 }
 
@@ -325,17 +331,17 @@ mod tests {
             }
         }
         stencils.find_groups::<K>(std::slice::from_ref(&(0..6)));
-        let place = |r: usize| Distances {
+        let distances = |r: usize| Distances {
             first: [-0.9 + 0.1 * r as f64, -0.7],
             skipped: [f64::from(u8::from(r == 1)), 0.0],
             cell: [0.5, 0.4],
         };
-        let places: Vec<Distances> = (0..if spin { 6 } else { 0 }).map(place).collect();
+        let distances: Vec<Distances> = (0..if spin { 6 } else { 0 }).map(distances).collect();
         let spinning =
-            |(r, place)| Spinning::new(place, spin_inertia(&stencils.particle::<K, 2>(r), place));
-        let spinning = places.iter().enumerate().map(spinning).collect();
+            |(r, at)| ParticleSpin::new(at, spin_inertia(&stencils.particle::<K, 2>(r), at));
+        let spinning = distances.iter().enumerate().map(spinning).collect();
         let weights = vec![2.0, 0.3, 1.1, 0.7, 1.9, 0.4];
-        let matrix = ParticleMatrix { weights, spinning, places };
+        let matrix = ParticleMatrix { weights, spinning, distances };
         (stencils, matrix)
     }
 
@@ -348,7 +354,7 @@ mod tests {
         let mut y = vec![vec![f64::NAN; NODES]; 4];
         matrix.products::<2>(&stencils, std::slice::from_ref(&(0..6)), &x, &mut y);
         let mut one_by_one = vec![vec![0.0; NODES]; 4];
-        matrix.add_each::<K, 2>(&stencils, 0..6, &x, &mut one_by_one);
+        matrix.add_one_by_one::<K, 2>(&stencils, 0..6, &x, &mut one_by_one);
         assert_eq!(y, one_by_one, "{K} nodes, spin {spin}");
         // N and phi of a particle for two components on all nodes
         let mut exact = vec![vec![0.0; NODES]; 4];
@@ -360,8 +366,8 @@ mod tests {
                 for (m, j) in all.clone() {
                     let both = weights.values[l][k] * weights.values[m][j];
                     let turn = |l: usize, k: usize| {
-                        let place = &matrix.places[r];
-                        [-place.across(l), place.along(k)]
+                        let distances = &matrix.distances[r];
+                        [-distances.across(l), distances.along(k)]
                     };
                     for f in 0..4 {
                         let mut term = both * x[f][at(m, j)];

@@ -8,7 +8,7 @@ use crate::shape::Shape;
 use crate::solver::clock::Stopwatch;
 use crate::solver::contact::PatchContact;
 use crate::solver::find_weights::{Corners, Places};
-use crate::solver::nodal_matrix::{MatrixSpace, NodalMatrix};
+use crate::solver::nodal_matrix::{NodalMatrix, ProductContext};
 use crate::solver::packed::is_one_vector;
 use crate::solver::shape_weights::Stencils;
 
@@ -251,8 +251,8 @@ impl<const D: usize> Patch<D> {
 
 impl<const D: usize> Patch<D> {
     /// Particles and computed nodes, for products with matrices.
-    pub fn matrix_space(&self) -> MatrixSpace<'_> {
-        MatrixSpace { stencils: &self.stencils, runs: &self.runs, lines: &self.active_lines }
+    pub fn product_context(&self) -> ProductContext<'_> {
+        ProductContext { stencils: &self.stencils, runs: &self.runs, lines: &self.active_lines }
     }
 
     /// Calls `f` with the weights, which are taken out of the patch meanwhile.

@@ -224,7 +224,7 @@ impl<const D: usize> Scheme<D> {
         ) {
             s.scatter_pressure::<K>(patch, |stencils, _, matrix, of, sums| {
                 for group in &stencils.groups {
-                    match group.narrow() {
+                    match group.packed_count() {
                         0 => add_particles::<K, D>(stencils, group.particles(), matrix, of, sums),
                         _ => sums.add_group::<K, V, D>(stencils, group.particles(), of),
                     }
@@ -271,7 +271,7 @@ impl<const D: usize> Scheme<D> {
             ratio
         });
         let nodes = patch.nodes.layers * patch.nodes.nodes.count();
-        patch.compliance_matrix.clear::<K, D>(nodes, (0..particles).map(|r| of.share(r)));
+        patch.compliance_matrix.start::<K, D>(nodes, (0..particles).map(|r| of.share(r)));
         let [weight, inverse, sum, term] = patch.nodes.fields_mut([weight, inverse, sum, term]);
         weight.fill(0.0);
         inverse.fill(0.0);

@@ -4,7 +4,7 @@
 use decomp::array;
 
 use super::nodal_matrix::NodalMatrix;
-use super::particle_matrix::{Spinning, add_spin, spin_inertia};
+use super::particle_matrix::{ParticleSpin, add_spin, spin_inertia};
 use super::scheme::Scheme;
 use crate::shape::{Shape, with_shape, with_width};
 use crate::solver::clock::timed;
@@ -212,12 +212,12 @@ impl<const D: usize> Scheme<D> {
         let m = of.mass[r];
         weights.add(sums.mass, weights.values, |n| n * m);
         if let Some(moment) = of.moment.filter(|_| SPIN) {
-            let place = self.reflect_spin(patch, r, self.place_of(patch, r));
-            let spinning = Spinning::new(&place, spin_inertia(weights, &place));
+            let distances = self.reflect_spin(patch, r, self.node_distances(patch, r));
+            let spin = ParticleSpin::new(&distances, spin_inertia(weights, &distances));
             let (x, y) = sums.momentum.split_at_mut(D - 1);
-            add_spin(weights, &place, [x[0], y[0]], of.motion(r, moment[r] / spinning.inertia));
-            matrix.particles.spinning[r] = spinning;
-            matrix.particles.places[r] = place;
+            add_spin(weights, &distances, [x[0], y[0]], of.motion(r, moment[r] / spin.inertia));
+            matrix.particles.spinning[r] = spin;
+            matrix.particles.distances[r] = distances;
         } else if let Some(affine) = self.columns.affine.filter(|_| AFFINE) {
             let at = |k: usize| patch.block.columns[affine + k][r];
             let slope = array::from_fn(|a| array::from_fn(|b| at(D * a + b)));
@@ -292,13 +292,13 @@ impl<const D: usize> Scheme<D> {
         }
         if self.columns.spin.is_some() {
             let (matrix, count) = (&mut patch.mass_matrix.particles, patch.block.particles());
-            matrix.spinning.resize(count, Spinning::default());
-            matrix.places.resize(count, Distances::default());
+            matrix.spinning.resize(count, ParticleSpin::default());
+            matrix.distances.resize(count, Distances::default());
         }
         if MATRIX {
             let nodes = patch.nodes.layers * patch.nodes.nodes.count();
             let mass = &patch.block.columns[self.columns.mass][..patch.block.particles()];
-            patch.mass_matrix.clear::<K, D>(nodes, mass.iter().copied());
+            patch.mass_matrix.start::<K, D>(nodes, mass.iter().copied());
         }
     }
 

@@ -7,7 +7,7 @@ use decomp::array;
 use wide::f64x4;
 
 use super::nodal_matrix::NodalMatrix;
-use super::particle_matrix::{PackedSpin, ParticleMatrix, Spinning, packed_inertia};
+use super::particle_matrix::{PackedSpin, ParticleMatrix, ParticleSpin, packed_inertia};
 use super::scheme::Scheme;
 use crate::solver::packed::{WindowPlace, add_to, totals};
 use crate::solver::patch::Patch;
@@ -77,7 +77,7 @@ impl<const D: usize> SummedSlices<'_, D> {
         stencils: &Stencils,
         group: Range<usize>,
         of: &SummedColumns<'_, D>,
-        mut spinning: impl FnMut(usize, &[f64x4; V]) -> (Spinning, f64),
+        mut spinning: impl FnMut(usize, &[f64x4; V]) -> (ParticleSpin, f64),
     ) {
         let place = stencils.place(group.start);
         let axes = [0, D - 1];
@@ -135,8 +135,7 @@ impl<const D: usize> Scheme<D> {
         patch: &mut Patch<D>,
         force: bool,
     ) {
-        let needs_matrix = self.needs_matrix();
-        match needs_matrix {
+        match self.needs_matrix() {
             true => self.clear_sums::<K, true>(patch),
             false => self.clear_sums::<K, false>(patch),
         }
@@ -146,7 +145,7 @@ impl<const D: usize> Scheme<D> {
         let mut sums = fields.sums();
         let of = self.summed_columns(patch, force);
         for group in &patch.stencils.groups {
-            let (is_wide, group) = (group.narrow() == 0, group.particles());
+            let (is_wide, group) = (group.packed_count() == 0, group.particles());
             if is_wide {
                 self.add_wide::<K>(patch, group, &of, &mut sums, &mut matrix);
                 continue;
@@ -160,9 +159,6 @@ impl<const D: usize> Scheme<D> {
                 }
                 None => sums.add_motion::<K, V>(&patch.stencils, group.clone(), &of),
             }
-        }
-        if needs_matrix {
-            matrix.finish::<D>();
         }
         patch.mass_matrix = matrix;
         self.put_sums(patch, fields);
@@ -219,22 +215,15 @@ impl<const D: usize> Scheme<D> {
     ) {
         for (r, weights) in group.clone().zip(patch.stencils.particles::<K, D>(group)) {
             let one = (r, &weights);
-            match (self.needs_matrix(), of.moment) {
-                (_, Some(_)) => {
-                    self.add_particle::<K, true, false, true>(patch, one, of, sums, matrix);
-                }
-                (true, None) => {
-                    self.add_particle::<K, true, false, false>(patch, one, of, sums, matrix);
-                }
-                (false, None) => {
-                    self.add_particle::<K, false, false, false>(patch, one, of, sums, matrix);
-                }
+            match of.moment {
+                Some(_) => self.add_particle::<K, false, false, true>(patch, one, of, sums, matrix),
+                None => self.add_particle::<K, false, false, false>(patch, one, of, sums, matrix),
             }
         }
     }
 
-    /// Adds the motion of a group of particles with spin, and lists them for products with the mass
-    /// matrix.
+    /// Adds the motion of a group of particles with spin, and stores their inertia and the distances
+    /// of their nodes for products with the mass matrix.
     #[inline(always)]
     fn add_spinning<const K: usize, const V: usize>(
         &self,
@@ -246,10 +235,10 @@ impl<const D: usize> Scheme<D> {
     ) {
         let stencils = &patch.stencils;
         sums.add_spinning::<K, V>(stencils, group, of, |r, values| {
-            let place = self.reflect_spin(patch, r, self.place_of(patch, r));
-            let [inertia, ..] = totals::<K>([packed_inertia(values, &place); 4]);
-            matrix.places[r] = place;
-            matrix.spinning[r] = Spinning::new(&place, inertia);
+            let distances = self.reflect_spin(patch, r, self.node_distances(patch, r));
+            let [inertia, ..] = totals::<K>([packed_inertia(values, &distances); 4]);
+            matrix.distances[r] = distances;
+            matrix.spinning[r] = ParticleSpin::new(&distances, inertia);
             (matrix.spinning[r], moment[r] / inertia)
         });
     }

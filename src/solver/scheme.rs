@@ -252,8 +252,8 @@ pub(super) fn relaxes_ratio(scene: &CheckedScene) -> bool {
 /// Whether the edge mask leaves pairs of nodes out of the mass matrix, so that a uniform force gives
 /// a uniform acceleration. Otherwise it acts on the nodes, before each product of the force and
 /// after each product of the work: without a uniform force both are equally accurate, and waves
-/// leave transmitting sides better; with spin a pair of nodes also has a part that depends on the
-/// direction of the velocity; with contact the nodes of a pair may belong to several bodies. The flux
+/// leave transmitting sides better; with spin a pair of nodes has a block of two by two instead of
+/// a number; with contact the nodes of a pair may belong to several bodies. The flux
 /// limiter acts on pairs.
 fn masks_pairs(scene: &CheckedScene) -> bool {
     let method = &scene.scene.method;

@@ -90,7 +90,7 @@ impl ProductSeries {
     }
 }
 
-/// Series with the same matrix whose next terms are computed in one pass over the matrix.
+/// Series with the same matrix, whose next terms are computed together.
 struct Together {
     series: SmallVec<[ProductSeries; 2]>,
     /// Components of these series.
@@ -161,8 +161,8 @@ impl<const D: usize> Scheme<D> {
         let mut product = [std::mem::take(&mut patch.nodes.fields[self.fields.scratch])];
         let fields = &patch.nodes.fields;
         let (edge, inverse) = (&fields[self.fields.edge], &fields[self.fields.inverse]);
-        let space = patch.matrix_space();
-        patch.mass_matrix.products::<D>(space, &[edge], &mut product);
+        let context = patch.product_context();
+        patch.mass_matrix.products::<D>(context, &[edge], &mut product);
         let [mut product] = product;
         let nodes = patch.active_lines.iter().cloned().flatten();
         let shares = nodes.filter(|&i| edge[i] == 0.0).map(|i| (i, product[i] * inverse[i]));
@@ -255,7 +255,7 @@ impl<const D: usize> Scheme<D> {
             Matrix::Compliance => (&patch.compliance_matrix, self.fields.relaxation[1]),
             Matrix::Effect(number, inverse) => (&patch.matrices[number], inverse),
         };
-        matrix.next_sums::<D, V>(patch.matrix_space(), x, &fields[inverse], t, &mut next);
+        matrix.next_sums::<D, V>(patch.product_context(), x, &fields[inverse], t, &mut next);
         for (v, next) in next.into_iter().enumerate() {
             patch.nodes.fields[self.fields.scratch + v] = next;
         }
@@ -465,7 +465,7 @@ impl<const D: usize> Scheme<D> {
             decomp::array::from_fn(|a| std::mem::take(&mut fields[f.work + a]));
         let fields = &patch.nodes.fields;
         let star: [&[f64]; D] = decomp::array::from_fn(|a| &fields[f.velocity_star + a][..]);
-        patch.mass_matrix.products::<D>(patch.matrix_space(), &star, &mut work);
+        patch.mass_matrix.products::<D>(patch.product_context(), &star, &mut work);
         for (a, work) in work.into_iter().enumerate() {
             patch.nodes.fields[f.work + a] = work;
             let [inverse, lumped, w, first] =
@@ -486,7 +486,7 @@ impl<const D: usize> Scheme<D> {
         }
         let mut product = [std::mem::take(&mut patch.nodes.fields[f.work + axis])];
         let x = &patch.nodes.fields[f.first + axis][..];
-        patch.mass_matrix.products::<D>(patch.matrix_space(), &[x], &mut product);
+        patch.mass_matrix.products::<D>(patch.product_context(), &[x], &mut product);
         let [product] = product;
         patch.nodes.fields[f.work + axis] = product;
         let [inverse, lumped, w] =

@@ -12,7 +12,7 @@ use crate::solver::packed::{PACKED, PackedWeights, WindowPlace, pack};
 use crate::solver::particle_weights::{NARROW, ParticleWeights, lines};
 
 /// Greatest number of particles in a group.
-pub const TOGETHER: usize = 4;
+pub const GROUP_SIZE: usize = 4;
 
 /// Numbers after the last weight, so that the last line of a window can be loaded as four numbers.
 const SPARE: usize = PACKED - 1;
@@ -43,7 +43,7 @@ pub struct Stencils {
     kept: Kept,
 }
 
-/// At most [`TOGETHER`] consecutive particles with the same window, all of them narrow or none.
+/// At most [`GROUP_SIZE`] consecutive particles with the same window, all of them narrow or none.
 #[derive(Clone, Copy, Debug)]
 pub struct Group {
     first: u32,
@@ -64,9 +64,9 @@ impl Group {
         self.first()..self.first() + usize::from(self.count)
     }
 
-    /// Number of particles, if they are narrow, else 0.
+    /// Number of particles whose weights are in vectors: all narrow ones, no wide one.
     #[inline(always)]
-    pub fn narrow(self) -> usize {
+    pub fn packed_count(self) -> usize {
         if self.narrow { usize::from(self.count) } else { 0 }
     }
 }
@@ -227,7 +227,7 @@ impl Stencils {
             for (at, window) in first[run.clone()].iter().enumerate() {
                 match &mut group {
                     Some(group)
-                        if usize::from(group.count) < TOGETHER
+                        if usize::from(group.count) < GROUP_SIZE
                             && first[group.first as usize] == *window
                             && group.narrow == is_narrow(at) =>
                     {

@@ -177,24 +177,24 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// `place` of the window of a particle with spin. For an image beyond a no-slip wall the component
-    /// of phi along the wall is reversed, as those of all its vectors; it is proportional to the
-    /// distance across the wall.
+    /// `distances` of the nodes of a particle with spin. An image beyond a no-slip wall has all its
+    /// vectors reversed along the wall. The component of phi along the wall is proportional to the
+    /// distance across the wall, so that the sign of this distance is changed.
     #[inline(always)]
     pub(crate) fn reflect_spin(
         &self,
         patch: &Patch<D>,
         particle: usize,
-        mut place: Distances,
+        mut distances: Distances,
     ) -> Distances {
         let is_ghost = particle >= patch.block.own();
         for axis in (0..D).filter(|&a| is_ghost && self.no_slip[a]) {
             if self.is_turned(patch, particle, axis) {
-                place.first[axis] = -place.first[axis];
-                place.cell[axis] = -place.cell[axis];
+                distances.first[axis] = -distances.first[axis];
+                distances.cell[axis] = -distances.cell[axis];
             }
         }
-        place
+        distances
     }
 
     /// Reverses the internal force of particles beyond no-slip walls along these walls, after it

@@ -34,19 +34,19 @@ use super::scheme::Scheme;
 use crate::shape::with_width;
 use crate::solver::clock::timed;
 use crate::solver::packed::{totals, with_packed};
-use crate::solver::particle_matrix::{PackedSpin, Spinning, spin_sums};
+use crate::solver::particle_matrix::{PackedSpin, ParticleSpin, spin_sums};
 use crate::solver::particle_weights::Distances;
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 use crate::solver::shape_weights::Stencils;
 
-/// A particle with spin, and the place of its window.
-type SpinningAt<'a> = (&'a Spinning, &'a Distances);
+/// A particle with spin, and the distances of its nodes.
+type SpinAndDistances<'a> = (&'a ParticleSpin, &'a Distances);
 
 impl<const D: usize> Scheme<D> {
-    /// Place of the window of a particle in a plane.
+    /// Distances of the nodes of a particle's window from it, in a plane.
     #[inline(always)]
-    pub(super) fn place_of(&self, patch: &Patch<D>, particle: usize) -> Distances {
+    pub(super) fn node_distances(&self, patch: &Patch<D>, particle: usize) -> Distances {
         let offset = self.offset(patch, particle);
         let cell = [self.cell[0], self.cell[D - 1]];
         let [x, y] = [0, D - 1];
@@ -70,17 +70,17 @@ impl<const D: usize> Scheme<D> {
                 return;
             }
             let (mut window, mut at) = ([[[f64x4::ZERO; V]; 2]; 3], u32::MAX);
-            s.gather_spin_of(patch, spin, primes, |stencils, r, (one, place), nodal| {
+            s.gather_spin_of(patch, spin, primes, |stencils, r, (spin, distances), nodal| {
                 if !stencils.is_narrow::<K>(r) {
                     let weights = stencils.particle::<K, D>(r);
-                    return map(nodal, |v| spin_sums(&weights, place, v)[2]);
+                    return map(nodal, |v| spin_sums(&weights, distances, v)[2]);
                 }
                 if stencils.first[r] != at {
                     at = stencils.first[r];
                     let place = stencils.place(r);
                     window = map(nodal, |v| map(&v, |field| place.nodes::<K, V>(field)));
                 }
-                let spin = PackedSpin::new(stencils.packed_values::<K, V, D>(r), one);
+                let spin = PackedSpin::new(stencils.packed_values::<K, V, D>(r), spin);
                 let [start, star, residual] = map(&window, |v: [[f64x4; V]; 2]| spin.sums(&v)[2]);
                 let [start, star, residual, _] = totals::<K>([start, star, residual, f64x4::ZERO]);
                 [start, star, residual]
@@ -92,9 +92,9 @@ impl<const D: usize> Scheme<D> {
             spin: SpinColumns,
             primes: bool,
         ) {
-            s.gather_spin_of(patch, spin, primes, |stencils, r, (_, place), nodal| {
+            s.gather_spin_of(patch, spin, primes, |stencils, r, (_, distances), nodal| {
                 let weights = stencils.particle::<K, D>(r);
-                map(nodal, |v| spin_sums(&weights, place, v)[2])
+                map(nodal, |v| spin_sums(&weights, distances, v)[2])
             });
         }
         let Some(spin) = self.columns.spin else { return };
@@ -108,15 +108,15 @@ impl<const D: usize> Scheme<D> {
         });
     }
 
-    /// The same with the `moments` of each particle, by its index and the place of its window: the
-    /// angular momenta of three nodal velocities per unit mass.
+    /// The same with the function `moments`: from the index of a particle, its spin and the distances
+    /// of its nodes, the angular momenta of three nodal velocities per unit mass.
     #[inline(always)]
     fn gather_spin_of(
         &self,
         patch: &mut Patch<D>,
         spin: SpinColumns,
         primes: bool,
-        mut moments: impl FnMut(&Stencils, usize, SpinningAt<'_>, &[[&[f64]; 2]; 3]) -> [f64; 3],
+        mut moments: impl FnMut(&Stencils, usize, SpinAndDistances<'_>, &[[&[f64]; 2]; 3]) -> [f64; 3],
     ) {
         let (c, f) = (&self.columns, &self.fields);
         let n = patch.block.own();
@@ -128,7 +128,7 @@ impl<const D: usize> Scheme<D> {
         let (start, star) = (vector(f.velocity), vector(f.velocity_star));
         let nodal = [start, star, residual.map_or(start, vector)];
         let matrix = &patch.mass_matrix.particles;
-        for (r, one) in matrix.spinning[..n].iter().zip(&matrix.places[..n]).enumerate() {
+        for (r, one) in matrix.spinning[..n].iter().zip(&matrix.distances[..n]).enumerate() {
             let [filtered, new, lost] = moments(&patch.stencils, r, one, &nodal);
             let new_inertia = one.0.inertia;
             let inverse = 1.0 / new_inertia;

@@ -1,6 +1,6 @@
 //! Contact between bodies with separate velocity fields.
 //!
-//! The sums of each body (mass, momentum, force, mass matrix) are in a layer of the nodal arrays.
+//! The sums of each body (mass, momentum, force, products with the mass matrix) are in a layer of the nodal arrays.
 //! Nodes with particles of several bodies are *contact nodes*. A pair of bodies in contact there shares
 //! the degree of freedom across the contact plane, that is one normal velocity. With m_i the lumped masses, D their diagonal matrix and Pi the
 //! projection onto the velocities shared in this way, orthogonal in the scalar product of D, the
