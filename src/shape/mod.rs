@@ -22,7 +22,7 @@ pub(crate) use knots::{floor, integer};
 pub use lanes::{LANES, Lanes, PlaneLanes};
 pub use line_products::{add_product, fours, vector};
 pub use plane::Plane;
-pub use widths::{MOST_NODES, MOST_NODES_IN_PLANE, most_nodes, padded_width};
+pub use widths::{MOST_NODES, most_nodes, padded_width};
 pub(crate) use widths::{with_shape_width, with_width};
 
 /// Defines the shape functions from a list of `module::Type [width],`: their names in scenes, their
