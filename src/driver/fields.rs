@@ -6,11 +6,10 @@ use decomp::Comm;
 
 use super::output::OutputError;
 use super::output::csv::write_frame;
-use super::output::field_arrays::quantity_of;
 use super::output::field_files::{FIELDS_FOLDER, FieldFiles};
 use super::output::vtkhdf::RunInfo;
 use crate::scene::{CheckedScene, FieldOutput, FieldsFormat};
-use crate::simulation::Simulation;
+use crate::simulation::{Simulation, quantity_of};
 
 /// The fields of a run; on all ranks.
 pub struct FieldSeries<'a> {

@@ -4,6 +4,7 @@
 
 mod balance;
 pub mod checkpoint;
+pub mod companions;
 pub mod default_folder;
 mod failure;
 pub mod fields;

@@ -29,17 +29,35 @@ struct Probe {
 /// A probe or gauge, and its columns in the histories.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GaugeKind {
-    /// A point of a body: its number, and whether it is a free surface.
+    /// A point of a body.
     Material {
         /// Number of the body.
         body: usize,
-        /// Whether it is a free surface.
-        free: bool,
+        /// Whether the point is at the surface of the body.
+        surface: SurfacePart,
     },
     /// A point fixed in space.
     Station,
     /// A plane.
     Plane,
+}
+
+/// Part of the surface of a body at which a point is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SurfacePart {
+    /// None: inside of the body.
+    Inside,
+    /// A free surface.
+    Free,
+    /// A face that meets a side or another body.
+    Face,
+}
+
+impl GaugeKind {
+    /// Whether it is a point of a face that meets a side or another body.
+    pub fn is_face(&self) -> bool {
+        matches!(self, GaugeKind::Material { surface: SurfacePart::Face, .. })
+    }
 }
 
 /// The probes of a run and their recorded values.
@@ -239,11 +257,16 @@ impl Probes {
 
     /// All probes and gauges, with the names of their columns.
     pub fn gauges(&self) -> Vec<(&str, GaugeKind)> {
-        let is_free =
-            |part: &ProbePart| matches!(part, ProbePart::FreeLower | ProbePart::FreeUpper);
         let probes = self.probes.iter().map(|probe| {
-            let free = probe.parts.iter().all(|(_, part)| is_free(part));
-            (&probe.name[..], GaugeKind::Material { body: probe.body, free })
+            let is = |of: fn(&ProbePart) -> bool| probe.parts.iter().all(|(_, part)| of(part));
+            let surface = match () {
+                _ if is(|p| matches!(p, ProbePart::FreeLower | ProbePart::FreeUpper)) => {
+                    SurfacePart::Free
+                }
+                _ if is(|p| *p == ProbePart::Centre) => SurfacePart::Inside,
+                _ => SurfacePart::Face,
+            };
+            (&probe.name[..], GaugeKind::Material { body: probe.body, surface })
         });
         let stations = self.stations.iter().map(|s| (&s.name[..], GaugeKind::Station));
         let planes = self.planes.iter().map(|p| (&p.name[..], GaugeKind::Plane));

@@ -1,8 +1,9 @@
 //! Readings of the gauges and probes of a run, from its histories.
 
 use super::output::gauges::{GaugeReading, SurfaceMaterial, plane_readings, point_readings};
-use super::probes::GaugeKind;
-use super::recorder::Recorder;
+use super::probes::{GaugeKind, Probes, SurfacePart};
+use crate::accuracy::estimate::GaugeRecords;
+use crate::accuracy::estimate::gauge_records::{GaugeHistory, Reading, ReadingKind};
 use crate::scene::CheckedScene;
 use crate::simulation::Simulation;
 
@@ -25,22 +26,68 @@ pub(super) fn report_readings(
 /// Readings of all gauges and probes.
 pub(super) fn gauge_readings<const D: usize>(
     scene: &CheckedScene,
-    recorder: &Recorder<'_>,
+    probes: &Probes,
     simulation: &Simulation<'_, D>,
 ) -> Vec<GaugeReading> {
-    let Some((histories, gauges)) = recorder.histories().zip(recorder.gauges()) else {
-        return Vec::new();
-    };
-    let readings = gauges.into_iter().flat_map(|(name, kind)| match kind {
+    let histories = probes.histories();
+    let readings = probes.gauges().into_iter().flat_map(|(name, kind)| match kind {
         GaugeKind::Plane => plane_readings(histories, name),
         GaugeKind::Station => point_readings(histories, name, None),
-        GaugeKind::Material { body, free } => {
-            let surface = SurfaceMaterial {
+        GaugeKind::Material { body, surface } => {
+            let is_free = surface == SurfacePart::Free;
+            let material = SurfaceMaterial {
                 density: scene.material_of(body).density,
                 sound_speed: simulation.sound_speed_at_rest(body),
             };
-            point_readings(histories, name, free.then_some(surface))
+            point_readings(histories, name, is_free.then_some(material))
         }
     });
     readings.collect()
+}
+
+/// Histories of all gauges and probes, and the values that are read from them.
+pub(super) fn gauge_records<const D: usize>(
+    scene: &CheckedScene,
+    probes: &Probes,
+    simulation: &Simulation<'_, D>,
+) -> GaugeRecords {
+    let table = probes.histories();
+    let times = table.column("time").unwrap_or_default();
+    let mut histories = Vec::new();
+    for (gauge, kind) in probes.gauges() {
+        let quantities: &[(&str, &[&str])] = match kind {
+            GaugeKind::Plane => &[("momentum", &["momentum"])],
+            _ if D == 1 => &[("velocity", &["velocity"]), ("pressure", &["pressure"])],
+            _ => &[("velocity", &["velocity_x", "velocity_y"]), ("pressure", &["pressure"])],
+        };
+        for (quantity, names) in quantities {
+            let column = |name| Some(table.column(&format!("{gauge}_{name}"))?.to_vec());
+            let components = names.iter().map(column).collect::<Option<Vec<Vec<f64>>>>();
+            histories.extend(components.map(|components| GaugeHistory {
+                gauge: gauge.into(),
+                quantity: (*quantity).into(),
+                times: times.to_vec(),
+                components,
+            }));
+        }
+    }
+    // the particle at a face that meets another body has a peak of pressure from the start of the
+    // shock, which no cell size removes
+    let meets = |name: &str| {
+        let is_face = |(gauge, kind): &(&str, GaugeKind)| *gauge == name && kind.is_face();
+        probes.gauges().iter().any(is_face)
+    };
+    let readings = gauge_readings(scene, probes, simulation).into_iter().map(|reading| {
+        let (history, kind) = match &reading.quantity[..] {
+            "peak pressure" | "peak tension" => ("pressure", ReadingKind::Extreme),
+            "impulse" => ("momentum", ReadingKind::Level),
+            "arrival" => ("velocity", ReadingKind::Arrival),
+            "plateau velocity" => ("velocity", ReadingKind::Level),
+            _ => ("velocity", ReadingKind::Extreme),
+        };
+        let GaugeReading { gauge, quantity, unit, value, .. } = reading;
+        Reading { gauge, quantity, history: history.into(), kind, unit, value }
+    });
+    let readings = readings.filter(|r| r.history != "pressure" || !meets(&r.gauge)).collect();
+    GaugeRecords { histories, readings }
 }

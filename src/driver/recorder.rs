@@ -10,12 +10,11 @@ use crate::driver::checkpoint::{Checkpoint, CheckpointContents, Due, StateColumn
 use crate::driver::fields::FieldSeries;
 use crate::driver::figures::{DiagramQuantity, WaveRow};
 use crate::driver::output::OutputError;
-use crate::driver::output::field_arrays::quantity_of;
 use crate::driver::output::histories::HistoryTable;
 use crate::driver::output::origin::{Origin, RUN};
-use crate::driver::probes::{GaugeKind, Probes};
+use crate::driver::probes::Probes;
 use crate::scene::CheckedScene;
-use crate::simulation::{BodyRow, ParticleTable, TableColumn};
+use crate::simulation::{BodyRow, ParticleTable, TableColumn, quantity_of};
 use crate::simulation::{Saved, Simulation};
 
 /// Number of rows of the x-t diagram.
@@ -223,8 +222,8 @@ impl<'a> Recorder<'a> {
     }
 
     /// All probes and gauges, if the scene asks for histories.
-    pub fn gauges(&self) -> Option<Vec<(&str, GaugeKind)>> {
-        self.probes.as_ref().map(Probes::gauges)
+    pub fn probes(&self) -> Option<&Probes> {
+        self.probes.as_ref()
     }
 
     /// The contents of a checkpoint of the present state.

@@ -5,7 +5,7 @@ use super::failure::RunFailure;
 use super::profiles::{draw, write_profiles};
 use super::rank_statistics::{self, Costs, LoopUse};
 use super::run::Run;
-use crate::accuracy::estimate::{self, Answer, EstimatedErrors, Laws};
+use crate::accuracy::estimate::{self, Answer, EstimatedErrors, Laws, fields};
 use crate::accuracy::plan;
 use crate::accuracy::reference::ReferenceSolution;
 use crate::driver::checkpoint::folder;
@@ -21,7 +21,7 @@ use crate::driver::output::summary::{FailureSummary, ProfileSummary, SUMMARY_FOR
 use crate::driver::output::trace::write_trace;
 use crate::driver::output::unfinished::{self, unfinished_folder};
 use crate::driver::output::vtkhdf::{RESULTS_FILE, RunInfo, write_vtkhdf};
-use crate::driver::readings::{gauge_readings, report_readings};
+use crate::driver::readings::{gauge_readings, gauge_records, report_readings};
 use crate::driver::recorder::most_particles;
 use crate::effects::ledger;
 use crate::simulation::{BoundaryWork, Compiled, ParticleTable, RemovedByKind, Totals};
@@ -68,6 +68,7 @@ where
         let mut warnings = self.scene.warnings.clone();
         let reference = self.reference(&mut warnings);
         comm.heartbeat();
+        self.add_differences();
         let maker = Maker::with(self.recorder.origin.clone(), self.scene);
         let folder = OutputFolder::create(&self.options.output, self.options.keep, &maker)?;
         let profiles = self.write_files(reference.as_ref(), &folder)?;
@@ -86,7 +87,8 @@ where
         }
         let text = if self.options.verbose { full } else { brief };
         let shown = report_readings(self.scene, &summary.gauges, self.options.verbose);
-        Ok(Some(text(&summary, &place) + &gauges::report(&shown)))
+        let errors = summary.error_estimate.as_ref().map_or(&[][..], |e| &e.readings);
+        Ok(Some(text(&summary, &place) + &gauges::report(&shown, errors)))
     }
 
     /// The exact solution, and warnings where there is none. A run without one still writes its files.
@@ -140,16 +142,32 @@ where
         self.recorder.tables.iter().map(|t| &t.0).collect()
     }
 
+    /// Adds to the profiles their differences from the finest coarse run in the quantities whose
+    /// errors are estimated.
+    fn add_differences(&mut self) {
+        let quantities: Vec<String> =
+            self.scene.estimated_fields().into_iter().map(String::from).collect();
+        let finest = self.companions.as_ref().and_then(|companions| companions.done.last());
+        let coarse = finest.map_or(&[][..], |companion| &companion.tables);
+        for ((table, _), coarse) in self.recorder.tables.iter_mut().zip(coarse) {
+            let differences = fields::difference_columns(table, coarse, &quantities);
+            table.columns.extend(differences);
+        }
+    }
+
     /// The run's own estimate of its errors; `None` unless the scene asks for it.
     fn error_estimate(
         &self,
         reference: Option<&ReferenceSolution>,
         profiles: &[ProfileSummary],
     ) -> Option<EstimatedErrors> {
-        let (body, companions) = self.estimated.as_ref()?;
+        let companions = self.companions.as_ref()?;
         let (arrivals, steps) = (&self.recorder.arrivals, self.simulation.steps());
         let (scene, tables) = (self.scene, self.tables());
-        let answer = Answer { scene, body: *body, tables, arrivals, steps, reference };
+        let probes = self.recorder.probes();
+        let gauges = probes.map(|probes| gauge_records(scene, probes, &self.simulation));
+        let gauges = &gauges.unwrap_or_default();
+        let answer = Answer { scene, tables, gauges, arrivals, steps, reference };
         let mut estimates = estimate::estimate(&answer, companions, &Laws::shipped());
         for (estimate, profile) in estimates.profiles.iter_mut().zip(profiles) {
             estimate.l1.exact = profile.error("l1");
@@ -215,7 +233,8 @@ where
                 released_energy: end.released,
             }),
             measured,
-            gauges: gauge_readings(scene, &self.recorder, simulation),
+            gauges: (self.recorder.probes())
+                .map_or(Vec::new(), |probes| gauge_readings(scene, probes, simulation)),
             profiles,
             error_estimate,
             plan,

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use decomp::{Comm, StoredParticles};
 
+use super::companions::{arrival_recorder, run_companions};
 use super::failure::RunFailure;
 use super::options::{Beginning, Options};
 use super::profiles::{draw, write_profiles};
-use crate::accuracy::estimate::coarse_runs::{self, Companions};
+use crate::accuracy::estimate::Companions;
 use crate::driver::checkpoint::CheckpointSchedule;
 use crate::driver::output::histories::HISTORIES_FILE;
 use crate::driver::output::shared_file::agree;
@@ -28,8 +29,8 @@ pub(super) struct Run<'a, const D: usize> {
     pub options: &'a Options,
     /// Processor, and the cores that the process may use.
     pub machine: String,
-    /// The body whose errors are estimated, and the coarse runs for it.
-    pub estimated: Option<(usize, Companions)>,
+    /// The coarse runs from which errors are estimated, if the scene asks for it.
+    pub companions: Option<Companions>,
     /// State of the run.
     pub simulation: Simulation<'a, D>,
     /// Totals at the start of the run, before any restart.
@@ -59,8 +60,8 @@ where
     ) -> Result<Self, RunFailure> {
         // before threads are bound to cores
         let machine = format!("{}, {} cores", processor(), cores());
-        let estimated = match scene.estimated_body() {
-            Some(body) => Some((body, coarse_runs::run(comm, scene, body, options.threads)?)),
+        let companions = match scene.scene.error_estimate {
+            Some(_) => Some(run_companions::<D>(comm, scene, options.threads)?),
             None => None,
         };
         let mut simulation = Simulation::<D>::new(scene, comm, options.threads)?;
@@ -69,8 +70,8 @@ where
             simulation.trace(steps.clone());
         }
         let mut recorder = Recorder::new(scene, &simulation);
-        if let Some((body, companions)) = &estimated {
-            recorder.arrivals = coarse_runs::arrivals(comm, scene, *body, companions);
+        if let Some((body, companions)) = scene.estimated_body().zip(companions.as_ref()) {
+            recorder.arrivals = arrival_recorder(comm, scene, body, companions);
         }
         let continues = matches!(beginning, Beginning::Checkpoint(_));
         if let Beginning::Checkpoint(mut checkpoint) = beginning {
@@ -93,7 +94,7 @@ where
             scene,
             options,
             machine,
-            estimated,
+            companions,
             simulation,
             start,
             recorder,

@@ -1,16 +1,26 @@
-//! The body whose errors are estimated.
+//! The body and the fields whose errors are estimated.
 
 use super::checked::CheckedScene;
 use super::model::Reference;
 
 impl CheckedScene {
     /// Index of the body of `error_estimate`: the named one, or the default of
-    /// [`Self::default_estimated_body`]; `None` without the key.
+    /// [`Self::default_estimated_body`]; `None` without the key, and in a plane.
     pub fn estimated_body(&self) -> Option<usize> {
-        let asked = self.scene.error_estimate.as_ref()?;
+        let asked = self.scene.error_estimate.as_ref().filter(|_| self.dimension == 1)?;
         match &asked.body {
             Some(name) => self.body_named(name),
             None => self.default_estimated_body(),
+        }
+    }
+
+    /// Quantities of the particles whose errors are estimated in each profile.
+    pub fn estimated_fields(&self) -> Vec<&str> {
+        let Some(asked) = &self.scene.error_estimate else { return Vec::new() };
+        match &asked.fields {
+            Some(fields) => fields.iter().map(String::as_str).collect(),
+            None if self.dimension == 1 => Vec::new(),
+            None => vec!["pressure"],
         }
     }
 

@@ -38,7 +38,7 @@ pub use diagnostics::{Followed, HALF_EDGES, Totals};
 pub use error::RunError;
 pub use gauges::Around;
 pub use memory::rank_memory;
-pub use particle_table::{ParticleTable, TableColumn};
+pub use particle_table::{ParticleTable, TableColumn, part_of, quantity_of, with_suffix};
 pub(crate) use patches::LEAST_CELLS;
 pub use patches::{initial_particles, may_skip, patch_counts};
 pub use preview::Preview;

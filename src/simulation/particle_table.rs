@@ -1,4 +1,4 @@
-//! Table of particles at one time, for outputs.
+//! Table of particles at one time, for outputs, and the names of its columns.
 
 /// One named column of a [`ParticleTable`].
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -48,5 +48,51 @@ impl ParticleTable {
     /// column.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         self.columns.iter().find(|c| c.name == name).map(|c| c.values.as_slice())
+    }
+}
+
+/// Quantity of a column of a table, by name; in a vector or tensor also the rank and the component.
+pub fn part_of(column: &str) -> (&str, usize, usize) {
+    const PARTS: [(&str, usize, usize); 6] =
+        [("_x", 1, 0), ("_y", 1, 1), ("_xx", 2, 0), ("_yy", 2, 1), ("_zz", 2, 2), ("_xy", 2, 3)];
+    let part = PARTS
+        .iter()
+        .find_map(|&(end, rank, component)| Some((column.strip_suffix(end)?, rank, component)));
+    match (column, part) {
+        // on a line
+        ("velocity", _) => ("velocity", 1, 0),
+        (_, Some(("reference", rank, component))) => ("initial_position", rank, component),
+        (_, Some(part)) => part,
+        (_, None) => (column, 0, 0),
+    }
+}
+
+/// Quantity of a column of a table: `stress` for `stress_xx`, `velocity` for `velocity_y`, and so on.
+pub fn quantity_of(column: &str) -> &str {
+    part_of(column).0
+}
+
+/// Name of a column that holds, for each component of the quantity of `column`, what `suffix` says:
+/// `velocity_difference_x` for `velocity_x` and `_difference`.
+pub fn with_suffix(column: &str, suffix: &str) -> String {
+    let component = column.strip_prefix(quantity_of(column)).unwrap_or_default();
+    format!("{}{suffix}{component}", column.strip_suffix(component).unwrap_or(column))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_suffix_stands_before_the_component() {
+        for (column, expected) in [
+            ("pressure", "pressure_difference"),
+            ("velocity", "velocity_difference"),
+            ("velocity_y", "velocity_difference_y"),
+            ("stress_xx", "stress_difference_xx"),
+            ("reference_x", "reference_x_difference"),
+        ] {
+            assert_eq!(with_suffix(column, "_difference"), expected);
+        }
     }
 }

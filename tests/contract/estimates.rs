@@ -252,3 +252,134 @@ fn a_body_with_positions_of_its_own_has_companions() {
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
+
+/// A small copper plate that strikes an aluminium plate in a plane, with gauges of all kinds.
+fn in_a_plane(estimate: Value) -> Value {
+    let mut scene = whole();
+    scene.as_object_mut().unwrap().remove("reference");
+    scene["domain"] = json!({"lower": [-4e-4, 0.0], "upper": [6e-4, 4e-4], "cell_size": 2e-5});
+    scene["boundary"] = json!({"y_lower": "symmetry"});
+    scene["time"]["end"] = json!(8e-8);
+    for (body, lower, upper) in [(0, [-3e-4, 0.0], [0.0, 2e-4]), (1, [0.0, 0.0], [4e-4, 3e-4])] {
+        scene["bodies"][body]["box"] = json!({"lower": lower, "upper": upper});
+        scene["bodies"][body]["particles_per_cell"] = json!([2, 2]);
+        scene["bodies"][body]["velocity"] = json!([if body == 0 { 1000.0 } else { 0.0 }, 0.0]);
+    }
+    scene["output"] = json!({
+        "profiles": {"times": [4e-8, 8e-8]}, "pictures": false, "hdf5": false,
+        "histories": {
+            "interval": 1e-9,
+            "stations": [{"name": "station", "at": [1e-4, 5e-5]}],
+            "tracers": [{"name": "tracer", "body": "target", "at": [2e-4, 5e-5]}],
+            "planes": [{"name": "section", "at": 1.5e-4}],
+        },
+    });
+    scene["error_estimate"] = estimate;
+    scene
+}
+
+/// Half-widths of a list of estimates, by the names of their keys.
+fn half_widths(list: &Value, keys: [&str; 2], value: &str) -> Vec<(String, f64)> {
+    let all = list.as_array().unwrap_or_else(|| panic!("{list}"));
+    let one = |entry: &Value| {
+        assert_eq!(entry["basis"], "guess", "{entry}");
+        let name = keys.map(|key| entry[key].to_string()).join(" ");
+        (name, entry[value]["half_width"].as_f64().unwrap_or_else(|| panic!("{entry}")))
+    };
+    all.iter().map(one).collect()
+}
+
+#[test]
+fn fields_and_gauges_are_estimated_in_a_plane() {
+    let scene = in_a_plane(json!({"fields": ["pressure", "velocity"]}));
+    let home = Home::with(&scene);
+    let run = home.run("one", &[]);
+    let estimate = run.summary["error_estimate"].clone();
+    assert_eq!(estimate["companions"], json!([8e-5, 4e-5]), "{estimate}");
+    let fields = half_widths(&estimate["fields"], ["quantity", "time"], "l1");
+    assert_eq!(fields.len(), 4, "{fields:?}");
+    let histories = half_widths(&estimate["histories"], ["gauge", "quantity"], "l1");
+    let names: Vec<&str> = histories.iter().map(|(name, _)| name.as_str()).collect();
+    let expected = [
+        r#""tracer" "velocity""#,
+        r#""tracer" "pressure""#,
+        r#""station" "velocity""#,
+        r#""station" "pressure""#,
+        r#""section" "momentum""#,
+    ];
+    assert_eq!(names, expected);
+    let readings = half_widths(&estimate["readings"], ["gauge", "quantity"], "value");
+    for name in [r#""tracer" "arrival""#, r#""station" "peak velocity""#, r#""section" "impulse""#]
+    {
+        assert!(readings.iter().any(|reading| reading.0 == name), "{name}: {readings:?}");
+    }
+    for (name, half_width) in fields.iter().chain(&histories) {
+        assert!((0.005..1.0).contains(half_width), "{name}: {half_width}");
+    }
+    // the same on two threads
+    let two = home.run("two", &["--threads", "2"]).summary["error_estimate"].clone();
+    for key in ["fields", "histories", "readings"] {
+        assert_eq!(estimate[key], two[key], "{key}");
+    }
+}
+
+#[test]
+fn profiles_have_the_differences_of_estimated_fields_and_nothing_else_changes() {
+    let (plain, estimated) = (in_a_plane(Value::Null), in_a_plane(json!({"fields": ["velocity"]})));
+    let [plain, estimated] = [plain, estimated].map(|scene| {
+        let results = Home::with(&scene).run("run", &[]);
+        (results.summary.clone(), results.profile(1).to_string())
+    });
+    assert!(plain.0.get("error_estimate").is_none());
+    let digests = |summary: &Value| summary["profiles"].clone();
+    assert_eq!(digests(&plain.0), digests(&estimated.0));
+    let added = ",velocity_difference_x,velocity_difference_y";
+    let mut largest: f64 = 0.0;
+    for (a, b) in plain.1.lines().zip(estimated.1.lines()) {
+        let (own, differences) = match a.starts_with("x,") {
+            true => (b.strip_suffix(added).unwrap(), ""),
+            false => {
+                let (rest, last) = b.rsplit_once(',').unwrap();
+                let (rest, first) = rest.rsplit_once(',').unwrap();
+                largest = largest.max(first.parse::<f64>().unwrap().abs());
+                (rest, last)
+            }
+        };
+        assert_eq!(a, own);
+        assert!(differences.is_empty() || differences.parse::<f64>().is_ok(), "{b}");
+    }
+    assert!((10.0..1000.0).contains(&largest), "{largest}");
+}
+
+#[test]
+fn an_estimate_in_a_plane_has_no_body() {
+    for (estimate, word) in [
+        (json!({"body": "target"}), "error_estimate.body"),
+        (json!({"arrivals": [1e-4]}), "error_estimate.arrivals"),
+        (json!({"fields": ["presure"]}), "error_estimate.fields[0]"),
+        (json!({"fields": ["pressure", "pressure"]}), "error_estimate.fields[1]"),
+    ] {
+        let home = Home::with(&in_a_plane(estimate));
+        home.call(["check", "scene.json"]).end().failed(&[word, "allowed"]);
+    }
+}
+
+#[test]
+fn a_line_has_fields_and_gauges_beside_its_body() {
+    let mut line = scene(json!({"fields": ["pressure"]}));
+    line["output"]["histories"] = json!({"velocimeters": [
+        {"name": "rear", "body": "target", "at": [1.5e-3]},
+    ]});
+    // until after the shock has reached the rear
+    line["time"]["end"] = json!(3e-7);
+    let estimate = Home::with(&line).run("run", &[]).summary["error_estimate"].clone();
+    assert_eq!(estimate["body"], "target");
+    assert_eq!(estimate["profiles"].as_array().unwrap().len(), 1, "{estimate}");
+    assert_eq!(half_widths(&estimate["fields"], ["quantity", "time"], "l1").len(), 1);
+    let readings = half_widths(&estimate["readings"], ["gauge", "quantity"], "value");
+    let free_surface = readings.iter().find(|r| r.0 == r#""rear" "plateau velocity""#);
+    assert!(free_surface.is_some_and(|r| (1e-3..50.0).contains(&r.1)), "{readings:?}");
+    // a face that meets another body has no estimate of its peak pressure
+    assert!(readings.iter().all(|r| r.0 != r#""target_lower" "peak pressure""#), "{readings:?}");
+    assert!(readings.iter().any(|r| r.0 == r#""target_lower" "peak velocity""#), "{readings:?}");
+}

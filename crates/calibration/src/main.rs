@@ -67,6 +67,29 @@ const EVIDENCE: [&[Sets]; 3] = [
                 "other_compression",
                 "exp_other_compression",
             ],
+            &[
+                "spread",
+                "difference_2",
+                "difference_4",
+                "noise",
+                "halves",
+                "wide",
+                "cells",
+                "compression",
+                "exp_compression",
+                "other_compression",
+                "exp_other_compression",
+                "spread*spread",
+                "spread*cells",
+                "spread*compression",
+                "spread*other_compression",
+                "cells*cells",
+                "cells*compression",
+                "cells*other_compression",
+                "compression*compression",
+                "compression*other_compression",
+                "other_compression*other_compression",
+            ],
         ],
         &[&["spread", "noise", "cells"], &["spread", "cells"]],
         &[&["noise", "halves", "wide", "cells"]],
@@ -153,7 +176,7 @@ fn main() {
     let argument = |k: usize| std::env::args().nth(k);
     let number =
         |k: usize, otherwise: usize| argument(k).and_then(|a| a.parse().ok()).unwrap_or(otherwise);
-    let (count, threads) = (number(1, 2200), number(2, 2));
+    let (count, threads) = (number(1, 5000), number(2, 2));
     let root = &Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folder = argument(3).map_or(root.join("output/calibration"), PathBuf::from);
     let of = |schemes, beyond| Draw { library: &FITTED, invented: 0.7, schemes, beyond };

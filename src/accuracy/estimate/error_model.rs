@@ -1,7 +1,7 @@
 //! Error models: the expected error from indicators, fitted on random impacts.
 //!
-//! The half-width is exp(w0 + sum of w_k ln(indicator_k)) times a factor. The weights are fitted to
-//! a high quantile of ln|error| (Koenker & Bassett 1978), so that uncertain cases get a wider
+//! The half-width is exp(w0 + sum of w_k ln(indicator_k)) times a factor; products of two logarithms
+//! can be further terms of the sum. The weights are fitted to a high quantile of ln|error| (Koenker & Bassett 1978), so that uncertain cases get a wider
 //! interval. The factor makes the intervals hold the intended share of cases that were left out of
 //! the fit (conformal calibration, Vovk et al. 2005). Each family of schemes has models of its own.
 //! Outside of the fitted range a further factor of at least 1 makes them hold 90 % of the cases.
@@ -25,10 +25,10 @@ pub const LEAST: f64 = 1e-7;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Law {
-    /// Names of the indicators that it needs.
+    /// Names of the terms: an indicator, or two with `*` between them for the product of their
+    /// logarithms.
     pub evidence: Vec<String>,
-    /// w0 and one weight per indicator, in the exponent: error = exp(w0 + sum w ln(indicator))
-    /// \[-\].
+    /// w0 and one weight per term, in the exponent: error = exp(w0 + sum w term) \[-\].
     pub weights: Vec<f64>,
     /// Safety factor on the fitted error \[-\].
     pub factor: f64,
@@ -112,10 +112,16 @@ impl Law {
     pub fn size(&self, evidence: &Evidence) -> Option<f64> {
         let mut sum = *self.weights.first()?;
         for (name, weight) in self.evidence.iter().zip(&self.weights[1..]) {
-            sum += weight * evidence.get(name)?.max(LEAST).ln();
+            sum += weight * term(evidence, name)?;
         }
         Some(sum.exp())
     }
+}
+
+/// The term `name` of an error model \[-\]: the logarithm of an indicator, or the product of the
+/// logarithms of several with `*` between them; `None` if an indicator is missing.
+pub fn term(evidence: &Evidence, name: &str) -> Option<f64> {
+    name.split('*').map(|name| Some(evidence.get(name)?.max(LEAST).ln())).product()
 }
 
 impl QuantityLaws {
@@ -155,6 +161,11 @@ mod tests {
         near(quantity.half_width(&evidence(&[("a", 0.5)])), 5.0);
         near(quantity.half_width(&evidence(&[("a", 0.0)])), 10.0 * LEAST);
         assert_eq!(quantity.half_width(&evidence(&[("b", 1.0)])), None);
+        // a product of logarithms
+        let product = QuantityLaws(vec![law(&["a*b"], &[0.0, 1.0], 1.0)]);
+        let found = product.half_width(&evidence(&[("a", 0.5), ("b", 0.25)]));
+        near(found, (0.5_f64.ln() * 0.25_f64.ln()).exp());
+        assert_eq!(product.half_width(&evidence(&[("a", 0.5)])), None);
     }
 
     #[test]

@@ -1,63 +1,60 @@
 //! Error estimate of a run without an exact solution.
 //!
-//! Before the run, the same scene is run on cells two and four times as large ([`coarse_runs`]).
-//! The indicators are the differences between the answers and the noise of the run. Richardson's
-//! extrapolation does not hold at shocks; instead, the error follows from the indicators by models
-//! fitted on random impacts and validated on others ([`error_model`]), one for each family of
-//! schemes ([`scheme_family`]). Estimated are the pressure of the first plateau ([`plateau`]), the
-//! arrival times of the wave ([`arrival`]), and a bound of the L1 of each profile. No plateau is
-//! reported if the waves have left none of sufficient length ([`impact_waves`]).
+//! Before the run, the same scene is run on cells two and four times as large ([`Companions`]). There
+//! are two kinds of estimates:
 //!
-//! Only for scenes on a line. The models were fitted on impacts of fluids ([`range`]); elsewhere
-//! the estimate is marked as a guess, and its intervals hold in fewer cases.
+//! - On a line, of one body: the pressure of the first plateau ([`plateau`]), the arrival times of the
+//!   wave ([`arrival`]), and a bound of the L1 of each profile. The indicators are the differences
+//!   between the answers and the noise of the run. Richardson's extrapolation does not hold at shocks;
+//!   instead, the error follows from the indicators by models fitted on random impacts and validated
+//!   on others ([`error_model`]), one for each family of schemes ([`scheme_family`]). No plateau is
+//!   reported if the waves have left none of sufficient length ([`impact_waves`]). The models were
+//!   fitted on impacts of fluids ([`range`]); elsewhere the estimate is marked as a guess, and its
+//!   intervals hold in fewer cases.
+//! - In any scene, of histories at gauges ([`gauges`]) and of fields ([`fields`]): from the
+//!   differences alone, always as a guess.
 
 pub mod arrival;
-pub mod coarse_runs;
+mod bounded;
+mod companions;
+mod differences;
 pub mod error_model;
+pub mod fields;
 pub mod fitted_schemes;
+pub mod gauge_records;
+pub mod gauges;
 pub mod impact_waves;
 pub mod indicators;
+mod interpolation;
 pub mod plateau;
 mod polyline;
 pub mod range;
 pub mod scheme_family;
+mod separation;
 mod shock_state;
 mod surroundings;
 mod within;
 
-use std::collections::BTreeMap;
-
 use serde::{Deserialize, Serialize};
 
 pub use arrival::Arrivals;
-pub use coarse_runs::{Companion, Companions};
+pub use bounded::Bounded;
+pub use companions::{Companion, Companions};
 pub use error_model::{Laws, QuantityLaws};
+pub use fields::FieldEstimate;
 pub use fitted_schemes::FittedSchemes;
+pub use gauge_records::GaugeRecords;
+pub use gauges::{HistoryEstimate, ReadingEstimate};
 pub use impact_waves::{ImpactWaves, PlateauLeft};
-pub use polyline::{Polyline, line};
+pub use polyline::{Polyline, least_pressure, line};
 pub use range::{EstimateBasis, FittedRange, OutOfRange};
 pub use scheme_family::SchemeFamily;
 
-use self::polyline::least_pressure;
+use self::fields::Conditions;
 use self::shock_state::ShockState;
 use crate::accuracy::reference::ReferenceSolution;
 use crate::scene::CheckedScene;
 use crate::simulation::ParticleTable;
-
-/// A value with an interval that contains the exact value in 95 of 100 cases, if the estimate is
-/// calibrated.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Bounded {
-    /// Value computed by the run, in the SI unit of its quantity: \[Pa\], \[s\] or \[-\].
-    pub value: f64,
-    /// Half-width of the interval, in the unit of `value`; `None` if indicators are missing.
-    pub half_width: Option<f64>,
-    /// Indicators from which the half-width follows, by name \[-\].
-    pub evidence: BTreeMap<String, f64>,
-    /// Exact value in the unit of `value`, if the scene has an exact solution.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub exact: Option<f64>,
-}
 
 /// Error estimate of a profile.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -87,10 +84,11 @@ pub struct ArrivalEstimate {
 }
 
 /// Error estimate of a run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EstimatedErrors {
-    /// Name of the body.
-    pub body: String,
+    /// Name of the body on a line.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<String>,
     /// Whether the error models were fitted on such scenes, for all profiles and arrivals.
     #[serde(default)]
     pub basis: EstimateBasis,
@@ -101,10 +99,19 @@ pub struct EstimatedErrors {
     pub companions: Vec<f64>,
     /// User CPU time of the coarse runs on this rank \[s\].
     pub cpu_seconds: f64,
-    /// One entry per profile.
+    /// One entry per profile; empty in a plane.
     pub profiles: Vec<ProfileEstimate>,
     /// One entry per position.
     pub arrivals: Vec<ArrivalEstimate>,
+    /// One entry per profile and quantity of `error_estimate.fields` that is not zero.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fields: Vec<FieldEstimate>,
+    /// One entry per history of a gauge that is not zero.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub histories: Vec<HistoryEstimate>,
+    /// One entry per value that is read from a history.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub readings: Vec<ReadingEstimate>,
     /// Reasons for missing estimates, one line each.
     pub notes: Vec<String>,
 }
@@ -113,16 +120,24 @@ pub struct EstimatedErrors {
 pub struct Answer<'a> {
     /// The scene.
     pub scene: &'a CheckedScene,
-    /// Index of the body.
-    pub body: usize,
     /// Particles at the profile times.
     pub tables: Vec<&'a ParticleTable>,
+    /// Records of the gauges.
+    pub gauges: &'a GaugeRecords,
     /// Arrivals recorded by the run.
     pub arrivals: &'a Arrivals,
     /// Number of time steps.
     pub steps: u64,
     /// The exact solution, if there is one.
     pub reference: Option<&'a ReferenceSolution>,
+}
+
+impl Answer<'_> {
+    /// Mean sound transit time of a cell \[s\].
+    fn cell_time(&self) -> f64 {
+        let time = &self.scene.scene.time;
+        time.end / self.steps.max(1) as f64 / time.courant
+    }
 }
 
 /// Relative difference from the coarse run beyond which a plateau is rejected, because the coarse
@@ -134,7 +149,41 @@ pub const LEAST_PLATEAU: f64 = 20.0;
 
 /// Estimates the errors of a finished run.
 pub fn estimate(answer: &Answer<'_>, companions: &Companions, laws: &Laws) -> EstimatedErrors {
-    let estimator = Estimator::new(answer, companions, laws);
+    let mut errors = match answer.scene.estimated_body() {
+        Some(body) => of_body(answer, body, companions, laws),
+        None => EstimatedErrors::default(),
+    };
+    errors.companions = companions.done.iter().map(|c| c.cell_size).collect();
+    errors.cpu_seconds = companions.cpu_seconds;
+    errors.notes.splice(..0, companions.notes.clone());
+    let least = (0..answer.scene.bodies.len())
+        .map(|body| least_pressure(answer.scene, body, answer.cell_time()))
+        .fold(f64::INFINITY, f64::min);
+    let widened = separation::widening(answer.scene, &answer.tables);
+    for quantity in answer.scene.estimated_fields() {
+        let field = |(k, table): (usize, &&ParticleTable)| {
+            let conditions = Conditions {
+                axisymmetric: answer.scene.axisymmetric(),
+                least_pressure: least,
+                widened: widened[k],
+            };
+            fields::of_field(table, quantity, k, companions, conditions)
+        };
+        errors.fields.extend(answer.tables.iter().enumerate().filter_map(field));
+    }
+    errors.histories = gauges::of_histories(answer.gauges, companions, least);
+    errors.readings = gauges::of_readings(answer.gauges, companions);
+    errors
+}
+
+/// Estimates the errors of a body on a line.
+fn of_body(
+    answer: &Answer<'_>,
+    body: usize,
+    companions: &Companions,
+    laws: &Laws,
+) -> EstimatedErrors {
+    let estimator = Estimator::new(answer, body, companions, laws);
     let mut missing: Vec<(String, f64)> = Vec::new();
     let profiles: Vec<ProfileEstimate> = (0..answer.tables.len())
         .map(|k| {
@@ -150,17 +199,14 @@ pub fn estimate(answer: &Answer<'_>, companions: &Companions, laws: &Laws) -> Es
         .enumerate()
         .map(|(k, &at)| estimator.arrival(k, at, exact.get(k).copied().flatten()))
         .collect();
-    let mut notes = companions.notes.clone();
-    notes.extend(reasons(&missing));
     EstimatedErrors {
-        body: answer.scene.scene.bodies[answer.body].name.clone(),
+        body: Some(answer.scene.scene.bodies[body].name.clone()),
         basis: estimator.outside.basis(),
         outside: estimator.outside.lines(),
-        companions: companions.done.iter().map(|c| c.cell_size).collect(),
-        cpu_seconds: companions.cpu_seconds,
         profiles,
         arrivals,
-        notes,
+        notes: reasons(&missing),
+        ..EstimatedErrors::default()
     }
 }
 
@@ -183,6 +229,8 @@ fn reasons(missing: &[(String, f64)]) -> Vec<String> {
 /// A finished run with what its estimates depend on.
 struct Estimator<'a> {
     answer: &'a Answer<'a>,
+    /// Index of the body.
+    body: usize,
     companions: &'a Companions,
     laws: &'a Laws,
     family: SchemeFamily,
@@ -192,15 +240,21 @@ struct Estimator<'a> {
     cell_time: f64,
     /// Pressure rise up to which there is no wave \[Pa\].
     least: f64,
+    /// Factor on the half-widths of each profile, for material that separates \[-\].
+    widened: Vec<f64>,
 }
 
 impl<'a> Estimator<'a> {
-    fn new(answer: &'a Answer<'a>, companions: &'a Companions, laws: &'a Laws) -> Self {
-        let (scene, body) = (answer.scene, answer.body);
-        let time = &scene.scene.time;
-        let cell_time = time.end / answer.steps.max(1) as f64 / time.courant;
+    fn new(
+        answer: &'a Answer<'a>,
+        body: usize,
+        companions: &'a Companions,
+        laws: &'a Laws,
+    ) -> Self {
+        let (scene, cell_time) = (answer.scene, answer.cell_time());
         Estimator {
             answer,
+            body,
             companions,
             laws,
             family: SchemeFamily::of(&scene.scene.method),
@@ -208,21 +262,22 @@ impl<'a> Estimator<'a> {
             waves: ImpactWaves::new(scene, body),
             cell_time,
             least: least_pressure(scene, body, cell_time),
+            widened: separation::widening(scene, &answer.tables),
         }
     }
 
     /// Estimate of profile `k`, and the reason if it has no plateau.
     fn profile(&self, k: usize) -> (ProfileEstimate, Option<String>) {
         let (answer, table) = (self.answer, self.answer.tables[k]);
-        let basis = self.outside.of_profile(k);
+        let (basis, widened) = (self.outside.of_profile(k), self.widened[k]);
         let laws = self.laws.of(self.family, basis);
-        let own = line(table, answer.body);
+        let own = line(table, self.body);
         let others: Vec<(f64, &Polyline)> =
             self.companions.done.iter().map(|c| (c.factor, &c.profiles[k])).collect();
         let (plateau, reason) = match self.plateau(table, &own, &others) {
             Ok((found, evidence)) => {
-                let half_width = laws.plateau_pressure.half_width(&evidence);
-                let start = answer.scene.scene.bodies[answer.body].pressure;
+                let half_width = laws.plateau_pressure.half_width(&evidence).map(|w| widened * w);
+                let start = answer.scene.scene.bodies[self.body].pressure;
                 let bounded = Bounded {
                     value: start + found.pressure,
                     half_width: half_width.map(|w| w * found.pressure.abs()),
@@ -236,7 +291,7 @@ impl<'a> Estimator<'a> {
         let is_silent = own.iter().all(|q| q.1.abs() <= self.least);
         let others = if is_silent { Vec::new() } else { others };
         let evidence = indicators::of_profile(&own, &others);
-        let half_width = laws.l1.half_width(&evidence);
+        let half_width = laws.l1.half_width(&evidence).map(|w| widened * w);
         let l1 = Bounded { value: 0.0, half_width, evidence, exact: None };
         (ProfileEstimate { time: table.time, basis, plateau_pressure: plateau, l1 }, reason)
     }
@@ -248,7 +303,7 @@ impl<'a> Estimator<'a> {
         own: &Polyline,
         others: &[(f64, &Polyline)],
     ) -> Result<(plateau::Plateau, indicators::Evidence), String> {
-        let (scene, body) = (self.answer.scene, self.answer.body);
+        let (scene, body) = (self.answer.scene, self.body);
         let h = scene.cell_size[0];
         let left = self.waves.as_ref().map_or(PlateauLeft::Unknown, |w| w.plateau(table.time));
         let start = scene.scene.bodies[body].pressure;
@@ -290,7 +345,7 @@ impl<'a> Estimator<'a> {
     fn other_body(&self) -> Option<ShockState> {
         let scene = self.answer.scene;
         let [_, _] = scene.bodies[..] else { return None };
-        let other = 1 - self.answer.body;
+        let other = 1 - self.body;
         let (density, velocity) = (scene.material_of(other).density, scene.speed_along(other));
         Some(ShockState { density, velocity, ..ShockState::default() })
     }

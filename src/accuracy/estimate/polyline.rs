@@ -23,6 +23,6 @@ const ROUNDING: f64 = 1e-9;
 
 /// Pressure of `body` up to which a change is rounding, not a wave \[Pa\]; `cell_time` \[s\] is the
 /// sound transit time of a cell.
-pub(crate) fn least_pressure(scene: &CheckedScene, body: usize, cell_time: f64) -> f64 {
+pub fn least_pressure(scene: &CheckedScene, body: usize, cell_time: f64) -> f64 {
     ROUNDING * scene.material_of(body).density * (scene.cell_size[0] / cell_time).powi(2)
 }

@@ -55,7 +55,7 @@ fn title(text: &str) -> String {
 fn warnings(summary: &Summary) -> String {
     let mut all = summary.warnings.clone();
     if let Some(estimate) = &summary.error_estimate {
-        if estimate.basis == EstimateBasis::Guess {
+        if estimate.basis == EstimateBasis::Guess && !estimate.outside.is_empty() {
             let outside = estimate.outside.join("; ");
             all.push(format!(
                 "the estimated errors are guesses, since the error models were not fitted to such \
@@ -137,7 +137,8 @@ fn counted_particles(summary: &Summary) -> Option<String> {
     (!words.is_empty()).then(|| words.join(", "))
 }
 
-/// The estimated errors of the last profile, and those of as many arrivals as one line has room for.
+/// The estimated errors of the last profile, and those of as many arrivals and fields as one line has
+/// room for.
 fn estimates(estimate: &EstimatedErrors) -> Vec<String> {
     let within = |bounded: &Bounded, scale: f64, unit: &str| match bounded.half_width {
         Some(width) => {
@@ -165,9 +166,16 @@ fn estimates(estimate: &EstimatedErrors) -> Vec<String> {
         };
         format!("at {} mm: {time}{}", significant(1e3 * arrival.at), guess(arrival.basis))
     });
-    let arrivals: Vec<String> = arrivals.collect();
-    let arrivals = (!arrivals.is_empty()).then(|| in_one_line(&arrivals, "; ", ""));
-    last.into_iter().chain(arrivals).collect()
+    let last_time = estimate.fields.iter().map(|field| field.time).reduce(f64::max);
+    let fields = estimate.fields.iter().filter(|field| Some(field.time) == last_time);
+    let fields = fields.filter_map(|field| {
+        let bound = significant(100.0 * field.l1.half_width?);
+        let at = seconds(field.time);
+        Some(format!("{} L1 at most {bound} %, at {at}{}", field.quantity, guess(field.basis)))
+    });
+    let others: Vec<String> = arrivals.chain(fields).collect();
+    let others = (!others.is_empty()).then(|| in_one_line(&others, "; ", ""));
+    last.into_iter().chain(others).collect()
 }
 
 #[cfg(test)]
@@ -175,7 +183,7 @@ mod tests {
     use super::super::summary::tests::example;
     use super::super::summary::{FailureSummary, OutflowSummary};
     use super::*;
-    use crate::accuracy::estimate::{ArrivalEstimate, ProfileEstimate};
+    use crate::accuracy::estimate::{ArrivalEstimate, FieldEstimate, ProfileEstimate};
     use crate::accuracy::plan::Verdict;
     use crate::scene::PlannedQuantity;
 
@@ -220,17 +228,21 @@ warning: linear shape functions ring across cells
         let basis = EstimateBasis::Guess;
         let plateau_pressure = Some(bounded(12.3e9));
         let l1 = Bounded { value: 0.0, half_width: Some(0.01), ..bounded(0.0) };
+        let field =
+            FieldEstimate { time: 1e-6, quantity: "velocity".into(), basis, l1: l1.clone() };
         let profile = ProfileEstimate { time: 1e-6, basis, plateau_pressure, l1 };
         let arrival = ArrivalEstimate { at: 5e-3, basis, time: Some(bounded(1e-6)) };
         summary.error_estimate = Some(EstimatedErrors {
-            body: "target".into(),
+            body: Some("target".into()),
             basis,
             outside: vec!["bodies: 3".into()],
             companions: vec![2e-5, 4e-5],
             cpu_seconds: 0.1,
             profiles: vec![profile; 5],
             arrivals: vec![arrival; 5],
+            fields: vec![field; 2],
             notes: vec!["no estimate at 2 us".into()],
+            ..EstimatedErrors::default()
         });
         summary.plan = Some(Verdict {
             quantity: PlannedQuantity::L1,
@@ -271,6 +283,20 @@ warning: linear shape functions ring across cells
         }
         let words: Vec<&str> = text.split_whitespace().collect();
         assert!(words.join(" ").contains("not fitted to such inputs: bodies: 3"), "{text}");
+    }
+
+    #[test]
+    fn without_a_body_the_errors_of_fields_are_reported() {
+        let mut summary = full_summary();
+        let estimate = summary.error_estimate.as_mut().unwrap();
+        estimate.profiles.clear();
+        estimate.arrivals.clear();
+        estimate.fields[0].time = 5e-7;
+        let line = "  estimate      velocity L1 at most 1.00 %, at 1 us (guess)";
+        let text = brief(&summary, Path::new("out"));
+        let estimates: Vec<&str> =
+            text.lines().filter(|line| line.trim_start().starts_with(labels::ESTIMATE)).collect();
+        assert_eq!(estimates, [line], "{text}");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Arrays of fields: the columns of a table of particles, joined to vectors and symmetric tensors.
 
-use crate::simulation::ParticleTable;
+use crate::simulation::{ParticleTable, part_of};
 
 /// Values of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,27 +31,6 @@ pub struct FieldArray {
     rank: usize,
     /// For each component its column in the table; none: zero.
     columns: [Option<usize>; 6],
-}
-
-/// Quantity of a column of a table, by name; in a vector or tensor also the rank and the component.
-fn part_of(column: &str) -> (&str, usize, usize) {
-    const PARTS: [(&str, usize, usize); 6] =
-        [("_x", 1, 0), ("_y", 1, 1), ("_xx", 2, 0), ("_yy", 2, 1), ("_zz", 2, 2), ("_xy", 2, 3)];
-    let part = PARTS
-        .iter()
-        .find_map(|&(end, rank, component)| Some((column.strip_suffix(end)?, rank, component)));
-    match (column, part) {
-        // on a line
-        ("velocity", _) => ("velocity", 1, 0),
-        (_, Some(("reference", rank, component))) => ("initial_position", rank, component),
-        (_, Some(part)) => part,
-        (_, None) => (column, 0, 0),
-    }
-}
-
-/// Quantity of a column of a table: `stress` for `stress_xx`, `velocity` for `velocity_y`, and so on.
-pub fn quantity_of(column: &str) -> &str {
-    part_of(column).0
 }
 
 impl FieldArray {
@@ -166,6 +145,6 @@ mod tests {
         let values = |k: usize| arrays[k].numbers(&line).collect::<Vec<f64>>();
         assert_eq!(values(0), [1.0, 0.0, 0.0, 10.0, 0.0, 0.0]);
         assert_eq!(values(1)[..6], [2.0, 3.0, 3.0, 0.0, 0.0, 0.0]);
-        assert_eq!(quantity_of("reference_x"), "initial_position");
+        assert_eq!(part_of("reference_x").0, "initial_position");
     }
 }

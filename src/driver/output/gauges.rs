@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::histories::HistoryTable;
+use crate::accuracy::estimate::ReadingEstimate;
 
 /// A value that is read from the history of a gauge.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -149,11 +150,14 @@ pub fn plane_readings(histories: &HistoryTable, gauge: &str) -> Vec<GaugeReading
     impulse.into_iter().collect()
 }
 
-/// The readings as lines of a report.
-pub fn report(readings: &[GaugeReading]) -> String {
+/// The readings as lines of a report, with their `errors` where these are estimated.
+pub fn report(readings: &[GaugeReading], errors: &[ReadingEstimate]) -> String {
     let line = |r: &GaugeReading| {
         let at = r.time.map_or(String::new(), |time| format!(" at {time:.4e} s"));
-        format!("  {}: {} {:.5e} {}{at}\n", r.gauge, r.quantity, r.value, r.unit)
+        let error = errors.iter().find(|e| (&e.gauge, &e.quantity) == (&r.gauge, &r.quantity));
+        let half_width = error.and_then(|error| error.value.half_width);
+        let error = half_width.map_or(String::new(), |w| format!(" +- {w:.1e} (guess)"));
+        format!("  {}: {} {:.5e} {}{error}{at}\n", r.gauge, r.quantity, r.value, r.unit)
     };
     readings.iter().map(line).collect()
 }
@@ -193,7 +197,7 @@ mod tests {
         let turned: Vec<[f64; 3]> = rows.iter().map(|r| [r[0], -r[1], r[2]]).collect();
         let turned = point_readings(&table(&turned), "rear", Some(surface));
         assert!(turned.iter().any(|r| r.quantity == "pull-back" && r.value == 80.0));
-        let text = report(&all);
+        let text = report(&all, &[]);
         assert!(text.contains("rear: pull-back 8.00000e1 m/s at 6.0000e0 s"), "{text}");
     }
 

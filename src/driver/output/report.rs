@@ -341,7 +341,19 @@ fn estimate_facts(estimate: &EstimatedErrors) -> Vec<(&'static str, String)> {
             format!("at {} mm: {time}{guess}", significant(1e3 * arrival.at)),
         ));
     }
-    if estimate.basis == EstimateBasis::Guess {
+    let bound = |l1: &Bounded| match l1.half_width {
+        Some(bound) => format!("L1 <= {} % (guess)", significant(100.0 * bound)),
+        None => "L1 not known".into(),
+    };
+    for field in &estimate.fields {
+        let text = format!("{}: {} {}", seconds(field.time), field.quantity, bound(&field.l1));
+        facts.push((labels::ESTIMATE, text));
+    }
+    for history in &estimate.histories {
+        let text = format!("{}: {} {}", history.gauge, history.quantity, bound(&history.l1));
+        facts.push((labels::ESTIMATE, text));
+    }
+    if estimate.basis == EstimateBasis::Guess && !estimate.outside.is_empty() {
         let outside = estimate.outside.join("; ");
         let text = format!("guess: the laws of errors were not fitted on such inputs: {outside}");
         facts.push((labels::ESTIMATE, text));

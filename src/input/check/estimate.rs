@@ -1,15 +1,24 @@
-//! Checks of the body and the positions of `error_estimate`: one dimension, with or without a
-//! reference.
+//! Checks of `error_estimate`: its body and positions on a line, and its quantities.
 
 use super::super::errors::{SceneFault, suggest};
+use crate::effects;
 use crate::scene::CheckedScene;
 
-/// Rejects an estimate in a plane, without a body, or at positions outside its body.
+/// Rejects an estimate on a line without a body or at positions outside its body, and bodies and
+/// positions in a plane.
 pub(super) fn check(checked: &CheckedScene) -> Result<(), SceneFault> {
     let Some(asked) = &checked.scene.error_estimate else { return Ok(()) };
     let names = || checked.scene.bodies.iter().map(|b| b.name.as_str());
     if checked.dimension != 1 {
-        return Err(SceneFault::missing("error_estimate", "in a plane; allowed: scenes on a line"));
+        let keys = [("body", asked.body.is_some()), ("arrivals", !asked.arrivals.is_empty())];
+        return match keys.iter().find(|(_, is)| *is) {
+            Some((key, _)) => Err(SceneFault::missing(
+                format!("error_estimate.{key}"),
+                "in a plane; allowed: scenes on a line; in a plane fields, and the gauges of \
+                 output.histories, are estimated",
+            )),
+            None => Ok(()),
+        };
     }
     let Some(body) = checked.estimated_body() else {
         return Err(match &asked.body {
@@ -33,6 +42,25 @@ pub(super) fn check(checked: &CheckedScene) -> Result<(), SceneFault> {
             let reason =
                 format!("outside of its body; allowed: {} to {}", bounds.lower[0], bounds.upper[0]);
             return Err(SceneFault::new(format!("error_estimate.arrivals[{k}]"), at, reason));
+        }
+    }
+    Ok(())
+}
+
+/// Rejects quantities that the scene does not have, and repeated ones.
+pub(super) fn check_fields(checked: &CheckedScene) -> Result<(), SceneFault> {
+    let asked = checked.scene.error_estimate.iter().flat_map(|estimate| &estimate.fields);
+    let known = effects::columns(checked).quantities(checked.dimension);
+    for fields in asked {
+        for (k, name) in fields.iter().enumerate() {
+            let reason = if fields[..k].contains(name) {
+                "named twice; allowed: each quantity once".to_string()
+            } else if !known.contains(&name.as_str()) {
+                format!("this scene has no such quantity; allowed: {}", known.join(", "))
+            } else {
+                continue;
+            };
+            return Err(SceneFault::new(format!("error_estimate.fields[{k}]"), name, reason));
         }
     }
     Ok(())

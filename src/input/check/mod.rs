@@ -116,6 +116,7 @@ fn check_whole(checked: &mut CheckedScene, faults: &mut Faults) {
     if OF_REFERENCE.iter().all(|path| !faults.concern(path)) {
         faults.judge(&["output.fields", "time.end"], || output::check_fields(checked));
         faults.judge(&["output.diagrams"], || output::check_diagrams(checked));
+        faults.judge(&["error_estimate"], || estimate::check_fields(checked));
     }
     for key in crate::effects::keys() {
         let reads = [key.name, "bodies", "materials", "method", "contact"];
