@@ -4,7 +4,7 @@
 
 mod balance;
 pub mod checkpoint;
-pub mod companions;
+pub mod coarse_runs;
 pub mod default_folder;
 mod failure;
 pub mod fields;

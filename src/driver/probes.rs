@@ -50,13 +50,13 @@ pub enum SurfacePart {
     /// A free surface.
     Free,
     /// A face that meets a side or another body.
-    Face,
+    Loaded,
 }
 
 impl GaugeKind {
     /// Whether it is a point of a face that meets a side or another body.
-    pub fn is_face(&self) -> bool {
-        matches!(self, GaugeKind::Material { surface: SurfacePart::Face, .. })
+    pub fn is_loaded(&self) -> bool {
+        matches!(self, GaugeKind::Material { surface: SurfacePart::Loaded, .. })
     }
 }
 
@@ -264,7 +264,7 @@ impl Probes {
                     SurfacePart::Free
                 }
                 _ if is(|p| *p == ProbePart::Centre) => SurfacePart::Inside,
-                _ => SurfacePart::Face,
+                _ => SurfacePart::Loaded,
             };
             (&probe.name[..], GaugeKind::Material { body: probe.body, surface })
         });

@@ -35,14 +35,23 @@ pub(super) fn gauge_readings<const D: usize>(
         GaugeKind::Station => point_readings(histories, name, None),
         GaugeKind::Material { body, surface } => {
             let is_free = surface == SurfacePart::Free;
-            let material = SurfaceMaterial {
-                density: scene.material_of(body).density,
-                sound_speed: simulation.sound_speed_at_rest(body),
-            };
+            let material = surface_material(scene, body, simulation);
             point_readings(histories, name, is_free.then_some(material))
         }
     });
     readings.collect()
+}
+
+/// State at rest from which the velocity of the surface of a body is interpreted.
+fn surface_material<const D: usize>(
+    scene: &CheckedScene,
+    body: usize,
+    simulation: &Simulation<'_, D>,
+) -> SurfaceMaterial {
+    SurfaceMaterial {
+        density: scene.material_of(body).density,
+        sound_speed: simulation.sound_speed_at_rest(body),
+    }
 }
 
 /// Histories of all gauges and probes, and the values that are read from them.
@@ -71,23 +80,32 @@ pub(super) fn gauge_records<const D: usize>(
             }));
         }
     }
-    // the particle at a face that meets another body has a peak of pressure from the start of the
-    // shock, which no cell size removes
-    let meets = |name: &str| {
-        let is_face = |(gauge, kind): &(&str, GaugeKind)| *gauge == name && kind.is_face();
-        probes.gauges().iter().any(is_face)
-    };
+    let gauges = probes.gauges();
+    let kind_of =
+        |name: &str| gauges.iter().find(|(gauge, _)| *gauge == name).map(|(_, kind)| kind);
     let readings = gauge_readings(scene, probes, simulation).into_iter().map(|reading| {
+        let mut scale = 1.0;
         let (history, kind) = match &reading.quantity[..] {
             "peak pressure" | "peak tension" => ("pressure", ReadingKind::Extreme),
             "impulse" => ("momentum", ReadingKind::Level),
             "arrival" => ("velocity", ReadingKind::Arrival),
             "plateau velocity" => ("velocity", ReadingKind::Level),
+            "spall strength" => {
+                if let Some(GaugeKind::Material { body, .. }) = kind_of(&reading.gauge) {
+                    scale = surface_material(scene, *body, simulation).strength_per_velocity();
+                }
+                ("velocity", ReadingKind::Extreme)
+            }
             _ => ("velocity", ReadingKind::Extreme),
         };
         let GaugeReading { gauge, quantity, unit, value, .. } = reading;
-        Reading { gauge, quantity, history: history.into(), kind, unit, value }
+        Reading { gauge, quantity, history: history.into(), kind, scale, unit, value }
     });
-    let readings = readings.filter(|r| r.history != "pressure" || !meets(&r.gauge)).collect();
+    // At a face that meets a side or another body, the pressure of the outermost particle has a start-up
+    // peak that does not shrink with the cell size. Such readings get no estimate.
+    let is_startup = |r: &Reading| {
+        r.history == "pressure" && kind_of(&r.gauge).is_some_and(GaugeKind::is_loaded)
+    };
+    let readings = readings.filter(|reading| !is_startup(reading)).collect();
     GaugeRecords { histories, readings }
 }

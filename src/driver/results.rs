@@ -5,7 +5,10 @@ use super::failure::RunFailure;
 use super::profiles::{draw, write_profiles};
 use super::rank_statistics::{self, Costs, LoopUse};
 use super::run::Run;
-use crate::accuracy::estimate::{self, Answer, EstimatedErrors, Laws, fields};
+use crate::accuracy::estimate::{
+    self, Answer, EstimatedErrors, FieldEstimate, Laws, fields, least_pressure_of_all,
+    tensile_failure,
+};
 use crate::accuracy::plan;
 use crate::accuracy::reference::ReferenceSolution;
 use crate::driver::checkpoint::folder;
@@ -68,7 +71,7 @@ where
         let mut warnings = self.scene.warnings.clone();
         let reference = self.reference(&mut warnings);
         comm.heartbeat();
-        self.add_differences();
+        let fields = self.compare_fields();
         let maker = Maker::with(self.recorder.origin.clone(), self.scene);
         let folder = OutputFolder::create(&self.options.output, self.options.keep, &maker)?;
         let profiles = self.write_files(reference.as_ref(), &folder)?;
@@ -76,7 +79,7 @@ where
         let summary = Summary {
             origin: Some(folder.origin()),
             warnings,
-            ..self.summary(sums, costs, reference.as_ref(), profiles)
+            ..self.summary(sums, costs, reference.as_ref(), profiles, fields)
         };
         summary.write(folder.path())?;
         let unfinished = unfinished_folder(&self.options.output)?;
@@ -142,17 +145,25 @@ where
         self.recorder.tables.iter().map(|t| &t.0).collect()
     }
 
-    /// Adds to the profiles their differences from the finest coarse run in the quantities whose
-    /// errors are estimated.
-    fn add_differences(&mut self) {
-        let quantities: Vec<String> =
-            self.scene.estimated_fields().into_iter().map(String::from).collect();
-        let finest = self.companions.as_ref().and_then(|companions| companions.done.last());
-        let coarse = finest.map_or(&[][..], |companion| &companion.tables);
-        for ((table, _), coarse) in self.recorder.tables.iter_mut().zip(coarse) {
-            let differences = fields::difference_columns(table, coarse, &quantities);
+    /// Error estimates of the fields of the scene. Adds to the profiles their differences from the run
+    /// with cells twice as large.
+    fn compare_fields(&mut self) -> Vec<FieldEstimate> {
+        let quantities = self.scene.estimated_fields();
+        let Some(coarse_runs) = self.coarse_runs.as_ref().filter(|_| !quantities.is_empty()) else {
+            return Vec::new();
+        };
+        let factors = tensile_failure::factors(self.scene, &self.tables());
+        let least = least_pressure_of_all(self.scene, self.simulation.steps());
+        let mut estimates = Vec::new();
+        for (k, (table, _)) in self.recorder.tables.iter_mut().enumerate() {
+            let (found, differences) =
+                fields::compare(table, k, &quantities, coarse_runs, factors[k], least);
+            estimates.extend(found);
             table.columns.extend(differences);
+            // a large table takes some time
+            self.comm.heartbeat();
         }
+        estimates
     }
 
     /// The run's own estimate of its errors; `None` unless the scene asks for it.
@@ -160,15 +171,16 @@ where
         &self,
         reference: Option<&ReferenceSolution>,
         profiles: &[ProfileSummary],
+        fields: Vec<FieldEstimate>,
     ) -> Option<EstimatedErrors> {
-        let companions = self.companions.as_ref()?;
+        let coarse_runs = self.coarse_runs.as_ref()?;
         let (arrivals, steps) = (&self.recorder.arrivals, self.simulation.steps());
         let (scene, tables) = (self.scene, self.tables());
         let probes = self.recorder.probes();
         let gauges = probes.map(|probes| gauge_records(scene, probes, &self.simulation));
         let gauges = &gauges.unwrap_or_default();
-        let answer = Answer { scene, tables, gauges, arrivals, steps, reference };
-        let mut estimates = estimate::estimate(&answer, companions, &Laws::shipped());
+        let answer = Answer { scene, tables, fields, gauges, arrivals, steps, reference };
+        let mut estimates = estimate::estimate(&answer, coarse_runs, &Laws::shipped());
         for (estimate, profile) in estimates.profiles.iter_mut().zip(profiles) {
             estimate.l1.exact = profile.error("l1");
         }
@@ -182,12 +194,13 @@ where
         costs: Costs,
         reference: Option<&ReferenceSolution>,
         profiles: Vec<ProfileSummary>,
+        fields: Vec<FieldEstimate>,
     ) -> Summary {
         let (scene, simulation) = (self.scene, &self.simulation);
         let (ways, end) = (&sums.removed, &sums.totals);
         let histories = self.recorder.histories();
         let measured = measured::quantities(scene, reference, &profiles, &self.tables(), histories);
-        let error_estimate = self.error_estimate(reference, &profiles);
+        let error_estimate = self.error_estimate(reference, &profiles, fields);
         let plan = scene.scene.output.plan.as_ref().map(|planned| {
             let seconds = [costs.loop_cpu, costs.loop_wall];
             let exact_l1: Vec<f64> = profiles.iter().filter_map(|p| p.error("l1")).collect();

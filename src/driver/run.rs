@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use decomp::{Comm, StoredParticles};
 
-use super::companions::{arrival_recorder, run_companions};
+use super::coarse_runs::{arrival_recorder, run_coarse};
 use super::failure::RunFailure;
 use super::options::{Beginning, Options};
 use super::profiles::{draw, write_profiles};
-use crate::accuracy::estimate::Companions;
+use crate::accuracy::estimate::CoarseRuns;
 use crate::driver::checkpoint::CheckpointSchedule;
 use crate::driver::output::histories::HISTORIES_FILE;
 use crate::driver::output::shared_file::agree;
@@ -30,7 +30,7 @@ pub(super) struct Run<'a, const D: usize> {
     /// Processor, and the cores that the process may use.
     pub machine: String,
     /// The coarse runs from which errors are estimated, if the scene asks for it.
-    pub companions: Option<Companions>,
+    pub coarse_runs: Option<CoarseRuns>,
     /// State of the run.
     pub simulation: Simulation<'a, D>,
     /// Totals at the start of the run, before any restart.
@@ -60,8 +60,8 @@ where
     ) -> Result<Self, RunFailure> {
         // before threads are bound to cores
         let machine = format!("{}, {} cores", processor(), cores());
-        let companions = match scene.scene.error_estimate {
-            Some(_) => Some(run_companions::<D>(comm, scene, options.threads)?),
+        let coarse_runs = match scene.scene.error_estimate {
+            Some(_) => Some(run_coarse::<D>(comm, scene, options.threads)?),
             None => None,
         };
         let mut simulation = Simulation::<D>::new(scene, comm, options.threads)?;
@@ -70,8 +70,8 @@ where
             simulation.trace(steps.clone());
         }
         let mut recorder = Recorder::new(scene, &simulation);
-        if let Some((body, companions)) = scene.estimated_body().zip(companions.as_ref()) {
-            recorder.arrivals = arrival_recorder(comm, scene, body, companions);
+        if let Some((body, coarse_runs)) = scene.estimated_body().zip(coarse_runs.as_ref()) {
+            recorder.arrivals = arrival_recorder(comm, scene, body, coarse_runs);
         }
         let continues = matches!(beginning, Beginning::Checkpoint(_));
         if let Beginning::Checkpoint(mut checkpoint) = beginning {
@@ -94,7 +94,7 @@ where
             scene,
             options,
             machine,
-            companions,
+            coarse_runs,
             simulation,
             start,
             recorder,

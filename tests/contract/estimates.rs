@@ -208,7 +208,7 @@ fn a_plan_needs_no_reference_and_marks_a_guess() {
     assert!(line.contains("(guess)") && line.contains("by its own bound"), "{line}");
 }
 
-/// Companion runs keep a wall in its place, at either end.
+/// CoarseRun runs keep a wall in its place, at either end.
 #[test]
 fn a_mirrored_scene_has_the_mirrored_estimate() {
     // a number of cells that neither two nor four divide
@@ -333,6 +333,7 @@ fn profiles_have_the_differences_of_estimated_fields_and_nothing_else_changes() 
     assert!(plain.0.get("error_estimate").is_none());
     let digests = |summary: &Value| summary["profiles"].clone();
     assert_eq!(digests(&plain.0), digests(&estimated.0));
+    assert_eq!(plain.1.lines().count(), estimated.1.lines().count());
     let added = ",velocity_difference_x,velocity_difference_y";
     let mut largest: f64 = 0.0;
     for (a, b) in plain.1.lines().zip(estimated.1.lines()) {
@@ -357,6 +358,9 @@ fn an_estimate_in_a_plane_has_no_body() {
         (json!({"body": "target"}), "error_estimate.body"),
         (json!({"arrivals": [1e-4]}), "error_estimate.arrivals"),
         (json!({"fields": ["presure"]}), "error_estimate.fields[0]"),
+        // profiles have no such column; the values depend on the size of the particles
+        (json!({"fields": ["strain"]}), "error_estimate.fields[0]"),
+        (json!({"fields": ["volume"]}), "error_estimate.fields[0]"),
         (json!({"fields": ["pressure", "pressure"]}), "error_estimate.fields[1]"),
     ] {
         let home = Home::with(&in_a_plane(estimate));
@@ -382,4 +386,63 @@ fn a_line_has_fields_and_gauges_beside_its_body() {
     // a face that meets another body has no estimate of its peak pressure
     assert!(readings.iter().all(|r| r.0 != r#""target_lower" "peak pressure""#), "{readings:?}");
     assert!(readings.iter().any(|r| r.0 == r#""target_lower" "peak velocity""#), "{readings:?}");
+}
+
+#[test]
+fn the_gauges_of_a_reference_are_estimated() {
+    let mut flyer = whole();
+    flyer["domain"]["cell_size"] = json!(5e-6);
+    flyer["error_estimate"] = json!({});
+    flyer["output"] = json!({"pictures": false, "hdf5": false, "histories": {}});
+    // until after the shock has reached the rear
+    flyer["time"]["end"] = json!(3e-7);
+    let summary = Home::with(&flyer).run("run", &[]).summary;
+    let estimate = &summary["error_estimate"];
+    let readings = half_widths(&estimate["readings"], ["gauge", "quantity"], "value");
+    let named = r#""free_surface" "plateau velocity""#;
+    let (_, half_width) = readings.iter().find(|r| r.0 == named).unwrap_or_else(|| {
+        panic!("{readings:?}");
+    });
+    // within the interval of the estimate
+    let measured = summary["measured"].as_array().unwrap();
+    let exact = measured
+        .iter()
+        .find_map(|m| (m["name"] == "free-surface velocity").then(|| m["exact"].as_f64()));
+    let value = summary["gauges"].as_array().unwrap().iter().find_map(|g| {
+        let is = g["gauge"] == "free_surface" && g["quantity"] == "plateau velocity";
+        is.then(|| g["value"].as_f64().unwrap())
+    });
+    let (exact, value) = (exact.flatten().unwrap(), value.unwrap());
+    assert!((value - exact).abs() <= *half_width && *half_width < 0.002 * exact, "{value} {exact}");
+}
+
+#[test]
+fn gauges_and_fields_need_no_body() {
+    let mut both = scene(json!({}));
+    // two bodies at rest: none is struck
+    both["bodies"][0]["velocity"] = json!([0.0]);
+    both["bodies"][1]["velocity"] = json!([0.0]);
+    let home = Home::with(&both);
+    home.call(["check", "scene.json"]).end().failed(&["error_estimate.body: missing key"]);
+    both["error_estimate"] = json!({"fields": ["velocity"]});
+    let home = Home::with(&both);
+    home.call(["check", "scene.json"]).end().succeeded();
+    let plan = ["plan", "scene.json", "--quantity", "l1", "--error", "1%"];
+    home.call(plan).end().failed(&["error_estimate.body: missing key", "flyer, target"]);
+}
+
+#[test]
+fn failed_material_widens_the_estimates() {
+    let mut scene = in_a_plane(json!({"fields": ["velocity"]}));
+    scene["output"]["profiles"]["times"] = json!([8e-8]);
+    let l1 = |scene: &Value| {
+        let estimate = Home::with(scene).run("run", &[]).summary["error_estimate"].clone();
+        let l1 = &estimate["fields"][0]["l1"];
+        l1["half_width"].as_f64().unwrap() / l1["evidence"]["difference_2"].as_f64().unwrap()
+    };
+    let whole = l1(&scene);
+    for material in ["aluminium", "copper"] {
+        scene["materials"][material]["failure"] = json!({"type": "tension_limit", "stress": 1e6});
+    }
+    assert!(l1(&scene) > 4.0 * whole, "{} {whole}", l1(&scene));
 }

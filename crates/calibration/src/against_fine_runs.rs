@@ -5,8 +5,8 @@ use std::path::Path;
 
 use decomp::Serial;
 use flyer_mpm::accuracy::estimate::gauge_records::{GaugeHistory, Reading};
-use flyer_mpm::accuracy::estimate::{Companion, EstimatedErrors, fields, indicators, plateau};
-use flyer_mpm::driver::companions::run_resized;
+use flyer_mpm::accuracy::estimate::{CoarseRun, EstimatedErrors, fields, indicators, plateau};
+use flyer_mpm::driver::coarse_runs::run_with_cells;
 use flyer_mpm::driver::output::summary::Summary;
 use flyer_mpm::driver::{Beginning, Options, run};
 use flyer_mpm::scene::CheckedScene;
@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use crate::random::Random;
 use crate::random_scenes::{Kind, RandomScene};
 
-/// An estimated error beside the true one.
+/// Half-width of an estimate, and the difference from the fine run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// Scene and quantity, in words.
@@ -92,11 +92,11 @@ fn compare(drawn: &RandomScene, factor: f64, folder: &Path) -> Result<Vec<Outcom
     let summary = Summary::read(folder).map_err(|e| e.to_string())?;
     let _ = std::fs::remove_dir_all(folder);
     let estimate = summary.error_estimate.ok_or("the run has no estimate")?;
-    let [own, fine] = [1.0, factor].map(|factor| run_resized(&Serial, &scene, factor, 1));
+    let [own, fine] = [1.0, factor].map(|factor| run_with_cells(&Serial, &scene, factor, 1));
     let (own, fine) = (own?, fine?);
     let mut all = Outcomes { scene: &drawn.name, found: Vec::new() };
     all.body(&scene, &estimate, &own, &fine);
-    all.fields(&scene, &estimate, &own, &fine);
+    all.fields(&estimate, &own, &fine);
     all.gauges(&estimate, &own, &fine);
     Ok(all.found)
 }
@@ -125,8 +125,8 @@ impl Outcomes<'_> {
         &mut self,
         scene: &CheckedScene,
         estimate: &EstimatedErrors,
-        own: &Companion,
-        fine: &Companion,
+        own: &CoarseRun,
+        fine: &CoarseRun,
     ) {
         let Some(body) = scene.estimated_body() else { return };
         let start = scene.scene.bodies[body].pressure;
@@ -155,25 +155,17 @@ impl Outcomes<'_> {
         }
     }
 
-    fn fields(
-        &mut self,
-        scene: &CheckedScene,
-        estimate: &EstimatedErrors,
-        own: &Companion,
-        fine: &Companion,
-    ) {
+    fn fields(&mut self, estimate: &EstimatedErrors, own: &CoarseRun, fine: &CoarseRun) {
         for field in &estimate.fields {
             let at = |table: &&ParticleTable| table.time == field.time;
             let both = own.tables.iter().find(at).zip(fine.tables.iter().find(at));
-            let error = both.and_then(|(own, fine)| {
-                fields::difference(own, fine, &field.quantity, scene.axisymmetric())
-            });
+            let error = both.and_then(|(own, fine)| fields::difference(own, fine, &field.quantity));
             let what = format!("{} at {:.2e} s", field.quantity, field.time);
             self.add(&what, EstimatedQuantity::Field, field.l1.half_width, error);
         }
     }
 
-    fn gauges(&mut self, estimate: &EstimatedErrors, own: &Companion, fine: &Companion) {
+    fn gauges(&mut self, estimate: &EstimatedErrors, own: &CoarseRun, fine: &CoarseRun) {
         for history in &estimate.histories {
             let is =
                 |h: &&GaugeHistory| (&h.gauge, &h.quantity) == (&history.gauge, &history.quantity);

@@ -177,11 +177,11 @@ pub struct Judgement {
 
 /// Judges the estimates that have an interval.
 pub fn judge<'a>(all: impl IntoIterator<Item = &'a CheckedEstimate>) -> Judgement {
-    judge_pairs(all.into_iter().filter_map(|t| Some((t.half_width?, t.error))))
+    judge_intervals(all.into_iter().filter_map(|t| Some((t.half_width?, t.error))))
 }
 
 /// Judges intervals of these half-widths and true errors.
-pub fn judge_pairs(all: impl Iterator<Item = (f64, f64)>) -> Judgement {
+pub fn judge_intervals(all: impl Iterator<Item = (f64, f64)>) -> Judgement {
     let estimates: Vec<(f64, f64)> = all.collect();
     let held = estimates.iter().filter(|(width, error)| error <= width).count();
     let mut ratios: Vec<f64> = estimates.iter().map(|(width, error)| width / error).collect();

@@ -5,7 +5,7 @@ use calibration::estimates::CheckedEstimate;
 use flyer_mpm::accuracy::estimate::error_model::{Law, term};
 use nalgebra::{DMatrix, DVector};
 
-/// Quantile of the regression. It is below the share that the intervals hold, since few cases lie
+/// Quantile of the regression of error models. It is below the share that the intervals hold, since few cases lie
 /// beyond a quantile near 1; the factor makes up for the rest.
 const REGRESSED: f64 = 0.9;
 /// Errors below this are rounding \[in the evidence's unit\].
@@ -18,14 +18,19 @@ const PARTS: usize = 10;
 /// The law with the narrowest intervals of those of several sets of evidence, with intervals that hold
 /// `share` of cases that are left out of the fit; `None` if too few cases have the evidence.
 pub fn narrowest(all: &[&CheckedEstimate], sets: &[&[&str]], share: f64) -> Option<Law> {
-    let laws = sets.iter().filter_map(|evidence| law(all, evidence, share));
+    let laws = sets.iter().filter_map(|evidence| law(all, evidence, share, REGRESSED));
     laws.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(law, _)| law)
 }
 
-/// The law of this evidence, with the median of half-width over error in cases that are left out of
+/// The law of this evidence, by regression of a `regressed` quantile, with the median of half-width over error in cases that are left out of
 /// the fit. No two cases have the same scheme, and few the same materials, so that the cases left out
 /// are of other schemes and materials.
-pub fn law(all: &[&CheckedEstimate], evidence: &[&str], share: f64) -> Option<(Law, f64)> {
+pub fn law(
+    all: &[&CheckedEstimate],
+    evidence: &[&str],
+    share: f64,
+    regressed: f64,
+) -> Option<(Law, f64)> {
     let has = |t: &&CheckedEstimate| evidence.iter().all(|e| term(&t.evidence, e).is_some());
     let usable: Vec<&CheckedEstimate> = all.iter().copied().filter(has).collect();
     if usable.len() < 12 * (evidence.len() + 1) {
@@ -42,7 +47,7 @@ pub fn law(all: &[&CheckedEstimate], evidence: &[&str], share: f64) -> Option<(L
         let numbered = usable.iter().enumerate();
         let kept: Vec<&CheckedEstimate> =
             numbered.clone().filter(|(k, _)| k % PARTS != part).map(|(_, t)| *t).collect();
-        let law = of(weights(&kept, evidence), 1.0);
+        let law = of(weights(&kept, evidence, regressed), 1.0);
         let left_out = numbered.filter(|(k, _)| k % PARTS == part).map(|(_, t)| *t);
         scores.extend(left_out.filter_map(|t| Some(size(t) / law.size(&t.evidence)?)));
     }
@@ -50,7 +55,7 @@ pub fn law(all: &[&CheckedEstimate], evidence: &[&str], share: f64) -> Option<(L
     let n = scores.len() as f64;
     let factor = quantile(scores.iter().copied(), (share * (n + 1.0) / n).min(1.0));
     let ratio = factor / quantile(scores.into_iter(), 0.5);
-    Some((of(weights(&usable, evidence), factor), ratio))
+    Some((of(weights(&usable, evidence, regressed), factor), ratio))
 }
 
 /// The smallest of the values that `share` of them do not exceed; NaN without values.
@@ -66,8 +71,8 @@ fn size(one: &CheckedEstimate) -> f64 {
     (one.error / one.unit).max(FLOOR)
 }
 
-/// Weights of the quantile [`REGRESSED`], by least squares reweighted and damped.
-fn weights(estimates: &[&CheckedEstimate], evidence: &[&str]) -> Vec<f64> {
+/// Weights of a quantile, by least squares reweighted and damped.
+fn weights(estimates: &[&CheckedEstimate], evidence: &[&str], quantile: f64) -> Vec<f64> {
     let rows = estimates.len();
     let value = |row: usize, column: usize| match column {
         0 => 1.0,
@@ -79,7 +84,7 @@ fn weights(estimates: &[&CheckedEstimate], evidence: &[&str]) -> Vec<f64> {
     for round in 0..ROUNDS {
         let rest = &b - &a * &x;
         // from the middle to the quantile
-        let share = if round < ROUNDS / 4 { 0.5 } else { REGRESSED };
+        let share = if round < ROUNDS / 4 { 0.5 } else { quantile };
         let side = |r: f64| if r > 0.0 { share } else { 1.0 - share };
         let w = rest.map(|r| if round == 0 { 1.0 } else { side(r) / r.abs().max(1e-2) });
         let scaled = DMatrix::from_fn(rows, a.ncols(), |r, c| w[r] * a[(r, c)]);

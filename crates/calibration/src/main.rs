@@ -30,6 +30,10 @@ const SHARES: [f64; 3] = [0.97, 0.98, 0.985];
 /// Share of the cases outside of the range of the fit that the wider intervals hold.
 const GUESS_SHARE: f64 = 0.9;
 
+/// Least factors on the half-widths of guesses: plateau, arrival, L1. Random scenes with strength need
+/// more than the impacts of fluids outside of the range.
+const LEAST_GUESS: [f64; 3] = [1.3, 1.6, 1.0];
+
 /// Sets of evidence, of which a family takes the one with the narrowest intervals.
 type Sets = &'static [&'static [&'static str]];
 
@@ -143,12 +147,14 @@ fn fit_families(fitted: &Gathered, laws: &mut Laws) {
     }
 }
 
-/// The factors at which the intervals hold [`GUESS_SHARE`] of the cases outside of the range.
+/// The factors at which the intervals hold [`GUESS_SHARE`] of the cases outside of the range, at least
+/// [`LEAST_GUESS`].
 fn fit_guess(outside: &Gathered, laws: &mut Laws) {
     let [plateau_pressure, arrival_time, l1] = [0, 1, 2].map(|k| {
         let guesses = by_laws(&outside.estimates[k], laws, k);
         let guesses = guesses.iter().filter(|t| t.basis == EstimateBasis::Guess);
-        fit::quantile(guesses.filter_map(|t| Some(t.error / t.half_width?)), GUESS_SHARE).max(1.0)
+        fit::quantile(guesses.filter_map(|t| Some(t.error / t.half_width?)), GUESS_SHARE)
+            .max(LEAST_GUESS[k])
     });
     laws.guess = GuessFactors { plateau_pressure, arrival_time, l1 };
 }

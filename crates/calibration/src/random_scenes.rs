@@ -19,7 +19,7 @@ pub enum Kind {
     Gap,
     /// A flyer and two or three layers of target.
     Layers,
-    /// Two plates of which the target carries a limited tension, until after the release waves meet.
+    /// Two plates with a `tension_cutoff`; the run ends after the release waves have met.
     LimitedTension,
     /// Two plates, until after the shock has reached the free surface of the target.
     FreeSurface,
@@ -238,7 +238,7 @@ fn on_line(random: &mut Random, kind: Kind) -> (String, Value) {
             "body": "target", "arrivals": [0.4 * target.thickness()], "fields": ["pressure", "velocity"],
         },
     });
-    // a flyer softer than its target leaves it
+    // a flyer of lower impedance rebounds from the target, so that the scene needs contact
     if matches!(kind, Kind::Contact | Kind::Gap) || flyer.impedance < target.impedance {
         scene["contact"] = json!({"type": "frictionless"});
     }

@@ -70,7 +70,7 @@ fn laws(all: &[CheckedEstimate], schemes: &[String]) -> BTreeMap<String, ErrorLa
         let with_schemes = |evidence: &[&str]| {
             let names: Vec<&str> =
                 evidence.iter().copied().chain(indicators.iter().map(String::as_str)).collect();
-            fit::law(&all, &names, share).map(|(law, _)| law)
+            fit::law(&all, &names, share, share).map(|(law, _)| law)
         };
         EVIDENCE.iter().filter_map(|evidence| with_schemes(evidence)).collect()
     };

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::bounded::Bounded;
-use super::companions::Companions;
+use super::coarse_results::{CoarseRun, CoarseRuns};
 use super::differences::Differences;
 use super::interpolation::{at_particles, by_body};
 use super::range::EstimateBasis;
@@ -24,84 +24,92 @@ pub struct FieldEstimate {
     pub l1: Bounded,
 }
 
-/// Error estimate of the field of `quantity` in profile number `k`, which is `table`, with a
-/// half-width `widened` by a factor \[-\]; `None` if the field is zero, or without a coarse run.
-pub(super) fn of_field(
+/// Error estimates of the fields of these quantities in profile number `k`, which is `table`, with
+/// half-widths times `factor` \[-\]; and the differences of the table from the run with cells twice as
+/// large, one column per column of the quantities. Fields that are zero, and pressures up to
+/// `least_pressure` \[Pa\], have no estimate.
+pub fn compare(
     table: &ParticleTable,
-    quantity: &str,
     k: usize,
-    companions: &Companions,
-    Conditions { axisymmetric, least_pressure, widened }: Conditions,
-) -> Option<FieldEstimate> {
-    let is_rounding = |column: &TableColumn| {
+    quantities: &[&str],
+    coarse_runs: &CoarseRuns,
+    factor: f64,
+    least_pressure: f64,
+) -> (Vec<FieldEstimate>, Vec<TableColumn>) {
+    let of_run = |coarse: &CoarseRun| {
+        let values = coarse.tables.get(k).map(|other| ComparedTable::new(table, other, quantities));
+        (coarse.factor, values)
+    };
+    let compared: Vec<(f64, Option<ComparedTable>)> = coarse_runs.done.iter().map(of_run).collect();
+    let values_of = |factor: f64| compared.iter().find(|c| c.0 == factor)?.1.as_ref();
+    let is_rounding = |column: &&TableColumn| {
         column.unit == "Pa" && column.values.iter().all(|p| p.abs() <= least_pressure)
     };
-    if columns_of(table, quantity).all(is_rounding) {
-        return None;
-    }
-    let differences = Differences::new(companions.done.iter().filter_map(|companion| {
-        let coarse = companion.tables.get(k)?;
-        Some((companion.factor, difference(table, coarse, quantity, axisymmetric)?))
-    }))?;
-    Some(FieldEstimate {
-        time: table.time,
-        quantity: quantity.into(),
-        basis: EstimateBasis::Guess,
-        l1: differences.l1(widened),
-    })
-}
-
-/// Conditions of the estimate of a field.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Conditions {
-    /// Whether the scene has axial symmetry.
-    pub axisymmetric: bool,
-    /// Pressure up to which a wave is rounding \[Pa\].
-    pub least_pressure: f64,
-    /// Factor on the half-width \[-\].
-    pub widened: f64,
+    let estimate = |quantity: &&str| {
+        if columns_of(table, quantity).all(|column| is_rounding(&column)) {
+            return None;
+        }
+        let differences =
+            Differences::new(coarse_runs, |coarse| values_of(coarse.factor)?.difference(quantity))?;
+        Some(FieldEstimate {
+            time: table.time,
+            quantity: (*quantity).into(),
+            basis: EstimateBasis::Guess,
+            l1: differences.l1(factor),
+        })
+    };
+    let estimates = quantities.iter().filter_map(estimate).collect();
+    (estimates, values_of(2.0).map_or(Vec::new(), ComparedTable::columns))
 }
 
 /// Relative L1 difference of a quantity \[-\]: the integral of |a - b| over the volume, over that of
 /// |a|, with the values b of `other` at the particles of `own`; `None` if a is zero.
-pub fn difference(
-    own: &ParticleTable,
-    other: &ParticleTable,
-    quantity: &str,
-    axisymmetric: bool,
-) -> Option<f64> {
-    let columns: Vec<&TableColumn> = columns_of(own, quantity).collect();
-    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
-    let theirs = at_particles(other, &names, own);
-    let (mut apart, mut whole) = (0.0, 0.0);
-    for (row, volume) in volumes(own, axisymmetric).into_iter().enumerate() {
-        let size = columns.iter().map(|c| c.values[row].powi(2)).sum::<f64>().sqrt();
-        let distance = columns.iter().zip(&theirs).map(|(c, v)| (c.values[row] - v[row]).powi(2));
-        let distance = distance.sum::<f64>().sqrt();
-        // a body that the other run has lost
-        apart += volume * if distance.is_nan() { size } else { distance };
-        whole += volume * size;
-    }
-    (whole > 0.0).then_some(apart / whole)
+pub fn difference(own: &ParticleTable, other: &ParticleTable, quantity: &str) -> Option<f64> {
+    ComparedTable::new(own, other, &[quantity]).difference(quantity)
 }
 
-/// The differences of a table from the table of a coarse run, one column per column of these
-/// quantities, in the same unit.
-pub fn difference_columns(
-    own: &ParticleTable,
-    other: &ParticleTable,
-    quantities: &[String],
-) -> Vec<TableColumn> {
-    let columns = quantities.iter().flat_map(|quantity| columns_of(own, quantity));
-    let columns: Vec<&TableColumn> = columns.collect();
-    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
-    let theirs = at_particles(other, &names, own);
-    let column = |(column, theirs): (&&TableColumn, &Vec<f64>)| TableColumn {
-        name: with_suffix(&column.name, "_difference"),
-        unit: column.unit.clone(),
-        values: column.values.iter().zip(theirs).map(|(a, b)| a - b).collect(),
-    };
-    columns.iter().zip(&theirs).map(column).collect()
+/// A table, and values of another one at its particles.
+struct ComparedTable<'a> {
+    own: &'a ParticleTable,
+    /// Columns of the quantities.
+    columns: Vec<&'a TableColumn>,
+    /// Values of the other table, one list per column.
+    others: Vec<Vec<f64>>,
+}
+
+impl<'a> ComparedTable<'a> {
+    fn new(own: &'a ParticleTable, other: &ParticleTable, quantities: &[&'a str]) -> Self {
+        let columns: Vec<&TableColumn> =
+            quantities.iter().flat_map(|quantity| columns_of(own, quantity)).collect();
+        let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+        ComparedTable { own, others: at_particles(other, &names, own), columns }
+    }
+
+    /// Relative L1 difference of a quantity \[-\]; `None` if the quantity is zero.
+    fn difference(&self, quantity: &str) -> Option<f64> {
+        let pairs = self.columns.iter().zip(&self.others);
+        let pairs: Vec<_> = pairs.filter(|(c, _)| quantity_of(&c.name) == quantity).collect();
+        let (mut difference, mut magnitude) = (0.0, 0.0);
+        for (row, volume) in volumes(self.own).into_iter().enumerate() {
+            let size = pairs.iter().map(|(c, _)| c.values[row].powi(2)).sum::<f64>().sqrt();
+            let apart = pairs.iter().map(|(c, other)| (c.values[row] - other[row]).powi(2));
+            let apart = apart.sum::<f64>().sqrt();
+            // a body that the other run has lost
+            difference += volume * if apart.is_nan() { size } else { apart };
+            magnitude += volume * size;
+        }
+        (magnitude > 0.0).then_some(difference / magnitude)
+    }
+
+    /// The differences, one column per column of the quantities.
+    fn columns(&self) -> Vec<TableColumn> {
+        let column = |(column, other): (&&TableColumn, &Vec<f64>)| TableColumn {
+            name: with_suffix(&column.name, "_difference"),
+            unit: column.unit.clone(),
+            values: column.values.iter().zip(other).map(|(a, b)| a - b).collect(),
+        };
+        self.columns.iter().zip(&self.others).map(column).collect()
+    }
 }
 
 /// The columns of a quantity.
@@ -112,15 +120,13 @@ fn columns_of<'a>(
     table.columns[table.dimension..].iter().filter(move |c| quantity_of(&c.name) == quantity)
 }
 
-/// Volume of each particle, on a line per area, in a plane per depth, about an axis per radian: the
-/// distance of its neighbours on a line, the area of its parallelogram in a plane.
-fn volumes(table: &ParticleTable, axisymmetric: bool) -> Vec<f64> {
-    let x = &table.columns[0].values;
-    if table.dimension > 1 {
-        let area = |[a, b]: &[[f64; 2]; 2]| 4.0 * (a[0] * b[1] - a[1] * b[0]).abs();
-        let radius = |row: usize| if axisymmetric { x[row].abs() } else { 1.0 };
-        return table.half_edges.iter().enumerate().map(|(r, e)| area(e) * radius(r)).collect();
+/// Volume of each particle, in a plane per depth, about an axis per radian. On a line, per area, half
+/// of the distance between its neighbours, but at most twice the median of all: a gap has no material.
+fn volumes(table: &ParticleTable) -> Vec<f64> {
+    if let Some(volumes) = table.column("volume") {
+        return volumes.to_vec();
     }
+    let x = &table.columns[0].values;
     let mut all = vec![0.0; table.len()];
     for (_, rows) in by_body(table) {
         for k in 0..rows.len() {
@@ -129,16 +135,18 @@ fn volumes(table: &ParticleTable, axisymmetric: bool) -> Vec<f64> {
             all[rows[k]] = (x[rows[after]] - x[rows[before]]) / between;
         }
     }
-    all
+    let mut sorted = all.clone();
+    sorted.sort_by(f64::total_cmp);
+    let most = 2.0 * sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+    all.iter().map(|volume| volume.min(most)).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Particles of two bodies at `places`, each with the pressure 1 + x + 2 y, and half edges of
-    /// `half`.
-    fn table(places: &[[f64; 2]], dimension: usize, half: f64) -> ParticleTable {
+    /// Particles at `places`, each with the pressure 1 + x + 2 y, and in a plane with these volumes.
+    fn table(places: &[[f64; 2]], dimension: usize, volumes: &[f64]) -> ParticleTable {
         let column = |name: &str, of: &dyn Fn(&[f64; 2]) -> f64| TableColumn {
             name: name.into(),
             unit: "Pa".into(),
@@ -149,6 +157,10 @@ mod tests {
             columns.push(column("y", &|p| p[1]));
         }
         columns.push(column("pressure", &|p| 1.0 + p[0] + 2.0 * p[1]));
+        if dimension > 1 {
+            let values = volumes.to_vec();
+            columns.push(TableColumn { name: "volume".into(), unit: "m2".into(), values });
+        }
         ParticleTable {
             time: 1.0,
             dimension,
@@ -157,7 +169,7 @@ mod tests {
             materials: vec!["copper".into()],
             body: vec![0; places.len()],
             columns,
-            half_edges: vec![[[half, 0.0], [0.0, half]]; places.len()],
+            half_edges: Vec::new(),
         }
     }
 
@@ -168,41 +180,56 @@ mod tests {
         let places: Vec<[f64; 2]> = places.collect();
         let places: Vec<[f64; 2]> =
             places.iter().map(|p| if dimension > 1 { *p } else { [p[0], 0.0] }).collect();
-        table(&places, dimension, 0.5 / count as f64)
+        let volumes = vec![1.0; places.len()];
+        table(&places, dimension, &volumes)
     }
 
     #[test]
     fn a_linear_field_differs_at_the_surface_alone() {
         for dimension in [1, 2] {
             let (own, coarse) = (square(8, dimension), square(4, dimension));
-            let columns = difference_columns(&own, &coarse, &["pressure".into()]);
+            let run =
+                CoarseRun { factor: 2.0, ratio: 2.0, tables: vec![coarse], ..Default::default() };
+            let runs = CoarseRuns { done: vec![run], ..CoarseRuns::default() };
+            let (estimates, columns) = compare(&own, 0, &["pressure"], &runs, 1.0, 0.1);
+            assert!(estimates[0].l1.half_width.is_some_and(|w| w > 0.0));
             assert_eq!(columns[0].name, "pressure_difference");
             for (row, difference) in columns[0].values.iter().enumerate() {
                 let inside = |axis: usize| (0.125..=0.875).contains(&own.columns[axis].values[row]);
                 let is_inside = (0..dimension).all(inside);
                 assert_eq!(difference.abs() < 1e-12, is_inside, "{dimension} {row} {difference}");
             }
+            // a pressure of rounding has no estimate
+            assert!(compare(&own, 0, &["pressure"], &runs, 1.0, 10.0).0.is_empty());
         }
     }
 
     #[test]
     fn differences_are_integrals_over_the_volume() {
-        for dimension in [1, 2] {
-            let own = square(8, dimension);
-            let mut other = own.clone();
-            other.columns[dimension].values.iter_mut().for_each(|p| *p *= 1.25);
-            let found = difference(&own, &other, "pressure", false).unwrap();
-            assert!((found - 0.25).abs() < 1e-12, "{dimension}: {found}");
-        }
-        // 1 at radius 0.25, 3 at 0.75; the difference is 1 at 0.75
-        let mut own = table(&[[0.25, 0.0], [0.75, 0.0]], 2, 0.25);
-        own.columns[2].values = vec![1.0, 3.0];
-        let mut other = own.clone();
-        other.columns[2].values = vec![1.0, 2.0];
-        let found = difference(&own, &other, "pressure", true).unwrap();
-        assert!((found - 0.75 / (0.25 + 2.25)).abs() < 1e-12, "{found}");
-        own.columns[2].values = vec![0.0, 0.0];
-        assert_eq!(difference(&own, &other, "pressure", true), None);
+        // on a line volumes 1, 1.5, 2 from the distances; the difference is at the last particle
+        let line = table(&[[0.0, 0.0], [1.0, 0.0], [3.0, 0.0]], 1, &[]);
+        let mut other = line.clone();
+        other.columns[1].values[2] += 1.0;
+        let magnitude = 1.0 * 1.0 + 1.5 * 2.0 + 2.0 * 4.0;
+        let found = difference(&line, &other, "pressure").unwrap();
+        assert!((found - 2.0 / magnitude).abs() < 1e-12, "{found}");
+        // in a plane the volumes are given
+        let plane = table(&[[0.25, 0.0], [0.75, 0.0]], 2, &[1.0, 3.0]);
+        let mut other = plane.clone();
+        other.columns[2].values[1] -= 0.5;
+        let found = difference(&plane, &other, "pressure").unwrap();
+        assert!((found - 3.0 * 0.5 / (1.25 + 3.0 * 1.75)).abs() < 1e-12, "{found}");
+        let mut rest = plane.clone();
+        rest.columns[2].values.fill(0.0);
+        assert_eq!(difference(&rest, &other, "pressure"), None);
+    }
+
+    #[test]
+    fn a_gap_has_no_material() {
+        // the distances are 1, except for a gap of 100
+        let places: Vec<[f64; 2]> =
+            (0..8).map(|k| [k as f64 + if k > 3 { 99.0 } else { 0.0 }, 0.0]).collect();
+        assert_eq!(volumes(&table(&places, 1, &[])), [1.0, 1.0, 1.0, 2.0, 2.0, 1.0, 1.0, 1.0]);
     }
 
     #[test]
@@ -210,6 +237,14 @@ mod tests {
         let own = square(4, 2);
         let mut other = own.clone();
         other.body.fill(1);
-        assert_eq!(difference(&own, &other, "pressure", false), Some(1.0));
+        assert_eq!(difference(&own, &other, "pressure"), Some(1.0));
+    }
+
+    #[test]
+    fn particles_on_one_line_in_a_plane_have_the_values_of_the_nearest() {
+        let own = table(&[[0.2, 0.5], [0.8, 0.5]], 2, &[1.0, 1.0]);
+        let other = table(&[[0.25, 0.0], [0.75, 0.0]], 2, &[1.0, 1.0]);
+        let values = at_particles(&other, &["pressure"], &own);
+        assert_eq!(values[0], [1.25, 1.75]);
     }
 }

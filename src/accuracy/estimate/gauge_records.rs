@@ -1,6 +1,6 @@
 //! Records of the gauges of a run: histories, and the values that are read from them.
 
-/// GaugeHistory of a quantity at a gauge.
+/// History of a quantity at a gauge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaugeHistory {
     /// Name of the gauge.
@@ -35,6 +35,8 @@ pub struct Reading {
     pub history: String,
     /// Kind of the value.
     pub kind: ReadingKind,
+    /// Change of the value per change of the history, in their units.
+    pub scale: f64,
     /// SI unit.
     pub unit: String,
     /// Value in this unit.

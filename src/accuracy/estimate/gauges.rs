@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::bounded::Bounded;
-use super::companions::Companions;
+use super::coarse_results::CoarseRuns;
 use super::differences::Differences;
 use super::gauge_records::{GaugeHistory, GaugeRecords, Reading, ReadingKind};
 use super::range::EstimateBasis;
@@ -39,22 +39,33 @@ pub struct ReadingEstimate {
 
 /// Share of the error of a history that is added to the half-width of its greatest and least values
 /// \[-\].
-const EXTREME: f64 = 0.3;
+const EXTREME_SHARE: f64 = 0.3;
 /// The same for levels \[-\].
-const LEVEL: f64 = 0.05;
+const LEVEL_SHARE: f64 = 0.05;
 /// The same for arrival times, with the time by which that error shifts the history \[-\].
-const ARRIVAL: f64 = 0.2;
+const ARRIVAL_SHARE: f64 = 0.2;
 
-/// Error estimates of the histories of a run; histories that are zero, and pressures up to
-/// `least_pressure` \[Pa\], are left out.
+/// Greatest pressure \[Pa\] and velocity \[m/s\] that are rounding, not a wave.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rounding {
+    pub pressure: f64,
+    pub velocity: f64,
+}
+
+/// Error estimates of the histories of a run; those that are zero or rounding are left out.
 pub(super) fn of_histories(
     own: &GaugeRecords,
-    companions: &Companions,
-    least_pressure: f64,
+    coarse_runs: &CoarseRuns,
+    rounding: Rounding,
 ) -> Vec<HistoryEstimate> {
     let estimate = |history: &GaugeHistory| {
-        let is_wave = history.quantity != "pressure" || history.greatest() > least_pressure;
-        let differences = differences_of(history, companions).filter(|_| is_wave)?;
+        let least = match &history.quantity[..] {
+            "pressure" => rounding.pressure,
+            "velocity" => rounding.velocity,
+            _ => 0.0,
+        };
+        let is_wave = history.greatest() > least;
+        let differences = differences_of(history, coarse_runs).filter(|_| is_wave)?;
         Some(HistoryEstimate {
             gauge: history.gauge.clone(),
             quantity: history.quantity.clone(),
@@ -66,38 +77,38 @@ pub(super) fn of_histories(
 }
 
 /// Differences of a history to those of the coarse runs.
-fn differences_of(history: &GaugeHistory, companions: &Companions) -> Option<Differences> {
+fn differences_of(history: &GaugeHistory, coarse_runs: &CoarseRuns) -> Option<Differences> {
     let is_same = |other: &&GaugeHistory| {
         (&other.gauge, &other.quantity) == (&history.gauge, &history.quantity)
     };
-    Differences::new(companions.done.iter().filter_map(|companion| {
-        let other = companion.gauges.histories.iter().find(is_same)?;
-        Some((companion.factor, history.difference(other)?))
-    }))
+    Differences::new(coarse_runs, |coarse| {
+        history.difference(coarse.gauges.histories.iter().find(is_same)?)
+    })
 }
 
 /// Error estimates of the values that are read from the histories of a run; those that no coarse run
 /// has are left out.
-pub(super) fn of_readings(own: &GaugeRecords, companions: &Companions) -> Vec<ReadingEstimate> {
+pub(super) fn of_readings(own: &GaugeRecords, coarse_runs: &CoarseRuns) -> Vec<ReadingEstimate> {
     let estimate = |reading: &Reading| {
         let is_same = |other: &&Reading| {
             (&other.gauge, &other.quantity) == (&reading.gauge, &reading.quantity)
         };
-        let differences = Differences::new(companions.done.iter().filter_map(|companion| {
-            let other = companion.gauges.readings.iter().find(is_same)?;
-            Some((companion.factor, ((other.value - reading.value) / reading.value).abs()))
-        }))?;
+        let differences = Differences::new(coarse_runs, |coarse| {
+            let other = coarse.gauges.readings.iter().find(is_same)?;
+            Some(((other.value - reading.value) / reading.value).abs())
+        })?;
         let is_history = |history: &&GaugeHistory| {
             (&history.gauge, &history.quantity) == (&reading.gauge, &reading.history)
         };
         let history = own.histories.iter().find(is_history);
         let least = history.map_or(0.0, |history| {
-            let error = differences_of(history, companions).map_or(0.0, |all| all.error());
-            match reading.kind {
-                ReadingKind::Extreme => EXTREME * error * history.greatest(),
-                ReadingKind::Level => LEVEL * error * history.greatest(),
-                ReadingKind::Arrival => ARRIVAL * error * history.duration(),
-            }
+            let error = differences_of(history, coarse_runs).map_or(0.0, |all| all.error());
+            let share = match reading.kind {
+                ReadingKind::Extreme => EXTREME_SHARE * history.greatest(),
+                ReadingKind::Level => LEVEL_SHARE * history.greatest(),
+                ReadingKind::Arrival => ARRIVAL_SHARE * history.duration(),
+            };
+            reading.scale * share * error
         });
         Some(ReadingEstimate {
             gauge: reading.gauge.clone(),
@@ -113,7 +124,7 @@ pub(super) fn of_readings(own: &GaugeRecords, companions: &Companions) -> Vec<Re
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::accuracy::estimate::Companion;
+    use crate::accuracy::estimate::CoarseRun;
 
     fn records(velocity: [f64; 3], peak: f64, arrival: f64) -> GaugeRecords {
         let gauge = || "rear".to_string();
@@ -122,6 +133,7 @@ mod tests {
             quantity: quantity.into(),
             history: "velocity".into(),
             kind,
+            scale: if quantity == "spall strength" { 5.0 } else { 1.0 },
             unit: "-".into(),
             value,
         };
@@ -140,6 +152,7 @@ mod tests {
                 reading("peak velocity", ReadingKind::Extreme, peak),
                 reading("plateau velocity", ReadingKind::Level, peak),
                 reading("arrival", ReadingKind::Arrival, arrival),
+                reading("spall strength", ReadingKind::Extreme, 5.0 * peak),
             ],
         }
     }
@@ -147,22 +160,20 @@ mod tests {
     #[test]
     fn values_have_at_least_a_share_of_the_error_of_their_history() {
         let own = records([0.0, 2.0, 2.0], 2.0, 1.0);
-        let coarse = Companion {
-            factor: 2.0,
-            cell_size: 1.0,
-            profiles: Vec::new(),
-            arrivals: Vec::new(),
-            tables: Vec::new(),
-            gauges: records([0.0, 1.6, 2.0], 2.0, 1.0),
-        };
-        let companions = Companions { done: vec![coarse], ..Companions::default() };
+        let gauges = records([0.0, 1.6, 2.0], 2.0, 1.0);
+        let coarse = CoarseRun { factor: 2.0, ratio: 2.0, gauges, ..CoarseRun::default() };
+        let coarse_runs = CoarseRuns { done: vec![coarse], ..CoarseRuns::default() };
         // the histories differ by 0.4 of 4
-        let histories = of_histories(&own, &companions, 2.0);
+        let rounding = Rounding { pressure: 2.0, velocity: 0.0 };
+        let histories = of_histories(&own, &coarse_runs, rounding);
         assert_eq!(histories.len(), 1, "a pressure of rounding is left out: {histories:?}");
         assert!((histories[0].l1.half_width.unwrap() - 0.2).abs() < 1e-12, "{histories:?}");
+        let rounding = Rounding { pressure: 0.0, velocity: 2.0 };
+        assert_eq!(of_histories(&own, &coarse_runs, rounding)[0].quantity, "pressure");
         let half_widths: Vec<f64> =
-            of_readings(&own, &companions).iter().map(|r| r.value.half_width.unwrap()).collect();
-        let expected = [EXTREME * 0.1 * 2.0, LEVEL * 0.1 * 2.0, ARRIVAL * 0.1 * 2.0];
+            of_readings(&own, &coarse_runs).iter().map(|r| r.value.half_width.unwrap()).collect();
+        let expected = [0.3 * 0.1 * 2.0, 0.05 * 0.1 * 2.0, 0.2 * 0.1 * 2.0, 5.0 * 0.3 * 0.1 * 2.0];
+        assert_eq!(half_widths.len(), expected.len());
         for (half_width, expected) in half_widths.iter().zip(expected) {
             assert!((half_width - expected).abs() < 1e-8, "{half_widths:?} {expected}");
         }

@@ -1,6 +1,6 @@
 //! Error estimate of a run without an exact solution.
 //!
-//! Before the run, the same scene is run on cells two and four times as large ([`Companions`]). There
+//! Before the run, the same scene is run on cells two and four times as large ([`CoarseRuns`]). There
 //! are two kinds of estimates:
 //!
 //! - On a line, of one body: the pressure of the first plateau ([`plateau`]), the arrival times of the
@@ -16,7 +16,7 @@
 
 pub mod arrival;
 mod bounded;
-mod companions;
+mod coarse_results;
 mod differences;
 pub mod error_model;
 pub mod fields;
@@ -30,16 +30,16 @@ pub mod plateau;
 mod polyline;
 pub mod range;
 pub mod scheme_family;
-mod separation;
 mod shock_state;
 mod surroundings;
+pub mod tensile_failure;
 mod within;
 
 use serde::{Deserialize, Serialize};
 
 pub use arrival::Arrivals;
 pub use bounded::Bounded;
-pub use companions::{Companion, Companions};
+pub use coarse_results::{CoarseRun, CoarseRuns};
 pub use error_model::{Laws, QuantityLaws};
 pub use fields::FieldEstimate;
 pub use fitted_schemes::FittedSchemes;
@@ -50,7 +50,8 @@ pub use polyline::{Polyline, least_pressure, line};
 pub use range::{EstimateBasis, FittedRange, OutOfRange};
 pub use scheme_family::SchemeFamily;
 
-use self::fields::Conditions;
+use self::gauges::Rounding;
+use self::polyline::ROUNDING;
 use self::shock_state::ShockState;
 use crate::accuracy::reference::ReferenceSolution;
 use crate::scene::CheckedScene;
@@ -86,7 +87,7 @@ pub struct ArrivalEstimate {
 /// Error estimate of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EstimatedErrors {
-    /// Name of the body on a line.
+    /// Name of the body whose plateau, arrivals and profiles are estimated; absent in a plane.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
     /// Whether the error models were fitted on such scenes, for all profiles and arrivals.
@@ -122,6 +123,8 @@ pub struct Answer<'a> {
     pub scene: &'a CheckedScene,
     /// Particles at the profile times.
     pub tables: Vec<&'a ParticleTable>,
+    /// Error estimates of the fields in the profiles, by [`fields::compare`].
+    pub fields: Vec<FieldEstimate>,
     /// Records of the gauges.
     pub gauges: &'a GaugeRecords,
     /// Arrivals recorded by the run.
@@ -132,12 +135,15 @@ pub struct Answer<'a> {
     pub reference: Option<&'a ReferenceSolution>,
 }
 
-impl Answer<'_> {
-    /// Mean sound transit time of a cell \[s\].
-    fn cell_time(&self) -> f64 {
-        let time = &self.scene.scene.time;
-        time.end / self.steps.max(1) as f64 / time.courant
-    }
+/// Mean sound transit time of a cell in a run of this many steps \[s\].
+fn cell_time(scene: &CheckedScene, steps: u64) -> f64 {
+    scene.scene.time.end / steps.max(1) as f64 / scene.scene.time.courant
+}
+
+/// Pressure up to which a change is rounding in every body, not a wave \[Pa\].
+pub fn least_pressure_of_all(scene: &CheckedScene, steps: u64) -> f64 {
+    let of = |body| least_pressure(scene, body, cell_time(scene, steps));
+    (0..scene.bodies.len()).map(of).fold(f64::INFINITY, f64::min)
 }
 
 /// Relative difference from the coarse run beyond which a plateau is rejected, because the coarse
@@ -148,31 +154,21 @@ const OTHER_WAVE: f64 = 0.5;
 pub const LEAST_PLATEAU: f64 = 20.0;
 
 /// Estimates the errors of a finished run.
-pub fn estimate(answer: &Answer<'_>, companions: &Companions, laws: &Laws) -> EstimatedErrors {
+pub fn estimate(answer: &Answer<'_>, coarse_runs: &CoarseRuns, laws: &Laws) -> EstimatedErrors {
     let mut errors = match answer.scene.estimated_body() {
-        Some(body) => of_body(answer, body, companions, laws),
+        Some(body) => of_body(answer, body, coarse_runs, laws),
         None => EstimatedErrors::default(),
     };
-    errors.companions = companions.done.iter().map(|c| c.cell_size).collect();
-    errors.cpu_seconds = companions.cpu_seconds;
-    errors.notes.splice(..0, companions.notes.clone());
-    let least = (0..answer.scene.bodies.len())
-        .map(|body| least_pressure(answer.scene, body, answer.cell_time()))
-        .fold(f64::INFINITY, f64::min);
-    let widened = separation::widening(answer.scene, &answer.tables);
-    for quantity in answer.scene.estimated_fields() {
-        let field = |(k, table): (usize, &&ParticleTable)| {
-            let conditions = Conditions {
-                axisymmetric: answer.scene.axisymmetric(),
-                least_pressure: least,
-                widened: widened[k],
-            };
-            fields::of_field(table, quantity, k, companions, conditions)
-        };
-        errors.fields.extend(answer.tables.iter().enumerate().filter_map(field));
-    }
-    errors.histories = gauges::of_histories(answer.gauges, companions, least);
-    errors.readings = gauges::of_readings(answer.gauges, companions);
+    errors.companions = coarse_runs.done.iter().map(|c| c.cell_size).collect();
+    errors.cpu_seconds = coarse_runs.cpu_seconds;
+    errors.notes.splice(..0, coarse_runs.notes.clone());
+    errors.fields = answer.fields.clone();
+    let rounding = Rounding {
+        pressure: least_pressure_of_all(answer.scene, answer.steps),
+        velocity: ROUNDING * answer.scene.cell_size[0] / cell_time(answer.scene, answer.steps),
+    };
+    errors.histories = gauges::of_histories(answer.gauges, coarse_runs, rounding);
+    errors.readings = gauges::of_readings(answer.gauges, coarse_runs);
     errors
 }
 
@@ -180,10 +176,10 @@ pub fn estimate(answer: &Answer<'_>, companions: &Companions, laws: &Laws) -> Es
 fn of_body(
     answer: &Answer<'_>,
     body: usize,
-    companions: &Companions,
+    coarse_runs: &CoarseRuns,
     laws: &Laws,
 ) -> EstimatedErrors {
-    let estimator = Estimator::new(answer, body, companions, laws);
+    let estimator = Estimator::new(answer, body, coarse_runs, laws);
     let mut missing: Vec<(String, f64)> = Vec::new();
     let profiles: Vec<ProfileEstimate> = (0..answer.tables.len())
         .map(|k| {
@@ -231,7 +227,7 @@ struct Estimator<'a> {
     answer: &'a Answer<'a>,
     /// Index of the body.
     body: usize,
-    companions: &'a Companions,
+    coarse_runs: &'a CoarseRuns,
     laws: &'a Laws,
     family: SchemeFamily,
     outside: OutOfRange,
@@ -240,43 +236,43 @@ struct Estimator<'a> {
     cell_time: f64,
     /// Pressure rise up to which there is no wave \[Pa\].
     least: f64,
-    /// Factor on the half-widths of each profile, for material that separates \[-\].
-    widened: Vec<f64>,
+    /// Factor on the half-widths of each profile for material that fails in tension \[-\].
+    factors: Vec<f64>,
 }
 
 impl<'a> Estimator<'a> {
     fn new(
         answer: &'a Answer<'a>,
         body: usize,
-        companions: &'a Companions,
+        coarse_runs: &'a CoarseRuns,
         laws: &'a Laws,
     ) -> Self {
-        let (scene, cell_time) = (answer.scene, answer.cell_time());
+        let (scene, cell_time) = (answer.scene, cell_time(answer.scene, answer.steps));
         Estimator {
             answer,
             body,
-            companions,
+            coarse_runs,
             laws,
             family: SchemeFamily::of(&scene.scene.method),
             outside: laws.fitted.outside(scene, body),
             waves: ImpactWaves::new(scene, body),
             cell_time,
             least: least_pressure(scene, body, cell_time),
-            widened: separation::widening(scene, &answer.tables),
+            factors: tensile_failure::factors(scene, &answer.tables),
         }
     }
 
     /// Estimate of profile `k`, and the reason if it has no plateau.
     fn profile(&self, k: usize) -> (ProfileEstimate, Option<String>) {
         let (answer, table) = (self.answer, self.answer.tables[k]);
-        let (basis, widened) = (self.outside.of_profile(k), self.widened[k]);
+        let (basis, factor) = (self.outside.of_profile(k), self.factors[k]);
         let laws = self.laws.of(self.family, basis);
         let own = line(table, self.body);
         let others: Vec<(f64, &Polyline)> =
-            self.companions.done.iter().map(|c| (c.factor, &c.profiles[k])).collect();
+            self.coarse_runs.done.iter().map(|c| (c.factor, &c.profiles[k])).collect();
         let (plateau, reason) = match self.plateau(table, &own, &others) {
             Ok((found, evidence)) => {
-                let half_width = laws.plateau_pressure.half_width(&evidence).map(|w| widened * w);
+                let half_width = laws.plateau_pressure.half_width(&evidence).map(|w| factor * w);
                 let start = answer.scene.scene.bodies[self.body].pressure;
                 let bounded = Bounded {
                     value: start + found.pressure,
@@ -291,7 +287,7 @@ impl<'a> Estimator<'a> {
         let is_silent = own.iter().all(|q| q.1.abs() <= self.least);
         let others = if is_silent { Vec::new() } else { others };
         let evidence = indicators::of_profile(&own, &others);
-        let half_width = laws.l1.half_width(&evidence).map(|w| widened * w);
+        let half_width = laws.l1.half_width(&evidence).map(|w| factor * w);
         let l1 = Bounded { value: 0.0, half_width, evidence, exact: None };
         (ProfileEstimate { time: table.time, basis, plateau_pressure: plateau, l1 }, reason)
     }
@@ -362,7 +358,7 @@ impl<'a> Estimator<'a> {
         let laws = self.laws.of(self.family, basis);
         let time = self.answer.arrivals.time(k).map(|(time, rise)| {
             let others: Vec<(f64, f64)> = self
-                .companions
+                .coarse_runs
                 .done
                 .iter()
                 .filter_map(|c| Some((c.factor, c.arrivals.get(k).copied()??)))

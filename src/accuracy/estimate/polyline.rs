@@ -19,7 +19,7 @@ pub fn line(table: &ParticleTable, body: usize) -> Polyline {
 }
 
 /// Pressures up to this fraction of rho c^2 are rounding, not a wave \[-\].
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 
 /// Pressure of `body` up to which a change is rounding, not a wave \[Pa\]; `cell_time` \[s\] is the
 /// sound transit time of a cell.

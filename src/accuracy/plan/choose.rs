@@ -259,7 +259,11 @@ impl<'a> Task<'a> {
         }
         let checked = input::parse(scene.to_string().as_bytes(), file, &[]);
         let checked = checked.map_err(|error| error.to_string())?;
-        let body = checked.estimated_body().expect("the check has found it");
+        let body = checked.estimated_body().ok_or_else(|| {
+            let all = checked.scene.bodies.iter().map(|body| body.name.as_str());
+            let all = all.collect::<Vec<_>>().join(", ");
+            format!("{file}: error_estimate.body: missing key; allowed: {all}")
+        })?;
         let asked = checked.scene.error_estimate.as_ref().and_then(|e| e.arrivals.first().copied());
         let place = asked.filter(|_| target.quantity.at_place());
         if target.quantity.at_place() && place.is_none() {

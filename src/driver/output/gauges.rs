@@ -43,6 +43,13 @@ pub struct SurfaceMaterial {
     pub sound_speed: f64,
 }
 
+impl SurfaceMaterial {
+    /// Spall strength per pull-back 1/2 rho0 c0 [Pa s/m].
+    pub fn strength_per_velocity(&self) -> f64 {
+        0.5 * self.density * self.sound_speed
+    }
+}
+
 /// Readings of a point: the greatest pressure and tension, the greatest change of velocity, and the
 /// arrival of the first wave, at which the velocity along x has changed by half of that, interpolated
 /// between rows; the plateau, the median of the velocities around the peak that differ from it by less
@@ -94,7 +101,7 @@ pub fn point_readings(
     if let Some((surface, at)) = surface.zip(pull_back(velocity, start, peak)) {
         let fall = (plateau - velocity[at]).abs();
         all.push(reading("pull-back", "m/s", fall, Some(times[at])));
-        let strength = 0.5 * surface.density * surface.sound_speed * fall;
+        let strength = surface.strength_per_velocity() * fall;
         all.push(reading("spall strength", "Pa", strength, None));
     }
     all

@@ -14,13 +14,18 @@ pub(super) fn check(checked: &CheckedScene) -> Result<(), SceneFault> {
         return match keys.iter().find(|(_, is)| *is) {
             Some((key, _)) => Err(SceneFault::missing(
                 format!("error_estimate.{key}"),
-                "in a plane; allowed: scenes on a line; in a plane fields, and the gauges of \
-                 output.histories, are estimated",
+                "not available in a plane; allowed: error_estimate.fields, and gauges in \
+                 output.histories",
             )),
             None => Ok(()),
         };
     }
     let Some(body) = checked.estimated_body() else {
+        // gauges and fields need no body
+        let others = asked.fields.is_some() || checked.scene.output.histories.is_some();
+        if others && asked.body.is_none() && asked.arrivals.is_empty() {
+            return Ok(());
+        }
         return Err(match &asked.body {
             Some(name) => {
                 let reason = format!("no such body{}", suggest(name, names()));
@@ -50,7 +55,9 @@ pub(super) fn check(checked: &CheckedScene) -> Result<(), SceneFault> {
 /// Rejects quantities that the scene does not have, and repeated ones.
 pub(super) fn check_fields(checked: &CheckedScene) -> Result<(), SceneFault> {
     let asked = checked.scene.error_estimate.iter().flat_map(|estimate| &estimate.fields);
-    let known = effects::columns(checked).quantities(checked.dimension);
+    let mut known = effects::columns(checked).quantities(checked.dimension);
+    // profiles have no such columns, or the values depend on the size of the particles
+    known.retain(|name| !["mass", "volume", "strain", "failed", "spin_inertia"].contains(name));
     for fields in asked {
         for (k, name) in fields.iter().enumerate() {
             let reason = if fields[..k].contains(name) {

@@ -19,8 +19,6 @@
 //!
 //! Shocks are stronger than acoustic waves, so that the estimates are low.
 
-use serde_json::json;
-
 use crate::input::paths::join;
 use crate::material::failure::PressureLimit;
 use crate::scene::{CheckedScene, Material, Reference};
@@ -40,17 +38,11 @@ pub(super) fn warnings(checked: &CheckedScene, speeds: &[f64]) -> Vec<String> {
     materials.filter_map(never_reached).chain(of_plates).collect()
 }
 
-/// Tension at which the equation of state is cut off [Pa].
-fn cutoff(material: &Material) -> Option<f64> {
-    let eos = json!(material.eos);
-    eos["tension_cutoff"].as_f64().or(eos["solid"]["tension_cutoff"].as_f64())
-}
-
 /// A limit of the failure law beyond the cutoff of the equation of state.
 fn never_reached((name, material): (&String, &Material)) -> Option<String> {
     let PressureLimit { key, tension } =
         material.failure?.pressure_limit(&material.strength_beside())?;
-    let cutoff = cutoff(material).filter(|cutoff| tension > *cutoff)?;
+    let cutoff = material.tension_cutoff().filter(|cutoff| tension > *cutoff)?;
     let path = join("materials", name);
     Some(format!(
         "{path}.failure.{key} = {tension:e}: never acts, since {path}.eos.tension_cutoff = {cutoff:e} \
@@ -126,7 +118,7 @@ fn unlimited(checked: &CheckedScene, speeds: &[f64]) -> Option<String> {
     let own = plates.bodies[k];
     let material = checked.material_of(own);
     let eos = &material.eos;
-    let unlimited = material.failure.is_none() && cutoff(material).is_none();
+    let unlimited = material.failure.is_none() && material.tension_cutoff().is_none();
     if eos.is_gas() || eos.is_solid() || eos.has_history() || !unlimited {
         return None;
     }

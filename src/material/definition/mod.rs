@@ -46,6 +46,13 @@ pub struct Material {
 }
 
 impl Material {
+    /// Greatest tension that the equation of state carries [Pa], of a porous material that of its solid;
+    /// `None` without a limit.
+    pub fn tension_cutoff(&self) -> Option<f64> {
+        let eos = serde_json::json!(self.eos);
+        eos["tension_cutoff"].as_f64().or(eos["solid"]["tension_cutoff"].as_f64())
+    }
+
     /// Initial distension v/v_solid [-]: 1 for all but porous solids.
     pub fn distension(&self) -> f64 {
         self.eos.distension(self.density)

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Estimate of the run's own errors from companion runs with cells two and four times as large, which
+/// Estimate of the run's own errors from coarse runs with cells two and four times as large, which
 /// take about a third of the time of the run on a line, and about a seventh in a plane. All histories
 /// of `output.histories` and the values that are read from them get an estimate.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -18,9 +18,10 @@ pub struct ErrorEstimate {
     /// only; default: none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub arrivals: Vec<f64>,
-    /// Quantities of the particles, such as `pressure` or `velocity`, whose error is estimated in each
-    /// profile, over all bodies; the profiles and `results.hdf5` then also have their differences from
-    /// the run with cells twice as large. Absent: `pressure` in a plane, none on a line.
+    /// Quantities of the particles, such as `pressure` or `velocity`, whose errors are estimated in each
+    /// profile, over all bodies. Each gets a column such as `pressure_difference` in the profiles and in
+    /// `results.hdf5`: its difference from the run with cells twice as large. Absent: `pressure` in a
+    /// plane, none on a line.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fields: Option<Vec<String>>,
 }

@@ -36,6 +36,9 @@ pub fn check(table: &mut Table) {
             let share = Some(coarse / own);
             let figure = format!("{name}: coarse runs over the time loop");
             match own >= LEAST_LOOP {
+                true if place.is_none() => {
+                    table.check(&figure, share, bounds::companions::OVER_LOOP_PLANE);
+                }
                 true => table.check(&figure, share, bounds::companions::OVER_LOOP),
                 false => table.beside(&figure, share, &format!("{own:.3} s"), Unit::Fraction),
             }

@@ -1,4 +1,4 @@
-//! Results of the coarse runs (companions), with which the run itself is compared.
+//! Results of the coarse runs, with which the run itself is compared.
 
 use super::arrival::Levels;
 use super::gauge_records::GaugeRecords;
@@ -6,10 +6,13 @@ use super::polyline::Polyline;
 use crate::simulation::ParticleTable;
 
 /// Results of one coarse run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Companion {
-    /// Cell size over that of the scene, rounded to a whole number \[-\].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CoarseRun {
+    /// Nominal cell size over that of the scene \[-\].
     pub factor: f64,
+    /// Actual cell size over that of the scene, the least over the directions \[-\]. It is below
+    /// `factor` where both sides of the domain are fixed.
+    pub ratio: f64,
     /// Cell size along x \[m\].
     pub cell_size: f64,
     /// Pressures \[Pa\] of the body whose errors are estimated over x \[m\], one line per profile;
@@ -26,9 +29,9 @@ pub struct Companion {
 
 /// All coarse runs of a scene.
 #[derive(Clone, Debug, Default)]
-pub struct Companions {
+pub struct CoarseRuns {
     /// Coarse runs that reached their end, the finest last; on rank 0 only.
-    pub done: Vec<Companion>,
+    pub done: Vec<CoarseRun>,
     /// Levels of the wave at each position in the finest coarse run; `None`: no wave came.
     pub levels: Vec<Option<Levels>>,
     /// User CPU time of this process in the coarse runs \[s\].

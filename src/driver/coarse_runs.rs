@@ -1,4 +1,5 @@
-//! Companion runs: the same scene on larger cells, run before the scene itself.
+//! Runs of the same scene with other cells: with larger ones before the scene itself, and with smaller
+//! ones to verify its estimates.
 
 use decomp::Comm;
 
@@ -7,13 +8,11 @@ use super::readings::gauge_records;
 use super::recorder::most_particles;
 use crate::accuracy::estimate::arrival::{Arrivals, Between, Levels};
 use crate::accuracy::estimate::{
-    Companion, Companions, GaugeRecords, Polyline, least_pressure, line,
+    CoarseRun, CoarseRuns, GaugeRecords, Polyline, least_pressure, line,
 };
 use crate::input;
 use crate::scene::{self, CellSize, CheckedScene, SideProperties};
-use crate::simulation::{
-    Compiled, HALF_EDGES, ParticleTable, RunError, Simulation, patch_counts, quantity_of,
-};
+use crate::simulation::{Compiled, ParticleTable, RunError, Simulation, patch_counts, quantity_of};
 use crate::solver::Stepper;
 use crate::solver::clock::user_cpu_seconds;
 
@@ -76,11 +75,20 @@ fn resized(scene: &CheckedScene, factor: f64) -> Result<CheckedScene, String> {
         pictures: false,
         ..scene::Output::default()
     };
-    input::check(new, &scene.file).map_err(|error| error.to_string())
+    let mut new = input::check(new, &scene.file).map_err(|error| error.to_string())?;
+    // not evaluated, but it gives the probes their names
+    new.scene.reference = scene.scene.reference.clone();
+    Ok(new)
+}
+
+/// Cell size of `other` over that of `scene`, the least over the directions \[-\].
+fn cell_ratio(other: &CheckedScene, scene: &CheckedScene) -> f64 {
+    let ratios = other.cell_size.iter().zip(&scene.cell_size).map(|(a, b)| a / b);
+    ratios.fold(f64::INFINITY, f64::min)
 }
 
 /// Pressure histories at positions, recorded after every step.
-struct PressurePeaks {
+struct PressureHistories {
     places: Vec<Between>,
     /// Time and pressures of the two particles, one list per position, from the start.
     series: Vec<Vec<(f64, [f64; 2])>>,
@@ -88,8 +96,8 @@ struct PressurePeaks {
     least: f64,
 }
 
-impl PressurePeaks {
-    fn look<const D: usize>(&mut self, simulation: &Simulation<'_, D>) {
+impl PressureHistories {
+    fn record<const D: usize>(&mut self, simulation: &Simulation<'_, D>) {
         for (place, series) in self.places.iter().zip(&mut self.series) {
             if let [Some(a), Some(b)] = simulation.follow(&place.ids)[..] {
                 series.push((simulation.time(), [a.pressure, b.pressure]));
@@ -106,7 +114,7 @@ impl PressurePeaks {
     }
 
     /// Time at which the pressure first passes `level` at position `k` \[s\].
-    fn passes(&self, k: usize, level: f64) -> Option<f64> {
+    fn arrival_time(&self, k: usize, level: f64) -> Option<f64> {
         let cross = |side: usize| {
             self.series[k].windows(2).find_map(|w| {
                 let ((t0, p0), (t1, p1)) = ((w[0].0, w[0].1[side]), (w[1].0, w[1].1[side]));
@@ -120,19 +128,24 @@ impl PressurePeaks {
 
 /// Records of one run on other cells; on other ranks than rank 0 without values.
 struct Records {
+    /// Cell size along x \[m\].
+    cell_size: f64,
+    /// Cell size over that of the scene \[-\].
+    ratio: f64,
     profiles: Vec<Polyline>,
     tables: Vec<ParticleTable>,
-    peaks: PressurePeaks,
+    pressures: PressureHistories,
     gauges: GaugeRecords,
 }
 
 impl Records {
     /// The records with the arrival times at these levels.
-    fn into_companion(self, factor: f64, cell_size: f64, levels: &[Option<Levels>]) -> Companion {
-        let Records { profiles, tables, peaks, gauges } = self;
-        let arrival = |(k, level): (usize, &Option<Levels>)| peaks.passes(k, level.as_ref()?.half);
+    fn into_coarse_run(self, factor: f64, levels: &[Option<Levels>]) -> CoarseRun {
+        let Records { cell_size, ratio, profiles, tables, pressures, gauges } = self;
+        let arrival =
+            |(k, level): (usize, &Option<Levels>)| pressures.arrival_time(k, level.as_ref()?.half);
         let arrivals = levels.iter().enumerate().map(arrival).collect();
-        Companion { factor, cell_size, profiles, arrivals, tables, gauges }
+        CoarseRun { factor, ratio, cell_size, profiles, arrivals, tables, gauges }
     }
 }
 
@@ -153,21 +166,21 @@ fn with_wide_patches(mut scene: CheckedScene, workers: usize) -> CheckedScene {
 /// # Errors
 ///
 /// The message of a check or of the run.
-pub fn run_resized(
+pub fn run_with_cells(
     comm: &dyn Comm,
     scene: &CheckedScene,
     factor: f64,
     threads: usize,
-) -> Result<Companion, String> {
+) -> Result<CoarseRun, String> {
     let other = with_wide_patches(resized(scene, factor)?, comm.size() * threads);
     let records = match scene.dimension {
-        1 => one::<1>(comm, scene, &other, threads),
-        _ => one::<2>(comm, scene, &other, threads),
+        1 => run_and_record::<1>(comm, scene, &other, threads),
+        _ => run_and_record::<2>(comm, scene, &other, threads),
     };
     let records = records.map_err(|error| error.to_string())?;
     let levels: Vec<Option<Levels>> =
-        (0..arrival_places(scene).len()).map(|k| records.peaks.levels(k)).collect();
-    Ok(records.into_companion(factor, other.cell_size[0], &levels))
+        (0..arrival_places(scene).len()).map(|k| records.pressures.levels(k)).collect();
+    Ok(records.into_coarse_run(factor, &levels))
 }
 
 /// Runs the coarse runs of a scene whose errors are estimated. Collective; rank 0 gets the results.
@@ -176,45 +189,44 @@ pub fn run_resized(
 ///
 /// If a particle of a coarse run moves past the neighbours of its patch. Other failures become
 /// notes of the result.
-pub fn run_companions<const D: usize>(
+pub fn run_coarse<const D: usize>(
     comm: &dyn Comm,
     scene: &CheckedScene,
     threads: usize,
-) -> Result<Companions, RunError>
+) -> Result<CoarseRuns, RunError>
 where
     Stepper<D>: Compiled<D>,
 {
     let start = user_cpu_seconds();
-    let mut all = Companions::default();
-    let mut finished: Vec<(f64, f64, Records)> = Vec::new();
+    let mut all = CoarseRuns::default();
+    let mut finished: Vec<(f64, Records)> = Vec::new();
     for factor in FACTORS {
         let coarse = match resized(scene, factor) {
             Ok(coarse) => with_wide_patches(coarse, comm.size() * threads),
             Err(reason) => {
-                all.notes.push(format!("no companion on cells {factor} times as large: {reason}"));
+                all.notes.push(format!("no coarse run on cells {factor} times as large: {reason}"));
                 continue;
             }
         };
-        match one::<D>(comm, scene, &coarse, threads) {
-            Ok(records) => finished.push((factor, coarse.cell_size[0], records)),
+        match run_and_record::<D>(comm, scene, &coarse, threads) {
+            Ok(records) => finished.push((factor, records)),
             // all ranks get these errors alike
             Err(
                 error @ (RunError::Particle { .. }
                 | RunError::TimeStep { .. }
                 | RunError::TooLong { .. }
                 | RunError::Lost { .. }),
-            ) => all.notes.push(format!("companion on cells {factor} times as large: {error}")),
+            ) => all.notes.push(format!("coarse run on cells {factor} times as large: {error}")),
             Err(error) => return Err(error),
         }
     }
     let places = arrival_places(scene).len();
-    let finest = finished.last().map(|(_, _, records)| &records.peaks);
-    let levels = |k| finest.and_then(|peaks| peaks.levels(k));
+    let finest = finished.last().map(|(_, records)| &records.pressures);
+    let levels = |k| finest.and_then(|pressures| pressures.levels(k));
     all.levels = (0..places).map(levels).collect();
-    let companion = |(factor, cell_size, records): (f64, f64, Records)| {
-        records.into_companion(factor, cell_size, &all.levels)
-    };
-    all.done = finished.into_iter().map(companion).collect();
+    let coarse_run =
+        |(factor, records): (f64, Records)| records.into_coarse_run(factor, &all.levels);
+    all.done = finished.into_iter().map(coarse_run).collect();
     all.cpu_seconds = user_cpu_seconds() - start;
     Ok(all)
 }
@@ -225,7 +237,7 @@ fn arrival_places(scene: &CheckedScene) -> &[f64] {
 }
 
 /// Runs `other`, the scene `scene` on other cells, and records what is estimated of `scene`.
-fn one<const D: usize>(
+fn run_and_record<const D: usize>(
     comm: &dyn Comm,
     scene: &CheckedScene,
     other: &CheckedScene,
@@ -241,20 +253,20 @@ where
     let places = body.map_or(Vec::new(), |body| {
         arrival_places(scene).iter().map(|&at| Between::new(other, body, at)).collect()
     });
-    let mut peaks = PressurePeaks {
+    let mut pressures = PressureHistories {
         series: vec![Vec::new(); places.len()],
         places,
         least: body.map_or(0.0, |body| least_pressure(other, body, cell_time)),
     };
     let mut probes = Probes::new(other);
     let mut record = |simulation: &Simulation<'_, D>| {
-        peaks.look(simulation);
+        pressures.record(simulation);
         probes.iter_mut().for_each(|probes| probes.sample(simulation));
     };
     let wanted = |name: &str| {
         let of_body = body.is_some() && name == "pressure";
         let of_fields = fields.iter().any(|field| *field == quantity_of(name));
-        let of_table = ["x", "y", HALF_EDGES].contains(&name);
+        let of_table = ["x", "y", "volume"].contains(&name);
         of_table || of_body || of_fields
     };
     let (mut profiles, mut tables) = (Vec::new(), Vec::new());
@@ -281,7 +293,8 @@ where
     }
     let gauges =
         probes.map_or(GaugeRecords::default(), |probes| gauge_records(other, &probes, &simulation));
-    Ok(Records { profiles, tables, peaks, gauges })
+    let (cell_size, ratio) = (other.cell_size[0], cell_ratio(other, scene));
+    Ok(Records { cell_size, ratio, profiles, tables, pressures, gauges })
 }
 
 /// Recorder of the arrivals in the run itself, with the levels of the coarse runs on all ranks.
@@ -290,10 +303,10 @@ pub fn arrival_recorder(
     comm: &dyn Comm,
     scene: &CheckedScene,
     body: usize,
-    companions: &Companions,
+    coarse_runs: &CoarseRuns,
 ) -> Arrivals {
     let between = arrival_places(scene).iter().map(|&at| Between::new(scene, body, at)).collect();
-    let levels = serde_json::to_vec(&companions.levels).expect("levels are plain data");
+    let levels = serde_json::to_vec(&coarse_runs.levels).expect("levels are plain data");
     let levels = serde_json::from_slice(&comm.broadcast(levels)).expect("rank 0 sends valid JSON");
     Arrivals::new(between, levels)
 }
