@@ -318,9 +318,37 @@ fn fields_and_gauges_are_estimated_in_a_plane() {
     }
     // the same on two threads
     let two = home.run("two", &["--threads", "2"]).summary["error_estimate"].clone();
+    assert_same(&estimate, &two);
+}
+
+fn assert_same(estimate: &Value, other: &Value) {
     for key in ["fields", "histories", "readings"] {
-        assert_eq!(estimate[key], two[key], "{key}");
+        assert!(!estimate[key].as_array().unwrap().is_empty(), "{key}: {estimate}");
+        assert_eq!(estimate[key], other[key], "{key}");
     }
+}
+
+#[test]
+fn estimates_about_an_axis_are_the_same_on_two_ranks_and_after_a_restart() {
+    let mut scene = in_a_plane(json!({"fields": ["pressure", "velocity"]}));
+    // the bodies stand on the axis and strike each other along it
+    scene["domain"] = json!({"lower": [0.0, -4e-4], "upper": [4e-4, 6e-4], "cell_size": 2e-5,
+                             "geometry": "axisymmetric"});
+    scene["boundary"] = json!({"x_lower": "symmetry"});
+    for (body, lower, upper) in [(0, [0.0, -3e-4], [2e-4, 0.0]), (1, [0.0, 0.0], [3e-4, 4e-4])] {
+        scene["bodies"][body]["box"] = json!({"lower": lower, "upper": upper});
+        scene["bodies"][body]["velocity"] = json!([0.0, if body == 0 { 1000.0 } else { 0.0 }]);
+    }
+    scene["output"]["histories"] = json!({"stations": [{"name": "station", "at": [5e-5, 1e-4]}]});
+    scene["output"]["checkpoint"] = json!({"at_times": [5e-8]});
+    let home = Home::with(&scene);
+    let alone = home.run("alone", &[]).summary["error_estimate"].clone();
+    let on_two = ["scene.json", "--quiet", "--output", "two"];
+    home.call(on_two).ranks(2).end().succeeded();
+    assert_same(&alone, &home.results("two").summary["error_estimate"]);
+    let restart = ["--restart", "alone.checkpoints", "--quiet", "--output", "again"];
+    home.call(restart).ranks(2).end().succeeded();
+    assert_same(&alone, &home.results("again").summary["error_estimate"]);
 }
 
 #[test]

@@ -120,8 +120,9 @@ fn columns_of<'a>(
     table.columns[table.dimension..].iter().filter(move |c| quantity_of(&c.name) == quantity)
 }
 
-/// Volume of each particle, in a plane per depth, about an axis per radian. On a line, per area, half
-/// of the distance between its neighbours, but at most twice the median of all: a gap has no material.
+/// Volume of each particle, in a plane per depth, about an axis per radian. On a line, per area, the
+/// distance between its neighbours over two, but at most twice the median of its body: a gap has no
+/// material.
 fn volumes(table: &ParticleTable) -> Vec<f64> {
     if let Some(volumes) = table.column("volume") {
         return volumes.to_vec();
@@ -129,16 +130,19 @@ fn volumes(table: &ParticleTable) -> Vec<f64> {
     let x = &table.columns[0].values;
     let mut all = vec![0.0; table.len()];
     for (_, rows) in by_body(table) {
-        for k in 0..rows.len() {
+        let length = |k: usize| {
             let [before, after] = [k.saturating_sub(1), (k + 1).min(rows.len() - 1)];
-            let between = (after - before).max(1) as f64;
-            all[rows[k]] = (x[rows[after]] - x[rows[before]]) / between;
+            (x[rows[after]] - x[rows[before]]) / (after - before).max(1) as f64
+        };
+        let lengths: Vec<f64> = (0..rows.len()).map(length).collect();
+        let mut sorted = lengths.clone();
+        sorted.sort_by(f64::total_cmp);
+        let most = 2.0 * sorted[sorted.len() / 2];
+        for (&row, length) in rows.iter().zip(lengths) {
+            all[row] = length.min(most);
         }
     }
-    let mut sorted = all.clone();
-    sorted.sort_by(f64::total_cmp);
-    let most = 2.0 * sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
-    all.iter().map(|volume| volume.min(most)).collect()
+    all
 }
 
 #[cfg(test)]
@@ -229,7 +233,11 @@ mod tests {
         // the distances are 1, except for a gap of 100
         let places: Vec<[f64; 2]> =
             (0..8).map(|k| [k as f64 + if k > 3 { 99.0 } else { 0.0 }, 0.0]).collect();
-        assert_eq!(volumes(&table(&places, 1, &[])), [1.0, 1.0, 1.0, 2.0, 2.0, 1.0, 1.0, 1.0]);
+        let mut table = table(&places, 1, &[]);
+        assert_eq!(volumes(&table), [1.0, 1.0, 1.0, 2.0, 2.0, 1.0, 1.0, 1.0]);
+        // the two sides of the gap are two bodies
+        table.body = vec![0, 0, 0, 0, 1, 1, 1, 1];
+        assert_eq!(volumes(&table), [1.0; 8]);
     }
 
     #[test]
