@@ -3,7 +3,7 @@
 //! The particles of the two runs are at different positions. The values are interpolated linearly,
 //! body by body: between neighbours on a line, in the triangles between the particles in a plane
 //! (Delaunay 1934). Outside of them, at the surface of a body, the nearest particle of the coarse run
-//! counts.
+//! counts. In a hollow of a body the triangles join its two sides.
 
 use spade::{
     DelaunayTriangulation, FloatTriangulation, HasPosition, Point2, Triangulation,
