@@ -6,6 +6,8 @@
 //! neighbour nodes, which their owners send; partial sums are never sent. Independent series
 //! advance together, so that their terms share messages.
 
+use std::ops::Range;
+
 use decomp::Parity;
 use smallvec::SmallVec;
 
@@ -134,6 +136,27 @@ fn find_last<const D: usize>(patch: &mut Patch<D>, sum: usize, last: usize) {
     }
 }
 
+/// Nodes in `lines` for whose values in two fields `holds` is true. The test has no branches, so that
+/// many nodes are tested at a time: mostly it holds for none of them.
+fn few_nodes<'a>(
+    lines: &'a [Range<usize>],
+    [first, second]: [&'a [f64]; 2],
+    holds: impl Fn(f64, f64) -> bool + Copy + 'a,
+) -> impl Iterator<Item = usize> + 'a {
+    let parts = lines.iter().flat_map(|line| {
+        let part = |start| start..line.end.min(start + TESTED);
+        line.clone().step_by(TESTED).map(part)
+    });
+    let has_any = move |part: &Range<usize>| {
+        let pairs = first[part.clone()].iter().zip(&second[part.clone()]);
+        pairs.fold(false, |any, (a, b)| any | holds(*a, *b))
+    };
+    parts.filter(has_any).flatten().filter(move |&i| holds(first[i], second[i]))
+}
+
+/// Nodes that are tested at a time.
+const TESTED: usize = 32;
+
 fn copy<const D: usize>(patch: &mut Patch<D>, from: usize, to: usize) {
     if from != to {
         let [from, to] = patch.nodes.fields_mut([from, to]);
@@ -149,9 +172,9 @@ impl<const D: usize> Scheme<D> {
         let Some(least) = self.edge_mask else { return };
         let f = &self.fields;
         let [volume, inverse, edge] = patch.nodes.fields_mut([f.volume, f.inverse, f.edge]);
-        let nodes = patch.active_lines.iter().cloned().flatten();
+        let is_edge = |volume: f64, inverse: f64| (volume < least) & (inverse > 0.0);
         patch.edge.clear();
-        patch.edge.extend(nodes.filter(|&i| volume[i] < least && inverse[i] > 0.0));
+        patch.edge.extend(few_nodes(&patch.active_lines, [volume, inverse], is_edge));
         edge.fill(0.0);
         patch.edge.iter().for_each(|&i| edge[i] = 1.0);
     }
@@ -164,8 +187,9 @@ impl<const D: usize> Scheme<D> {
         let context = patch.product_context();
         patch.mass_matrix.products::<D>(context, &[edge], &mut product);
         let [mut product] = product;
-        let nodes = patch.active_lines.iter().cloned().flatten();
-        let shares = nodes.filter(|&i| edge[i] == 0.0).map(|i| (i, product[i] * inverse[i]));
+        let is_beside = |product: f64, edge: f64| (product > 0.0) & (edge == 0.0);
+        let nodes = few_nodes(&patch.active_lines, [&product, edge], is_beside);
+        let shares = nodes.map(|i| (i, product[i] * inverse[i]));
         patch.beside_edge.clear();
         patch.beside_edge.extend(shares.filter(|(_, share)| *share > 0.0));
         product.fill(0.0);
@@ -273,6 +297,7 @@ impl<const D: usize> Scheme<D> {
         last: impl Fn(&mut Patch<D>) + Send + Sync,
     ) {
         let rounds = all.iter().map(|s| s.order).max().unwrap_or(0);
+        let mut next = Together::all::<D>(all, 2);
         for l in 0..rounds {
             let going = || all.iter().filter(move |s| s.order > l);
             let mut fields: SmallVec<[(usize, Parity); 8]> = SmallVec::new();
@@ -285,7 +310,6 @@ impl<const D: usize> Scheme<D> {
                 .flat_map(|s| s.components::<D>())
                 .map(|(vector, _)| vector)
                 .collect();
-            let next = Together::all::<D>(all, l + 2);
             nodal.each(name, |patch| {
                 if l == 0 && others.contains(&(self.fields.edge, Parity::Even)) {
                     self.find_beside_edge(patch);
@@ -304,6 +328,12 @@ impl<const D: usize> Scheme<D> {
                     last(patch);
                 }
             });
+            // the same series in the next pass, but for those that have ended
+            if all.iter().any(|s| s.order == l + 2) {
+                next = Together::all::<D>(all, l + 3);
+            } else {
+                next.iter_mut().for_each(|together| together.terms += 1);
+            }
         }
     }
 

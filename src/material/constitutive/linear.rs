@@ -8,19 +8,31 @@ use crate::material::{EquationOfState, LinearPressure};
 /// Particle loops over an equation of state that is linear in the energy.
 pub(super) struct LinearEosKernel<E>(pub(super) E);
 
-/// Number of particles computed together, from copies of their columns: what does not overlap can
-/// be vectorized.
+/// Number of particles computed together. Results go to arrays of their own: what does not overlap
+/// can be vectorized.
 const BLOCK: usize = 32;
 
-/// Values of a column for a block of particles from `first` on; zeros after the last.
+/// Values of a column for a block of particles from `first` on: in the column itself if it has a
+/// whole block, else in `rest`, with the zeros of `rest` after the last.
 #[inline(always)]
-fn block(column: &[f64], first: usize) -> [f64; BLOCK] {
-    let mut values = [0.0; BLOCK];
-    match column[first..].first_chunk() {
-        Some(whole) => values = *whole,
-        None => values[..column.len() - first].copy_from_slice(&column[first..]),
+fn block<'a>(column: &'a [f64], first: usize, rest: &'a mut [f64; BLOCK]) -> &'a [f64; BLOCK] {
+    if let Some(whole) = column[first..].first_chunk() {
+        return whole;
     }
-    values
+    let last = &column[first..];
+    rest[..last.len()].copy_from_slice(last);
+    rest
+}
+
+/// The same for several columns.
+#[inline(always)]
+fn blocks<'a, const N: usize>(
+    columns: [&'a [f64]; N],
+    first: usize,
+    rest: &'a mut [[f64; BLOCK]; N],
+) -> [&'a [f64; BLOCK]; N] {
+    let mut rest = rest.iter_mut();
+    map(&columns, |column| block(column, first, rest.next().expect("one per column")))
 }
 
 /// Writes the values of a block of particles to a column.
@@ -37,19 +49,19 @@ fn put(column: &mut [f64], first: usize, values: &[f64; BLOCK]) {
 
 impl<E: EquationOfState> FluidModel for LinearEosKernel<E> {
     fn mid_step(&self, mut particles: MidStep<'_>) {
+        let columns = [
+            particles.mass,
+            particles.volume0,
+            particles.jacobian,
+            particles.jacobian_mid,
+            particles.energy,
+        ];
+        let none = [0.0; BLOCK];
+        let (mut rest, mut rest_q, mut rest_gradient) = ([none; 5], none, none);
         for first in (0..particles.mass.len()).step_by(BLOCK) {
-            let [mass, volume0, j, j_mid, energy] = map(
-                &[
-                    particles.mass,
-                    particles.volume0,
-                    particles.jacobian,
-                    particles.jacobian_mid,
-                    particles.energy,
-                ],
-                |column| block(column, first),
-            );
-            let q = particles.q.map(|q| block(q, first));
-            let against = q.unwrap_or([0.0; BLOCK]);
+            let [mass, volume0, j, j_mid, energy] = blocks(columns, first, &mut rest);
+            let q = particles.q.map(|q| block(q, first, &mut rest_q));
+            let against = q.unwrap_or(&none);
             let mut pressure = [0.0; BLOCK];
             for r in 0..BLOCK {
                 let dv = (j_mid[r] - j[r]) * volume0[r] / mass[r];
@@ -64,7 +76,7 @@ impl<E: EquationOfState> FluidModel for LinearEosKernel<E> {
             (0..BLOCK).for_each(|r| stress[r] = stress[r] * volume0[r] * j_mid[r]);
             put(particles.stress_volume, first, &stress);
             let Some((out, compliances)) = &mut particles.compliance else { continue };
-            let gradient = block(particles.gradient, first);
+            let gradient = block(particles.gradient, first, &mut rest_gradient);
             let mut compliance = [0.0; BLOCK];
             for r in 0..BLOCK {
                 let volume = volume0[r] * j_mid[r];
@@ -81,14 +93,14 @@ impl<E: EquationOfState> FluidModel for LinearEosKernel<E> {
     }
 
     fn change_volume(&self, particles: VolumeChange<'_>) {
+        let columns = [particles.mass, particles.volume0, particles.before, particles.after];
+        let none = [0.0; BLOCK];
+        let (mut rest, mut rest_q) = ([none; 4], none);
         for first in (0..particles.mass.len()).step_by(BLOCK) {
-            let [mass, volume0, before, after] = map(
-                &[particles.mass, particles.volume0, particles.before, particles.after],
-                |column| block(column, first),
-            );
-            let q = particles.q.map_or([0.0; BLOCK], |q| block(q, first));
-            let mut pressures = block(particles.pressure, first);
-            let mut energies = block(particles.energy, first);
+            let [mass, volume0, before, after] = blocks(columns, first, &mut rest);
+            let q = particles.q.map_or(&none, |q| block(q, first, &mut rest_q));
+            let mut pressures = *block(particles.pressure, first, &mut { none });
+            let mut energies = *block(particles.energy, first, &mut { none });
             for r in 0..BLOCK {
                 let dv = (after[r] - before[r]) * volume0[r] / mass[r];
                 let LinearPressure { reference_pressure, gruneisen_rho } = self.0.linear(after[r]);
