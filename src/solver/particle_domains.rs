@@ -17,10 +17,10 @@ const LANES: usize = 4;
 /// Number of particles whose parallelograms are kept at a time if only their extents are needed.
 const BLOCK: usize = 128;
 
-/// Values of `L` particles of a column from `first` on.
+/// Values of `particles` in a column, in groups of `L`.
 #[inline(always)]
-fn lanes<const L: usize>(column: &[f64], first: usize) -> [f64; L] {
-    column[first..first + L].try_into().expect("a slice of that length")
+fn groups_of<'a, const L: usize>(column: &'a [f64], particles: &Range<usize>) -> &'a [[f64; L]] {
+    column[particles.clone()].as_chunks().0
 }
 
 /// One operation on `L` particles.
@@ -230,16 +230,14 @@ impl<const D: usize> Scheme<D> {
         out: &mut [&mut [f64]; 4],
     ) {
         let whole = particles.len() - particles.len() % LANES;
-        for at in (0..whole).step_by(LANES) {
-            self.some_parallelograms::<LANES, AHEAD, AXIS>(from, particles.start + at, out, at);
-        }
-        for at in whole..particles.len() {
-            self.some_parallelograms::<1, AHEAD, AXIS>(from, particles.start + at, out, at);
-        }
+        let middle = particles.start + whole;
+        let first = out.each_mut().map(|column| &mut column[..whole]);
+        self.some_parallelograms::<LANES, AHEAD, AXIS>(from, particles.start..middle, first);
+        let last = out.each_mut().map(|column| &mut column[whole..]);
+        self.some_parallelograms::<1, AHEAD, AXIS>(from, middle..particles.end, last);
     }
 
-    /// Parallelograms of `L` particles from `first` on, without a limit of length, written at index
-    /// `at` of `out`.
+    /// Parallelograms of `particles`, `L` at a time, without a limit of length, written to `out`.
     ///
     /// The ratio of J to det F, from volume relaxation and rounding of the time step, is applied to
     /// the strained directions, weighted by the squares of their strains: material compressed along
@@ -249,25 +247,48 @@ impl<const D: usize> Scheme<D> {
     fn some_parallelograms<const L: usize, const AHEAD: bool, const AXIS: bool>(
         &self,
         from: &Strained<'_>,
-        first: usize,
-        out: &mut [&mut [f64]; 4],
-        at: usize,
+        particles: Range<usize>,
+        out: [&mut [f64]; 4],
     ) {
-        let mut f: [[f64; L]; 4] = map(&from.deformation, |column| lanes(column, first));
-        let mut ahead = 0.0;
-        if let (true, Some((gradient, time))) = (AHEAD, from.ahead) {
-            let l = map(&gradient, |column| lanes::<L>(column, first));
-            f = moved_by(&map(&l, |l| map(&l, |l| time * l)), &f);
-            ahead = time;
+        // all of the same length, so that the bounds are checked only once
+        let count = particles.len() / L;
+        let groups = |column| &groups_of::<L>(column, &particles)[..count];
+        let deformation = from.deformation.map(groups);
+        let ahead = from.ahead.filter(|_| AHEAD);
+        let gradient = ahead.map(|(gradient, time)| (gradient.map(groups), time));
+        let radius = from.radius.filter(|_| AXIS).map(|radius| radius.map(groups));
+        let [volume0, jacobian] = from.volume.map(groups);
+        let half = from.half.map(groups);
+        let mut out = out.map(|column| &mut column.as_chunks_mut::<L>().0[..count]);
+        for k in 0..count {
+            let mut f = map(&deformation, |column| column[k]);
+            let mut time = 0.0;
+            if let Some((gradient, ahead)) = &gradient {
+                time = *ahead;
+                let l = map(gradient, |column| map(&column[k], |l| time * l));
+                f = moved_by(&l, &f);
+            }
+            let mut area: [f64; L] = each(|r| volume0[k][r] * jacobian[k][r]);
+            if let Some([x, v]) = radius {
+                area = each(|r| area[r] / (x[k][r] + time * v[k][r]));
+            }
+            let half = map(&half, |column| column[k]);
+            let edges = self.parallelogram(f, &area, &half);
+            for (column, edge) in out.iter_mut().zip(edges) {
+                column[k] = edge;
+            }
         }
-        let [volume0, jacobian] = map(&from.volume, |column| lanes::<L>(column, first));
-        let mut area: [f64; L] = each(|r| volume0[r] * jacobian[r]);
-        if let (true, Some(radius)) = (AXIS, from.radius) {
-            let [x, v] = map(&radius, |column| lanes::<L>(column, first));
-            area = each(|r| area[r] / (x[r] + ahead * v[r]));
-        }
-        let half = map(&from.half, |column| lanes::<L>(column, first));
-        let [xx, xy, yx, yy] = f;
+    }
+
+    /// Half edges [cells] of `L` particles with the deformation gradient `f` [-], `area` [m2] and
+    /// the initial half lengths `half` [m].
+    #[inline(always)]
+    fn parallelogram<const L: usize>(
+        &self,
+        [xx, xy, yx, yy]: [[f64; L]; 4],
+        area: &[f64; L],
+        half: &[[f64; L]; 2],
+    ) -> [[f64; L]; 4] {
         let q: [f64; L] = each(|r| {
             let determinant = xx[r] * yy[r] - xy[r] * yx[r];
             area[r] / (4.0 * half[0][r] * half[1][r] * determinant)
@@ -289,15 +310,16 @@ impl<const D: usize> Scheme<D> {
         let ay: [f64; L] = each(|r| 1.0 + share[r] * sy[r]);
         let axy: [f64; L] = each(|r| share[r] * ss[r]);
         let rest: [f64; L] = each(|r| (q[r] / (ax[r] * ay[r] - axy[r] * axy[r])).sqrt());
-        for k in 0..2 {
-            let (x, y) = [(&xx, &yx), (&xy, &yy)][k];
-            let scale: [f64; L] = each(|r| rest[r] * half[k][r]);
-            let [dx, dy] = [self.inverse_cell[0], self.inverse_cell[D - 1]];
-            let along: [f64; L] = each(|r| scale[r] * (ax[r] * x[r] + axy[r] * y[r]) * dx);
-            let across: [f64; L] = each(|r| scale[r] * (axy[r] * x[r] + ay[r] * y[r]) * dy);
-            out[2 * k][at..at + L].copy_from_slice(&along);
-            out[2 * k + 1][at..at + L].copy_from_slice(&across);
-        }
+        let [dx, dy] = [self.inverse_cell[0], self.inverse_cell[D - 1]];
+        let edge = |half: &[f64; L], x: &[f64; L], y: &[f64; L]| -> [[f64; L]; 2] {
+            let scale: [f64; L] = each(|r| rest[r] * half[r]);
+            [
+                each(|r| scale[r] * (ax[r] * x[r] + axy[r] * y[r]) * dx),
+                each(|r| scale[r] * (axy[r] * x[r] + ay[r] * y[r]) * dy),
+            ]
+        };
+        let [first, second] = [edge(&half[0], &xx, &yx), edge(&half[1], &xy, &yy)];
+        [first[0], first[1], second[0], second[1]]
     }
 
     /// Deformation of the own particles [-] after a leapfrog step of `dt` [s], (1 + dt L) F: points
@@ -305,11 +327,16 @@ impl<const D: usize> Scheme<D> {
     /// start of the step.
     pub(super) fn deform_forward(&self, patch: &mut Patch<D>, dt: f64) {
         #[inline(never)]
-        fn go<const L: usize>(f: &mut [&mut [f64]; 4], l: [&[f64]; 4], dt: f64, first: usize) {
-            let l = map(&l, |column| map(&lanes::<L>(column, first), |l| dt * l));
-            let start: [[f64; L]; 4] = f.each_ref().map(|column| lanes(column, first));
-            for (column, moved) in f.iter_mut().zip(moved_by(&l, &start)) {
-                column[first..first + L].copy_from_slice(&moved);
+        fn go<const L: usize>(f: [&mut [f64]; 4], l: [&[f64]; 4], dt: f64) {
+            let count = l[0].len() / L;
+            let mut f = f.map(|column| &mut column.as_chunks_mut::<L>().0[..count]);
+            let l = l.map(|column| &column.as_chunks::<L>().0[..count]);
+            for k in 0..count {
+                let l = map(&l, |column| map(&column[k], |l| dt * l));
+                let start = decomp::array::from_fn(|c| f[c][k]);
+                for (column, moved) in f.iter_mut().zip(moved_by(&l, &start)) {
+                    column[k] = moved;
+                }
             }
         }
         let (Some(f), Some(l)) = (self.columns.deformation, self.columns.velocity_gradient) else {
@@ -322,12 +349,8 @@ impl<const D: usize> Scheme<D> {
         let mut f = [xx, xy, yx, yy].map(|column| &mut column[..]);
         let l = [lxx, lxy, lyx, lyy].map(|column| &column[..n]);
         let whole = n - n % LANES;
-        for first in (0..whole).step_by(LANES) {
-            go::<LANES>(&mut f, l, dt, first);
-        }
-        for first in whole..n {
-            go::<1>(&mut f, l, dt, first);
-        }
+        go::<LANES>(f.each_mut().map(|f| &mut f[..whole]), l.map(|l| &l[..whole]), dt);
+        go::<1>(f.map(|f| &mut f[whole..]), l.map(|l| &l[whole..]), dt);
     }
 
     /// Input for the extents of the own particles.
