@@ -45,6 +45,8 @@ pub struct ContactNodes<const D: usize> {
     near: Vec<bool>,
     starts: Vec<u32>,
     touches: Vec<Touch>,
+    /// Numbers of contact nodes with the particles that touch them, by particle.
+    found: Vec<(u32, Touch)>,
 }
 
 impl<const D: usize> ContactNodes<D> {
@@ -94,40 +96,39 @@ impl<const D: usize> ContactNodes<D> {
         if self.nodes.is_empty() {
             return;
         }
-        // first counted, then filled: each list keeps the order of the particles
-        for fills in [false, true] {
-            for particle in runs.iter().cloned().flatten() {
-                let first = stencils.first[particle] as usize % count;
-                if !self.near[first] {
-                    continue;
-                }
-                let values = stencils.particle::<K, D>(particle).values;
-                for (line, k) in window() {
-                    let contact_node = self.number[first + line * stride + k] as usize;
-                    if contact_node == 0 || values[line][k] <= 0.0 {
-                        continue;
-                    }
-                    let start = &mut self.starts[contact_node - usize::from(fills)];
-                    if fills {
-                        let at = (line * K + k) as u32;
-                        self.touches[*start as usize] = Touch { particle: particle as u32, at };
-                    }
-                    *start += 1;
-                }
+        self.found.clear();
+        for particle in runs.iter().cloned().flatten() {
+            let first = stencils.first[particle] as usize % count;
+            if !self.near[first] {
+                continue;
             }
-            if fills {
-                // filling has moved each start to the next one
-                self.starts.rotate_right(1);
-                self.starts[0] = 0;
-            } else {
-                let mut sum = 0;
-                self.starts.iter_mut().for_each(|s| {
-                    sum += *s;
-                    *s = sum;
-                });
-                self.touches.resize(sum as usize, Touch::default());
+            let values = stencils.particle::<K, D>(particle).values;
+            for (line, values) in values.iter().enumerate() {
+                let numbers = &self.number[first + line * stride..][..K];
+                for (k, (&number, &value)) in numbers.iter().zip(values).enumerate() {
+                    if number > 0 && value > 0.0 {
+                        let at = (line * K + k) as u32;
+                        self.found.push((number, Touch { particle: particle as u32, at }));
+                        self.starts[number as usize] += 1;
+                    }
+                }
             }
         }
+        let mut sum = 0;
+        self.starts.iter_mut().for_each(|s| {
+            sum += *s;
+            *s = sum;
+        });
+        // each list keeps the order of the particles
+        self.touches.resize(sum as usize, Touch::default());
+        for (number, touch) in &self.found {
+            let start = &mut self.starts[*number as usize - 1];
+            self.touches[*start as usize] = *touch;
+            *start += 1;
+        }
+        // filling has moved each start to the next one
+        self.starts.rotate_right(1);
+        self.starts[0] = 0;
     }
 
     /// Number of nodes.
