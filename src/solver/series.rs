@@ -136,6 +136,9 @@ fn find_last<const D: usize>(patch: &mut Patch<D>, sum: usize, last: usize) {
     }
 }
 
+/// Nodes that [`few_nodes`] tests at a time.
+const TESTED: usize = 32;
+
 /// Nodes in `lines` for whose values in two fields `holds` is true. The test has no branches, so that
 /// many nodes are tested at a time: mostly it holds for none of them.
 fn few_nodes<'a>(
@@ -153,9 +156,6 @@ fn few_nodes<'a>(
     };
     parts.filter(has_any).flatten().filter(move |&i| holds(first[i], second[i]))
 }
-
-/// Nodes that are tested at a time.
-const TESTED: usize = 32;
 
 fn copy<const D: usize>(patch: &mut Patch<D>, from: usize, to: usize) {
     if from != to {
@@ -559,5 +559,21 @@ impl<const D: usize> Scheme<D> {
                 }
             }
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_nodes_are_all_for_which_the_test_holds_within_the_lines() {
+        let first: Vec<f64> = (0..200).map(f64::from).collect();
+        let second: Vec<f64> = (0..200).map(|i| f64::from(i % 2)).collect();
+        // the first line has a part without such nodes, the last one is shorter than a part
+        let lines = [0..90, 100..100, 120..125];
+        let wanted = [40.0, 42.0, 89.0, 95.0, 121.0, 123.0, 130.0];
+        let holds = |a: f64, b: f64| wanted.contains(&a) & (b == 1.0);
+        assert_eq!(few_nodes(&lines, [&first, &second], holds).collect::<Vec<_>>(), [89, 121, 123]);
     }
 }
