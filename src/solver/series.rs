@@ -139,8 +139,8 @@ fn find_last<const D: usize>(patch: &mut Patch<D>, sum: usize, last: usize) {
 /// Nodes that [`few_nodes`] tests at a time.
 const TESTED: usize = 32;
 
-/// Nodes in `lines` for whose values in two fields `holds` is true. The test has no branches, so that
-/// many nodes are tested at a time: mostly it holds for none of them.
+/// Nodes in `lines` for whose values in two fields `holds` is true. The test has no branches, so
+/// that many nodes are tested at a time: mostly it holds for none of them.
 fn few_nodes<'a>(
     lines: &'a [Range<usize>],
     [first, second]: [&'a [f64]; 2],

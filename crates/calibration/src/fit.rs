@@ -5,8 +5,8 @@ use calibration::estimates::CheckedEstimate;
 use flyer_mpm::accuracy::estimate::error_model::{Law, term};
 use nalgebra::{DMatrix, DVector};
 
-/// Quantile of the regression of error models. It is below the share that the intervals hold, since few cases lie
-/// beyond a quantile near 1; the factor makes up for the rest.
+/// Quantile of the regression of error models. It is below the share that the intervals hold, since
+/// few cases lie beyond a quantile near 1; the factor makes up for the rest.
 const REGRESSED: f64 = 0.9;
 /// Errors below this are rounding \[in the evidence's unit\].
 const FLOOR: f64 = 1e-8;
@@ -22,9 +22,9 @@ pub fn narrowest(all: &[&CheckedEstimate], sets: &[&[&str]], share: f64) -> Opti
     laws.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(law, _)| law)
 }
 
-/// The law of this evidence, by regression of a `regressed` quantile, with the median of half-width over error in cases that are left out of
-/// the fit. No two cases have the same scheme, and few the same materials, so that the cases left out
-/// are of other schemes and materials.
+/// The law of this evidence, by regression of the quantile `regressed`, with the median of half-width
+/// over error in cases that are left out of the fit. No two cases have the same scheme, and few the
+/// same materials, so that the cases left out are of other schemes and materials.
 pub fn law(
     all: &[&CheckedEstimate],
     evidence: &[&str],
