@@ -4,7 +4,8 @@
 //! Particles that do not tile their body cause noise in its density, from their irregular
 //! positions. The areas of these cells, together with the centroids as positions, avoid that noise.
 
-use delaunator::{EMPTY, next_halfedge, triangulate};
+use spade::handles::VertexHandle;
+use spade::{DelaunayTriangulation, Point2, Triangulation, mitigate_underflow};
 
 use super::Point;
 use super::lattice::Tile;
@@ -61,7 +62,7 @@ pub fn voronoi(shape: &BoundedRegion, points: &[[f64; 2]]) -> Result<Vec<Tile>, 
     check_doubled(points)?;
     let [lower, upper] = shape.bounds();
     let extent = (upper[0] - lower[0]).max(upper[1] - lower[1]);
-    let neighbours = neighbours(points, lower, extent);
+    let neighbours = neighbours(points);
     let same = SAME * (shape.area() / points.len() as f64).sqrt();
     let margin = 0.1 * extent;
     let mut tiles = Vec::with_capacity(points.len());
@@ -120,7 +121,7 @@ pub fn voronoi_line(lower: f64, upper: f64, points: &[f64]) -> Result<Vec<(f64, 
     Ok(cells)
 }
 
-/// Refuses points at exactly the same position, which the triangulation would omit.
+/// Refuses points at exactly the same position, which the triangulation would merge.
 fn check_doubled(points: &[Point]) -> Result<(), PointFault> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     // 0 is added because -0 and 0 are the same position
@@ -137,28 +138,17 @@ fn check_doubled(points: &[Point]) -> Result<(), PointFault> {
 
 /// For each point, the points whose cells share an edge with its cell, from the Delaunay
 /// triangulation.
-fn neighbours(points: &[Point], lower: Point, extent: f64) -> Vec<Vec<usize>> {
-    // scaled by the extent, since the tolerance of the triangulation is absolute
-    let [x, y] = [0, 1].map(|d| move |p: &Point| (p[d] - lower[d]) / extent);
-    let scaled: Vec<_> = points.iter().map(|p| delaunator::Point { x: x(p), y: y(p) }).collect();
-    let net = triangulate(&scaled);
-    let mut neighbours = vec![Vec::new(); points.len()];
-    for (edge, &from) in net.triangles.iter().enumerate() {
-        let to = net.triangles[next_halfedge(edge)];
-        neighbours[from].push(to);
-        // on the hull no other triangle adds the reverse direction
-        if net.halfedges[edge] == EMPTY {
-            neighbours[to].push(from);
-        }
-    }
-    if net.triangles.is_empty() {
-        // all points are on one line; the hull lists them in order
-        for pair in net.hull.windows(2) {
-            neighbours[pair[0]].push(pair[1]);
-            neighbours[pair[1]].push(pair[0]);
-        }
-    }
-    neighbours
+fn neighbours(points: &[Point]) -> Vec<Vec<usize>> {
+    let vertices = points.iter().map(|&[x, y]| mitigate_underflow(Point2::new(x, y))).collect();
+    let net: DelaunayTriangulation<_> =
+        DelaunayTriangulation::bulk_load_stable(vertices).expect("positions are finite numbers");
+    let of = |vertex: VertexHandle<'_, _>| {
+        let mut all: Vec<usize> = vertex.out_edges().map(|edge| edge.to().index()).collect();
+        // the order in which the cell is cut, which changes its rounding
+        all.sort_unstable();
+        all
+    };
+    net.vertices().map(of).collect()
 }
 
 /// The part of a convex polygon that is nearer to `own` than to `other`.
@@ -196,8 +186,8 @@ fn trapezia(polygon: &[Point]) -> Vec<Trapezium> {
     places.windows(2).filter_map(strip).collect()
 }
 
-/// Checks that the tiles cover the shape and that each has an area. A triangulation can omit points
-/// that almost coincide.
+/// Checks that the tiles cover the shape and that each has an area, which rounding can prevent if
+/// points almost coincide.
 fn check_cover(shape: &BoundedRegion, points: &[Point], tiles: &[Tile]) -> Result<(), PointFault> {
     let reason =
         "its cell cannot be distinguished from others; allowed: points that lie further apart";
