@@ -44,6 +44,25 @@ pub(super) fn check_length<T: Serialize>(
     Err(SceneFault::new(path, values, wrong_length(values.len(), dimension)))
 }
 
+/// Checks that each quantity is one of `known` and named once.
+pub(super) fn check_quantities(
+    path: &str,
+    names: &[String],
+    known: &[&str],
+) -> Result<(), SceneFault> {
+    for (k, name) in names.iter().enumerate() {
+        let reason = if names[..k].contains(name) {
+            "named twice; allowed: each quantity once".to_string()
+        } else if !known.contains(&name.as_str()) {
+            format!("cannot be chosen in this scene; allowed: {}", known.join(", "))
+        } else {
+            continue;
+        };
+        return Err(SceneFault::new(format!("{path}[{k}]"), name, reason));
+    }
+    Ok(())
+}
+
 /// Checks that the lower corner is below the upper one.
 pub(super) fn check_box(path: &str, lower: &[f64], upper: &[f64]) -> Result<(), SceneFault> {
     if lower.iter().zip(upper).all(|(l, u)| l < u) {

@@ -1,6 +1,7 @@
 //! Checks of `error_estimate`: its body and positions on a line, and its quantities.
 
 use super::super::errors::{SceneFault, suggest};
+use super::common::check_quantities;
 use crate::effects;
 use crate::scene::CheckedScene;
 
@@ -54,21 +55,9 @@ pub(super) fn check(checked: &CheckedScene) -> Result<(), SceneFault> {
 
 /// Rejects quantities that the scene does not have, and repeated ones.
 pub(super) fn check_fields(checked: &CheckedScene) -> Result<(), SceneFault> {
-    let asked = checked.scene.error_estimate.iter().flat_map(|estimate| &estimate.fields);
     let mut known = effects::columns(checked).quantities(checked.dimension);
     // profiles have no such columns, or the values depend on the size of the particles
     known.retain(|name| !["mass", "volume", "strain", "failed", "spin_inertia"].contains(name));
-    for fields in asked {
-        for (k, name) in fields.iter().enumerate() {
-            let reason = if fields[..k].contains(name) {
-                "named twice; allowed: each quantity once".to_string()
-            } else if !known.contains(&name.as_str()) {
-                format!("this scene has no such quantity; allowed: {}", known.join(", "))
-            } else {
-                continue;
-            };
-            return Err(SceneFault::new(format!("error_estimate.fields[{k}]"), name, reason));
-        }
-    }
-    Ok(())
+    let mut fields = checked.scene.error_estimate.iter().flat_map(|estimate| &estimate.fields);
+    fields.try_for_each(|names| check_quantities("error_estimate.fields", names, &known))
 }

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use super::super::errors::SceneFault;
 use super::super::faults::Faults;
 use super::super::paths::join;
-use super::common::check_length;
+use super::common::{check_length, check_quantities};
 use crate::effects;
 use crate::scene::CheckedScene;
 use crate::scene::GaugeAxis;
@@ -69,37 +69,21 @@ pub(super) fn check_fields(checked: &CheckedScene) -> Result<(), SceneFault> {
         }
     }
     let known = effects::columns(checked).quantities(checked.dimension);
-    for (k, name) in fields.quantities.iter().flatten().enumerate() {
-        if !known.contains(&name.as_str()) {
-            let all = known.join(", ");
-            let reason = format!("this scene has no such quantity; allowed: {all}");
-            return Err(SceneFault::new(format!("output.fields.quantities[{k}]"), name, reason));
-        }
-    }
-    Ok(())
+    let names = fields.quantities.as_deref().unwrap_or_default();
+    check_quantities("output.fields.quantities", names, &known)
 }
 
 /// Checks the quantities of the x-t diagrams.
 pub(super) fn check_diagrams(checked: &CheckedScene) -> Result<(), SceneFault> {
     let diagrams = &checked.scene.output.diagrams;
+    if let Some(name) = diagrams.first().filter(|_| checked.dimension > 1) {
+        let reason = "x-t diagrams need a scene on a line; allowed: none in a plane";
+        return Err(SceneFault::new("output.diagrams[0]", name, reason));
+    }
     let mut known = effects::columns(checked).quantities(checked.dimension);
     // the pressure always has one
     known.retain(|name| *name != "pressure");
-    for (k, name) in diagrams.iter().enumerate() {
-        let path = format!("output.diagrams[{k}]");
-        let reason = if checked.dimension > 1 {
-            "x-t diagrams need a scene on a line; allowed: none in a plane".to_string()
-        } else if diagrams[..k].contains(name) {
-            "named twice; allowed: each quantity once".to_string()
-        } else if !known.contains(&name.as_str()) {
-            let all = known.join(", ");
-            format!("not a quantity of this scene besides the pressure; allowed: {all}")
-        } else {
-            continue;
-        };
-        return Err(SceneFault::new(path, name, reason));
-    }
-    Ok(())
+    check_quantities("output.diagrams", diagrams, &known)
 }
 
 /// Checks that times are strictly increasing and not beyond the end.
