@@ -28,11 +28,14 @@ fn fails(scene: &CheckedScene, table: &ParticleTable) -> bool {
     let cutoff = |body| scene.material_of(body).tension_cutoff().filter(|cutoff| *cutoff > 0.0);
     let cutoffs: Vec<Option<f64>> = (0..scene.bodies.len()).map(cutoff).collect();
     let pressure = table.column("pressure").unwrap_or_default();
-    let is_at_cutoff = |(&body, &p): (&u32, &f64)| {
-        cutoffs[body as usize].is_some_and(|cutoff| p <= -AT_CUTOFF * cutoff)
+    // the cutoff of a porous material is that of its solid, whose pressure is p alpha (Carroll & Holt 1972)
+    let distension = table.column("distension");
+    let is_at_cutoff = |row: usize| {
+        let solid = pressure[row] * distension.map_or(1.0, |alpha| alpha[row]);
+        cutoffs[table.body[row] as usize].is_some_and(|cutoff| solid <= -AT_CUTOFF * cutoff)
     };
     let has_failed = table.column(DAMAGE).is_some_and(|all| all.iter().any(|d| *d >= FAILED));
-    has_failed || table.body.iter().zip(pressure).any(is_at_cutoff)
+    has_failed || (0..pressure.len()).any(is_at_cutoff)
 }
 
 #[cfg(test)]
@@ -47,14 +50,14 @@ mod tests {
         scene["materials"]["aluminium"]["eos"]["tension_cutoff"] = serde_json::json!(2e9);
         scene.as_object_mut().unwrap().remove("reference");
         let scene = input::parse(scene.to_string().as_bytes(), "flyer.json", &[]).unwrap();
-        let table = |body: u32, pressure: f64, failed: f64| ParticleTable {
+        let porous = |body: u32, pressure: f64, failed: f64, distension: f64| ParticleTable {
             time: 0.0,
             dimension: 1,
             ids: vec![0],
             material: vec![0],
             materials: Vec::new(),
             body: vec![body],
-            columns: [("pressure", pressure), (DAMAGE, failed)]
+            columns: [("pressure", pressure), (DAMAGE, failed), ("distension", distension)]
                 .map(|(name, value)| TableColumn {
                     name: name.into(),
                     unit: String::new(),
@@ -63,10 +66,13 @@ mod tests {
                 .into(),
             half_edges: Vec::new(),
         };
+        let table = |body: u32, pressure: f64, failed: f64| porous(body, pressure, failed, 1.0);
         // the flyer has no cutoff
         let [below, at, other] = [table(1, -1.9e9, 0.0), table(1, -2e9, 0.0), table(0, -2e9, 0.0)];
         assert_eq!(factors(&scene, &[&below, &other, &at]), [1.0, 1.0, FACTOR]);
         assert_eq!(factors(&scene, &[&at, &below]), [FACTOR, FACTOR]);
         assert_eq!(factors(&scene, &[&table(0, 0.0, 1.0)]), [FACTOR]);
+        assert_eq!(factors(&scene, &[&porous(1, -1e9, 0.0, 1.9)]), [1.0]);
+        assert_eq!(factors(&scene, &[&porous(1, -1e9, 0.0, 2.0)]), [FACTOR]);
     }
 }
