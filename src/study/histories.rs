@@ -5,6 +5,8 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use crate::accuracy::estimate::GaugeHistory;
+
 /// Columns of `histories.csv`; an empty entry is `None`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CaseHistories(BTreeMap<String, Vec<Option<f64>>>);
@@ -38,10 +40,13 @@ impl CaseHistories {
         columns.iter().all(|column| self.0.contains_key(column))
     }
 
-    /// Times \[s\] and values of a column, without empty entries.
-    fn curve(&self, column: &str) -> Option<Vec<(f64, f64)>> {
+    /// History of a column, without empty entries.
+    fn history(&self, column: &str) -> Option<GaugeHistory> {
         let (times, values) = (self.0.get("time")?, self.0.get(column)?);
-        Some(times.iter().zip(values).filter_map(|(t, v)| Some(((*t)?, (*v)?))).collect())
+        let rows = times.iter().zip(values).filter_map(|(t, v)| Some(((*t)?, (*v)?)));
+        let (times, values) = rows.unzip();
+        let (gauge, quantity) = (String::new(), column.to_string());
+        Some(GaugeHistory { gauge, quantity, times, components: vec![values] })
     }
 
     /// Mean over the `columns` of the integral of |v - v_ref| over time, divided by the integral of
@@ -49,29 +54,10 @@ impl CaseHistories {
     pub fn difference(&self, reference: &CaseHistories, columns: &[String]) -> Option<f64> {
         let mut sum = 0.0;
         for column in columns {
-            let (curve, exact) = (self.curve(column)?, reference.curve(column)?);
-            let (mut apart, mut whole) = (0.0, 0.0);
-            for pair in exact.windows(2) {
-                let [(from, _), (to, value)] = [pair[0], pair[1]];
-                let Some(found) = at(&curve, to) else { continue };
-                apart += (found - value).abs() * (to - from);
-                whole += value.abs() * (to - from);
-            }
-            sum += Some(apart / whole).filter(|_| whole > 0.0)?;
+            sum += reference.history(column)?.difference(&self.history(column)?)?;
         }
         Some(sum / columns.len() as f64)
     }
-}
-
-/// Value of a curve at a time, between its points; `None` outside of them.
-fn at(curve: &[(f64, f64)], time: f64) -> Option<f64> {
-    let next = curve.partition_point(|(t, _)| *t < time);
-    let (t1, v1) = *curve.get(next)?;
-    if t1 == time {
-        return Some(v1);
-    }
-    let (t0, v0) = *curve.get(next.checked_sub(1)?)?;
-    Some(v0 + (v1 - v0) * (time - t0) / (t1 - t0))
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::path::Path;
 use decomp::Serial;
 use flyer_mpm::accuracy::estimate::indicators::Evidence;
 use flyer_mpm::accuracy::estimate::{
-    EstimateBasis, ImpactWaves, LEAST_PLATEAU, PlateauLeft, SchemeFamily,
+    EstimateBasis, ImpactWaves, LEAST_PLATEAU, PlateauLeft, SchemeFamily, other_cells,
 };
 use flyer_mpm::driver::output::summary::Summary;
 use flyer_mpm::driver::{Beginning, Options, run};
@@ -43,6 +43,8 @@ pub struct CheckedEstimate {
     /// Length that scales the error \[cells\]: of the plateau, of the way to the position, of the
     /// pulse.
     pub cells: f64,
+    /// Thickness of the flyer over the length that scales the error.
+    pub other_thickness: Option<f64>,
     /// Exact pressure behind the shock over density times the square of the sound speed [-].
     pub strength: f64,
     /// Exact compressions of the struck and of the striking body.
@@ -109,7 +111,8 @@ fn add(all: &mut Gathered, impact: &RandomImpact, summary: &Summary) {
     let h = scene.cell_size[0];
     let cell_time = scene.scene.time.end / summary.steps as f64 / scene.scene.time.courant;
     let stiffness = scene.material_of(body).density * (h / cell_time).powi(2);
-    let one = |basis, evidence: &Evidence, error, half_width, unit| CheckedEstimate {
+    let thickness = other_cells(&scene, body);
+    let one = |basis, evidence: &Evidence, error, half_width, unit, cells: f64| CheckedEstimate {
         name: impact.name.clone(),
         speed: impact.speed,
         family: SchemeFamily::of(&scene.scene.method),
@@ -119,7 +122,8 @@ fn add(all: &mut Gathered, impact: &RandomImpact, summary: &Summary) {
         half_width,
         unit,
         relative: error,
-        cells: f64::NAN,
+        cells,
+        other_thickness: thickness.map(|other| other / cells),
         strength: waves.release.states[0].p / stiffness,
         compressions: waves.compressions(),
     };
@@ -138,15 +142,20 @@ fn add(all: &mut Gathered, impact: &RandomImpact, summary: &Summary) {
         {
             let error = (bounded.value - exact).abs();
             let (width, unit) = (bounded.half_width, bounded.value);
-            let checked = one(profile.basis, &bounded.evidence, error, width, unit);
-            let relative = error / exact;
-            all.estimates[0].push(CheckedEstimate { relative, cells: length, ..checked });
+            let checked = one(profile.basis, &bounded.evidence, error, width, unit, length);
+            all.estimates[0].push(CheckedEstimate { relative: error / exact, ..checked });
         }
         if let Some(exact) = profile.l1.exact {
             let l1 = &profile.l1;
-            let checked = one(profile.basis, &l1.evidence, exact, l1.half_width, 1.0);
-            let cells = scored.error("e1_cells").unwrap_or(f64::NAN) / exact;
-            all.estimates[2].push(CheckedEstimate { cells, ..checked });
+            let pulse = scored.error("e1_cells").unwrap_or(f64::NAN) / exact;
+            all.estimates[2].push(one(
+                profile.basis,
+                &l1.evidence,
+                exact,
+                l1.half_width,
+                1.0,
+                pulse,
+            ));
         }
     }
     for arrival in &estimate.arrivals {
@@ -154,10 +163,9 @@ fn add(all: &mut Gathered, impact: &RandomImpact, summary: &Summary) {
             && let Some(exact) = bounded.exact
         {
             let error = (bounded.value - exact).abs();
-            let checked =
-                one(arrival.basis, &bounded.evidence, error, bounded.half_width, cell_time);
-            let (relative, cells) = (error / exact, arrival.at / h);
-            all.estimates[1].push(CheckedEstimate { relative, cells, ..checked });
+            let (width, way) = (bounded.half_width, arrival.at / h);
+            let checked = one(arrival.basis, &bounded.evidence, error, width, cell_time, way);
+            all.estimates[1].push(CheckedEstimate { relative: error / exact, ..checked });
         }
     }
 }

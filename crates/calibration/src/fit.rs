@@ -1,13 +1,15 @@
 //! Fits a law by quantile regression of the logarithms (Koenker & Bassett 1978). The factor follows
 //! from cases that were left out of the regression (cross-conformal calibration, Vovk 2015).
 
+use std::collections::BTreeMap;
+
 use calibration::estimates::CheckedEstimate;
-use flyer_mpm::accuracy::estimate::error_model::{Law, term};
+use flyer_mpm::accuracy::estimate::error_model::{Law, indicators_of, term};
 use nalgebra::{DMatrix, DVector};
 
 /// Quantile of the regression of error models. It is below the share that the intervals hold, since
 /// few cases lie beyond a quantile near 1; the factor makes up for the rest.
-const REGRESSED: f64 = 0.9;
+pub const REGRESSED: f64 = 0.9;
 /// Errors below this are rounding \[in the evidence's unit\].
 const FLOOR: f64 = 1e-8;
 /// Rounds of reweighting.
@@ -15,10 +17,30 @@ const ROUNDS: usize = 200;
 /// Parts into which the cases are divided; each part is left out of one regression.
 const PARTS: usize = 10;
 
+/// A set of evidence.
+#[derive(Clone, Copy, Debug)]
+pub struct EvidenceSet {
+    /// Indicators that are terms of the law.
+    pub terms: &'static [&'static str],
+    /// Indicators whose products of two, and squares, are further terms.
+    pub products: &'static [&'static str],
+}
+
+impl EvidenceSet {
+    /// Names of all terms.
+    pub fn names(&self) -> Vec<String> {
+        let numbered = self.products.iter().enumerate();
+        let products = numbered.flat_map(|(k, first)| {
+            self.products[k..].iter().map(move |second| format!("{first}*{second}"))
+        });
+        self.terms.iter().map(|term| term.to_string()).chain(products).collect()
+    }
+}
+
 /// The law with the narrowest intervals of those of several sets of evidence, with intervals that hold
 /// `share` of cases that are left out of the fit; `None` if too few cases have the evidence.
-pub fn narrowest(all: &[&CheckedEstimate], sets: &[&[&str]], share: f64) -> Option<Law> {
-    let laws = sets.iter().filter_map(|evidence| law(all, evidence, share, REGRESSED));
+pub fn narrowest(all: &[&CheckedEstimate], sets: &[EvidenceSet], share: f64) -> Option<Law> {
+    let laws = sets.iter().filter_map(|set| law(all, &set.names(), share, REGRESSED));
     laws.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(law, _)| law)
 }
 
@@ -27,20 +49,22 @@ pub fn narrowest(all: &[&CheckedEstimate], sets: &[&[&str]], share: f64) -> Opti
 /// same materials, so that the cases left out are of other schemes and materials.
 pub fn law(
     all: &[&CheckedEstimate],
-    evidence: &[&str],
+    evidence: &[String],
     share: f64,
     regressed: f64,
 ) -> Option<(Law, f64)> {
-    let has = |t: &&CheckedEstimate| evidence.iter().all(|e| term(&t.evidence, e).is_some());
+    let has = |t: &&CheckedEstimate| evidence.iter().all(|e| value(t, e).is_some());
     let usable: Vec<&CheckedEstimate> = all.iter().copied().filter(has).collect();
     if usable.len() < 12 * (evidence.len() + 1) {
         return None;
     }
+    let ranges = ranges(&usable, evidence);
     let of = |weights, factor| Law {
-        evidence: evidence.iter().map(|e| e.to_string()).collect(),
+        evidence: evidence.to_vec(),
         weights,
         factor,
         cases: usable.len(),
+        ranges: ranges.clone(),
     };
     let mut scores = Vec::new();
     for part in 0..PARTS {
@@ -58,6 +82,22 @@ pub fn law(
     Some((of(weights(&usable, evidence, regressed), factor), ratio))
 }
 
+/// Value of a term.
+fn value(one: &CheckedEstimate, name: &str) -> Option<f64> {
+    term(&one.evidence, &BTreeMap::new(), name)
+}
+
+/// Least and greatest value of each indicator.
+fn ranges(all: &[&CheckedEstimate], evidence: &[String]) -> BTreeMap<String, [f64; 2]> {
+    let range = |name: &str| {
+        let values = all.iter().map(|t| t.evidence[name]);
+        let [least, greatest] = [f64::INFINITY, f64::NEG_INFINITY];
+        let ends = |[low, high]: [f64; 2], v: f64| [low.min(v), high.max(v)];
+        (name.to_string(), values.fold([least, greatest], ends))
+    };
+    evidence.iter().flat_map(|term| indicators_of(term)).map(range).collect()
+}
+
 /// The smallest of the values that `share` of them do not exceed; NaN without values.
 pub fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
     let mut all: Vec<f64> = values.collect();
@@ -72,11 +112,11 @@ fn size(one: &CheckedEstimate) -> f64 {
 }
 
 /// Weights of a quantile, by least squares reweighted and damped.
-fn weights(estimates: &[&CheckedEstimate], evidence: &[&str], quantile: f64) -> Vec<f64> {
+fn weights(estimates: &[&CheckedEstimate], evidence: &[String], quantile: f64) -> Vec<f64> {
     let rows = estimates.len();
     let value = |row: usize, column: usize| match column {
         0 => 1.0,
-        k => term(&estimates[row].evidence, evidence[k - 1]).expect("the case has the evidence"),
+        k => value(estimates[row], &evidence[k - 1]).expect("the case has the evidence"),
     };
     let a = DMatrix::from_fn(rows, evidence.len() + 1, value);
     let b = DVector::from_fn(rows, |row, _| size(estimates[row]).ln());

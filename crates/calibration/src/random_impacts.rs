@@ -39,7 +39,7 @@ const GAMMA0: [f64; 2] = [0.5, 3.0];
 /// Speeds of the impacts \[m/s\].
 const SPEED: [f64; 2] = [100.0, 5000.0];
 /// Cells in a flyer.
-const FLYER_CELLS: [f64; 2] = [10.0, 120.0];
+const FLYER_CELLS: [f64; 2] = [5.0, 120.0];
 /// End of the run over the time at which the release from the flyer's rear reaches the interface.
 const DURATION: [f64; 2] = [0.6, 4.0];
 /// Place of the arrival over the way of the shock to the end.
@@ -135,7 +135,7 @@ fn speed_and_cells(random: &mut Random, draw: &Draw<'_>) -> [f64; 2] {
     match random.below(4) {
         0 => [random.between(SPEED[1] + 1.0, 7000.0), cells],
         1 => [random.log_between(50.0, SPEED[0] - 1.0), cells],
-        2 => [speed, random.between(5.0, FLYER_CELLS[0] - 1.0)],
+        2 => [speed, random.between(2.0, FLYER_CELLS[0] - 1.0)],
         _ => [speed, random.between(FLYER_CELLS[1] + 1.0, 160.0)],
     }
 }

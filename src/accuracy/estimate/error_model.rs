@@ -1,8 +1,9 @@
 //! Error models: the expected error from indicators, fitted on random impacts.
 //!
 //! The half-width is exp(w0 + sum of w_k ln(indicator_k)) times a factor; products of two logarithms
-//! can be further terms of the sum. The weights are fitted to a high quantile of ln|error| (Koenker & Bassett 1978), so that uncertain cases get a wider
-//! interval. The factor makes the intervals hold the intended share of cases that were left out of
+//! can be further terms of the sum. The weights are fitted to a high quantile of ln|error| (Koenker &
+//! Bassett 1978), so that uncertain cases get a wider interval. An indicator outside of its range in
+//! the fit counts as the nearer end of the range, because products cannot be extrapolated. The factor makes the intervals hold the intended share of cases that were left out of
 //! the fit (conformal calibration, Vovk et al. 2005). Each family of schemes has models of its own.
 //! Outside of the fitted range a further factor of at least 1 makes them hold 90 % of the cases.
 //! `scripts/calibrate_estimates.sh` repeats the fit and writes the file of [`DATA`].
@@ -34,6 +35,8 @@ pub struct Law {
     pub factor: f64,
     /// Number of runs in the fit.
     pub cases: usize,
+    /// Least and greatest value of each indicator in the fit \[-\].
+    pub ranges: BTreeMap<String, [f64; 2]>,
 }
 
 /// Error models of one quantity; the one that needs the most indicators comes first.
@@ -112,16 +115,27 @@ impl Law {
     pub fn size(&self, evidence: &Evidence) -> Option<f64> {
         let mut sum = *self.weights.first()?;
         for (name, weight) in self.evidence.iter().zip(&self.weights[1..]) {
-            sum += weight * term(evidence, name)?;
+            sum += weight * term(evidence, &self.ranges, name)?;
         }
         Some(sum.exp())
     }
 }
 
-/// The term `name` of an error model \[-\]: the logarithm of an indicator, or the product of the
-/// logarithms of several with `*` between them; `None` if an indicator is missing.
-pub fn term(evidence: &Evidence, name: &str) -> Option<f64> {
-    name.split('*').map(|name| Some(evidence.get(name)?.max(LEAST).ln())).product()
+/// Names of the indicators in a term of an error model.
+pub fn indicators_of(term: &str) -> impl Iterator<Item = &str> {
+    term.split('*')
+}
+
+/// A term of an error model \[-\]: the logarithm of an indicator, or the product of the logarithms of
+/// several with `*` between them, each within its range if it has one; `None` if an indicator is
+/// missing.
+pub fn term(evidence: &Evidence, ranges: &BTreeMap<String, [f64; 2]>, term: &str) -> Option<f64> {
+    let logarithm = |name| {
+        let value = *evidence.get(name)?;
+        let value = ranges.get(name).map_or(value, |range| value.clamp(range[0], range[1]));
+        Some(value.max(LEAST).ln())
+    };
+    indicators_of(term).map(logarithm).product()
 }
 
 impl QuantityLaws {
@@ -149,6 +163,7 @@ mod tests {
             weights: weights.to_vec(),
             factor,
             cases: 1,
+            ranges: BTreeMap::new(),
         };
         let both = law(&["a", "b"], &[0.0, 1.0, 0.5], 2.0);
         let one = law(&["a"], &[0.0, 1.0], 10.0);
@@ -166,6 +181,12 @@ mod tests {
         let found = product.half_width(&evidence(&[("a", 0.5), ("b", 0.25)]));
         near(found, (0.5_f64.ln() * 0.25_f64.ln()).exp());
         assert_eq!(product.half_width(&evidence(&[("a", 0.5)])), None);
+        // outside of its range in the fit an indicator counts as the end of the range
+        let ranges = [("a".to_string(), [0.25, 0.5])].into();
+        let limited = QuantityLaws(vec![Law { ranges, ..law(&["a"], &[0.0, 1.0], 1.0) }]);
+        for (given, counted) in [(0.1, 0.25), (0.3, 0.3), (0.9, 0.5)] {
+            near(limited.half_width(&evidence(&[("a", given)])), counted);
+        }
     }
 
     #[test]

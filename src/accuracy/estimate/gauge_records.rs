@@ -1,5 +1,7 @@
 //! Records of the gauges of a run: histories, and the values that are read from them.
 
+use super::polyline::interpolate;
+
 /// History of a quantity at a gauge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaugeHistory {
@@ -76,12 +78,16 @@ impl GaugeHistory {
     /// of `self`, with linear interpolation of `other`. `None` if `self` is zero, or if they share no
     /// times.
     pub fn difference(&self, other: &GaugeHistory) -> Option<f64> {
+        let curve = |values: &Vec<f64>| -> Vec<(f64, f64)> {
+            other.times.iter().copied().zip(values.iter().copied()).collect()
+        };
+        let others: Vec<Vec<(f64, f64)>> = other.components.iter().map(curve).collect();
         let (mut difference, mut whole) = (0.0, 0.0);
         for row in 1..self.times.len() {
             let step = self.times[row] - self.times[row - 1];
             let (mut apart, mut size) = (0.0, 0.0);
-            for (own, theirs) in self.components.iter().zip(&other.components) {
-                let theirs = at(&other.times, theirs, self.times[row]).unwrap_or(f64::NAN);
+            for (own, theirs) in self.components.iter().zip(&others) {
+                let theirs = interpolate(theirs, self.times[row]).unwrap_or(f64::NAN);
                 apart += (own[row] - theirs).powi(2);
                 size += own[row].powi(2);
             }
@@ -93,15 +99,6 @@ impl GaugeHistory {
         }
         (whole > 0.0).then_some(difference / whole)
     }
-}
-
-/// Linear interpolation of `values` at `time`; `None` outside of `times`.
-fn at(times: &[f64], values: &[f64], time: f64) -> Option<f64> {
-    let next = times.partition_point(|t| *t < time);
-    let (t1, v1) = (*times.get(next)?, *values.get(next)?);
-    let Some(before) = next.checked_sub(1).filter(|_| t1 > time) else { return Some(v1) };
-    let (t0, v0) = (times[before], values[before]);
-    Some(v0 + (v1 - v0) * (time - t0) / (t1 - t0))
 }
 
 #[cfg(test)]

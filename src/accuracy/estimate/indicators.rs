@@ -4,8 +4,11 @@
 use std::collections::BTreeMap;
 
 use super::plateau::Plateau;
-use super::polyline::Polyline;
+use super::polyline::{Polyline, interpolate};
 use super::shock_state::ShockState;
+
+/// Indicator: thickness of the other of two bodies, in cells \[-\].
+pub const OTHER_CELLS: &str = "other_cells";
 
 /// Indicators by name.
 pub type Evidence = BTreeMap<String, f64>;
@@ -107,16 +110,8 @@ pub fn distance(a: &Polyline, b: &Polyline) -> f64 {
 
 /// Linear interpolation of a line at x; constant beyond its ends.
 fn at(line: &Polyline, x: f64) -> Option<f64> {
-    let k = line.partition_point(|q| q.0 < x);
-    let (Some(after), Some(before)) = (line.get(k), k.checked_sub(1).map(|k| line[k])) else {
-        return line.get(k).or(line.last()).map(|q| q.1);
-    };
-    let width = after.0 - before.0;
-    Some(if width > 0.0 {
-        before.1 + (after.1 - before.1) * (x - before.0) / width
-    } else {
-        after.1
-    })
+    let (first, last) = (line.first()?.0, line.last()?.0);
+    interpolate(line, x.max(first).min(last))
 }
 
 /// Mean of |d| on an interval where d is linear from `a` to `b`.

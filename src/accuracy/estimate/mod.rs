@@ -43,7 +43,7 @@ pub use coarse_results::{CoarseRun, CoarseRuns};
 pub use error_model::{Laws, QuantityLaws};
 pub use fields::FieldEstimate;
 pub use fitted_schemes::FittedSchemes;
-pub use gauge_records::GaugeRecords;
+pub use gauge_records::{GaugeHistory, GaugeRecords};
 pub use gauges::{HistoryEstimate, ReadingEstimate};
 pub use impact_waves::{ImpactWaves, PlateauLeft};
 pub use polyline::{Polyline, least_pressure, line};
@@ -51,6 +51,7 @@ pub use range::{EstimateBasis, FittedRange, OutOfRange};
 pub use scheme_family::SchemeFamily;
 
 use self::gauges::Rounding;
+use self::indicators::OTHER_CELLS;
 use self::polyline::ROUNDING;
 use self::shock_state::ShockState;
 use crate::accuracy::reference::ReferenceSolution;
@@ -65,7 +66,8 @@ pub struct ProfileEstimate {
     /// Whether the error models were fitted on such profiles.
     #[serde(default)]
     pub basis: EstimateBasis,
-    /// Pressure of the plateau behind the shock \[Pa\]; `None` if there is none over 20 cells.
+    /// Pressure of the plateau behind the shock \[Pa\]; `None` if there is none of
+    /// sufficient length.
     pub plateau_pressure: Option<Bounded>,
     /// Relative L1 of the pressure \[-\]: the value is 0 (no error), the half-width is the bound.
     pub l1: Bounded,
@@ -150,8 +152,18 @@ pub fn least_pressure_of_all(scene: &CheckedScene, steps: u64) -> f64 {
 /// run has another wave or none at this position \[-\].
 const OTHER_WAVE: f64 = 0.5;
 
-/// Shortest plateau that is reported \[cells\].
-pub const LEAST_PLATEAU: f64 = 20.0;
+/// Shortest plateau that is reported if its length follows from the exact waves \[cells\].
+pub const LEAST_PLATEAU: f64 = 10.0;
+
+/// Shortest plateau that is reported if its length is read from the profile \[cells\].
+pub const LEAST_LEVEL: f64 = 20.0;
+
+/// Thickness of the other of two bodies \[cells\]; `None` unless there are two.
+pub fn other_cells(scene: &CheckedScene, body: usize) -> Option<f64> {
+    let [_, _] = scene.bodies[..] else { return None };
+    let other = &scene.bodies[1 - body];
+    Some((other.upper[0] - other.lower[0]) / scene.cell_size[0])
+}
 
 /// Estimates the errors of a finished run.
 pub fn estimate(answer: &Answer<'_>, coarse_runs: &CoarseRuns, laws: &Laws) -> EstimatedErrors {
@@ -314,11 +326,11 @@ impl<'a> Estimator<'a> {
                 ));
             }
             PlateauLeft::Length(length) => plateau::of_length(&above(own), h, length),
-            PlateauLeft::Unknown => plateau::find(&above(own), h, LEAST_PLATEAU as usize),
+            PlateauLeft::Unknown => plateau::find(&above(own), h, LEAST_LEVEL as usize),
         };
-        let found = found.filter(|found| found.pressure > self.least).ok_or_else(|| {
-            format!("no level pressure over {LEAST_PLATEAU} cells behind a shock")
-        })?;
+        let found = found
+            .filter(|found| found.pressure > self.least)
+            .ok_or_else(|| format!("no level pressure over {LEAST_LEVEL} cells behind a shock"))?;
         let lines: Vec<(f64, Polyline)> =
             others.iter().map(|(f, line)| (*f, above(line))).collect();
         let lines: Vec<(f64, &Polyline)> = lines.iter().map(|(f, line)| (*f, line)).collect();
@@ -334,6 +346,7 @@ impl<'a> Estimator<'a> {
             self.other_body(),
         ];
         evidence.extend(indicators::of_shock(states));
+        evidence.extend(other_cells(scene, body).map(|n| (OTHER_CELLS.to_string(), n)));
         Ok((found, evidence))
     }
 

@@ -18,6 +18,17 @@ pub fn line(table: &ParticleTable, body: usize) -> Polyline {
     own.map(|r| (x[r], p[r])).collect()
 }
 
+/// Linear interpolation between points with increasing abscissas at `x`; `None` outside of them.
+pub fn interpolate(points: &[(f64, f64)], x: f64) -> Option<f64> {
+    let next = points.partition_point(|point| point.0 < x);
+    let (x1, y1) = *points.get(next)?;
+    if x1 == x {
+        return Some(y1);
+    }
+    let (x0, y0) = points[next.checked_sub(1)?];
+    Some(y0 + (y1 - y0) * (x - x0) / (x1 - x0))
+}
+
 /// Pressures up to this fraction of rho c^2 are rounding, not a wave \[-\].
 pub(super) const ROUNDING: f64 = 1e-9;
 

@@ -4,11 +4,13 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::data::{Data, SchemeAccuracy, ShockStrength};
+use super::data::{Data, SchemeAccuracy};
 use super::pilot::{self, Pilot};
 use super::quantities::ErrorScale;
 use super::schemes::{PlannedScheme, schemes};
-use crate::accuracy::estimate::{EstimateBasis, ImpactWaves, Laws, PlateauLeft};
+use crate::accuracy::estimate::{
+    EstimateBasis, ImpactWaves, LEAST_LEVEL, LEAST_PLATEAU, Laws, PlateauLeft, other_cells,
+};
 use crate::input;
 use crate::scene::{CheckedScene, PlannedQuantity};
 
@@ -287,7 +289,7 @@ impl<'a> Task<'a> {
                 let cells = particles as f64 / scheme.particles_per_cell as f64 / self.filled;
                 let cells = cells.ceil() as usize;
                 let (_, scene) = pilot::with_cells(&self.scene, self.file, &scheme, cells)?;
-                pilot::run(&scene, self.body, self.place)
+                pilot::fastest(&scene, self.body, self.place)
             });
             let [coarse, fine] = match pilots {
                 [Ok(coarse), Ok(fine)] => [coarse, fine],
@@ -428,7 +430,7 @@ fn scale_of(
     let cell_time = scene.scene.time.end / pilot.steps.max(1) as f64 / pilot.courant;
     let stiffness = scene.material_of(body).density * (pilot.cell_size / cell_time).powi(2);
     let compressions = waves.as_ref().and_then(ImpactWaves::compressions);
-    let shock = ShockStrength { strength: pressure / stiffness, compressions };
+    let other_thickness = other_cells(scene, body).map(|cells| cells * scene.cell_size[0]);
     // the wave's way, from the end of the body that it comes from
     let way = place.zip(pilot.arrival).map(|(at, _)| {
         let own = &scene.bodies[body];
@@ -438,7 +440,16 @@ fn scale_of(
     if place.is_some() && way.is_none() {
         return Err(format!("{}: nothing arrives there within the run", scene.file));
     }
-    Ok(ErrorScale { pulse, plateau, way, shock })
+    let least_plateau = if waves.is_some() { LEAST_PLATEAU } else { LEAST_LEVEL };
+    Ok(ErrorScale {
+        pulse,
+        plateau,
+        least_plateau,
+        way,
+        strength: pressure / stiffness,
+        compressions,
+        other_thickness,
+    })
 }
 
 /// Length of the shortest plateau of the profiles \[m\], by the exact waves if they are known, else as
@@ -480,14 +491,10 @@ fn last_pilot(
 ) -> Result<(Cost, f64, f64), String> {
     let share = LAST_PILOT.min(MOST_PILOT / particles);
     let fine = ((cells as f64 * share) as usize).max(cells.min(64));
-    let timed = [fine.div_ceil(2), fine].map(|cells| {
+    let [coarse, fine] = [fine.div_ceil(2), fine].map(|cells| {
         let (_, scene) = pilot::with_cells(scene, file, &candidate.scheme, cells)?;
-        // use the faster of two runs: other load on the machine only slows a run
-        let both = [pilot::run(&scene, body, None)?, pilot::run(&scene, body, None)?];
-        let [a, b] = both;
-        Ok::<Pilot, String>(if a.cpu_seconds <= b.cpu_seconds { a } else { b })
+        pilot::fastest(&scene, body, None)
     });
-    let [coarse, fine] = timed;
     let (coarse, fine) = (coarse?, fine?);
     let seconds = |p: &Pilot| (p.cell_size, p.cpu_seconds.max(1e-6));
     let steps = fine.steps as f64 * fine.cell_size;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::accuracy::estimate::QuantityLaws;
-use crate::accuracy::estimate::indicators::{Evidence, of_compressions};
+use crate::accuracy::estimate::indicators::{Evidence, OTHER_CELLS, of_compressions};
 
 /// Distribution of an error: median and a high quantile \[-\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,7 +17,7 @@ pub struct Size {
     pub most: f64,
 }
 
-/// Error of a quantity, as a function of the indicators of [`ShockStrength::evidence`].
+/// Error of a quantity, as a function of the indicators of [`ImpactIndicators::evidence`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ErrorLaws {
@@ -32,28 +32,32 @@ pub const CELLS: &str = "cells";
 /// Indicator: pressure behind the shock over the density times the square of the sound speed \[-\].
 pub const STRENGTH: &str = "strength";
 
-/// Strength of the shock of an impact.
+/// What the error in an impact depends on, besides the length that scales it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShockStrength {
+pub struct ImpactIndicators {
     /// Pressure behind the shock over the density times the square of the sound speed \[-\].
     pub strength: f64,
     /// Exact compressions of the struck and of the striking body \[-\], if the waves are known.
     pub compressions: Option<[f64; 2]>,
+    /// Thickness of the striking body over the length that scales the error \[-\], if there are two
+    /// bodies.
+    pub other_thickness: Option<f64>,
 }
 
-impl ShockStrength {
+impl ImpactIndicators {
     /// Indicators of the error at a length in cells.
     pub fn evidence(&self, cells: f64) -> Evidence {
         let mut all = self.compressions.map(of_compressions).unwrap_or_default();
         all.extend([(CELLS.to_string(), cells), (STRENGTH.to_string(), self.strength)]);
+        all.extend(self.other_thickness.map(|ratio| (OTHER_CELLS.to_string(), ratio * cells)));
         all
     }
 }
 
 impl ErrorLaws {
-    /// The error at a length in cells and a strength of the shock \[-\].
-    pub fn at(&self, cells: f64, shock: &ShockStrength) -> Option<Size> {
-        let evidence = shock.evidence(cells);
+    /// The error at a length in cells in an impact \[-\].
+    pub fn at(&self, cells: f64, impact: &ImpactIndicators) -> Option<Size> {
+        let evidence = impact.evidence(cells);
         let median = self.median.half_width(&evidence)?;
         Some(Size { median, most: self.most.half_width(&evidence)?.max(median) })
     }
@@ -97,14 +101,20 @@ impl Data {
 mod tests {
     use super::*;
 
+    /// An impact whose waves are known, and one whose waves are not.
+    fn impacts() -> [ImpactIndicators; 2] {
+        let (compressions, other_thickness) = (Some([0.1, 0.15]), Some(0.8));
+        let known = ImpactIndicators { strength: 0.12, compressions, other_thickness };
+        [known, ImpactIndicators { compressions: None, ..known }]
+    }
+
     #[test]
     fn errors_of_every_scheme_fall_with_more_cells() {
-        let waves = ShockStrength { strength: 0.03, compressions: Some([0.1, 0.15]) };
-        let unknown = ShockStrength { compressions: None, ..waves };
+        let [waves, unknown] = impacts();
         for (name, measured) in &Data::shipped().schemes {
             for laws in [&measured.l1, &measured.plateau, &measured.arrival] {
-                for shock in [&waves, &unknown] {
-                    let [coarse, fine] = [20.0, 80.0].map(|cells| laws.at(cells, shock).unwrap());
+                for impact in [&waves, &unknown] {
+                    let [coarse, fine] = [20.0, 80.0].map(|cells| laws.at(cells, impact).unwrap());
                     assert!(0.0 < fine.most && fine.most < coarse.most, "{name}: {fine:?}");
                     assert!(fine.median <= fine.most, "{name}: {fine:?}");
                 }
@@ -114,19 +124,25 @@ mod tests {
 
     #[test]
     fn the_law_with_the_compressions_comes_first() {
-        let shock = ShockStrength { strength: 0.03, compressions: Some([0.1, 0.2]) };
-        let evidence = shock.evidence(40.0);
-        assert_eq!((evidence[CELLS], evidence[STRENGTH]), (40.0, 0.03));
-        assert_eq!((evidence["compression"], evidence["other_compression"]), (0.1, 0.2));
-        let without = ShockStrength { compressions: None, ..shock }.evidence(40.0);
-        assert_eq!(without.len(), 2);
+        let [known, unknown] = impacts();
+        let evidence = known.evidence(40.0);
+        assert_eq!(
+            (evidence[CELLS], evidence[STRENGTH], evidence[OTHER_CELLS]),
+            (40.0, 0.12, 32.0)
+        );
+        assert_eq!((evidence["compression"], evidence["other_compression"]), (0.1, 0.15));
+        assert_eq!(unknown.evidence(40.0).len(), 3);
         for measured in Data::shipped().schemes.values() {
             let first = &measured.arrival.most.0[0].evidence;
             assert!(first.iter().any(|name| name == "other_compression"), "{first:?}");
-            // a stronger shock has a greater error
-            let weak = ShockStrength { compressions: Some([0.01, 0.01]), ..shock };
-            let at = |shock: &ShockStrength| measured.arrival.at(40.0, shock).unwrap().most;
-            assert!(at(&weak) < at(&shock));
+            // weak shocks are wide, and strong ones have errors of their own
+            let of_shocks = [[0.005, 0.004], [0.05, 0.03], [0.4, 0.09]];
+            let [weak, medium, strong] = of_shocks.map(|[compression, strength]| {
+                let compressions = Some([compression; 2]);
+                let impact = ImpactIndicators { strength, compressions, ..known };
+                measured.arrival.at(40.0, &impact).unwrap().most
+            });
+            assert!(medium < weak && medium < strong, "{weak} {medium} {strong}");
         }
     }
 }

@@ -8,7 +8,6 @@ pub(super) struct ArrivalTime;
 
 impl ErrorModel for ArrivalTime {
     const AT_PLACE: bool = true;
-    const LEAST_CELLS: f64 = 20.0;
 
     fn laws(m: &SchemeAccuracy) -> &ErrorLaws {
         &m.arrival

@@ -1,20 +1,29 @@
 //! Error models of the quantities that a plan can target: one file per quantity, one line per quantity
 //! in `scene/model/planned_quantity.rs`.
 
-use super::data::{ErrorLaws, SchemeAccuracy, ShockStrength, Size};
+use super::data::{ErrorLaws, ImpactIndicators, SchemeAccuracy, Size};
 use crate::accuracy::estimate::{Bounded, EstimatedErrors};
 use crate::scene::{PlannedQuantity, planned_quantities};
 
-/// Lengths and pressure of a scene that scale its errors.
+/// Number of cell sizes between the largest and the smallest that a plan compares first.
+const SIZES: usize = 60;
+
+/// Lengths and strength of the impact that scale the errors of a scene.
 pub(super) struct ErrorScale {
     /// Shortest pulse of the profiles [m].
     pub pulse: f64,
     /// Shortest plateau [m], or the reason why there is none.
     pub plateau: Result<f64, String>,
+    /// Shortest plateau that the run reports [cells].
+    pub least_plateau: f64,
     /// Distance of the wave to the arrival position [m].
     pub way: Option<f64>,
-    /// Strength of the shock.
-    pub shock: ShockStrength,
+    /// Pressure behind the shock over the density times the square of the sound speed [-].
+    pub strength: f64,
+    /// Exact compressions of the struck and of the striking body [-], if the waves are known.
+    pub compressions: Option<[f64; 2]>,
+    /// Thickness of the striking body [m], if there are two bodies.
+    pub other_thickness: Option<f64>,
 }
 
 /// Error model of a quantity.
@@ -22,14 +31,16 @@ trait ErrorModel {
     /// Whether the quantity belongs to a position of the scene.
     const AT_PLACE: bool = false;
 
-    /// Smallest number of cells in the length that scales the error.
-    const LEAST_CELLS: f64 = 4.0;
-
     /// Measured relative errors of a scheme.
     fn laws(m: &SchemeAccuracy) -> &ErrorLaws;
 
     /// Length that scales the error [m]; the error is the reason why there is none.
     fn length(scale: &ErrorScale) -> Result<f64, String>;
+
+    /// Smallest number of cells in that length.
+    fn least_cells(_: &ErrorScale) -> f64 {
+        4.0
+    }
 
     /// Relative errors of a finished run, each with whether it is true and not estimated; `exact_l1`
     /// is the L1 of each profile against the exact solution.
@@ -46,9 +57,9 @@ macro_rules! dispatch {
                 match self { $(PlannedQuantity::$name => $module::$name::AT_PLACE,)+ }
             }
 
-            /// Smallest number of cells in the length that scales the error.
-            fn least_cells(self) -> f64 {
-                match self { $(PlannedQuantity::$name => $module::$name::LEAST_CELLS,)+ }
+            /// See [`ErrorModel::least_cells`].
+            fn least_cells(self, scale: &ErrorScale) -> f64 {
+                match self { $(PlannedQuantity::$name => $module::$name::least_cells(scale),)+ }
             }
 
             fn laws(self, m: &SchemeAccuracy) -> &ErrorLaws {
@@ -76,7 +87,13 @@ planned_quantities!(dispatch);
 impl PlannedQuantity {
     /// Expected relative error on cells of size `h` [m]; `None` without the length that scales it.
     pub(super) fn error(self, m: &SchemeAccuracy, scale: &ErrorScale, h: f64) -> Option<Size> {
-        self.laws(m).at(self.length(scale).ok()? / h, &scale.shock)
+        let length = self.length(scale).ok()?;
+        let impact = ImpactIndicators {
+            strength: scale.strength,
+            compressions: scale.compressions,
+            other_thickness: scale.other_thickness.map(|thickness| thickness / length),
+        };
+        self.laws(m).at(length / h, &impact)
     }
 
     /// Largest cell size [m] between `least` and `greatest` [m] at which the relative error is at
@@ -89,15 +106,15 @@ impl PlannedQuantity {
         [least, greatest]: [f64; 2],
     ) -> Option<f64> {
         let reaches = |h: f64| self.error(m, scale, h).is_some_and(|size| size.most <= error);
-        let greatest = greatest.min(self.length(scale).ok()? / self.least_cells());
-        if greatest < least || !reaches(least) {
+        let greatest = greatest.min(self.length(scale).ok()? / self.least_cells(scale));
+        if greatest < least {
             return None;
         }
-        if reaches(greatest) {
-            return Some(greatest);
-        }
-        let (mut fine, mut coarse) = (least, greatest);
-        for _ in 0..60 {
+        // the law may rise again at its ends, so that the first size that reaches the error is searched
+        let size = |k: usize| greatest * (least / greatest).powf(k as f64 / SIZES as f64);
+        let first = (0..=SIZES).find(|&k| reaches(size(k)))?;
+        let (mut fine, mut coarse) = (size(first), size(first.saturating_sub(1)));
+        for _ in 0..40 {
             let middle = (fine * coarse).sqrt();
             if reaches(middle) { fine = middle } else { coarse = middle }
         }

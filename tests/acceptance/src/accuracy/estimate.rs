@@ -10,14 +10,14 @@ use crate::table::Table;
 
 /// Schemes of the impacts, with their number; none is one of the fit.
 const GROUPS: [(&str, Schemes, usize); 5] = [
-    ("default", Schemes::Default, 300),
-    ("sharpest", Schemes::Sharpest, 300),
-    ("robust", Schemes::Robust, 100),
-    ("total-Lagrangian", Schemes::TotalLagrangian, 300),
-    ("random schemes", Schemes::Random, 400),
+    ("default", Schemes::Default, 600),
+    ("sharpest", Schemes::Sharpest, 600),
+    ("robust", Schemes::Robust, 600),
+    ("total-Lagrangian", Schemes::TotalLagrangian, 600),
+    ("random schemes", Schemes::Random, 800),
 ];
 /// Number of the impacts outside of the range of the fit, half of them by their scheme.
-const OUTSIDE: usize = 200;
+const OUTSIDE: usize = 400;
 /// Seed, drawn after the fit.
 const SEED: u64 = 833_360_963;
 /// Runs at once.
