@@ -103,6 +103,9 @@ const MOST_PILOT: f64 = 4000.0;
 /// over that with the cheapest \[-\]: the first pilot runs are too short to tell these apart.
 const TIMED: usize = 3;
 const NEARLY_CHEAPEST: f64 = 1.5;
+/// Wall time up to which every candidate is timed: such a run has fewer particles than its first pilot
+/// runs \[s\].
+const SHORT: f64 = 0.02;
 
 /// Largest number of particles of a plan, to limit memory and run time.
 const MOST_PARTICLES: f64 = 1e7;
@@ -374,8 +377,10 @@ impl<'a> Task<'a> {
         }
         able.sort_by(|a, b| a.2.total_cmp(&b.2));
         if let Some(&(_, _, least)) = able.first() {
-            let near = able.iter().take(TIMED).filter(|a| a.2 <= NEARLY_CHEAPEST * least);
-            return Ok(near.map(|&(candidate, h, _)| (candidate, h)).collect());
+            let is_near = |k: usize, wall: f64| k < TIMED && wall <= NEARLY_CHEAPEST * least;
+            let numbered = able.iter().enumerate();
+            let near = numbered.filter(|&(k, a)| a.2 <= SHORT || is_near(k, a.2));
+            return Ok(near.map(|(_, &(candidate, h, _))| (candidate, h)).collect());
         }
         let none = || PlanError::Scene("nothing can be had".into());
         let (candidate, h, error) = nearest.ok_or_else(none)?;
