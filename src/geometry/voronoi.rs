@@ -59,10 +59,14 @@ pub fn voronoi(shape: &BoundedRegion, points: &[[f64; 2]]) -> Result<Vec<Tile>, 
     if points.is_empty() {
         return Ok(Vec::new());
     }
-    check_doubled(points)?;
     let [lower, upper] = shape.bounds();
     let extent = (upper[0] - lower[0]).max(upper[1] - lower[1]);
-    let neighbours = neighbours(points);
+    // scaled by the extent, since the triangulation has a limited range of coordinates
+    let [x, y] = [0, 1].map(|d| move |point: &Point| (point[d] - lower[d]) / extent);
+    let vertex = |point| mitigate_underflow(Point2::new(x(point), y(point)));
+    let vertices: Vec<_> = points.iter().map(vertex).collect();
+    check_doubled(points, &vertices)?;
+    let neighbours = neighbours(vertices);
     let same = SAME * (shape.area() / points.len() as f64).sqrt();
     let margin = 0.1 * extent;
     let mut tiles = Vec::with_capacity(points.len());
@@ -121,16 +125,16 @@ pub fn voronoi_line(lower: f64, upper: f64, points: &[f64]) -> Result<Vec<(f64, 
     Ok(cells)
 }
 
-/// Refuses points at exactly the same position, which the triangulation would merge.
-fn check_doubled(points: &[Point]) -> Result<(), PointFault> {
+/// Refuses points with exactly the same vertex, which the triangulation would merge.
+fn check_doubled(points: &[Point], vertices: &[Point2<f64>]) -> Result<(), PointFault> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     // 0 is added because -0 and 0 are the same position
-    let key = |i: usize| points[i].map(|x| x + 0.0);
+    let key = |i: usize| [vertices[i].x + 0.0, vertices[i].y + 0.0];
     order.sort_by(|&a, &b| {
         let ([x, y], [u, v]) = (key(a), key(b));
         x.total_cmp(&u).then(y.total_cmp(&v)).then(a.cmp(&b))
     });
-    match order.windows(2).filter(|pair| points[pair[0]] == points[pair[1]]).min_by_key(|p| p[1]) {
+    match order.windows(2).filter(|pair| key(pair[0]) == key(pair[1])).min_by_key(|p| p[1]) {
         Some(pair) => Err(PointFault::doubled(pair[1], pair[0], &points[pair[1]])),
         None => Ok(()),
     }
@@ -138,10 +142,9 @@ fn check_doubled(points: &[Point]) -> Result<(), PointFault> {
 
 /// For each point, the points whose cells share an edge with its cell, from the Delaunay
 /// triangulation.
-fn neighbours(points: &[Point]) -> Vec<Vec<usize>> {
-    let vertices = points.iter().map(|&[x, y]| mitigate_underflow(Point2::new(x, y))).collect();
+fn neighbours(vertices: Vec<Point2<f64>>) -> Vec<Vec<usize>> {
     let net: DelaunayTriangulation<_> =
-        DelaunayTriangulation::bulk_load_stable(vertices).expect("positions are finite numbers");
+        DelaunayTriangulation::bulk_load_stable(vertices).expect("positions are within the extent");
     let of = |vertex: VertexHandle<'_, _>| {
         let mut all: Vec<usize> = vertex.out_edges().map(|edge| edge.to().index()).collect();
         // the order in which the cell is cut, which changes its rounding

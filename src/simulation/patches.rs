@@ -13,7 +13,7 @@ pub(crate) const LEAST_CELLS: usize = 16;
 
 /// Patch width at which one worker loses little at the edges of quiescent patches [cells]: on a
 /// line and in a plane.
-const SLEEPING_CELLS: [usize; 2] = [64, 32];
+const SLEEPING_CELLS: [usize; 2] = [200, 32];
 
 /// Patches with particles per worker in a plane where no patch becomes quiescent, at most.
 const MOST_BUSY_PATCHES: usize = 8;

@@ -176,10 +176,12 @@ fn profiles_at_an_interval_and_of_blocks_of_cells() {
         .failed(&["output.profiles.every", "one of both"]);
     let unknown = r#"output.fields={"every":1e-8,"quantities":["stress"]}"#;
     home.call(["scene.json", "--set", unknown]).end().failed(&["quantities[0]", "velocity"]);
+    let twice = r#"output.fields={"every":1e-8,"quantities":["mass","mass"]}"#;
+    home.call(["scene.json", "--set", twice]).end().failed(&["quantities[1]", "named twice"]);
     home.call(["scene.json", "--set", "output.fields={}"]).end().failed(&["every or times"]);
     for (diagrams, words) in [
         (r#"["density","stress"]"#, ["output.diagrams[1]", "velocity"]),
-        (r#"["pressure"]"#, ["output.diagrams[0]", "besides the pressure"]),
+        (r#"["pressure"]"#, ["output.diagrams[0]", "cannot be chosen"]),
         (r#"["mass","mass"]"#, ["output.diagrams[1]", "named twice"]),
     ] {
         let set = format!("output.diagrams={diagrams}");

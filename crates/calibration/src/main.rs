@@ -25,8 +25,8 @@ use flyer_mpm::accuracy::estimate::{EstimateBasis, SchemeFamily};
 const SEEDS: [u64; 4] = [20_261_101, 20_261_102, 20_261_103, 20_261_104];
 
 /// Share of cases left out of a fit that the intervals hold: plateau, arrival, L1. More than the 95 %
-/// that are promised, since other materials and schemes differ from those of the fit; most for the
-/// quantities whose intervals are narrow enough.
+/// that are promised, since other materials and schemes differ from those of the fit. The share is
+/// greatest for L1, whose intervals are the narrowest.
 const SHARES: [f64; 3] = [0.97, 0.98, 0.99];
 
 /// Share of the cases outside of the range of the fit that the wider intervals hold.
@@ -52,10 +52,10 @@ const PLATEAU: &[&str] = &[
     "exp_other_compression",
 ];
 
-/// Those of the impact, and the sum of all differences.
+/// Indicators of the impact, the length of the plateau, and the sum of all differences.
 const FEW: &[&str] = &["spread", "cells", OTHER_CELLS, "compression", "other_compression"];
 
-/// Those whose products matter.
+/// All indicators of [`PLATEAU`] but the exponentials: their products are terms of the larger set.
 const MANY: &[&str] = &[
     "spread",
     "difference_2",

@@ -54,8 +54,8 @@ fn indicator(scheme: &str) -> String {
     format!("is {scheme}")
 }
 
-/// Laws of a quantity for all schemes. The schemes share most weights of the evidence, so that all runs
-/// contribute to the tail of the errors.
+/// Laws of a quantity for all schemes. The schemes share the weights of products, and each scheme adds
+/// to the weights of single indicators, so that all runs contribute to the tail of the errors.
 fn laws(all: &[CheckedEstimate], schemes: &[String]) -> BTreeMap<String, ErrorLaws> {
     let of_scale = |t: &CheckedEstimate| {
         let CheckedEstimate { strength, compressions, other_thickness, .. } = *t;

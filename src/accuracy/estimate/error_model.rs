@@ -1,11 +1,12 @@
 //! Error models: the expected error from indicators, fitted on random impacts.
 //!
 //! The half-width is exp(w0 + sum of w_k ln(indicator_k)) times a factor; products of two logarithms
-//! can be further terms of the sum. The weights are fitted to a high quantile of ln|error| (Koenker &
-//! Bassett 1978), so that uncertain cases get a wider interval. An indicator outside of its range in
-//! the fit counts as the nearer end of the range, because products cannot be extrapolated. The factor makes the intervals hold the intended share of cases that were left out of
-//! the fit (conformal calibration, Vovk et al. 2005). Each family of schemes has models of its own.
-//! Outside of the fitted range a further factor of at least 1 makes them hold 90 % of the cases.
+//! can be further terms of the sum. An indicator outside of its range in the fit counts as the nearer
+//! end of the range, because products cannot be extrapolated. The weights are fitted to a high
+//! quantile of ln|error| (Koenker & Bassett 1978), so that uncertain cases get a wider interval. The
+//! factor makes the intervals hold the intended share of cases that were left out of the fit
+//! (conformal calibration, Vovk et al. 2005). Each family of schemes has models of its own. Outside
+//! of the fitted range a further factor of at least 1 makes them hold 90 % of the cases.
 //! `scripts/calibrate_estimates.sh` repeats the fit and writes the file of [`DATA`].
 
 use std::collections::BTreeMap;

@@ -316,21 +316,22 @@ impl<'a> Estimator<'a> {
         let left = self.waves.as_ref().map_or(PlateauLeft::Unknown, |w| w.plateau(table.time));
         let start = scene.scene.bodies[body].pressure;
         let above = |line: &Polyline| line.iter().map(|q| (q.0, q.1 - start)).collect::<Polyline>();
+        let least = if left == PlateauLeft::Unknown { LEAST_LEVEL } else { LEAST_PLATEAU };
         let found = match left {
             PlateauLeft::None(reason) => return Err(reason),
-            PlateauLeft::Length(length) if length < LEAST_PLATEAU * h => {
+            PlateauLeft::Length(length) if length < least * h => {
                 let cells = (length / h).floor();
                 return Err(format!(
                     "the plateau is {cells} cells long, and its pressure is reported from \
-                     {LEAST_PLATEAU} cells on"
+                     {least} cells on"
                 ));
             }
             PlateauLeft::Length(length) => plateau::of_length(&above(own), h, length),
-            PlateauLeft::Unknown => plateau::find(&above(own), h, LEAST_LEVEL as usize),
+            PlateauLeft::Unknown => plateau::find(&above(own), h, least as usize),
         };
         let found = found
             .filter(|found| found.pressure > self.least)
-            .ok_or_else(|| format!("no level pressure over {LEAST_LEVEL} cells behind a shock"))?;
+            .ok_or_else(|| format!("no level pressure over {least} cells behind a shock"))?;
         let lines: Vec<(f64, Polyline)> =
             others.iter().map(|(f, line)| (*f, above(line))).collect();
         let lines: Vec<(f64, &Polyline)> = lines.iter().map(|(f, line)| (*f, line)).collect();

@@ -28,7 +28,8 @@ fn fails(scene: &CheckedScene, table: &ParticleTable) -> bool {
     let cutoff = |body| scene.material_of(body).tension_cutoff().filter(|cutoff| *cutoff > 0.0);
     let cutoffs: Vec<Option<f64>> = (0..scene.bodies.len()).map(cutoff).collect();
     let pressure = table.column("pressure").unwrap_or_default();
-    // the cutoff of a porous material is that of its solid, whose pressure is p alpha (Carroll & Holt 1972)
+    // the cutoff holds for the pressure of the solid, which is p times the distension
+    // (Carroll & Holt 1972)
     let distension = table.column("distension");
     let is_at_cutoff = |row: usize| {
         let solid = pressure[row] * distension.map_or(1.0, |alpha| alpha[row]);

@@ -99,12 +99,11 @@ const LAST_PILOT: f64 = 0.35;
 /// Largest number of particles of the last pilot run.
 const MOST_PILOT: f64 = 4000.0;
 
-/// Most schemes that are timed by the last pilot runs, and the greatest time of a run with one of them
-/// over that with the cheapest \[-\]: the first pilot runs are too short to tell these apart.
+/// Number of the cheapest schemes that the last pilot runs compare, besides all up to [`SHORT`].
 const TIMED: usize = 3;
+/// Greatest time of such a scheme over that of the cheapest \[-\].
 const NEARLY_CHEAPEST: f64 = 1.5;
-/// Wall time up to which every candidate is timed: such a run has fewer particles than its first pilot
-/// runs \[s\].
+/// Wall time \[s\] up to which the last pilot runs compare all schemes, since they then cost little.
 const SHORT: f64 = 0.02;
 
 /// Largest number of particles of a plan, to limit memory and run time.
@@ -133,11 +132,6 @@ impl Cost {
 
     fn at(&self, h: f64) -> f64 {
         self.a / (h * h) + self.b / h
-    }
-
-    /// Cell size at which the cost is `seconds`.
-    fn cells_for(&self, seconds: f64) -> f64 {
-        (self.b + (self.b * self.b + 4.0 * self.a * seconds).sqrt()) / (2.0 * seconds)
     }
 }
 
@@ -292,7 +286,7 @@ impl<'a> Task<'a> {
                 let cells = particles as f64 / scheme.particles_per_cell as f64 / self.filled;
                 let cells = cells.ceil() as usize;
                 let (_, scene) = pilot::with_cells(&self.scene, self.file, &scheme, cells)?;
-                pilot::fastest(&scene, self.body, self.place)
+                pilot::typical(&scene, self.body, self.place)
             });
             let [coarse, fine] = match pilots {
                 [Ok(coarse), Ok(fine)] => [coarse, fine],
@@ -366,13 +360,13 @@ impl<'a> Task<'a> {
                     able.push((candidate, h, wall));
                 }
             }
-            let budget = target.budget / candidate.wall * target.ranks as f64;
-            let h = candidate.cost.cells_for(budget).max(limits[0]);
-            if h <= limits[1]
-                && let Some(error) = target.quantity.error(measured, scale, h)
-                && nearest.is_none_or(|n| error.most < n.2)
-            {
-                nearest = Some((candidate, h, error.most));
+            for h in target.quantity.sizes(scale, limits) {
+                if candidate.wall(h, target.ranks, extra) <= target.budget
+                    && let Some(error) = target.quantity.error(measured, scale, h)
+                    && nearest.is_none_or(|n| error.most < n.2)
+                {
+                    nearest = Some((candidate, h, error.most));
+                }
             }
         }
         able.sort_by(|a, b| a.2.total_cmp(&b.2));
@@ -445,16 +439,22 @@ fn scale_of(
     if place.is_some() && way.is_none() {
         return Err(format!("{}: nothing arrives there within the run", scene.file));
     }
-    let least_plateau = if waves.is_some() { LEAST_PLATEAU } else { LEAST_LEVEL };
     Ok(ErrorScale {
         pulse,
         plateau,
-        least_plateau,
+        least_plateau: least_plateau(scene, waves.as_ref()),
         way,
         strength: pressure / stiffness,
         compressions,
         other_thickness,
     })
+}
+
+/// Shortest plateau that the run reports in all profiles \[cells\].
+fn least_plateau(scene: &CheckedScene, waves: Option<&ImpactWaves>) -> f64 {
+    let is_exact =
+        |&time: &f64| waves.is_some_and(|waves| waves.plateau(time) != PlateauLeft::Unknown);
+    if scene.profile_times.iter().all(is_exact) { LEAST_PLATEAU } else { LEAST_LEVEL }
 }
 
 /// Length of the shortest plateau of the profiles \[m\], by the exact waves if they are known, else as
@@ -498,7 +498,7 @@ fn last_pilot(
     let fine = ((cells as f64 * share) as usize).max(cells.min(64));
     let [coarse, fine] = [fine.div_ceil(2), fine].map(|cells| {
         let (_, scene) = pilot::with_cells(scene, file, &candidate.scheme, cells)?;
-        pilot::fastest(&scene, body, None)
+        pilot::typical(&scene, body, None)
     });
     let (coarse, fine) = (coarse?, fine?);
     let seconds = |p: &Pilot| (p.cell_size, p.cpu_seconds.max(1e-6));
@@ -517,7 +517,6 @@ mod tests {
         let cost = Cost { a: 2.0, b: 3.0 };
         let fitted = Cost::through((0.5, cost.at(0.5)), (0.25, cost.at(0.25)));
         assert!((fitted.a - 2.0).abs() < 1e-12 && (fitted.b - 3.0).abs() < 1e-12, "{fitted:?}");
-        assert!((cost.cells_for(cost.at(0.1)) - 0.1).abs() < 1e-12);
         // cheaper on finer cells: noise
         let odd = Cost::through((0.5, 4.0), (0.25, 3.0));
         assert!(odd.a >= 0.0 && odd.b >= 0.0 && (odd.at(0.25) - 3.0).abs() < 1e-12);

@@ -101,19 +101,19 @@ impl Data {
 mod tests {
     use super::*;
 
-    /// An impact whose waves are known, and one whose waves are not.
-    fn impacts() -> [ImpactIndicators; 2] {
+    /// An impact whose waves are known, one whose waves are not, and one of a scene without two bodies.
+    fn impacts() -> [ImpactIndicators; 3] {
         let (compressions, other_thickness) = (Some([0.1, 0.15]), Some(0.8));
         let known = ImpactIndicators { strength: 0.12, compressions, other_thickness };
-        [known, ImpactIndicators { compressions: None, ..known }]
+        let unknown = ImpactIndicators { compressions: None, ..known };
+        [known, unknown, ImpactIndicators { other_thickness: None, ..unknown }]
     }
 
     #[test]
     fn errors_of_every_scheme_fall_with_more_cells() {
-        let [waves, unknown] = impacts();
         for (name, measured) in &Data::shipped().schemes {
             for laws in [&measured.l1, &measured.plateau, &measured.arrival] {
-                for impact in [&waves, &unknown] {
+                for impact in &impacts() {
                     let [coarse, fine] = [20.0, 80.0].map(|cells| laws.at(cells, impact).unwrap());
                     assert!(0.0 < fine.most && fine.most < coarse.most, "{name}: {fine:?}");
                     assert!(fine.median <= fine.most, "{name}: {fine:?}");
@@ -124,18 +124,18 @@ mod tests {
 
     #[test]
     fn the_law_with_the_compressions_comes_first() {
-        let [known, unknown] = impacts();
+        let [known, unknown, alone] = impacts();
         let evidence = known.evidence(40.0);
         assert_eq!(
             (evidence[CELLS], evidence[STRENGTH], evidence[OTHER_CELLS]),
             (40.0, 0.12, 32.0)
         );
         assert_eq!((evidence["compression"], evidence["other_compression"]), (0.1, 0.15));
-        assert_eq!(unknown.evidence(40.0).len(), 3);
+        assert_eq!((unknown.evidence(40.0).len(), alone.evidence(40.0).len()), (3, 2));
         for measured in Data::shipped().schemes.values() {
             let first = &measured.arrival.most.0[0].evidence;
             assert!(first.iter().any(|name| name == "other_compression"), "{first:?}");
-            // weak shocks are wide, and strong ones have errors of their own
+            // the arrival error is least at medium strength: weak shocks are wide
             let of_shocks = [[0.005, 0.004], [0.05, 0.03], [0.4, 0.09]];
             let [weak, medium, strong] = of_shocks.map(|[compression, strength]| {
                 let compressions = Some([compression; 2]);

@@ -5,7 +5,7 @@ use super::data::{ErrorLaws, ImpactIndicators, SchemeAccuracy, Size};
 use crate::accuracy::estimate::{Bounded, EstimatedErrors};
 use crate::scene::{PlannedQuantity, planned_quantities};
 
-/// Number of cell sizes between the largest and the smallest that a plan compares first.
+/// Number of steps of the search from the largest cell size to the smallest.
 const SIZES: usize = 60;
 
 /// Lengths and strength of the impact that scale the errors of a scene.
@@ -96,6 +96,19 @@ impl PlannedQuantity {
         self.laws(m).at(length / h, &impact)
     }
 
+    /// Cell sizes between `least` and `greatest` [m], the largest first; none if the length that scales
+    /// the error has too few of the smallest cells.
+    pub(super) fn sizes(
+        self,
+        scale: &ErrorScale,
+        [least, greatest]: [f64; 2],
+    ) -> impl Iterator<Item = f64> {
+        let longest = self.length(scale).map_or(0.0, |length| length / self.least_cells(scale));
+        let greatest = greatest.min(longest);
+        let size = move |k: usize| greatest * (least / greatest).powf(k as f64 / SIZES as f64);
+        (0..=SIZES).map(size).filter(move |_| greatest >= least)
+    }
+
     /// Largest cell size [m] between `least` and `greatest` [m] at which the relative error is at
     /// most `error` in 19 of 20 runs; `None` if there is none.
     pub(super) fn cells_for(
@@ -103,17 +116,13 @@ impl PlannedQuantity {
         m: &SchemeAccuracy,
         scale: &ErrorScale,
         error: f64,
-        [least, greatest]: [f64; 2],
+        limits: [f64; 2],
     ) -> Option<f64> {
         let reaches = |h: f64| self.error(m, scale, h).is_some_and(|size| size.most <= error);
-        let greatest = greatest.min(self.length(scale).ok()? / self.least_cells(scale));
-        if greatest < least {
-            return None;
-        }
-        // the law may rise again at its ends, so that the first size that reaches the error is searched
-        let size = |k: usize| greatest * (least / greatest).powf(k as f64 / SIZES as f64);
-        let first = (0..=SIZES).find(|&k| reaches(size(k)))?;
-        let (mut fine, mut coarse) = (size(first), size(first.saturating_sub(1)));
+        // a law can rise again for small cells: the search starts from the largest size
+        let sizes: Vec<f64> = self.sizes(scale, limits).collect();
+        let first = sizes.iter().position(|&h| reaches(h))?;
+        let (mut fine, mut coarse) = (sizes[first], sizes[first.saturating_sub(1)]);
         for _ in 0..40 {
             let middle = (fine * coarse).sqrt();
             if reaches(middle) { fine = middle } else { coarse = middle }
@@ -128,5 +137,54 @@ fn relative(b: &Bounded) -> Option<(f64, bool)> {
         (Some(exact), _) => Some(((b.value - exact).abs() / exact.abs(), true)),
         (None, Some(width)) => Some((width / b.value.abs(), false)),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accuracy::estimate::QuantityLaws;
+    use crate::accuracy::estimate::error_model::Law;
+
+    /// A scheme whose errors of the L1 are least, 0.01, at 40 cells, and four times as large at 10 and at
+    /// 160 cells.
+    fn scheme() -> SchemeAccuracy {
+        let middle = 40.0_f64.ln();
+        let square = 1.0 / 4.0_f64.ln();
+        let law = Law {
+            evidence: ["cells", "cells*cells"].map(String::from).to_vec(),
+            weights: vec![0.01_f64.ln() + square * middle * middle, -2.0 * square * middle, square],
+            factor: 1.0,
+            cases: 1,
+            ranges: [("cells".to_string(), [5.0, 500.0])].into(),
+        };
+        let laws = || QuantityLaws(vec![law.clone()]);
+        let both = || ErrorLaws { median: laws(), most: laws() };
+        SchemeAccuracy { l1: both(), plateau: both(), arrival: both(), runs: 1 }
+    }
+
+    #[test]
+    fn the_largest_size_that_reaches_the_error_is_found() {
+        let scale = ErrorScale {
+            pulse: 1.0,
+            plateau: Err("none".into()),
+            least_plateau: 10.0,
+            way: None,
+            strength: 0.1,
+            compressions: None,
+            other_thickness: None,
+        };
+        let sizes = |quantity: PlannedQuantity, error: f64, limits: [f64; 2]| {
+            quantity.cells_for(&scheme(), &scale, error, limits)
+        };
+        let l1 = |error, limits| sizes(PlannedQuantity::L1, error, limits);
+        // between 10 and 160 cells the error is at most 0.04; smaller cells do not reach it again
+        for limits in [[0.001, 0.2], [1e-9, f64::INFINITY]] {
+            assert!((l1(0.04, limits).unwrap() - 0.1).abs() < 1e-9);
+        }
+        assert_eq!(l1(0.04, [0.001, 0.05]), Some(0.05));
+        assert_eq!(l1(0.009, [0.001, 0.2]), None);
+        assert_eq!(l1(0.04, [0.3, 1.0]), None, "fewer than four cells in the pulse");
+        assert_eq!(sizes(PlannedQuantity::PlateauPressure, 0.04, [0.001, 0.2]), None);
     }
 }

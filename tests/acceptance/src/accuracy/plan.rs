@@ -17,8 +17,8 @@ use crate::table::Table;
 
 /// Impacts that are planned and run.
 const IMPACTS: usize = bounds::plan::RUNS.number() as usize;
-/// Their seed.
-const SEED: u64 = 20_260_404;
+/// Their seed, drawn after the fit.
+const SEED: u64 = 204_523_745;
 /// What the impacts are drawn from.
 const DRAW: Draw<'static> =
     Draw { library: &HELD_OUT, invented: 0.5, schemes: Schemes::Default, beyond: false };
