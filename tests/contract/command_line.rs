@@ -269,7 +269,7 @@ fn there_is_a_page_for_every_command() {
 #[test]
 fn a_bar_is_drawn_without_a_terminal_only_if_it_is_asked_for() {
     let home = Home::with(&short());
-    let long = ["--set", "domain.cell_size=2e-6", "--set", "time.end=1e-7"];
+    let long = ["--set", "domain.cell_size=1e-6", "--set", "time.end=1e-7"];
     let drawn = |choice: &str| {
         let args = ["scene.json", "--progress", choice].into_iter().chain(long);
         let out = home.call(args).end();

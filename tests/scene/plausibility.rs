@@ -33,6 +33,10 @@ fn densities_in_other_units() {
 fn bodies_of_few_cells() {
     let cells = |size: &str| format!("domain.cell_size={size}");
     warned("flyer.json", &[&cells("1e-4")], &[&cells("5e-5")], "bodies.flyer: 5.0 cells across");
+    let plan = r#"output.plan={"quantity":"l1","wanted":0.1,"error":0.1,"cpu_seconds":1,
+                  "wall_seconds":1,"guess":false}"#;
+    let planned = [&cells("1e-4"), plan];
+    warned("flyer.json", &[&cells("1e-4")], &planned, "bodies.flyer: 5.0 cells across");
 }
 
 #[test]

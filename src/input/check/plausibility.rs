@@ -104,9 +104,12 @@ fn densities(checked: &CheckedScene, speeds: &[f64]) -> Vec<String> {
     all
 }
 
-/// Bodies with few cells across. Elastic solids are left out, and directions in which a body fills
+/// Bodies with few cells across, unless a plan has predicted the error of these cells. Elastic solids are left out, and directions in which a body fills
 /// the domain.
 fn bodies(checked: &CheckedScene) -> Vec<String> {
+    if checked.scene.output.plan.is_some() {
+        return Vec::new();
+    }
     let cells = |i: usize| {
         let body = &checked.bodies[i];
         let across = |a: usize| (body.upper[a] - body.lower[a]) / checked.cell_size[a];
