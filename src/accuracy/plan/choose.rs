@@ -442,7 +442,7 @@ fn scale_of(
     Ok(ErrorScale {
         pulse,
         plateau,
-        least_plateau: least_plateau(scene, waves.as_ref()),
+        least_plateau: least_plateau(scene, body, waves.as_ref()),
         way,
         strength: pressure / stiffness,
         compressions,
@@ -450,11 +450,15 @@ fn scale_of(
     })
 }
 
-/// Shortest plateau that the run reports in all profiles \[cells\].
-fn least_plateau(scene: &CheckedScene, waves: Option<&ImpactWaves>) -> f64 {
+/// Shortest plateau that a plan accepts \[cells\]: one that the run reports in all profiles. In a scene
+/// outside of the fit it is longer, since the errors of short plateaus are not known there.
+fn least_plateau(scene: &CheckedScene, body: usize, waves: Option<&ImpactWaves>) -> f64 {
     let is_exact =
         |&time: &f64| waves.is_some_and(|waves| waves.plateau(time) != PlateauLeft::Unknown);
-    if scene.profile_times.iter().all(is_exact) { LEAST_PLATEAU } else { LEAST_LEVEL }
+    let mut outside = Laws::shipped().fitted.outside(scene, body);
+    outside.arrivals.clear();
+    let is_fitted = outside.basis() == EstimateBasis::Calibrated;
+    if is_fitted && scene.profile_times.iter().all(is_exact) { LEAST_PLATEAU } else { LEAST_LEVEL }
 }
 
 /// Length of the shortest plateau of the profiles \[m\], by the exact waves if they are known, else as

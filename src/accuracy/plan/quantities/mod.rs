@@ -14,7 +14,7 @@ pub(super) struct ErrorScale {
     pub pulse: f64,
     /// Shortest plateau [m], or the reason why there is none.
     pub plateau: Result<f64, String>,
-    /// Shortest plateau that the run reports [cells].
+    /// Shortest plateau that the plan accepts [cells].
     pub least_plateau: f64,
     /// Distance of the wave to the arrival position [m].
     pub way: Option<f64>,
