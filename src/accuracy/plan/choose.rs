@@ -4,8 +4,10 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+use super::cell_counts::Lengths;
 use super::data::{Data, SchemeAccuracy};
 use super::pilot::{self, Pilot};
+use super::price::Price;
 use super::quantities::ErrorScale;
 use super::schemes::{PlannedScheme, schemes};
 use crate::accuracy::estimate::{
@@ -93,7 +95,8 @@ pub fn percent(fraction: f64) -> String {
 /// Particles of the two pilot runs of each scheme.
 const PILOTS: [usize; 2] = [300, 600];
 
-/// Particles of the last pilot run over those of the run; its time scales with the square.
+/// Particles of the last pilot run over those of a run that takes longer than [`SHORT`]; its time
+/// scales with the square.
 const LAST_PILOT: f64 = 0.35;
 
 /// Largest number of particles of the last pilot run.
@@ -103,56 +106,18 @@ const MOST_PILOT: f64 = 4000.0;
 const TIMED: usize = 3;
 /// Greatest time of such a scheme over that of the cheapest \[-\].
 const NEARLY_CHEAPEST: f64 = 1.5;
-/// Wall time \[s\] up to which the last pilot runs compare all schemes, since they then cost little.
-const SHORT: f64 = 0.02;
+/// Wall time \[s\] up to which the last pilot runs compare all schemes and have the cells of the run,
+/// since they then cost little.
+const SHORT: f64 = 0.05;
 
 /// Largest number of particles of a plan, to limit memory and run time.
 const MOST_PARTICLES: f64 = 1e7;
-
-/// CPU seconds as a function of the cell size h: a / h^2 + b / h.
-#[derive(Clone, Copy, Debug)]
-struct Cost {
-    a: f64,
-    b: f64,
-}
-
-impl Cost {
-    /// Cost through two pilot runs, with a and b not negative.
-    fn through(coarse: (f64, f64), fine: (f64, f64)) -> Cost {
-        let ((h0, s0), (h1, s1)) = (coarse, fine);
-        // s h = a / h + b
-        let a = (s1 * h1 - s0 * h0) / (1.0 / h1 - 1.0 / h0);
-        let b = s1 * h1 - a / h1;
-        match (a > 0.0, b > 0.0) {
-            (true, true) => Cost { a, b },
-            (false, _) => Cost { a: 0.0, b: s1 * h1 },
-            (_, false) => Cost { a: s1 * h1 * h1, b: 0.0 },
-        }
-    }
-
-    fn at(&self, h: f64) -> f64 {
-        self.a / (h * h) + self.b / h
-    }
-}
 
 /// A scheme with the results of its pilot runs.
 struct Candidate {
     scheme: PlannedScheme,
     measured: SchemeAccuracy,
-    cost: Cost,
-    /// Wall time over CPU time.
-    wall: f64,
-    /// Number of steps times the cell size \[m\].
-    steps: f64,
-}
-
-impl Candidate {
-    fn wall(&self, h: f64, ranks: usize, extra: f64) -> f64 {
-        let cores = std::thread::available_parallelism().map_or(1, usize::from);
-        let share = ranks.min(cores).max(1) as f64;
-        let messages = if ranks > 1 { extra * self.steps / h } else { 0.0 };
-        self.cost.at(h) * self.wall / share + messages
-    }
+    price: Price,
 }
 
 /// A candidate on the cells of its run, timed by the last pilot runs.
@@ -174,8 +139,7 @@ struct Task<'a> {
     data: &'a Data,
     body: usize,
     place: Option<f64>,
-    /// Length of the domain \[m\].
-    length: f64,
+    lengths: Lengths,
     /// Particles per cell of the domain, for a scheme with one particle per cell, over the length
     /// \[1/m\].
     filled: f64,
@@ -219,8 +183,8 @@ pub fn plan(
         courant: timed.scheme.courant,
         error: error.most,
         error_median: error.median,
-        cpu_seconds: timed.cost.at(h),
-        wall_seconds: timed.wall(h, target.ranks, data.rank_step_seconds),
+        cpu_seconds: timed.price.cpu(h),
+        wall_seconds: timed.price.wall(h, target.ranks, data.rank_step_seconds),
         pilot_seconds: start.elapsed().as_secs_f64(),
         basis: outside.basis(),
         outside: outside.lines(),
@@ -270,10 +234,10 @@ impl<'a> Task<'a> {
                 "{file}: error_estimate.arrivals: missing key; allowed: places, or --at METRES"
             ));
         }
-        let length = checked.scene.domain.upper[0] - checked.scene.domain.lower[0];
-        let filled = filled(&checked) / length;
+        let lengths = Lengths::new(&checked);
+        let filled = lengths.filled() / lengths.domain;
         let fitted = fitted_cell_sizes(&checked, body);
-        let task = Task { scene, file, target, data, body, place, length, filled, fitted };
+        let task = Task { scene, file, target, data, body, place, lengths, filled, fitted };
         Ok((task, checked))
     }
 
@@ -285,6 +249,7 @@ impl<'a> Task<'a> {
             let pilots = PILOTS.map(|particles| {
                 let cells = particles as f64 / scheme.particles_per_cell as f64 / self.filled;
                 let cells = cells.ceil() as usize;
+                let cells = self.lengths.of_run(cells, scheme.particles_per_cell, usize::MAX);
                 let (_, scene) = pilot::with_cells(&self.scene, self.file, &scheme, cells)?;
                 pilot::typical(&scene, self.body, self.place)
             });
@@ -299,14 +264,8 @@ impl<'a> Task<'a> {
             if scale.is_none() {
                 scale = Some(scale_of(&fine, checked, self.body, self.place)?);
             }
-            let seconds = |p: &Pilot| (p.cell_size, p.cpu_seconds.max(1e-6));
-            candidates.push(Candidate {
-                scheme,
-                measured: measured.clone(),
-                cost: Cost::through(seconds(&coarse), seconds(&fine)),
-                wall: (fine.wall_seconds / fine.cpu_seconds.max(1e-6)).max(1.0),
-                steps: fine.steps as f64 * fine.cell_size,
-            });
+            let price = Price::through(&coarse, &fine);
+            candidates.push(Candidate { scheme, measured: measured.clone(), price });
         }
         let scale =
             scale.ok_or_else(|| format!("no scheme can run the scene: {}", faults.join("; ")))?;
@@ -327,16 +286,38 @@ impl<'a> Task<'a> {
 
     /// A candidate on cells of about `h` \[m\], timed by the last pilot runs.
     fn timed(&self, candidate: &Candidate, h: f64) -> Result<Timed, String> {
-        let cells = (self.length / h).ceil() as usize;
+        let cells = (self.lengths.domain / h).ceil() as usize;
+        // a float that is too large becomes the largest integer
+        let most = (self.lengths.domain / self.fitted[0]) as usize;
+        let cells = self.lengths.of_run(cells, candidate.scheme.particles_per_cell, most);
         let (scene, run) = pilot::with_cells(&self.scene, self.file, &candidate.scheme, cells)?;
         let h = run.cell_size[0];
-        let sizes = (h, run.particles as f64);
-        let (cost, wall, steps) =
-            last_pilot(&self.scene, self.file, candidate, sizes, self.body, cells)?;
+        let price = match candidate.price.wall(h, 1, 0.0) {
+            ..=SHORT => Price::of(&pilot::typical(&run, self.body, None)?),
+            _ => self.last_price(candidate, run.particles as f64, cells)?,
+        };
         let (scheme, measured) = (candidate.scheme.clone(), candidate.measured.clone());
-        let candidate = Candidate { scheme, measured, cost, wall, steps };
-        let wall = candidate.wall(h, self.target.ranks, self.data.rank_step_seconds);
+        let candidate = Candidate { scheme, measured, price };
+        let wall = candidate.price.wall(h, self.target.ranks, self.data.rank_step_seconds);
         Ok(Timed { candidate, scene, run, wall })
+    }
+
+    /// Price by a pilot run slightly coarser than the run on `cells` cells, and one with half of the
+    /// cells of that.
+    fn last_price(
+        &self,
+        candidate: &Candidate,
+        particles: f64,
+        cells: usize,
+    ) -> Result<Price, String> {
+        let share = LAST_PILOT.min(MOST_PILOT / particles);
+        let fine = ((cells as f64 * share) as usize).max(cells.min(64));
+        let [coarse, fine] = [fine.div_ceil(2), fine].map(|pilot| {
+            let pilot = self.lengths.of_pilot(pilot, candidate.scheme.particles_per_cell, cells);
+            let (_, scene) = pilot::with_cells(&self.scene, self.file, &candidate.scheme, pilot)?;
+            pilot::typical(&scene, self.body, None)
+        });
+        Ok(Price::through(&coarse?, &fine?))
     }
 
     /// The cheapest schemes that reach the target within the budget, with their cell sizes \[m\], the
@@ -347,7 +328,7 @@ impl<'a> Task<'a> {
         scale: &ErrorScale,
     ) -> Result<Vec<(&'b Candidate, f64)>, PlanError> {
         let (target, extra) = (self.target, self.data.rank_step_seconds);
-        let fewest = filled_cells_limit(self.filled, self.length);
+        let fewest = filled_cells_limit(self.filled, self.lengths.domain);
         let mut able: Vec<(&Candidate, f64, f64)> = Vec::new();
         let mut nearest: Option<(&Candidate, f64, f64)> = None;
         for candidate in candidates {
@@ -355,13 +336,13 @@ impl<'a> Task<'a> {
             let limits = [floor.max(self.fitted[0]), self.fitted[1]];
             let measured = &candidate.measured;
             if let Some(h) = target.quantity.cells_for(measured, scale, target.error, limits) {
-                let wall = candidate.wall(h, target.ranks, extra);
+                let wall = candidate.price.wall(h, target.ranks, extra);
                 if wall <= target.budget {
                     able.push((candidate, h, wall));
                 }
             }
             for h in target.quantity.sizes(scale, limits) {
-                if candidate.wall(h, target.ranks, extra) <= target.budget
+                if candidate.price.wall(h, target.ranks, extra) <= target.budget
                     && let Some(error) = target.quantity.error(measured, scale, h)
                     && nearest.is_none_or(|n| error.most < n.2)
                 {
@@ -384,7 +365,7 @@ impl<'a> Task<'a> {
             best: error,
             scheme: candidate.scheme.name.clone(),
             cell_size: h,
-            seconds: candidate.wall(h, target.ranks, extra),
+            seconds: candidate.price.wall(h, target.ranks, extra),
         })
     }
 }
@@ -398,11 +379,6 @@ fn fitted_cell_sizes(scene: &CheckedScene, body: usize) -> [f64; 2] {
     let [fewest, most] = Laws::shipped().fitted.flyer_cells;
     // the domain has whole cells, which are somewhat smaller than those that the plan asks for
     [1.05 * thickness / most, thickness / fewest]
-}
-
-/// Total length of the bodies \[m\].
-fn filled(scene: &CheckedScene) -> f64 {
-    scene.bodies.iter().map(|b| b.upper[0] - b.lower[0]).sum()
 }
 
 /// Smallest cell size of a scheme with one particle per cell \[m\].
@@ -485,44 +461,5 @@ fn shortest_plateau(
     match shortest.reduce(f64::min) {
         Some(length) => Ok(length),
         None => all.into_iter().last().unwrap_or_else(|| Err("no profile".into())),
-    }
-}
-
-/// Cost by a pilot run slightly coarser than the run and one with half of its cells; also the wall
-/// time over CPU time, and the number of steps times the cell size.
-fn last_pilot(
-    scene: &Value,
-    file: &str,
-    candidate: &Candidate,
-    (h, particles): (f64, f64),
-    body: usize,
-    cells: usize,
-) -> Result<(Cost, f64, f64), String> {
-    let share = LAST_PILOT.min(MOST_PILOT / particles);
-    let fine = ((cells as f64 * share) as usize).max(cells.min(64));
-    let [coarse, fine] = [fine.div_ceil(2), fine].map(|cells| {
-        let (_, scene) = pilot::with_cells(scene, file, &candidate.scheme, cells)?;
-        pilot::typical(&scene, body, None)
-    });
-    let (coarse, fine) = (coarse?, fine?);
-    let seconds = |p: &Pilot| (p.cell_size, p.cpu_seconds.max(1e-6));
-    let steps = fine.steps as f64 * fine.cell_size;
-    debug_assert!(h > 0.0);
-    let wall = (fine.wall_seconds / fine.cpu_seconds.max(1e-6)).max(1.0);
-    Ok((Cost::through(seconds(&coarse), seconds(&fine)), wall, steps))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn costs_go_through_pilots_and_back() {
-        let cost = Cost { a: 2.0, b: 3.0 };
-        let fitted = Cost::through((0.5, cost.at(0.5)), (0.25, cost.at(0.25)));
-        assert!((fitted.a - 2.0).abs() < 1e-12 && (fitted.b - 3.0).abs() < 1e-12, "{fitted:?}");
-        // cheaper on finer cells: noise
-        let odd = Cost::through((0.5, 4.0), (0.25, 3.0));
-        assert!(odd.a >= 0.0 && odd.b >= 0.0 && (odd.at(0.25) - 3.0).abs() < 1e-12);
     }
 }

@@ -6,10 +6,12 @@
 //! this machine. [`choose`] combines the two. Only for scenes on a line, for the body of
 //! `error_estimate` or of the reference. Does not depend on MPI.
 
+mod cell_counts;
 pub mod choose;
 pub mod data;
 pub mod pilot;
 pub mod plan_result;
+mod price;
 mod quantities;
 pub mod schemes;
 
