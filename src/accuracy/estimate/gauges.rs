@@ -52,11 +52,13 @@ pub(super) struct Rounding {
     pub velocity: f64,
 }
 
-/// Error estimates of the histories of a run; those that are zero or rounding are left out.
+/// Error estimates of the histories of a run, with half-widths `widened` by a factor; those that are
+/// zero or rounding are left out.
 pub(super) fn of_histories(
     own: &GaugeRecords,
     coarse_runs: &CoarseRuns,
     rounding: Rounding,
+    widened: f64,
 ) -> Vec<HistoryEstimate> {
     let estimate = |history: &GaugeHistory| {
         let least = match &history.quantity[..] {
@@ -70,7 +72,7 @@ pub(super) fn of_histories(
             gauge: history.gauge.clone(),
             quantity: history.quantity.clone(),
             basis: EstimateBasis::Guess,
-            l1: differences.l1(1.0),
+            l1: differences.l1(widened),
         })
     };
     own.histories.iter().filter_map(estimate).collect()
@@ -165,11 +167,11 @@ mod tests {
         let coarse_runs = CoarseRuns { done: vec![coarse], ..CoarseRuns::default() };
         // the histories differ by 0.4 of 4
         let rounding = Rounding { pressure: 2.0, velocity: 0.0 };
-        let histories = of_histories(&own, &coarse_runs, rounding);
+        let histories = of_histories(&own, &coarse_runs, rounding, 3.0);
         assert_eq!(histories.len(), 1, "a pressure of rounding is left out: {histories:?}");
-        assert!((histories[0].l1.half_width.unwrap() - 0.2).abs() < 1e-12, "{histories:?}");
+        assert!((histories[0].l1.half_width.unwrap() - 3.0 * 0.2).abs() < 1e-12, "{histories:?}");
         let rounding = Rounding { pressure: 0.0, velocity: 2.0 };
-        assert_eq!(of_histories(&own, &coarse_runs, rounding)[0].quantity, "pressure");
+        assert_eq!(of_histories(&own, &coarse_runs, rounding, 1.0)[0].quantity, "pressure");
         let half_widths: Vec<f64> =
             of_readings(&own, &coarse_runs).iter().map(|r| r.value.half_width.unwrap()).collect();
         let expected = [0.3 * 0.1 * 2.0, 0.05 * 0.1 * 2.0, 0.2 * 0.1 * 2.0, 5.0 * 0.3 * 0.1 * 2.0];

@@ -167,8 +167,10 @@ pub fn other_cells(scene: &CheckedScene, body: usize) -> Option<f64> {
 
 /// Estimates the errors of a finished run.
 pub fn estimate(answer: &Answer<'_>, coarse_runs: &CoarseRuns, laws: &Laws) -> EstimatedErrors {
+    let factors = tensile_failure::factors(answer.scene, &answer.tables);
+    let of_histories = tensile_failure::factor_of_histories(&factors);
     let mut errors = match answer.scene.estimated_body() {
-        Some(body) => of_body(answer, body, coarse_runs, laws),
+        Some(body) => of_body(answer, body, coarse_runs, laws, factors),
         None => EstimatedErrors::default(),
     };
     errors.companions = coarse_runs.done.iter().map(|c| c.cell_size).collect();
@@ -179,7 +181,7 @@ pub fn estimate(answer: &Answer<'_>, coarse_runs: &CoarseRuns, laws: &Laws) -> E
         pressure: least_pressure_of_all(answer.scene, answer.steps),
         velocity: ROUNDING * answer.scene.cell_size[0] / cell_time(answer.scene, answer.steps),
     };
-    errors.histories = gauges::of_histories(answer.gauges, coarse_runs, rounding);
+    errors.histories = gauges::of_histories(answer.gauges, coarse_runs, rounding, of_histories);
     errors.readings = gauges::of_readings(answer.gauges, coarse_runs);
     errors
 }
@@ -190,8 +192,9 @@ fn of_body(
     body: usize,
     coarse_runs: &CoarseRuns,
     laws: &Laws,
+    factors: Vec<f64>,
 ) -> EstimatedErrors {
-    let estimator = Estimator::new(answer, body, coarse_runs, laws);
+    let estimator = Estimator::new(answer, body, coarse_runs, laws, factors);
     let mut missing: Vec<(String, f64)> = Vec::new();
     let profiles: Vec<ProfileEstimate> = (0..answer.tables.len())
         .map(|k| {
@@ -258,6 +261,7 @@ impl<'a> Estimator<'a> {
         body: usize,
         coarse_runs: &'a CoarseRuns,
         laws: &'a Laws,
+        factors: Vec<f64>,
     ) -> Self {
         let (scene, cell_time) = (answer.scene, cell_time(answer.scene, answer.steps));
         Estimator {
@@ -270,7 +274,7 @@ impl<'a> Estimator<'a> {
             waves: ImpactWaves::new(scene, body),
             cell_time,
             least: least_pressure(scene, body, cell_time),
-            factors: tensile_failure::factors(scene, &answer.tables),
+            factors,
         }
     }
 

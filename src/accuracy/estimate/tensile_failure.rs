@@ -11,6 +11,10 @@ use crate::simulation::ParticleTable;
 /// random scenes.
 const FACTOR: f64 = 10.0;
 
+/// Factor on the half-widths of histories of a run in which material fails \[-\], chosen on random
+/// scenes. It is smaller because histories begin before the failure.
+const FACTOR_OF_HISTORIES: f64 = 2.0;
+
 /// Share of the greatest tension from which a material counts as failing \[-\].
 const AT_CUTOFF: f64 = 0.99;
 
@@ -21,6 +25,11 @@ const FAILED: f64 = 0.5;
 pub fn factors(scene: &CheckedScene, tables: &[&ParticleTable]) -> Vec<f64> {
     let first = tables.iter().position(|table| fails(scene, table)).unwrap_or(tables.len());
     (0..tables.len()).map(|k| if k < first { 1.0 } else { FACTOR }).collect()
+}
+
+/// Factor on the half-widths of histories: above 1 if material fails in any profile.
+pub fn factor_of_histories(profiles: &[f64]) -> f64 {
+    if profiles.iter().any(|factor| *factor > 1.0) { FACTOR_OF_HISTORIES } else { 1.0 }
 }
 
 /// Whether any material is at its `tension_cutoff` or has failed.
@@ -72,6 +81,8 @@ mod tests {
         let [below, at, other] = [table(1, -1.9e9, 0.0), table(1, -2e9, 0.0), table(0, -2e9, 0.0)];
         assert_eq!(factors(&scene, &[&below, &other, &at]), [1.0, 1.0, FACTOR]);
         assert_eq!(factors(&scene, &[&at, &below]), [FACTOR, FACTOR]);
+        assert_eq!(factor_of_histories(&[1.0, FACTOR]), FACTOR_OF_HISTORIES);
+        assert_eq!(factor_of_histories(&[1.0, 1.0]), 1.0);
         assert_eq!(factors(&scene, &[&table(0, 0.0, 1.0)]), [FACTOR]);
         assert_eq!(factors(&scene, &[&porous(1, -1e9, 0.0, 1.9)]), [1.0]);
         assert_eq!(factors(&scene, &[&porous(1, -1e9, 0.0, 2.0)]), [FACTOR]);
