@@ -1,10 +1,11 @@
 //! Methods by name: a scene without `method`, or with one of the names of [`Preset`], gets a
-//! complete method and artificial viscosity that suit its contents.
+//! complete method and artificial viscosity that suit its contents, and heat mixing if gas moves.
 //!
 //! Each preset is a base method and a list of rules. A rule changes keys if the scene contains what
 //! it names, and gives its reason. Explicit keys of the scene come last; an option of the preset
 //! that they exclude is left out.
 
+use json_patch::merge;
 use serde_json::{Map, Value, json};
 
 use super::errors::{SceneFault, suggest};
@@ -29,6 +30,8 @@ struct SceneContents {
     failure: bool,
     /// Some body is a gas or an explosive.
     gas: bool,
+    /// Some body of gas moves at the start.
+    moving_gas: bool,
     /// Some body is an explosive with a burn front.
     burn: bool,
     porous: bool,
@@ -36,8 +39,8 @@ struct SceneContents {
 
 struct Rule {
     applies: fn(&SceneContents) -> bool,
-    /// Keys of the method and of the viscosity that change; `null` removes a key.
-    changes: fn() -> [Value; 2],
+    /// Keys of the scene that change, as a merge patch (RFC 7396): `null` removes a key.
+    changes: fn() -> Value,
     reason: &'static str,
 }
 
@@ -45,90 +48,105 @@ struct Rule {
 const RULES: &[Rule] = &[
     Rule {
         applies: |c| (c.contact || c.failure || c.gas) && !c.plane && !c.strength,
-        changes: || [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), moderate()],
+        changes: || {
+            json!({"method": {"transfer": {"fmpm": 6}, "edge_mask": 0.3},
+                "artificial_viscosity": moderate()})
+        },
         reason: "a moderate viscosity, since surfaces may separate or gas may expand",
     },
     Rule {
         applies: |c| c.gas && !c.plane,
-        changes: || [json!({"domain_limit": 4.0}), json!({})],
+        changes: || json!({"method": {"domain_limit": 4.0}}),
         reason: "a domain limit, since gas may expand without bound",
     },
     Rule {
         applies: |c| c.strength && !c.plane,
         changes: || {
-            let viscosity = json!({"linear": 0.2, "quadratic": 2.0, "growth": null});
-            [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), viscosity]
+            json!({"method": {"transfer": {"fmpm": 6}, "edge_mask": 0.3},
+                "artificial_viscosity": {"linear": 0.2, "quadratic": 2.0, "growth": null}})
         },
         reason: "a stronger viscosity, since elastic precursors are more accurate with it",
     },
     Rule {
         applies: |c| c.strength && !(c.plane || c.contact || c.failure || c.gas || c.porous),
         changes: || {
-            let method = json!({"transfer": {"fmpm": 12}, "edge_mask": 0.4,
-                "flux_limiter": {"neighbours": 1}});
-            let growth = json!({"rate": 6.0, "max": 2.0});
-            [method, json!({"linear": 0.03, "quadratic": 0.4, "growth": growth})]
+            json!({"method": {"transfer": {"fmpm": 12}, "edge_mask": 0.4,
+                    "flux_limiter": {"neighbours": 1}},
+                "artificial_viscosity": {"linear": 0.03, "quadratic": 0.4,
+                    "growth": {"rate": 6.0, "max": 2.0}}})
         },
         reason: "a flux limiter with a weak viscosity, since no wave separates bodies",
     },
     Rule {
         applies: |c| c.plane,
         changes: || {
-            let relaxation = json!({"rate": 0.2, "interval": 1});
-            let method = json!({"transfer": {"fmpm": 4}, "edge_mask": 0.3, "domain_limit": 1.0,
-                "heat_spreading": {"steps": 50}, "pressure_relaxation": relaxation});
-            [method, json!({"linear": 0.1, "quadratic": 0.75, "growth": null})]
+            json!({"method": {"transfer": {"fmpm": 4}, "edge_mask": 0.3, "domain_limit": 1.0,
+                    "heat_spreading": {"steps": 50},
+                    "pressure_relaxation": {"rate": 0.2, "interval": 1}},
+                "artificial_viscosity": {"linear": 0.1, "quadratic": 0.75, "growth": null}})
         },
         reason: "a lower transfer order, a domain limit and spreading of heat, since the scene has two \
                  dimensions",
     },
     Rule {
         applies: |c| c.plane && !(c.axisymmetric || c.gas || (c.body_force && !c.contact)),
-        changes: || [json!({"spin": true, "domain_limit": 0.7}), json!({})],
+        changes: || json!({"method": {"spin": true, "domain_limit": 0.7}}),
         reason: "spin, since bodies may turn, with a shorter domain limit",
     },
     Rule {
         applies: |c| c.plane && c.strength,
-        changes: || [json!({"pressure_relaxation": {"rate": 0.4, "interval": 5}}), moderate()],
+        changes: || {
+            json!({"method": {"pressure_relaxation": {"rate": 0.4, "interval": 5}},
+                "artificial_viscosity": moderate()})
+        },
         reason: "relaxation every fifth step, since plastic flow needs little of it",
     },
     Rule {
         applies: |c| c.plane && c.gas && !c.burn,
         changes: || {
-            let viscosity = json!({"linear": 0.1, "quadratic": 0.5, "limited": "both"});
-            [json!({"transfer": {"fmpm": 2}, "heat_spreading": null}), viscosity]
+            json!({"method": {"transfer": {"fmpm": 2}, "heat_spreading": null},
+                "artificial_viscosity": {"linear": 0.1, "quadratic": 0.5, "limited": "both"}})
         },
         reason: "a low transfer order without spreading of heat, since gas may flow towards a point or \
                  an axis",
     },
     Rule {
+        applies: |c| c.moving_gas && !c.burn,
+        changes: || json!({"heat_mixing": {"coefficient": 20.0}}),
+        reason: "heat mixing, since a shock heats a moving gas too much at the wall where it starts",
+    },
+    Rule {
+        applies: |c| c.moving_gas && c.plane && !c.burn,
+        changes: || json!({"artificial_viscosity": {"linear": 0.05, "quadratic": 0.2}}),
+        reason: "a weak viscosity, which suffices with heat mixing",
+    },
+    Rule {
         applies: |c| c.plane && c.burn,
-        changes: || [json!({"heat_spreading": null}), moderate()],
+        changes: || json!({"method": {"heat_spreading": null}, "artificial_viscosity": moderate()}),
         reason: "a moderate viscosity without spreading of heat, since a body is an explosive",
     },
     Rule {
         applies: |c| c.burn,
-        changes: || [json!({"transfer": {"fmpm": 2}}), json!({})],
+        changes: || json!({"method": {"transfer": {"fmpm": 2}}}),
         reason: "a low transfer order, since errors at burn fronts grow with the order",
     },
     Rule {
         applies: |c| c.porous && !c.plane && !c.burn,
-        changes: || [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), json!({})],
+        changes: || json!({"method": {"transfer": {"fmpm": 6}, "edge_mask": 0.3}}),
         reason: "a lower transfer order, since a body is porous",
     },
     Rule {
         applies: |c| c.porous,
         changes: || {
             let off = Value::Null;
-            let viscosity = json!({"linear": 0.5, "quadratic": 2.0, "growth": off, "limiter": off,
-                "limited": off});
-            [json!({}), viscosity]
+            json!({"artificial_viscosity":
+                {"linear": 0.5, "quadratic": 2.0, "growth": off, "limiter": off, "limited": off}})
         },
         reason: "the strongest viscosity, since oscillations ahead of a shock crush pores",
     },
     Rule {
         applies: |c| !c.fluid,
-        changes: || [json!({"heat_spreading": null, "pressure_relaxation": null}), json!({})],
+        changes: || json!({"method": {"heat_spreading": null, "pressure_relaxation": null}}),
         reason: "no pressure relaxation and no spreading of heat, since every body is elastic",
     },
 ];
@@ -149,8 +167,8 @@ impl Preset {
         })
     }
 
-    /// Method, viscosity and reason before the rules.
-    fn base(self, contents: &SceneContents) -> ([Value; 2], &'static str) {
+    /// Keys of the scene before the rules, and their reason.
+    fn base(self, contents: &SceneContents) -> (Value, &'static str) {
         let method = json!({
             "shape": "cpdi_bspline_quadratic",
             "transfer": {"fmpm": 8},
@@ -167,12 +185,12 @@ impl Preset {
             "limiter": "christensen",
             "limited": "linear"
         });
-        let mut base = [method, viscosity];
+        let mut base = json!({"method": method, "artificial_viscosity": viscosity});
         let reason = match self {
             Preset::Default => {
-                merge(&mut base, [json!({}), json!({"linear": 0.15})]);
+                merge(&mut base, &json!({"artificial_viscosity": {"linear": 0.15}}));
                 if contents.plates_in_contact && acting(contents).next().is_none() {
-                    merge(&mut base, [json!({"frame": "total_lagrangian"}), json!({})]);
+                    merge(&mut base, &json!({"method": {"frame": "total_lagrangian"}}));
                     "least error of plane impacts whose peak pressure is within 0.5 %; \
                      total-Lagrangian, for plates that stay in contact"
                 } else {
@@ -180,18 +198,19 @@ impl Preset {
                 }
             }
             Preset::Robust => {
-                let changes = [json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3}), moderate()];
-                merge(&mut base, changes);
+                let method = json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3});
+                merge(&mut base, &json!({"method": method, "artificial_viscosity": moderate()}));
                 "least error over all hard cases"
             }
             Preset::Sharpest => {
-                let viscosity = json!({"linear": 0.035, "quadratic": 0.0});
-                merge(&mut base, [json!({"transfer": {"fmpm": 14}}), viscosity]);
+                let changes = json!({"method": {"transfer": {"fmpm": 14}},
+                    "artificial_viscosity": {"linear": 0.035, "quadratic": 0.0}});
+                merge(&mut base, &changes);
                 if contents.joined && acting(contents).next().is_none() {
                     let relaxation = json!({"rate": 0.05, "interval": 1});
                     let method = json!({"frame": "total_lagrangian", "edge_mask": 0.3,
                         "pressure_relaxation": relaxation});
-                    merge(&mut base, [method, json!({})]);
+                    merge(&mut base, &json!({"method": method}));
                     "least mean E1 of plane impacts; total-Lagrangian, for bodies that stay in contact"
                 } else {
                     "least mean E1 of plane impacts"
@@ -223,7 +242,8 @@ pub(super) fn expand(scene: &mut Value) -> Result<Option<MethodChoice>, SceneFau
         Some(_) => return Ok(None),
     };
     let contents = SceneContents::of(keys);
-    let ([mut method, viscosity], reason) = choose(preset, &contents);
+    let (mut chosen, reason) = choose(preset, &contents);
+    let mut method = chosen["method"].take();
     let mut reasons: Vec<String> = acting(&contents).map(|rule| rule.reason.to_string()).collect();
     if reasons.is_empty() {
         reasons.push(reason.to_string());
@@ -234,7 +254,10 @@ pub(super) fn expand(scene: &mut Value) -> Result<Option<MethodChoice>, SceneFau
     if keys.contains_key("artificial_viscosity") {
         reasons.push("the viscosity is that of the scene".into());
     } else {
-        keys.insert("artificial_viscosity".into(), viscosity);
+        keys.insert("artificial_viscosity".into(), chosen["artificial_viscosity"].take());
+    }
+    if let Some(mixing) = chosen.get_mut("heat_mixing") {
+        keys.entry("heat_mixing").or_insert_with(|| mixing.take());
     }
     reasons.insert(0, in_short(&method, &keys["artificial_viscosity"]));
     keys.insert("method".into(), method);
@@ -262,28 +285,13 @@ fn acting(contents: &SceneContents) -> impl Iterator<Item = &'static Rule> {
     RULES.iter().filter(|rule| (rule.applies)(contents))
 }
 
-/// Method, viscosity and reason of a preset with these contents.
-fn choose(preset: Preset, contents: &SceneContents) -> ([Value; 2], &'static str) {
+/// Keys that a preset gives a scene with these contents, and the reason if no rule acts.
+fn choose(preset: Preset, contents: &SceneContents) -> (Value, &'static str) {
     let (mut chosen, reason) = preset.base(contents);
     for rule in acting(contents) {
-        merge(&mut chosen, (rule.changes)());
+        merge(&mut chosen, &(rule.changes)());
     }
     (chosen, reason)
-}
-
-/// Changes keys of the method and of the viscosity.
-fn merge(base: &mut [Value; 2], changes: [Value; 2]) {
-    for (base, changes) in base.iter_mut().zip(changes) {
-        let (Some(base), Value::Object(changes)) = (base.as_object_mut(), changes) else {
-            continue;
-        };
-        for (key, value) in changes {
-            match value {
-                Value::Null => base.remove(&key),
-                value => base.insert(key, value),
-            };
-        }
-    }
 }
 
 /// Overrides keys of a preset's method. Returns, in words, the options of the preset that these
@@ -364,14 +372,14 @@ impl SceneContents {
         let domain = scene.get("domain").unwrap_or(&Value::Null);
         let dimension = domain["lower"].as_array().map_or(1, Vec::len);
         let bodies = scene.get("bodies").and_then(Value::as_array).into_iter().flatten();
-        let used =
-            bodies.filter_map(|body| scene.get("materials")?.get(body.get("material")?.as_str()?));
-        let used = used.filter_map(|json| {
+        let used = bodies.filter_map(|body| {
+            let json = scene.get("materials")?.get(body.get("material")?.as_str()?)?;
             let material = serde_json::from_value::<Material>(json.clone()).ok()?;
-            Some((material, !json["eos"]["burn"].is_null()))
+            Some((material, !json["eos"]["burn"].is_null(), moves(body)))
         });
-        let used: Vec<(Material, bool)> = used.collect();
-        let any = |such: fn(&Material, bool) -> bool| used.iter().any(|(m, burns)| such(m, *burns));
+        let used: Vec<(Material, bool, bool)> = used.collect();
+        let any =
+            |such: fn(&Material, bool) -> bool| used.iter().any(|(m, burns, _)| such(m, *burns));
         SceneContents {
             plane: dimension > 1,
             axisymmetric: domain["geometry"] == "axisymmetric",
@@ -383,10 +391,17 @@ impl SceneContents {
             strength: any(|m, _| m.strength.is_some()),
             failure: any(|m, _| m.failure.is_some()),
             gas: any(|m, burns| m.eos.is_gas() || burns),
+            moving_gas: used.iter().any(|(m, _, moves)| m.eos.is_gas() && *moves),
             burn: any(|m, burns| burns && m.eos.has_history()),
             porous: any(|m, burns| m.eos.has_history() && !burns),
         }
     }
+}
+
+/// Whether a body moves at the start.
+fn moves(body: &Value) -> bool {
+    let velocity = body["velocity"].as_array().into_iter().flatten();
+    !body["velocity_field"].is_null() || velocity.filter_map(Value::as_f64).any(|v| v != 0.0)
 }
 
 /// Whether the boxes of all bodies on a line form one piece, and the sides let no particle out.
@@ -439,7 +454,7 @@ mod tests {
 
     /// Every combination of contents.
     fn all() -> impl Iterator<Item = SceneContents> {
-        (0..4096_u32).map(|bits| {
+        (0..8192_u32).map(|bits| {
             let has = |k: u32| bits >> k & 1 == 1;
             SceneContents {
                 plane: has(0),
@@ -454,6 +469,7 @@ mod tests {
                 plates_in_contact: has(9),
                 axisymmetric: has(10),
                 body_force: has(11),
+                moving_gas: has(6) && has(12),
             }
         })
     }
@@ -461,17 +477,19 @@ mod tests {
     #[test]
     fn options_of_every_choice_fit_each_other() {
         for (preset, c) in Preset::ALL.iter().flat_map(|p| all().map(move |c| (p, c))) {
-            let ([method, viscosity], _) = choose(*preset, &c);
+            let (chosen, _) = choose(*preset, &c);
+            let [method, viscosity] = ["method", "artificial_viscosity"].map(|key| &chosen[key]);
             let has = |value: &Value, key: &str| !value[key].is_null();
-            assert!(!has(&viscosity, "limited") || has(&viscosity, "limiter"), "{viscosity}");
-            let total = has(&method, "frame");
-            assert!(!total || !has(&method, "domain_limit"), "{method}");
-            assert!(!has(&method, "spin") || (c.plane && !c.axisymmetric && !total), "{method}");
-            assert!(!has(&method, "flux_limiter") || !(c.plane || c.contact), "{method}");
-            assert_eq!(has(&method, "pressure_relaxation"), c.fluid);
+            assert!(!has(viscosity, "limited") || has(viscosity, "limiter"), "{viscosity}");
+            let total = has(method, "frame");
+            assert!(!total || !has(method, "domain_limit"), "{method}");
+            assert!(!has(method, "spin") || (c.plane && !c.axisymmetric && !total), "{method}");
+            assert!(!has(method, "flux_limiter") || !(c.plane || c.contact), "{method}");
+            assert_eq!(has(method, "pressure_relaxation"), c.fluid);
             if c.porous {
                 assert_eq!([&viscosity["linear"], &viscosity["quadratic"]], [0.5, 2.0]);
             }
+            assert_eq!(has(&chosen, "heat_mixing"), c.moving_gas && !c.burn);
             if c.burn {
                 assert_eq!(method["transfer"], json!({"fmpm": 2}));
             }

@@ -75,8 +75,11 @@ fn generate() -> Value {
                 definitions.into_iter().for_each(|(name, of)| root["$defs"][name] = of);
             }
         }
-        let description =
-            format!("{} Absent: none.", options["description"].as_str().unwrap_or(""));
+        let mut description = options["description"].as_str().unwrap_or("").to_string();
+        // an effect that a preset adds says so itself
+        if !description.contains("Absent:") {
+            description += " Absent: none.";
+        }
         root["properties"][key.name] = json!({
             "description": description,
             "anyOf": [{"$ref": format!("#/$defs/{name}")}, {"type": "null"}],

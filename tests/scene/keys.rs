@@ -457,7 +457,7 @@ fn every_key_with_a_dimension_takes_units() {
 }
 
 /// Keys of the shipped scenes without a dimension.
-const PLAIN: [&str; 33] = [
+const PLAIN: [&str; 34] = [
     "artificial_viscosity.growth.max",
     "artificial_viscosity.growth.rate",
     "artificial_viscosity.linear",
@@ -470,6 +470,7 @@ const PLAIN: [&str; 33] = [
     "boundary.y_lower.friction",
     "domain.patches",
     "format",
+    "heat_mixing.coefficient",
     "materials.NAME.eos.burn.plane.normal",
     "materials.NAME.eos.exponent",
     "materials.NAME.eos.gamma",

@@ -122,6 +122,38 @@ fn heat_is_spread_in_two_dimensions_where_there_is_numerical_heat_of_fluids() {
 }
 
 #[test]
+fn the_heat_of_a_gas_that_moves_at_the_start_is_mixed() {
+    let scene = |name: &str, edits: &[&str]| {
+        let edits: Vec<&str> = ["method=default"].iter().chain(edits).copied().collect();
+        json!(with(name, &edits).unwrap().scene)
+    };
+    let coefficient =
+        |name: &str, edits: &[&str]| scene(name, edits)["heat_mixing"]["coefficient"].as_f64();
+    let moves = "bodies.left.velocity=[1]";
+    assert_eq!(coefficient("sod.json", &[]), None);
+    assert_eq!(coefficient("sod.json", &[moves]), Some(20.0));
+    let rate = r#"heat_mixing={"coefficient": 5}"#;
+    assert_eq!(coefficient("sod.json", &[moves, rate]), Some(5.0));
+    assert_eq!(coefficient("sod.json", &[moves, "heat_mixing=null"]), None);
+    assert_eq!(coefficient("flyer.json", &[]), None, "a solid");
+    // on both kinds of grids the scene has what the preset gives
+    for name in ["noh_axis.json", "noh_cylindrical.json"] {
+        let mut value: Value = serde_json::from_slice(&crate::shipped(name)).unwrap();
+        let keys = ["artificial_viscosity", "heat_mixing"];
+        let own = keys.map(|key| value[key].clone());
+        for key in ["method"].iter().chain(&keys) {
+            value.as_object_mut().unwrap().remove(*key);
+        }
+        let chosen = json!(parse(value.to_string().as_bytes(), name, &[]).unwrap().scene);
+        for (key, own) in keys.iter().zip(own) {
+            for (name, number) in own.as_object().unwrap() {
+                assert_eq!(&chosen[key][name], number, "{key}.{name}");
+            }
+        }
+    }
+}
+
+#[test]
 fn bodies_that_may_turn_have_spin() {
     let spin = |more: &[&str]| {
         let edits: Vec<&str> = ["method=default"].iter().chain(more).copied().collect();

@@ -30,6 +30,7 @@ fn a_cold_gas_is_stopped_by_a_wall() {
     let (x, p) = (fine.column("x"), fine.column("pressure"));
     let behind: Vec<f64> = (0..x.len()).filter(|&r| x[r] < 0.15).map(|r| p[r]).collect();
     let mean = behind.iter().sum::<f64>() / behind.len() as f64;
+    assert!(fine.column("density")[0] > 3.6, "heated wall: {:?}", fine.column("density"));
     at_most("mean pressure", mean / (4.0 / 3.0) - 1.0, 0.03);
     behind.iter().skip(8).for_each(|p| at_most("pressure", p / mean - 1.0, 0.02));
     // and none ahead of it
@@ -40,12 +41,13 @@ fn a_cold_gas_is_stopped_by_a_wall() {
 #[test]
 fn a_cold_gas_closes_in_on_an_axis() {
     let score = |scene: &str, cells: f64| noh::<2>(scene, cells).score;
-    for (scene, bound) in [("noh_cylindrical.json", 0.13), ("noh_axis.json", 0.16)] {
+    for (scene, bound) in [("noh_cylindrical.json", 0.05), ("noh_axis.json", 0.07)] {
         let [coarse, fine] = [25.0, 50.0].map(|cells| score(scene, cells));
         at_most(scene, number(&fine, "mean_density_error"), bound);
-        for name in ["mean_density_error", "density_l1"] {
+        // with the coarse cells the mean reaches into the shock
+        for (name, ratio) in [("mean_density_error", 1.0), ("density_l1", 0.6)] {
             let [coarse, fine] = [&coarse, &fine].map(|score| number(score, name).abs());
-            assert!(fine < 0.7 * coarse, "{scene}: {name} {fine} {coarse}");
+            assert!(fine < ratio * coarse, "{scene}: {name} {fine} {coarse}");
         }
     }
 }

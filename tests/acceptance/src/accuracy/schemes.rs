@@ -234,6 +234,7 @@ pub fn noh(table: &mut Table) {
             let name = format!("noh_planar.json by {scheme}.json, {cells} cells");
             let cell = 1.0 / f64::from(cells);
             let job = Job::new("noh_planar").set(format!("domain.cell_size={cell:e}"));
+            let job = job.set("heat_mixing=null");
             let Some(run) = table.take(&name, with_scheme(job, scheme).run()) else { return };
             let Some(profile) = run.summary.profiles.last() else { return };
             let mean = profile.error("mean_density_error");
