@@ -31,14 +31,13 @@ use crate::solver::exchange::Nodal;
 use crate::solver::patch::Patch;
 
 /// Mixing of the internal energy of neighbouring particles of one material where it is compressed,
-/// which reduces the heating at walls and interfaces where shocks start. Energy is conserved. Absent:
-/// that of the method's preset if a gas moves at the start, else none; null: none.
+/// which reduces the heating at walls and interfaces where shocks start. Energy is conserved.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(title = "HeatMixing")]
 pub struct HeatMixingOptions {
     /// Rate of mixing over the rate of compression [-]. A larger value mixes more: 10 reduces the
-    /// error of the density at the wall of `noh_planar.json` from 46 to 8 %, and the L1 error of
+    /// error of the density in the first cell of `noh_planar.json` from 46 to 8 %, and the L1 error of
     /// the pressure behind shocks grows slowly with it.
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 1000.0))]
     pub coefficient: f64,
@@ -46,6 +45,8 @@ pub struct HeatMixingOptions {
 
 impl EffectOptions for HeatMixingOptions {
     const KEY: &'static str = "heat_mixing";
+    const ABSENT: &'static str =
+        "that of the method's preset if all bodies are gases and one moves, else none; null: none";
 
     fn check(&self, scene: &CheckedScene) -> Result<(), ParameterError> {
         if (0..scene.bodies.len()).any(|body| mixes(scene, body)) {

@@ -1,5 +1,5 @@
 //! Methods by name: a scene without `method`, or with one of the names of [`Preset`], gets a
-//! complete method and artificial viscosity that suit its contents, and heat mixing if gas moves.
+//! complete method and artificial viscosity that suit its contents, and heat mixing if gases move.
 //!
 //! Each preset is a base method and a list of rules. A rule changes keys if the scene contains what
 //! it names, and gives its reason. Explicit keys of the scene come last; an option of the preset
@@ -30,8 +30,11 @@ struct SceneContents {
     failure: bool,
     /// Some body is a gas or an explosive.
     gas: bool,
-    /// Some body of gas moves at the start.
+    /// All bodies are gases, one of them moves at the start, and the scene does not say whether
+    /// their heat is mixed.
     moving_gas: bool,
+    /// The pressures of two bodies of gas differ at the start, or one of two is an explosive.
+    gas_pressures_differ: bool,
     /// Some body is an explosive with a burn front.
     burn: bool,
     porous: bool,
@@ -119,6 +122,11 @@ const RULES: &[Rule] = &[
         applies: |c| c.moving_gas && c.plane && !c.burn,
         changes: || json!({"artificial_viscosity": {"linear": 0.05, "quadratic": 0.2}}),
         reason: "a weak viscosity, which suffices with heat mixing",
+    },
+    Rule {
+        applies: |c| c.plane && c.gas_pressures_differ,
+        changes: || json!({"method": {"pressure_relaxation": {"rate": 0.02, "interval": 1}}}),
+        reason: "slow relaxation, since it must not empty small particles beside gas of high pressure",
     },
     Rule {
         applies: |c| c.plane && c.burn,
@@ -257,7 +265,7 @@ pub(super) fn expand(scene: &mut Value) -> Result<Option<MethodChoice>, SceneFau
         keys.insert("artificial_viscosity".into(), chosen["artificial_viscosity"].take());
     }
     if let Some(mixing) = chosen.get_mut("heat_mixing") {
-        keys.entry("heat_mixing").or_insert_with(|| mixing.take());
+        keys.insert("heat_mixing".into(), mixing.take());
     }
     reasons.insert(0, in_short(&method, &keys["artificial_viscosity"]));
     keys.insert("method".into(), method);
@@ -375,11 +383,14 @@ impl SceneContents {
         let used = bodies.filter_map(|body| {
             let json = scene.get("materials")?.get(body.get("material")?.as_str()?)?;
             let material = serde_json::from_value::<Material>(json.clone()).ok()?;
-            Some((material, !json["eos"]["burn"].is_null(), moves(body)))
+            Some((material, !json["eos"]["burn"].is_null(), body))
         });
-        let used: Vec<(Material, bool, bool)> = used.collect();
+        let used: Vec<(Material, bool, &Value)> = used.collect();
         let any =
             |such: fn(&Material, bool) -> bool| used.iter().any(|(m, burns, _)| such(m, *burns));
+        let gases = || used.iter().filter(|(m, ..)| m.eos.is_gas()).map(|(.., body)| *body);
+        let pressures: Vec<f64> =
+            gases().map(|body| body["pressure"].as_f64().unwrap_or(0.0)).collect();
         SceneContents {
             plane: dimension > 1,
             axisymmetric: domain["geometry"] == "axisymmetric",
@@ -391,7 +402,11 @@ impl SceneContents {
             strength: any(|m, _| m.strength.is_some()),
             failure: any(|m, _| m.failure.is_some()),
             gas: any(|m, burns| m.eos.is_gas() || burns),
-            moving_gas: used.iter().any(|(m, _, moves)| m.eos.is_gas() && *moves),
+            moving_gas: !scene.contains_key("heat_mixing")
+                && gases().count() == used.len()
+                && gases().any(moves),
+            gas_pressures_differ: pressures.iter().any(|p| *p != pressures[0])
+                || (!pressures.is_empty() && any(|_, burns| burns)),
             burn: any(|m, burns| burns && m.eos.has_history()),
             porous: any(|m, burns| m.eos.has_history() && !burns),
         }
@@ -454,7 +469,7 @@ mod tests {
 
     /// Every combination of contents.
     fn all() -> impl Iterator<Item = SceneContents> {
-        (0..8192_u32).map(|bits| {
+        (0..16384_u32).map(|bits| {
             let has = |k: u32| bits >> k & 1 == 1;
             SceneContents {
                 plane: has(0),
@@ -470,6 +485,7 @@ mod tests {
                 axisymmetric: has(10),
                 body_force: has(11),
                 moving_gas: has(6) && has(12),
+                gas_pressures_differ: has(6) && has(13),
             }
         })
     }
@@ -493,7 +509,7 @@ mod tests {
             if c.burn {
                 assert_eq!(method["transfer"], json!({"fmpm": 2}));
             }
-            if c.plane && c.fluid && !c.strength {
+            if c.plane && c.fluid && !c.strength && !c.gas_pressures_differ {
                 assert_eq!(method["pressure_relaxation"]["rate"], 0.2);
             }
             let growth = viscosity["growth"]["max"].as_f64().unwrap_or(f64::INFINITY);

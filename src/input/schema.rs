@@ -75,11 +75,8 @@ fn generate() -> Value {
                 definitions.into_iter().for_each(|(name, of)| root["$defs"][name] = of);
             }
         }
-        let mut description = options["description"].as_str().unwrap_or("").to_string();
-        // an effect that a preset adds says so itself
-        if !description.contains("Absent:") {
-            description += " Absent: none.";
-        }
+        let description = options["description"].as_str().unwrap_or("");
+        let description = format!("{description} Absent: {}.", key.absent);
         root["properties"][key.name] = json!({
             "description": description,
             "anyOf": [{"$ref": format!("#/$defs/{name}")}, {"type": "null"}],

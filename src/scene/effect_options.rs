@@ -15,6 +15,9 @@ pub trait EffectOptions: DeserializeOwned + JsonSchema {
     /// Name of the key.
     const KEY: &'static str;
 
+    /// What a scene without the key has, in words.
+    const ABSENT: &'static str = "none";
+
     /// Checks the options against the rest of the scene.
     ///
     /// # Errors
@@ -31,6 +34,8 @@ pub trait EffectOptions: DeserializeOwned + JsonSchema {
 pub struct EffectKey {
     /// Name of the key.
     pub name: &'static str,
+    /// What a scene without the key has, in words.
+    pub absent: &'static str,
     /// JSON schema of its value.
     pub schema: fn(SchemaSettings) -> Value,
     /// Checks its value, if the scene has one, against the rest of the scene.
@@ -42,6 +47,7 @@ impl EffectKey {
     pub fn of<T: EffectOptions>() -> Self {
         EffectKey {
             name: T::KEY,
+            absent: T::ABSENT,
             schema: |settings| settings.into_generator().into_root_schema_for::<T>().to_value(),
             check: |scene| scene.options::<T>().map_or(Ok(()), |options| options.check(scene)),
         }

@@ -136,8 +136,25 @@ fn the_heat_of_a_gas_that_moves_at_the_start_is_mixed() {
     assert_eq!(coefficient("sod.json", &[moves, rate]), Some(5.0));
     assert_eq!(coefficient("sod.json", &[moves, "heat_mixing=null"]), None);
     assert_eq!(coefficient("flyer.json", &[]), None, "a solid");
-    // on both kinds of grids the scene has what the preset gives
-    for name in ["noh_axis.json", "noh_cylindrical.json"] {
+    let solid = r#"materials.gas_right={"library": "copper"}"#;
+    let beside = [moves, solid, "bodies.right.pressure=0", "reference=null"];
+    assert_eq!(coefficient("sod.json", &beside), None, "a solid beside the gas");
+    // a weak viscosity only together with it
+    let viscosity = |mixing: &str| {
+        let mut value: Value = serde_json::from_slice(&crate::shipped("noh_axis.json")).unwrap();
+        for key in ["method", "artificial_viscosity", "heat_mixing"] {
+            value.as_object_mut().unwrap().remove(key);
+        }
+        let sets: Vec<String> =
+            Some(mixing.to_string()).filter(|s| !s.is_empty()).into_iter().collect();
+        let scene = parse(value.to_string().as_bytes(), "noh.json", &sets).unwrap().scene;
+        let viscosity = scene.artificial_viscosity.unwrap();
+        (viscosity.linear, viscosity.quadratic)
+    };
+    assert_eq!(viscosity(""), (0.05, 0.2));
+    assert_eq!(viscosity("heat_mixing=null"), (0.1, 0.5));
+    // the scenes have the mixing and the viscosity of the preset
+    for name in ["noh_planar.json", "noh_axis.json", "noh_cylindrical.json"] {
         let mut value: Value = serde_json::from_slice(&crate::shipped(name)).unwrap();
         let keys = ["artificial_viscosity", "heat_mixing"];
         let own = keys.map(|key| value[key].clone());
@@ -151,6 +168,18 @@ fn the_heat_of_a_gas_that_moves_at_the_start_is_mixed() {
             }
         }
     }
+}
+
+#[test]
+fn gases_of_different_pressures_in_a_plane_relax_slowly() {
+    let rate = |name: &str, edits: &[&str]| {
+        let edits: Vec<&str> = ["method=default"].iter().chain(edits).copied().collect();
+        with(name, &edits).unwrap().scene.method.pressure_relaxation.unwrap().rate
+    };
+    assert_eq!(rate("sod_2d.json", &[]), 0.02);
+    assert_eq!(rate("sod_2d.json", &["bodies.right.pressure=1"]), 0.2);
+    assert_eq!(rate("sod.json", &[]), 0.1, "on a line");
+    assert_eq!(rate("noh_axis.json", &[]), 0.2, "a single gas");
 }
 
 #[test]

@@ -52,6 +52,29 @@ fn a_cold_gas_closes_in_on_an_axis() {
     }
 }
 
+/// A disk of hot gas in a gas of low pressure: small particles at its edge are beside particles with
+/// a much larger pressure.
+#[test]
+fn a_hot_disk_expands_with_the_default_method() {
+    let disk = json!({"centre": [0.0, 0.0], "radius": 0.1});
+    let body = |name: &str, pressure: f64| json!({"name": name, "material": "gas", "pressure": pressure, "particles_per_cell": [2, 2]});
+    let [mut hot, mut cold] = [body("hot", 1e4), body("cold", 1.0)];
+    hot["disk"] = disk.clone();
+    cold["difference"] =
+        json!([{"box": {"lower": [0.0, 0.0], "upper": [0.3, 0.3]}}, {"disk": disk}]);
+    let scene = json!({
+        "title": "blast", "time": {"end": 1e-3},
+        "domain": {"lower": [0.0, 0.0], "upper": [0.3, 0.3], "cell_size": 0.01},
+        "materials": {"gas": {"density": 1.0, "eos": {"type": "ideal_gas", "gamma": 1.4}}},
+        "bodies": [hot, cold],
+        "boundary": {"x_lower": "symmetry", "y_lower": "symmetry", "x_upper": "symmetry",
+            "y_upper": "symmetry"},
+    });
+    let outcome = run::<2>(&scene);
+    at_most("energy", outcome.energy_drift(), 1e-12);
+    assert!(outcome.column("pressure").iter().all(|&p| p > 0.0));
+}
+
 #[test]
 fn other_schemes_bear_a_gas_without_energy() {
     for (scheme, keeps) in [

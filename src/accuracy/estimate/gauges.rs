@@ -52,13 +52,13 @@ pub(super) struct Rounding {
     pub velocity: f64,
 }
 
-/// Error estimates of the histories of a run, with half-widths `widened` by a factor; those that are
+/// Error estimates of the histories of a run, with half-widths multiplied by `factor`; those that are
 /// zero or rounding are left out.
 pub(super) fn of_histories(
     own: &GaugeRecords,
     coarse_runs: &CoarseRuns,
     rounding: Rounding,
-    widened: f64,
+    factor: f64,
 ) -> Vec<HistoryEstimate> {
     let estimate = |history: &GaugeHistory| {
         let least = match &history.quantity[..] {
@@ -72,7 +72,7 @@ pub(super) fn of_histories(
             gauge: history.gauge.clone(),
             quantity: history.quantity.clone(),
             basis: EstimateBasis::Guess,
-            l1: differences.l1(widened),
+            l1: differences.l1(factor),
         })
     };
     own.histories.iter().filter_map(estimate).collect()

@@ -168,7 +168,7 @@ pub fn other_cells(scene: &CheckedScene, body: usize) -> Option<f64> {
 /// Estimates the errors of a finished run.
 pub fn estimate(answer: &Answer<'_>, coarse_runs: &CoarseRuns, laws: &Laws) -> EstimatedErrors {
     let factors = tensile_failure::factors(answer.scene, &answer.tables);
-    let of_histories = tensile_failure::factor_of_histories(&factors);
+    let history_factor = tensile_failure::factor_of_histories(&factors);
     let mut errors = match answer.scene.estimated_body() {
         Some(body) => of_body(answer, body, coarse_runs, laws, factors),
         None => EstimatedErrors::default(),
@@ -181,7 +181,7 @@ pub fn estimate(answer: &Answer<'_>, coarse_runs: &CoarseRuns, laws: &Laws) -> E
         pressure: least_pressure_of_all(answer.scene, answer.steps),
         velocity: ROUNDING * answer.scene.cell_size[0] / cell_time(answer.scene, answer.steps),
     };
-    errors.histories = gauges::of_histories(answer.gauges, coarse_runs, rounding, of_histories);
+    errors.histories = gauges::of_histories(answer.gauges, coarse_runs, rounding, history_factor);
     errors.readings = gauges::of_readings(answer.gauges, coarse_runs);
     errors
 }

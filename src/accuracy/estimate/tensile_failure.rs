@@ -11,8 +11,9 @@ use crate::simulation::ParticleTable;
 /// random scenes.
 const FACTOR: f64 = 10.0;
 
-/// Factor on the half-widths of histories of a run in which material fails \[-\], chosen on random
-/// scenes. It is smaller because histories begin before the failure.
+/// Factor on the half-widths of histories of a run in which material fails in a profile \[-\], chosen
+/// on random scenes. It is smaller than [`FACTOR`], since a history also has the time before the
+/// failure.
 const FACTOR_OF_HISTORIES: f64 = 2.0;
 
 /// Share of the greatest tension from which a material counts as failing \[-\].

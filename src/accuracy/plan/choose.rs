@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 use super::cell_counts::Lengths;
 use super::data::{Data, SchemeAccuracy};
 use super::pilot::{self, Pilot};
-use super::price::Price;
 use super::quantities::ErrorScale;
+use super::run_time::RunTime;
 use super::schemes::{PlannedScheme, schemes};
 use crate::accuracy::estimate::{
     EstimateBasis, ImpactWaves, LEAST_LEVEL, LEAST_PLATEAU, Laws, PlateauLeft, other_cells,
@@ -117,7 +117,7 @@ const MOST_PARTICLES: f64 = 1e7;
 struct Candidate {
     scheme: PlannedScheme,
     measured: SchemeAccuracy,
-    price: Price,
+    time: RunTime,
 }
 
 /// A candidate on the cells of its run, timed by the last pilot runs.
@@ -167,7 +167,7 @@ pub fn plan(
     }
     let nearly = task.cheapest(&candidates, &scale)?;
     let Timed { candidate: timed, scene: mut chosen, run, .. } =
-        task.fastest(&nearly).map_err(fail)?;
+        task.fastest(&nearly, &scale).map_err(fail)?;
     let h = run.cell_size[0];
     let error = target.quantity.error(&timed.measured, &scale, h);
     let error = error.ok_or_else(|| fail(format!("{file}: the error cannot be predicted")))?;
@@ -183,8 +183,8 @@ pub fn plan(
         courant: timed.scheme.courant,
         error: error.most,
         error_median: error.median,
-        cpu_seconds: timed.price.cpu(h),
-        wall_seconds: timed.price.wall(h, target.ranks, data.rank_step_seconds),
+        cpu_seconds: timed.time.cpu(h),
+        wall_seconds: timed.time.wall(h, target.ranks, data.rank_step_seconds),
         pilot_seconds: start.elapsed().as_secs_f64(),
         basis: outside.basis(),
         outside: outside.lines(),
@@ -264,8 +264,8 @@ impl<'a> Task<'a> {
             if scale.is_none() {
                 scale = Some(scale_of(&fine, checked, self.body, self.place)?);
             }
-            let price = Price::through(&coarse, &fine);
-            candidates.push(Candidate { scheme, measured: measured.clone(), price });
+            let time = RunTime::from_two(&coarse, &fine);
+            candidates.push(Candidate { scheme, measured: measured.clone(), time });
         }
         let scale =
             scale.ok_or_else(|| format!("no scheme can run the scene: {}", faults.join("; ")))?;
@@ -274,8 +274,12 @@ impl<'a> Task<'a> {
 
     /// The fastest of these candidates by the last pilot runs. The error is that of the first one, if
     /// none can be timed.
-    fn fastest(&self, candidates: &[(&Candidate, f64)]) -> Result<Timed, String> {
-        let all = candidates.iter().map(|&(candidate, h)| self.timed(candidate, h));
+    fn fastest(
+        &self,
+        candidates: &[(&Candidate, f64)],
+        scale: &ErrorScale,
+    ) -> Result<Timed, String> {
+        let all = candidates.iter().map(|&(candidate, h)| self.timed(candidate, h, scale));
         let faster = |best, next: Result<Timed, String>| match (best, next) {
             (Ok(Timed { wall, .. }), Ok(next)) if next.wall < wall => Ok(next),
             (Err(_), Ok(next)) => Ok(next),
@@ -285,31 +289,40 @@ impl<'a> Task<'a> {
     }
 
     /// A candidate on cells of about `h` \[m\], timed by the last pilot runs.
-    fn timed(&self, candidate: &Candidate, h: f64) -> Result<Timed, String> {
+    fn timed(&self, candidate: &Candidate, h: f64, scale: &ErrorScale) -> Result<Timed, String> {
         let cells = (self.lengths.domain / h).ceil() as usize;
         // a float that is too large becomes the largest integer
         let most = (self.lengths.domain / self.fitted[0]) as usize;
-        let cells = self.lengths.of_run(cells, candidate.scheme.particles_per_cell, most);
+        let more = self.lengths.of_run(cells, candidate.scheme.particles_per_cell, most);
+        // far from the mean of the fit a law can rise with the number of cells
+        let error = |cells: usize| {
+            let h = self.lengths.domain / cells as f64;
+            self.target.quantity.error(&candidate.measured, scale, h).map(|error| error.most)
+        };
+        let reaches = error(more).is_some_and(|error| error <= self.target.error);
+        let cells = if reaches { more } else { cells };
         let (scene, run) = pilot::with_cells(&self.scene, self.file, &candidate.scheme, cells)?;
         let h = run.cell_size[0];
-        let price = match candidate.price.wall(h, 1, 0.0) {
-            ..=SHORT => Price::of(&pilot::typical(&run, self.body, None)?),
-            _ => self.last_price(candidate, run.particles as f64, cells)?,
+        // pilot runs have one rank
+        let time = if candidate.time.wall(h, 1, 0.0) <= SHORT {
+            RunTime::from_one(&pilot::typical(&run, self.body, None)?)
+        } else {
+            self.last_time(candidate, run.particles as f64, cells)?
         };
         let (scheme, measured) = (candidate.scheme.clone(), candidate.measured.clone());
-        let candidate = Candidate { scheme, measured, price };
-        let wall = candidate.price.wall(h, self.target.ranks, self.data.rank_step_seconds);
+        let candidate = Candidate { scheme, measured, time };
+        let wall = candidate.time.wall(h, self.target.ranks, self.data.rank_step_seconds);
         Ok(Timed { candidate, scene, run, wall })
     }
 
-    /// Price by a pilot run slightly coarser than the run on `cells` cells, and one with half of the
-    /// cells of that.
-    fn last_price(
+    /// Times from two pilot runs of a run on `cells` cells: one with about [`LAST_PILOT`] of these
+    /// cells, and one with half as many.
+    fn last_time(
         &self,
         candidate: &Candidate,
         particles: f64,
         cells: usize,
-    ) -> Result<Price, String> {
+    ) -> Result<RunTime, String> {
         let share = LAST_PILOT.min(MOST_PILOT / particles);
         let fine = ((cells as f64 * share) as usize).max(cells.min(64));
         let [coarse, fine] = [fine.div_ceil(2), fine].map(|pilot| {
@@ -317,7 +330,7 @@ impl<'a> Task<'a> {
             let (_, scene) = pilot::with_cells(&self.scene, self.file, &candidate.scheme, pilot)?;
             pilot::typical(&scene, self.body, None)
         });
-        Ok(Price::through(&coarse?, &fine?))
+        Ok(RunTime::from_two(&coarse?, &fine?))
     }
 
     /// The cheapest schemes that reach the target within the budget, with their cell sizes \[m\], the
@@ -336,13 +349,13 @@ impl<'a> Task<'a> {
             let limits = [floor.max(self.fitted[0]), self.fitted[1]];
             let measured = &candidate.measured;
             if let Some(h) = target.quantity.cells_for(measured, scale, target.error, limits) {
-                let wall = candidate.price.wall(h, target.ranks, extra);
+                let wall = candidate.time.wall(h, target.ranks, extra);
                 if wall <= target.budget {
                     able.push((candidate, h, wall));
                 }
             }
             for h in target.quantity.sizes(scale, limits) {
-                if candidate.price.wall(h, target.ranks, extra) <= target.budget
+                if candidate.time.wall(h, target.ranks, extra) <= target.budget
                     && let Some(error) = target.quantity.error(measured, scale, h)
                     && nearest.is_none_or(|n| error.most < n.2)
                 {
@@ -365,7 +378,7 @@ impl<'a> Task<'a> {
             best: error,
             scheme: candidate.scheme.name.clone(),
             cell_size: h,
-            seconds: candidate.price.wall(h, target.ranks, extra),
+            seconds: candidate.time.wall(h, target.ranks, extra),
         })
     }
 }

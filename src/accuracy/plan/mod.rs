@@ -11,8 +11,8 @@ pub mod choose;
 pub mod data;
 pub mod pilot;
 pub mod plan_result;
-mod price;
 mod quantities;
+mod run_time;
 pub mod schemes;
 
 pub use choose::{ErrorTarget, Plan, PlanError, plan};
