@@ -33,7 +33,8 @@ struct SceneContents {
     /// All bodies are gases, one of them moves at the start, and the scene does not say whether
     /// their heat is mixed.
     moving_gas: bool,
-    /// The pressures of two bodies of gas differ at the start, or one of two is an explosive.
+    /// The pressures of two bodies of gas differ at the start, or a gas is in a scene with an
+    /// explosive.
     gas_pressures_differ: bool,
     /// Some body is an explosive with a burn front.
     burn: bool,
