@@ -43,6 +43,8 @@ struct ImageGroups<const D: usize> {
     image: Image<D>,
     /// Receivers that see a part of the domain in this image, one bit each.
     seers: u64,
+    /// Smallest box of the cells that they see in this image.
+    sources: IndexBox<D>,
     /// Particles to hand over, by receiver.
     movers: Vec<Vec<u32>>,
     /// Particles to copy as ghosts, by the set of their receivers. Sets of former steps remain,
@@ -111,14 +113,10 @@ impl<const D: usize> Bundle<D> {
             let sees = |r: &Receiver<D>| !domain.intersect(&r.home.grow(seen)).is_empty();
             let bit = |(k, r)| u64::from(sees(r)) << k;
             let seers = receivers.iter().enumerate().map(bit).fold(0, |set, bit| set | bit);
+            let halos = bits(seers).map(|k| receivers[k].halo);
+            let sources = image.source_cells(&halos.reduce(|all, halo| all.hull(&halo))?);
             let movers = vec![Vec::new(); receivers.len()];
-            (seers != 0).then_some(ImageGroups {
-                image,
-                seers,
-                movers,
-                ghosts: Vec::new(),
-                last: 0,
-            })
+            Some(ImageGroups { image, seers, sources, movers, ghosts: Vec::new(), last: 0 })
         };
         let images = images.iter().filter_map(groups).collect();
         Bundle { taker: takers[0].0, receivers, images, words: Vec::new() }
@@ -129,7 +127,7 @@ impl<const D: usize> Bundle<D> {
     pub fn sort_in(&mut self, particle: u32, cell: [i64; D], stays: bool, patch: usize) -> bool {
         let Bundle { receivers, images, .. } = self;
         let mut owned = false;
-        for groups in images {
+        for groups in images.iter_mut().filter(|groups| groups.sources.contains(cell)) {
             let at = groups.image.cell(cell);
             let original = groups.image == Image::IDENTITY;
             let mut ghost = 0;

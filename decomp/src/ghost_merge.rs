@@ -1,7 +1,6 @@
 //! Arrival of packed particles at their patches, and the canonical order of ghosts.
 
-use std::ops::Range;
-
+use crate::counting_sort::CountingSort;
 use crate::packing::{Group, Kind};
 use crate::particle_sort::SortBuffers;
 use crate::{Block, IndexBox, array};
@@ -22,14 +21,7 @@ impl<const D: usize> Default for ArrivalBuffers<D> {
 /// Buffers of the order of ghosts.
 #[derive(Clone, Debug, Default)]
 struct MergeBuffers {
-    /// Cell of each ghost as it arrives, counted by [`Ring::place`].
-    places: Vec<u32>,
-    /// First place of each cell's ghosts.
-    starts: Vec<u32>,
-    /// Ids in their order.
-    ids: Vec<u64>,
-    /// Arrival number of the ghosts in their order.
-    order: Vec<u32>,
+    sorting: CountingSort,
     /// Place in the order of each ghost as it arrives.
     slots: Vec<u32>,
 }
@@ -70,58 +62,30 @@ impl<const D: usize> Ring<D> {
     /// Number of the cells of the ring before `cell` in canonical order.
     fn place(&self, cell: [i32; D]) -> u32 {
         let cell = array::map(&cell, i64::from);
-        (self.halo.count_before(cell) - self.home.count_before(cell)) as u32
+        (self.halo.flat(cell) - self.home.count_before(cell)) as u32
     }
 }
 
 impl<const D: usize> Block<D> {
-    /// Adds the ghosts of `groups`, in canonical order. Counts of the particles of each cell give the
-    /// order of the cells (counting sort); the ids of a cell are almost in order.
+    /// Adds the ghosts of `groups`, in canonical order.
     fn merge_ghosts<'a>(
         &mut self,
         ring: &Ring<D>,
         groups: impl Iterator<Item = Group<'a, D>> + Clone,
         buffers: &mut MergeBuffers,
     ) {
-        let MergeBuffers { places, starts, ids, order, slots } = buffers;
-        places.clear();
-        places.reserve(groups.clone().map(|group| group.ids.len()).sum());
-        places.extend(groups.clone().flat_map(|group| group.cells()).map(|cell| ring.place(cell)));
-        let ghosts = places.len();
-        if ghosts == 0 {
+        let MergeBuffers { sorting, slots } = buffers;
+        let cells = groups.clone().flat_map(|group| group.cells()).map(|cell| ring.place(cell));
+        let arriving = groups.clone().flat_map(|group| group.ids).copied();
+        sorting.sort(ring.cells(), cells, arriving);
+        if sorting.ids.is_empty() {
             return;
         }
-        starts.clear();
-        starts.resize(ring.cells() + 1, 0);
-        places.iter().for_each(|&place| starts[place as usize + 1] += 1);
-        let mut before = 0;
-        for start in starts.iter_mut() {
-            before += *start;
-            *start = before;
-        }
-        order.clear();
-        order.resize(ghosts, 0);
-        ids.clear();
-        ids.resize(ghosts, 0);
-        let arriving = groups.clone().flat_map(|group| group.ids);
-        for ((&place, &id), number) in places.iter().zip(arriving).zip(0..) {
-            let start = &mut starts[place as usize];
-            order[*start as usize] = number;
-            ids[*start as usize] = id;
-            *start += 1;
-        }
-        // each start is now the end of its cell
-        let mut from = 0;
-        for &end in &starts[..ring.cells()] {
-            sort_by_id(ids, order, from..end as usize);
-            from = end as usize;
-        }
-        slots.clear();
-        slots.resize(ghosts, 0);
-        for (&number, slot) in order.iter().zip(0..) {
+        slots.resize(sorting.order.len(), 0);
+        for (&number, slot) in sorting.order.iter().zip(0..) {
             slots[number as usize] = slot;
         }
-        self.place_ghosts(ids, groups, slots);
+        self.place_ghosts(&sorting.ids, groups, slots);
     }
 
     /// Appends ghosts with the ordered `ids`, each at its slot.
@@ -149,19 +113,6 @@ impl<const D: usize> Block<D> {
                 }
                 slots = rest;
             }
-        }
-    }
-}
-
-/// Sorts the ids of a range, and `order` with them.
-fn sort_by_id(ids: &mut [u64], order: &mut [u32], range: Range<usize>) {
-    let (ids, order) = (&mut ids[range.clone()], &mut order[range]);
-    for k in 1..ids.len() {
-        let mut at = k;
-        while at > 0 && ids[at - 1] > ids[at] {
-            ids.swap(at - 1, at);
-            order.swap(at - 1, at);
-            at -= 1;
         }
     }
 }

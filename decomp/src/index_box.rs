@@ -46,6 +46,14 @@ impl<const D: usize> IndexBox<D> {
         }
     }
 
+    /// The smallest box that contains this one and `other`, which are not empty.
+    pub fn hull(&self, other: &Self) -> Self {
+        IndexBox {
+            lower: std::array::from_fn(|a| self.lower[a].min(other.lower[a])),
+            upper: std::array::from_fn(|a| self.upper[a].max(other.upper[a])),
+        }
+    }
+
     /// The box grown by `depth` at every side.
     pub fn grow(&self, depth: i64) -> Self {
         IndexBox { lower: self.lower.map(|l| l - depth), upper: self.upper.map(|u| u + depth) }

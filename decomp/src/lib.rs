@@ -29,6 +29,7 @@ mod balance;
 mod bottleneck;
 mod bytes;
 pub mod comm;
+mod counting_sort;
 mod ghost_bundle;
 mod ghost_exchange;
 mod ghost_merge;

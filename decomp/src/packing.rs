@@ -1,5 +1,6 @@
 //! Groups of particles in messages, column after column: packed and read at the cost of a copy.
 
+use crate::particle_block::Change;
 use crate::{Block, Image, array};
 
 /// Kind of a group.
@@ -51,14 +52,12 @@ pub(crate) fn put_particles<const D: usize>(
     for &particle in particles {
         out.extend(image.cell(block.cells[particle as usize].map(i64::from)).map(|c| c as u64));
     }
-    let mirrored = image.flip.contains(&true);
     let mut put = |c: usize| {
-        let (spec, column) = (&block.specs()[c], &block.columns[c][..]);
-        if mirrored {
-            let value = |r: u32| spec.image(column[r as usize], &image.flip);
-            out.extend(particles.iter().map(|&r| value(r).to_bits()));
-        } else {
-            out.extend(particles.iter().map(|&r| column[r as usize].to_bits()));
+        let values = particles.iter().map(|&r| block.columns[c][r as usize]);
+        match block.specs()[c].mirror.in_image(&image.flip) {
+            Change::None => out.extend(values.map(f64::to_bits)),
+            Change::Negate => out.extend(values.map(|value| (-value).to_bits())),
+            Change::Complement => out.extend(values.map(|value| (1.0 - value).to_bits())),
         }
     };
     if own {

@@ -17,6 +17,28 @@ pub enum Mirror {
     Complement(usize),
 }
 
+impl Mirror {
+    /// Change of a value in an image that is mirrored in the directions of `flip`.
+    pub(crate) fn in_image(self, flip: &[bool]) -> Change {
+        match self {
+            Mirror::Negate(a) if flip[a] => Change::Negate,
+            Mirror::NegatePair(a, b) if flip[a] != flip[b] => Change::Negate,
+            Mirror::Complement(a) if flip[a] => Change::Complement,
+            _ => Change::None,
+        }
+    }
+}
+
+/// Change of a column's value in an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Change {
+    None,
+    /// v becomes -v.
+    Negate,
+    /// v becomes 1 - v.
+    Complement,
+}
+
 /// Declaration of a column; migration, ghosts, sorting and output use the list of these.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ColumnSpec {
@@ -30,19 +52,6 @@ pub struct ColumnSpec {
     pub state: bool,
     /// Transformation in a mirror.
     pub mirror: Mirror,
-}
-
-impl ColumnSpec {
-    /// The value in an image that is mirrored in the directions of `flip`, in the unit of the
-    /// column.
-    pub fn image(&self, value: f64, flip: &[bool]) -> f64 {
-        match self.mirror {
-            Mirror::Negate(a) if flip[a] => -value,
-            Mirror::NegatePair(a, b) if flip[a] != flip[b] => -value,
-            Mirror::Complement(a) if flip[a] => 1.0 - value,
-            _ => value,
-        }
-    }
 }
 
 /// The particles of one patch: its own particles, followed by copies of others ("ghosts").
@@ -252,16 +261,16 @@ mod tests {
 
     #[test]
     fn images_turn_vectors_and_shear() {
-        let of = |mirror, flip: [bool; 2]| ColumnSpec { mirror, ..SPECS[0] }.image(0.25, &flip);
         let sides = [[false, false], [true, false], [false, true], [true, true]];
+        let (none, negate, complement) = (Change::None, Change::Negate, Change::Complement);
         for (mirror, wanted) in [
-            (Mirror::Same, [0.25, 0.25, 0.25, 0.25]),
-            (Mirror::Negate(0), [0.25, -0.25, 0.25, -0.25]),
+            (Mirror::Same, [none, none, none, none]),
+            (Mirror::Negate(0), [none, negate, none, negate]),
             // two reflections in a corner restore the sign
-            (Mirror::NegatePair(0, 1), [0.25, -0.25, -0.25, 0.25]),
-            (Mirror::Complement(1), [0.25, 0.25, 0.75, 0.75]),
+            (Mirror::NegatePair(0, 1), [none, negate, negate, none]),
+            (Mirror::Complement(1), [none, none, complement, complement]),
         ] {
-            assert_eq!(sides.map(|flip| of(mirror, flip)), wanted, "{mirror:?}");
+            assert_eq!(sides.map(|flip| mirror.in_image(&flip)), wanted, "{mirror:?}");
         }
     }
 

@@ -2,14 +2,21 @@
 
 use std::ops::Range;
 
+use crate::counting_sort::CountingSort;
 use crate::particle_block::{Block, place};
+use crate::{IndexBox, array};
 
-/// Number of particles that are compared together, and up to which they are inserted one by one, which
-/// asks for no memory.
+/// Number of particles that are compared together, and up to which they are inserted one by one.
 const CHUNK: usize = 64;
 
 /// Number of misplaced particles of a larger range up to which they are inserted one by one too.
 const FEW: usize = 8;
+
+/// Greatest number of cells per particle of a range for which the particles of cells are counted.
+const CELLS_PER_PARTICLE: usize = 4;
+
+/// Least number of particles of a section for which a call of a copy is cheaper than single moves.
+const LONG: usize = 3;
 
 /// Range of particles that are out of order, and the greatest of their keys.
 #[derive(Clone, Copy, Debug)]
@@ -25,10 +32,23 @@ pub(crate) struct SortBuffers<const D: usize> {
     ranges: Vec<Disorder>,
     /// Particles of a range in their order.
     order: Vec<u32>,
-    moved: Vec<Section>,
+    counting: CountingSort,
+    moves: Moves,
     words: Vec<u64>,
     cells: Vec<[i32; D]>,
     numbers: Vec<f64>,
+}
+
+/// Moves of particles to their places.
+#[derive(Clone, Debug, Default)]
+struct Moves {
+    /// Long sections that move down, and up. They keep their order among each other, so that they are
+    /// moved within a column.
+    down: Vec<Section>,
+    up: Vec<Section>,
+    /// Old place of every other particle that moves, and its new place.
+    from: Vec<u32>,
+    to: Vec<u32>,
 }
 
 impl<const D: usize> Default for SortBuffers<D> {
@@ -36,7 +56,8 @@ impl<const D: usize> Default for SortBuffers<D> {
         SortBuffers {
             ranges: Vec::new(),
             order: Vec::new(),
-            moved: Vec::new(),
+            counting: CountingSort::default(),
+            moves: Moves::default(),
             words: Vec::new(),
             cells: Vec::new(),
             numbers: Vec::new(),
@@ -50,13 +71,6 @@ struct Section {
     to: usize,
     from: usize,
     count: usize,
-}
-
-impl Section {
-    /// Whether the next particle, moved to `to` from `from`, moves together with these.
-    fn follow(&self, [to, from]: [usize; 2]) -> bool {
-        [self.to + self.count, self.from + self.count] == [to, from]
-    }
 }
 
 impl<const D: usize> Block<D> {
@@ -78,11 +92,11 @@ impl<const D: usize> Block<D> {
             return;
         }
         self.find_moves(buffers);
-        let SortBuffers { moved, words, cells, numbers, .. } = buffers;
-        permute(&mut self.ids, moved, words);
-        permute(&mut self.cells, moved, cells);
+        let SortBuffers { moves, words, cells, numbers, .. } = buffers;
+        moves.apply(&mut self.ids, words);
+        moves.apply(&mut self.cells, cells);
         for column in &mut self.columns {
-            permute(column, moved, numbers);
+            moves.apply(column, numbers);
         }
     }
 
@@ -126,30 +140,27 @@ impl<const D: usize> Block<D> {
 
     /// Finds the moves that sort each of the ranges.
     fn find_moves(&self, buffers: &mut SortBuffers<D>) {
-        let SortBuffers { ranges, order, moved, .. } = buffers;
-        moved.clear();
+        let SortBuffers { ranges, order, counting, moves, .. } = buffers;
+        moves.clear();
         for range in ranges {
+            let particles = range.start..range.end;
             order.clear();
-            order.extend(range.start as u32..range.end as u32);
-            self.sort_few_or_many(order);
-            for (to, &particle) in (range.start..range.end).zip(&*order) {
-                let particle = particle as usize;
-                match moved.last_mut().filter(|last| last.follow([to, particle])) {
-                    Some(last) => last.count += 1,
-                    None if to == particle => {}
-                    None => moved.push(Section { to, from: particle, count: 1 }),
-                }
+            order.extend(particles.start as u32..particles.end as u32);
+            self.sort_few_or_many(order, counting);
+            let mut to = particles.start;
+            for section in order.chunk_by(|particle, next| particle + 1 == *next) {
+                moves.push(Section { to, from: section[0] as usize, count: section.len() });
+                to += section.len();
             }
         }
     }
 
-    /// Sorts particles by their keys.
-    fn sort_few_or_many(&self, order: &mut [u32]) {
+    /// Sorts particles of a range by their keys.
+    fn sort_few_or_many(&self, order: &mut [u32], counting: &mut CountingSort) {
         let key = |particle: u32| self.key(particle as usize);
         let misplaced = || order.windows(2).filter(|pair| key(pair[0]) > key(pair[1])).count();
         if order.len() > CHUNK && misplaced() > FEW {
-            // most are still in order among themselves: the others are sorted and merged in
-            return dmsort::sort_by(order, |&a, &b| key(a).cmp(&key(b)));
+            return self.sort_many(order, counting);
         }
         for k in 1..order.len() {
             let particle = order[k];
@@ -158,6 +169,23 @@ impl<const D: usize> Block<D> {
                 order[place..=k].rotate_right(1);
             }
         }
+    }
+
+    /// Sorts many particles of a range by their keys.
+    fn sort_many(&self, order: &mut [u32], counting: &mut CountingSort) {
+        let particles = order[0] as usize..order[0] as usize + order.len();
+        let cells = &self.cells[particles.clone()];
+        let lower = cells.iter().fold(cells[0], |l, c| array::from_fn(|a| l[a].min(c[a])));
+        let upper = cells.iter().fold(cells[0], |u, c| array::from_fn(|a| u[a].max(c[a])));
+        let all =
+            IndexBox::new(array::map(&lower, i64::from), array::map(&upper, |u| i64::from(u) + 1));
+        if all.count() > CELLS_PER_PARTICLE * order.len() {
+            return order.sort_unstable_by_key(|&particle| self.key(particle as usize));
+        }
+        let first = order[0];
+        let cell_numbers = cells.iter().map(|cell| all.flat(array::map(cell, i64::from)) as u32);
+        counting.sort(all.count(), cell_numbers, self.ids[particles].iter().copied());
+        order.iter_mut().zip(&counting.order).for_each(|(to, &number)| *to = first + number);
     }
 
     /// Number of particles that stand behind one of a later place.
@@ -175,24 +203,39 @@ impl<const D: usize> Block<D> {
     }
 }
 
-/// Moves values; those outside of `moved` are not touched, `buffer` is cleared first.
-fn permute<T: Copy>(values: &mut [T], moved: &[Section], buffer: &mut Vec<T>) {
-    buffer.clear();
-    for &Section { from, count, .. } in moved {
-        match count {
-            // mostly; cheaper than a call
-            1 => buffer.push(values[from]),
-            _ => buffer.extend_from_slice(&values[from..from + count]),
+impl Moves {
+    fn clear(&mut self) {
+        let Moves { down, up, from, to } = self;
+        down.clear();
+        up.clear();
+        from.clear();
+        to.clear();
+    }
+
+    /// Adds a section behind the others, if it moves.
+    fn push(&mut self, section: Section) {
+        let Section { to, from, count } = section;
+        let end = |sections: &[Section]| sections.last().map_or(0, |last| last.from + last.count);
+        if to == from {
+        } else if count < LONG || from < end(&self.down).max(end(&self.up)) {
+            self.from.extend(from as u32..(from + count) as u32);
+            self.to.extend(to as u32..(to + count) as u32);
+        } else if to < from {
+            self.down.push(section);
+        } else {
+            self.up.push(section);
         }
     }
-    let mut sorted = &buffer[..];
-    for &Section { to, count, .. } in moved {
-        let (these, rest) = sorted.split_at(count);
-        match these {
-            [value] => values[to] = *value,
-            _ => values[to..to + count].copy_from_slice(these),
+
+    /// Moves values; `buffer` is cleared first.
+    fn apply<T: Copy>(&self, values: &mut [T], buffer: &mut Vec<T>) {
+        buffer.clear();
+        buffer.extend(self.from.iter().map(|&from| values[from as usize]));
+        // in this order no section covers another that has not moved yet
+        for &Section { to, from, count } in self.down.iter().chain(self.up.iter().rev()) {
+            values.copy_within(from..from + count, to);
         }
-        sorted = rest;
+        self.to.iter().zip(&*buffer).for_each(|(&to, value)| values[to as usize] = *value);
     }
 }
 
@@ -267,7 +310,9 @@ mod tests {
                 let (at, by) = (random(300) as usize, [1, -1, 7, -60][random(4) as usize]);
                 cells[at] += by;
             }
+            // dense and sparse cells
             check(&cells);
+            check(&cells.iter().map(|cell| 50 * cell).collect::<Vec<_>>());
         }
     }
 }
