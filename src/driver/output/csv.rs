@@ -172,40 +172,38 @@ pub fn push_number(text: &mut Vec<u8>, value: f64) {
         return;
     }
     let mut buffer = ryu::Buffer::new();
-    let fixed = buffer.format(value);
-    let start = text.len();
-    if value != 0.0 && !fixed.contains(['e', 'i']) {
-        push_scientific(text, fixed);
-        if text.len() - start < fixed.strip_suffix(".0").unwrap_or(fixed).len() {
-            return;
+    let all = buffer.format(value).as_bytes();
+    match scientific(all.strip_prefix(b"-").unwrap_or(all)) {
+        Some(([first, others @ ..], exponent)) => {
+            text.extend_from_slice(&all[..usize::from(all[0] == b'-')]);
+            text.push(*first);
+            if !others.is_empty() {
+                text.push(b'.');
+                text.extend_from_slice(others);
+            }
+            text.extend_from_slice(exponent.as_bytes());
         }
-        text.truncate(start);
+        _ => text.extend_from_slice(all),
     }
-    text.extend_from_slice(fixed.as_bytes());
 }
 
-/// Appends `fixed`, such as `0.00125`, as `1.25e-3`.
-fn push_scientific(text: &mut Vec<u8>, fixed: &str) {
-    let unsigned = fixed.trim_start_matches('-');
-    if unsigned.len() < fixed.len() {
-        text.push(b'-');
-    }
-    let (whole, fraction) = unsigned.split_once('.').unwrap_or((unsigned, ""));
-    let leading = |digits: &str| digits.len() - digits.trim_start_matches('0').len();
-    let in_whole = leading(whole);
-    let in_fraction = if in_whole == whole.len() { leading(fraction) } else { 0 };
-    let zeros = in_whole + in_fraction;
-    let exponent = whole.len() as i32 - 1 - zeros as i32;
-    let start = text.len();
-    text.extend_from_slice(&whole.as_bytes()[in_whole..]);
-    text.extend_from_slice(&fraction.as_bytes()[in_fraction..]);
-    while text.len() > start + 1 && text.last() == Some(&b'0') {
-        text.pop();
-    }
-    if text.len() > start + 1 {
-        text.insert(start + 1, b'.');
-    }
-    write!(text, "e{exponent}").expect("memory takes all");
+/// Digits and exponent of `fixed`, such as `125` and `e-4` of `0.000125`, if that form is shorter.
+fn scientific(fixed: &[u8]) -> Option<(&[u8], &'static str)> {
+    const SMALL: [&str; 5] = ["e-1", "e-2", "e-3", "e-4", "e-5"];
+    const LARGE: [&str; 16] = [
+        "e0", "e1", "e2", "e3", "e4", "e5", "e6", "e7", "e8", "e9", "e10", "e11", "e12", "e13",
+        "e14", "e15",
+    ];
+    let (digits, exponent, length) = if let Some(decimals) = fixed.strip_prefix(b"0.") {
+        let zeros = decimals.iter().take_while(|&&digit| digit == b'0').count();
+        (&decimals[zeros..], SMALL.get(zeros)?, fixed.len())
+    } else {
+        let whole = fixed.strip_suffix(b".0").filter(|whole| whole.ends_with(b"0"))?;
+        let zeros = whole.iter().rev().take_while(|&&digit| digit == b'0').count();
+        (&whole[..whole.len() - zeros], LARGE.get(whole.len() - 1)?, whole.len())
+    };
+    let is_shorter = digits.len() + usize::from(digits.len() > 1) + exponent.len() < length;
+    is_shorter.then_some((digits, exponent))
 }
 
 /// Contents of a CSV file.
