@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use decomp::array;
+use decomp::array::{from_fn, map};
 use wide::f64x4;
 
 use crate::shape::{
@@ -69,17 +69,18 @@ fn put(numbers: &[f64x4], out: &mut [f64]) {
     }
 }
 
-/// Whether four particles are computed together: on a line that takes more instructions. In windows of
-/// more than [`NARROW`] nodes it is done for four narrow particles only.
-const fn in_lanes(dimension: usize) -> bool {
-    dimension > 1
+/// Whether four particles are computed together: on a line that takes more instructions for windows of
+/// fewer than four nodes. In windows of more than [`NARROW`] nodes in a plane it is done for four narrow
+/// particles only.
+const fn in_lanes(width: usize, dimension: usize) -> bool {
+    dimension > 1 || width == NARROW
 }
 
 /// Writes four lines of four numbers of each of four particles to the first places of the lines of their
 /// windows of `K` nodes in `out`, and zeros to the others.
 #[inline(always)]
 fn put_narrow<const K: usize>(numbers: &[[f64x4; NARROW]; NARROW], out: [&mut [f64]; LANES]) {
-    let turned = array::map(numbers, |line: [f64x4; NARROW]| f64x4::transpose(line));
+    let turned = map(numbers, |line: [f64x4; NARROW]| f64x4::transpose(line));
     for (lane, out) in out.into_iter().enumerate() {
         let lines = out.as_chunks_mut::<K>().0;
         lines.iter_mut().for_each(|line| line.fill(0.0));
@@ -100,13 +101,16 @@ impl Stencils {
         let n = at.cells.len();
         self.resize::<K, D>(n, stride);
         let mut corners = Corners { least: [i32::MAX; D], most: [i32::MIN; D] };
-        let whole = if const { in_lanes(D) } { n - n % LANES } else { 0 };
+        let whole = if const { in_lanes(K, D) } { n - n % LANES } else { 0 };
         let mut buffer = PlaneLanes::none();
         let mut narrow_buffer = PlaneLanes::none();
         for first in (0..whole).step_by(LANES) {
-            if const { in_lanes(D) && K <= NARROW } {
+            if const { !in_lanes(K, D) } {
+            } else if const { D == 1 } {
+                self.fill_four_on_line::<S, K, D>(at, first, &mut corners);
+            } else if const { K <= NARROW } {
                 self.fill_four::<S, K, D>(at, first, &mut corners, &mut buffer);
-            } else if const { in_lanes(D) } {
+            } else {
                 if at.are_narrow::<S>(first) {
                     self.fill_four_narrow::<S, K, D>(at, first, &mut corners, &mut narrow_buffer);
                 } else {
@@ -116,6 +120,22 @@ impl Stencils {
         }
         self.fill_rest::<S, K, D>(at, whole..n, &mut corners);
         corners
+    }
+
+    /// Weights of four particles from `first` on, on a line.
+    #[inline(always)]
+    fn fill_four_on_line<S: Shape, const K: usize, const D: usize>(
+        &mut self,
+        at: &Places<'_, D>,
+        first: usize,
+        corners: &mut Corners<D>,
+    ) {
+        let mut w = S::four::<K>(four(at.fractions[0], first), four(at.domains[0], first));
+        let inverse = f64x4::splat(at.inverse_cell[0]);
+        w.gradients.iter_mut().for_each(|g| *g *= inverse);
+        put(&w.values, &mut self.values[first * K..]);
+        put(&w.gradients, &mut self.gradients[first * K..]);
+        self.put_corners(at, first, corners, ([w.first; D], [w.skipped; D]));
     }
 
     /// Weights of four particles from `first` on, in a plane.
@@ -133,7 +153,7 @@ impl Stencils {
         at.four::<S, K>(first, w);
         put(w.values.as_flattened(), values);
         put(w.gradients.as_flattened().as_flattened(), gradients);
-        self.put_corners(at, first, corners, w);
+        self.put_corners(at, first, corners, (from_fn(|a| w.first[a]), from_fn(|a| w.skipped[a])));
     }
 
     /// Weights of four narrow particles from `first` on, in windows of more nodes.
@@ -154,31 +174,31 @@ impl Stencils {
             put_narrow::<K>(parts[1 + axis], parts_of_four::<D>(gradients, nodes, axis));
         }
         self.narrow[first..first + LANES].fill(true);
-        self.put_corners(at, first, corners, w);
+        self.put_corners(at, first, corners, (from_fn(|a| w.first[a]), from_fn(|a| w.skipped[a])));
     }
 
-    /// Writes the first nodes of four particles from `first` on.
+    /// Writes the first nodes of four particles from `first` on, which lie `from` nodes from the lower nodes
+    /// of their cells, and whether these nodes have no weight.
     #[inline(always)]
-    fn put_corners<const K: usize, const D: usize>(
+    fn put_corners<const D: usize>(
         &mut self,
         at: &Places<'_, D>,
         first: usize,
         corners: &mut Corners<D>,
-        w: &PlaneLanes<K>,
+        (from, skipped): ([f64x4; D], [f64x4; D]),
     ) {
-        let (from, skipped): ([f64x4; D], [f64x4; 2]) = (array::from_fn(|a| w.first[a]), w.skipped);
-        let from = array::map(&from, |from: f64x4| from.to_array());
+        let from = map(&from, |from: f64x4| from.to_array());
         let cells = &at.cells[first..first + LANES];
         let windows = &mut self.first[first..first + LANES];
         for lane in 0..LANES {
             let corner: [i32; D] =
-                array::from_fn(|a| cells[lane][a] + integer(from[a][lane]) - at.lower[a]);
+                from_fn(|a| cells[lane][a] + integer(from[a][lane]) - at.lower[a]);
             corners.extend(corner);
             windows[lane] = index(corner, self.stride);
         }
-        let [x, y] = array::map(&skipped, |skipped: f64x4| skipped.to_bitmask());
+        let bits = map(&skipped, |skipped: f64x4| skipped.to_bitmask());
         for (lane, skipped) in self.skipped[first..first + LANES].iter_mut().enumerate() {
-            *skipped = ((x >> lane & 1) | (y >> lane & 1) << 1) as u8;
+            *skipped = (0..D).fold(0, |all, a| all | ((bits[a] >> lane & 1) as u8) << a);
         }
     }
 
@@ -205,7 +225,7 @@ impl Stencils {
             if K > NARROW {
                 self.narrow[particle] = S::nodes(length) <= NARROW;
             }
-            let corner: [i32; D] = array::from_fn(|a| cell[a] + from[a] - at.lower[a]);
+            let corner: [i32; D] = from_fn(|a| cell[a] + from[a] - at.lower[a]);
             corners.extend(corner);
             *first = index(corner, stride);
         }
@@ -221,7 +241,7 @@ fn parts_of_four<const N: usize>(
     part: usize,
 ) -> [&mut [f64]; LANES] {
     let mut all = numbers.chunks_exact_mut(N * nodes);
-    array::from_fn(|_| {
+    from_fn(|_| {
         let window = all.next().expect("those of four particles");
         &mut window[part * nodes..(part + 1) * nodes]
     })
@@ -231,8 +251,8 @@ impl<const D: usize> Places<'_, D> {
     /// Writes the weights of four particles from `first` on, in a plane.
     #[inline(always)]
     fn four<S: Shape, const K: usize>(&self, first: usize, w: &mut PlaneLanes<K>) {
-        let place = array::map(&self.fractions, |column| four(column, first));
-        let inverse = array::map(&self.inverse_cell, f64x4::splat);
+        let place = map(&self.fractions, |column| four(column, first));
+        let inverse = map(&self.inverse_cell, f64x4::splat);
         let half_edges = S::EXTENT.half_edges(|k| four(self.domains[k], first));
         S::four_in_plane::<K>([place[0], place[D - 1]], half_edges, w);
         for (axis, lines) in w.gradients.iter_mut().enumerate() {
@@ -260,7 +280,7 @@ impl<const D: usize> Places<'_, D> {
         gradients: &mut [f64],
     ) -> ([i32; D], f64) {
         let nodes = const { K * lines(K, D) };
-        let place = array::map(&self.fractions, |column| column[particle]);
+        let place = map(&self.fractions, |column| column[particle]);
         if D == 1 {
             let length = self.domains[0][particle];
             let w: Weights<K> = S::weights(place[0], length);
@@ -284,7 +304,7 @@ impl<const D: usize> Places<'_, D> {
         };
         gx.iter_mut().for_each(|g| *g *= self.inverse_cell[0]);
         gy.iter_mut().for_each(|g| *g *= self.inverse_cell[D - 1]);
-        (array::from_fn(|a| corner[a]), length)
+        (from_fn(|a| corner[a]), length)
     }
 }
 

@@ -3,8 +3,9 @@
 use decomp::array::from_fn;
 use wide::f64x4;
 
+use crate::shape::fours;
 use crate::solver::packed::{PackedWeights, WindowPlace, dot, is_one_vector, total, totals};
-use crate::solver::particle_weights::ParticleWeights;
+use crate::solver::particle_weights::{NARROW, ParticleWeights};
 
 /// Nodal velocities of a step [m/s].
 #[derive(Clone, Copy)]
@@ -265,12 +266,45 @@ impl<const D: usize> EndSums<D> {
 }
 
 impl<const D: usize> NodalSums<D> {
+    /// The same sums four at a time, on a line in windows of three or four nodes.
+    #[inline(always)]
+    fn on_line<const K: usize>(
+        nodal: &NodalVelocities<'_, D>,
+        weights: &ParticleWeights<'_, K, D>,
+    ) -> Self {
+        let nodes = |field: [&[f64]; D]| fours(weights.line(field[0], 0), 0);
+        let (n, g) = (fours(&weights.values[0], 0), fours(&weights.gradients[0], 0));
+        let (start, star) = (nodes(nodal.start), nodes(nodal.star));
+        let mean = f64x4::HALF * (start + star);
+        let work = nodal.work.map_or(mean, nodes);
+        let [lost, product] = match nodal.lost {
+            Some(lost) => [nodes(lost), nodes(lost) * mean],
+            None => [f64x4::ZERO, if nodal.squares { start * start } else { f64x4::ZERO }],
+        };
+        let values = totals::<K>([n * start, n * star, n * mean, n * product]);
+        let others = totals::<K>([g * mean, g * star, g * work, n * lost]);
+        NodalSums {
+            start: [values[0]; D],
+            star: [values[1]; D],
+            mean: [values[2]; D],
+            lost: [others[3]; D],
+            product: [values[3]; D],
+            mean_gradient: [[others[0]; D]; D],
+            star_gradient: [[others[1]; D]; D],
+            work_gradient: [[others[2]; D]; D],
+            work: if nodal.work_tensor { totals::<K>([n * work; 4])[0] } else { 0.0 },
+        }
+    }
+
     /// The same sums one after the other, for windows of any width.
     #[inline(always)]
     pub fn one_by_one<const K: usize, const L: usize>(
         nodal: &NodalVelocities<'_, D>,
         weights: &ParticleWeights<'_, K, D>,
     ) -> Self {
+        if const { D == 1 && (K == 3 || K == NARROW) } {
+            return Self::on_line(nodal, weights);
+        }
         // fetched once, as several sums use them
         let start = weights.windows::<L, D>(nodal.start);
         let star = weights.windows::<L, D>(nodal.star);

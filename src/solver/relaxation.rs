@@ -53,10 +53,10 @@ use super::nodal_matrix::NodalMatrix;
 use super::particle_update::bodies;
 use super::scheme::Scheme;
 use crate::material::constitutive::ConstitutiveModel;
-use crate::shape::with_width;
+use crate::shape::{fours, with_width};
 use crate::solver::clock::timed;
 use crate::solver::packed::{WindowPlace, add_to, dot, totals, with_packed};
-use crate::solver::particle_weights::{ParticleWeights, cut};
+use crate::solver::particle_weights::{NARROW, ParticleWeights, cut};
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 use crate::solver::shape_weights::Stencils;
@@ -182,6 +182,13 @@ impl Projected<'_> {
         &self,
         weights: &ParticleWeights<'_, K, D>,
     ) -> ProjectedSums {
+        if const { D == 1 && K == NARROW } {
+            let nodes = |field: &[f64]| fours(weights.line(field, 0), 0);
+            let (n, pressure, last) =
+                (fours(&weights.values[0], 0), nodes(self.pressure), nodes(self.last));
+            let work = self.ratio.filter(|_| RATIO).map_or(pressure, |r| nodes(r) * pressure);
+            return totals::<K>([n * pressure, n * work, n * last, n * (last * work)]);
+        }
         let n = weights.values;
         // work of a change of volume: P, or the product of P and s
         let work = |line: usize| -> [f64; K] {
