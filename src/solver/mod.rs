@@ -22,6 +22,7 @@ pub mod leapfrog;
 mod material_state;
 pub mod memory;
 pub mod midpoint;
+mod midpoint_update;
 mod motion_columns;
 pub mod nodal_fields;
 pub mod nodal_matrix;

@@ -36,24 +36,82 @@ pub(super) struct EndSums<const D: usize> {
     pub gradient: [[f64; D]; D],
 }
 
-/// Sums over the nodes of one particle.
+/// Number of particles whose sums are found before the particles are updated.
+pub(super) const BLOCK: usize = 32;
+
+/// Sums over the nodes of one particle, or of several if `T` is an array.
 #[derive(Clone, Copy)]
-pub(super) struct NodalSums<const D: usize> {
+pub(super) struct NodalSums<const D: usize, T = f64> {
     /// Velocity at the start, at the end, and their mean [m/s].
-    pub start: [f64; D],
-    pub star: [f64; D],
-    pub mean: [f64; D],
+    pub start: [T; D],
+    pub star: [T; D],
+    pub mean: [T; D],
     /// Lost velocity [m/s], and its product with the mean or the square of the velocity at the start
     /// [m2/s2].
-    pub lost: [f64; D],
-    pub product: [f64; D],
+    pub lost: [T; D],
+    pub product: [T; D],
     /// Gradients of the mean, of the velocity at the end and of the work velocity [1/s]: row a
     /// belongs to component a.
-    pub mean_gradient: [[f64; D]; D],
-    pub star_gradient: [[f64; D]; D],
-    pub work_gradient: [[f64; D]; D],
+    pub mean_gradient: [[T; D]; D],
+    pub star_gradient: [[T; D]; D],
+    pub work_gradient: [[T; D]; D],
     /// Work velocity along x [m/s].
-    pub work: f64,
+    pub work: T,
+}
+
+impl<const D: usize> NodalSums<D, [f64; BLOCK]> {
+    /// Zeros.
+    pub fn none() -> Self {
+        let (vector, tensor) = ([[0.0; BLOCK]; D], [[[0.0; BLOCK]; D]; D]);
+        NodalSums {
+            start: vector,
+            star: vector,
+            mean: vector,
+            lost: vector,
+            product: vector,
+            mean_gradient: tensor,
+            star_gradient: tensor,
+            work_gradient: tensor,
+            work: [0.0; BLOCK],
+        }
+    }
+
+    /// Writes the sums of particle `k` of the block.
+    #[inline(always)]
+    pub fn put(&mut self, k: usize, one: &NodalSums<D>) {
+        for a in 0..D {
+            self.start[a][k] = one.start[a];
+            self.star[a][k] = one.star[a];
+            self.mean[a][k] = one.mean[a];
+            self.lost[a][k] = one.lost[a];
+            self.product[a][k] = one.product[a];
+            for b in 0..D {
+                self.mean_gradient[a][b][k] = one.mean_gradient[a][b];
+                self.star_gradient[a][b][k] = one.star_gradient[a][b];
+                self.work_gradient[a][b][k] = one.work_gradient[a][b];
+            }
+        }
+        self.work[k] = one.work;
+    }
+
+    /// Sums of `L` particles from `k` on.
+    #[inline(always)]
+    pub fn part<const L: usize>(&self, k: usize) -> NodalSums<D, [f64; L]> {
+        let part = |all: &[f64; BLOCK]| *all[k..].first_chunk().expect("L particles");
+        let vector = |all: &[[f64; BLOCK]; D]| from_fn(|a| part(&all[a]));
+        let tensor = |all: &[[[f64; BLOCK]; D]; D]| from_fn(|a| vector(&all[a]));
+        NodalSums {
+            start: vector(&self.start),
+            star: vector(&self.star),
+            mean: vector(&self.mean),
+            lost: vector(&self.lost),
+            product: vector(&self.product),
+            mean_gradient: tensor(&self.mean_gradient),
+            star_gradient: tensor(&self.star_gradient),
+            work_gradient: tensor(&self.work_gradient),
+            work: part(&self.work),
+        }
+    }
 }
 
 /// Nodal values on one window in vectors.
