@@ -37,6 +37,26 @@ pub fn parts_mut<const N: usize>(fields: &mut [Vec<f64>; N], length: usize) -> [
     from_fn(|_| &mut fields.next().expect("N fields")[..length])
 }
 
+/// `N` numbers of `column` from `first` on.
+///
+/// # Panics
+///
+/// If `column` has fewer numbers.
+#[inline(always)]
+pub fn part<const N: usize>(column: &[f64], first: usize) -> &[f64; N] {
+    column[first..].first_chunk().expect("N numbers")
+}
+
+/// The same to write to.
+///
+/// # Panics
+///
+/// If `column` has fewer numbers.
+#[inline(always)]
+pub fn part_mut<const N: usize>(column: &mut [f64], first: usize) -> &mut [f64; N] {
+    column[first..].first_chunk_mut().expect("N numbers")
+}
+
 /// The sum of `f(0)`, `f(1)`, ..., `f(N - 1)` in that order; -0 without terms.
 #[inline(always)]
 pub fn sum<const N: usize>(mut f: impl FnMut(usize) -> f64) -> f64 {

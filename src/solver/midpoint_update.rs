@@ -3,15 +3,14 @@
 //! It is computed for several particles at a time, each operation for all of them before the next, so
 //! that compilers assign one vector lane to each particle.
 
-use decomp::array::{from_fn, map};
+use std::ops::Range;
+
+use decomp::array::{from_fn, map, part, part_mut};
 
 use super::gather::OwnTensor;
-use super::nodal_sums::{BLOCK, NodalSums};
+use super::nodal_sums::{BLOCK, LANES, NodalSums};
 use super::scheme::Scheme;
 use crate::transfer::VelocityUpdate;
-
-/// Number of particles updated together.
-const LANES: usize = 4;
 
 /// Columns of the own particles that the end of a mid-point step reads or writes.
 pub(super) struct MidpointColumns<'a, const D: usize> {
@@ -30,16 +29,32 @@ pub(super) struct MidpointColumns<'a, const D: usize> {
     pub stress: [&'a [f64]; 4],
 }
 
-/// Values of `L` particles of a column from `first` on.
-#[inline(always)]
-fn part<const L: usize>(column: &[f64], first: usize) -> [f64; L] {
-    *column[first..].first_chunk().expect("L particles")
+impl<const D: usize> MidpointColumns<'_, D> {
+    /// The same for `count` particles from `first` on.
+    #[inline(always)]
+    fn part(&mut self, first: usize, count: usize) -> MidpointColumns<'_, D> {
+        let these = || first..first + count;
+        MidpointColumns {
+            position: self.position.each_mut().map(|column| &mut column[these()]),
+            velocity: self.velocity.each_mut().map(|column| &mut column[these()]),
+            jacobian: &mut self.jacobian[these()],
+            energy: &mut self.energy[these()],
+            divergence: &mut self.divergence[these()],
+            mean_work_energy: self.mean_work_energy.as_mut().map(|column| &mut column[these()]),
+            deformation: part_of_tensor(&mut self.deformation, these()),
+            velocity_gradient: part_of_tensor(&mut self.velocity_gradient, these()),
+            mass: &self.mass[these()],
+            jacobian_mid: &self.jacobian_mid[these()],
+            stress: map(&self.stress, |column| &column[these()]),
+        }
+    }
 }
 
-/// The same to write to.
+/// `particles` of the columns of a tensor, if it exists.
 #[inline(always)]
-fn part_mut<const L: usize>(column: &mut [f64], first: usize) -> &mut [f64; L] {
-    column[first..].first_chunk_mut().expect("L particles")
+fn part_of_tensor<'a>(tensor: &'a mut OwnTensor<'_>, particles: Range<usize>) -> OwnTensor<'a> {
+    let tensor = tensor.as_mut()?;
+    Some(tensor.each_mut().map(|column| &mut column[particles.clone()]))
 }
 
 /// Trace of the gradients of `L` particles, plus their hoop strain rates at the distances `hoop` from
@@ -89,14 +104,44 @@ impl<const D: usize> Scheme<D> {
         radius: Option<&[f64; BLOCK]>,
         dt: f64,
     ) {
-        let whole = count - count % LANES;
-        for k in (0..whole).step_by(LANES) {
-            let hoop = radius.map(|radius| part(radius, k));
-            self.update_some::<LANES>(columns, first + k, &sums.part(k), hoop, dt);
+        match count {
+            // a length known at compile time leaves no checks
+            BLOCK => self.update(&mut columns.part(first, BLOCK), BLOCK, sums, radius, dt),
+            _ => self.update_last(&mut columns.part(first, count), count, sums, radius, dt),
         }
-        for k in whole..count {
-            let hoop = radius.map(|radius| part(radius, k));
-            self.update_some::<1>(columns, first + k, &sums.part(k), hoop, dt);
+    }
+
+    /// The same for fewer particles than a block.
+    #[inline(never)]
+    fn update_last(
+        &self,
+        columns: &mut MidpointColumns<'_, D>,
+        count: usize,
+        sums: &NodalSums<D, [f64; BLOCK]>,
+        radius: Option<&[f64; BLOCK]>,
+        dt: f64,
+    ) {
+        self.update(columns, count, sums, radius, dt);
+    }
+
+    /// The same for the first `count` particles of `columns`.
+    #[inline(always)]
+    fn update(
+        &self,
+        columns: &mut MidpointColumns<'_, D>,
+        count: usize,
+        sums: &NodalSums<D, [f64; BLOCK]>,
+        radius: Option<&[f64; BLOCK]>,
+        dt: f64,
+    ) {
+        let whole = count / LANES;
+        for k in (0..whole).map(|k| LANES * k) {
+            let hoop = radius.map(|radius| *part(radius, k));
+            self.update_some::<LANES>(columns, k, &sums.part(k), hoop, dt);
+        }
+        for k in LANES * whole..count {
+            let hoop = radius.map(|radius| *part(radius, k));
+            self.update_some::<1>(columns, k, &sums.part(k), hoop, dt);
         }
     }
 
@@ -110,11 +155,11 @@ impl<const D: usize> Scheme<D> {
         hoop: Option<[f64; L]>,
         dt: f64,
     ) {
-        let old: [[f64; L]; D] = from_fn(|a| part(columns.velocity[a], r));
+        let old: [[f64; L]; D] = from_fn(|a| *part(columns.velocity[a], r));
         let (new, heat) = self.end_velocity(&old, at);
         self.end_strain(columns, r, at, dt);
         let strain_rate = divergence(&at.mean_gradient, &at.mean[0], hoop);
-        let s: [[f64; L]; 4] = map(&columns.stress, |stress| part(stress, r));
+        let s: [[f64; L]; 4] = map(&columns.stress, |stress| *part(stress, r));
         let (mass, j_mid) = (part::<L>(columns.mass, r), part::<L>(columns.jacobian_mid, r));
         let work_done = self.work_done(&s, at, &strain_rate, hoop, dt);
         let energy = part_mut::<L>(columns.energy, r);
@@ -205,9 +250,9 @@ impl<const D: usize> Scheme<D> {
         if let Some(deformation) = &mut columns.deformation {
             let l = &at.mean_gradient;
             let l = [&l[0][0], &l[0][D - 1], &l[D - 1][0], &l[D - 1][D - 1]];
-            let f: [[f64; L]; 4] = from_fn(|k| part(deformation[k], r));
+            let f: [[f64; L]; 4] = from_fn(|k| *part(deformation[k], r));
             let f = match self.total_lagrangian {
-                true => deformed_linearly(f, l, from_fn(|k| part(gradient[k], r)), dt),
+                true => deformed_linearly(f, l, from_fn(|k| *part(gradient[k], r)), dt),
                 false => deformed(f, l, dt),
             };
             (0..4).for_each(|k| *part_mut(deformation[k], r) = f[k]);

@@ -1,6 +1,6 @@
 //! Sums of nodal velocities at one particle, from which a mid-point step updates it.
 
-use decomp::array::from_fn;
+use decomp::array::{from_fn, part};
 use wide::f64x4;
 
 use crate::shape::fours;
@@ -38,6 +38,9 @@ pub(super) struct EndSums<const D: usize> {
 
 /// Number of particles whose sums are found before the particles are updated.
 pub(super) const BLOCK: usize = 32;
+
+/// Number of particles updated together.
+pub(super) const LANES: usize = 4;
 
 /// Sums over the nodes of one particle, or of several if `T` is an array.
 #[derive(Clone, Copy)]
@@ -97,7 +100,7 @@ impl<const D: usize> NodalSums<D, [f64; BLOCK]> {
     /// Sums of `L` particles from `k` on.
     #[inline(always)]
     pub fn part<const L: usize>(&self, k: usize) -> NodalSums<D, [f64; L]> {
-        let part = |all: &[f64; BLOCK]| *all[k..].first_chunk().expect("L particles");
+        let part = |all: &[f64; BLOCK]| *part(all, k);
         let vector = |all: &[[f64; BLOCK]; D]| from_fn(|a| part(&all[a]));
         let tensor = |all: &[[[f64; BLOCK]; D]; D]| from_fn(|a| vector(&all[a]));
         NodalSums {

@@ -47,9 +47,11 @@
 
 use std::ops::Range;
 
+use decomp::array::{from_fn, map, part, part_mut};
 use wide::f64x4;
 
 use super::nodal_matrix::NodalMatrix;
+use super::nodal_sums::{BLOCK, LANES};
 use super::particle_update::bodies;
 use super::scheme::Scheme;
 use crate::material::constitutive::ConstitutiveModel;
@@ -195,11 +197,11 @@ impl Projected<'_> {
             let nodal = weights.line(self.pressure, line);
             let Some(ratio) = self.ratio.filter(|_| RATIO) else { return *nodal };
             let ratio = weights.line(ratio, line);
-            decomp::array::from_fn(|k| ratio[k] * nodal[k])
+            from_fn(|k| ratio[k] * nodal[k])
         };
         let product = weights.sum(n, |line| {
             let (u, work) = (weights.line(self.last, line), work(line));
-            decomp::array::from_fn(|k| u[k] * work[k])
+            from_fn(|k| u[k] * work[k])
         });
         [weights.dot(n, self.pressure), weights.sum(n, work), weights.dot(n, self.last), product]
     }
@@ -219,6 +221,84 @@ impl Projected<'_> {
         }
         (0..V).for_each(|l| product[l] = last[l] * work[l]);
         [pressure, work, last, product]
+    }
+}
+
+/// Columns of the own particles that the relaxation of the pressure reads or writes.
+struct Relaxing<'a> {
+    /// Volume ratio, and energy [J/kg].
+    j: &'a mut [f64],
+    e: &'a mut [f64],
+    mass: &'a [f64],
+    volume0: &'a [f64],
+    /// Pressure [Pa] and compliance [m3/Pa].
+    p: &'a [f64],
+    w: &'a [f64],
+    /// Volume ratio at the middle of the step, if weights are relative to the current volume.
+    ratio: Option<&'a [f64]>,
+    rate: f64,
+}
+
+impl Relaxing<'_> {
+    /// The same for `count` particles from `first` on.
+    #[inline(always)]
+    fn part(&mut self, first: usize, count: usize) -> Relaxing<'_> {
+        let these = first..first + count;
+        Relaxing {
+            j: &mut self.j[these.clone()],
+            e: &mut self.e[these.clone()],
+            mass: &self.mass[these.clone()],
+            volume0: &self.volume0[these.clone()],
+            p: &self.p[these.clone()],
+            w: &self.w[these.clone()],
+            ratio: self.ratio.map(|ratio| &ratio[these]),
+            rate: self.rate,
+        }
+    }
+
+    /// Relaxes the particles with their sums.
+    #[inline(always)]
+    fn update(&mut self, sums: &[[f64; 4]]) {
+        let (fours, rest) = sums.as_chunks::<LANES>();
+        for (k, four) in fours.iter().enumerate() {
+            let columns = f64x4::transpose(map(four, f64x4::from));
+            self.update_some(LANES * k, &map(&columns, |sums: f64x4| sums.to_array()));
+        }
+        for (k, one) in rest.iter().enumerate() {
+            self.update_some(LANES * fours.len() + k, &map(one, |sum| [sum]));
+        }
+    }
+
+    /// [`Self::update`] for fewer particles than a block.
+    #[inline(never)]
+    fn update_last(&mut self, sums: &[[f64; 4]]) {
+        self.update(sums);
+    }
+
+    /// Relaxes `L` particles from `r` on with their sums.
+    #[inline(always)]
+    fn update_some<const L: usize>(&mut self, r: usize, sums: &[[f64; L]; 4]) {
+        let [mean, mean_work, last, product] = sums;
+        let [w, p, volume0, mass] =
+            map(&[self.w, self.p, self.volume0, self.mass], |column| *part::<L>(column, r));
+        let share: [f64; L] = match self.ratio {
+            Some(ratio) => {
+                let ratio = part::<L>(ratio, r);
+                from_fn(|i| self.rate * w[i] / ratio[i])
+            }
+            None => from_fn(|i| self.rate * w[i]),
+        };
+        let change: [f64; L] = from_fn(|i| share[i] * (p[i] - mean[i]) / volume0[i]);
+        let j = part_mut::<L>(self.j, r);
+        *j = match self.ratio {
+            Some(_) => from_fn(|i| j[i] * ((1.0 + 0.5 * change[i]) / (1.0 - 0.5 * change[i]))),
+            None => from_fn(|i| j[i] + change[i]),
+        };
+        let e = part_mut::<L>(self.e, r);
+        *e = from_fn(|i| {
+            let work = share[i] * (product[i] - last[i] * mean_work[i]);
+            e[i] + (work - mean_work[i] * change[i] * volume0[i]) / mass[i]
+        });
     }
 }
 
@@ -286,11 +366,17 @@ impl<const D: usize> Scheme<D> {
         let mut sums = PressureSums { weight, pressure: term, ratio: ratio.as_deref_mut() };
         add(&patch.stencils, &patch.runs, &mut patch.compliance_matrix, &of, &mut sums);
         patch.compliance_matrix.finish::<D>();
-        for i in patch.active_lines.iter().cloned().flatten() {
-            inverse[i] = if weight[i] > 0.0 { 1.0 / weight[i] } else { 0.0 };
-            term[i] = cut(term[i] * inverse[i], self.still_pressure);
+        for line in &patch.active_lines {
+            let (inverse, term) = (&mut inverse[line.clone()], &mut term[line.clone()]);
+            for ((inverse, term), &weight) in
+                inverse.iter_mut().zip(term).zip(&weight[line.clone()])
+            {
+                *inverse = if weight > 0.0 { 1.0 / weight } else { 0.0 };
+                *term = cut(*term * *inverse, self.still_pressure);
+            }
             if let Some(ratio) = &mut ratio {
-                ratio[i] *= inverse[i];
+                let ratio = &mut ratio[line.clone()];
+                ratio.iter_mut().zip(inverse).for_each(|(ratio, inverse)| *ratio *= *inverse);
             }
         }
         if self.contact.is_some() {
@@ -343,7 +429,7 @@ impl<const D: usize> Scheme<D> {
                         window = nodal.fetch::<K, V, D>(stencils.place(r));
                     }
                     let values = stencils.packed_values::<K, V, D>(r);
-                    totals::<K>(decomp::array::from_fn(|k| dot(&values, &window[k])))
+                    totals::<K>(from_fn(|k| dot(&values, &window[k])))
                 });
             });
         }
@@ -392,22 +478,22 @@ impl<const D: usize> Scheme<D> {
             last: &fields[term],
             ratio: self.fields.relaxed_ratio.map(|ratio| &fields[ratio][..]),
         };
-        let is_ratio = nodal.ratio.is_some();
         let n = patch.block.own();
         let columns = [c.jacobian, c.energy, c.mass, c.volume0, p, w, mid];
         let [j, e, mass, volume0, p, w, mid] =
             patch.block.columns_mut(columns).map(|column| &mut column[..n]);
-        for r in 0..n {
-            let [mean, mean_work, last, product] = sums(r, &nodal);
-            let share = if is_ratio { rate * w[r] / mid[r] } else { rate * w[r] };
-            let change = share * (p[r] - mean) / volume0[r];
-            if is_ratio {
-                j[r] *= (1.0 + 0.5 * change) / (1.0 - 0.5 * change);
-            } else {
-                j[r] += change;
+        let ratio = nodal.ratio.map(|_| &*mid);
+        let mut all = Relaxing { j, e, mass, volume0, p, w, ratio, rate };
+        let mut block = [[0.0; 4]; BLOCK];
+        for first in (0..n).step_by(BLOCK) {
+            let count = BLOCK.min(n - first);
+            let particles = first..first + count;
+            block.iter_mut().zip(particles).for_each(|(one, r)| *one = sums(r, &nodal));
+            match count {
+                // a length known at compile time leaves no checks
+                BLOCK => all.part(first, BLOCK).update(&block),
+                _ => all.part(first, count).update_last(&block[..count]),
             }
-            e[r] +=
-                (share * (product - last * mean_work) - mean_work * change * volume0[r]) / mass[r];
         }
     }
 

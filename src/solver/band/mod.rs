@@ -6,10 +6,10 @@ mod products;
 
 use std::ops::Range;
 
-use decomp::array::map;
+use decomp::array::{from_fn, map};
 use wide::f64x4;
 
-use crate::shape::{MOST_NODES, add_product};
+use crate::shape::add_product;
 use crate::solver::particle_weights::{NARROW, ParticleWeights};
 
 /// Number of nodes of which a diagonal is zero or not together, and which are cleared together.
@@ -146,14 +146,12 @@ impl Band {
         self.touch([from, from + M - 1], if M < K { Touched::Near } else { Touched::All });
         // a length known at compile time avoids bounds checks
         let rows = &mut self.rows[from * K..][..const { K * K }];
-        // zeros after the last node, so that all nodes add as many terms
-        let mut padded = [0.0; 2 * MOST_NODES];
-        padded[..M].copy_from_slice(&values[..M]);
         for i in 0..M {
             let term = w * values[i];
             if M == NARROW {
-                let shifted: &[f64; M] = padded[i..].first_chunk().expect("room for zeros");
-                add_product(rows, i * K, term, shifted);
+                // zeros after the last node, so that all nodes add as many terms
+                let shifted: [f64; M] = from_fn(|k| if i + k < M { values[i + k] } else { 0.0 });
+                add_product(rows, i * K, term, &shifted);
             } else {
                 for k in i..M {
                     rows[i * K + k - i] += term * values[k];
