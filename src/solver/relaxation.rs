@@ -72,25 +72,14 @@ const INNER: f64 = 0.8;
 /// Fraction of a particle's greatest weight above which it counts as touching a node.
 const TOUCHES: f64 = 1e-3;
 
-/// Columns that the relaxation of the pressure reads.
+/// Columns of all particles, ghosts included, that the projection of the pressure reads.
 struct Relaxed<'a> {
     /// Pressure [Pa].
     pressure: &'a [f64],
-    /// Compliance [m3/Pa].
+    /// Compliance w [m3/Pa].
     compliance: &'a [f64],
-    /// Volume ratio, if weights are relative to the current volume; else empty.
-    jacobian: &'a [f64],
-}
-
-impl Relaxed<'_> {
-    /// Weight of a particle, w/s.
-    #[inline(always)]
-    fn share(&self, r: usize) -> f64 {
-        match self.jacobian.is_empty() {
-            true => self.compliance[r],
-            false => self.compliance[r] / self.jacobian[r],
-        }
-    }
+    /// Weight w/s [m3/Pa].
+    share: &'a [f64],
 }
 
 /// Nodal sums of the relaxation: weights, weights times pressure, and weights times volume ratio, if
@@ -102,22 +91,19 @@ struct PressureSums<'a> {
 }
 
 impl PressureSums<'_> {
-    /// Adds a particle; returns its weight.
+    /// Adds a particle with a `share`, a `pressure` and a `compliance`.
     #[inline(always)]
     fn add<const K: usize, const D: usize>(
         &mut self,
         weights: &ParticleWeights<'_, K, D>,
-        r: usize,
-        of: &Relaxed<'_>,
-    ) -> f64 {
+        [share, pressure, compliance]: [f64; 3],
+    ) {
         if let Some(ratio) = &mut self.ratio {
-            weights.add(ratio, weights.values, |n| n * of.compliance[r]);
+            weights.add(ratio, weights.values, |n| n * compliance);
         }
-        let share = of.share(r);
-        let pressure = share * of.pressure[r];
+        let product = share * pressure;
         weights.add(self.weight, weights.values, |n| n * share);
-        weights.add(self.pressure, weights.values, |n| n * pressure);
-        share
+        weights.add(self.pressure, weights.values, |n| n * product);
     }
 
     /// Adds particles with the same window.
@@ -136,7 +122,7 @@ impl PressureSums<'_> {
             ratio = place.nodes::<K, V>(field);
         }
         for r in group {
-            let (values, share) = (stencils.packed_values::<K, V, D>(r), of.share(r));
+            let (values, share) = (stencils.packed_values::<K, V, D>(r), of.share[r]);
             add_to(&mut weight, &values, share);
             add_to(&mut pressure, &values, share * of.pressure[r]);
             add_to(&mut ratio, &values, of.compliance[r]);
@@ -158,8 +144,12 @@ fn add_particles<const K: usize, const D: usize>(
     of: &Relaxed<'_>,
     sums: &mut PressureSums<'_>,
 ) {
-    for (r, weights) in particles.clone().zip(stencils.particles::<K, D>(particles)) {
-        let share = sums.add(&weights, r, of);
+    let (shares, pressures) = (&of.share[particles.clone()], &of.pressure[particles.clone()]);
+    let columns = shares.iter().zip(pressures).zip(&of.compliance[particles.clone()]);
+    for (((&share, &pressure), &compliance), weights) in
+        columns.zip(stencils.particles::<K, D>(particles))
+    {
+        sums.add(&weights, [share, pressure, compliance]);
         matrix.add(&weights, share);
     }
 }
@@ -349,16 +339,21 @@ impl<const D: usize> Scheme<D> {
             return;
         };
         let column = |k: usize| &patch.block.columns[k][..particles];
-        let jacobian =
-            self.fields.relaxed_ratio.and(self.columns.jacobian_mid).map_or(&[][..], column);
-        let of = Relaxed { pressure: column(p), compliance: column(w), jacobian };
+        let (pressure, compliance) = (column(p), column(w));
+        let mut share = std::mem::take(&mut patch.compliance_matrix.particles.weights);
+        share.clear();
+        match self.fields.relaxed_ratio.and(self.columns.jacobian_mid).map(column) {
+            Some(ratio) => share.extend(compliance.iter().zip(ratio).map(|(w, ratio)| w / ratio)),
+            None => share.extend_from_slice(compliance),
+        }
+        let of = Relaxed { pressure, compliance, share: &share };
         let mut ratio = self.fields.relaxed_ratio.map(|field| {
             let mut ratio = std::mem::take(&mut patch.nodes.fields[field]);
             ratio.fill(0.0);
             ratio
         });
         let nodes = patch.nodes.layers * patch.nodes.nodes.count();
-        patch.compliance_matrix.start::<K, D>(nodes, (0..particles).map(|r| of.share(r)));
+        patch.compliance_matrix.clear::<K, D>(nodes);
         let [weight, inverse, sum, term] = patch.nodes.fields_mut([weight, inverse, sum, term]);
         weight.fill(0.0);
         inverse.fill(0.0);
@@ -366,6 +361,7 @@ impl<const D: usize> Scheme<D> {
         let mut sums = PressureSums { weight, pressure: term, ratio: ratio.as_deref_mut() };
         add(&patch.stencils, &patch.runs, &mut patch.compliance_matrix, &of, &mut sums);
         patch.compliance_matrix.finish::<D>();
+        patch.compliance_matrix.particles.weights = share;
         for line in &patch.active_lines {
             let (inverse, term) = (&mut inverse[line.clone()], &mut term[line.clone()]);
             for ((inverse, term), &weight) in
