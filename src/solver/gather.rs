@@ -305,34 +305,29 @@ impl<const D: usize> Scheme<D> {
         let first = &patch.stencils.first;
         let layer = |r: usize| if layers > 1 { first[r] as usize / count * count } else { 0 };
         let mut limiters = std::mem::take(&mut patch.block.columns[column]);
-        let (phi, gradient) = (&mut limiters, &patch.block.columns[self.columns.divergence]);
+        let gradient = &patch.block.columns[self.columns.divergence][..n];
+        let particles = limiters[..n].iter_mut().zip(gradient).zip(&patch.block.cells);
         // particles of a cell follow each other, and have one limiter by Christensen
         let mut of_cell = (usize::MAX, 0.0);
-        for r in 0..n {
+        for (r, ((phi, &gradient), cell)) in particles.enumerate() {
             // in expansion there is no viscosity to limit
-            phi[r] = if gradient[r] >= 0.0 {
-                0.0
-            } else {
-                match limiter {
-                    Limiter::Christensen => {
-                        let at =
-                            |a: usize| (i64::from(patch.block.cells[r][a]) - lower[a]) as usize;
-                        let node = (1..D).fold(at(0), |sum, a| sum + stride * at(a));
-                        let node = node + layer(r);
-                        if of_cell.0 != node {
-                            of_cell = (node, artificial_viscosity::christensen(&nodes, node));
-                        }
-                        of_cell.1
+            if gradient >= 0.0 {
+                *phi = 0.0;
+                continue;
+            }
+            *phi = match limiter {
+                Limiter::Christensen => {
+                    let at = |a: usize| (i64::from(cell[a]) - lower[a]) as usize;
+                    let node = (1..D).fold(at(0), |sum, a| sum + stride * at(a)) + layer(r);
+                    if of_cell.0 != node {
+                        of_cell = (node, artificial_viscosity::christensen(&nodes, node));
                     }
-                    Limiter::Nodal => {
-                        let weights = patch.stencils.particle::<K, D>(r);
-                        artificial_viscosity::nodal(
-                            &nodes,
-                            &weights,
-                            gradient[r],
-                            self.push_of(patch, r),
-                        )
-                    }
+                    of_cell.1
+                }
+                Limiter::Nodal => {
+                    let weights = patch.stencils.particle::<K, D>(r);
+                    let push = self.push_of(patch, r);
+                    artificial_viscosity::nodal(&nodes, &weights, gradient, push)
                 }
             };
         }

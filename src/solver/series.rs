@@ -500,9 +500,14 @@ impl<const D: usize> Scheme<D> {
             patch.nodes.fields[f.work + a] = work;
             let [inverse, lumped, w, first] =
                 patch.nodes.fields_mut([f.inverse, f.lumped_velocity + a, f.work + a, f.first + a]);
-            for i in patch.active_lines.iter().cloned().flatten() {
-                w[i] = 0.5 * (lumped[i] + inverse[i] * w[i]);
-                first[i] = w[i];
+            for line in &patch.active_lines {
+                // slices of one length: no checks in the loop
+                let [w, first] = [&mut *w, &mut *first].map(|field| &mut field[line.clone()]);
+                let [lumped, inverse] = [&*lumped, &*inverse].map(|field| &field[line.clone()]);
+                for i in 0..w.len() {
+                    w[i] = 0.5 * (lumped[i] + inverse[i] * w[i]);
+                }
+                first.copy_from_slice(w);
             }
         }
     }
