@@ -1,5 +1,5 @@
-//! Counting sort of particles by cell and id: counts of the particles of each cell give the order of
-//! the cells, and the ids of a cell are almost in order.
+//! Counting sort of particles by cell and id. The counts of the particles of the cells give the first
+//! place of each cell. The ids of a cell are few or almost in order, and are inserted one by one.
 
 /// Order of particles, with buffers that are kept from one sort to the next.
 #[derive(Clone, Debug, Default)]

@@ -43,7 +43,7 @@ struct ImageGroups<const D: usize> {
     image: Image<D>,
     /// Receivers that see a part of the domain in this image, one bit each.
     seers: u64,
-    /// Smallest box of the cells that they see in this image.
+    /// Smallest box that contains the cells whose images lie in the halos of these receivers.
     sources: IndexBox<D>,
     /// Particles to hand over, by receiver.
     movers: Vec<Vec<u32>>,

@@ -74,13 +74,13 @@ impl<const D: usize> Block<D> {
         groups: impl Iterator<Item = Group<'a, D>> + Clone,
         buffers: &mut MergeBuffers,
     ) {
+        if groups.clone().all(|group| group.ids.is_empty()) {
+            return;
+        }
         let MergeBuffers { sorting, slots } = buffers;
         let cells = groups.clone().flat_map(|group| group.cells()).map(|cell| ring.place(cell));
         let arriving = groups.clone().flat_map(|group| group.ids).copied();
         sorting.sort(ring.cells(), cells, arriving);
-        if sorting.ids.is_empty() {
-            return;
-        }
         slots.resize(sorting.order.len(), 0);
         for (&number, slot) in sorting.order.iter().zip(0..) {
             slots[number as usize] = slot;

@@ -1,6 +1,6 @@
 //! Groups of particles in messages, column after column: packed and read at the cost of a copy.
 
-use crate::particle_block::Change;
+use crate::particle_block::MirrorChange;
 use crate::{Block, Image, array};
 
 /// Kind of a group.
@@ -55,9 +55,9 @@ pub(crate) fn put_particles<const D: usize>(
     let mut put = |c: usize| {
         let values = particles.iter().map(|&r| block.columns[c][r as usize]);
         match block.specs()[c].mirror.in_image(&image.flip) {
-            Change::None => out.extend(values.map(f64::to_bits)),
-            Change::Negate => out.extend(values.map(|value| (-value).to_bits())),
-            Change::Complement => out.extend(values.map(|value| (1.0 - value).to_bits())),
+            MirrorChange::None => out.extend(values.map(f64::to_bits)),
+            MirrorChange::Negate => out.extend(values.map(|value| (-value).to_bits())),
+            MirrorChange::Complement => out.extend(values.map(|value| (1.0 - value).to_bits())),
         }
     };
     if own {

@@ -19,19 +19,19 @@ pub enum Mirror {
 
 impl Mirror {
     /// Change of a value in an image that is mirrored in the directions of `flip`.
-    pub(crate) fn in_image(self, flip: &[bool]) -> Change {
+    pub(crate) fn in_image(self, flip: &[bool]) -> MirrorChange {
         match self {
-            Mirror::Negate(a) if flip[a] => Change::Negate,
-            Mirror::NegatePair(a, b) if flip[a] != flip[b] => Change::Negate,
-            Mirror::Complement(a) if flip[a] => Change::Complement,
-            _ => Change::None,
+            Mirror::Negate(a) if flip[a] => MirrorChange::Negate,
+            Mirror::NegatePair(a, b) if flip[a] != flip[b] => MirrorChange::Negate,
+            Mirror::Complement(a) if flip[a] => MirrorChange::Complement,
+            _ => MirrorChange::None,
         }
     }
 }
 
-/// Change of a column's value in an image.
+/// Change of a column's value in a mirrored image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Change {
+pub(crate) enum MirrorChange {
     None,
     /// v becomes -v.
     Negate,
@@ -262,7 +262,8 @@ mod tests {
     #[test]
     fn images_turn_vectors_and_shear() {
         let sides = [[false, false], [true, false], [false, true], [true, true]];
-        let (none, negate, complement) = (Change::None, Change::Negate, Change::Complement);
+        let (none, negate, complement) =
+            (MirrorChange::None, MirrorChange::Negate, MirrorChange::Complement);
         for (mirror, wanted) in [
             (Mirror::Same, [none, none, none, none]),
             (Mirror::Negate(0), [none, negate, none, negate]),

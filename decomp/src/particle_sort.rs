@@ -42,8 +42,9 @@ pub(crate) struct SortBuffers<const D: usize> {
 /// Moves of particles to their places.
 #[derive(Clone, Debug, Default)]
 struct Moves {
-    /// Long sections that move down, and up. They keep their order among each other, so that they are
-    /// moved within a column.
+    /// Long sections that move towards the start, and towards the end. Their order among each other
+    /// stays, so that they need no buffer. A section that comes from far behind makes all later ones
+    /// of its range single moves.
     down: Vec<Section>,
     up: Vec<Section>,
     /// Old place of every other particle that moves, and its new place.
@@ -217,7 +218,9 @@ impl Moves {
         let Section { to, from, count } = section;
         let end = |sections: &[Section]| sections.last().map_or(0, |last| last.from + last.count);
         if to == from {
-        } else if count < LONG || from < end(&self.down).max(end(&self.up)) {
+            return;
+        }
+        if count < LONG || from < end(&self.down).max(end(&self.up)) {
             self.from.extend(from as u32..(from + count) as u32);
             self.to.extend(to as u32..(to + count) as u32);
         } else if to < from {
@@ -231,7 +234,7 @@ impl Moves {
     fn apply<T: Copy>(&self, values: &mut [T], buffer: &mut Vec<T>) {
         buffer.clear();
         buffer.extend(self.from.iter().map(|&from| values[from as usize]));
-        // in this order no section covers another that has not moved yet
+        // in this order no section overwrites another that has not moved yet
         for &Section { to, from, count } in self.down.iter().chain(self.up.iter().rev()) {
             values.copy_within(from..from + count, to);
         }
@@ -313,6 +316,25 @@ mod tests {
             // dense and sparse cells
             check(&cells);
             check(&cells.iter().map(|cell| 50 * cell).collect::<Vec<_>>());
+        }
+    }
+
+    /// Several particles per cell of a plane, with ids in any order within a cell.
+    #[test]
+    fn particles_of_a_plane_are_sorted_by_cell_and_id() {
+        let mut block = Block::<2>::new(&SPECS);
+        let mut seed = 7u64;
+        for k in 0..400_u64 {
+            seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            let cell = [(k / 4 % 10) as i32, (k / 40) as i32 + (seed >> 40) as i32 % 2];
+            let id = (k * 77) % 400;
+            block.push(id, cell, &[id as f64, f64::from(cell[1])]);
+        }
+        block.sort_own();
+        assert!((1..400).all(|r| block.key(r - 1) < block.key(r)));
+        for r in 0..400 {
+            assert_eq!(block.columns[0][r], block.ids[r] as f64);
+            assert_eq!(block.columns[1][r], f64::from(block.cells[r][1]));
         }
     }
 }

@@ -239,6 +239,31 @@ mod tests {
         check_all::<CpdiBsplineQuadratic, 4>();
     }
 
+    /// Weights of four particles on a line equal those of one, bit by bit, counted from the first node
+    /// with a weight.
+    #[test]
+    fn four_particles_on_a_line_have_the_weights_of_one() {
+        for k in 0..40 {
+            let at = k as f64 / 40.0;
+            let (places, lengths) = ([at, 0.25, 1.0 - at, 0.75], [0.5, 0.47, 0.9, 1.0]);
+            let four = CpdiBsplineQuadratic::four::<4>(f64x4::from(places), f64x4::from(lengths));
+            for lane in 0..4 {
+                let one = CpdiBsplineQuadratic::weights::<4>(places[lane], lengths[lane]);
+                let skipped = (four.skipped.to_bitmask() >> lane & 1) as usize;
+                let first = four.first.to_array()[lane] as i32;
+                assert_eq!(first + skipped as i32, one.first, "{places:?}, {lane}");
+                for (lines, expected) in
+                    [(&four.values, &one.values), (&four.gradients, &one.gradients)]
+                {
+                    for node in 0..4_usize {
+                        let value = node.checked_sub(skipped).map_or(0.0, |at| expected[at]);
+                        assert_eq!(lines[node].to_array()[lane], value, "{places:?}, {lane}");
+                    }
+                }
+            }
+        }
+    }
+
     /// Both particles of a cell along a direction take the window from the node below the cell on.
     #[test]
     fn particles_of_a_cell_have_one_window() {

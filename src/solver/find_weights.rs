@@ -1,5 +1,5 @@
-//! Weights of all particles of a patch: four narrow particles at a time in a plane, all others one
-//! after the other, with the same bits.
+//! Weights of all particles of a patch: four narrow particles at a time in a plane, and on a line in
+//! windows of four nodes; all others one after the other, with the same bits.
 
 use std::ops::Range;
 
@@ -69,8 +69,8 @@ fn put(numbers: &[f64x4], out: &mut [f64]) {
     }
 }
 
-/// Whether four particles are computed together: on a line that takes more instructions for windows of
-/// fewer than four nodes. In windows of more than [`NARROW`] nodes in a plane it is done for four narrow
+/// Whether four particles are computed together: in a plane always, on a line only for windows of four
+/// nodes, because it takes more instructions for two or three. In windows of more than [`NARROW`] nodes in a plane it is done for four narrow
 /// particles only.
 const fn in_lanes(width: usize, dimension: usize) -> bool {
     dimension > 1 || width == NARROW
@@ -105,12 +105,12 @@ impl Stencils {
         let mut buffer = PlaneLanes::none();
         let mut narrow_buffer = PlaneLanes::none();
         for first in (0..whole).step_by(LANES) {
-            if const { !in_lanes(K, D) } {
-            } else if const { D == 1 } {
+            // only one of the branches is compiled
+            if const { D == 1 && in_lanes(K, D) } {
                 self.fill_four_on_line::<S, K, D>(at, first, &mut corners);
-            } else if const { K <= NARROW } {
+            } else if const { D > 1 && K <= NARROW } {
                 self.fill_four::<S, K, D>(at, first, &mut corners, &mut buffer);
-            } else {
+            } else if const { D > 1 } {
                 if at.are_narrow::<S>(first) {
                     self.fill_four_narrow::<S, K, D>(at, first, &mut corners, &mut narrow_buffer);
                 } else {
@@ -177,22 +177,22 @@ impl Stencils {
         self.put_corners(at, first, corners, (from_fn(|a| w.first[a]), from_fn(|a| w.skipped[a])));
     }
 
-    /// Writes the first nodes of four particles from `first` on, which lie `from` nodes from the lower nodes
-    /// of their cells, and whether these nodes have no weight.
+    /// Writes the first nodes of four particles from `first` on, which lie `offset` nodes from the lower nodes
+    /// of their cells, and whether windows start one node before their first weights.
     #[inline(always)]
     fn put_corners<const D: usize>(
         &mut self,
         at: &Places<'_, D>,
         first: usize,
         corners: &mut Corners<D>,
-        (from, skipped): ([f64x4; D], [f64x4; D]),
+        (offset, skipped): ([f64x4; D], [f64x4; D]),
     ) {
-        let from = map(&from, |from: f64x4| from.to_array());
+        let offset = map(&offset, |offset: f64x4| offset.to_array());
         let cells = &at.cells[first..first + LANES];
         let windows = &mut self.first[first..first + LANES];
         for lane in 0..LANES {
             let corner: [i32; D] =
-                from_fn(|a| cells[lane][a] + integer(from[a][lane]) - at.lower[a]);
+                from_fn(|a| cells[lane][a] + integer(offset[a][lane]) - at.lower[a]);
             corners.extend(corner);
             windows[lane] = index(corner, self.stride);
         }

@@ -10,6 +10,7 @@ use super::solid::put_back;
 use crate::shape::with_width;
 use crate::solver::clock::timed;
 use crate::solver::packed::with_packed;
+use crate::solver::particle_weights::NARROW;
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
 use crate::transfer::VelocityUpdate;
@@ -44,7 +45,9 @@ impl<const D: usize> Scheme<D> {
                 let mut all = stencils.particles::<K, D>(0..patch.block.own());
                 s.gather_particles(patch, dt, |_, nodal| {
                     let weights = all.next().expect("those of each own particle");
-                    if const { D == 1 } {
+                    if const { D == 1 && (K == 3 || K == NARROW) } {
+                        NodalSums::on_line(nodal, &weights)
+                    } else if const { D == 1 } {
                         NodalSums::one_by_one::<K, 1>(nodal, &weights)
                     } else {
                         NodalSums::one_by_one::<K, K>(nodal, &weights)

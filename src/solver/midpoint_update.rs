@@ -8,29 +8,37 @@ use std::ops::Range;
 use decomp::array::{from_fn, map, part, part_mut};
 
 use super::gather::OwnTensor;
-use super::nodal_sums::{BLOCK, LANES, NodalSums};
+use super::nodal_sums::{BLOCK, NodalSums};
 use super::scheme::Scheme;
+use crate::shape::LANES;
 use crate::transfer::VelocityUpdate;
 
 /// Columns of the own particles that the end of a mid-point step reads or writes.
 pub(super) struct MidpointColumns<'a, const D: usize> {
+    /// Position [m] and velocity [m/s].
     pub position: [&'a mut [f64]; D],
     pub velocity: [&'a mut [f64]; D],
+    /// Volume ratio [-].
     pub jacobian: &'a mut [f64],
+    /// Specific internal energy [J/kg].
     pub energy: &'a mut [f64],
+    /// Divergence of the velocity of the step [1/s].
     pub divergence: &'a mut [f64],
     /// See [`Columns::mean_work_energy`](super::columns::Columns).
     pub mean_work_energy: Option<&'a mut [f64]>,
+    /// Deformation gradient [-] and velocity gradient [1/s].
     pub deformation: OwnTensor<'a>,
     pub velocity_gradient: OwnTensor<'a>,
+    /// Mass [kg].
     pub mass: &'a [f64],
+    /// Volume ratio at the middle of the step [-].
     pub jacobian_mid: &'a [f64],
-    /// Stress times volume \[J\]: xx, yy, xy and zz, or one component four times.
+    /// Stress times volume [J]: xx, yy, xy and zz, or one component four times.
     pub stress: [&'a [f64]; 4],
 }
 
 impl<const D: usize> MidpointColumns<'_, D> {
-    /// The same for `count` particles from `first` on.
+    /// The columns of `count` particles from `first` on.
     #[inline(always)]
     fn part(&mut self, first: usize, count: usize) -> MidpointColumns<'_, D> {
         let these = || first..first + count;
@@ -57,36 +65,36 @@ fn part_of_tensor<'a>(tensor: &'a mut OwnTensor<'_>, particles: Range<usize>) ->
     Some(tensor.each_mut().map(|column| &mut column[particles.clone()]))
 }
 
-/// Trace of the gradients of `L` particles, plus their hoop strain rates at the distances `hoop` from
+/// Trace of the gradients of `L` particles, plus their distance strain rates at the distances `distance` from
 /// an axis, if there is one [1/s].
 #[inline(always)]
-fn divergence<const D: usize, const L: usize>(
+fn divergence_of<const D: usize, const L: usize>(
     gradient: &[[[f64; L]; D]; D],
     radial: &[f64; L],
-    hoop: Option<[f64; L]>,
+    distance: Option<[f64; L]>,
 ) -> [f64; L] {
     let mut plane = gradient[0][0];
     for a in 1..D {
         plane = from_fn(|i| plane[i] + gradient[a][a][i]);
     }
-    hoop.map_or(plane, |radius| from_fn(|i| plane[i] + radial[i] / radius[i]))
+    distance.map_or(plane, |radius| from_fn(|i| plane[i] + radial[i] / radius[i]))
 }
 
 /// Work of the components xx, yy, xy and zz of stress times volume `s` [J] in a step of `dt` [s] at
 /// velocities with the gradients `g` [1/s], whose components along x are `radial` [m/s] at the distances
-/// `hoop` from an axis [m].
+/// `distance` from an axis [m].
 #[inline(always)]
 fn tensor_work<const D: usize, const L: usize>(
     s: &[[f64; L]; 4],
     g: &[[[f64; L]; D]; D],
     radial: &[f64; L],
-    hoop: Option<[f64; L]>,
+    distance: Option<[f64; L]>,
     dt: f64,
 ) -> [f64; L] {
     let [xx, xy, yx, yy] = [g[0][0], g[0][D - 1], g[D - 1][0], g[D - 1][D - 1]];
     let plane: [f64; L] =
         from_fn(|i| s[0][i] * xx[i] + s[1][i] * yy[i] + s[2][i] * (xy[i] + yx[i]));
-    match hoop {
+    match distance {
         Some(radius) => from_fn(|i| dt * (plane[i] + s[3][i] * radial[i] / radius[i])),
         None => from_fn(|i| dt * plane[i]),
     }
@@ -105,7 +113,7 @@ impl<const D: usize> Scheme<D> {
         dt: f64,
     ) {
         match count {
-            // a length known at compile time leaves no checks
+            // with a length known at compile time the compiler removes the bounds checks
             BLOCK => self.update(&mut columns.part(first, BLOCK), BLOCK, sums, radius, dt),
             _ => self.update_last(&mut columns.part(first, count), count, sums, radius, dt),
         }
@@ -136,12 +144,12 @@ impl<const D: usize> Scheme<D> {
     ) {
         let whole = count / LANES;
         for k in (0..whole).map(|k| LANES * k) {
-            let hoop = radius.map(|radius| *part(radius, k));
-            self.update_some::<LANES>(columns, k, &sums.part(k), hoop, dt);
+            let distance = radius.map(|radius| *part(radius, k));
+            self.update_some::<LANES>(columns, k, &sums.part(k), distance, dt);
         }
         for k in LANES * whole..count {
-            let hoop = radius.map(|radius| *part(radius, k));
-            self.update_some::<1>(columns, k, &sums.part(k), hoop, dt);
+            let distance = radius.map(|radius| *part(radius, k));
+            self.update_some::<1>(columns, k, &sums.part(k), distance, dt);
         }
     }
 
@@ -152,21 +160,21 @@ impl<const D: usize> Scheme<D> {
         columns: &mut MidpointColumns<'_, D>,
         r: usize,
         at: &NodalSums<D, [f64; L]>,
-        hoop: Option<[f64; L]>,
+        distance: Option<[f64; L]>,
         dt: f64,
     ) {
         let old: [[f64; L]; D] = from_fn(|a| *part(columns.velocity[a], r));
         let (new, heat) = self.end_velocity(&old, at);
         self.end_strain(columns, r, at, dt);
-        let strain_rate = divergence(&at.mean_gradient, &at.mean[0], hoop);
+        let mean_divergence = divergence_of(&at.mean_gradient, &at.mean[0], distance);
         let s: [[f64; L]; 4] = map(&columns.stress, |stress| *part(stress, r));
         let (mass, j_mid) = (part::<L>(columns.mass, r), part::<L>(columns.jacobian_mid, r));
-        let work_done = self.work_done(&s, at, &strain_rate, hoop, dt);
+        let work_done = self.work_done(&s, at, &mean_divergence, distance, dt);
         let energy = part_mut::<L>(columns.energy, r);
         if let Some(mean_work_energy) = &mut columns.mean_work_energy {
             let work = match self.tensor_stress() {
-                true => tensor_work(&s, &at.mean_gradient, &at.mean[0], hoop, dt),
-                false => from_fn(|i| s[0][i] * dt * strain_rate[i]),
+                true => tensor_work(&s, &at.mean_gradient, &at.mean[0], distance, dt),
+                false => from_fn(|i| s[0][i] * dt * mean_divergence[i]),
             };
             *part_mut(mean_work_energy, r) = from_fn::<_, L, _>(|i| energy[i] - work[i] / mass[i]);
         }
@@ -181,19 +189,19 @@ impl<const D: usize> Scheme<D> {
             *part_mut(columns.velocity[a], r) = new[a];
         }
         let j = part_mut::<L>(columns.jacobian, r);
-        *j = from_fn(|i| j[i] + dt * j_mid[i] * strain_rate[i]);
-        let mut last = divergence(&at.star_gradient, &at.star[0], hoop);
+        *j = from_fn(|i| j[i] + dt * j_mid[i] * mean_divergence[i]);
+        let mut star_divergence = divergence_of(&at.star_gradient, &at.star[0], distance);
         if !self.total_lagrangian {
             // relative to the end of the step, the rates give the volume at the middle of the next one
             // to second order in time
             let share: [f64; L] = from_fn(|i| j_mid[i] / j[i]);
-            last = from_fn(|i| last[i] * share[i]);
+            star_divergence = from_fn(|i| star_divergence[i] * share[i]);
             for component in columns.velocity_gradient.iter_mut().flatten() {
                 let component = part_mut::<L>(component, r);
                 *component = from_fn(|i| component[i] * share[i]);
             }
         }
-        *part_mut(columns.divergence, r) = last;
+        *part_mut(columns.divergence, r) = star_divergence;
     }
 
     /// Velocities at the end of a step [m/s] from the `old` ones, and the heat of the filter per unit
@@ -262,23 +270,23 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Work that the stress times volume `s` [J] does in a step [J], with the divergence `strain_rate`
-    /// of the mean nodal velocity [1/s]; `hoop` are the distances from the axis [m], with axial symmetry.
+    /// Work that the stress times volume `s` [J] does in a step [J], with the divergence `mean_divergence`
+    /// of the mean nodal velocity [1/s]; `distance` are the distances from the axis [m], with axial symmetry.
     #[inline(always)]
     fn work_done<const L: usize>(
         &self,
         s: &[[f64; L]; 4],
         at: &NodalSums<D, [f64; L]>,
-        strain_rate: &[f64; L],
-        hoop: Option<[f64; L]>,
+        mean_divergence: &[f64; L],
+        distance: Option<[f64; L]>,
         dt: f64,
     ) -> [f64; L] {
         if self.tensor_stress() {
-            return tensor_work(s, &at.work_gradient, &at.work, hoop, dt);
+            return tensor_work(s, &at.work_gradient, &at.work, distance, dt);
         }
         let working = match self.compatible {
-            true => divergence(&at.work_gradient, &at.work, hoop),
-            false => *strain_rate,
+            true => divergence_of(&at.work_gradient, &at.work, distance),
+            false => *mean_divergence,
         };
         from_fn(|i| s[0][i] * dt * working[i])
     }

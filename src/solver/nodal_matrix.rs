@@ -55,7 +55,8 @@ impl NodalMatrix {
         }
     }
 
-    /// Sets all entries on a line to 0, for windows of `K` nodes and on `nodes` nodes.
+    /// Sets all entries on a line to 0, for windows of `K` nodes and on `nodes` nodes. Does nothing in a
+    /// plane.
     pub fn clear<const K: usize, const D: usize>(&mut self, nodes: usize) {
         if const { D == 1 } {
             self.band.clear(nodes, K);

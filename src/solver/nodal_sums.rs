@@ -5,7 +5,7 @@ use wide::f64x4;
 
 use crate::shape::fours;
 use crate::solver::packed::{PackedWeights, WindowPlace, dot, is_one_vector, total, totals};
-use crate::solver::particle_weights::{NARROW, ParticleWeights};
+use crate::solver::particle_weights::ParticleWeights;
 
 /// Nodal velocities of a step [m/s].
 #[derive(Clone, Copy)]
@@ -38,9 +38,6 @@ pub(super) struct EndSums<const D: usize> {
 
 /// Number of particles whose sums are found before the particles are updated.
 pub(super) const BLOCK: usize = 32;
-
-/// Number of particles updated together.
-pub(super) const LANES: usize = 4;
 
 /// Sums over the nodes of one particle, or of several if `T` is an array.
 #[derive(Clone, Copy)]
@@ -142,7 +139,7 @@ impl<const V: usize, const D: usize> PackedVelocities<V, D> {
     }
 
     /// Fetches the nodes of the window at `place`.
-    // not inlined: the gather of a mid-point step then takes 647 instead of 682 instructions
+    // not inlined: the gather of a mid-point step then takes fewer instructions
     #[inline(never)]
     pub fn fetch<const K: usize>(&mut self, nodal: &NodalVelocities<'_, D>, place: WindowPlace) {
         let nodes = |field: &[f64]| place.nodes::<K, V>(field);
@@ -327,9 +324,9 @@ impl<const D: usize> EndSums<D> {
 }
 
 impl<const D: usize> NodalSums<D> {
-    /// The same sums four at a time, on a line in windows of three or four nodes.
+    /// Sums at a particle on a line, four in each vector operation, for windows of three or four nodes.
     #[inline(always)]
-    fn on_line<const K: usize>(
+    pub fn on_line<const K: usize>(
         nodal: &NodalVelocities<'_, D>,
         weights: &ParticleWeights<'_, K, D>,
     ) -> Self {
@@ -363,9 +360,6 @@ impl<const D: usize> NodalSums<D> {
         nodal: &NodalVelocities<'_, D>,
         weights: &ParticleWeights<'_, K, D>,
     ) -> Self {
-        if const { D == 1 && (K == 3 || K == NARROW) } {
-            return Self::on_line(nodal, weights);
-        }
         // fetched once, as several sums use them
         let start = weights.windows::<L, D>(nodal.start);
         let star = weights.windows::<L, D>(nodal.star);

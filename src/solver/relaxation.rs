@@ -51,11 +51,11 @@ use decomp::array::{from_fn, map, part, part_mut};
 use wide::f64x4;
 
 use super::nodal_matrix::NodalMatrix;
-use super::nodal_sums::{BLOCK, LANES};
+use super::nodal_sums::BLOCK;
 use super::particle_update::bodies;
 use super::scheme::Scheme;
 use crate::material::constitutive::ConstitutiveModel;
-use crate::shape::{fours, with_width};
+use crate::shape::{LANES, fours, with_width};
 use crate::solver::clock::timed;
 use crate::solver::packed::{WindowPlace, add_to, dot, totals, with_packed};
 use crate::solver::particle_weights::{NARROW, ParticleWeights, cut};
@@ -73,7 +73,7 @@ const INNER: f64 = 0.8;
 const TOUCHES: f64 = 1e-3;
 
 /// Columns of all particles, ghosts included, that the projection of the pressure reads.
-struct Relaxed<'a> {
+struct ProjectedColumns<'a> {
     /// Pressure [Pa].
     pressure: &'a [f64],
     /// Compliance w [m3/Pa].
@@ -112,7 +112,7 @@ impl PressureSums<'_> {
         &mut self,
         stencils: &Stencils,
         group: Range<usize>,
-        of: &Relaxed<'_>,
+        of: &ProjectedColumns<'_>,
     ) {
         let place = stencils.place(group.start);
         let mut weight = place.nodes::<K, V>(self.weight);
@@ -141,7 +141,7 @@ fn add_particles<const K: usize, const D: usize>(
     stencils: &Stencils,
     particles: Range<usize>,
     matrix: &mut NodalMatrix,
-    of: &Relaxed<'_>,
+    of: &ProjectedColumns<'_>,
     sums: &mut PressureSums<'_>,
 ) {
     let (shares, pressures) = (&of.share[particles.clone()], &of.pressure[particles.clone()]);
@@ -168,7 +168,8 @@ struct Projected<'a> {
 type ProjectedSums = [f64; 4];
 
 impl Projected<'_> {
-    /// Sums over a window of any width; `RATIO` says whether there is a volume ratio.
+    /// Sums over a window of any width, on a line over four nodes in vectors; `RATIO` says whether there
+    /// is a volume ratio.
     #[inline(always)]
     fn sums<const K: usize, const D: usize, const RATIO: bool>(
         &self,
@@ -215,33 +216,38 @@ impl Projected<'_> {
 }
 
 /// Columns of the own particles that the relaxation of the pressure reads or writes.
-struct Relaxing<'a> {
-    /// Volume ratio, and energy [J/kg].
+struct RelaxedColumns<'a> {
+    /// Volume ratio [-].
     j: &'a mut [f64],
+    /// Specific internal energy [J/kg].
     e: &'a mut [f64],
+    /// Mass [kg].
     mass: &'a [f64],
+    /// Volume at J = 1 [m3].
     volume0: &'a [f64],
-    /// Pressure [Pa] and compliance [m3/Pa].
+    /// Pressure [Pa].
     p: &'a [f64],
+    /// Compliance [m3/Pa].
     w: &'a [f64],
-    /// Volume ratio at the middle of the step, if weights are relative to the current volume.
-    ratio: Option<&'a [f64]>,
+    /// Volume ratio at the middle of the step [-], if weights are relative to the current volume.
+    j_mid: Option<&'a [f64]>,
+    /// Rate r of this step [-].
     rate: f64,
 }
 
-impl Relaxing<'_> {
-    /// The same for `count` particles from `first` on.
+impl RelaxedColumns<'_> {
+    /// The columns of `count` particles from `first` on.
     #[inline(always)]
-    fn part(&mut self, first: usize, count: usize) -> Relaxing<'_> {
+    fn part(&mut self, first: usize, count: usize) -> RelaxedColumns<'_> {
         let these = first..first + count;
-        Relaxing {
+        RelaxedColumns {
             j: &mut self.j[these.clone()],
             e: &mut self.e[these.clone()],
             mass: &self.mass[these.clone()],
             volume0: &self.volume0[these.clone()],
             p: &self.p[these.clone()],
             w: &self.w[these.clone()],
-            ratio: self.ratio.map(|ratio| &ratio[these]),
+            j_mid: self.j_mid.map(|j_mid| &j_mid[these]),
             rate: self.rate,
         }
     }
@@ -249,13 +255,13 @@ impl Relaxing<'_> {
     /// Relaxes the particles with their sums.
     #[inline(always)]
     fn update(&mut self, sums: &[[f64; 4]]) {
-        let (fours, rest) = sums.as_chunks::<LANES>();
-        for (k, four) in fours.iter().enumerate() {
+        let (whole, rest) = sums.as_chunks::<LANES>();
+        for (k, four) in whole.iter().enumerate() {
             let columns = f64x4::transpose(map(four, f64x4::from));
             self.update_some(LANES * k, &map(&columns, |sums: f64x4| sums.to_array()));
         }
         for (k, one) in rest.iter().enumerate() {
-            self.update_some(LANES * fours.len() + k, &map(one, |sum| [sum]));
+            self.update_some(LANES * whole.len() + k, &map(one, |sum| [sum]));
         }
     }
 
@@ -271,22 +277,23 @@ impl Relaxing<'_> {
         let [mean, mean_work, last, product] = sums;
         let [w, p, volume0, mass] =
             map(&[self.w, self.p, self.volume0, self.mass], |column| *part::<L>(column, r));
-        let share: [f64; L] = match self.ratio {
-            Some(ratio) => {
-                let ratio = part::<L>(ratio, r);
-                from_fn(|i| self.rate * w[i] / ratio[i])
+        // r w/s
+        let relaxed: [f64; L] = match self.j_mid {
+            Some(j_mid) => {
+                let j_mid = part::<L>(j_mid, r);
+                from_fn(|i| self.rate * w[i] / j_mid[i])
             }
             None => from_fn(|i| self.rate * w[i]),
         };
-        let change: [f64; L] = from_fn(|i| share[i] * (p[i] - mean[i]) / volume0[i]);
+        let change: [f64; L] = from_fn(|i| relaxed[i] * (p[i] - mean[i]) / volume0[i]);
         let j = part_mut::<L>(self.j, r);
-        *j = match self.ratio {
+        *j = match self.j_mid {
             Some(_) => from_fn(|i| j[i] * ((1.0 + 0.5 * change[i]) / (1.0 - 0.5 * change[i]))),
             None => from_fn(|i| j[i] + change[i]),
         };
         let e = part_mut::<L>(self.e, r);
         *e = from_fn(|i| {
-            let work = share[i] * (product[i] - last[i] * mean_work[i]);
+            let work = relaxed[i] * (product[i] - last[i] * mean_work[i]);
             e[i] + (work - mean_work[i] * change[i] * volume0[i]) / mass[i]
         });
     }
@@ -329,7 +336,7 @@ impl<const D: usize> Scheme<D> {
             &Stencils,
             &[Range<usize>],
             &mut NodalMatrix,
-            &Relaxed<'_>,
+            &ProjectedColumns<'_>,
             &mut PressureSums<'_>,
         ),
     ) {
@@ -340,13 +347,14 @@ impl<const D: usize> Scheme<D> {
         };
         let column = |k: usize| &patch.block.columns[k][..particles];
         let (pressure, compliance) = (column(p), column(w));
+        // lent for the sums; products in a plane read them
         let mut share = std::mem::take(&mut patch.compliance_matrix.particles.weights);
         share.clear();
         match self.fields.relaxed_ratio.and(self.columns.jacobian_mid).map(column) {
             Some(ratio) => share.extend(compliance.iter().zip(ratio).map(|(w, ratio)| w / ratio)),
             None => share.extend_from_slice(compliance),
         }
-        let of = Relaxed { pressure, compliance, share: &share };
+        let of = ProjectedColumns { pressure, compliance, share: &share };
         let mut ratio = self.fields.relaxed_ratio.map(|field| {
             let mut ratio = std::mem::take(&mut patch.nodes.fields[field]);
             ratio.fill(0.0);
@@ -478,15 +486,15 @@ impl<const D: usize> Scheme<D> {
         let columns = [c.jacobian, c.energy, c.mass, c.volume0, p, w, mid];
         let [j, e, mass, volume0, p, w, mid] =
             patch.block.columns_mut(columns).map(|column| &mut column[..n]);
-        let ratio = nodal.ratio.map(|_| &*mid);
-        let mut all = Relaxing { j, e, mass, volume0, p, w, ratio, rate };
+        let j_mid = nodal.ratio.map(|_| &*mid);
+        let mut all = RelaxedColumns { j, e, mass, volume0, p, w, j_mid, rate };
         let mut block = [[0.0; 4]; BLOCK];
         for first in (0..n).step_by(BLOCK) {
             let count = BLOCK.min(n - first);
             let particles = first..first + count;
             block.iter_mut().zip(particles).for_each(|(one, r)| *one = sums(r, &nodal));
             match count {
-                // a length known at compile time leaves no checks
+                // with a length known at compile time the compiler removes the bounds checks
                 BLOCK => all.part(first, BLOCK).update(&block),
                 _ => all.part(first, count).update_last(&block[..count]),
             }

@@ -187,7 +187,8 @@ pub fn push_number(text: &mut Vec<u8>, value: f64) {
     }
 }
 
-/// Digits and exponent of `fixed`, such as `125` and `e-4` of `0.000125`, if that form is shorter.
+/// Digits and exponent of the scientific form of `fixed`, such as `125` and `e-4` of `0.000125`, if it is
+/// shorter. ryu writes at most four zeros after `0.`, and at most 16 digits before the point.
 fn scientific(fixed: &[u8]) -> Option<(&[u8], &'static str)> {
     const SMALL: [&str; 5] = ["e-1", "e-2", "e-3", "e-4", "e-5"];
     const LARGE: [&str; 16] = [
@@ -325,6 +326,14 @@ mod tests {
             (0.125, "0.125"),
             (12144294123.5, "12144294123.5"),
             (5e-324, "5e-324"),
+            (1.2e4, "12000.0"),
+            (1e15, "1e15"),
+            (1e16, "1e16"),
+            (-0.001, "-1e-3"),
+            (0.01, "0.01"),
+            (1.234e-5, "1.234e-5"),
+            (0.0001, "1e-4"),
+            (f64::NEG_INFINITY, "-inf"),
             (f64::INFINITY, "inf"),
             (f64::NAN, ""),
         ] {
