@@ -71,9 +71,6 @@ impl<const D: usize> Stepper<D> {
             false => [0; 2],
         };
         let other = NodalMatrix::bytes(width, D, false);
-        // on a line the relaxation keeps the weights of the particles beside its matrix
-        let is_kept = D == 1 && self.relaxation.is_some();
-        let weights = [0, if is_kept { size_of::<f64>() } else { 0 }];
-        array::from_fn(|k| mass[k] + others * other[k] + weights[k])
+        array::from_fn(|k| mass[k] + others * other[k])
     }
 }

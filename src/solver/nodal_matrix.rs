@@ -48,19 +48,11 @@ impl NodalMatrix {
         nodes: usize,
         w: impl Iterator<Item = f64>,
     ) {
-        self.clear::<K, D>(nodes);
-        if const { D > 1 } {
-            self.particles.weights.clear();
-            self.particles.weights.extend(w);
-        }
-    }
-
-    /// Sets all entries on a line to 0, for windows of `K` nodes and on `nodes` nodes. Does nothing in a
-    /// plane.
-    pub fn clear<const K: usize, const D: usize>(&mut self, nodes: usize) {
         if const { D == 1 } {
-            self.band.clear(nodes, K);
+            return self.band.clear(nodes, K);
         }
+        self.particles.weights.clear();
+        self.particles.weights.extend(w);
     }
 
     /// Adds a particle of the weight `w` on a line.

@@ -78,8 +78,8 @@ struct ProjectedColumns<'a> {
     pressure: &'a [f64],
     /// Compliance w [m3/Pa].
     compliance: &'a [f64],
-    /// Weight w/s [m3/Pa].
-    share: &'a [f64],
+    /// Volume ratio s [-], if weights are relative to the current volume.
+    ratio: Option<&'a [f64]>,
 }
 
 /// Nodal sums of the relaxation: weights, weights times pressure, and weights times volume ratio, if
@@ -106,13 +106,13 @@ impl PressureSums<'_> {
         weights.add(self.pressure, weights.values, |n| n * product);
     }
 
-    /// Adds particles with the same window.
+    /// Adds particles with the same window; `shares` are the weights of all particles.
     #[inline(always)]
     fn add_group<const K: usize, const V: usize, const D: usize>(
         &mut self,
         stencils: &Stencils,
         group: Range<usize>,
-        of: &ProjectedColumns<'_>,
+        (of, shares): (&ProjectedColumns<'_>, &[f64]),
     ) {
         let place = stencils.place(group.start);
         let mut weight = place.nodes::<K, V>(self.weight);
@@ -122,7 +122,7 @@ impl PressureSums<'_> {
             ratio = place.nodes::<K, V>(field);
         }
         for r in group {
-            let (values, share) = (stencils.packed_values::<K, V, D>(r), of.share[r]);
+            let (values, share) = (stencils.packed_values::<K, V, D>(r), shares[r]);
             add_to(&mut weight, &values, share);
             add_to(&mut pressure, &values, share * of.pressure[r]);
             add_to(&mut ratio, &values, of.compliance[r]);
@@ -144,11 +144,14 @@ fn add_particles<const K: usize, const D: usize>(
     of: &ProjectedColumns<'_>,
     sums: &mut PressureSums<'_>,
 ) {
-    let (shares, pressures) = (&of.share[particles.clone()], &of.pressure[particles.clone()]);
-    let columns = shares.iter().zip(pressures).zip(&of.compliance[particles.clone()]);
-    for (((&share, &pressure), &compliance), weights) in
+    // empty if weights are not relative to the current volume
+    let ratio = of.ratio.map_or(&[][..], |ratio| &ratio[particles.clone()]);
+    let pressures = of.pressure[particles.clone()].iter();
+    let columns = pressures.zip(&of.compliance[particles.clone()]).enumerate();
+    for ((k, (&pressure, &compliance)), weights) in
         columns.zip(stencils.particles::<K, D>(particles))
     {
+        let share = ratio.get(k).map_or(compliance, |ratio| compliance / ratio);
         sums.add(&weights, [share, pressure, compliance]);
         matrix.add(&weights, share);
     }
@@ -308,9 +311,13 @@ impl<const D: usize> Scheme<D> {
         ) {
             s.scatter_pressure::<K>(patch, |stencils, _, matrix, of, sums| {
                 for group in &stencils.groups {
-                    match group.packed_count() {
-                        0 => add_particles::<K, D>(stencils, group.particles(), matrix, of, sums),
-                        _ => sums.add_group::<K, V, D>(stencils, group.particles(), of),
+                    let (count, particles) = (group.packed_count(), group.particles());
+                    if count == 0 {
+                        add_particles::<K, D>(stencils, particles, matrix, of, sums);
+                    } else {
+                        // in a plane the matrix has the weights
+                        let of = (of, &matrix.particles.weights[..]);
+                        sums.add_group::<K, V, D>(stencils, particles, of);
                     }
                 }
             });
@@ -347,21 +354,22 @@ impl<const D: usize> Scheme<D> {
         };
         let column = |k: usize| &patch.block.columns[k][..particles];
         let (pressure, compliance) = (column(p), column(w));
-        // lent for the sums; products in a plane read them
-        let mut share = std::mem::take(&mut patch.compliance_matrix.particles.weights);
-        share.clear();
-        match self.fields.relaxed_ratio.and(self.columns.jacobian_mid).map(column) {
-            Some(ratio) => share.extend(compliance.iter().zip(ratio).map(|(w, ratio)| w / ratio)),
-            None => share.extend_from_slice(compliance),
-        }
-        let of = ProjectedColumns { pressure, compliance, share: &share };
+        let j_mid = self.fields.relaxed_ratio.and(self.columns.jacobian_mid).map(column);
+        let of = ProjectedColumns { pressure, compliance, ratio: j_mid };
         let mut ratio = self.fields.relaxed_ratio.map(|field| {
             let mut ratio = std::mem::take(&mut patch.nodes.fields[field]);
             ratio.fill(0.0);
             ratio
         });
         let nodes = patch.nodes.layers * patch.nodes.nodes.count();
-        patch.compliance_matrix.clear::<K, D>(nodes);
+        let matrix = &mut patch.compliance_matrix;
+        match j_mid {
+            Some(ratio) => {
+                let shares = compliance.iter().zip(ratio).map(|(w, ratio)| w / ratio);
+                matrix.start::<K, D>(nodes, shares);
+            }
+            None => matrix.start::<K, D>(nodes, compliance.iter().copied()),
+        }
         let [weight, inverse, sum, term] = patch.nodes.fields_mut([weight, inverse, sum, term]);
         weight.fill(0.0);
         inverse.fill(0.0);
@@ -369,7 +377,6 @@ impl<const D: usize> Scheme<D> {
         let mut sums = PressureSums { weight, pressure: term, ratio: ratio.as_deref_mut() };
         add(&patch.stencils, &patch.runs, &mut patch.compliance_matrix, &of, &mut sums);
         patch.compliance_matrix.finish::<D>();
-        patch.compliance_matrix.particles.weights = share;
         for line in &patch.active_lines {
             let (inverse, term) = (&mut inverse[line.clone()], &mut term[line.clone()]);
             for ((inverse, term), &weight) in
