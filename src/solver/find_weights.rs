@@ -69,9 +69,9 @@ fn put(numbers: &[f64x4], out: &mut [f64]) {
     }
 }
 
-/// Whether four particles are computed together: in a plane always, on a line only for windows of four
-/// nodes, because it takes more instructions for two or three. In windows of more than [`NARROW`] nodes in a plane it is done for four narrow
-/// particles only.
+/// Whether four particles are computed together: in a plane always, on a line only for windows of
+/// four nodes, because it takes more instructions for two or three. In windows of more than
+/// [`NARROW`] nodes in a plane it is done for four narrow particles only.
 const fn in_lanes(width: usize, dimension: usize) -> bool {
     dimension > 1 || width == NARROW
 }
@@ -105,7 +105,7 @@ impl Stencils {
         let mut buffer = PlaneLanes::none();
         let mut narrow_buffer = PlaneLanes::none();
         for first in (0..whole).step_by(LANES) {
-            // only one of the branches is compiled
+            // at most one of the branches is compiled
             if const { D == 1 && in_lanes(K, D) } {
                 self.fill_four_on_line::<S, K, D>(at, first, &mut corners);
             } else if const { D > 1 && K <= NARROW } {
@@ -177,8 +177,8 @@ impl Stencils {
         self.put_corners(at, first, corners, (from_fn(|a| w.first[a]), from_fn(|a| w.skipped[a])));
     }
 
-    /// Writes the first nodes of four particles from `first` on, which lie `offset` nodes from the lower nodes
-    /// of their cells, and whether windows start one node before their first weights.
+    /// Writes the first nodes of four particles from `first` on, which lie `offset` nodes from the
+    /// lower nodes of their cells, and whether windows start one node before their first weights.
     #[inline(always)]
     fn put_corners<const D: usize>(
         &mut self,

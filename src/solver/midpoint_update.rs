@@ -65,8 +65,8 @@ fn part_of_tensor<'a>(tensor: &'a mut OwnTensor<'_>, particles: Range<usize>) ->
     Some(tensor.each_mut().map(|column| &mut column[particles.clone()]))
 }
 
-/// Trace of the gradients of `L` particles, plus their distance strain rates at the distances `distance` from
-/// an axis, if there is one [1/s].
+/// Trace of the gradients of `L` particles, plus their hoop strain rates at a `distance` from an axis
+/// [m], if there is one [1/s].
 #[inline(always)]
 fn divergence_of<const D: usize, const L: usize>(
     gradient: &[[[f64; L]; D]; D],
@@ -270,8 +270,9 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Work that the stress times volume `s` [J] does in a step [J], with the divergence `mean_divergence`
-    /// of the mean nodal velocity [1/s]; `distance` are the distances from the axis [m], with axial symmetry.
+    /// Work that the stress times volume `s` [J] does in a step [J], with the divergence
+    /// `mean_divergence` of the mean nodal velocity [1/s], at a `distance` from the axis [m] with axial
+    /// symmetry.
     #[inline(always)]
     fn work_done<const L: usize>(
         &self,

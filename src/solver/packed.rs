@@ -172,8 +172,8 @@ pub fn totals<const K: usize>(sums: [f64x4; 4]) -> [f64; 4] {
 
 /// Calls `$call` with the width of windows in a plane, the number of vectors that hold a window of three
 /// or four nodes along a direction, and the dimension. Where windows are wider, only narrow particles
-/// have their weights in so many vectors. Evaluates `$other` on a line, where few successive particles have
-/// the same window, and for two nodes: these have sums of their own.
+/// have their weights in so many vectors. Evaluates `$other` on a line, where few successive particles
+/// have the same window, and for two nodes: these have sums of their own.
 macro_rules! with_packed {
     ($width:expr, $call:ident ( $($arg:expr),* ), $other:expr) => {
         match $width {

@@ -27,7 +27,8 @@ pub struct Stencils {
     pub stride: usize,
     /// First node of each particle's window, as index in the patch's arrays.
     pub first: Vec<u32>,
-    /// Whether a particle's window starts one node before its first weight, along x or a line (1) and y (2).
+    /// Whether a particle's window starts one node before its first weight, along x or a line (1)
+    /// and y (2).
     pub skipped: Vec<u8>,
     /// Whether a particle's weights beyond the first [`NARROW`] nodes are zero, if windows are
     /// wider.
