@@ -30,9 +30,11 @@ struct SceneContents {
     failure: bool,
     /// Some body is a gas or an explosive.
     gas: bool,
-    /// All bodies are gases, one of them moves at the start, and the scene does not say whether
-    /// their heat is mixed.
+    /// All bodies are gases, one of them moves at the start but is not sheared, and the scene does
+    /// not say whether their heat is mixed.
     moving_gas: bool,
+    /// All bodies are gases, and the velocity field of one shears it.
+    sheared_gas: bool,
     /// The pressures of two bodies of gas differ at the start, or a gas is in a scene with an
     /// explosive.
     gas_pressures_differ: bool,
@@ -123,6 +125,17 @@ const RULES: &[Rule] = &[
         applies: |c| c.moving_gas && c.plane && !c.burn,
         changes: || json!({"artificial_viscosity": {"linear": 0.05, "quadratic": 0.2}}),
         reason: "a weak viscosity, which suffices with heat mixing",
+    },
+    Rule {
+        applies: |c| c.plane && c.sheared_gas && !(c.axisymmetric || c.body_force),
+        changes: || {
+            json!({"method": {"shape": "bspline_cubic", "transfer": {"fmpm": 4}, "spin": true,
+                    "domain_limit": null, "volume_relaxation": 0.3,
+                    "pressure_relaxation": {"rate": 1.0, "interval": 1}},
+                "artificial_viscosity": {"linear": 0.05, "quadratic": 0.2}})
+        },
+        reason: "cubic B-splines without particle domains, since shear distorts domains without bound; \
+                 with spin and strong relaxation",
     },
     Rule {
         applies: |c| c.plane && c.gas_pressures_differ,
@@ -390,6 +403,7 @@ impl SceneContents {
         let any =
             |such: fn(&Material, bool) -> bool| used.iter().any(|(m, burns, _)| such(m, *burns));
         let gases = || used.iter().filter(|(m, ..)| m.eos.is_gas()).map(|(.., body)| *body);
+        let all_gases = gases().count() == used.len();
         let pressures: Vec<f64> =
             gases().map(|body| body["pressure"].as_f64().unwrap_or(0.0)).collect();
         SceneContents {
@@ -404,8 +418,10 @@ impl SceneContents {
             failure: any(|m, _| m.failure.is_some()),
             gas: any(|m, burns| m.eos.is_gas() || burns),
             moving_gas: !scene.contains_key("heat_mixing")
-                && gases().count() == used.len()
-                && gases().any(moves),
+                && all_gases
+                && gases().any(moves)
+                && !gases().any(is_sheared),
+            sheared_gas: all_gases && gases().any(is_sheared),
             gas_pressures_differ: pressures.iter().any(|p| *p != pressures[0])
                 || (!pressures.is_empty() && any(|_, burns| burns)),
             burn: any(|m, burns| burns && m.eos.has_history()),
@@ -418,6 +434,11 @@ impl SceneContents {
 fn moves(body: &Value) -> bool {
     let velocity = body["velocity"].as_array().into_iter().flatten();
     !body["velocity_field"].is_null() || velocity.filter_map(Value::as_f64).any(|v| v != 0.0)
+}
+
+/// Whether the initial velocity field of a body shears it.
+fn is_sheared(body: &Value) -> bool {
+    ["shear_layer", "gresho"].iter().any(|field| !body["velocity_field"][field].is_null())
 }
 
 /// Whether the boxes of all bodies on a line form one piece, and the sides let no particle out.
@@ -470,7 +491,7 @@ mod tests {
 
     /// Every combination of contents.
     fn all() -> impl Iterator<Item = SceneContents> {
-        (0..16384_u32).map(|bits| {
+        (0..32768_u32).map(|bits| {
             let has = |k: u32| bits >> k & 1 == 1;
             SceneContents {
                 plane: has(0),
@@ -487,6 +508,7 @@ mod tests {
                 body_force: has(11),
                 moving_gas: has(6) && has(12),
                 gas_pressures_differ: has(6) && has(13),
+                sheared_gas: has(6) && has(14),
             }
         })
     }
@@ -510,8 +532,11 @@ mod tests {
             if c.burn {
                 assert_eq!(method["transfer"], json!({"fmpm": 2}));
             }
+            let cubic = c.plane && c.sheared_gas && !(c.axisymmetric || c.body_force);
+            assert_eq!(method["shape"] == "bspline_cubic", cubic, "{method}");
+            assert!(!cubic || !has(method, "domain_limit"), "{method}");
             if c.plane && c.fluid && !c.strength && !c.gas_pressures_differ {
-                assert_eq!(method["pressure_relaxation"]["rate"], 0.2);
+                assert_eq!(method["pressure_relaxation"]["rate"], if cubic { 1.0 } else { 0.2 });
             }
             let growth = viscosity["growth"]["max"].as_f64().unwrap_or(f64::INFINITY);
             assert!(growth > viscosity["quadratic"].as_f64().unwrap(), "{viscosity}");

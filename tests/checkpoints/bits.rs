@@ -195,6 +195,9 @@ fn planes_with_forces_walls_and_joined_sides() {
     let mut layer = shipped("shear_layer.json");
     layer["domain"]["cell_size"] = json!(0.125);
     same_bits::<2>(&layer, &[10], &[&[2, 2], &[4, 1]]);
+    layer["method"]["shape"] = json!("cpdi_bspline_quadratic");
+    layer["method"]["domain_limit"] = json!(0.7);
+    same_bits::<2>(&layer, &[10], &[&[2, 2], &[4, 1]]);
     let mut vortex = shipped("vortex.json");
     vortex["domain"]["cell_size"] = json!(0.25);
     vortex["time"]["courant"] = json!(0.05);

@@ -171,6 +171,34 @@ fn the_heat_of_a_gas_that_moves_at_the_start_is_mixed() {
 }
 
 #[test]
+fn sheared_gases_in_a_plane_have_cubic_splines() {
+    let with_preset = |file: &str, edit: fn(&mut Value)| {
+        let mut value: Value = serde_json::from_slice(&crate::shipped(file)).unwrap();
+        for key in ["method", "artificial_viscosity"] {
+            value.as_object_mut().unwrap().remove(key);
+        }
+        edit(&mut value);
+        json!(parse(value.to_string().as_bytes(), file, &[]).unwrap().scene)
+    };
+    // the scene has the method and the viscosity of the preset
+    let own = json!(with("gresho.json", &[]).unwrap().scene);
+    let chosen = with_preset("gresho.json", |_| ());
+    for key in ["method", "artificial_viscosity", "heat_mixing"] {
+        assert_eq!(chosen[key], own[key], "{key}");
+    }
+    assert_eq!(with_preset("shear_layer.json", |_| ())["method"], own["method"]);
+    let moving = with_preset("gresho.json", |value| {
+        let body = value["bodies"][0].as_object_mut().unwrap();
+        body.remove("velocity_field");
+        body.insert("velocity".into(), json!([1, 0]));
+        value["bodies"][0]["pressure"] = json!(5);
+        value.as_object_mut().unwrap().remove("reference");
+    });
+    assert_eq!(moving["method"]["shape"], "cpdi_bspline_quadratic");
+    assert_eq!(moving["heat_mixing"]["coefficient"], 20.0);
+}
+
+#[test]
 fn gases_of_different_pressures_in_a_plane_relax_slowly() {
     let rate = |name: &str, edits: &[&str]| {
         let edits: Vec<&str> = ["method=default"].iter().chain(edits).copied().collect();
