@@ -80,23 +80,27 @@ impl ParticleDomain {
         [2.0 * (r1[0].abs() + r2[0].abs()), 2.0 * (r1[1].abs() + r2[1].abs())]
     }
 
-    /// Domain shortened along its longest half diagonal to `most` [cells], if it is longer: F +
-    /// (most/s - 1) n n^T F, with s the length of that half diagonal and n its direction. Particles
-    /// that stretch over several cells overlap others and no longer tile the body.
+    /// Domain whose half diagonals are shortened to `most` [cells] where they are longer: F +
+    /// (most/s - 1) n n^T F, with s the length of the longest half diagonal and n its direction,
+    /// and again if the other one is still too long. Particles that stretch over several cells
+    /// overlap others and no longer tile the body.
     pub fn limited(mut self, most: f64) -> Self {
-        let [r1, r2] = self.half_edges;
-        let plus = [r1[0] + r2[0], r1[1] + r2[1]];
-        let minus = [r1[0] - r2[0], r1[1] - r2[1]];
-        let square = |v: [f64; 2]| v[0] * v[0] + v[1] * v[1];
-        let longest = if square(plus) >= square(minus) { plus } else { minus };
-        let s2 = square(longest);
-        if s2 <= most * most {
-            return self;
-        }
-        let change = (most / s2.sqrt() - 1.0) / s2;
-        for r in &mut self.half_edges {
-            let along = change * (r[0] * longest[0] + r[1] * longest[1]);
-            *r = [r[0] + along * longest[0], r[1] + along * longest[1]];
+        // the second time the other diagonal, if that of the first is not longer by rounding alone
+        for slack in [0.0, 1e-12] {
+            let [r1, r2] = self.half_edges;
+            let plus = [r1[0] + r2[0], r1[1] + r2[1]];
+            let minus = [r1[0] - r2[0], r1[1] - r2[1]];
+            let square = |v: [f64; 2]| v[0] * v[0] + v[1] * v[1];
+            let longest = if square(plus) >= square(minus) { plus } else { minus };
+            let s2 = square(longest);
+            if s2 <= most * most * (1.0 + slack) {
+                break;
+            }
+            let change = (most / s2.sqrt() - 1.0) / s2;
+            for r in &mut self.half_edges {
+                let along = change * (r[0] * longest[0] + r[1] * longest[1]);
+                *r = [r[0] + along * longest[0], r[1] + along * longest[1]];
+            }
         }
         self
     }
@@ -105,6 +109,17 @@ impl ParticleDomain {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn both_diagonals_are_shortened_if_both_are_too_long() {
+        for half_edges in [[[2.8, 0.0], [0.0, 2.8]], [[3.0, 1.0], [-0.7, 2.4]]] {
+            let [r1, r2] = ParticleDomain { half_edges }.limited(1.0).half_edges;
+            let plus = f64::hypot(r1[0] + r2[0], r1[1] + r2[1]);
+            let minus = f64::hypot(r1[0] - r2[0], r1[1] - r2[1]);
+            assert!(plus.max(minus) < 1.0 + 1e-14, "{plus} {minus}");
+            assert!(plus.min(minus) > 0.8, "{plus} {minus}");
+        }
+    }
 
     #[test]
     fn a_limit_shortens_the_longest_diagonal_alone() {

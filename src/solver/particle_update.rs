@@ -19,6 +19,9 @@ use crate::solver::patch::{Fault, FaultPhase, Patch, RemovedParticle};
 /// Number of particles whose cells along a direction are kept at a time.
 const BLOCK: usize = 128;
 
+/// Distance beyond a wall within which a particle is placed on it [cells].
+const AT_WALL: f64 = 0.02;
+
 /// Cells of particles at x + `drift` v along a direction of a grid (lower end, inverse edge, number
 /// of cells), and the positions of the particles in them; returns whether any is outside the grid.
 // inlining would prevent vectorization
@@ -153,8 +156,8 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Wraps particles across periodic sides, removes particles at outflow sides, and reports a
-    /// fault for others.
+    /// Wraps particles across periodic sides, removes particles at outflow sides, places those that
+    /// hardly pass a wall on it, and reports a fault for others.
     fn handle_exit(&self, patch: &mut Patch<D>) {
         const NAMES: [[&str; 2]; 2] = [["lower", "upper"], ["lower y", "upper y"]];
         let mut keep = vec![true; patch.block.own()];
@@ -168,6 +171,10 @@ impl<const D: usize> Scheme<D> {
                 let side = &self.sides[a][end];
                 if side.is_periodic() {
                     patch.block.cells[particle][a] = cell.rem_euclid(self.cells[a]) as i32;
+                    continue;
+                }
+                if self.is_at_wall(patch, particle, a, end) {
+                    self.return_to_wall(patch, particle, a, end);
                     continue;
                 }
                 if side.lets_out {
@@ -184,6 +191,40 @@ impl<const D: usize> Scheme<D> {
         if keep.contains(&false) {
             let gone: Vec<usize> = (0..keep.len()).filter(|&r| !keep[r]).collect();
             self.remove_particles(patch, &gone, false);
+        }
+    }
+
+    /// Whether a particle beyond the side `end` of direction `a` hardly passes a rigid side there,
+    /// other than the axis of an axisymmetric domain, where radii must stay positive.
+    fn is_at_wall(&self, patch: &Patch<D>, particle: usize, a: usize, end: usize) -> bool {
+        let is_axis = self.axisymmetric && (a, end) == (0, 0) && self.lower[0] == 0.0;
+        let fraction = patch.block.columns[self.columns.fraction + a][particle];
+        let (next, beyond) =
+            if end == 0 { (-1, 1.0 - fraction) } else { (self.cells[a], fraction) };
+        self.sides[a][end].is_rigid()
+            && !is_axis
+            && i64::from(patch.block.cells[particle][a]) == next
+            && beyond <= AT_WALL
+    }
+
+    /// Places a particle that hardly passes a rigid side in the domain again. The nodal velocity is
+    /// along the side there, but neither the particle's own velocity, which gives its position at
+    /// the middle of a step, nor the mean over a parallelogram that lies aslant on the side. A
+    /// particle whose position is beyond becomes its image, which is on this side; one that is
+    /// only ahead of its position is on the side.
+    fn return_to_wall(&self, patch: &mut Patch<D>, particle: usize, a: usize, end: usize) {
+        let c = &self.columns;
+        let block = &mut patch.block;
+        let wall = self.lower[a] + if end == 0 { 0.0 } else { self.cells[a] as f64 * self.cell[a] };
+        let x = &mut block.columns[c.position + a][particle];
+        let is_beyond = if end == 0 { *x < wall } else { *x > wall };
+        block.cells[particle][a] = if end == 0 { 0 } else { self.cells[a] as i32 - 1 };
+        if is_beyond {
+            *x = 2.0 * wall - *x;
+            block.reflect(particle, decomp::array::from_fn(|b| b == a));
+        } else {
+            let on_wall = if end == 0 { 0.0 } else { 1.0f64.next_down() };
+            block.columns[c.fraction + a][particle] = on_wall;
         }
     }
 

@@ -75,6 +75,26 @@ fn a_hot_disk_expands_with_the_default_method() {
     assert!(outcome.column("pressure").iter().all(|&p| p > 0.0));
 }
 
+/// A disk of gas expands into empty space: its particles become longer in both directions.
+#[test]
+fn a_disk_of_gas_expands_into_empty_space_with_the_default_method() {
+    let scene = json!({
+        "title": "expansion", "time": {"end": 0.8},
+        "domain": {"lower": [0.0, 0.0], "upper": [3.6, 3.6], "cell_size": 0.02},
+        "materials": {"gas": {"density": 1.0, "eos": {"type": "ideal_gas", "gamma": 1.4}}},
+        "bodies": [{"name": "disk", "material": "gas", "pressure": 1.0,
+            "disk": {"centre": [0.0, 0.0], "radius": 0.2}, "particles_per_cell": [2, 2]}],
+        "boundary": {"x_lower": "symmetry", "y_lower": "symmetry"},
+    });
+    let outcome = run::<2>(&scene);
+    at_most("energy", outcome.energy_drift(), 1e-12);
+    let [x, y] = ["x", "y"].map(|name| outcome.column(name));
+    let radius = x.iter().zip(y).map(|(x, y)| f64::hypot(*x, *y)).fold(0.0, f64::max);
+    // no gas is faster than 2 c/(gamma - 1), and its edge is nearly as fast
+    let greatest = 0.2 + 0.8 * 5.0 * 1.4f64.sqrt();
+    assert!(radius > 0.5 * greatest && radius < greatest, "{radius} {greatest}");
+}
+
 #[test]
 fn other_schemes_bear_a_gas_without_energy() {
     for (scheme, keeps) in [

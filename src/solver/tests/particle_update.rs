@@ -41,6 +41,25 @@ fn particles_beyond_a_side() {
 }
 
 #[test]
+fn a_particle_that_hardly_passes_a_wall_is_returned() {
+    // the particles are beyond the wall at 8 m, ahead of their position beyond it, and too far
+    let returned = |places: [f64; 2], velocities: [f64; 2]| {
+        let mut f = line(json!({"boundary": {"x_upper": "wall"}}));
+        f.set("position", &places).set("velocity", &velocities).place();
+        f.run(0.1, |s, step, patch| s.find_cells(patch, 0.5, step.jacobian));
+        f
+    };
+    let f = returned([8.001, 7.999], [0.002, 0.01]);
+    assert_eq!((f.fault(), f.patch.block.cells.as_slice()), (None, &[[7], [7]][..]));
+    close(&f.get("position"), &[7.999, 7.999]);
+    close(&f.get("velocity"), &[-0.002, 0.01]);
+    // the image of 8.002, and the wall
+    close(&f.get("cell_fraction"), &[0.998, 1.0]);
+    let far = returned([8.03, 7.0], [0.0, 0.0]);
+    assert_eq!(far.fault(), Some("it leaves the domain by its upper side"));
+}
+
+#[test]
 fn the_volume_at_the_middle_of_the_step() {
     let mut f = line(json!({"method": {"stepping": "midpoint"}}));
     f.set("jacobian", &[0.5, 2.0]).set("velocity_gradient", &[-2.0, 4.0]);
