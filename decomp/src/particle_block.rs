@@ -168,20 +168,6 @@ impl<const D: usize> Block<D> {
         self.own += ids.len();
     }
 
-    /// Changes the values of an own particle to those of its image in the mirrors normal to the
-    /// directions of `flip`. Its cell stays.
-    pub fn reflect(&mut self, particle: usize, flip: [bool; D]) {
-        debug_assert!(particle < self.own);
-        for (column, spec) in self.columns.iter_mut().zip(&self.specs) {
-            let Some(value) = column.get_mut(particle) else { continue };
-            match spec.mirror.in_image(&flip) {
-                MirrorChange::None => {}
-                MirrorChange::Negate => *value = -*value,
-                MirrorChange::Complement => *value = 1.0 - *value,
-            }
-        }
-    }
-
     /// Removes the own particles with the ascending indices `gone`. There must be no ghosts.
     pub fn remove(&mut self, gone: &[usize]) {
         debug_assert_eq!(self.particles(), self.own);
@@ -287,26 +273,6 @@ mod tests {
         ] {
             assert_eq!(sides.map(|flip| mirror.in_image(&flip)), wanted, "{mirror:?}");
         }
-    }
-
-    #[test]
-    fn a_reflected_particle_is_its_image() {
-        let spec = |name, mirror| ColumnSpec { name, unit: "m", ghost: false, state: true, mirror };
-        let specs = [
-            spec("same", Mirror::Same),
-            spec("along", Mirror::Negate(0)),
-            spec("shear", Mirror::NegatePair(0, 1)),
-            spec("fraction", Mirror::Complement(0)),
-            spec("across", Mirror::Negate(1)),
-        ];
-        let mut block = Block::<2>::new(&specs);
-        for id in 0..2 {
-            block.push(id, [0, 0], &[1.0, 2.0, 3.0, 0.25, 5.0]);
-        }
-        block.reflect(1, [true, false]);
-        let of = |r: usize| block.columns.iter().map(|column| column[r]).collect::<Vec<f64>>();
-        assert_eq!(of(0), [1.0, 2.0, 3.0, 0.25, 5.0]);
-        assert_eq!(of(1), [1.0, -2.0, -3.0, 0.75, 5.0]);
     }
 
     #[test]

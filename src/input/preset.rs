@@ -9,7 +9,7 @@ use json_patch::merge;
 use serde_json::{Map, Value, json};
 
 use super::errors::{SceneFault, suggest};
-use crate::scene::{Material, MethodChoice, Preset, Transfer};
+use crate::scene::{Material, MethodChoice, Preset, Transfer, VelocityField};
 
 /// Contents of a scene on which the choice of a method depends.
 #[derive(Default)]
@@ -30,10 +30,11 @@ struct SceneContents {
     failure: bool,
     /// Some body is a gas or an explosive.
     gas: bool,
-    /// All bodies are gases, one of them moves at the start but is not sheared, and the scene does
-    /// not say whether their heat is mixed.
+    /// All bodies are gases, but not `sheared_gas`, one of them moves at the start, and the scene
+    /// does not say whether their heat is mixed.
     moving_gas: bool,
-    /// All bodies are gases, and the velocity field of one shears it.
+    /// All bodies are gases of one pressure in a plane without axial symmetry, contact or a body
+    /// force, and the velocity field of one shears it.
     sheared_gas: bool,
     /// The pressures of two bodies of gas differ at the start, or a gas is in a scene with an
     /// explosive.
@@ -108,7 +109,7 @@ const RULES: &[Rule] = &[
         reason: "relaxation every fifth step, since plastic flow needs little of it",
     },
     Rule {
-        applies: |c| c.plane && c.gas && !c.burn,
+        applies: |c| c.plane && c.gas && !c.burn && !c.sheared_gas,
         changes: || {
             json!({"method": {"transfer": {"fmpm": 2}, "heat_spreading": null},
                 "artificial_viscosity": {"linear": 0.1, "quadratic": 0.5, "limited": "both"}})
@@ -127,15 +128,15 @@ const RULES: &[Rule] = &[
         reason: "a weak viscosity, which suffices with heat mixing",
     },
     Rule {
-        applies: |c| c.plane && c.sheared_gas && !(c.axisymmetric || c.body_force),
+        applies: |c| c.sheared_gas,
         changes: || {
-            json!({"method": {"shape": "bspline_cubic", "transfer": {"fmpm": 4}, "spin": true,
-                    "domain_limit": null, "volume_relaxation": 0.3,
+            json!({"method": {"shape": "bspline_cubic", "spin": true, "volume_relaxation": 0.3,
+                    "domain_limit": 0.7, "heat_spreading": null,
                     "pressure_relaxation": {"rate": 1.0, "interval": 1}},
-                "artificial_viscosity": {"linear": 0.05, "quadratic": 0.2}})
+                "artificial_viscosity": {"linear": 0.05, "quadratic": 0.2, "limited": "both"}})
         },
-        reason: "cubic B-splines without particle domains, since shear distorts domains without bound; \
-                 with spin and strong relaxation",
+        reason: "cubic B-splines without particle domains, with spin and strong relaxation, since a \
+                 velocity field shears gas",
     },
     Rule {
         applies: |c| c.plane && c.gas_pressures_differ,
@@ -173,6 +174,9 @@ const RULES: &[Rule] = &[
     },
 ];
 
+/// Shape function of the presets, on domains that deform.
+const DEFORMING: &str = "cpdi_bspline_quadratic";
+
 /// The viscosity for scenes in which a sharp front costs stability.
 fn moderate() -> Value {
     json!({"linear": 0.1, "quadratic": 1.25, "growth": null})
@@ -192,7 +196,7 @@ impl Preset {
     /// Keys of the scene before the rules, and their reason.
     fn base(self, contents: &SceneContents) -> (Value, &'static str) {
         let method = json!({
-            "shape": "cpdi_bspline_quadratic",
+            "shape": DEFORMING,
             "transfer": {"fmpm": 8},
             "stepping": "midpoint",
             "energy": "compatible",
@@ -356,6 +360,18 @@ fn override_keys(method: &mut Map<String, Value>, explicit: Map<String, Value>) 
     if is("frame", "total_lagrangian") || explicit.get("shape").is_some_and(|s| !deforms(s)) {
         excluded.push("domain_limit");
     }
+    let has_no_mask =
+        excluded.contains(&"edge_mask") || explicit.get("edge_mask").is_some_and(Value::is_null);
+    if has_no_mask || is("frame", "total_lagrangian") {
+        excluded.push("volume_relaxation");
+    }
+    if !explicit.contains_key("shape") && !method.get("shape").is_some_and(deforms) {
+        // domains that do not deform need no limit; a scene that gives one wants them to deform
+        method.remove("domain_limit");
+        if explicit.get("domain_limit").is_some_and(|limit| !limit.is_null()) {
+            method.insert("shape".into(), json!(DEFORMING));
+        }
+    }
     // options of the updated-Lagrangian frame
     if ["domain_limit", "volume_relaxation"].iter().any(|key| explicit.contains_key(*key)) {
         excluded.push("frame");
@@ -403,14 +419,25 @@ impl SceneContents {
         let any =
             |such: fn(&Material, bool) -> bool| used.iter().any(|(m, burns, _)| such(m, *burns));
         let gases = || used.iter().filter(|(m, ..)| m.eos.is_gas()).map(|(.., body)| *body);
+        // Gresho's vortex has a pressure of its own
+        let pressures: Vec<f64> = gases()
+            .filter(|body| body["velocity_field"]["gresho"].is_null())
+            .map(|body| body["pressure"].as_f64().unwrap_or(0.0))
+            .collect();
+        let gas_pressures_differ = pressures.iter().any(|p| *p != pressures[0])
+            || (!pressures.is_empty() && any(|_, burns| burns));
+        let given = |key: &str| scene.get(key).is_some_and(|value| !value.is_null());
+        let axisymmetric = domain["geometry"] == "axisymmetric";
         let all_gases = gases().count() == used.len();
-        let pressures: Vec<f64> =
-            gases().map(|body| body["pressure"].as_f64().unwrap_or(0.0)).collect();
+        let sheared_gas = all_gases
+            && gases().any(is_sheared)
+            && dimension > 1
+            && !(axisymmetric || gas_pressures_differ || given("contact") || given("body_force"));
         SceneContents {
             plane: dimension > 1,
-            axisymmetric: domain["geometry"] == "axisymmetric",
-            body_force: scene.get("body_force").is_some_and(|force| !force.is_null()),
-            contact: scene.get("contact").is_some_and(|contact| !contact.is_null()),
+            axisymmetric,
+            body_force: given("body_force"),
+            contact: given("contact"),
             joined: dimension == 1 && are_joined(scene),
             plates_in_contact: dimension == 1 && are_joined(scene) && stay_in_contact(scene),
             fluid: any(|m, _| !m.eos.is_solid()),
@@ -419,11 +446,10 @@ impl SceneContents {
             gas: any(|m, burns| m.eos.is_gas() || burns),
             moving_gas: !scene.contains_key("heat_mixing")
                 && all_gases
-                && gases().any(moves)
-                && !gases().any(is_sheared),
-            sheared_gas: all_gases && gases().any(is_sheared),
-            gas_pressures_differ: pressures.iter().any(|p| *p != pressures[0])
-                || (!pressures.is_empty() && any(|_, burns| burns)),
+                && !sheared_gas
+                && gases().any(moves),
+            sheared_gas,
+            gas_pressures_differ,
             burn: any(|m, burns| burns && m.eos.has_history()),
             porous: any(|m, burns| m.eos.has_history() && !burns),
         }
@@ -438,7 +464,8 @@ fn moves(body: &Value) -> bool {
 
 /// Whether the initial velocity field of a body shears it.
 fn is_sheared(body: &Value) -> bool {
-    ["shear_layer", "gresho"].iter().any(|field| !body["velocity_field"][field].is_null())
+    let field = serde_json::from_value::<VelocityField>(body["velocity_field"].clone());
+    field.is_ok_and(|field| field.shears())
 }
 
 /// Whether the boxes of all bodies on a line form one piece, and the sides let no particle out.
@@ -508,7 +535,9 @@ mod tests {
                 body_force: has(11),
                 moving_gas: has(6) && has(12),
                 gas_pressures_differ: has(6) && has(13),
-                sheared_gas: has(6) && has(14),
+                sheared_gas: has(14)
+                    && [0, 6].into_iter().all(has)
+                    && ![1, 4, 5, 7, 8, 10, 11, 12, 13].into_iter().any(has),
             }
         })
     }
@@ -532,9 +561,8 @@ mod tests {
             if c.burn {
                 assert_eq!(method["transfer"], json!({"fmpm": 2}));
             }
-            let cubic = c.plane && c.sheared_gas && !(c.axisymmetric || c.body_force);
+            let cubic = c.sheared_gas;
             assert_eq!(method["shape"] == "bspline_cubic", cubic, "{method}");
-            assert!(!cubic || !has(method, "domain_limit"), "{method}");
             if c.plane && c.fluid && !c.strength && !c.gas_pressures_differ {
                 assert_eq!(method["pressure_relaxation"]["rate"], if cubic { 1.0 } else { 0.2 });
             }

@@ -19,8 +19,9 @@ use crate::solver::patch::{Fault, FaultPhase, Patch, RemovedParticle};
 /// Number of particles whose cells along a direction are kept at a time.
 const BLOCK: usize = 128;
 
-/// Distance beyond a wall within which a particle is placed on it [cells].
-const AT_WALL: f64 = 0.02;
+/// Distance beyond a rigid side within which a particle is returned to it [cells]; the velocity of
+/// particles and the tilt of their domains carry them by some 0.001 cells beyond.
+const WALL_TOLERANCE: f64 = 0.02;
 
 /// Cells of particles at x + `drift` v along a direction of a grid (lower end, inverse edge, number
 /// of cells), and the positions of the particles in them; returns whether any is outside the grid.
@@ -120,7 +121,8 @@ impl<const D: usize> Scheme<D> {
 
     /// Reports a fault for each of `particles` whose new cell in `cells` is neither its present one nor
     /// next to it. Its cell stays the present one until the run ends or the step is repeated.
-    /// [`handle_exit`](Self::handle_exit) decides about those that leave the domain.
+    /// [`handle_exit`](Self::handle_exit) decides about those that leave the domain and are not
+    /// returned to a wall.
     fn stop_far_moves(
         &self,
         patch: &mut Patch<D>,
@@ -130,7 +132,10 @@ impl<const D: usize> Scheme<D> {
         for (r, particle) in particles.enumerate() {
             let was = patch.block.cells[particle];
             let leaves = |a: usize| {
-                !self.sides[a][0].is_periodic() && !(0..self.cells[a]).contains(&cells[a][r].into())
+                let cell = i64::from(cells[a][r]);
+                !self.sides[a][0].is_periodic()
+                    && !(0..self.cells[a]).contains(&cell)
+                    && !self.is_at_wall(patch, particle, a, cell)
             };
             if (0..D).any(leaves) {
                 continue;
@@ -156,8 +161,8 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Wraps particles across periodic sides, removes particles at outflow sides, places those that
-    /// hardly pass a wall on it, and reports a fault for others.
+    /// Wraps particles across periodic sides, removes particles at outflow sides, returns those that
+    /// pass a rigid side by little, and reports a fault for others.
     fn handle_exit(&self, patch: &mut Patch<D>) {
         const NAMES: [[&str; 2]; 2] = [["lower", "upper"], ["lower y", "upper y"]];
         let mut keep = vec![true; patch.block.own()];
@@ -173,7 +178,7 @@ impl<const D: usize> Scheme<D> {
                     patch.block.cells[particle][a] = cell.rem_euclid(self.cells[a]) as i32;
                     continue;
                 }
-                if self.is_at_wall(patch, particle, a, end) {
+                if self.is_at_wall(patch, particle, a, cell) {
                     self.return_to_wall(patch, particle, a, end);
                     continue;
                 }
@@ -194,38 +199,30 @@ impl<const D: usize> Scheme<D> {
         }
     }
 
-    /// Whether a particle beyond the side `end` of direction `a` hardly passes a rigid side there,
-    /// other than the axis of an axisymmetric domain, where radii must stay positive.
-    fn is_at_wall(&self, patch: &Patch<D>, particle: usize, a: usize, end: usize) -> bool {
+    /// Whether a particle whose new cell along `a` is `cell`, outside of the domain, passes a rigid
+    /// side by at most [`WALL_TOLERANCE`]. Not at the axis of an axisymmetric domain, where radii
+    /// must stay positive.
+    fn is_at_wall(&self, patch: &Patch<D>, particle: usize, a: usize, cell: i64) -> bool {
+        let end = usize::from(cell >= 0);
         let is_axis = self.axisymmetric && (a, end) == (0, 0) && self.lower[0] == 0.0;
         let fraction = patch.block.columns[self.columns.fraction + a][particle];
         let (next, beyond) =
             if end == 0 { (-1, 1.0 - fraction) } else { (self.cells[a], fraction) };
-        self.sides[a][end].is_rigid()
-            && !is_axis
-            && i64::from(patch.block.cells[particle][a]) == next
-            && beyond <= AT_WALL
+        self.sides[a][end].is_rigid() && !is_axis && cell == next && beyond <= WALL_TOLERANCE
     }
 
-    /// Places a particle that hardly passes a rigid side in the domain again. The nodal velocity is
-    /// along the side there, but neither the particle's own velocity, which gives its position at
-    /// the middle of a step, nor the mean over a parallelogram that lies aslant on the side. A
-    /// particle whose position is beyond becomes its image, which is on this side; one that is
-    /// only ahead of its position is on the side.
+    /// Locates a particle that passes a rigid side by little on the side, and mirrors its position
+    /// if that is beyond it. The nodal velocity is along the side there, but neither the particle's
+    /// own velocity, which gives its position at the middle of a step, nor the mean over a
+    /// parallelogram that is oblique to the side.
     fn return_to_wall(&self, patch: &mut Patch<D>, particle: usize, a: usize, end: usize) {
         let c = &self.columns;
         let block = &mut patch.block;
         let wall = self.lower[a] + if end == 0 { 0.0 } else { self.cells[a] as f64 * self.cell[a] };
         let x = &mut block.columns[c.position + a][particle];
-        let is_beyond = if end == 0 { *x < wall } else { *x > wall };
+        *x = wall + if end == 0 { (*x - wall).abs() } else { -(*x - wall).abs() };
         block.cells[particle][a] = if end == 0 { 0 } else { self.cells[a] as i32 - 1 };
-        if is_beyond {
-            *x = 2.0 * wall - *x;
-            block.reflect(particle, decomp::array::from_fn(|b| b == a));
-        } else {
-            let on_wall = if end == 0 { 0.0 } else { 1.0f64.next_down() };
-            block.columns[c.fraction + a][particle] = on_wall;
-        }
+        block.columns[c.fraction + a][particle] = if end == 0 { 0.0 } else { 1.0f64.next_down() };
     }
 
     /// Removes and records the own particles in `gone`, in ascending order. There must be no

@@ -187,6 +187,31 @@ fn sheared_gases_in_a_plane_have_cubic_splines() {
         assert_eq!(chosen[key], own[key], "{key}");
     }
     assert_eq!(with_preset("shear_layer.json", |_| ())["method"], own["method"]);
+    // other keys of the scene exclude options, or want domains that deform
+    let with_keys = |keys: Value| {
+        let mut value: Value = serde_json::from_slice(&crate::shipped("gresho.json")).unwrap();
+        value["method"] = keys;
+        value["method"]["preset"] = json!("default");
+        json!(parse(value.to_string().as_bytes(), "g", &[]).unwrap().scene)["method"].clone()
+    };
+    for keys in [
+        json!({"transfer": "flip"}),
+        json!({"transfer": "apic"}),
+        json!({"stepping": "leapfrog"}),
+        json!({"edge_mask": null}),
+    ] {
+        assert!(with_keys(keys.clone())["volume_relaxation"].is_null(), "{keys}");
+    }
+    let limited = with_keys(json!({"domain_limit": 0.5}));
+    assert_eq!(
+        [&limited["shape"], &limited["domain_limit"]],
+        [&json!("cpdi_bspline_quadratic"), &json!(0.5)]
+    );
+    let deforming = with_keys(json!({"shape": "cpdi_bspline_quadratic"}));
+    assert_eq!(deforming["domain_limit"], 0.7);
+    let contact =
+        with_preset("gresho.json", |value| value["contact"] = json!({"type": "frictionless"}));
+    assert_eq!(contact["method"]["shape"], "cpdi_bspline_quadratic");
     let moving = with_preset("gresho.json", |value| {
         let body = value["bodies"][0].as_object_mut().unwrap();
         body.remove("velocity_field");

@@ -19,6 +19,18 @@ pub enum VelocityField {
     Vortex(RingVortex),
 }
 
+impl VelocityField {
+    /// Whether it shears the body that moves with it.
+    pub fn shears(&self) -> bool {
+        match self {
+            VelocityField::ShearLayer(_) | VelocityField::Gresho(_) | VelocityField::Vortex(_) => {
+                true
+            }
+            VelocityField::Rotation(_) | VelocityField::Radial(_) => false,
+        }
+    }
+}
+
 /// A rigid rotation.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -41,22 +41,26 @@ fn particles_beyond_a_side() {
 }
 
 #[test]
-fn a_particle_that_hardly_passes_a_wall_is_returned() {
-    // the particles are beyond the wall at 8 m, ahead of their position beyond it, and too far
-    let returned = |places: [f64; 2], velocities: [f64; 2]| {
-        let mut f = line(json!({"boundary": {"x_upper": "wall"}}));
-        f.set("position", &places).set("velocity", &velocities).place();
+fn a_particle_that_passes_a_wall_by_little_is_returned() {
+    // particles beyond the wall, ahead of their position beyond it, and too far beyond it
+    let found = |side: &str, places: [f64; 2], velocities: [f64; 2]| {
+        let mut f = line(json!({"boundary": {side: "wall"}}));
+        let before = places.map(|x| x.clamp(0.5, 7.5));
+        f.set("position", &before).place().set("position", &places).set("velocity", &velocities);
         f.run(0.1, |s, step, patch| s.find_cells(patch, 0.5, step.jacobian));
         f
     };
-    let f = returned([8.001, 7.999], [0.002, 0.01]);
-    assert_eq!((f.fault(), f.patch.block.cells.as_slice()), (None, &[[7], [7]][..]));
-    close(&f.get("position"), &[7.999, 7.999]);
-    close(&f.get("velocity"), &[-0.002, 0.01]);
-    // the image of 8.002, and the wall
-    close(&f.get("cell_fraction"), &[0.998, 1.0]);
-    let far = returned([8.03, 7.0], [0.0, 0.0]);
-    assert_eq!(far.fault(), Some("it leaves the domain by its upper side"));
+    for (side, wall, sign, cell) in [("x_upper", 8.0, 1.0, 7), ("x_lower", 0.0, -1.0, 0)] {
+        let beyond = |by: f64| wall + sign * by;
+        let f = found(side, [beyond(0.001), beyond(-0.001)], [sign * 0.002, sign * 0.01]);
+        assert_eq!((f.fault(), f.patch.block.cells.as_slice()), (None, &[[cell], [cell]][..]));
+        close(&f.get("position"), &[beyond(-0.001), beyond(-0.001)]);
+        close(&f.get("velocity"), &[sign * 0.002, sign * 0.01]);
+        let on_wall = if cell == 0 { 0.0 } else { 1.0 };
+        close(&f.get("cell_fraction"), &[on_wall, on_wall]);
+        let far = found(side, [beyond(0.03), 4.0], [0.0, 0.0]);
+        assert!(far.fault().is_some_and(|fault| fault.starts_with("it leaves the domain by its")));
+    }
 }
 
 #[test]
