@@ -220,7 +220,10 @@ impl<const D: usize> Scheme<D> {
         let block = &mut patch.block;
         let wall = self.lower[a] + if end == 0 { 0.0 } else { self.cells[a] as f64 * self.cell[a] };
         let x = &mut block.columns[c.position + a][particle];
-        *x = wall + if end == 0 { (*x - wall).abs() } else { -(*x - wall).abs() };
+        let is_beyond = if end == 0 { *x < wall } else { *x > wall };
+        if is_beyond {
+            *x = 2.0 * wall - *x;
+        }
         block.cells[particle][a] = if end == 0 { 0 } else { self.cells[a] as i32 - 1 };
         block.columns[c.fraction + a][particle] = if end == 0 { 0.0 } else { 1.0f64.next_down() };
     }
