@@ -28,6 +28,7 @@ pub mod nodal_fields;
 pub mod nodal_matrix;
 mod nodal_sums;
 mod packed;
+mod particle_cells;
 mod particle_domains;
 pub mod particle_matrix;
 pub mod particle_update;

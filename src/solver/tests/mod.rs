@@ -8,6 +8,7 @@ mod cells;
 mod contact;
 mod flux_limiter;
 mod gather;
+mod particle_cells;
 mod particle_domains;
 mod particle_update;
 mod relaxation;
