@@ -41,6 +41,9 @@ impl DomainExtent {
     }
 }
 
+/// Square of the cosine of 2 degrees, the angle between edges below which a domain is flat.
+const FLAT: f64 = 0.998782;
+
 /// Parallelogram of a particle, given by its half edges r1 and r2 [cells]: its corners are at +-r1
 /// +-r2 from its centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,12 +90,7 @@ impl ParticleDomain {
     pub fn limited(mut self, most: f64) -> Self {
         // the second time the other diagonal, if that of the first is not longer by rounding alone
         for slack in [0.0, 1e-12] {
-            let [r1, r2] = self.half_edges;
-            let plus = [r1[0] + r2[0], r1[1] + r2[1]];
-            let minus = [r1[0] - r2[0], r1[1] - r2[1]];
-            let square = |v: [f64; 2]| v[0] * v[0] + v[1] * v[1];
-            let longest = if square(plus) >= square(minus) { plus } else { minus };
-            let s2 = square(longest);
+            let (longest, s2) = self.longest_diagonal();
             if s2 <= most * most * (1.0 + slack) {
                 break;
             }
@@ -104,6 +102,50 @@ impl ParticleDomain {
         }
         self
     }
+
+    /// Longest half diagonal [cells] and its square.
+    fn longest_diagonal(&self) -> ([f64; 2], f64) {
+        let [r1, r2] = self.half_edges;
+        let plus = [r1[0] + r2[0], r1[1] + r2[1]];
+        let minus = [r1[0] - r2[0], r1[1] - r2[1]];
+        let (long, short) = (dot(plus, plus), dot(minus, minus));
+        if long >= short { (plus, long) } else { (minus, short) }
+    }
+
+    /// [`Self::limited`] of a domain that first, if it is too long and the angle between its edges is less
+    /// than 2 or more than 178 degrees, gets orthogonal edges with the same area and the same
+    /// second moments.
+    ///
+    /// Gradients are differences between opposite edges over their distance. Along a flat
+    /// parallelogram opposite edges lie one behind the other: errors of Simpson's rule do not cancel,
+    /// and the gradients exceed those of the splines without bound.
+    pub fn limited_as_rectangle(self, most: f64) -> Self {
+        let [r1, r2] = self.half_edges;
+        let is_flat = dot(r1, r2).powi(2) > FLAT * dot(r1, r1) * dot(r2, r2);
+        let too_long = self.longest_diagonal().1 > most * most;
+        let domain = if is_flat && too_long { self.rectangle() } else { self };
+        domain.limited(most)
+    }
+
+    /// Domain with the same area and the same second moments and with orthogonal edges: the half edges,
+    /// as columns of a matrix, times the least rotation.
+    fn rectangle(self) -> Self {
+        let [r1, r2] = self.half_edges;
+        let (product, squares) = (dot(r1, r2), [dot(r1, r1), dot(r2, r2)]);
+        // tan of twice the angle is twice the product over the difference of the squares
+        let difference = squares[0] - squares[1];
+        let length = (difference * difference + 4.0 * product * product).sqrt();
+        let cos = (0.5 + 0.5 * difference.abs() / length).sqrt();
+        let sin = product.copysign(product * difference) / (length * cos);
+        let along = |a: usize| [r1[a] * cos + r2[a] * sin, r2[a] * cos - r1[a] * sin];
+        let [[x1, x2], [y1, y2]] = [along(0), along(1)];
+        ParticleDomain { half_edges: [[x1, y1], [x2, y2]] }
+    }
+}
+
+#[inline(always)]
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
 }
 
 #[cfg(test)]
@@ -119,6 +161,62 @@ mod tests {
             assert!(plus.max(minus) < 1.0 + 1e-14, "{plus} {minus}");
             assert!(plus.min(minus) > 0.8, "{plus} {minus}");
         }
+    }
+
+    /// Also edges of equal length, and those of a mirrored domain.
+    #[test]
+    fn oblique_domains_get_orthogonal_edges_with_the_same_area_and_second_moments() {
+        for half_edges in [
+            [[0.59, 37.8], [-0.447, -28.6]],
+            [[1.0, 0.1], [1.0, -0.1]],
+            [[0.3, 2.0], [0.2, 2.0]],
+            [[-2.0, 0.1], [5.0, 0.3]],
+        ] {
+            let oblique = ParticleDomain { half_edges };
+            let turned = oblique.rectangle();
+            let of = |domain: &ParticleDomain| {
+                let [[ax, ay], [bx, by]] = domain.half_edges;
+                [ax * by - ay * bx, ax * ax + bx * bx, ax * ay + bx * by, ay * ay + by * by]
+            };
+            let size = of(&oblique)[1] + of(&oblique)[3];
+            for (a, b) in of(&turned).iter().zip(of(&oblique)) {
+                assert!((a - b).abs() < 1e-13 * size, "{half_edges:?}: {a} {b}");
+            }
+            let squares = half_edges.map(|edge| dot(edge, edge));
+            assert!(
+                dot(turned.half_edges[0], turned.half_edges[1]).abs() < 1e-13 * size,
+                "{half_edges:?}"
+            );
+            // the longer edge keeps its direction
+            let longer = usize::from(squares[1] > squares[0]);
+            let (old, new) = (half_edges[longer], turned.half_edges[longer]);
+            assert!(dot(old, new) > 0.7 * dot(old, old), "{half_edges:?}");
+        }
+    }
+
+    #[test]
+    fn only_flat_domains_that_are_too_long_become_rectangles() {
+        let with_angle = |degrees: f64, length: f64| {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            ParticleDomain { half_edges: [[length, 0.0], [1.2 * length * cos, 1.2 * length * sin]] }
+        };
+        let angle_of_edges = |domain: ParticleDomain| {
+            let [r1, r2] = domain.half_edges;
+            (dot(r1, r2) / (dot(r1, r1) * dot(r2, r2)).sqrt()).acos().to_degrees()
+        };
+        for degrees in [1.9, 178.1, 0.1, 179.9] {
+            let domain = with_angle(degrees, 2.0);
+            let limited = domain.limited_as_rectangle(1.0);
+            assert!(limited.longest_diagonal().1 < 1.0 + 1e-12, "{degrees}");
+            assert!((angle_of_edges(limited) - 90.0).abs() < 15.0, "{degrees}: {limited:?}");
+            assert_eq!(domain.limited_as_rectangle(9.0), domain, "short enough");
+        }
+        for degrees in [2.1, 177.9, 90.0] {
+            let domain = with_angle(degrees, 2.0);
+            assert_eq!(domain.limited_as_rectangle(1.0), domain.limited(1.0), "{degrees}");
+        }
+        let without_edge = ParticleDomain { half_edges: [[2.0, 1.0], [0.0, 0.0]] };
+        assert_eq!(without_edge.limited_as_rectangle(1.0), without_edge.limited(1.0));
     }
 
     #[test]

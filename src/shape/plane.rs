@@ -146,6 +146,22 @@ mod tests {
         }
     }
 
+    /// The sum of the absolute gradients of quadratic splines is at most 2 along each direction;
+    /// parallel edges of a flat domain give a sum of 8.
+    #[test]
+    fn gradients_of_flat_oblique_domains_are_bounded() {
+        let flat = ParticleDomain { half_edges: [[0.59, 37.8], [-0.447, -28.6]] };
+        for k in 0..40 {
+            let at = [k as f64 / 40.0, (7 * k % 40) as f64 / 40.0];
+            let (_, [_, gx, gy]) =
+                weights::<CpdiBsplineQuadratic>(at, &flat.limited_as_rectangle(0.7));
+            for lines in [gx, gy] {
+                let sum: f64 = lines.as_flattened().iter().map(|g| g.abs()).sum();
+                assert!(sum < 2.2, "{at:?}: {sum}");
+            }
+        }
+    }
+
     #[test]
     fn a_box_has_the_product_of_its_lines() {
         let (length, height) = (0.7, 0.4);

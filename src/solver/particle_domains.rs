@@ -69,9 +69,12 @@ struct Strained<'a> {
     volume: [&'a [f64]; 2],
     /// Radial position [m] and velocity [m/s], with axial symmetry.
     radius: Option<[&'a [f64]; 2]>,
+    /// Columns of the faces of the bodies, in the coordinates of the half edges.
+    faces: Option<&'a [Vec<f64>]>,
 }
 
 /// Columns from which the extents of particle domains are computed.
+#[expect(clippy::large_enum_variant, reason = "one at a time, on the stack")]
 enum Outlines<'a> {
     /// Current lengths: initial volume and volume ratio.
     Length([&'a [f64]; 2]),
@@ -201,6 +204,7 @@ impl<const D: usize> Scheme<D> {
             half: [column(half), column(half + 1)],
             volume: [column(c.volume0), column(jacobian)],
             radius: self.axisymmetric.then(|| [column(c.position), column(c.velocity)]),
+            faces: c.faces.map(|first| &block.columns[first..first + 4]),
         })
     }
 
@@ -212,6 +216,7 @@ impl<const D: usize> Scheme<D> {
         particles: Range<usize>,
         mut out: [&mut [f64]; 4],
     ) {
+        let first = particles.start;
         match (from.ahead.is_some(), from.radius.is_some()) {
             (false, false) => self.whole_parallelograms::<false, false>(from, particles, &mut out),
             (true, false) => self.whole_parallelograms::<true, false>(from, particles, &mut out),
@@ -219,7 +224,9 @@ impl<const D: usize> Scheme<D> {
             (true, true) => self.whole_parallelograms::<true, true>(from, particles, &mut out),
         }
         if let Some(most) = self.domain_limit {
-            limit(out, most);
+            let faces = from.faces.into_iter().flatten();
+            let has_face = |r: usize| faces.clone().any(|column| column[first + r] != 0.0);
+            limit(out, most, has_face);
         }
     }
 
@@ -463,8 +470,9 @@ fn extent(a: [f64; 2], b: [f64; 2]) -> f64 {
     x.max(y)
 }
 
-/// Limits parallelograms to `most` [cells]: see [`ParticleDomain::limited`].
-fn limit(edges: [&mut [f64]; 4], most: f64) {
+/// Limits parallelograms to `most` [cells]: see [`ParticleDomain::limited_as_rectangle`]. Particles with
+/// faces keep the directions of their edges, on which the components of the faces depend.
+fn limit(edges: [&mut [f64]; 4], most: f64, has_face: impl Fn(usize) -> bool) {
     let [ax, ay, bx, by] = edges;
     let n = ax.len();
     let (ay, bx, by) = (&mut ay[..n], &mut bx[..n], &mut by[..n]);
@@ -479,7 +487,11 @@ fn limit(edges: [&mut [f64]; 4], most: f64) {
     if (0..n).fold(false, long) {
         for r in 0..n {
             let domain = ParticleDomain { half_edges: [[ax[r], ay[r]], [bx[r], by[r]]] };
-            [[ax[r], ay[r]], [bx[r], by[r]]] = domain.limited(most).half_edges;
+            let limited = match has_face(r) {
+                true => domain.limited(most),
+                false => domain.limited_as_rectangle(most),
+            };
+            [[ax[r], ay[r]], [bx[r], by[r]]] = limited.half_edges;
         }
     }
 }
@@ -510,7 +522,7 @@ mod tests {
         particles[3] = long;
         let mut columns: [Vec<f64>; 4] =
             decomp::array::from_fn(|k| particles.iter().map(|r| r[k]).collect());
-        limit(columns.each_mut().map(|column| &mut column[..]), 1.0);
+        limit(columns.each_mut().map(|column| &mut column[..]), 1.0, |_| false);
         let alone =
             ParticleDomain { half_edges: [[3.0, 0.5], [-0.1, 0.25]] }.limited(1.0).half_edges;
         for (r, particle) in particles.iter().enumerate() {
@@ -518,5 +530,21 @@ mod tests {
             let expected = if r == 3 { alone.as_flattened() } else { &particle[..] };
             assert_eq!(found, expected, "{r}");
         }
+    }
+
+    /// The components of a face belong to the directions of the edges.
+    #[test]
+    fn flat_parallelograms_with_a_face_keep_the_directions_of_their_edges() {
+        let flat = ParticleDomain { half_edges: [[3.0, 30.0], [2.0, 21.0]] };
+        let mut columns = flat.half_edges.as_flattened().iter().map(|&edge| vec![edge; 2]);
+        let mut columns: [Vec<f64>; 4] = decomp::array::from_fn(|_| columns.next().unwrap());
+        limit(columns.each_mut().map(|column| &mut column[..]), 0.7, |r| r == 1);
+        let found = [0, 1].map(|r| columns.each_ref().map(|column| column[r]));
+        let expected = [flat.limited_as_rectangle(0.7), flat.limited(0.7)];
+        assert_eq!(
+            found.map(|f| f.to_vec()),
+            expected.map(|d| d.half_edges.as_flattened().to_vec())
+        );
+        assert_ne!(found[0], found[1]);
     }
 }

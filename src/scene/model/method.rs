@@ -66,7 +66,8 @@ pub struct Method {
     /// [cells], for shape functions over a deforming domain. If material expands further, such as a
     /// gas that escapes into empty space, its state stays continuous but the particle domains no
     /// longer touch. With a limit of 4 the density of a gas that escapes in one dimension is wrong
-    /// by 1 to 2 %, in the total-Lagrangian frame by 0.4 %. Absent: no limit; a particle longer
+    /// by 1 to 2 %, in the total-Lagrangian frame by 0.4 %. A longer domain in a plane is shortened;
+    /// edges less than 2 degrees apart first become orthogonal. Absent: no limit; a particle longer
     /// than the stencil ends the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 8.0), extend("exclusiveMinimum" = 0.0))]
