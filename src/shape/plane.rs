@@ -147,7 +147,7 @@ mod tests {
     }
 
     /// The sum of the absolute gradients of quadratic splines is at most 2 along each direction;
-    /// parallel edges of a flat domain give a sum of 8.
+    /// almost parallel edges give a sum of up to 13.
     #[test]
     fn gradients_of_flat_oblique_domains_are_bounded() {
         let flat = ParticleDomain { half_edges: [[0.59, 37.8], [-0.447, -28.6]] };
