@@ -112,13 +112,13 @@ impl ParticleDomain {
         if long >= short { (plus, long) } else { (minus, short) }
     }
 
-    /// [`Self::limited`] of a domain that first, if it is too long and the angle between its edges is less
-    /// than 2 or more than 178 degrees, gets orthogonal edges with the same area and the same
-    /// second moments.
+    /// [`Self::limited`] of a domain that first, if it is too long and the angle between its edges
+    /// is less than 2 or more than 178 degrees, gets orthogonal edges with the same area and the
+    /// same second moments.
     ///
     /// Gradients are differences between opposite edges over their distance. Along a flat
-    /// parallelogram opposite edges lie one behind the other: errors of Simpson's rule do not cancel,
-    /// and the gradients exceed those of the splines without bound.
+    /// parallelogram opposite edges lie one behind the other: errors of Simpson's rule do not
+    /// cancel, and the gradients exceed those of the splines without bound.
     pub fn limited_as_rectangle(self, most: f64) -> Self {
         let [r1, r2] = self.half_edges;
         let is_flat = dot(r1, r2).powi(2) > FLAT * dot(r1, r1) * dot(r2, r2);
@@ -127,8 +127,8 @@ impl ParticleDomain {
         domain.limited(most)
     }
 
-    /// Domain with the same area and the same second moments and with orthogonal edges: the half edges,
-    /// as columns of a matrix, times the least rotation.
+    /// Domain with the same area and the same second moments and with orthogonal edges: the half
+    /// edges, as columns of a matrix, times the least rotation.
     fn rectangle(self) -> Self {
         let [r1, r2] = self.half_edges;
         let (product, squares) = (dot(r1, r2), [dot(r1, r1), dot(r2, r2)]);

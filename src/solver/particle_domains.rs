@@ -470,8 +470,8 @@ fn extent(a: [f64; 2], b: [f64; 2]) -> f64 {
     x.max(y)
 }
 
-/// Limits parallelograms to `most` [cells]: see [`ParticleDomain::limited_as_rectangle`]. Particles with
-/// faces keep the directions of their edges, on which the components of the faces depend.
+/// Limits parallelograms to `most` [cells]: see [`ParticleDomain::limited_as_rectangle`]. Particles
+/// with faces keep the directions of their edges, on which the components of the faces depend.
 fn limit(edges: [&mut [f64]; 4], most: f64, has_face: impl Fn(usize) -> bool) {
     let [ax, ay, bx, by] = edges;
     let n = ax.len();
