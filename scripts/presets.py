@@ -25,34 +25,40 @@ PAGE = ROOT / "docs" / "methods.md"
 BEGIN, END = "<!-- begin presets -->\n", "<!-- end presets -->"
 
 PRESETS = ["sharpest", "robust", "default"]
-# frame, order of FMPM, rate of the pressure relaxation, linear and quadratic viscosity
+# frame, order of FMPM, rate of the pressure relaxation, linear and quadratic viscosity, linear
+# viscosity in expansion
 OTHERS = [
-    ("total_lagrangian", 10, 0.05, 0.05, 0.5),
-    ("total_lagrangian", 10, 0.05, 0.035, 0),
-    ("total_lagrangian", 14, 0, 0.035, 0),
-    ("total_lagrangian", 14, 0.05, 0.01, 0),
-    ("total_lagrangian", 14, 0.05, 0.02, 0),
-    ("total_lagrangian", 14, 0.05, 0.02, 0.3),
-    ("total_lagrangian", 14, 0.05, 0.035, 0.3),
-    ("total_lagrangian", 14, 0.05, 0.05, 0),
-    ("total_lagrangian", 14, 0.05, 0.05, 0.5),
-    ("total_lagrangian", 18, 0.05, 0.035, 0),
-    ("updated_lagrangian", 8, 0.1, 0.05, 0.5),
-    ("updated_lagrangian", 8, 0.1, 0.03, 0),
-    ("updated_lagrangian", 14, 0.1, 0.03, 0),
+    ("total_lagrangian", 10, 0.05, 0.05, 0.5, None),
+    ("total_lagrangian", 10, 0.05, 0.035, 0, None),
+    ("total_lagrangian", 14, 0, 0.035, 0, None),
+    ("total_lagrangian", 14, 0.05, 0.035, 0.3, None),
+    ("total_lagrangian", 14, 0.05, 0.05, 0, None),
+    ("total_lagrangian", 14, 0.05, 0.05, 0.5, None),
+    ("total_lagrangian", 18, 0.05, 0.035, 0, None),
+    ("updated_lagrangian", 8, 0.1, 0.05, 0.5, None),
+    ("updated_lagrangian", 8, 0.1, 0.03, 0, None),
+    ("updated_lagrangian", 14, 0.1, 0.03, 0, None),
+    ("total_lagrangian", 14, 0.05, 0.035, 0, None),
+    ("total_lagrangian", 14, 0.05, 0.03, 0, 0.02),
+    ("total_lagrangian", 14, 0.05, 0.03, 0, 0.05),
+    ("total_lagrangian", 14, 0.05, 0.035, 0, 0.035),
+    ("total_lagrangian", 14, 0.05, 0.035, 0.25, 0.035),
+    ("total_lagrangian", 14, 0.05, 0.05, 0, 0.05),
+    ("updated_lagrangian", 14, 0.1, 0.03, 0, 0.035),
 ]
 
 
 def name_of(scheme):
     """A scheme in words."""
-    frame, order, rate, linear, quadratic = scheme
+    frame, order, rate, linear, quadratic, expansion = scheme
     relaxation = f"relaxation {rate}" if rate else "no relaxation"
-    return f"{frame.replace('_', ' ')}, FMPM({order}), {relaxation}, {linear}/{quadratic}"
+    viscosity = f"{linear}/{quadratic}" + (f", expansion {expansion}" if expansion else "")
+    return f"{frame.replace('_', ' ')}, FMPM({order}), {relaxation}, {viscosity}"
 
 
 def method_of(scheme):
     """Method and viscosity of a scheme: those of `sharpest` with its values."""
-    frame, order, rate, linear, quadratic = scheme
+    frame, order, rate, linear, quadratic, expansion = scheme
     method = {
         "frame": frame,
         "shape": "cpdi_bspline_quadratic",
@@ -71,6 +77,8 @@ def method_of(scheme):
         "limiter": "christensen",
         "limited": "linear",
     }
+    if expansion:
+        viscosity["expansion"] = expansion
     return {"method": method, "artificial_viscosity": viscosity}
 
 

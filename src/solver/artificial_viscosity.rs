@@ -6,6 +6,15 @@
 //! q = rho (a1 (1 - phi) c h |D| + a2 h^2 D^2)
 //! ```
 //!
+//! and in expansion (D > 0), if the scene has the coefficient a3,
+//!
+//! ```text
+//! q = -rho a3 (1 - phi) c h D
+//! ```
+//!
+//! The velocity behind a shock oscillates: without a3 only the compressive half of each oscillation
+//! is damped. In a smooth release phi is 1, so that it is not smeared.
+//!
 //! a1 is the linear and a2 the quadratic coefficient (von Neumann & Richtmyer 1950; Landshoff 1955;
 //! the form of Uintah, whose documentation calls them the first and the second). phi, between 0 and
 //! 1, is the reduction by a limiter where the velocity is smooth. Coefficients that keep weak
@@ -23,6 +32,7 @@ use crate::solver::particle_weights::ParticleWeights;
 pub struct Viscosity {
     linear: f64,
     quadratic: f64,
+    expansion: Option<f64>,
     growth: Option<ViscosityGrowth>,
     cell: f64,
     limits_both: bool,
@@ -36,11 +46,18 @@ impl Viscosity {
         Viscosity {
             linear: scene.linear,
             quadratic: scene.quadratic,
+            expansion: scene.expansion,
             growth: scene.growth,
             cell,
             limits_both: scene.limited == LimitedTerms::Both,
             limiter: scene.limiter,
         }
+    }
+
+    /// Whether it acts in expansion too.
+    #[inline(always)]
+    pub fn acts_in_expansion(&self) -> bool {
+        self.expansion.is_some()
     }
 
     /// q [Pa] of a particle with density [kg/m3], sound speed [m/s], divergence D [1/s] and limiter
@@ -51,7 +68,14 @@ impl Viscosity {
         let left = 1.0 - phi;
         let quadratic = self.quadratic(sound_speed, jump);
         let quadratic = if self.limits_both { left * quadratic } else { quadratic };
-        density * jump * (self.linear * left * sound_speed + quadratic * jump)
+        let compression = density * jump * (self.linear * left * sound_speed + quadratic * jump);
+        match self.expansion {
+            None => compression,
+            Some(expansion) => {
+                let jump = self.cell * stretch * gradient.max(0.0);
+                compression - density * jump * (expansion * left * sound_speed)
+            }
+        }
     }
 
     /// q [Pa] of a particle of `at`, likewise.
@@ -86,11 +110,13 @@ impl Viscosity {
         }
     }
 
-    /// Contribution of q to the speed in the Courant condition, 2 (a1 c + a2 h |D|) [m/s].
+    /// Contribution of q to the speed in the Courant condition, 2 (a c + a2 h |D|) with the greater a of
+    /// a1 and a3 [m/s].
     #[inline(always)]
     pub fn speed(&self, sound_speed: f64, gradient: f64, stretch: f64) -> f64 {
         let jump = self.cell * stretch * gradient.abs();
-        2.0 * (self.linear * sound_speed + self.quadratic(sound_speed, jump) * jump)
+        let linear = self.expansion.map_or(self.linear, |expansion| expansion.max(self.linear));
+        2.0 * (linear * sound_speed + self.quadratic(sound_speed, jump) * jump)
     }
 
     /// Coefficient a2 for a velocity jump of `jump` over a cell [m/s].
@@ -187,9 +213,10 @@ fn christensen_line(v: [f64; 4], ends: [bool; 2]) -> f64 {
 /// phi of Christensen (1990) for a particle in the cell above node `node` [-], from 0 (no
 /// reduction) to 1 (smooth flow). In a plane it is computed along each direction, from that
 /// component of the velocity on both lines of nodes of the cell. The result is their mean, weighted
-/// by the rate of compression of the cell along each direction.
+/// by the rate of compression of the cell along each direction, or of expansion if the particle
+/// `expands`.
 #[inline(always)]
-pub fn christensen<const D: usize>(nodes: &Nodes<'_, D>, node: usize) -> f64 {
+pub fn christensen<const D: usize>(nodes: &Nodes<'_, D>, node: usize, expands: bool) -> f64 {
     let along = |axis: usize, from: usize| {
         let step = nodes.steps[axis];
         let places = [from - step, from, from + step, from + 2 * step];
@@ -205,7 +232,8 @@ pub fn christensen<const D: usize>(nodes: &Nodes<'_, D>, node: usize) -> f64 {
         let (a, a_ends) = along(axis, node);
         let (b, b_ends) = along(axis, node + nodes.steps[1 - axis]);
         let v: [f64; 4] = from_fn(|k| a[k] + b[k]);
-        let weight = (v[1] - v[2]).max(0.0) * nodes.inverse_cell[axis];
+        let rate = if expands { v[2] - v[1] } else { v[1] - v[2] };
+        let weight = rate.max(0.0) * nodes.inverse_cell[axis];
         if weight > 0.0 {
             let ends = [a_ends[0] && b_ends[0], a_ends[1] && b_ends[1]];
             sum += weight * christensen_line(v, ends);
@@ -270,6 +298,7 @@ mod tests {
     const V: ArtificialViscosity = ArtificialViscosity {
         linear: 0.1,
         quadratic: 1.25,
+        expansion: None,
         growth: None,
         limiter: None,
         limited: LimitedTerms::Linear,
@@ -282,6 +311,24 @@ mod tests {
         let exact = 3000.0 * (0.1 * 0.75 * 6000.0 * 1e-5 * 2e6 + 1.25 * 1e-10 * 4e12);
         assert!((q / exact - 1.0).abs() < 1e-14);
         assert_eq!(v.q(3000.0, 6000.0, 2e6, 0.0, 1.0), 0.0, "none in expansion");
+    }
+
+    /// In expansion the other coefficient acts, limited, with the other sign; in compression nothing
+    /// changes.
+    #[test]
+    fn q_in_expansion_is_the_documented_formula() {
+        let v = Viscosity::new(&ArtificialViscosity { expansion: Some(0.3), ..V }, 1e-5);
+        let q = v.q(3000.0, 6000.0, 2e6, 0.25, 1.0);
+        let exact = -3000.0 * 0.3 * 0.75 * 6000.0 * 1e-5 * 2e6;
+        assert!((q / exact - 1.0).abs() < 1e-14);
+        assert_eq!(v.q(3000.0, 6000.0, 2e6, 1.0, 1.0), 0.0, "none in smooth flow");
+        let compressed =
+            [v, Viscosity::new(&V, 1e-5)].map(|v| v.q(3000.0, 6000.0, -2e6, 0.25, 1.0));
+        assert_eq!(compressed[0], compressed[1]);
+        assert!(
+            (v.speed(6000.0, 0.0, 1.0) - 2.0 * 0.3 * 6000.0).abs() < 1e-9,
+            "the greater of both"
+        );
     }
 
     #[test]
@@ -320,8 +367,8 @@ mod tests {
         let ones = [1.0; 6];
         let linear = [6.0, 5.0, 4.0, 3.0, 2.0, 1.0];
         let jump = [1.0, 1.0, 1.0, 0.0, 0.0, 0.0];
-        assert_eq!(christensen(&line(&linear, &ones), 2), 1.0);
-        assert_eq!(christensen(&line(&jump, &ones), 2), 0.0);
+        assert_eq!(christensen(&line(&linear, &ones), 2, false), 1.0);
+        assert_eq!(christensen(&line(&jump, &ones), 2, false), 0.0);
         let weights = |first, values| ParticleWeights::<'_, 3, 1> {
             first,
             stride: 6,
@@ -341,7 +388,7 @@ mod tests {
         let bent = [7.0, 6.0, 3.0, 2.85, 2.0, 1.0];
         let back: Vec<f64> = bent.iter().rev().map(|v| -v).collect();
         for (v, node) in [(&bent[..], 1), (&back, 3)] {
-            assert!((christensen(&line(v, &ones), node) - 0.1).abs() < 1e-14);
+            assert!((christensen(&line(v, &ones), node, false) - 0.1).abs() < 1e-14);
         }
     }
 
@@ -351,9 +398,9 @@ mod tests {
         let inverse = [1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
         let v = [6.0, 5.0, 4.0, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0, 2.0, 1.0];
         let nodes = Nodes { layer: 6, ..line(&v, &inverse) };
-        assert_eq!(christensen(&nodes, 2), 1.0);
+        assert_eq!(christensen(&nodes, 2, false), 1.0);
         let alone = [&inverse[..6], &[0.0; 6]].concat();
-        assert_eq!(christensen(&Nodes { layer: 6, ..line(&v, &alone) }, 2), 0.0, "an edge");
+        assert_eq!(christensen(&Nodes { layer: 6, ..line(&v, &alone) }, 2, false), 0.0, "an edge");
     }
 
     #[test]
@@ -368,7 +415,7 @@ mod tests {
         };
         let rest = nodal(&line(&[1.0; 6], &ones), &particle, -1.0, None);
         assert!(rest == 0.0 && rest.is_sign_positive());
-        let jump = christensen(&line(&[1.0, 1.0, 1.0, 0.0, 0.0, 0.0], &ones), 2);
+        let jump = christensen(&line(&[1.0, 1.0, 1.0, 0.0, 0.0, 0.0], &ones), 2, false);
         assert!(jump == 0.0 && jump.is_sign_positive());
     }
 
@@ -380,19 +427,22 @@ mod tests {
             [1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
             [9.0, 7.0, 4.0, 3.0, 2.0, 1.5],
         ] {
-            let on_a_line = christensen(&line(&v, &ones), 2);
-            let wave: Vec<f64> = (0..36).map(|i| v[i % 6]).collect();
-            let turned: Vec<f64> = (0..36).map(|i| v[i / 6]).collect();
+            let on_a_line = christensen(&line(&v, &ones), 2, false);
             let rest = [0.0; 36];
-            for velocity in [[&wave[..], &rest], [&rest, &turned[..]]] {
-                let nodes = Nodes {
-                    velocity,
-                    inverse_mass: &ones,
-                    steps: [1, 6],
-                    inverse_cell: [1.0; 2],
-                    layer: 36,
-                };
-                assert_eq!(christensen(&nodes, 14), on_a_line);
+            // the same wave in expansion has the opposite velocity
+            for (sign, expands) in [(1.0, false), (-1.0, true)] {
+                let wave: Vec<f64> = (0..36).map(|i| sign * v[i % 6]).collect();
+                let turned: Vec<f64> = (0..36).map(|i| sign * v[i / 6]).collect();
+                for velocity in [[&wave[..], &rest], [&rest, &turned[..]]] {
+                    let nodes = Nodes {
+                        velocity,
+                        inverse_mass: &ones,
+                        steps: [1, 6],
+                        inverse_cell: [1.0; 2],
+                        layer: 36,
+                    };
+                    assert_eq!(christensen(&nodes, 14, expands), on_a_line);
+                }
             }
         }
     }

@@ -307,11 +307,14 @@ impl<const D: usize> Scheme<D> {
         let mut limiters = std::mem::take(&mut patch.block.columns[column]);
         let gradient = &patch.block.columns[self.columns.divergence][..n];
         let particles = limiters[..n].iter_mut().zip(gradient).zip(&patch.block.cells);
-        // particles of a cell follow each other, and have one limiter by Christensen
-        let mut of_cell = (usize::MAX, 0.0);
+        // particles of a cell follow each other; in compression and in expansion they have one limiter
+        // each by Christensen
+        let mut of_cell = [(usize::MAX, 0.0); 2];
+        let in_expansion = self.viscosity.is_some_and(|viscosity| viscosity.acts_in_expansion());
         for (r, ((phi, &gradient), cell)) in particles.enumerate() {
-            // in expansion there is no viscosity to limit
-            if gradient >= 0.0 {
+            let expands = gradient > 0.0;
+            // no viscosity to limit
+            if gradient == 0.0 || (expands && !in_expansion) {
                 *phi = 0.0;
                 continue;
             }
@@ -319,8 +322,10 @@ impl<const D: usize> Scheme<D> {
                 Limiter::Christensen => {
                     let at = |a: usize| (i64::from(cell[a]) - lower[a]) as usize;
                     let node = (1..D).fold(at(0), |sum, a| sum + stride * at(a)) + layer(r);
+                    let of_cell = &mut of_cell[usize::from(expands)];
                     if of_cell.0 != node {
-                        of_cell = (node, artificial_viscosity::christensen(&nodes, node));
+                        let phi = artificial_viscosity::christensen(&nodes, node, expands);
+                        *of_cell = (node, phi);
                     }
                     of_cell.1
                 }

@@ -164,7 +164,8 @@ pub struct FluxLimiter {
     pub neighbours: u32,
 }
 
-/// Artificial viscosity q = rho (linear c h |D| + quadratic h^2 D^2), in compression only.
+/// Artificial viscosity: q = rho (linear c h |D| + quadratic h^2 D^2) in compression, and
+/// q = -rho expansion c h D in expansion.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ArtificialViscosity {
@@ -176,6 +177,11 @@ pub struct ArtificialViscosity {
     /// overshoot of strong shocks, and makes them wider.
     #[schemars(range(min = 0.0))]
     pub quadratic: f64,
+    /// Coefficient a3 of the linear term in expansion [-]; absent: no viscosity in expansion. It damps
+    /// the other half of the oscillations behind shocks. Without a limiter it also smears releases.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub expansion: Option<f64>,
     /// Growth of the quadratic coefficient in strong shocks; absent: it is constant.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub growth: Option<ViscosityGrowth>,
