@@ -4,10 +4,11 @@ other schemes.
 
     cargo build --release && scripts/presets.py
 
-The impacts are those of inputs/studies/impacts.json, each with two profiles. The preset `sharpest` is
-the scheme with the least mean of E1; schemes within 1 % of the least count as equal, and the one of
-them with the smallest median overshoot is taken. The script fails if another scheme than `sharpest`
-wins. A test (tests/contract/pages.rs) holds the table to the same rule.
+The impacts are those of inputs/studies/impacts.json, each with two profiles. All schemes are in the
+range of the error estimate. The preset `sharpest` is the one of them with the least mean of E1; schemes
+within 1 % of the least count as equal, and the one with the smallest median overshoot is taken. The
+script fails if another scheme than `sharpest` wins. A test (tests/contract/pages.rs) holds the table to
+the same rule.
 """
 
 import csv

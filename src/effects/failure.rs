@@ -123,7 +123,8 @@ impl FailureEffect {
                 continue;
             }
             let volume = column(c.volume0) * column(step.jacobian);
-            let viscous = c.viscosity.map_or(0.0, column) * volume;
+            // no tension, also none by viscosity in expansion
+            let viscous = c.viscosity.map_or(0.0, column).max(0.0) * volume;
             if stress[r] < viscous {
                 stress[r] = viscous;
                 if let (Some(p), Some(w)) = (c.pressure_mid, c.compliance) {

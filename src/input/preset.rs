@@ -24,10 +24,12 @@ struct SceneContents {
     joined: bool,
     /// The same of two plates that press on each other until the end of the run.
     plates_in_contact: bool,
-    /// Some body has one particle per cell.
-    single_particles: bool,
-    /// The Courant number is above [`LONG_STEP`].
-    long_steps: bool,
+    /// Some body has one particle per cell, or particles from a file.
+    sparse_particles: bool,
+    /// The Courant number is above [`LARGE_COURANT`], a material has a tension cutoff, or the scene
+    /// gives a transfer, a stepping, a shape function or a viscosity of its own: viscosity in
+    /// expansion was not measured with these.
+    untested_keys: bool,
     /// Some body is a fluid, or a solid whose pressure follows an equation of state of fluids.
     fluid: bool,
     strength: bool,
@@ -48,9 +50,9 @@ struct SceneContents {
     porous: bool,
 }
 
-/// Courant number above which `default` has the stronger of its two viscosities for impacts: with the
-/// weaker one the runs measured at 0.8 oscillate, those at 0.6 do not.
-const LONG_STEP: f64 = 0.6;
+/// Courant number above which presets have no viscosity in expansion: plane impacts on a line
+/// oscillate with it at 0.8, and do not at 0.6.
+const LARGE_COURANT: f64 = 0.6;
 
 struct Rule {
     applies: fn(&SceneContents) -> bool,
@@ -109,7 +111,7 @@ const RULES: &[Rule] = &[
         reason: "spin, since bodies may turn, with a shorter domain limit",
     },
     Rule {
-        applies: |c| c.plane && c.fluid && !c.long_steps && !c.excludes_expansion(),
+        applies: |c| c.plane && c.fluid && c.allows_expansion(),
         changes: || json!({"artificial_viscosity": {"expansion": 0.1}}),
         reason: "viscosity in expansion, which damps the oscillations behind shocks",
     },
@@ -228,10 +230,10 @@ impl Preset {
         let reason = match self {
             Preset::Default => {
                 let is_impact = acting(contents).next().is_none();
-                if is_impact && !contents.long_steps {
+                if is_impact && contents.allows_expansion() {
                     let viscosity = json!({"quadratic": 0.75, "expansion": 0.05});
                     merge(&mut base, &json!({"artificial_viscosity": viscosity}));
-                    if !contents.single_particles {
+                    if !contents.sparse_particles {
                         merge(&mut base, &json!({"method": {"transfer": {"fmpm": 10}}}));
                     }
                 } else {
@@ -239,10 +241,10 @@ impl Preset {
                 }
                 if is_impact && contents.plates_in_contact {
                     merge(&mut base, &json!({"method": {"frame": "total_lagrangian"}}));
-                    "least error of plane impacts whose peak pressure is within 0.5 %; \
+                    "small error of plane impacts whose peak pressure is within 0.5 %; \
                      total-Lagrangian, for plates that stay in contact"
                 } else {
-                    "least error of plane impacts whose peak pressure is within 0.5 %"
+                    "small error of plane impacts whose peak pressure is within 0.5 %"
                 }
             }
             Preset::Robust => {
@@ -255,7 +257,7 @@ impl Preset {
                     "artificial_viscosity": {"linear": 0.035, "quadratic": 0.0}});
                 merge(&mut base, &changes);
                 let is_impact = acting(contents).next().is_none();
-                if is_impact {
+                if is_impact && contents.allows_expansion() && !contents.sparse_particles {
                     let viscosity = json!({"linear": 0.03, "expansion": 0.035});
                     merge(&mut base, &json!({"artificial_viscosity": viscosity}));
                 }
@@ -294,7 +296,7 @@ pub(super) fn expand(scene: &mut Value) -> Result<Option<MethodChoice>, SceneFau
         // reported by the check against the schema
         Some(_) => return Ok(None),
     };
-    let contents = SceneContents::of(keys);
+    let contents = SceneContents::of(keys, &explicit);
     let (mut chosen, reason) = choose(preset, &contents);
     let mut method = chosen["method"].take();
     let mut reasons: Vec<String> = acting(&contents).map(|rule| rule.reason.to_string()).collect();
@@ -435,16 +437,17 @@ fn deforms(shape: &Value) -> bool {
 }
 
 impl SceneContents {
-    /// Whether the scene has contents with which viscosity in expansion was not measured: surfaces
-    /// that separate, strength, pores, gas, a body force or an axis.
-    fn excludes_expansion(&self) -> bool {
-        let surfaces = self.contact || self.failure || self.strength || self.porous;
-        surfaces || self.gas || self.burn || self.body_force || self.axisymmetric
+    /// Whether viscosity in expansion was measured with the contents of the scene.
+    fn allows_expansion(&self) -> bool {
+        let solid = self.contact || self.failure || self.strength || self.porous;
+        let other = self.gas || self.burn || self.body_force || self.axisymmetric;
+        !(solid || other || self.untested_keys)
     }
 
-    /// Reads the contents of a scene whose library names are resolved. An invalid part counts as
-    /// absent; the check of the scene reports it.
-    fn of(scene: &Map<String, Value>) -> Self {
+    /// Reads the contents of a scene whose library names are resolved and whose method has the keys
+    /// `explicit` beside the preset. An invalid part counts as absent; the check of the scene
+    /// reports it.
+    fn of(scene: &Map<String, Value>, explicit: &Map<String, Value>) -> Self {
         let domain = scene.get("domain").unwrap_or(&Value::Null);
         let dimension = domain["lower"].as_array().map_or(1, Vec::len);
         let bodies = scene.get("bodies").and_then(Value::as_array).into_iter().flatten();
@@ -478,10 +481,13 @@ impl SceneContents {
             contact: given("contact"),
             joined: dimension == 1 && are_joined(scene),
             plates_in_contact: dimension == 1 && are_joined(scene) && stay_in_contact(scene),
-            single_particles: used.iter().any(|(.., body)| has_single_particles(body)),
-            long_steps: scene.get("time").is_some_and(|time| {
-                time["courant"].as_f64().is_some_and(|courant| courant > LONG_STEP)
-            }),
+            sparse_particles: used.iter().any(|(.., body)| has_sparse_particles(body)),
+            untested_keys: ["transfer", "stepping", "shape"]
+                .iter()
+                .any(|key| explicit.contains_key(*key))
+                || scene.contains_key("artificial_viscosity")
+                || scene.get("time").is_some_and(is_large_courant)
+                || scene.get("materials").is_some_and(has_tension_cutoff),
             fluid: any(|m, _| !m.eos.is_solid()),
             strength: any(|m, _| m.strength.is_some()),
             failure: any(|m, _| m.failure.is_some()),
@@ -510,8 +516,19 @@ fn is_sheared(body: &Value) -> bool {
     field.is_ok_and(|field| field.shears())
 }
 
+/// Whether the Courant number in `time` is above [`LARGE_COURANT`].
+fn is_large_courant(time: &Value) -> bool {
+    time["courant"].as_f64().is_some_and(|courant| courant > LARGE_COURANT)
+}
+
+/// Whether one of the `materials` has a tension cutoff.
+fn has_tension_cutoff(materials: &Value) -> bool {
+    let mut materials = materials.as_object().into_iter().flat_map(Map::values);
+    materials.any(|material| !material["eos"]["tension_cutoff"].is_null())
+}
+
 /// Whether a body has one particle per cell along some direction, or particles from a file.
-fn has_single_particles(body: &Value) -> bool {
+fn has_sparse_particles(body: &Value) -> bool {
     let per_cell = body["particles_per_cell"].as_array().into_iter().flatten();
     !body["positions"].is_null() || per_cell.filter_map(Value::as_f64).any(|count| count < 2.0)
 }
@@ -579,8 +596,8 @@ mod tests {
                 burn: has(7),
                 porous: has(8),
                 plates_in_contact: has(9),
-                single_particles: has(15),
-                long_steps: has(16),
+                sparse_particles: has(15),
+                untested_keys: has(16),
                 axisymmetric: has(10),
                 body_force: has(11),
                 moving_gas: has(6) && has(12),
@@ -603,8 +620,7 @@ mod tests {
             assert!(!total || !has(method, "domain_limit"), "{method}");
             let expands = has(viscosity, "expansion");
             assert!(!expands || has(viscosity, "limiter"), "{viscosity}");
-            assert!(!expands || !c.excludes_expansion(), "{viscosity}");
-            assert!(!c.long_steps || *preset != Preset::Default || !expands, "{viscosity}");
+            assert!(!expands || c.allows_expansion(), "{viscosity}");
             assert!(!has(method, "spin") || (c.plane && !c.axisymmetric && !total), "{method}");
             assert!(!has(method, "flux_limiter") || !(c.plane || c.contact), "{method}");
             assert_eq!(has(method, "pressure_relaxation"), c.fluid);

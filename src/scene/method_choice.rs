@@ -12,8 +12,9 @@ pub enum Preset {
     /// The shape function and the transfer with the smallest error of those that pass every hard
     /// case, with a moderate viscosity.
     Robust,
-    /// The method with the smallest mean of E1 over ten plane impacts; in the total-Lagrangian
-    /// frame if the scene has only fluids on a line that touch and stay in contact.
+    /// Of the methods in the range of the error estimate, the one with the smallest mean of E1
+    /// over ten plane impacts; in the total-Lagrangian frame if the scene has only fluids on a
+    /// line that touch and stay in contact.
     Sharpest,
 }
 

@@ -13,7 +13,8 @@
 //! ```
 //!
 //! The velocity behind a shock oscillates: without a3 only the compressive half of each oscillation
-//! is damped. In a smooth release phi is 1, so that it is not smeared.
+//! is damped. Inside a body phi is 1 in a smooth release, so that it is not smeared; in the cell at
+//! a free surface phi is 0.
 //!
 //! a1 is the linear and a2 the quadratic coefficient (von Neumann & Richtmyer 1950; Landshoff 1955;
 //! the form of Uintah, whose documentation calls them the first and the second). phi, between 0 and
@@ -73,7 +74,7 @@ impl Viscosity {
             None => compression,
             Some(expansion) => {
                 let jump = self.cell * stretch * gradient.max(0.0);
-                compression - density * jump * (expansion * left * sound_speed)
+                positive(compression - density * jump * (expansion * left * sound_speed))
             }
         }
     }
@@ -110,8 +111,8 @@ impl Viscosity {
         }
     }
 
-    /// Contribution of q to the speed in the Courant condition, 2 (a c + a2 h |D|) with the greater a of
-    /// a1 and a3 [m/s].
+    /// Contribution of q to the speed in the Courant condition, 2 (a c + a2 h |D|), where a is the
+    /// greater of a1 and a3 [m/s].
     #[inline(always)]
     pub fn speed(&self, sound_speed: f64, gradient: f64, stretch: f64) -> f64 {
         let jump = self.cell * stretch * gradient.abs();
@@ -214,7 +215,7 @@ fn christensen_line(v: [f64; 4], ends: [bool; 2]) -> f64 {
 /// reduction) to 1 (smooth flow). In a plane it is computed along each direction, from that
 /// component of the velocity on both lines of nodes of the cell. The result is their mean, weighted
 /// by the rate of compression of the cell along each direction, or of expansion if the particle
-/// `expands`.
+/// `expands`; on a line phi is the same for both.
 #[inline(always)]
 pub fn christensen<const D: usize>(nodes: &Nodes<'_, D>, node: usize, expands: bool) -> f64 {
     let along = |axis: usize, from: usize| {

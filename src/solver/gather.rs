@@ -307,8 +307,8 @@ impl<const D: usize> Scheme<D> {
         let mut limiters = std::mem::take(&mut patch.block.columns[column]);
         let gradient = &patch.block.columns[self.columns.divergence][..n];
         let particles = limiters[..n].iter_mut().zip(gradient).zip(&patch.block.cells);
-        // particles of a cell follow each other; in compression and in expansion they have one limiter
-        // each by Christensen
+        // particles of a cell follow each other; those in compression have one limiter by
+        // Christensen, those in expansion another
         let mut of_cell = [(usize::MAX, 0.0); 2];
         let in_expansion = self.viscosity.is_some_and(|viscosity| viscosity.acts_in_expansion());
         for (r, ((phi, &gradient), cell)) in particles.enumerate() {

@@ -36,6 +36,9 @@ pub fn quantity(name: &str) -> (String, &'static str, f64) {
         "core_seconds" => return ("Wall time of the time loop × cores".into(), "s", 1.0),
         "time.courant" => return ("Courant number".into(), "", 1.0),
         "artificial_viscosity.linear" => return ("Linear viscosity a1".into(), "", 1.0),
+        "artificial_viscosity.expansion" => {
+            return ("Linear viscosity a3 in expansion".into(), "", 1.0);
+        }
         "artificial_viscosity.quadratic" => return ("Quadratic viscosity a2".into(), "", 1.0),
         other => return (other.replace(['_', '.'], " "), "", 1.0),
     };

@@ -94,11 +94,12 @@ pub fn method() -> impl Strategy<Value = Value> {
     })
 }
 
-/// Artificial viscosity with and without a limiter, or none.
+/// Artificial viscosity with and without a limiter and a part in expansion, or none.
 pub fn viscosity() -> impl Strategy<Value = Value> {
     let limiter = select(vec![json!(null), json!("christensen"), json!("nodal")]);
-    let some = limiter.prop_map(|limiter| {
-        let mut viscosity = json!({"linear": 0.1, "quadratic": 1.0});
+    let expansion = select(vec![json!(null), json!(0.1)]);
+    let some = (limiter, expansion).prop_map(|(limiter, expansion)| {
+        let mut viscosity = json!({"linear": 0.1, "quadratic": 1.0, "expansion": expansion});
         if !limiter.is_null() {
             viscosity["limiter"] = limiter;
         }

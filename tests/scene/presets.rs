@@ -4,7 +4,7 @@ use flyer_mpm::input::parse;
 use flyer_mpm::scene::{CheckedScene, MethodChoice, Preset};
 use serde_json::{Value, json};
 
-use crate::{mentions_all, refused_text, with};
+use crate::{mentions_all, refused_text, shipped, with};
 
 /// Two plates on a line, without a method.
 fn plates() -> Value {
@@ -46,6 +46,53 @@ fn transfer_is(edits: &[(&str, Value)], transfer: &Value, reason: &str) {
     assert!(reasons.iter().any(|r| r.contains(reason)), "no `{reason}` in {reasons:?}");
 }
 
+/// Linear and quadratic viscosity, and the linear one in expansion.
+fn viscosity(scene: &CheckedScene) -> (f64, f64, Option<f64>) {
+    let viscosity = scene.scene.artificial_viscosity.expect("a viscosity");
+    (viscosity.linear, viscosity.quadratic, viscosity.expansion)
+}
+
+/// Viscosity in expansion comes with the contents and keys with which it was measured.
+#[test]
+fn impacts_have_viscosity_in_expansion() {
+    let order = |scene: &CheckedScene| json!(scene.scene.method.transfer)["fmpm"].clone();
+    let [one, two] = [json!([1]), json!([2])];
+    let pairs = |count: &Value| {
+        ["/bodies/0/particles_per_cell", "/bodies/1/particles_per_cell"]
+            .map(|path| (path, count.clone()))
+    };
+    let [few, usual] = [&one, &two].map(|count| edited(&pairs(count)));
+    assert_eq!([order(&few), order(&usual)], [json!(8), json!(10)]);
+    assert_eq!(viscosity(&usual), (0.05, 0.75, Some(0.05)));
+    let with_key = |path: &'static str, value: Value| {
+        let scene = edited(&[pairs(&two).to_vec(), vec![(path, value)]].concat());
+        (order(&scene), viscosity(&scene))
+    };
+    let former = (json!(8), (0.15, 0.5, None));
+    assert_eq!(with_key("/time/courant", json!(0.61)), former);
+    assert_eq!(with_key("/time/courant", json!(0.6)).0, 10);
+    assert_eq!(with_key("/body_force", json!({"gravity": [-10.0]})), former);
+    let flip = json!({"preset": "default", "transfer": "flip"});
+    assert_eq!(with_key("/method", flip).1, former.1);
+    let own = json!({"linear": 0.2, "quadratic": 1.0});
+    assert_eq!(with_key("/artificial_viscosity", own), (json!(8), (0.2, 1.0, None)));
+    assert_eq!(with_key("/method", json!("sharpest")).1, (0.03, 0.0, Some(0.035)));
+    let cutoff = json!({"metal": {"library": "copper", "eos": {"tension_cutoff": 1e9}}});
+    assert_eq!(with_key("/materials", cutoff), former);
+    // in a plane
+    let mut oblique: Value = serde_json::from_slice(&shipped("oblique_impact.json")).unwrap();
+    for key in ["method", "artificial_viscosity"] {
+        oblique.as_object_mut().unwrap().remove(key);
+    }
+    let mut expansion = |key: &str, value: Value| {
+        oblique[key] = value;
+        let scene = parse(oblique.to_string().as_bytes(), "oblique.json", &[]).unwrap();
+        viscosity(&scene).2
+    };
+    assert_eq!(expansion("title", json!("plates")), Some(0.1));
+    assert_eq!(expansion("contact", json!({"type": "frictionless"})), None);
+}
+
 #[test]
 fn a_scene_without_a_method_has_that_of_the_flyer() {
     let [own, flyer] = [edited(&[]), with("flyer.json", &[]).unwrap()];
@@ -53,7 +100,7 @@ fn a_scene_without_a_method_has_that_of_the_flyer() {
     let mut method = json!(flyer.scene.method);
     method["frame"] = json!("total_lagrangian");
     assert_eq!(json!(own.scene.method), method);
-    assert_eq!(own.scene.artificial_viscosity.unwrap().linear, 0.15);
+    assert_eq!(viscosity(&own), (0.05, 0.75, Some(0.05)));
     assert_eq!(choice(&own).preset, Preset::Default);
     assert_eq!(flyer.method_choice, None);
     let named = edited(&[("/method", json!("default"))]);

@@ -177,8 +177,9 @@ pub struct ArtificialViscosity {
     /// overshoot of strong shocks, and makes them wider.
     #[schemars(range(min = 0.0))]
     pub quadratic: f64,
-    /// Coefficient a3 of the linear term in expansion [-]; absent: no viscosity in expansion. It damps
-    /// the other half of the oscillations behind shocks. Without a limiter it also smears releases.
+    /// Coefficient a3 of the linear term in expansion [-]; absent: no viscosity in expansion. It
+    /// damps the other half of the oscillations behind shocks. Without a limiter it also smears
+    /// releases. The tension that it adds is not limited by `tension_cutoff`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub expansion: Option<f64>,
