@@ -65,18 +65,33 @@ impl Viscosity {
     /// phi; `stretch` is the ratio of the current to the initial length of a cell [-].
     #[inline(always)]
     pub fn q(&self, density: f64, sound_speed: f64, gradient: f64, phi: f64, stretch: f64) -> f64 {
+        match self.acts_in_expansion() {
+            true => self.q_if::<true>(density, sound_speed, gradient, phi, stretch),
+            false => self.q_if::<false>(density, sound_speed, gradient, phi, stretch),
+        }
+    }
+
+    /// The same, in expansion if it `EXPANDS`.
+    #[inline(always)]
+    fn q_if<const EXPANDS: bool>(
+        &self,
+        density: f64,
+        sound_speed: f64,
+        gradient: f64,
+        phi: f64,
+        stretch: f64,
+    ) -> f64 {
         let jump = self.cell * stretch * (-gradient).max(0.0);
         let left = 1.0 - phi;
         let quadratic = self.quadratic(sound_speed, jump);
         let quadratic = if self.limits_both { left * quadratic } else { quadratic };
         let compression = density * jump * (self.linear * left * sound_speed + quadratic * jump);
-        match self.expansion {
-            None => compression,
-            Some(expansion) => {
-                let jump = self.cell * stretch * gradient.max(0.0);
-                positive(compression - density * jump * (expansion * left * sound_speed))
-            }
+        if !EXPANDS {
+            return compression;
         }
+        let (jump, expansion) =
+            (self.cell * stretch * gradient.max(0.0), self.expansion.unwrap_or(0.0));
+        positive(compression - density * jump * (expansion * left * sound_speed))
     }
 
     /// q [Pa] of a particle of `at`, likewise.
@@ -85,10 +100,37 @@ impl Viscosity {
         self.q(at.density(particle), at.sound_speed[particle], at.gradient[particle], phi, stretch)
     }
 
+    /// The same, in expansion if it `EXPANDS`.
+    #[inline(always)]
+    fn of_if<const EXPANDS: bool>(
+        &self,
+        at: &Flow<'_>,
+        particle: usize,
+        phi: f64,
+        stretch: f64,
+    ) -> f64 {
+        let (density, sound_speed) = (at.density(particle), at.sound_speed[particle]);
+        self.q_if::<EXPANDS>(density, sound_speed, at.gradient[particle], phi, stretch)
+    }
+
     /// Writes q [Pa] of consecutive particles to `q`; `phi` is the limiter, `stretch` the ratio of
     /// the current to the initial length of their cells, if it is not 1.
-    #[inline(never)]
     pub fn fill(&self, q: &mut [f64], at: &Flow<'_>, phi: Option<&[f64]>, stretch: Option<&[f64]>) {
+        match self.acts_in_expansion() {
+            true => self.fill_if::<true>(q, at, phi, stretch),
+            false => self.fill_if::<false>(q, at, phi, stretch),
+        }
+    }
+
+    /// The same, in expansion if it `EXPANDS`.
+    #[inline(never)]
+    fn fill_if<const EXPANDS: bool>(
+        &self,
+        q: &mut [f64],
+        at: &Flow<'_>,
+        phi: Option<&[f64]>,
+        stretch: Option<&[f64]>,
+    ) {
         // with constant lengths and coefficients and one loop per case, the compiler vectorizes
         // loops without branches
         let (n, viscosity) = (q.len(), *self);
@@ -100,13 +142,17 @@ impl Viscosity {
             gradient: &at.gradient[..n],
         };
         match (phi.map(|phi| &phi[..n]), stretch.map(|stretch| &stretch[..n])) {
-            (None, None) => (0..n).for_each(|r| q[r] = viscosity.of(&at, r, 0.0, 1.0)),
-            (Some(phi), None) => (0..n).for_each(|r| q[r] = viscosity.of(&at, r, phi[r], 1.0)),
+            (None, None) => {
+                (0..n).for_each(|r| q[r] = viscosity.of_if::<EXPANDS>(&at, r, 0.0, 1.0))
+            }
+            (Some(phi), None) => {
+                (0..n).for_each(|r| q[r] = viscosity.of_if::<EXPANDS>(&at, r, phi[r], 1.0))
+            }
             (None, Some(stretch)) => {
-                (0..n).for_each(|r| q[r] = viscosity.of(&at, r, 0.0, stretch[r]))
+                (0..n).for_each(|r| q[r] = viscosity.of_if::<EXPANDS>(&at, r, 0.0, stretch[r]))
             }
             (Some(phi), Some(stretch)) => {
-                (0..n).for_each(|r| q[r] = viscosity.of(&at, r, phi[r], stretch[r]))
+                (0..n).for_each(|r| q[r] = viscosity.of_if::<EXPANDS>(&at, r, phi[r], stretch[r]))
             }
         }
     }

@@ -283,13 +283,22 @@ impl<const D: usize> Scheme<D> {
             (self.viscosity.and_then(|v| v.limiter), self.columns.limiter)
         {
             timed(StepPart::Viscosity as usize, patch, |patch| {
-                self.find_limiter::<K>(patch, limiter, column);
+                match self.viscosity.is_some_and(|viscosity| viscosity.acts_in_expansion()) {
+                    true => self.find_limiter::<K, true>(patch, limiter, column),
+                    false => self.find_limiter::<K, false>(patch, limiter, column),
+                }
             });
         }
     }
 
-    /// Writes the viscosity limiter of the own particles to its column.
-    fn find_limiter<const K: usize>(&self, patch: &mut Patch<D>, limiter: Limiter, column: usize) {
+    /// Writes the viscosity limiter of the own particles to its column, in expansion if the viscosity
+    /// `EXPANDS`.
+    fn find_limiter<const K: usize, const EXPANDS: bool>(
+        &self,
+        patch: &mut Patch<D>,
+        limiter: Limiter,
+        column: usize,
+    ) {
         let (fields, star) = (&patch.nodes.fields, self.fields.velocity_star);
         let stride = patch.stencils.stride;
         let nodes = Nodes {
@@ -310,11 +319,10 @@ impl<const D: usize> Scheme<D> {
         // particles of a cell follow each other; those in compression have one limiter by
         // Christensen, those in expansion another
         let mut of_cell = [(usize::MAX, 0.0); 2];
-        let in_expansion = self.viscosity.is_some_and(|viscosity| viscosity.acts_in_expansion());
         for (r, ((phi, &gradient), cell)) in particles.enumerate() {
-            let expands = gradient > 0.0;
+            let expands = EXPANDS && gradient > 0.0;
             // no viscosity to limit
-            if gradient == 0.0 || (expands && !in_expansion) {
+            if (!EXPANDS && gradient >= 0.0) || gradient == 0.0 {
                 *phi = 0.0;
                 continue;
             }
