@@ -153,26 +153,31 @@ fn by_rule<const P: usize, const N: usize, const K: usize>(
     };
     // functions along x and y on the nodes of the window at each point
     let ((x, across), (y, along)) = (axis(0), axis(1));
-    // weights of the points in values and gradients
+    // shares of the points in values and gradients; point p and point P - 1 - p are opposite
     let shares: [[f64x4; 3]; P] = from_fn(|p| {
         let ([s1, s2], edge) = (map(&rule[p].place, f64x4::splat), f64x4::splat(rule[p].edge));
         let gradient = |a: usize| edge * (s1 * g1[a] + s2 * g2[a]);
         [f64x4::splat(rule[p].value), gradient(0), gradient(1)]
     });
     for l in 0..K {
-        let [mut values, mut gx, mut gy] = [[f64x4::ZERO; K]; 3];
-        for p in 0..P {
-            let along = along[p][l];
-            let [value, x, y] = map(&shares[p], |share| share * along);
-            for k in 0..K {
-                values[k] += value * across[p][k];
-                gx[k] += x * across[p][k];
-                gy[k] += y * across[p][k];
+        for k in 0..K {
+            let at = |p: usize| across[p][k] * along[p][l];
+            let [mut value, mut gx, mut gy] = match P % 2 {
+                0 => [f64x4::ZERO; 3],
+                _ => [shares[P / 2][0] * at(P / 2), f64x4::ZERO, f64x4::ZERO],
+            };
+            for p in P.div_ceil(2)..P {
+                let (one, other) = (at(p), at(P - 1 - p));
+                let [share, x, y] = shares[p];
+                let difference = one - other;
+                value += share * (one + other);
+                gx += x * difference;
+                gy += y * difference;
             }
+            out.values[l][k] = value;
+            out.gradients[0][l][k] = gx;
+            out.gradients[1][l][k] = gy;
         }
-        out.values[l] = values;
-        out.gradients[0][l] = gx;
-        out.gradients[1][l] = gy;
     }
     (out.first, out.skipped) = ([x.0, y.0], [x.1, y.1]);
 }

@@ -62,23 +62,38 @@ pub(super) fn by_rule<const P: usize, const N: usize, const K: usize>(
     let [x, y, next_x, next_y] = least.to_array();
     let first = [x.min(next_x), y.min(next_y)];
     // whole lines of the window at once, with zeros around the N functions
-    let mut sums = [[[f64x4::ZERO; MOST_FOURS]; K]; 3];
-    for (p, point) in rule.iter().enumerate() {
+    let lines: [[[f64; K]; 2]; P] = decomp::array::from_fn(|p| {
         let (nodes, functions) = &bases[p / 2];
-        let line_along = |axis: usize| -> [f64; K] {
+        decomp::array::from_fn(|axis| {
             let lane = 2 * (p % 2) + axis;
             let by = integer(nodes.as_array()[lane] - first[axis]);
             moved(decomp::array::map(functions, |f| f.as_array()[lane]), by as usize)
-        };
-        let (across, along) = (line_along(0), line_along(1));
-        let [s1, s2] = point.place;
-        let gradient = |a: usize| point.edge * (s1 * g1[a] + s2 * g2[a]);
-        for (sums, share) in sums.iter_mut().zip([point.value, gradient(0), gradient(1)]) {
-            for (sums, along) in sums.iter_mut().zip(along) {
-                let factor = f64x4::splat(share * along);
-                for four in 0..const { K.div_ceil(4) } {
-                    sums[four] += factor * fours(&across, four);
-                }
+        })
+    });
+    let shares: [[f64x4; 3]; P] = decomp::array::from_fn(|p| {
+        let RulePoint { place: [s1, s2], value, edge } = rule[p];
+        let gradient = |a: usize| edge * (s1 * g1[a] + s2 * g2[a]);
+        decomp::array::map(&[value, gradient(0), gradient(1)], f64x4::splat)
+    });
+    let mut sums = [[[f64x4::ZERO; MOST_FOURS]; K]; 3];
+    for l in 0..K {
+        for four in 0..const { K.div_ceil(4) } {
+            let at = |p: usize| fours(&lines[p][0], four) * f64x4::splat(lines[p][1][l]);
+            let [mut value, mut gx, mut gy] = match P % 2 {
+                0 => [f64x4::ZERO; 3],
+                _ => [shares[P / 2][0] * at(P / 2), f64x4::ZERO, f64x4::ZERO],
+            };
+            // opposite points have one share in values, and opposite shares in gradients
+            for p in P.div_ceil(2)..P {
+                let (one, other) = (at(p), at(P - 1 - p));
+                let [share, x, y] = shares[p];
+                let difference = one - other;
+                value += share * (one + other);
+                gx += x * difference;
+                gy += y * difference;
+            }
+            for (sums, sum) in sums.iter_mut().zip([value, gx, gy]) {
+                sums[l][four] = sum;
             }
         }
     }
