@@ -23,35 +23,43 @@ pub fn integer(whole: f64) -> i32 {
     (within + ROUNDING).to_bits() as i32
 }
 
+/// Four whole numbers in [0, 2^32) in the low bits of doubles, to be read by [`from_low_bits`]: one
+/// addition instead of a conversion of each.
+#[inline(always)]
+pub fn to_low_bits(whole: f64x4) -> f64x4 {
+    whole + f64x4::splat(ROUNDING)
+}
+
+/// Whole number in the low bits of a double.
+#[inline(always)]
+pub fn from_low_bits(double: f64) -> u32 {
+    double.to_bits() as u32
+}
+
 /// Distance from a knot within which a point counts as on it [cells]; it exceeds the rounding error
 /// between two points that should coincide. Otherwise weights of rounding size would make chains of
 /// products underflow to denormal numbers, where bits are lost.
 pub(super) const ON_KNOT: f64 = 1e-12;
 
-/// Integer part of `x` and the remainder in [0, 1), 0 if `x` is on an integer.
+/// Integer part of `x` and the remainder in [0, 1), 0 if `x` is on an integer; for |x| < 2^51.
 #[inline(always)]
 pub(super) fn split(x: f64) -> (f64, f64) {
-    let whole = floor(x);
-    let rest = x - whole;
-    if rest < ON_KNOT {
-        (whole, 0.0)
-    } else if rest > 1.0 - ON_KNOT {
-        (whole + 1.0, 0.0)
-    } else {
-        (whole, rest)
-    }
+    let nearest = (x + ROUNDING) - ROUNDING;
+    let rest = x - nearest;
+    let rest = if rest.abs() >= ON_KNOT { rest } else { 0.0 };
+    let below = if rest < 0.0 { 1.0 } else { 0.0 };
+    (nearest - below, rest + below)
 }
 
 /// [`split`] of four numbers at a time.
 #[inline(always)]
 pub(super) fn split4(x: f64x4) -> (f64x4, f64x4) {
     let nearest = (x + f64x4::splat(ROUNDING)) - f64x4::splat(ROUNDING);
-    let one = f64x4::ONE;
-    let whole = nearest - nearest.simd_gt(x).select(one, f64x4::ZERO);
-    let rest = x - whole;
-    let is_low = rest.simd_lt(f64x4::splat(ON_KNOT));
-    let is_high = rest.simd_gt(f64x4::splat(1.0 - ON_KNOT));
-    (is_high.select(whole + one, whole), (is_low | is_high).select(f64x4::ZERO, rest))
+    let rest = x - nearest;
+    // masks have all bits or none
+    let rest = rest & rest.abs().simd_ge(f64x4::splat(ON_KNOT));
+    let below = f64x4::ONE & rest.simd_lt(f64x4::ZERO);
+    (nearest - below, rest + below)
 }
 
 /// [`quadratic`] at four numbers at a time: the first nodes, and the values one spline after the

@@ -4,6 +4,7 @@
 //! particle lies at `fraction` in [0, 1) of its cell and is `length` long, or in a plane covers its
 //! [`ParticleDomain`]. Knows no materials, no time, no messages.
 
+mod corners;
 mod domain;
 mod function;
 mod knots;
@@ -15,10 +16,11 @@ mod widths;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use corners::CornerLanes;
 pub use domain::{DomainExtent, ParticleDomain};
 pub(crate) use function::extents;
 pub use function::{Basis, CourantLimits, Shape, Weights};
-pub(crate) use knots::{floor, integer};
+pub(crate) use knots::{floor, from_low_bits, integer, to_low_bits};
 pub use lanes::{LANES, Lanes, PlaneLanes};
 pub use line_products::{add_product, fours, vector};
 pub use plane::Plane;
@@ -97,6 +99,12 @@ shape_functions! { $
 }
 
 impl ShapeKind {
+    /// Whether the weights are those of hat functions at the corners of the particles: see
+    /// [`CornerLanes`].
+    pub fn has_corners(self) -> bool {
+        self.basis() == Basis::Hat && self.extent() == DomainExtent::Current
+    }
+
     /// Whether forces jump when a particle crosses into another cell.
     pub fn has_jumps(self) -> bool {
         self.basis() == Basis::Hat && self.extent() == DomainExtent::Point

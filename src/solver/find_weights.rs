@@ -35,6 +35,11 @@ pub(super) struct Corners<const D: usize> {
 }
 
 impl<const D: usize> Corners<D> {
+    /// No windows.
+    pub fn none() -> Self {
+        Corners { least: [i32::MAX; D], most: [i32::MIN; D] }
+    }
+
     #[inline(always)]
     fn extend(&mut self, corner: [i32; D]) {
         for a in 0..D {
@@ -46,7 +51,7 @@ impl<const D: usize> Corners<D> {
 
 /// Values of four particles of a column from `first` on.
 #[inline(always)]
-fn four(column: &[f64], first: usize) -> f64x4 {
+pub(super) fn four(column: &[f64], first: usize) -> f64x4 {
     vector(column[first..first + LANES].try_into().expect("four particles"))
 }
 
@@ -100,7 +105,7 @@ impl Stencils {
     ) -> Corners<D> {
         let n = at.cells.len();
         self.resize::<K, D>(n, stride);
-        let mut corners = Corners { least: [i32::MAX; D], most: [i32::MIN; D] };
+        let mut corners = Corners::none();
         let whole = if const { in_lanes(K, D) } { n - n % LANES } else { 0 };
         let mut buffer = PlaneLanes::none();
         let mut narrow_buffer = PlaneLanes::none();

@@ -4,7 +4,7 @@ use std::ops::DerefMut;
 
 use super::nodal_sums::{EndSums, PackedEnds};
 use super::scheme::Scheme;
-use super::solid::{Taken, put_back};
+use super::solid::Taken;
 use crate::scene::Limiter;
 use crate::shape::with_width;
 use crate::solver::artificial_viscosity::{self, Nodes};
@@ -13,7 +13,6 @@ use crate::solver::packed::with_packed;
 use crate::solver::particle_weights::ParticleWeights;
 use crate::solver::parts::StepPart;
 use crate::solver::patch::Patch;
-use crate::transfer::VelocityUpdate;
 
 /// Columns of a vector, taken out of their block: they are written while other columns are read.
 pub(super) fn take_vector<const D: usize>(columns: &mut [Vec<f64>], first: usize) -> [Vec<f64>; D] {
@@ -130,7 +129,9 @@ impl<const D: usize> Scheme<D> {
         // hoop strain needs the velocity at the particle
         let velocities = moves || self.axisymmetric;
         let wanted = [velocities, strains, self.columns.velocity_gradient.is_some()];
-        if D > 1 && width == 2 && moves && wanted == USUAL {
+        if self.sums_corners() {
+            self.gather_corners(patch, dt, [moves, strains]);
+        } else if D > 1 && width == 2 && moves && wanted == USUAL {
             self.gather_squares(patch, dt);
         } else {
             with_packed!(
@@ -170,48 +171,22 @@ impl<const D: usize> Scheme<D> {
         [moves, strains]: [bool; 2],
         mut sums: impl FnMut(usize, [[&[f64]; D]; 2]) -> EndSums<D>,
     ) {
-        let (c, f) = (&self.columns, &self.fields);
-        let n = patch.block.own();
+        let (f, n) = (&self.fields, patch.block.own());
+        let mut taken = self.take_ends(patch);
+        let mut ends = taken.own(n);
         let fields = &patch.nodes.fields;
         // slices of equal length, so that the bounds of a window are checked only once
         let nodes = fields[f.mass].len();
         let vector = |k: usize| decomp::array::from_fn::<&[f64], D, _>(|a| &fields[k + a][..nodes]);
         let nodal = [vector(f.lumped_velocity), vector(f.velocity_star)];
-        let columns = &mut patch.block.columns;
-        let [mut x, mut v] = [c.position, c.velocity].map(|k| take_vector::<D>(columns, k));
-        let mut divergence = std::mem::take(&mut columns[c.divergence]);
-        let mut tensor = take_tensor(columns, c.velocity_gradient, D * D);
-        let (own_x, own_v) = (&mut own::<D>(&mut x, n), &mut own::<D>(&mut v, n));
-        let own_divergence = &mut divergence[..n];
-        let mut own_gradient = own_tensor(&mut tensor, n);
         for r in 0..n {
             let at = sums(r, nodal);
-            for a in 0..if moves { D } else { 0 } {
-                let (old, new, v) = (at.start[a], at.star[a], &mut own_v[a][r]);
-                *v = match self.transfer.update {
-                    VelocityUpdate::Blend(share) => share * *v + (1.0 - share) * old + (new - old),
-                    VelocityUpdate::Filtered | VelocityUpdate::Affine => new,
-                };
-                own_x[a][r] += dt * new;
-            }
-            if strains {
-                if let Some(gradient) = &mut own_gradient {
-                    put(gradient, 0, r, &at.gradient);
-                }
-                let plane = trace(&at.gradient);
-                own_divergence[r] = match D > 1 && self.axisymmetric {
-                    true => plane + at.star[0] / self.radius(patch, r),
-                    false => plane,
-                };
+            ends.put(r, &at, (self.transfer.update, dt), [moves, strains]);
+            if strains && D > 1 && self.axisymmetric {
+                ends.divergence[r] += at.star[0] / self.radius(patch, r);
             }
         }
-        let columns = &mut patch.block.columns;
-        put_back(columns, c.position, x);
-        put_back(columns, c.velocity, v);
-        columns[c.divergence] = divergence;
-        if let Some(first) = c.velocity_gradient {
-            put_back(columns, first, tensor);
-        }
+        self.put_ends(patch, taken);
     }
 
     /// C = B D^-1 with B = sum N v' (x_i - x_p) and D = sum N (x_i - x_p) (x_i - x_p) (Jiang et al.

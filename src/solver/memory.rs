@@ -47,6 +47,9 @@ impl<const D: usize> Stepper<D> {
 
     /// Memory of the weights of a particle, and of the matrices, on windows of `width` nodes [bytes].
     fn weight_and_matrix_bytes(&self, width: usize) -> usize {
+        if self.sums_corners() {
+            return 0;
+        }
         let nodes = width.pow(D as u32);
         // values, gradients, the first node, and at most one group per particle
         let group = if D > 1 { size_of::<Group>() } else { 0 };
@@ -59,7 +62,9 @@ impl<const D: usize> Stepper<D> {
     /// Memory of a node: fields and matrices of all layers [bytes].
     fn node_bytes(&self, width: usize) -> usize {
         let [matrices, _] = self.matrix_bytes(width);
-        self.layers * (DOUBLE * self.fields.count + matrices)
+        // sums over corners have four numbers of each node side by side
+        let beside = if self.sums_corners() { 4 * DOUBLE } else { 0 };
+        self.layers * (DOUBLE * self.fields.count + matrices) + beside
     }
 
     /// Memory of the matrices per node and per particle [bytes].

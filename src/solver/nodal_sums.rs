@@ -26,14 +26,15 @@ pub(super) struct NodalVelocities<'a, const D: usize> {
     pub work_tensor: bool,
 }
 
-/// Sums over the nodes of one particle at the end of a leapfrog step.
+/// Sums over the nodes of one particle at the end of a leapfrog step, or of several if `T` is a
+/// vector.
 #[derive(Clone, Copy)]
-pub(super) struct EndSums<const D: usize> {
+pub(super) struct EndSums<const D: usize, T = f64> {
     /// Velocity at the start and at the end [m/s]; 0 if they are not needed.
-    pub start: [f64; D],
-    pub star: [f64; D],
+    pub start: [T; D],
+    pub star: [T; D],
     /// Gradient of the velocity at the end [1/s]: row a belongs to component a.
-    pub gradient: [[f64; D]; D],
+    pub gradient: [[T; D]; D],
 }
 
 /// Number of particles whose sums are found before the particles are updated.

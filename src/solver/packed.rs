@@ -68,7 +68,7 @@ impl WindowPlace {
             let [[a, b], [c, d]] = [0, 1].map(|line| *window::<2>(field, self.line(line)));
             return [f64x4::from([a, b, c, d]); V];
         }
-        self.check::<K, V>(field);
+        self.check::<K, V, _>(field);
         from_fn(|line| {
             let at = self.line(line);
             // SAFETY: no line ends beyond the last one, which `check` has found within the field, as
@@ -100,9 +100,35 @@ impl WindowPlace {
     ///
     /// If the last line of the window ends beyond `field`.
     #[inline(always)]
-    fn check<const K: usize, const V: usize>(&self, field: &[f64]) {
+    fn check<const K: usize, const V: usize, T>(&self, field: &[T]) {
         let end = self.line(V - 1) + const { packed_nodes(K) };
         assert!(end <= field.len(), "a window beyond the field");
+    }
+
+    /// Both lines of two nodes in `field`, to read.
+    ///
+    /// # Panics
+    ///
+    /// If the second line ends beyond `field`.
+    #[inline(always)]
+    pub fn square<T>(self, field: &[T]) -> [&[T; 2]; 2] {
+        self.check::<2, 2, _>(field);
+        // SAFETY: the second line ends within the field, and so does the first
+        [0, 1].map(|line| unsafe { &*field.as_ptr().add(self.line(line)).cast() })
+    }
+
+    /// The same, to write to.
+    ///
+    /// # Panics
+    ///
+    /// If the second line ends beyond `field`, or the lines overlap.
+    #[inline(always)]
+    pub fn square_mut<T>(self, field: &mut [T]) -> [&mut [T; 2]; 2] {
+        self.check::<2, 2, _>(field);
+        assert!(self.stride >= 2, "lines overlap");
+        let first = field.as_mut_ptr();
+        // SAFETY: the second line ends within the field, and so does the first, which ends before it
+        [0, 1].map(|line| unsafe { &mut *first.add(self.line(line)).cast() })
     }
 
     /// Writes the nodes of the window to `field`.
@@ -115,7 +141,7 @@ impl WindowPlace {
             }
             return;
         }
-        self.check::<K, V>(field);
+        self.check::<K, V, _>(field);
         for (line, nodes) in nodes.iter().enumerate() {
             let nodes = nodes.to_array();
             let at = self.line(line);

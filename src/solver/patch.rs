@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use decomp::{Block, IndexBox, Layout, NodeArrays};
+use wide::f64x4;
 
-use crate::shape::Shape;
+use crate::shape::{DomainExtent, Shape};
 use crate::solver::clock::Stopwatch;
 use crate::solver::contact::PatchContact;
 use crate::solver::find_weights::{Corners, Places};
@@ -108,6 +109,9 @@ pub struct Patch<const D: usize> {
     pub nodes: NodeArrays<D>,
     /// Weights of its particles.
     pub stencils: Stencils,
+    /// Four numbers of each node side by side, for sums over the corners of particles: momentum
+    /// [kg m/s] and force [N], then the velocities at the start and the end of the step [m/s].
+    pub corner_nodes: Vec<f64x4>,
     /// Mass matrix.
     pub mass_matrix: NodalMatrix,
     /// Matrix of compliances, for pressure relaxation.
@@ -189,6 +193,7 @@ impl<const D: usize> Patch<D> {
             block,
             nodes: NodeArrays::new(layout, index, 0, 0),
             stencils: Stencils::default(),
+            corner_nodes: Vec::new(),
             mass_matrix: NodalMatrix::default(),
             compliance_matrix: NodalMatrix::default(),
             matrices: Vec::new(),
@@ -273,27 +278,41 @@ impl<const D: usize> Patch<D> {
         inverse_cell: [f64; D],
         layer: Option<usize>,
     ) {
-        let particles = self.block.particles();
-        let column = |k: usize| &self.block.columns[k][..particles];
-        let domains = if D == 1 { 1 } else { S::EXTENT.plane_columns() };
-        let at = Places {
-            cells: &self.block.cells[..particles],
-            fractions: decomp::array::from_fn(|a| column(fraction + a)),
-            domains: decomp::array::from_fn(|k| if k < domains { column(domain + k) } else { &[] }),
-            lower: self.nodes.nodes.lower.map(|l| l as i32),
-            inverse_cell,
-        };
-        let Corners { least, most } =
-            self.stencils.fill::<S, K, D>(&at, self.nodes.nodes.extent(0));
-        self.find_runs(layer, K as i64, least, most);
+        let at =
+            Self::places(&self.block, &self.nodes, S::EXTENT, [fraction, domain], inverse_cell);
+        let corners = self.stencils.fill::<S, K, D>(&at, self.nodes.nodes.extent(0));
+        self.block.runs(&mut self.runs);
+        self.find_nodes(layer, K as i64, corners);
         if const { D > 1 && !is_one_vector(K) } {
             self.stencils.find_groups::<K>(&self.runs);
         }
     }
 
-    /// Finds the ranges of particles in canonical order, and the nodes within their reach.
-    fn find_runs(&mut self, layer: Option<usize>, width: i64, least: [i32; D], most: [i32; D]) {
-        self.block.runs(&mut self.runs);
+    /// Places of the particles of `block`, including ghosts, from the columns that start at
+    /// `fraction` and `domain` [cells]; `inverse_cell` is 1/edge of a cell [1/m].
+    pub(super) fn places<'a>(
+        block: &'a Block<D>,
+        nodes: &NodeArrays<D>,
+        extent: DomainExtent,
+        [fraction, domain]: [usize; 2],
+        inverse_cell: [f64; D],
+    ) -> Places<'a, D> {
+        let particles = block.particles();
+        let column = |k: usize| &block.columns[k][..particles];
+        let domains = if D == 1 { 1 } else { extent.plane_columns() };
+        Places {
+            cells: &block.cells[..particles],
+            fractions: decomp::array::from_fn(|a| column(fraction + a)),
+            domains: decomp::array::from_fn(|k| if k < domains { column(domain + k) } else { &[] }),
+            lower: nodes.nodes.lower.map(|l| l as i32),
+            inverse_cell,
+        }
+    }
+
+    /// Finds the nodes within reach of the particles, whose windows of `width` nodes have their first
+    /// nodes within `corners`.
+    pub(super) fn find_nodes(&mut self, layer: Option<usize>, width: i64, corners: Corners<D>) {
+        let Corners { least, most } = corners;
         self.active.clear();
         self.active_lines.clear();
         self.span_lines.clear();

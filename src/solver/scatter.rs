@@ -44,6 +44,10 @@ impl<const D: usize> Scheme<D> {
         fn push<const K: usize, const D: usize>(patch: &mut Patch<D>, push: usize) {
             patch.stencils.push_gradients::<K, D>(&patch.block, push);
         }
+        if self.sums_corners() {
+            patch.block.runs(&mut patch.runs);
+            return true;
+        }
         let recomputed = !(self.total_lagrangian && patch.stencils.are_kept(&patch.block));
         if recomputed {
             let width = self.shape.nodes(self.longest(&patch.block));
@@ -95,6 +99,9 @@ impl<const D: usize> Scheme<D> {
             s.scatter_groups::<K, V>(patch, force);
         }
         self.reflect_ghosts(patch);
+        if self.sums_corners() {
+            return self.scatter_corners(patch, force);
+        }
         let tensor = self.tensor_stress();
         let (width, scalar) = (patch.stencils.width, force && !tensor);
         let is_plain = self.columns.affine.is_none() && !self.axisymmetric;

@@ -8,8 +8,8 @@ use crate::contact::ContactCondition;
 use crate::material::Eos;
 use crate::material::constitutive::{ConstitutiveModel, FailureModel, StrengthModel, ThermalModel};
 use crate::scene::{
-    CheckedScene, EnergyUpdate, FrameKind, PressureRelaxation, ShapeKind, SideProperties, Stepping,
-    StressUpdate,
+    CheckedScene, EnergyUpdate, FrameKind, Limiter, PressureRelaxation, ShapeKind, SideProperties,
+    Stepping, StressUpdate,
 };
 use crate::shape::DomainExtent;
 use crate::solver::artificial_viscosity::Viscosity;
@@ -66,6 +66,8 @@ pub struct Scheme<const D: usize> {
     pub(super) shape: ShapeKind,
     /// Whether shape functions are evaluated at the initial positions of the particles.
     pub(crate) total_lagrangian: bool,
+    /// Whether sums in a plane run over the corners of the particles.
+    pub(super) by_corners: bool,
     /// Edges of a cell [m] and their inverse.
     pub(crate) cell: [f64; D],
     pub(super) inverse_cell: [f64; D],
@@ -105,6 +107,8 @@ pub(super) struct EffectLimits {
     pub products: u32,
     /// Number of nodal matrices of the effects.
     pub matrices: usize,
+    /// Whether there are any effects, which may need the weights of the particles.
+    pub any: bool,
 }
 
 /// Fraction of the fastest speed of a scene below which nodal velocities count as zero; the limits
@@ -160,7 +164,6 @@ impl<const D: usize> Scheme<D> {
             history: models.histories(&columns),
             forces: columns.forces.iter().map(|&force| (force, owner(force))).collect(),
             friction_part: friction_part.unwrap_or(StepPart::Contact as usize),
-            of_effects,
             columns,
             fields,
             transfer: method.transfer.plan(),
@@ -185,6 +188,8 @@ impl<const D: usize> Scheme<D> {
             strengths: models.strengths,
             shape: method.shape,
             total_lagrangian: method.frame == FrameKind::TotalLagrangian,
+            by_corners: has_corner_sums::<D>(scene, &of_effects),
+            of_effects,
             cell,
             inverse_cell: cell.map(|h| 1.0 / h),
             edge,
@@ -237,6 +242,23 @@ impl<const D: usize> Scheme<D> {
         let relaxation = self.relaxation.filter(|r| step.is_multiple_of(r.interval as u64))?;
         Some(relaxation.rate * (courant / RELAXATION_COURANT).min(1.0))
     }
+}
+
+/// Whether sums run over the corners of the particles: all that needs the weights of a particle on its
+/// nodes excludes it. Edge mask, spin, relaxation and compatible energy exclude leapfrog steps.
+fn has_corner_sums<const D: usize>(scene: &CheckedScene, of_effects: &EffectLimits) -> bool {
+    let method = &scene.scene.method;
+    let transfer = method.transfer.plan();
+    let viscosity = scene.scene.artificial_viscosity.as_ref();
+    let has_nodal_limiter = viscosity.is_some_and(|v| v.limiter == Some(Limiter::Nodal));
+    let has_no_slip = || scene.side_properties::<D>().as_flattened().iter().any(|s| s.no_slip);
+    D > 1
+        && method.shape.has_corners()
+        && method.stepping == Stepping::Leapfrog
+        && method.frame == FrameKind::UpdatedLagrangian
+        && !(transfer.needs_matrix(false) || transfer.is_affine() || has_nodal_limiter)
+        && !(scene.axisymmetric() || scene.velocity_fields() > 1 || has_no_slip())
+        && !of_effects.any
 }
 
 /// Whether the relaxation conserves the sum of V0 ln J, not that of V. The volume ratio of a particle

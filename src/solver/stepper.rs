@@ -66,6 +66,7 @@ impl<const D: usize> Stepper<D> {
                 .fold(f64::INFINITY, f64::min),
             products: effects.iter().map(|e| e.products()).max().unwrap_or(0),
             matrices,
+            any: effects.iter().next().is_some(),
         };
         Ok(Stepper { scheme: Scheme::new(scene, models, columns, fields, limits), effects })
     }

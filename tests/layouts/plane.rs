@@ -49,11 +49,16 @@ fn long_particles_leave_the_same_bits_on_any_layout() {
             "domain_limit": 1.0,
         })
     };
-    let leapfrog = json!({"shape": "cpdi_bspline_quadratic", "transfer": {"fmpm": 2},
-        "stress_update": "modified_last"});
-    for method in
-        [midpoint(json!({"fmpm": 4}), false), midpoint(json!({"fmpm": 3}), true), leapfrog]
-    {
+    let leapfrog = |shape: &str, transfer: Value| {
+        json!({"shape": shape, "transfer": transfer,
+        "stress_update": "modified_last"})
+    };
+    for method in [
+        midpoint(json!({"fmpm": 4}), false),
+        midpoint(json!({"fmpm": 3}), true),
+        leapfrog("cpdi_bspline_quadratic", json!({"fmpm": 2})),
+        leapfrog("cpdi", json!("flip")),
+    ] {
         let (whole, [longest, energy]) = end(&method, 1, [1, 1]);
         assert!(longest > 1.0, "{method}: {longest} cells");
         // nodes that a long particle does not add to, or take from, cost energy

@@ -6,6 +6,7 @@ pub(crate) mod fixture;
 
 mod cells;
 mod contact;
+mod corner_sums;
 mod flux_limiter;
 mod gather;
 mod particle_cells;
