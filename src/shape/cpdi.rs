@@ -18,7 +18,7 @@ const RULE: [RulePoint; 4] = {
     const fn corner(s1: f64, s2: f64) -> RulePoint {
         RulePoint { place: [s1, s2], value: 0.25, edge: 0.5 }
     }
-    [corner(-1.0, -1.0), corner(1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0)]
+    RulePoint::rule([corner(-1.0, -1.0), corner(1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0)])
 };
 
 /// Weights of a particle from the node below each of its ends and the distance from it.

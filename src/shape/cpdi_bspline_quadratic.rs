@@ -22,7 +22,7 @@ const RULE: [RulePoint; 9] = {
     const fn middle(s1: f64, s2: f64) -> RulePoint {
         RulePoint { place: [s1, s2], value: 4.0 / 36.0, edge: 4.0 / 6.0 }
     }
-    [
+    RulePoint::rule([
         corner(-1.0, -1.0),
         middle(0.0, -1.0),
         corner(1.0, -1.0),
@@ -32,7 +32,7 @@ const RULE: [RulePoint; 9] = {
         corner(-1.0, 1.0),
         middle(0.0, 1.0),
         corner(1.0, 1.0),
-    ]
+    ])
 };
 
 /// Splines at four places, see [`quadratic4`].

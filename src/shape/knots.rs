@@ -23,14 +23,14 @@ pub fn integer(whole: f64) -> i32 {
     (within + ROUNDING).to_bits() as i32
 }
 
-/// Four whole numbers in [0, 2^32) in the low bits of doubles, to be read by [`from_low_bits`]: one
-/// addition instead of a conversion of each.
+/// Four whole numbers in the low bits of doubles, to be read by [`from_low_bits`]: one addition instead
+/// of a conversion of each. A negative number is read as one near 2^32.
 #[inline(always)]
 pub fn to_low_bits(whole: f64x4) -> f64x4 {
     whole + f64x4::splat(ROUNDING)
 }
 
-/// Whole number in the low bits of a double.
+/// Whole number in the low bits of a double, see [`to_low_bits`].
 #[inline(always)]
 pub fn from_low_bits(double: f64) -> u32 {
     double.to_bits() as u32
@@ -46,7 +46,7 @@ pub(super) const ON_KNOT: f64 = 1e-12;
 pub(super) fn split(x: f64) -> (f64, f64) {
     let nearest = (x + ROUNDING) - ROUNDING;
     let rest = x - nearest;
-    let rest = if rest.abs() >= ON_KNOT { rest } else { 0.0 };
+    let rest = if rest.abs() < ON_KNOT { 0.0 } else { rest };
     let below = if rest < 0.0 { 1.0 } else { 0.0 };
     (nearest - below, rest + below)
 }
@@ -57,7 +57,7 @@ pub(super) fn split4(x: f64x4) -> (f64x4, f64x4) {
     let nearest = (x + f64x4::splat(ROUNDING)) - f64x4::splat(ROUNDING);
     let rest = x - nearest;
     // masks have all bits or none
-    let rest = rest & rest.abs().simd_ge(f64x4::splat(ON_KNOT));
+    let rest = rest & !rest.abs().simd_lt(f64x4::splat(ON_KNOT));
     let below = f64x4::ONE & rest.simd_lt(f64x4::ZERO);
     (nearest - below, rest + below)
 }
@@ -110,6 +110,7 @@ mod tests {
             assert_eq!(split(x), (at, 0.0), "{x}");
         }
         assert_eq!(split(1.75), (1.0, 0.75));
+        assert!(split(f64::NAN).1.is_nan());
     }
 
     #[test]

@@ -16,7 +16,8 @@ pub struct Plane<'a, const K: usize> {
     pub gradients: [&'a mut [[f64; K]]; 2],
 }
 
-/// One point of a quadrature rule over a parallelogram, at s1 r1 + s2 r2.
+/// One point of a quadrature rule over a parallelogram, at s1 r1 + s2 r2. In a rule of `P` points,
+/// point p and point P - 1 - p are opposite and have the same weights.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RulePoint {
     /// Coordinates s1 and s2 [-].
@@ -26,6 +27,25 @@ pub(super) struct RulePoint {
     /// Weight in the mean over an edge [-], for the mean gradient by Gauss's theorem: the sum over
     /// the outline of value times outward normal, divided by the area.
     pub edge: f64,
+}
+
+impl RulePoint {
+    /// A rule of these `points`.
+    ///
+    /// # Panics
+    ///
+    /// If points p and P - 1 - p are not opposite, or a point at the centre counts as on an edge.
+    pub(super) const fn rule<const P: usize>(points: [RulePoint; P]) -> [RulePoint; P] {
+        let mut p = 0;
+        while p < P {
+            let (one, other) = (&points[p], &points[P - 1 - p]);
+            assert!(one.place[0] == -other.place[0] && one.place[1] == -other.place[1]);
+            assert!(one.value == other.value && one.edge == other.edge);
+            assert!(p != P - 1 - p || one.edge == 0.0);
+            p += 1;
+        }
+        points
+    }
 }
 
 /// Groups of four nodes in the widest line of a plane.

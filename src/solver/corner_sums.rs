@@ -1,8 +1,7 @@
 //! Sums between particles and grid over the corners of the particles, for hat functions at the
 //! corners in a plane (CPDI): neither weights nor windows of nodes are stored.
 //!
-//! Only leapfrog steps of fluids without effects, contact and matrices use them: all else needs the
-//! weights of each particle on its nodes. Each node adds its terms in canonical order of the
+//! [`Scheme::by_corners`] says which scenes have them. Each node adds its terms in canonical order of the
 //! particles, and for a particle from corner to corner, so that all patches with a node get the same
 //! bits.
 
@@ -14,7 +13,9 @@ use wide::f64x4;
 use super::end_columns::Values;
 use super::nodal_sums::EndSums;
 use super::scheme::Scheme;
-use crate::shape::{CornerLanes, DomainExtent, LANES, from_low_bits, integer, to_low_bits};
+use crate::shape::{
+    CornerLanes, DomainExtent, LANES, from_low_bits, integer, padded_width, to_low_bits,
+};
 use crate::solver::find_weights::{Corners, Places, four};
 use crate::solver::packed::WindowPlace;
 use crate::solver::patch::Patch;
@@ -26,7 +27,8 @@ const BLOCK: usize = 32;
 /// Corners of four particles, one in each lane.
 #[derive(Clone, Copy)]
 struct FourCorners {
-    /// Node below and to the left of each corner, as index in the patch's arrays in the low bits.
+    /// Index in the patch's arrays of the node below and to the left of each corner, written by
+    /// [`to_low_bits`].
     nodes: [[f64; LANES]; 4],
     /// Hat functions of the four nodes around each corner [-].
     values: [[[f64; LANES]; 4]; 4],
@@ -59,15 +61,15 @@ fn no_corners() -> CornerBlock {
 }
 
 /// Least and greatest places of corners along x and y, relative to the first node of the arrays.
-struct Extent {
+struct CornerRange {
     least: [f64x4; 2],
     most: [f64x4; 2],
 }
 
-impl Extent {
+impl CornerRange {
     fn none() -> Self {
         let infinity = f64x4::splat(f64::INFINITY);
-        Extent { least: [infinity; 2], most: [-infinity; 2] }
+        CornerRange { least: [infinity; 2], most: [-infinity; 2] }
     }
 
     /// Includes four places of four particles.
@@ -92,14 +94,14 @@ impl Extent {
 }
 
 /// Writes the corners of `particles` to `block`, in arrays with lines of `stride` nodes, and adds them
-/// to `extent` if it is `WANTED`.
+/// to `range` if it is `RANGED`.
 #[inline(never)]
-fn find_corners<const D: usize, const WANTED: bool>(
+fn find_corners<const D: usize, const RANGED: bool>(
     at: &Places<'_, D>,
     particles: Range<usize>,
     stride: u32,
     block: &mut CornerBlock,
-    extent: &mut Extent,
+    range: &mut CornerRange,
 ) {
     // equal lengths, so that one check is enough for all columns
     let count = at.cells.len();
@@ -114,8 +116,8 @@ fn find_corners<const D: usize, const WANTED: bool>(
             true => find_four(&at, first, stride, out),
             false => find_last(&at, first, stride, out),
         };
-        if WANTED {
-            extent.add(places);
+        if RANGED {
+            range.add(places);
         }
     }
 }
@@ -194,22 +196,21 @@ impl<const D: usize> Scheme<D> {
     /// Mass, momentum and with `force` the internal force of the nodes of a patch, and the nodes within
     /// reach of its particles.
     pub(super) fn scatter_corners(&self, patch: &mut Patch<D>, force: bool) {
-        let lines = patch.nodes.nodes.extent(0);
-        (patch.stencils.width, patch.stencils.stride) = (2, lines);
-        let stride = lines as u32;
+        debug_assert!(!self.tensor_stress() && self.forces.is_empty());
+        self.clear_sums::<2, false>(patch);
+        let stride = patch.nodes.nodes.extent(0) as u32;
         let mut nodes = std::mem::take(&mut patch.corner_nodes);
         let mut fields = self.take_sums(patch);
         let sums = fields.sums();
         let count = sums.mass.len();
-        sums.mass.fill(0.0);
         nodes.clear();
         nodes.resize(count, f64x4::ZERO);
-        let (mut block, mut extent) = (no_corners(), Extent::none());
+        let (mut block, mut range) = (no_corners(), CornerRange::none());
         let (at, of) = (self.corner_places(patch), self.summed_columns(patch, force));
         for run in &patch.runs {
             for first in run.clone().step_by(BLOCK) {
                 let particles = first..run.end.min(first + BLOCK);
-                find_corners::<D, true>(&at, particles.clone(), stride, &mut block, &mut extent);
+                find_corners::<D, true>(&at, particles.clone(), stride, &mut block, &mut range);
                 for (first, corners) in particles.step_by(LANES).zip(&block) {
                     // each corner has a quarter of the particle
                     let mass = f64x4::load(of.mass, first) * 0.25;
@@ -237,11 +238,12 @@ impl<const D: usize> Scheme<D> {
         }
         let SummedSlices { momentum, force, .. } = sums;
         let mut vectors = momentum.into_iter().chain(force);
-        separate(&nodes, from_fn(|_| vectors.next().expect("two components each")));
+        split_components(&nodes, from_fn(|_| vectors.next().expect("two components each")));
         drop(vectors);
         patch.corner_nodes = nodes;
         self.put_sums(patch, fields);
-        patch.find_nodes(None, 2, extent.corners());
+        let longest = padded_width(self.shape.nodes(self.longest(&patch.block)));
+        patch.find_nodes(None, [2, longest as i64], range.corners());
     }
 
     /// [`Scheme::gather_end`] over the corners of the own particles, four at a time.
@@ -260,14 +262,20 @@ impl<const D: usize> Scheme<D> {
         let f = &self.fields;
         let fields = [f.lumped_velocity, f.velocity_star].map(|k| [k, k + D - 1]);
         let fields = fields.as_flattened();
-        join(from_fn(|k| &patch.nodes.fields[fields[k]][..]), &mut nodes);
+        join_components(from_fn(|k| &patch.nodes.fields[fields[k]][..]), &mut nodes);
         let mut taken = self.take_ends(patch);
         let mut ends = taken.own(own);
         let (at, mut block) = (self.corner_places(patch), no_corners());
         for first in (0..own).step_by(LANES) {
             if first % BLOCK == 0 {
                 let particles = first..own.min(first + BLOCK);
-                find_corners::<D, false>(&at, particles, stride, &mut block, &mut Extent::none());
+                find_corners::<D, false>(
+                    &at,
+                    particles,
+                    stride,
+                    &mut block,
+                    &mut CornerRange::none(),
+                );
             }
             let sums = end_sums(&block[first % BLOCK / LANES], &nodes, stride);
             ends.put(first, &sums, (self.transfer.update, dt), [moves, strains]);
@@ -288,15 +296,18 @@ fn terms<const D: usize>(
     mass: f64x4,
 ) -> [[f64x4; LANES]; 4] {
     let [px, py] = [0, D - 1].map(|a| mass * f64x4::load(of.velocity[a], first));
-    let stress = of.stress.map_or(f64x4::ZERO, |stress| f64x4::load(stress, first));
-    let [ax, ay, bx, by] = map(&corners.slopes, |slopes| f64x4::from(slopes) * stress);
+    let [ax, ay, bx, by] = match of.stress.map(|stress| f64x4::load(stress, first)) {
+        Some(stress) => map(&corners.slopes, |slopes| f64x4::from(slopes) * stress),
+        None => [f64x4::ZERO; 4],
+    };
     let opposite = f64x4::from([1.0, 1.0, -1.0, -1.0]);
     let three = f64x4::transpose([px, py, ax, ay]);
     let one = f64x4::transpose([px, py, bx, by]);
     [map(&three, |term| term * opposite), one, map(&one, |term| term * opposite), three]
 }
 
-/// Sums at four particles over the four numbers of the nodes around their corners.
+/// Velocities of four particles at the start and the end of the step, and the gradient of the latter,
+/// from those of the `nodes`: two components at the start and two at the end [m/s].
 #[inline(always)]
 fn end_sums<const D: usize>(
     corners: &FourCorners,
@@ -328,7 +339,7 @@ fn end_sums<const D: usize>(
 }
 
 /// Writes the four numbers of each node to four fields.
-fn separate(nodes: &[f64x4], mut fields: [&mut [f64]; 4]) {
+fn split_components(nodes: &[f64x4], mut fields: [&mut [f64]; 4]) {
     for (k, some) in nodes.chunks(LANES).enumerate() {
         let four = from_fn(|lane| some.get(lane).copied().unwrap_or(f64x4::ZERO));
         for (field, numbers) in fields.iter_mut().zip(f64x4::transpose(four)) {
@@ -338,7 +349,7 @@ fn separate(nodes: &[f64x4], mut fields: [&mut [f64]; 4]) {
 }
 
 /// Writes one number of each of four fields to each node.
-fn join(fields: [&[f64]; 4], nodes: &mut Vec<f64x4>) {
+fn join_components(fields: [&[f64]; 4], nodes: &mut Vec<f64x4>) {
     let count = fields[0].len();
     nodes.resize(count, f64x4::ZERO);
     for (k, some) in nodes.chunks_mut(LANES).enumerate() {

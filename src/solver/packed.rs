@@ -127,7 +127,8 @@ impl WindowPlace {
         self.check::<2, 2, _>(field);
         assert!(self.stride >= 2, "lines overlap");
         let first = field.as_mut_ptr();
-        // SAFETY: the second line ends within the field, and so does the first, which ends before it
+        // SAFETY: the second line ends within the field, and so does the first; they do not overlap, as
+        // a line of two nodes is not longer than the stride
         [0, 1].map(|line| unsafe { &mut *first.add(self.line(line)).cast() })
     }
 

@@ -282,7 +282,7 @@ impl<const D: usize> Patch<D> {
             Self::places(&self.block, &self.nodes, S::EXTENT, [fraction, domain], inverse_cell);
         let corners = self.stencils.fill::<S, K, D>(&at, self.nodes.nodes.extent(0));
         self.block.runs(&mut self.runs);
-        self.find_nodes(layer, K as i64, corners);
+        self.find_nodes(layer, [K as i64; 2], corners);
         if const { D > 1 && !is_one_vector(K) } {
             self.stencils.find_groups::<K>(&self.runs);
         }
@@ -309,9 +309,14 @@ impl<const D: usize> Patch<D> {
         }
     }
 
-    /// Finds the nodes within reach of the particles, whose windows of `width` nodes have their first
-    /// nodes within `corners`.
-    pub(super) fn find_nodes(&mut self, layer: Option<usize>, width: i64, corners: Corners<D>) {
+    /// Finds the nodes within reach of the particles: windows of `width` nodes have their first nodes
+    /// within `corners`, and the longest particle reaches `longest` nodes along a direction.
+    pub(super) fn find_nodes(
+        &mut self,
+        layer: Option<usize>,
+        [width, longest]: [i64; 2],
+        corners: Corners<D>,
+    ) {
         let Corners { least, most } = corners;
         self.active.clear();
         self.active_lines.clear();
@@ -320,7 +325,7 @@ impl<const D: usize> Patch<D> {
             None => self.find_active(0, width, least, most),
             Some(column) => self.separate(column, width),
         }
-        self.find_span(width);
+        self.find_span(longest);
     }
 
     /// Shifts the window of each particle to the layer in `column`.

@@ -35,7 +35,8 @@ impl<const D: usize> Scheme<D> {
     }
 
     /// Finds the weights of all particles of a patch, with windows as wide as its longest particle
-    /// needs. Returns whether they have been recomputed, not kept.
+    /// needs. Returns whether they have been recomputed, not kept. For sums over corners it finds only
+    /// the ranges of particles in canonical order.
     fn find_weights(&self, patch: &mut Patch<D>) -> bool {
         fn find<S: Shape, const K: usize, const D: usize>(patch: &mut Patch<D>, s: &Scheme<D>) {
             let layer = (s.layers > 1).then_some(s.columns.body);
@@ -45,6 +46,8 @@ impl<const D: usize> Scheme<D> {
             patch.stencils.push_gradients::<K, D>(&patch.block, push);
         }
         if self.sums_corners() {
+            let lines = patch.nodes.nodes.extent(0);
+            (patch.stencils.width, patch.stencils.stride) = (2, lines);
             patch.block.runs(&mut patch.runs);
             return true;
         }

@@ -156,6 +156,7 @@ impl<const D: usize> Scheme<D> {
             false => volume.powf(1.0 / D as f64),
         };
         let contact = contact_condition(scene);
+        let by_corners = has_corner_sums::<D>(scene, &columns, &of_effects);
         let friction_part = if rubs::<D>(contact) { None } else { columns.wall_friction_part };
         let owner = |column: usize| columns.owners[column].expect("a force is an effect's");
         let fastest = waves.fastest;
@@ -164,6 +165,7 @@ impl<const D: usize> Scheme<D> {
             history: models.histories(&columns),
             forces: columns.forces.iter().map(|&force| (force, owner(force))).collect(),
             friction_part: friction_part.unwrap_or(StepPart::Contact as usize),
+            of_effects,
             columns,
             fields,
             transfer: method.transfer.plan(),
@@ -188,8 +190,7 @@ impl<const D: usize> Scheme<D> {
             strengths: models.strengths,
             shape: method.shape,
             total_lagrangian: method.frame == FrameKind::TotalLagrangian,
-            by_corners: has_corner_sums::<D>(scene, &of_effects),
-            of_effects,
+            by_corners,
             cell,
             inverse_cell: cell.map(|h| 1.0 / h),
             edge,
@@ -244,9 +245,16 @@ impl<const D: usize> Scheme<D> {
     }
 }
 
-/// Whether sums run over the corners of the particles: all that needs the weights of a particle on its
-/// nodes excludes it. Edge mask, spin, relaxation and compatible energy exclude leapfrog steps.
-fn has_corner_sums<const D: usize>(scene: &CheckedScene, of_effects: &EffectLimits) -> bool {
+/// Whether sums run over the corners of the particles: in leapfrog steps of fluids with linear CPDI in a
+/// plane, by FLIP and PIC. All that needs the weights of a particle on its nodes excludes it: a tensor
+/// of stress, the mass matrix, APIC, the total-Lagrangian frame, axial symmetry, velocity fields of
+/// several bodies, no-slip walls, the nodal limiter and any effect. Edge mask, spin, relaxation and
+/// compatible energy are only for mid-point steps.
+fn has_corner_sums<const D: usize>(
+    scene: &CheckedScene,
+    columns: &Columns,
+    of_effects: &EffectLimits,
+) -> bool {
     let method = &scene.scene.method;
     let transfer = method.transfer.plan();
     let viscosity = scene.scene.artificial_viscosity.as_ref();
@@ -258,7 +266,7 @@ fn has_corner_sums<const D: usize>(scene: &CheckedScene, of_effects: &EffectLimi
         && method.frame == FrameKind::UpdatedLagrangian
         && !(transfer.needs_matrix(false) || transfer.is_affine() || has_nodal_limiter)
         && !(scene.axisymmetric() || scene.velocity_fields() > 1 || has_no_slip())
-        && !of_effects.any
+        && !(columns.stress.is_some() || of_effects.any)
 }
 
 /// Whether the relaxation conserves the sum of V0 ln J, not that of V. The volume ratio of a particle

@@ -19,7 +19,12 @@ fn end(method: &Value, ranks: usize, patches: [usize; 2]) -> (String, [f64; 2]) 
         "method": null,
     });
     let scene = with(&with(&shipped("flyer_2d.json"), &changes), &json!({"method": method}));
-    let scene = input::parse(scene.to_string().as_bytes(), "flyer_2d.json", &[])
+    end_of(&scene, ranks)
+}
+
+/// The same of a whole `scene`.
+fn end_of(scene: &Value, ranks: usize) -> (String, [f64; 2]) {
+    let scene = input::parse(scene.to_string().as_bytes(), "plane", &[])
         .unwrap_or_else(|error| panic!("{error}"));
     let ends = run_ranks(ranks, |comm| {
         let mut simulation = Simulation::<2>::new(&scene, comm, 1).expect("a start");
@@ -67,6 +72,43 @@ fn long_particles_leave_the_same_bits_on_any_layout() {
         for (ranks, patches) in [(1, [2, 1]), (2, [3, 2]), (3, [2, 1])] {
             let (digest, _) = end(&method, ranks, patches);
             assert_eq!(digest, whole, "{method}: {ranks} ranks, {patches:?} patches");
+        }
+    }
+}
+
+/// A cold gas that flies apart from its centre, where particles become several cells long; patches meet
+/// there.
+#[test]
+fn particles_of_several_cells_at_the_edge_of_a_patch() {
+    for update in ["last", "first", "modified_last"] {
+        let scene = |patches: [usize; 2]| {
+            json!({
+                "title": "gas that flies apart",
+                "domain": {
+                    "lower": [-1.0, -1.0],
+                    "upper": [1.0, 1.0],
+                    "cell_size": 0.1,
+                    "patches": patches,
+                },
+                "time": {"end": 0.45, "courant": 0.3},
+                "method": {"shape": "cpdi", "transfer": "flip", "stress_update": update},
+                "materials": {"gas": {"density": 1.0, "eos": {"type": "ideal_gas", "gamma": 1.4}}},
+                "bodies": [{
+                    "name": "gas",
+                    "material": "gas",
+                    "box": {"lower": [-0.4, -0.4], "upper": [0.4, 0.4]},
+                    "velocity_field": {"radial": {"about": [0.0, 0.0], "speed": 1.0}},
+                    "pressure": 0.01,
+                    "particles_per_cell": [1, 1],
+                }],
+                "output": {"profiles": {"times": [0.45]}},
+            })
+        };
+        let (whole, [longest, _]) = end_of(&scene([1, 1]), 1);
+        assert!(longest > 4.0, "{update}: {longest} cells");
+        for (ranks, patches) in [(1, [2, 2]), (2, [3, 2]), (3, [2, 5])] {
+            let (digest, _) = end_of(&scene(patches), ranks);
+            assert_eq!(digest, whole, "{update}: {ranks} ranks, {patches:?} patches");
         }
     }
 }
