@@ -138,7 +138,6 @@ impl<const D: usize> Scheme<D> {
         of_effects: EffectLimits,
     ) -> Self {
         let method = &scene.scene.method;
-        let viscosity = scene.scene.artificial_viscosity.as_ref();
         let cell: [f64; D] = std::array::from_fn(|a| scene.cell_size[a]);
         let volume: f64 = cell.iter().product();
         let smallest = cell.iter().copied().fold(f64::INFINITY, f64::min);
@@ -156,11 +155,11 @@ impl<const D: usize> Scheme<D> {
             false => volume.powf(1.0 / D as f64),
         };
         let contact = contact_condition(scene);
-        let by_corners = has_corner_sums::<D>(scene, &columns, &of_effects);
         let friction_part = if rubs::<D>(contact) { None } else { columns.wall_friction_part };
         let owner = |column: usize| columns.owners[column].expect("a force is an effect's");
         let fastest = waves.fastest;
         Scheme {
+            by_corners: has_corner_sums::<D>(scene, &columns, &of_effects),
             failures: models.failures(scene, &waves.shear_speeds, edge),
             history: models.histories(&columns),
             forces: columns.forces.iter().map(|&force| (force, owner(force))).collect(),
@@ -177,7 +176,7 @@ impl<const D: usize> Scheme<D> {
             volume_relaxation: method.volume_relaxation,
             edge_mask: method.edge_mask,
             masks_pairs: masks_pairs(scene),
-            viscosity: viscosity.map(|v| Viscosity::new(v, edge)),
+            viscosity: scene.scene.artificial_viscosity.as_ref().map(|v| Viscosity::new(v, edge)),
             contact,
             layers: scene.velocity_fields(),
             stiffness: waves.stiffness,
@@ -190,7 +189,6 @@ impl<const D: usize> Scheme<D> {
             strengths: models.strengths,
             shape: method.shape,
             total_lagrangian: method.frame == FrameKind::TotalLagrangian,
-            by_corners,
             cell,
             inverse_cell: cell.map(|h| 1.0 / h),
             edge,
