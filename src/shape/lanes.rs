@@ -5,7 +5,7 @@ use decomp::array::{from_fn, map};
 use wide::f64x4;
 
 use super::knots::ON_KNOT;
-use super::plane::RulePoint;
+use super::plane::{RulePoint, sum_opposite};
 
 /// Particles computed together.
 pub const LANES: usize = 4;
@@ -153,7 +153,7 @@ fn by_rule<const P: usize, const N: usize, const K: usize>(
     };
     // functions along x and y on the nodes of the window at each point
     let ((x, across), (y, along)) = (axis(0), axis(1));
-    // shares of the points in values and gradients; point p and point P - 1 - p are opposite
+    // shares of the points in values and gradients
     let shares: [[f64x4; 3]; P] = from_fn(|p| {
         let ([s1, s2], edge) = (map(&rule[p].place, f64x4::splat), f64x4::splat(rule[p].edge));
         let gradient = |a: usize| edge * (s1 * g1[a] + s2 * g2[a]);
@@ -162,18 +162,7 @@ fn by_rule<const P: usize, const N: usize, const K: usize>(
     for l in 0..K {
         for k in 0..K {
             let at = |p: usize| across[p][k] * along[p][l];
-            let [mut value, mut gx, mut gy] = match P % 2 {
-                0 => [f64x4::ZERO; 3],
-                _ => [shares[P / 2][0] * at(P / 2), f64x4::ZERO, f64x4::ZERO],
-            };
-            for p in P.div_ceil(2)..P {
-                let (one, other) = (at(p), at(P - 1 - p));
-                let [share, x, y] = shares[p];
-                let difference = one - other;
-                value += share * (one + other);
-                gx += x * difference;
-                gy += y * difference;
-            }
+            let [value, gx, gy] = sum_opposite(&shares, at);
             out.values[l][k] = value;
             out.gradients[0][l][k] = gx;
             out.gradients[1][l][k] = gy;

@@ -48,6 +48,28 @@ impl RulePoint {
     }
 }
 
+/// Sums over the points of a rule of their `shares` in a value and two gradients, times the functions
+/// `at` the points: opposite points have the same share in values, and opposite shares in gradients.
+#[inline(always)]
+pub(super) fn sum_opposite<const P: usize>(
+    shares: &[[f64x4; 3]; P],
+    at: impl Fn(usize) -> f64x4,
+) -> [f64x4; 3] {
+    let [mut value, mut gx, mut gy] = match P % 2 {
+        0 => [f64x4::ZERO; 3],
+        _ => [shares[P / 2][0] * at(P / 2), f64x4::ZERO, f64x4::ZERO],
+    };
+    for p in P.div_ceil(2)..P {
+        let (one, other) = (at(p), at(P - 1 - p));
+        let [share, x, y] = shares[p];
+        let difference = one - other;
+        value += share * (one + other);
+        gx += x * difference;
+        gy += y * difference;
+    }
+    [value, gx, gy]
+}
+
 /// Groups of four nodes in the widest line of a plane.
 const MOST_FOURS: usize = MOST_NODES_IN_PLANE.div_ceil(4);
 
@@ -99,20 +121,7 @@ pub(super) fn by_rule<const P: usize, const N: usize, const K: usize>(
     for l in 0..K {
         for four in 0..const { K.div_ceil(4) } {
             let at = |p: usize| fours(&lines[p][0], four) * f64x4::splat(lines[p][1][l]);
-            let [mut value, mut gx, mut gy] = match P % 2 {
-                0 => [f64x4::ZERO; 3],
-                _ => [shares[P / 2][0] * at(P / 2), f64x4::ZERO, f64x4::ZERO],
-            };
-            // opposite points have one share in values, and opposite shares in gradients
-            for p in P.div_ceil(2)..P {
-                let (one, other) = (at(p), at(P - 1 - p));
-                let [share, x, y] = shares[p];
-                let difference = one - other;
-                value += share * (one + other);
-                gx += x * difference;
-                gy += y * difference;
-            }
-            for (sums, sum) in sums.iter_mut().zip([value, gx, gy]) {
+            for (sums, sum) in sums.iter_mut().zip(sum_opposite(&shares, at)) {
                 sums[l][four] = sum;
             }
         }
