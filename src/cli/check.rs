@@ -112,6 +112,7 @@ fn effects(scene: &CheckedScene) -> Vec<(&'static str, String)> {
         ("heat spreading", method.heat_spreading.as_ref().map_or_else(off, |s| plain(s))),
         ("pressure relaxation", method.pressure_relaxation.as_ref().map_or_else(off, |r| plain(r))),
         ("volume relaxation", method.volume_relaxation.map_or_else(off, |r| r.to_string())),
+        ("mass lumping", method.mass_lumping.map_or_else(off, |s| s.to_string())),
         ("edge mask", method.edge_mask.map_or_else(off, |m| m.to_string())),
         (
             "artificial viscosity",

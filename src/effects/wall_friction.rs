@@ -96,7 +96,8 @@ impl WallFriction {
         with_width!(patch.stencils.width, go(patch, (s, self), (axis, end, coefficient), dt));
     }
 
-    /// Normal component of v' - r, the sums of the series of v + dt b before their last terms.
+    /// Normal component of the sums of the series of v + dt b before their last terms, that of b
+    /// times the share of the full mass matrix: v' - r.
     /// Without a filter r = v' - a vL, with the share a of their velocity that particles keep.
     fn find_inner_sums<const D: usize>(
         &self,
@@ -112,8 +113,11 @@ impl WallFriction {
             (Some(velocity), Some(force)) => {
                 let (star, velocity, force) =
                     (field(f.velocity_star), field(velocity), field(force));
+                let acceleration = field(f.acceleration);
+                let (full, lumped) = (s.full_share, 1.0 - s.full_share);
                 for span in patch.span_lines.iter().cloned().flatten() {
-                    inner[span] = star[span] - velocity[span] - dt * force[span];
+                    let last = full * force[span] + lumped * acceleration[span];
+                    inner[span] = star[span] - velocity[span] - dt * last;
                 }
             }
             _ => {

@@ -9,7 +9,7 @@ use json_patch::merge;
 use serde_json::{Map, Value, json};
 
 use super::errors::{SceneFault, suggest};
-use crate::scene::{Material, MethodChoice, Preset, Transfer, VelocityField};
+use crate::scene::{Material, MethodChoice, Preset, Transfer, VelocityField, default_courant};
 
 /// Contents of a scene on which the choice of a method depends.
 #[derive(Default)]
@@ -26,10 +26,12 @@ struct SceneContents {
     plates_in_contact: bool,
     /// Some body has one particle per cell, or particles from a file.
     sparse_particles: bool,
-    /// The Courant number is above [`LARGE_COURANT`], a material has a tension cutoff, or the scene
-    /// gives a transfer, a stepping, a shape function or a viscosity of its own: viscosity in
+    /// The Courant number is above that of [`LARGE_COURANT`], a material has a tension cutoff, or the
+    /// scene gives a transfer, a stepping, a shape function or a viscosity of its own: viscosity in
     /// expansion was not measured with these.
     untested_keys: bool,
+    /// Courant number, the default if the scene gives none.
+    courant: f64,
     /// Some body is a fluid, or a solid whose pressure follows an equation of state of fluids.
     fluid: bool,
     strength: bool,
@@ -50,9 +52,8 @@ struct SceneContents {
     porous: bool,
 }
 
-/// Courant number above which presets have no viscosity in expansion: plane impacts on a line
-/// oscillate with it at 0.8, and do not at 0.6.
-const LARGE_COURANT: f64 = 0.6;
+/// Courant numbers on a line and in a plane up to which viscosity in expansion was measured.
+const LARGE_COURANT: [f64; 2] = [0.8, 0.6];
 
 struct Rule {
     applies: fn(&SceneContents) -> bool,
@@ -192,6 +193,12 @@ const RULES: &[Rule] = &[
 /// Shape function of the presets, on domains that deform.
 const DEFORMING: &str = "cpdi_bspline_quadratic";
 
+/// Share of the lumped mass that compensates the time step at a Courant number: 3/16 of its square,
+/// 0.03 at 0.4.
+fn matched_lumping(courant: f64) -> f64 {
+    (1e4 * 3.0 / 16.0 * courant * courant).round() / 1e4
+}
+
 /// The viscosity for scenes in which a sharp front costs stability.
 fn moderate() -> Value {
     json!({"linear": 0.1, "quadratic": 1.25, "growth": null})
@@ -231,11 +238,12 @@ impl Preset {
             Preset::Default => {
                 let is_impact = acting(contents).next().is_none();
                 if is_impact && contents.allows_expansion() {
-                    let viscosity = json!({"quadratic": 0.75, "expansion": 0.05});
-                    merge(&mut base, &json!({"artificial_viscosity": viscosity}));
-                    if !contents.sparse_particles {
-                        merge(&mut base, &json!({"method": {"transfer": {"fmpm": 10}}}));
-                    }
+                    let order = if contents.sparse_particles { 8 } else { 14 };
+                    let method = json!({"transfer": {"fmpm": order},
+                        "mass_lumping": matched_lumping(contents.courant)});
+                    let viscosity = json!({"linear": 0.055, "quadratic": 0.85, "expansion": 0.02});
+                    let changes = json!({"method": method, "artificial_viscosity": viscosity});
+                    merge(&mut base, &changes);
                 } else {
                     merge(&mut base, &json!({"artificial_viscosity": {"linear": 0.15}}));
                 }
@@ -319,13 +327,19 @@ pub(super) fn expand(scene: &mut Value) -> Result<Option<MethodChoice>, SceneFau
     Ok(Some(MethodChoice { preset, reasons }))
 }
 
-/// Transfer and viscosity in short, such as `FMPM(10), viscosity 0.05/0.75 (0.05 in expansion)`.
+/// Transfer and viscosity in short, such as `FMPM(14) (mass lumping 0.03), viscosity 0.055/0.85 (0.02
+/// in expansion)`.
 fn in_short(method: &Value, viscosity: &Value) -> String {
     let transfer = &method["transfer"];
     let only = transfer.as_object().and_then(|object| object.iter().next());
     let transfer = match only {
         Some((name, number)) => format!("{}({number})", name.to_uppercase()),
         None => transfer.as_str().unwrap_or("").to_uppercase(),
+    };
+    let lumping = &method["mass_lumping"];
+    let transfer = match lumping.is_null() {
+        true => transfer,
+        false => format!("{transfer} (mass lumping {lumping})"),
     };
     if viscosity.is_null() {
         return format!("{transfer}, no viscosity");
@@ -377,6 +391,7 @@ fn override_keys(method: &mut Map<String, Value>, explicit: Map<String, Value>) 
         if !plan.full_mass_matrix {
             excluded.extend(["edge_mask", "spin", "flux_limiter"]);
         }
+        excluded.extend((plan.force_order() < 2).then_some("mass_lumping"));
         excluded.extend(plan.is_affine().then_some("energy"));
     }
     // without compatible energy and heat of the filter there is no numerical heat
@@ -386,6 +401,9 @@ fn override_keys(method: &mut Map<String, Value>, explicit: Map<String, Value>) 
     };
     if is_off("energy") && is_off("filter_heat") {
         excluded.push("heat_spreading");
+    }
+    if explicit.get("flux_limiter").is_some_and(|limiter| !limiter.is_null()) {
+        excluded.push("mass_lumping");
     }
     if is("frame", "total_lagrangian") || is("shape", "linear") {
         excluded.push("spin");
@@ -469,6 +487,8 @@ impl SceneContents {
             || (!pressures.is_empty() && any(|_, burns| burns));
         let given = |key: &str| scene.get(key).is_some_and(|value| !value.is_null());
         let axisymmetric = domain["geometry"] == "axisymmetric";
+        let courant = scene.get("time").and_then(|time| time["courant"].as_f64());
+        let courant = courant.unwrap_or_else(default_courant);
         let all_gases = gases().count() == used.len();
         let sheared_gas = all_gases
             && gases().any(is_sheared)
@@ -486,8 +506,9 @@ impl SceneContents {
                 .iter()
                 .any(|key| explicit.contains_key(*key))
                 || scene.contains_key("artificial_viscosity")
-                || scene.get("time").is_some_and(is_large_courant)
+                || courant > LARGE_COURANT[usize::from(dimension > 1)]
                 || scene.get("materials").is_some_and(has_tension_cutoff),
+            courant,
             fluid: any(|m, _| !m.eos.is_solid()),
             strength: any(|m, _| m.strength.is_some()),
             failure: any(|m, _| m.failure.is_some()),
@@ -514,11 +535,6 @@ fn moves(body: &Value) -> bool {
 fn is_sheared(body: &Value) -> bool {
     let field = serde_json::from_value::<VelocityField>(body["velocity_field"].clone());
     field.is_ok_and(|field| field.shears())
-}
-
-/// Whether the Courant number in `time` is above [`LARGE_COURANT`].
-fn is_large_courant(time: &Value) -> bool {
-    time["courant"].as_f64().is_some_and(|courant| courant > LARGE_COURANT)
 }
 
 /// Whether one of the `materials` has a tension cutoff.
@@ -598,6 +614,7 @@ mod tests {
                 plates_in_contact: has(9),
                 sparse_particles: has(15),
                 untested_keys: has(16),
+                courant: 0.4,
                 axisymmetric: has(10),
                 body_force: has(11),
                 moving_gas: has(6) && has(12),
@@ -623,6 +640,7 @@ mod tests {
             assert!(!expands || c.allows_expansion(), "{viscosity}");
             assert!(!has(method, "spin") || (c.plane && !c.axisymmetric && !total), "{method}");
             assert!(!has(method, "flux_limiter") || !(c.plane || c.contact), "{method}");
+            assert!(!has(method, "mass_lumping") || !has(method, "flux_limiter"), "{method}");
             assert_eq!(has(method, "pressure_relaxation"), c.fluid);
             if c.porous {
                 assert_eq!([&viscosity["linear"], &viscosity["quadratic"]], [0.5, 2.0]);

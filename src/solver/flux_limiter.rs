@@ -355,7 +355,7 @@ impl<const D: usize> Scheme<D> {
             patch.edge.iter().map(|&i| (i, patch.nodes.fields[f.first][i])).collect();
         patch.nodes.fields[limiter.work] = g;
         patch.nodes.fields[f.work] = product;
-        Self::leave_edge_out(patch, f.work, limiter.work);
+        Self::leave_edge_out(patch, f.work, limiter.work, 1.0);
         let [work, first] = patch.nodes.fields_mut([f.work, f.first]);
         first.copy_from_slice(work);
         // on the nodes that the edge mask removes, w is g, which the last sum of the series takes

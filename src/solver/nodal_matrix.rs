@@ -93,20 +93,23 @@ impl NodalMatrix {
         }
     }
 
-    /// `y` = t + x - d M x on the computed nodes, for several fields at a time, with a diagonal
-    /// matrix d: from one sum of a series to the next by Horner's rule. In a plane other nodes are
-    /// set to 0, on a line they keep their values. t, x and y have the same unit.
+    /// `y` = t + a (x - d M x) on the computed nodes, for several fields at a time, with a diagonal
+    /// matrix d and a number a of `shares` \[-\] for each field: from one sum of a series to the next
+    /// by Horner's rule. In a plane other nodes are set to 0, on a line they keep their values. t, x
+    /// and y have the same unit.
     pub fn next_sums<const D: usize, const V: usize>(
         &self,
         context: ProductContext<'_>,
         x: [&[f64]; V],
         d: &[f64],
         t: [&[f64]; V],
+        shares: [f64; V],
         y: &mut [Vec<f64>; V],
     ) {
         if const { D == 1 } {
             for line in context.lines {
-                self.band.next_sums(x, d, t, line.clone(), y.each_mut().map(|y| &mut y[..]));
+                let y = y.each_mut().map(|y| &mut y[..]);
+                self.band.next_sums(x, d, t, shares, line.clone(), y);
             }
             return;
         }
@@ -116,8 +119,9 @@ impl NodalMatrix {
             for v in 0..V {
                 let [x, t] = [x[v], t[v]].map(|field| &field[line.clone()]);
                 let y = &mut y[v][line.clone()];
+                let share = shares[v];
                 for i in 0..y.len() {
-                    y[i] = t[i] + (x[i] - d[i] * y[i]);
+                    y[i] = t[i] + share * (x[i] - d[i] * y[i]);
                 }
             }
         }

@@ -34,6 +34,8 @@ pub struct Scheme<const D: usize> {
     pub(super) filter_heat: bool,
     pub(super) relaxation: Option<PressureRelaxation>,
     pub(super) volume_relaxation: Option<f64>,
+    /// Share of the full mass matrix in the mass matrix of the force, whose rest is lumped [-].
+    pub(crate) full_share: f64,
     pub(super) edge_mask: Option<f64>,
     /// Whether the edge mask acts on pairs of nodes.
     pub(super) masks_pairs: bool,
@@ -122,6 +124,14 @@ const COLD: f64 = (1u64 << 20) as f64;
 /// Courant number of a step in which the pressure relaxes by its rate.
 const RELAXATION_COURANT: f64 = 0.4;
 
+/// Edge of a square or line with the volume of a cell [m]; exact if all edges are equal.
+fn mean_edge<const D: usize>(cell: [f64; D]) -> f64 {
+    match cell.iter().all(|&h| h == cell[0]) {
+        true => cell[0],
+        false => cell.iter().product::<f64>().powf(1.0 / D as f64),
+    }
+}
+
 impl<const D: usize> Scheme<D> {
     /// Numerical heat below which it is no longer spread [J/kg].
     pub(crate) fn still_heat(&self) -> f64 {
@@ -149,11 +159,7 @@ impl<const D: usize> Scheme<D> {
             true => scene.scene.domain.lower[0] + scene.cells[0] as f64 * cell[0],
             false => 1.0,
         };
-        // exact if all edges are equal
-        let edge = match cell.iter().all(|&h| h == cell[0]) {
-            true => cell[0],
-            false => volume.powf(1.0 / D as f64),
-        };
+        let edge = mean_edge(cell);
         let contact = contact_condition(scene);
         let friction_part = if rubs::<D>(contact) { None } else { columns.wall_friction_part };
         let owner = |column: usize| columns.owners[column].expect("a force is an effect's");
@@ -174,6 +180,7 @@ impl<const D: usize> Scheme<D> {
             filter_heat: method.filter_heat,
             relaxation: method.pressure_relaxation,
             volume_relaxation: method.volume_relaxation,
+            full_share: 1.0 - method.mass_lumping.unwrap_or(0.0),
             edge_mask: method.edge_mask,
             masks_pairs: masks_pairs(scene),
             viscosity: scene.scene.artificial_viscosity.as_ref().map(|v| Viscosity::new(v, edge)),

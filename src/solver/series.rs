@@ -2,7 +2,10 @@
 //! pressure, and the velocity whose gradient does the work.
 //!
 //! With the lumped masses m_i, the mass matrix M and K = 1 - m^-1 M, the series sum_(l<k) K^l
-//! approximates (m^-1 M)^-1 (Nairn & Hammerquist 2021). Each product needs final values at
+//! approximates (m^-1 M)^-1 (Nairn & Hammerquist 2021). With a K in place of K the matrix is
+//! a M + (1 - a) m, between the full and the lumped one, as in the matched schemes of Krieg & Key
+//! (1973): central differences in time make short waves too fast, lumped masses make them too slow.
+//! Each product needs final values at
 //! neighbour nodes, which their owners send; partial sums are never sent. Independent series
 //! advance together, so that their terms share messages.
 
@@ -19,7 +22,7 @@ use crate::solver::particle_weights::cut;
 use crate::solver::patch::Patch;
 use crate::transfer::VelocityUpdate;
 
-/// Series s = sum_(l<order) t_l with t_l = K t_(l-1), evaluated by Horner's rule, s' = t_0 + K s:
+/// Series s = sum_(l<order) t_l with t_l = a K t_(l-1), evaluated by Horner's rule, s' = t_0 + a K s:
 /// one pass over the nodes per term. For a vector, one series per component, in consecutive fields.
 #[derive(Clone, Copy)]
 pub(super) struct ProductSeries {
@@ -31,6 +34,8 @@ pub(super) struct ProductSeries {
     last: Option<usize>,
     order: u32,
     matrix: Matrix,
+    /// Share of the full matrix, a: the rest is its row sums [-].
+    share: f64,
     mask: Mask,
 }
 
@@ -231,11 +236,11 @@ impl<const D: usize> Scheme<D> {
     }
 
     /// Takes the pairs with a node that the edge mask removes out of a new sum; `before` holds the
-    /// previous one.
-    pub(super) fn leave_edge_out(patch: &mut Patch<D>, sum: usize, before: usize) {
+    /// previous one, and `full_share` is the share of the full matrix.
+    pub(super) fn leave_edge_out(patch: &mut Patch<D>, sum: usize, before: usize, full_share: f64) {
         let [sum, before] = patch.nodes.fields_mut([sum, before]);
         for &(i, share) in &patch.beside_edge {
-            sum[i] -= share * before[i];
+            sum[i] -= full_share * share * before[i];
         }
     }
 
@@ -252,7 +257,7 @@ impl<const D: usize> Scheme<D> {
             // nodes without material hold zeros in both fields
             patch.nodes.fields.swap(vector.sum, scratch);
             if vector.mask != Mask::No && self.masks_pairs {
-                Self::leave_edge_out(patch, vector.sum, scratch);
+                Self::leave_edge_out(patch, vector.sum, scratch, vector.share);
             }
             if let (true, Some(last)) = (together.ends(vector), vector.last) {
                 patch.nodes.fields.swap(scratch, last);
@@ -279,7 +284,9 @@ impl<const D: usize> Scheme<D> {
             Matrix::Compliance => (&patch.compliance_matrix, self.fields.relaxation[1]),
             Matrix::Effect(number, inverse) => (&patch.matrices[number], inverse),
         };
-        matrix.next_sums::<D, V>(patch.product_context(), x, &fields[inverse], t, &mut next);
+        let shares = all.map(|s| s.share);
+        let (context, inverse) = (patch.product_context(), &fields[inverse]);
+        matrix.next_sums::<D, V>(context, x, inverse, t, shares, &mut next);
         for (v, next) in next.into_iter().enumerate() {
             patch.nodes.fields[self.fields.scratch + v] = next;
         }
@@ -350,12 +357,13 @@ impl<const D: usize> Scheme<D> {
     ) {
         let ScalarSeries { sum, first, order, matrix, inverse } = series;
         let matrix = Matrix::Effect(matrix, inverse);
-        let series = ProductSeries { sum, first, last: None, order, matrix, mask: Mask::No };
+        let series =
+            ProductSeries { sum, first, last: None, order, matrix, share: 1.0, mask: Mask::No };
         self.sum_series(nodal, effects, name, others, &[series], last);
     }
 
-    /// Series of velocity and force: v = sum_(l<k) K^l vL; b = sum_(l<k) K'^l f/m with the edge mask
-    /// in K', or b = f/m if the scheme lumps the force.
+    /// Series of velocity and force: v = sum_(l<k) K^l vL; b = sum_(l<k) (a K')^l f/m with the edge
+    /// mask in K' and the share a of the full mass matrix, or b = f/m if the scheme lumps the force.
     fn velocity_series(&self) -> [ProductSeries; 2] {
         let f = &self.fields;
         let (order, force_order) = (self.transfer.order, self.transfer.force_order());
@@ -366,6 +374,7 @@ impl<const D: usize> Scheme<D> {
             last: f.filter_residual,
             order,
             matrix: Matrix::Mass,
+            share: 1.0,
             mask: Mask::No,
         };
         let force = ProductSeries {
@@ -374,6 +383,7 @@ impl<const D: usize> Scheme<D> {
             // a flux limiter acts on a line, friction of walls in a plane
             last: f.limiter.as_ref().map(|limiter| limiter.series).or(f.force_residual),
             order: force_order,
+            share: self.full_share,
             mask: Mask::Force,
             ..velocity
         };
@@ -413,6 +423,7 @@ impl<const D: usize> Scheme<D> {
                 last: Some(first),
                 order: relaxation::ORDER,
                 matrix: Matrix::Compliance,
+                share: 1.0,
                 mask: Mask::No,
             });
         }
@@ -539,6 +550,7 @@ impl<const D: usize> Scheme<D> {
             last: None,
             order: self.transfer.force_order(),
             matrix: Matrix::Mass,
+            share: self.full_share,
             mask: Mask::Work,
         }
     }
@@ -546,7 +558,7 @@ impl<const D: usize> Scheme<D> {
     /// Velocity w for which f.w is the exact change of kinetic energy, so that the work on the
     /// particles and this change add up to rounding. Collective between neighbours.
     ///
-    /// Series: w = sum_(l<k) K'^l (vL + A v')/2 (only l = 0 if the force is lumped);
+    /// Series: w = sum_(l<k) (a K')^l (vL + A v')/2 (only l = 0 if the force is lumped);
     /// blend: w = a vL + A ((1 - a) vL + dt b/2); A = m^-1 M.
     pub(super) fn solve_work(&self, nodal: &mut Nodal<'_, D>, effects: &Effects<D>) {
         let series = self.work_series();

@@ -84,6 +84,9 @@ pub fn method() -> impl Strategy<Value = Value> {
         if mask && transfer.get("fmpm").is_some() {
             method["edge_mask"] = json!(0.3);
         }
+        if mask && transfer["fmpm"].as_u64().is_some_and(|order| order > 1) {
+            method["mass_lumping"] = json!(0.1);
+        }
         if mask && (method["energy"] == "compatible" || method["filter_heat"] == true) {
             method["heat_spreading"] = json!({"steps": 5});
         }

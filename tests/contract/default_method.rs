@@ -28,9 +28,9 @@ fn an_impact_without_a_method_is_accurate() {
     });
     let home = Home::with(&scene);
     let message = home.call(["check", "scene.json"]).end().succeeded();
-    assert!(message.contains("preset default") && message.contains("FMPM(10)"), "{message}");
+    assert!(message.contains("preset default") && message.contains("FMPM(14)"), "{message}");
     let said = home.call(["scene.json"]).end();
-    assert!(said.stderr.contains("method default: FMPM(10)"), "{}", said.stderr);
+    assert!(said.stderr.contains("method default: FMPM(14)"), "{}", said.stderr);
     said.succeeded();
     let results = home.results("output/scene");
     let summary = &results.summary;

@@ -57,6 +57,16 @@ fn the_flux_limiter() {
     }
 }
 
+#[test]
+fn a_partly_lumped_mass_matrix() {
+    for update in [small_leapfrog, small_midpoint] {
+        let mut scene = update("cpdi_bspline_quadratic", &json!({"fmpm": 4}));
+        scene["method"]["mass_lumping"] = json!(0.1);
+        ending(&mut scene, 3e-8);
+        same(&scene, "a share of the lumped mass");
+    }
+}
+
 /// A scene in the total-Lagrangian frame.
 fn total(mut scene: Value) -> Value {
     scene["method"]["frame"] = json!("total_lagrangian");

@@ -25,6 +25,7 @@ fn both_limiters_and_every_interval_keep_energy() {
         json!({"artificial_viscosity": {"limited": "both"}}),
         json!({"method": {"pressure_relaxation": {"rate": 0.2, "interval": 5}}}),
         json!({"method": {"edge_mask": 0.5}}),
+        json!({"method": {"mass_lumping": 0.1}}),
         json!({"artificial_viscosity": null}),
     ] {
         let outcome = run(&with(&short("flyer.json", 0.2e-6), &edit));

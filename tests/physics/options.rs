@@ -82,6 +82,7 @@ fn each_option_of_the_default_changes_the_run() {
         method(json!({"pressure_relaxation": {"interval": 3}})),
         method(json!({"edge_mask": null})),
         method(json!({"edge_mask": 0.9})),
+        method(json!({"mass_lumping": 0.05})),
         viscosity(Value::Null),
         viscosity(json!({"linear": 0.2})),
         viscosity(json!({"quadratic": 0.75})),

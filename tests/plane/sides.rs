@@ -290,8 +290,11 @@ fn a_block_slides_and_sticks_by_coulombs_law() {
 
 #[test]
 fn friction_on_a_wall_keeps_energy_and_momentum() {
+    let mut lumped = default_solid();
+    lumped["mass_lumping"] = json!(0.5);
     for method in [
         default_solid(),
+        lumped,
         json!({
             "shape": "cpdi_bspline_quadratic", "transfer": "flip", "stepping": "midpoint",
             "energy": "compatible"

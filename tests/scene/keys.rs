@@ -251,6 +251,7 @@ fn numbers_out_of_bounds() {
         ("method.pressure_relaxation.interval", "0", "at least 1"),
         ("method.pressure_relaxation.interval", "5000000000", "a whole number"),
         ("method.edge_mask", "1.0", "at least 0 and below 1"),
+        ("method.mass_lumping", "0", "above 0 and at most 0.5"),
         ("output.histories.interval", "0", "a number above 0"),
     ] {
         let set = format!("{path}={value}");

@@ -62,15 +62,15 @@ fn impacts_have_viscosity_in_expansion() {
             .map(|path| (path, count.clone()))
     };
     let [few, usual] = [&one, &two].map(|count| edited(&pairs(count)));
-    assert_eq!([order(&few), order(&usual)], [json!(8), json!(10)]);
-    assert_eq!(viscosity(&usual), (0.05, 0.75, Some(0.05)));
+    assert_eq!([order(&few), order(&usual)], [json!(8), json!(14)]);
+    assert_eq!(viscosity(&usual), (0.055, 0.85, Some(0.02)));
     let with_key = |path: &'static str, value: Value| {
         let scene = edited(&[pairs(&two).to_vec(), vec![(path, value)]].concat());
         (order(&scene), viscosity(&scene))
     };
     let former = (json!(8), (0.15, 0.5, None));
-    assert_eq!(with_key("/time/courant", json!(0.61)), former);
-    assert_eq!(with_key("/time/courant", json!(0.6)).0, 10);
+    assert_eq!(with_key("/time/courant", json!(0.81)), former);
+    assert_eq!(with_key("/time/courant", json!(0.8)).0, 14);
     assert_eq!(with_key("/body_force", json!({"gravity": [-10.0]})), former);
     let flip = json!({"preset": "default", "transfer": "flip"});
     assert_eq!(with_key("/method", flip).1, former.1);
@@ -90,6 +90,8 @@ fn impacts_have_viscosity_in_expansion() {
         viscosity(&scene).2
     };
     assert_eq!(expansion("title", json!("plates")), Some(0.1));
+    assert_eq!(expansion("time", json!({"end": 3e-7, "courant": 0.61})), None);
+    assert_eq!(expansion("time", json!({"end": 3e-7})), Some(0.1));
     assert_eq!(expansion("contact", json!({"type": "frictionless"})), None);
 }
 
@@ -99,12 +101,32 @@ fn a_scene_without_a_method_has_that_of_the_flyer() {
     // the plates stay in contact
     let mut method = json!(flyer.scene.method);
     method["frame"] = json!("total_lagrangian");
+    method["mass_lumping"] = json!(0.03);
     assert_eq!(json!(own.scene.method), method);
-    assert_eq!(viscosity(&own), (0.05, 0.75, Some(0.05)));
+    assert_eq!(viscosity(&own), (0.055, 0.85, Some(0.02)));
     assert_eq!(choice(&own).preset, Preset::Default);
     assert_eq!(flyer.method_choice, None);
     let named = edited(&[("/method", json!("default"))]);
     assert_eq!(json!(named.scene.method), json!(own.scene.method));
+}
+
+/// The share of the lumped mass follows the Courant number, and is left out with what excludes it.
+#[test]
+fn impacts_have_a_share_of_the_lumped_mass() {
+    let lumping = |edits: &[(&str, Value)]| edited(edits).scene.method.mass_lumping;
+    assert_eq!(lumping(&[]), Some(0.03));
+    for (courant, share) in [(0.2, 0.0075), (0.6, 0.0675), (0.8, 0.12)] {
+        assert_eq!(lumping(&[("/time/courant", json!(courant))]), Some(share));
+    }
+    let explicit = |key: &str, value: Value| {
+        let mut method = json!({"preset": "default"});
+        method[key] = value;
+        lumping(&[("/method", method)])
+    };
+    assert_eq!(explicit("mass_lumping", json!(0.1)), Some(0.1));
+    assert_eq!(explicit("mass_lumping", Value::Null), None);
+    assert_eq!(explicit("flux_limiter", json!({"neighbours": 1})), None);
+    assert_eq!(explicit("flux_limiter", Value::Null), Some(0.03));
 }
 
 #[test]

@@ -152,6 +152,13 @@ fn options_that_cannot_go_together_are_named() {
     refused("flyer.json", &[&sets[..], &off].concat(), &fragments);
     edit("method.heat_spreading.steps=0.5", &["method.heat_spreading.steps = 0.5", "at least 1"]);
     edit("method.transfer=pic", &["method.edge_mask = 0.4", "method.transfer = \"pic\""]);
+    let lumping = "method.mass_lumping=0.1";
+    for (set, other) in [
+        ("method.transfer={\"fmpm\": 1}", "method.transfer = {\"fmpm\":1}"),
+        ("method.flux_limiter={\"neighbours\": 1}", "method.flux_limiter = {\"neighbours\":1}"),
+    ] {
+        refused("flyer.json", &[lumping, set], &["method.mass_lumping = 0.1", other, "leave"]);
+    }
     refused(
         "flyer_uintah.json",
         &["artificial_viscosity.limited=both"],

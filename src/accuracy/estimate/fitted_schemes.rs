@@ -10,8 +10,9 @@ use crate::transfer::Transfer;
 
 /// Ranges of the keys of a scheme: names, or smallest and largest values.
 ///
-/// Viscosity in expansion is not a key of the fit. The presets with it are among the schemes on which
-/// the acceptance program tests the intervals (`accuracy/estimate`).
+/// Viscosity in expansion and the share of the lumped mass are not keys of the fit. The presets with
+/// them are among the schemes on which the acceptance program tests the intervals
+/// (`accuracy/estimate`).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FittedSchemes {

@@ -34,6 +34,7 @@ pub(super) fn check(scene: &Scene, faults: &mut Faults, warnings: &mut Vec<Strin
     if let Some(limiter) = scene.method.flux_limiter {
         faults.judge(&["contact"], || check_limiter(scene, limiter));
     }
+    faults.take(check_mass_lumping(&scene.method));
     if scene.method.shape.has_jumps() {
         warnings.push(
             "method.shape = \"linear\": inaccurate, since forces jump when a particle passes into \
@@ -164,6 +165,22 @@ fn check_limiter(scene: &Scene, limiter: FluxLimiter) -> Result<(), SceneFault> 
         return Err(conflict(key, ("contact.type", contact.name()), allowed));
     }
     Ok(())
+}
+
+/// Checks the options that a partly lumped mass matrix needs.
+fn check_mass_lumping(method: &Method) -> Result<(), SceneFault> {
+    let Some(lumping) = method.mass_lumping else { return Ok(()) };
+    let key = ("method.mass_lumping", lumping);
+    if method.transfer.plan().force_order() < 2 {
+        let allowed = "to leave it out, or method.transfer {\"fmpm\": m} with m of 2 or more";
+        return Err(conflict(key, ("method.transfer", method.transfer), allowed));
+    }
+    match method.flux_limiter {
+        Some(limiter) => {
+            Err(conflict(key, ("method.flux_limiter", limiter), "to leave one of them out"))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Factor by which a particle may lengthen within a step.

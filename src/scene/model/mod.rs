@@ -246,7 +246,8 @@ pub struct Time {
     pub wall_limit: Option<f64>,
 }
 
-fn default_courant() -> f64 {
+/// Courant number of a scene that gives none [-].
+pub fn default_courant() -> f64 {
     0.4
 }
 

@@ -41,20 +41,23 @@ impl Band {
         self.each_product(x, range, y, |product, _, _| product);
     }
 
-    /// y = t + x - d M x on the nodes `range` for several vectors at a time, with a diagonal matrix
-    /// d [1/kg]: from one sum of a series to the next by Horner's rule. t, x and y have the same
-    /// unit.
+    /// y = t + a (x - d M x) on the nodes `range` for several vectors at a time, with a diagonal
+    /// matrix d [1/kg] and a number a of `shares` [-] for each vector: from one sum of a series to
+    /// the next by Horner's rule. t, x and y have the same unit.
     pub fn next_sums<'a, const V: usize>(
         &self,
         x: [&'a [f64]; V],
         d: &[f64],
         t: [&'a [f64]; V],
+        shares: [f64; V],
         range: Range<usize>,
         y: [&mut [f64]; V],
     ) {
         let cut = |fields: [&'a [f64]; V]| map(&fields, |field| &field[range.clone()]);
         let (x_here, d, t) = (cut(x), &d[range.clone()], cut(t));
-        self.each_product(x, range, y, |product, v, i| t[v][i] + (x_here[v][i] - d[i] * product));
+        self.each_product(x, range, y, |product, v, i| {
+            t[v][i] + shares[v] * (x_here[v][i] - d[i] * product)
+        });
     }
 
     /// y = f((M x)_i, v, i) on the nodes of `range` for each vector v; i is relative to its start.

@@ -69,6 +69,18 @@ fn the_velocity_that_works() {
 }
 
 #[test]
+fn a_partly_lumped_mass_matrix() {
+    let method = json!({"transfer": {"fmpm": 3}, "stepping": "midpoint", "energy": "compatible",
+        "mass_lumping": 0.25});
+    let f = solved(method);
+    // vL + 2 K vL, and f/m + (a + a^2) K f/m with a = 3/4
+    close(&f.line("velocity", 3..=4), &[-1.0, 11.0]);
+    close(&f.line("acceleration", 3..=4), &[2.0 + 1.3125, -2.0 - 3.9375]);
+    // w0 = (1.75, 3.75), as A v' = 2.5 here too
+    close(&f.line("work", 3..=4), &[1.75 - 1.3125 / 2.0, 3.75 + 1.3125 * 1.5]);
+}
+
+#[test]
 fn the_edge_mask_leaves_nodes_with_little_material_out_of_the_force() {
     let method = json!({"transfer": {"fmpm": 2}, "stepping": "midpoint", "edge_mask": 0.3});
     let f = solved(method);
@@ -87,10 +99,11 @@ fn the_edge_mask_of_the_work() {
 }
 
 /// Accelerations and velocities of the work of a step of a scene with a body force, whose edge mask
-/// acts on pairs. It removes node 4, which is filled by 1/4.
-fn masked_pairs(acceleration: [f64; 2]) -> [Vec<f64>; 2] {
+/// acts on pairs, with a share `lumping` of the lumped mass. It removes node 4, which is filled by
+/// 1/4.
+fn masked_pairs(acceleration: [f64; 2], lumping: Option<f64>) -> [Vec<f64>; 2] {
     let method = json!({"transfer": {"fmpm": 3}, "stepping": "midpoint", "edge_mask": 0.3,
-        "energy": "compatible"});
+        "energy": "compatible", "mass_lumping": lumping});
     let scene = json!({"method": method, "body_force": {"gravity": [1.0]}});
     let f = solved_with(scene, acceleration);
     [f.line("acceleration", 3..=4), f.line("work", 3..=4)]
@@ -99,7 +112,7 @@ fn masked_pairs(acceleration: [f64; 2]) -> [Vec<f64>; 2] {
 #[test]
 fn with_a_body_force_the_edge_mask_leaves_pairs_of_nodes_out() {
     // the only pair of nodes is left out, and f/m stays; w0 = (vL + A v')/2 likewise
-    let [acceleration, work] = masked_pairs([2.0, -2.0]);
+    let [acceleration, work] = masked_pairs([2.0, -2.0], None);
     close(&acceleration, &[2.0, -2.0]);
     // the velocity has no mask: vL + 2 K vL = (-1, 11), v' = (0, 10), A v' = 2.5
     close(&work, &[1.75, 3.75]);
@@ -107,6 +120,8 @@ fn with_a_body_force_the_edge_mask_leaves_pairs_of_nodes_out() {
 
 #[test]
 fn with_a_body_force_a_uniform_acceleration_stays_uniform() {
-    let [acceleration, _] = masked_pairs([7.0, 7.0]);
-    close(&acceleration, &[7.0, 7.0]);
+    for lumping in [None, Some(0.25)] {
+        let [acceleration, _] = masked_pairs([7.0, 7.0], lumping);
+        close(&acceleration, &[7.0, 7.0]);
+    }
 }
