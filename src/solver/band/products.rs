@@ -55,9 +55,15 @@ impl Band {
     ) {
         let cut = |fields: [&'a [f64]; V]| map(&fields, |field| &field[range.clone()]);
         let (x_here, d, t) = (cut(x), &d[range.clone()], cut(t));
-        self.each_product(x, range, y, |product, v, i| {
-            t[v][i] + shares[v] * (x_here[v][i] - d[i] * product)
-        });
+        let change = |product: f64, v: usize, i: usize| x_here[v][i] - d[i] * product;
+        // mostly all shares are 1: a product less per node
+        if shares == [1.0; V] {
+            self.each_product(x, range, y, |product, v, i| t[v][i] + change(product, v, i));
+        } else {
+            self.each_product(x, range, y, |product, v, i| {
+                t[v][i] + shares[v] * change(product, v, i)
+            });
+        }
     }
 
     /// y = f((M x)_i, v, i) on the nodes of `range` for each vector v; i is relative to its start.
