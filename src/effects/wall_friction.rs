@@ -96,8 +96,8 @@ impl WallFriction {
         with_width!(patch.stencils.width, go(patch, (s, self), (axis, end, coefficient), dt));
     }
 
-    /// Normal component of the sums of the series of v + dt b before their last terms, that of b
-    /// times the share of the full mass matrix: v' - r.
+    /// Normal component of v' - r: the sums of the series of v and dt b before their last terms, that
+    /// of b times the share of the full mass matrix.
     /// Without a filter r = v' - a vL, with the share a of their velocity that particles keep.
     fn find_inner_sums<const D: usize>(
         &self,
@@ -116,8 +116,8 @@ impl WallFriction {
                 let acceleration = field(f.acceleration);
                 let (full, lumped) = (s.full_share, 1.0 - s.full_share);
                 for span in patch.span_lines.iter().cloned().flatten() {
-                    let last = full * force[span] + lumped * acceleration[span];
-                    inner[span] = star[span] - velocity[span] - dt * last;
+                    let rest = full * force[span] + lumped * acceleration[span];
+                    inner[span] = star[span] - velocity[span] - dt * rest;
                 }
             }
             _ => {

@@ -26,9 +26,8 @@ struct SceneContents {
     plates_in_contact: bool,
     /// Some body has one particle per cell, or particles from a file.
     sparse_particles: bool,
-    /// The Courant number is above that of [`LARGE_COURANT`], a material has a tension cutoff, or the
-    /// scene gives a transfer, a stepping, a shape function or a viscosity of its own: viscosity in
-    /// expansion was not measured with these.
+    /// A material has a tension cutoff, or the scene gives a transfer, a stepping, a shape function, a
+    /// flux limiter or a viscosity of its own: viscosity in expansion was not measured with these.
     untested_keys: bool,
     /// Courant number, the default if the scene gives none.
     courant: f64,
@@ -52,8 +51,13 @@ struct SceneContents {
     porous: bool,
 }
 
-/// Courant numbers on a line and in a plane up to which viscosity in expansion was measured.
-const LARGE_COURANT: [f64; 2] = [0.8, 0.6];
+/// Largest Courant number of viscosity in expansion: without a share of the lumped mass plane
+/// impacts on a line oscillate with it at 0.8, and do not at 0.6.
+const LARGE_COURANT: f64 = 0.6;
+
+/// The same for two plates in contact with a share of the lumped mass and two or more particles per
+/// cell.
+const LARGE_MATCHED_COURANT: f64 = 0.8;
 
 struct Rule {
     applies: fn(&SceneContents) -> bool,
@@ -112,7 +116,7 @@ const RULES: &[Rule] = &[
         reason: "spin, since bodies may turn, with a shorter domain limit",
     },
     Rule {
-        applies: |c| c.plane && c.fluid && c.allows_expansion(),
+        applies: |c| c.plane && c.fluid && c.allows_expansion(LARGE_COURANT),
         changes: || json!({"artificial_viscosity": {"expansion": 0.1}}),
         reason: "viscosity in expansion, which damps the oscillations behind shocks",
     },
@@ -194,9 +198,10 @@ const RULES: &[Rule] = &[
 const DEFORMING: &str = "cpdi_bspline_quadratic";
 
 /// Share of the lumped mass that compensates the time step at a Courant number: 3/16 of its square,
-/// 0.03 at 0.4.
-fn matched_lumping(courant: f64) -> f64 {
-    (1e4 * 3.0 / 16.0 * courant * courant).round() / 1e4
+/// 0.03 at 0.4. A Courant number below 0.016 needs none.
+fn matched_lumping(courant: f64) -> Option<f64> {
+    let share = (1e4 * 3.0 / 16.0 * courant * courant).round() / 1e4;
+    (0.0 < share && courant <= 1.0 && courant > 0.0).then_some(share)
 }
 
 /// The viscosity for scenes in which a sharp front costs stability.
@@ -237,7 +242,9 @@ impl Preset {
         let reason = match self {
             Preset::Default => {
                 let is_impact = acting(contents).next().is_none();
-                if is_impact && contents.allows_expansion() {
+                let matched = contents.plates_in_contact && !contents.sparse_particles;
+                let largest = if matched { LARGE_MATCHED_COURANT } else { LARGE_COURANT };
+                if is_impact && contents.allows_expansion(largest) {
                     let order = if contents.sparse_particles { 8 } else { 14 };
                     let method = json!({"transfer": {"fmpm": order},
                         "mass_lumping": matched_lumping(contents.courant)});
@@ -265,7 +272,10 @@ impl Preset {
                     "artificial_viscosity": {"linear": 0.035, "quadratic": 0.0}});
                 merge(&mut base, &changes);
                 let is_impact = acting(contents).next().is_none();
-                if is_impact && contents.allows_expansion() && !contents.sparse_particles {
+                if is_impact
+                    && contents.allows_expansion(LARGE_COURANT)
+                    && !contents.sparse_particles
+                {
                     let viscosity = json!({"linear": 0.03, "expansion": 0.035});
                     merge(&mut base, &json!({"artificial_viscosity": viscosity}));
                 }
@@ -391,7 +401,6 @@ fn override_keys(method: &mut Map<String, Value>, explicit: Map<String, Value>) 
         if !plan.full_mass_matrix {
             excluded.extend(["edge_mask", "spin", "flux_limiter"]);
         }
-        excluded.extend((plan.force_order() < 2).then_some("mass_lumping"));
         excluded.extend(plan.is_affine().then_some("energy"));
     }
     // without compatible energy and heat of the filter there is no numerical heat
@@ -402,8 +411,8 @@ fn override_keys(method: &mut Map<String, Value>, explicit: Map<String, Value>) 
     if is_off("energy") && is_off("filter_heat") {
         excluded.push("heat_spreading");
     }
-    if explicit.get("flux_limiter").is_some_and(|limiter| !limiter.is_null()) {
-        excluded.push("mass_lumping");
+    if explicit.get("mass_lumping").is_some_and(|share| !share.is_null()) {
+        excluded.push("flux_limiter");
     }
     if is("frame", "total_lagrangian") || is("shape", "linear") {
         excluded.push("spin");
@@ -455,11 +464,12 @@ fn deforms(shape: &Value) -> bool {
 }
 
 impl SceneContents {
-    /// Whether viscosity in expansion was measured with the contents of the scene.
-    fn allows_expansion(&self) -> bool {
+    /// Whether viscosity in expansion was measured with the contents of the scene and a Courant
+    /// number up to `largest`.
+    fn allows_expansion(&self, largest: f64) -> bool {
         let solid = self.contact || self.failure || self.strength || self.porous;
         let other = self.gas || self.burn || self.body_force || self.axisymmetric;
-        !(solid || other || self.untested_keys)
+        !(solid || other || self.untested_keys) && self.courant <= largest
     }
 
     /// Reads the contents of a scene whose library names are resolved and whose method has the keys
@@ -506,7 +516,7 @@ impl SceneContents {
                 .iter()
                 .any(|key| explicit.contains_key(*key))
                 || scene.contains_key("artificial_viscosity")
-                || courant > LARGE_COURANT[usize::from(dimension > 1)]
+                || explicit.get("flux_limiter").is_some_and(|limiter| !limiter.is_null())
                 || scene.get("materials").is_some_and(has_tension_cutoff),
             courant,
             fluid: any(|m, _| !m.eos.is_solid()),
@@ -637,7 +647,7 @@ mod tests {
             assert!(!total || !has(method, "domain_limit"), "{method}");
             let expands = has(viscosity, "expansion");
             assert!(!expands || has(viscosity, "limiter"), "{viscosity}");
-            assert!(!expands || c.allows_expansion(), "{viscosity}");
+            assert!(!expands || c.allows_expansion(LARGE_MATCHED_COURANT), "{viscosity}");
             assert!(!has(method, "spin") || (c.plane && !c.axisymmetric && !total), "{method}");
             assert!(!has(method, "flux_limiter") || !(c.plane || c.contact), "{method}");
             assert!(!has(method, "mass_lumping") || !has(method, "flux_limiter"), "{method}");

@@ -94,7 +94,7 @@ impl NodalMatrix {
     }
 
     /// `y` = t + a (x - d M x) on the computed nodes, for several fields at a time, with a diagonal
-    /// matrix d and a number a of `shares` \[-\] for each field: from one sum of a series to the next
+    /// matrix d and a number a of `shares` [-] for each field: from one sum of a series to the next
     /// by Horner's rule. In a plane other nodes are set to 0, on a line they keep their values. t, x
     /// and y have the same unit.
     pub fn next_sums<const D: usize, const V: usize>(

@@ -71,6 +71,14 @@ fn impacts_have_viscosity_in_expansion() {
     let former = (json!(8), (0.15, 0.5, None));
     assert_eq!(with_key("/time/courant", json!(0.81)), former);
     assert_eq!(with_key("/time/courant", json!(0.8)).0, 14);
+    let sharpest = edited(
+        &[
+            pairs(&two).to_vec(),
+            vec![("/method", json!("sharpest")), ("/time/courant", json!(0.61))],
+        ]
+        .concat(),
+    );
+    assert_eq!(viscosity(&sharpest), (0.035, 0.0, None));
     assert_eq!(with_key("/body_force", json!({"gravity": [-10.0]})), former);
     let flip = json!({"preset": "default", "transfer": "flip"});
     assert_eq!(with_key("/method", flip).1, former.1);
@@ -115,9 +123,14 @@ fn a_scene_without_a_method_has_that_of_the_flyer() {
 fn impacts_have_a_share_of_the_lumped_mass() {
     let lumping = |edits: &[(&str, Value)]| edited(edits).scene.method.mass_lumping;
     assert_eq!(lumping(&[]), Some(0.03));
-    for (courant, share) in [(0.2, 0.0075), (0.6, 0.0675), (0.8, 0.12)] {
-        assert_eq!(lumping(&[("/time/courant", json!(courant))]), Some(share));
+    let shares = [(0.01, None), (0.2, Some(0.0075)), (0.6, Some(0.0675)), (0.61, None)];
+    for (courant, share) in shares {
+        assert_eq!(lumping(&[("/time/courant", json!(courant))]), share, "{courant}");
     }
+    let strong = json!({"metal": {"library": "copper_johnson_cook"}});
+    let own = json!({"preset": "default", "mass_lumping": 0.07});
+    let strong = edited(&[("/materials", strong), ("/method", own)]).scene.method;
+    assert!(strong.flux_limiter.is_none() && strong.mass_lumping == Some(0.07));
     let explicit = |key: &str, value: Value| {
         let mut method = json!({"preset": "default"});
         method[key] = value;

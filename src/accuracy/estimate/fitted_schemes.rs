@@ -8,6 +8,9 @@ use crate::scene::{CheckedScene, EnergyUpdate, Stepping, StressUpdate};
 use crate::shape::ShapeKind;
 use crate::transfer::Transfer;
 
+/// Largest share of the lumped mass, that of `default` at a Courant number of 0.6 [-].
+const LUMPING: f64 = 0.07;
+
 /// Ranges of the keys of a scheme: names, or smallest and largest values.
 ///
 /// Viscosity in expansion and the share of the lumped mass are not keys of the fit. The presets with
@@ -70,6 +73,7 @@ impl FittedSchemes {
         };
         not(!self.shapes.contains(&method.shape), "shape");
         not(method.flux_limiter.is_some(), "flux_limiter");
+        not(method.mass_lumping.is_some_and(|share| share > LUMPING), "mass_lumping");
         not(method.heat_spreading.is_some(), "heat_spreading");
         not(method.volume_relaxation.is_some(), "volume_relaxation");
         not(method.domain_limit.is_some(), "domain_limit");

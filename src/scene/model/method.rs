@@ -47,10 +47,10 @@ pub struct Method {
     /// `fmpm` of order 2 or more, and no contact.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub flux_limiter: Option<FluxLimiter>,
-    /// Share of the lumped mass in the mass matrix of the force, whose rest is the full mass matrix
-    /// \[-\]; absent: none. Central differences in time make short waves too fast; this slows them,
-    /// which reduces the tension ahead of shocks. With two particles per cell, 3/16 of the square
-    /// of the Courant number compensates the time step. Requires a transfer `fmpm` of order 2 or
+    /// Share of the lumped mass in the mass matrix of the force; the rest is the full mass matrix
+    /// [-]; absent: 0. Central differences in time make short waves too fast. This share slows them,
+    /// which reduces the tension ahead of shocks. With two particles per cell, 3/16 of the square of
+    /// the Courant number compensates most of this error. Requires a transfer `fmpm` of order 2 or
     /// more, and no flux limiter.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 0.5), extend("exclusiveMinimum" = 0.0))]

@@ -287,13 +287,14 @@ mod tests {
             assert!(is_close(y[i], of(i, &x[0])), "node {i}: {} {}", y[i], of(i, &x[0]));
         }
         let (d, mut next) = (vector(4), [vec![0.0; nodes], vec![0.0; nodes]]);
-        let into = next.each_mut().map(|y| &mut y[..]);
         let [x_fields, t_fields] = [&x, &t].map(|all| all.each_ref().map(|x| &x[..]));
-        let shares = [1.0, 0.75];
-        band.next_sums(x_fields, &d, t_fields, shares, inner.clone(), into);
-        for (v, i) in (0..2).flat_map(|v| inner.clone().map(move |i| (v, i))) {
-            let exact = t[v][i] + shares[v] * (x[v][i] - d[i] * of(i, &x[v]));
-            assert!(is_close(next[v][i], exact), "vector {v}, node {i}: {} {exact}", next[v][i]);
+        for shares in [[1.0; 2], [1.0, 0.75]] {
+            let into = next.each_mut().map(|y| &mut y[..]);
+            band.next_sums(x_fields, &d, t_fields, shares, inner.clone(), into);
+            for (v, i) in (0..2).flat_map(|v| inner.clone().map(move |i| (v, i))) {
+                let exact = t[v][i] + shares[v] * (x[v][i] - d[i] * of(i, &x[v]));
+                assert!(is_close(next[v][i], exact), "{v}, node {i}: {} {exact}", next[v][i]);
+            }
         }
     }
 
