@@ -55,8 +55,7 @@ struct SceneContents {
 /// impacts on a line oscillate with it at 0.8, and do not at 0.6.
 const LARGE_COURANT: f64 = 0.6;
 
-/// The same for two plates in contact with a share of the lumped mass and two or more particles per
-/// cell.
+/// The same with a share of the lumped mass.
 const LARGE_MATCHED_COURANT: f64 = 0.8;
 
 struct Rule {
@@ -198,10 +197,17 @@ const RULES: &[Rule] = &[
 const DEFORMING: &str = "cpdi_bspline_quadratic";
 
 /// Share of the lumped mass that compensates the time step at a Courant number: 3/16 of its square,
-/// 0.03 at 0.4. A Courant number below 0.016 needs none.
+/// 0.03 at 0.4. A Courant number below 0.016 needs none; one that is not allowed has none.
 fn matched_lumping(courant: f64) -> Option<f64> {
     let share = (1e4 * 3.0 / 16.0 * courant * courant).round() / 1e4;
-    (0.0 < share && courant <= 1.0 && courant > 0.0).then_some(share)
+    ((0.0..=1.0).contains(&courant) && share > 0.0).then_some(share)
+}
+
+/// Order of FMPM with which plane impacts with one particle per cell do not oscillate at a Courant
+/// number.
+fn sparse_order(courant: f64) -> u32 {
+    let orders = [(0.4, 8), (0.5, 6), (0.6, 4)];
+    orders.iter().find(|(largest, _)| courant <= *largest).map_or(2, |(_, order)| *order)
 }
 
 /// The viscosity for scenes in which a sharp front costs stability.
@@ -242,17 +248,18 @@ impl Preset {
         let reason = match self {
             Preset::Default => {
                 let is_impact = acting(contents).next().is_none();
-                let matched = contents.plates_in_contact && !contents.sparse_particles;
-                let largest = if matched { LARGE_MATCHED_COURANT } else { LARGE_COURANT };
-                if is_impact && contents.allows_expansion(largest) {
-                    let order = if contents.sparse_particles { 8 } else { 14 };
-                    let method = json!({"transfer": {"fmpm": order},
+                if is_impact && contents.allows_expansion(LARGE_MATCHED_COURANT) {
+                    let method = json!({"transfer": {"fmpm": 14},
                         "mass_lumping": matched_lumping(contents.courant)});
                     let viscosity = json!({"linear": 0.055, "quadratic": 0.85, "expansion": 0.02});
                     let changes = json!({"method": method, "artificial_viscosity": viscosity});
                     merge(&mut base, &changes);
                 } else {
                     merge(&mut base, &json!({"artificial_viscosity": {"linear": 0.15}}));
+                }
+                if contents.sparse_particles {
+                    let order = sparse_order(contents.courant);
+                    merge(&mut base, &json!({"method": {"transfer": {"fmpm": order}}}));
                 }
                 if is_impact && contents.plates_in_contact {
                     merge(&mut base, &json!({"method": {"frame": "total_lagrangian"}}));

@@ -63,6 +63,10 @@ fn impacts_have_viscosity_in_expansion() {
     };
     let [few, usual] = [&one, &two].map(|count| edited(&pairs(count)));
     assert_eq!([order(&few), order(&usual)], [json!(8), json!(14)]);
+    for (courant, least) in [(0.41, 6), (0.5, 6), (0.6, 4), (0.8, 2), (0.81, 2)] {
+        let edits = [pairs(&one).to_vec(), vec![("/time/courant", json!(courant))]].concat();
+        assert_eq!(order(&edited(&edits)), json!(least), "one particle per cell at {courant}");
+    }
     assert_eq!(viscosity(&usual), (0.055, 0.85, Some(0.02)));
     let with_key = |path: &'static str, value: Value| {
         let scene = edited(&[pairs(&two).to_vec(), vec![(path, value)]].concat());
@@ -123,7 +127,7 @@ fn a_scene_without_a_method_has_that_of_the_flyer() {
 fn impacts_have_a_share_of_the_lumped_mass() {
     let lumping = |edits: &[(&str, Value)]| edited(edits).scene.method.mass_lumping;
     assert_eq!(lumping(&[]), Some(0.03));
-    let shares = [(0.01, None), (0.2, Some(0.0075)), (0.6, Some(0.0675)), (0.61, None)];
+    let shares = [(0.01, None), (0.2, Some(0.0075)), (0.6, Some(0.0675)), (0.81, None)];
     for (courant, share) in shares {
         assert_eq!(lumping(&[("/time/courant", json!(courant))]), share, "{courant}");
     }
