@@ -4,7 +4,8 @@
 //! and at most the friction coefficient times the normal impulse of the wall (Coulomb). It acts on
 //! the velocity v' at the end of the step, when the normal impulse is known. With the lumped masses
 //! m and the mass matrix M of the particles themselves (not their images), their momentum p and
-//! force f, and r the last term of the series of v + dt b (see [`Fields`]),
+//! force f, and r = r_v + dt (a r_b + (1 - a) b) with the last terms r_v and r_b of the series of v
+//! and b and the share a of the full mass matrix (see [`Fields`]),
 //!
 //! ```text
 //! P = sum (m r + M (v' - r) - p - dt f)
