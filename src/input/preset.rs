@@ -61,36 +61,57 @@ const LARGE_MATCHED_COURANT: f64 = 0.8;
 struct Rule {
     applies: fn(&SceneContents) -> bool,
     /// Keys of the scene that change, as a merge patch (RFC 7396): `null` removes a key.
-    changes: fn() -> Value,
+    changes: fn(&SceneContents) -> Value,
     reason: &'static str,
 }
 
 /// Rules of all presets, in the order in which they act.
 const RULES: &[Rule] = &[
     Rule {
-        applies: |c| (c.contact || c.failure || c.gas) && !c.plane && !c.strength,
-        changes: || {
-            json!({"method": {"transfer": {"fmpm": 6}, "edge_mask": 0.3},
+        applies: |c| {
+            let other = (c.contact || c.failure) && !c.allows_lumping();
+            !c.plane && !c.strength && (c.gas || other)
+        },
+        changes: |c| {
+            let lumping = c.allows_lumping().then(|| matched_lumping(c.courant, 0.04));
+            json!({"method": {"transfer": {"fmpm": c.order(6)}, "edge_mask": 0.3,
+                    "mass_lumping": lumping},
                 "artificial_viscosity": moderate()})
         },
         reason: "a moderate viscosity, since surfaces may separate or gas may expand",
     },
     Rule {
         applies: |c| c.gas && !c.plane,
-        changes: || json!({"method": {"domain_limit": 4.0}}),
+        changes: |_| json!({"method": {"domain_limit": 4.0}}),
         reason: "a domain limit, since gas may expand without bound",
     },
     Rule {
-        applies: |c| c.strength && !c.plane,
-        changes: || {
-            json!({"method": {"transfer": {"fmpm": 6}, "edge_mask": 0.3},
+        applies: |c| {
+            let other = c.gas || !c.allows_lumping();
+            c.strength && !c.plane && other && !c.allows_flux_limiter()
+        },
+        changes: |c| {
+            json!({"method": {"transfer": {"fmpm": c.order(6)}, "edge_mask": 0.3},
                 "artificial_viscosity": {"linear": 0.2, "quadratic": 2.0, "growth": null}})
         },
         reason: "a stronger viscosity, since elastic precursors are more accurate with it",
     },
     Rule {
-        applies: |c| c.strength && !(c.plane || c.contact || c.failure || c.gas || c.porous),
-        changes: || {
+        applies: |c| {
+            let solid = c.failure || c.strength;
+            solid && !c.gas && c.allows_lumping() && !c.allows_flux_limiter()
+        },
+        changes: |c| {
+            json!({"method": {"transfer": {"fmpm": c.order(18)}, "edge_mask": 0.3,
+                    "mass_lumping": matched_lumping(c.courant, 0.04)},
+                "artificial_viscosity": {"linear": 0.08, "quadratic": 1.0, "expansion": 0.03,
+                    "growth": {"rate": 6.0, "max": 2.0}}})
+        },
+        reason: "a larger share of the lumped mass, since tension ahead of a shock does harm",
+    },
+    Rule {
+        applies: SceneContents::allows_flux_limiter,
+        changes: |_| {
             json!({"method": {"transfer": {"fmpm": 12}, "edge_mask": 0.4,
                     "flux_limiter": {"neighbours": 1}},
                 "artificial_viscosity": {"linear": 0.03, "quadratic": 0.4,
@@ -100,7 +121,7 @@ const RULES: &[Rule] = &[
     },
     Rule {
         applies: |c| c.plane,
-        changes: || {
+        changes: |_| {
             json!({"method": {"transfer": {"fmpm": 4}, "edge_mask": 0.3, "domain_limit": 1.0,
                     "heat_spreading": {"steps": 50},
                     "pressure_relaxation": {"rate": 0.2, "interval": 1}},
@@ -111,17 +132,17 @@ const RULES: &[Rule] = &[
     },
     Rule {
         applies: |c| c.plane && !(c.axisymmetric || c.gas || (c.body_force && !c.contact)),
-        changes: || json!({"method": {"spin": true, "domain_limit": 0.7}}),
+        changes: |_| json!({"method": {"spin": true, "domain_limit": 0.7}}),
         reason: "spin, since bodies may turn, with a shorter domain limit",
     },
     Rule {
         applies: |c| c.plane && c.fluid && c.allows_expansion(LARGE_COURANT),
-        changes: || json!({"artificial_viscosity": {"expansion": 0.1}}),
+        changes: |_| json!({"artificial_viscosity": {"expansion": 0.1}}),
         reason: "viscosity in expansion, which damps the oscillations behind shocks",
     },
     Rule {
         applies: |c| c.plane && c.strength,
-        changes: || {
+        changes: |_| {
             json!({"method": {"pressure_relaxation": {"rate": 0.4, "interval": 5}},
                 "artificial_viscosity": moderate()})
         },
@@ -129,7 +150,7 @@ const RULES: &[Rule] = &[
     },
     Rule {
         applies: |c| c.plane && c.gas && !c.burn && !c.sheared_gas,
-        changes: || {
+        changes: |_| {
             json!({"method": {"transfer": {"fmpm": 2}, "heat_spreading": null},
                 "artificial_viscosity": {"linear": 0.1, "quadratic": 0.5, "limited": "both"}})
         },
@@ -138,17 +159,17 @@ const RULES: &[Rule] = &[
     },
     Rule {
         applies: |c| c.moving_gas && !c.burn,
-        changes: || json!({"heat_mixing": {"coefficient": 20.0}}),
+        changes: |_| json!({"heat_mixing": {"coefficient": 20.0}}),
         reason: "heat mixing, since a shock heats a moving gas too much at the wall where it starts",
     },
     Rule {
         applies: |c| c.moving_gas && c.plane && !c.burn,
-        changes: || json!({"artificial_viscosity": {"linear": 0.05, "quadratic": 0.2}}),
+        changes: |_| json!({"artificial_viscosity": {"linear": 0.05, "quadratic": 0.2}}),
         reason: "a weak viscosity, which suffices with heat mixing",
     },
     Rule {
         applies: |c| c.sheared_gas,
-        changes: || {
+        changes: |_| {
             json!({"method": {"shape": "bspline_cubic", "spin": true, "volume_relaxation": 0.3,
                     "domain_limit": 0.7, "heat_spreading": null,
                     "pressure_relaxation": {"rate": 1.0, "interval": 1}},
@@ -159,27 +180,27 @@ const RULES: &[Rule] = &[
     },
     Rule {
         applies: |c| c.plane && c.gas_pressures_differ,
-        changes: || json!({"method": {"pressure_relaxation": {"rate": 0.02, "interval": 1}}}),
+        changes: |_| json!({"method": {"pressure_relaxation": {"rate": 0.02, "interval": 1}}}),
         reason: "slow relaxation, since it must not empty small particles beside gas of high pressure",
     },
     Rule {
         applies: |c| c.plane && c.burn,
-        changes: || json!({"method": {"heat_spreading": null}, "artificial_viscosity": moderate()}),
+        changes: |_| json!({"method": {"heat_spreading": null}, "artificial_viscosity": moderate()}),
         reason: "a moderate viscosity without spreading of heat, since a body is an explosive",
     },
     Rule {
         applies: |c| c.burn,
-        changes: || json!({"method": {"transfer": {"fmpm": 2}}}),
+        changes: |_| json!({"method": {"transfer": {"fmpm": 2}}}),
         reason: "a low transfer order, since errors at burn fronts grow with the order",
     },
     Rule {
         applies: |c| c.porous && !c.plane && !c.burn,
-        changes: || json!({"method": {"transfer": {"fmpm": 6}, "edge_mask": 0.3}}),
+        changes: |_| json!({"method": {"transfer": {"fmpm": 6}, "edge_mask": 0.3}}),
         reason: "a lower transfer order, since a body is porous",
     },
     Rule {
         applies: |c| c.porous,
-        changes: || {
+        changes: |_| {
             let off = Value::Null;
             json!({"artificial_viscosity":
                 {"linear": 0.5, "quadratic": 2.0, "growth": off, "limiter": off, "limited": off}})
@@ -188,7 +209,7 @@ const RULES: &[Rule] = &[
     },
     Rule {
         applies: |c| !c.fluid,
-        changes: || json!({"method": {"heat_spreading": null, "pressure_relaxation": null}}),
+        changes: |_| json!({"method": {"heat_spreading": null, "pressure_relaxation": null}}),
         reason: "no pressure relaxation and no spreading of heat, since every body is elastic",
     },
 ];
@@ -197,17 +218,10 @@ const RULES: &[Rule] = &[
 const DEFORMING: &str = "cpdi_bspline_quadratic";
 
 /// Share of the lumped mass that compensates the time step at a Courant number: 3/16 of its square,
-/// 0.03 at 0.4. A Courant number below 0.016 needs none; one that is not allowed has none.
-fn matched_lumping(courant: f64) -> Option<f64> {
-    let share = (1e4 * 3.0 / 16.0 * courant * courant).round() / 1e4;
+/// 0.03 at 0.4, and `excess`. `None` for a share of zero and for a Courant number that is not allowed.
+fn matched_lumping(courant: f64, excess: f64) -> Option<f64> {
+    let share = (1e4 * (3.0 / 16.0 * courant * courant + excess)).round() / 1e4;
     ((0.0..=1.0).contains(&courant) && share > 0.0).then_some(share)
-}
-
-/// Order of FMPM with which plane impacts with one particle per cell do not oscillate at a Courant
-/// number.
-fn sparse_order(courant: f64) -> u32 {
-    let orders = [(0.4, 8), (0.5, 6), (0.6, 4)];
-    orders.iter().find(|(largest, _)| courant <= *largest).map_or(2, |(_, order)| *order)
 }
 
 /// The viscosity for scenes in which a sharp front costs stability.
@@ -248,19 +262,16 @@ impl Preset {
         let reason = match self {
             Preset::Default => {
                 let is_impact = acting(contents).next().is_none();
-                if is_impact && contents.allows_expansion(LARGE_MATCHED_COURANT) {
-                    let method = json!({"transfer": {"fmpm": 14},
-                        "mass_lumping": matched_lumping(contents.courant)});
-                    let viscosity = json!({"linear": 0.055, "quadratic": 0.85, "expansion": 0.02});
-                    let changes = json!({"method": method, "artificial_viscosity": viscosity});
-                    merge(&mut base, &changes);
+                let changes = if is_impact && contents.allows_expansion(LARGE_MATCHED_COURANT) {
+                    json!({"method": {"transfer": {"fmpm": contents.order(14)},
+                            "mass_lumping": matched_lumping(contents.courant, 0.0)},
+                        "artificial_viscosity":
+                            {"linear": 0.055, "quadratic": 0.85, "expansion": 0.02}})
                 } else {
-                    merge(&mut base, &json!({"artificial_viscosity": {"linear": 0.15}}));
-                }
-                if contents.sparse_particles {
-                    let order = sparse_order(contents.courant);
-                    merge(&mut base, &json!({"method": {"transfer": {"fmpm": order}}}));
-                }
+                    json!({"method": {"transfer": {"fmpm": contents.order(8)}},
+                        "artificial_viscosity": {"linear": 0.15}})
+                };
+                merge(&mut base, &changes);
                 if is_impact && contents.plates_in_contact {
                     merge(&mut base, &json!({"method": {"frame": "total_lagrangian"}}));
                     "small error of plane impacts whose peak pressure is within 0.5 %; \
@@ -273,6 +284,11 @@ impl Preset {
                 let method = json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3});
                 merge(&mut base, &json!({"method": method, "artificial_viscosity": moderate()}));
                 "least error over all hard cases"
+            }
+            Preset::Sharpest if contents.contact => {
+                // the oscillations of a sharper method separate bodies in contact
+                base = Preset::Default.base(contents).0;
+                "the method of the preset default, since the bodies may separate"
             }
             Preset::Sharpest => {
                 let changes = json!({"method": {"transfer": {"fmpm": 14}},
@@ -379,7 +395,7 @@ fn acting(contents: &SceneContents) -> impl Iterator<Item = &'static Rule> {
 fn choose(preset: Preset, contents: &SceneContents) -> (Value, &'static str) {
     let (mut chosen, reason) = preset.base(contents);
     for rule in acting(contents) {
-        merge(&mut chosen, &(rule.changes)());
+        merge(&mut chosen, &(rule.changes)(contents));
     }
     (chosen, reason)
 }
@@ -474,9 +490,30 @@ impl SceneContents {
     /// Whether viscosity in expansion was measured with the contents of the scene and a Courant
     /// number up to `largest`.
     fn allows_expansion(&self, largest: f64) -> bool {
-        let solid = self.contact || self.failure || self.strength || self.porous;
-        let other = self.gas || self.burn || self.body_force || self.axisymmetric;
-        !(solid || other || self.untested_keys) && self.courant <= largest
+        let other = self.porous || self.burn || self.body_force || self.untested_keys;
+        let solid = self.contact || self.failure || self.strength;
+        let in_plane = self.plane && (solid || self.gas || self.axisymmetric);
+        !(other || in_plane) && self.courant <= largest
+    }
+
+    /// Whether a flux limiter suits the contents of the scene. Plane impacts oscillate with it at
+    /// larger Courant numbers, and with one particle per cell.
+    fn allows_flux_limiter(&self) -> bool {
+        let other = self.contact || self.failure || self.gas || self.porous || self.plane;
+        self.strength && !(other || self.sparse_particles) && self.courant <= LARGE_COURANT
+    }
+
+    /// The same for a share of the lumped mass with it, which is for lines.
+    fn allows_lumping(&self) -> bool {
+        !self.plane && self.allows_expansion(LARGE_MATCHED_COURANT)
+    }
+
+    /// Order of FMPM up to `most`; with one particle per cell at most that with which plane impacts
+    /// do not oscillate at the Courant number of the scene.
+    fn order(&self, most: u32) -> u32 {
+        let orders = [(0.4, 8), (0.5, 6), (0.6, 4)];
+        let largest = orders.iter().find(|(courant, _)| self.courant <= *courant);
+        if self.sparse_particles { most.min(largest.map_or(2, |(_, order)| *order)) } else { most }
     }
 
     /// Reads the contents of a scene whose library names are resolved and whose method has the keys

@@ -46,6 +46,12 @@ fn transfer_is(edits: &[(&str, Value)], transfer: &Value, reason: &str) {
     assert!(reasons.iter().any(|r| r.contains(reason)), "no `{reason}` in {reasons:?}");
 }
 
+/// Edits that give both plates `count` particles per cell.
+fn per_cell(count: u32) -> [(&'static str, Value); 2] {
+    ["/bodies/0/particles_per_cell", "/bodies/1/particles_per_cell"]
+        .map(|path| (path, json!([count])))
+}
+
 /// Linear and quadratic viscosity, and the linear one in expansion.
 fn viscosity(scene: &CheckedScene) -> (f64, f64, Option<f64>) {
     let viscosity = scene.scene.artificial_viscosity.expect("a viscosity");
@@ -56,20 +62,15 @@ fn viscosity(scene: &CheckedScene) -> (f64, f64, Option<f64>) {
 #[test]
 fn impacts_have_viscosity_in_expansion() {
     let order = |scene: &CheckedScene| json!(scene.scene.method.transfer)["fmpm"].clone();
-    let [one, two] = [json!([1]), json!([2])];
-    let pairs = |count: &Value| {
-        ["/bodies/0/particles_per_cell", "/bodies/1/particles_per_cell"]
-            .map(|path| (path, count.clone()))
-    };
-    let [few, usual] = [&one, &two].map(|count| edited(&pairs(count)));
+    let [few, usual] = [1, 2].map(|count| edited(&per_cell(count)));
     assert_eq!([order(&few), order(&usual)], [json!(8), json!(14)]);
     for (courant, least) in [(0.41, 6), (0.5, 6), (0.6, 4), (0.8, 2), (0.81, 2)] {
-        let edits = [pairs(&one).to_vec(), vec![("/time/courant", json!(courant))]].concat();
+        let edits = [per_cell(1).to_vec(), vec![("/time/courant", json!(courant))]].concat();
         assert_eq!(order(&edited(&edits)), json!(least), "one particle per cell at {courant}");
     }
     assert_eq!(viscosity(&usual), (0.055, 0.85, Some(0.02)));
     let with_key = |path: &'static str, value: Value| {
-        let scene = edited(&[pairs(&two).to_vec(), vec![(path, value)]].concat());
+        let scene = edited(&[per_cell(2).to_vec(), vec![(path, value)]].concat());
         (order(&scene), viscosity(&scene))
     };
     let former = (json!(8), (0.15, 0.5, None));
@@ -77,7 +78,7 @@ fn impacts_have_viscosity_in_expansion() {
     assert_eq!(with_key("/time/courant", json!(0.8)).0, 14);
     let sharpest = edited(
         &[
-            pairs(&two).to_vec(),
+            per_cell(2).to_vec(),
             vec![("/method", json!("sharpest")), ("/time/courant", json!(0.61))],
         ]
         .concat(),
@@ -133,7 +134,8 @@ fn impacts_have_a_share_of_the_lumped_mass() {
     }
     let strong = json!({"metal": {"library": "copper_johnson_cook"}});
     let own = json!({"preset": "default", "mass_lumping": 0.07});
-    let strong = edited(&[("/materials", strong), ("/method", own)]).scene.method;
+    let edits = [("/materials", strong), ("/method", own)];
+    let strong = edited(&[&per_cell(2)[..], &edits].concat()).scene.method;
     assert!(strong.flux_limiter.is_none() && strong.mass_lumping == Some(0.07));
     let explicit = |key: &str, value: Value| {
         let mut method = json!({"preset": "default"});
@@ -149,28 +151,61 @@ fn impacts_have_a_share_of_the_lumped_mass() {
 #[test]
 fn contents_change_the_default() {
     transfer_is(&[], &json!({"fmpm": 8}), "FMPM(8)");
-    transfer_is(
-        &[("/contact", json!({"type": "stick"}))],
-        &json!({"fmpm": 6}),
-        "surfaces may separate",
-    );
-    let strong = json!({"metal": {"library": "copper_johnson_cook"}});
-    transfer_is(&[("/materials", strong)], &json!({"fmpm": 12}), "flux limiter");
+    let contact = |preset: &str| {
+        edited(&[("/contact", json!({"type": "stick"})), ("/method", json!(preset))])
+    };
+    let [default, sharpest] = ["default", "sharpest"].map(contact);
+    assert_eq!(json!(default.scene.method)["transfer"], json!({"fmpm": 8}));
+    assert_eq!(viscosity(&default), (0.055, 0.85, Some(0.02)));
+    assert_eq!(json!(sharpest.scene.method), json!(default.scene.method));
+    assert_eq!(viscosity(&sharpest), viscosity(&default));
+    let strong = ("/materials", json!({"metal": {"library": "copper_johnson_cook"}}));
+    let strong = [&per_cell(2)[..], &[strong]].concat();
+    transfer_is(&strong, &json!({"fmpm": 12}), "flux limiter");
+    assert_eq!(viscosity(&edited(&strong)), (0.03, 0.4, None));
     let explosive = with("detonation.json", &["method=default"]).unwrap();
     assert_eq!(json!(explosive.scene.method.transfer), json!({"fmpm": 2}));
     assert!(choice(&explosive).reasons.join("; ").contains("burn fronts"));
-    let strong = json!({"metal": {"library": "copper_johnson_cook"}});
-    let contact = edited(&[("/contact", json!({"type": "stick"}))]);
-    let quadratic = |scene: CheckedScene| scene.scene.artificial_viscosity.unwrap().quadratic;
-    assert_eq!(quadratic(contact), 1.25);
-    assert_eq!(quadratic(edited(&[("/materials", strong)])), 0.4);
     let gas = json!({"metal": {"density": 1.0, "eos": {"type": "ideal_gas", "gamma": 1.4}}});
     let warm = json!([{"name": "gas", "material": "metal", "pressure": 1e5, "velocity": [0.0],
         "box": {"lower": [0.0], "upper": [0.002]}, "particles_per_cell": [2]}]);
     let edits = [("/materials", gas), ("/bodies", warm)];
     transfer_is(&edits, &json!({"fmpm": 6}), "domain limit");
+    assert_eq!(edited(&edits).scene.method.mass_lumping, Some(0.07));
     assert!(edited(&edits).scene.method.domain_limit.is_some());
     assert!(edited(&[]).scene.method.domain_limit.is_none());
+}
+
+/// Failure, and strength with contact, have a larger share of the lumped mass, unless the scene has
+/// what it was not measured with.
+#[test]
+fn scenes_that_tension_harms_have_a_larger_share_of_the_lumped_mass() {
+    let strong = ("/materials", json!({"metal": {"library": "copper_johnson_cook"}}));
+    let limit = json!({"type": "tension_limit", "stress": 1e9});
+    let failing = ("/materials", json!({"metal": {"library": "copper", "failure": limit}}));
+    let contact = ("/contact", json!({"type": "frictionless"}));
+    let made = |edits: &[(&'static str, Value)]| {
+        let scene = edited(&[&per_cell(2)[..], edits].concat());
+        let transfer = json!(scene.scene.method.transfer)["fmpm"].clone();
+        (transfer, scene.scene.method.mass_lumping, viscosity(&scene))
+    };
+    let expected = (json!(18), Some(0.07), (0.08, 1.0, Some(0.03)));
+    assert_eq!(made(&[failing.clone()]), expected);
+    assert_eq!(made(&[strong.clone(), contact.clone()]), expected);
+    assert_eq!(made(&[failing.clone(), ("/method", json!("robust"))]), expected);
+    // the flux limiter does not suit large Courant numbers and one particle per cell
+    assert_eq!(made(&[strong.clone()]), (json!(12), None, (0.03, 0.4, None)));
+    assert_eq!(made(&[strong.clone(), ("/time/courant", json!(0.61))]).0, 18);
+    let sparse = [&[strong.clone()], &per_cell(1)[..]].concat();
+    assert_eq!(made(&sparse), (json!(8), expected.1, expected.2));
+    assert_eq!(made(&[failing.clone(), ("/time/courant", json!(0.8))]).1, Some(0.16));
+    let moderate = (json!(6), None, (0.1, 1.25, None));
+    assert_eq!(made(&[failing.clone(), ("/time/courant", json!(0.81))]), moderate);
+    assert_eq!(made(&[failing, ("/body_force", json!({"gravity": [-10.0]}))]), moderate);
+    let cutoff = json!({"metal": {"library": "copper", "eos": {"tension_cutoff": 1e9}}});
+    assert_eq!(made(&[contact.clone(), ("/materials", cutoff)]), moderate);
+    let strongest = (json!(6), None, (0.2, 2.0, None));
+    assert_eq!(made(&[strong, contact, ("/time/courant", json!(0.81))]), strongest);
 }
 
 #[test]
@@ -350,7 +385,8 @@ fn presets_differ() {
     // what the frame does not suit
     for (material, transfer) in [("copper_johnson_cook", 12), ("copper", 14)] {
         let materials = json!({"metal": {"library": material}});
-        let scene = edited(&[("/method", json!("sharpest")), ("/materials", materials)]);
+        let edits = [("/method", json!("sharpest")), ("/materials", materials)];
+        let scene = edited(&[&per_cell(2)[..], &edits].concat());
         assert_eq!(json!(scene.scene.method.transfer), json!({"fmpm": transfer}), "{material}");
     }
     let eos = json!({"type": "neo_hookean", "youngs_modulus": 1e9, "poissons_ratio": 0.3});
