@@ -497,10 +497,11 @@ impl SceneContents {
     }
 
     /// Whether a flux limiter suits the contents of the scene. Plane impacts oscillate with it at
-    /// larger Courant numbers, and with one particle per cell.
+    /// other Courant numbers, and with one particle per cell.
     fn allows_flux_limiter(&self) -> bool {
         let other = self.contact || self.failure || self.gas || self.porous || self.plane;
-        self.strength && !(other || self.sparse_particles) && self.courant <= LARGE_COURANT
+        let oscillates = self.sparse_particles || !(0.3..=0.5).contains(&self.courant);
+        self.strength && !(other || oscillates)
     }
 
     /// The same for a share of the lumped mass with it, which is for lines.

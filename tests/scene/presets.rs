@@ -193,9 +193,11 @@ fn scenes_that_tension_harms_have_a_larger_share_of_the_lumped_mass() {
     assert_eq!(made(&[failing.clone()]), expected);
     assert_eq!(made(&[strong.clone(), contact.clone()]), expected);
     assert_eq!(made(&[failing.clone(), ("/method", json!("robust"))]), expected);
-    // the flux limiter does not suit large Courant numbers and one particle per cell
+    // the flux limiter does not suit other Courant numbers and one particle per cell
     assert_eq!(made(&[strong.clone()]), (json!(12), None, (0.03, 0.4, None)));
-    assert_eq!(made(&[strong.clone(), ("/time/courant", json!(0.61))]).0, 18);
+    for courant in [0.29, 0.51] {
+        assert_eq!(made(&[strong.clone(), ("/time/courant", json!(courant))]).0, 18);
+    }
     let sparse = [&[strong.clone()], &per_cell(1)[..]].concat();
     assert_eq!(made(&sparse), (json!(8), expected.1, expected.2));
     assert_eq!(made(&[failing.clone(), ("/time/courant", json!(0.8))]).1, Some(0.16));

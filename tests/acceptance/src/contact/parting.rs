@@ -133,18 +133,11 @@ impl Parting {
                 "cell_size": CELL
             },
             "time": {"end": self.end, "courant": 0.4},
-            "method": {
-                "frame": frame, "shape": "cpdi_bspline_quadratic", "transfer": {"fmpm": 6},
-                "stepping": "midpoint", "energy": "compatible", "filter_heat": true,
-                "pressure_relaxation": {"rate": 0.1, "interval": 1}, "edge_mask": 0.3
-            },
+            "method": {"preset": "default", "frame": frame},
             "materials": materials,
             "bodies": [
                 body(0, "flyer", -thickness, 0.0, self.speed), body(1, "target", 0.0, length, 0.0)
             ],
-            "artificial_viscosity": {
-                "linear": 0.1, "quadratic": 1.25, "limiter": "christensen", "limited": "linear"
-            },
             "contact": {"type": "frictionless"}
         });
         if dimension == 2 {
