@@ -458,7 +458,8 @@ fn every_key_with_a_dimension_takes_units() {
 }
 
 /// Keys of the shipped scenes without a dimension.
-const PLAIN: [&str; 34] = [
+const PLAIN: [&str; 36] = [
+    "artificial_viscosity.expansion",
     "artificial_viscosity.growth.max",
     "artificial_viscosity.growth.rate",
     "artificial_viscosity.linear",
@@ -486,6 +487,7 @@ const PLAIN: [&str; 34] = [
     "materials.NAME.thermal.taylor_quinney",
     "method.domain_limit",
     "method.edge_mask",
+    "method.mass_lumping",
     "method.pressure_relaxation.interval",
     "method.pressure_relaxation.rate",
     "method.transfer.fmpm",
