@@ -27,8 +27,11 @@ struct SceneContents {
     /// Some body has one particle per cell, or particles from a file.
     sparse_particles: bool,
     /// A material has a tension cutoff, or the scene gives a transfer, a stepping, a shape function, a
-    /// flux limiter or a viscosity of its own: viscosity in expansion was not measured with these.
+    /// flux limiter or a viscosity of its own, or no share of the lumped mass: viscosity in expansion
+    /// was not measured with these.
     untested_keys: bool,
+    /// Keys of the scene exclude the flux limiter.
+    excludes_flux_limiter: bool,
     /// Courant number, the default if the scene gives none.
     courant: f64,
     /// Some body is a fluid, or a solid whose pressure follows an equation of state of fluids.
@@ -58,6 +61,10 @@ const LARGE_COURANT: f64 = 0.6;
 /// The same with a share of the lumped mass.
 const LARGE_MATCHED_COURANT: f64 = 0.8;
 
+/// Share of the lumped mass, beyond that which compensates the time step, with which little tension
+/// is left ahead of a shock.
+const ADDED_LUMPING: f64 = 0.04;
+
 struct Rule {
     applies: fn(&SceneContents) -> bool,
     /// Keys of the scene that change, as a merge patch (RFC 7396): `null` removes a key.
@@ -69,13 +76,13 @@ struct Rule {
 const RULES: &[Rule] = &[
     Rule {
         applies: |c| {
-            let other = (c.contact || c.failure) && !c.allows_lumping();
-            !c.plane && !c.strength && (c.gas || other)
+            let unlumped = (c.contact || c.failure) && !c.allows_lumping();
+            !c.plane && !c.strength && (c.gas || unlumped)
         },
         changes: |c| {
-            let lumping = c.allows_lumping().then(|| matched_lumping(c.courant, 0.04));
+            let share = c.allows_lumping().then(|| lumping(c.courant, ADDED_LUMPING));
             json!({"method": {"transfer": {"fmpm": c.order(6)}, "edge_mask": 0.3,
-                    "mass_lumping": lumping},
+                    "mass_lumping": share},
                 "artificial_viscosity": moderate()})
         },
         reason: "a moderate viscosity, since surfaces may separate or gas may expand",
@@ -87,8 +94,8 @@ const RULES: &[Rule] = &[
     },
     Rule {
         applies: |c| {
-            let other = c.gas || !c.allows_lumping();
-            c.strength && !c.plane && other && !c.allows_flux_limiter()
+            let unlumped = c.gas || !c.allows_lumping();
+            c.strength && !c.plane && unlumped && !c.allows_flux_limiter()
         },
         changes: |c| {
             json!({"method": {"transfer": {"fmpm": c.order(6)}, "edge_mask": 0.3},
@@ -98,16 +105,17 @@ const RULES: &[Rule] = &[
     },
     Rule {
         applies: |c| {
-            let solid = c.failure || c.strength;
-            solid && !c.gas && c.allows_lumping() && !c.allows_flux_limiter()
+            let tension_matters = c.failure || c.strength;
+            tension_matters && !c.gas && c.allows_lumping() && !c.allows_flux_limiter()
         },
         changes: |c| {
             json!({"method": {"transfer": {"fmpm": c.order(18)}, "edge_mask": 0.3,
-                    "mass_lumping": matched_lumping(c.courant, 0.04)},
+                    "mass_lumping": lumping(c.courant, ADDED_LUMPING)},
                 "artificial_viscosity": {"linear": 0.08, "quadratic": 1.0, "expansion": 0.03,
                     "growth": {"rate": 6.0, "max": 2.0}}})
         },
-        reason: "a larger share of the lumped mass, since tension ahead of a shock does harm",
+        reason: "a larger share of the lumped mass, since tension ahead of a shock would make particles \
+                 fail or weaken elastic precursors",
     },
     Rule {
         applies: SceneContents::allows_flux_limiter,
@@ -195,7 +203,7 @@ const RULES: &[Rule] = &[
     },
     Rule {
         applies: |c| c.porous && !c.plane && !c.burn,
-        changes: |_| json!({"method": {"transfer": {"fmpm": 6}, "edge_mask": 0.3}}),
+        changes: |c| json!({"method": {"transfer": {"fmpm": c.order(6)}, "edge_mask": 0.3}}),
         reason: "a lower transfer order, since a body is porous",
     },
     Rule {
@@ -217,10 +225,10 @@ const RULES: &[Rule] = &[
 /// Shape function of the presets, on domains that deform.
 const DEFORMING: &str = "cpdi_bspline_quadratic";
 
-/// Share of the lumped mass that compensates the time step at a Courant number: 3/16 of its square,
-/// 0.03 at 0.4, and `excess`. `None` for a share of zero and for a Courant number that is not allowed.
-fn matched_lumping(courant: f64, excess: f64) -> Option<f64> {
-    let share = (1e4 * (3.0 / 16.0 * courant * courant + excess)).round() / 1e4;
+/// Share of the lumped mass at a Courant number: 3/16 of its square, which compensates the error of
+/// the time step, and `added`. `None` for a share of zero and for a Courant number that is not allowed.
+fn lumping(courant: f64, added: f64) -> Option<f64> {
+    let share = (1e4 * (3.0 / 16.0 * courant * courant + added)).round() / 1e4;
     ((0.0..=1.0).contains(&courant) && share > 0.0).then_some(share)
 }
 
@@ -259,12 +267,19 @@ impl Preset {
             "limited": "linear"
         });
         let mut base = json!({"method": method, "artificial_viscosity": viscosity});
+        if contents.contact && !contents.plane && self != Preset::Default {
+            // oscillations of `sharpest` separate bodies; `robust` oscillates at large Courant numbers
+            return (
+                Preset::Default.base(contents).0,
+                "the method of default, which suits contact best",
+            );
+        }
         let reason = match self {
             Preset::Default => {
                 let is_impact = acting(contents).next().is_none();
                 let changes = if is_impact && contents.allows_expansion(LARGE_MATCHED_COURANT) {
                     json!({"method": {"transfer": {"fmpm": contents.order(14)},
-                            "mass_lumping": matched_lumping(contents.courant, 0.0)},
+                            "mass_lumping": lumping(contents.courant, 0.0)},
                         "artificial_viscosity":
                             {"linear": 0.055, "quadratic": 0.85, "expansion": 0.02}})
                 } else {
@@ -284,11 +299,6 @@ impl Preset {
                 let method = json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3});
                 merge(&mut base, &json!({"method": method, "artificial_viscosity": moderate()}));
                 "least error over all hard cases"
-            }
-            Preset::Sharpest if contents.contact => {
-                // the oscillations of a sharper method separate bodies in contact
-                base = Preset::Default.base(contents).0;
-                "the method of the preset default, since the bodies may separate"
             }
             Preset::Sharpest => {
                 let changes = json!({"method": {"transfer": {"fmpm": 14}},
@@ -479,6 +489,16 @@ fn override_keys(method: &mut Map<String, Value>, explicit: Map<String, Value>) 
     reasons
 }
 
+/// Whether the keys `explicit` of a method exclude the flux limiter.
+fn excludes_flux_limiter(explicit: &Map<String, Value>) -> bool {
+    let transfer = explicit.get("transfer").cloned();
+    let transfer = transfer.and_then(|t| serde_json::from_value::<Transfer>(t).ok());
+    transfer.is_some_and(|transfer| !transfer.plan().full_mass_matrix)
+        || explicit.get("stepping").is_some_and(|stepping| stepping == "leapfrog")
+        || explicit.get("flux_limiter").is_some_and(Value::is_null)
+        || explicit.get("mass_lumping").is_some_and(|share| !share.is_null())
+}
+
 /// Whether the particle domains of a shape function deform.
 fn deforms(shape: &Value) -> bool {
     use crate::shape::{DomainExtent, ShapeKind};
@@ -490,23 +510,23 @@ impl SceneContents {
     /// Whether viscosity in expansion was measured with the contents of the scene and a Courant
     /// number up to `largest`.
     fn allows_expansion(&self, largest: f64) -> bool {
-        let other = self.porous || self.burn || self.body_force || self.untested_keys;
-        let solid = self.contact || self.failure || self.strength;
-        let in_plane = self.plane && (solid || self.gas || self.axisymmetric);
-        !(other || in_plane) && self.courant <= largest
+        let untested = self.porous || self.burn || self.body_force || self.untested_keys;
+        let untested_in_plane =
+            self.contact || self.failure || self.strength || self.gas || self.axisymmetric;
+        !(untested || (self.plane && untested_in_plane)) && self.courant <= largest
     }
 
-    /// Whether a flux limiter suits the contents of the scene. Plane impacts oscillate with it at
-    /// other Courant numbers, and with one particle per cell.
-    fn allows_flux_limiter(&self) -> bool {
-        let other = self.contact || self.failure || self.gas || self.porous || self.plane;
-        let oscillates = self.sparse_particles || !(0.3..=0.5).contains(&self.courant);
-        self.strength && !(other || oscillates)
-    }
-
-    /// The same for a share of the lumped mass with it, which is for lines.
+    /// Whether a share of the lumped mass was measured with the contents of the scene, on a line.
     fn allows_lumping(&self) -> bool {
-        !self.plane && self.allows_expansion(LARGE_MATCHED_COURANT)
+        self.fluid && !self.plane && self.allows_expansion(LARGE_MATCHED_COURANT)
+    }
+
+    /// Whether the presets limit fluxes in this scene. Impacts on a line have larger errors with it at
+    /// Courant numbers below 0.3 and above 0.5, and oscillate with one particle per cell.
+    fn allows_flux_limiter(&self) -> bool {
+        let without = self.contact || self.failure || self.gas || self.porous || self.plane;
+        let inaccurate = self.sparse_particles || !(0.3..=0.5).contains(&self.courant);
+        self.strength && !(without || inaccurate || self.excludes_flux_limiter)
     }
 
     /// Order of FMPM up to `most`; with one particle per cell at most that with which plane impacts
@@ -562,7 +582,9 @@ impl SceneContents {
                 .any(|key| explicit.contains_key(*key))
                 || scene.contains_key("artificial_viscosity")
                 || explicit.get("flux_limiter").is_some_and(|limiter| !limiter.is_null())
+                || explicit.get("mass_lumping").is_some_and(Value::is_null)
                 || scene.get("materials").is_some_and(has_tension_cutoff),
+            excludes_flux_limiter: excludes_flux_limiter(explicit),
             courant,
             fluid: any(|m, _| !m.eos.is_solid()),
             strength: any(|m, _| m.strength.is_some()),
@@ -652,9 +674,15 @@ fn stay_in_contact(scene: &Map<String, Value>) -> bool {
 mod tests {
     use super::*;
 
-    /// Every combination of contents.
-    fn all() -> impl Iterator<Item = SceneContents> {
-        (0..1 << 17_u32).map(|bits| {
+    /// Combinations of contents, without those that repeat others or cannot occur.
+    fn all(courant: f64) -> impl Iterator<Item = SceneContents> {
+        let occurs = |bits: &u32| {
+            let has = |k: u32| bits >> k & 1 == 1;
+            let lines = has(2) || has(9);
+            let gases = [7, 12, 13].into_iter().any(has);
+            !(lines && has(0)) && (has(2) || !has(9)) && (has(0) || !has(10)) && (has(6) || !gases)
+        };
+        (0..1 << 18_u32).filter(occurs).map(move |bits| {
             let has = |k: u32| bits >> k & 1 == 1;
             SceneContents {
                 plane: has(0),
@@ -669,7 +697,8 @@ mod tests {
                 plates_in_contact: has(9),
                 sparse_particles: has(15),
                 untested_keys: has(16),
-                courant: 0.4,
+                excludes_flux_limiter: has(17),
+                courant,
                 axisymmetric: has(10),
                 body_force: has(11),
                 moving_gas: has(6) && has(12),
@@ -683,34 +712,49 @@ mod tests {
 
     #[test]
     fn options_of_every_choice_fit_each_other() {
-        for (preset, c) in Preset::ALL.iter().flat_map(|p| all().map(move |c| (p, c))) {
-            let (chosen, _) = choose(*preset, &c);
-            let [method, viscosity] = ["method", "artificial_viscosity"].map(|key| &chosen[key]);
-            let has = |value: &Value, key: &str| !value[key].is_null();
-            assert!(!has(viscosity, "limited") || has(viscosity, "limiter"), "{viscosity}");
-            let total = has(method, "frame");
-            assert!(!total || !has(method, "domain_limit"), "{method}");
-            let expands = has(viscosity, "expansion");
-            assert!(!expands || has(viscosity, "limiter"), "{viscosity}");
-            assert!(!expands || c.allows_expansion(LARGE_MATCHED_COURANT), "{viscosity}");
-            assert!(!has(method, "spin") || (c.plane && !c.axisymmetric && !total), "{method}");
-            assert!(!has(method, "flux_limiter") || !(c.plane || c.contact), "{method}");
-            assert!(!has(method, "mass_lumping") || !has(method, "flux_limiter"), "{method}");
-            assert_eq!(has(method, "pressure_relaxation"), c.fluid);
-            if c.porous {
-                assert_eq!([&viscosity["linear"], &viscosity["quadratic"]], [0.5, 2.0]);
+        let courants = [0.2, 0.4, 0.6, 0.81];
+        for c in courants.into_iter().flat_map(all) {
+            let choices = Preset::ALL.map(|preset| choose(preset, &c).0);
+            if c.contact && !c.plane {
+                assert!(choices.iter().all(|choice| *choice == choices[0]), "{choices:?}");
             }
-            assert_eq!(has(&chosen, "heat_mixing"), c.moving_gas && !c.burn);
-            if c.burn {
-                assert_eq!(method["transfer"], json!({"fmpm": 2}));
+            for chosen in choices {
+                options_fit_each_other(&chosen, &c);
             }
-            let cubic = c.sheared_gas;
-            assert_eq!(method["shape"] == "bspline_cubic", cubic, "{method}");
-            if c.plane && c.fluid && !c.strength && !c.gas_pressures_differ {
-                assert_eq!(method["pressure_relaxation"]["rate"], if cubic { 1.0 } else { 0.2 });
-            }
-            let growth = viscosity["growth"]["max"].as_f64().unwrap_or(f64::INFINITY);
-            assert!(growth > viscosity["quadratic"].as_f64().unwrap(), "{viscosity}");
         }
+    }
+
+    /// Panics if options of the method of a scene with the contents `c` exclude each other.
+    fn options_fit_each_other(chosen: &Value, c: &SceneContents) {
+        let [method, viscosity] = ["method", "artificial_viscosity"].map(|key| &chosen[key]);
+        let has = |value: &Value, key: &str| !value[key].is_null();
+        assert!(!has(viscosity, "limited") || has(viscosity, "limiter"), "{viscosity}");
+        let total = has(method, "frame");
+        assert!(!total || !has(method, "domain_limit"), "{method}");
+        let expands = has(viscosity, "expansion");
+        assert!(!expands || has(viscosity, "limiter"), "{viscosity}");
+        assert!(!expands || c.allows_expansion(LARGE_MATCHED_COURANT), "{viscosity}");
+        assert!(!has(method, "spin") || (c.plane && !c.axisymmetric && !total), "{method}");
+        let no_fluxes = c.plane || c.contact || c.failure || c.gas || c.porous;
+        assert!(!has(method, "flux_limiter") || !no_fluxes, "{method}");
+        let lumps = has(method, "mass_lumping");
+        assert!(!lumps || (c.allows_lumping() && !has(method, "flux_limiter")), "{method}");
+        let order = method["transfer"]["fmpm"].as_u64().unwrap();
+        assert!(c.plane || order <= u64::from(c.order(18)) || !c.contact, "{method}");
+        assert_eq!(has(method, "pressure_relaxation"), c.fluid);
+        if c.porous {
+            assert_eq!([&viscosity["linear"], &viscosity["quadratic"]], [0.5, 2.0]);
+        }
+        assert_eq!(has(chosen, "heat_mixing"), c.moving_gas && !c.burn);
+        if c.burn {
+            assert_eq!(method["transfer"], json!({"fmpm": 2}));
+        }
+        let cubic = c.sheared_gas;
+        assert_eq!(method["shape"] == "bspline_cubic", cubic, "{method}");
+        if c.plane && c.fluid && !c.strength && !c.gas_pressures_differ {
+            assert_eq!(method["pressure_relaxation"]["rate"], if cubic { 1.0 } else { 0.2 });
+        }
+        let growth = viscosity["growth"]["max"].as_f64().unwrap_or(f64::INFINITY);
+        assert!(growth > viscosity["quadratic"].as_f64().unwrap(), "{viscosity}");
     }
 }

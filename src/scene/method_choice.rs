@@ -10,11 +10,13 @@ pub enum Preset {
     /// The most accurate method that was measured to be stable with the contents of the scene.
     Default,
     /// The shape function and the transfer with the smallest error of those that pass every hard
-    /// case, with a moderate viscosity.
+    /// case, with a moderate viscosity. It equals `default` with contact, failure, strength, gas or
+    /// pores on a line.
     Robust,
     /// Of the methods in the range of the error estimate, the one with the smallest mean of E1
     /// over ten plane impacts; in the total-Lagrangian frame if the scene has only fluids on a
-    /// line that touch and stay in contact.
+    /// line that touch and stay in contact. It equals `default` in two dimensions, and with contact,
+    /// failure, strength, gas or pores.
     Sharpest,
 }
 

@@ -152,13 +152,17 @@ fn impacts_have_a_share_of_the_lumped_mass() {
 fn contents_change_the_default() {
     transfer_is(&[], &json!({"fmpm": 8}), "FMPM(8)");
     let contact = |preset: &str| {
-        edited(&[("/contact", json!({"type": "stick"})), ("/method", json!(preset))])
+        let contact = ("/contact", json!({"type": "frictionless"}));
+        edited(&[&per_cell(2)[..], &[contact, ("/method", json!(preset))]].concat())
     };
-    let [default, sharpest] = ["default", "sharpest"].map(contact);
-    assert_eq!(json!(default.scene.method)["transfer"], json!({"fmpm": 8}));
+    let [default, robust, sharpest] = ["default", "robust", "sharpest"].map(contact);
+    assert_eq!(json!(default.scene.method)["transfer"], json!({"fmpm": 14}));
+    assert_eq!(default.scene.method.mass_lumping, Some(0.03));
     assert_eq!(viscosity(&default), (0.055, 0.85, Some(0.02)));
-    assert_eq!(json!(sharpest.scene.method), json!(default.scene.method));
-    assert_eq!(viscosity(&sharpest), viscosity(&default));
+    for other in [robust, sharpest] {
+        assert_eq!(json!(other.scene.method), json!(default.scene.method));
+        assert_eq!(viscosity(&other), viscosity(&default));
+    }
     let strong = ("/materials", json!({"metal": {"library": "copper_johnson_cook"}}));
     let strong = [&per_cell(2)[..], &[strong]].concat();
     transfer_is(&strong, &json!({"fmpm": 12}), "flux limiter");
@@ -176,38 +180,92 @@ fn contents_change_the_default() {
     assert!(edited(&[]).scene.method.domain_limit.is_none());
 }
 
-/// Failure, and strength with contact, have a larger share of the lumped mass, unless the scene has
-/// what it was not measured with.
+/// Order, share of the lumped mass and viscosity on a line. Failure and strength have a larger share,
+/// unless the scene has what it was not measured with.
 #[test]
-fn scenes_that_tension_harms_have_a_larger_share_of_the_lumped_mass() {
-    let strong = ("/materials", json!({"metal": {"library": "copper_johnson_cook"}}));
+fn tension_gas_and_contact_change_the_share_of_the_lumped_mass() {
     let limit = json!({"type": "tension_limit", "stress": 1e9});
-    let failing = ("/materials", json!({"metal": {"library": "copper", "failure": limit}}));
+    let gas = json!({"density": 1.0, "eos": {"type": "ideal_gas", "gamma": 1.4}});
+    let rubber = json!({"density": 1000.0,
+        "eos": {"type": "neo_hookean", "youngs_modulus": 1e9, "poissons_ratio": 0.3}});
+    let metal = |metal: Value| ("/materials", json!({"metal": metal}));
+    let strong = metal(json!({"library": "copper_johnson_cook"}));
+    let failing = metal(json!({"library": "copper", "failure": limit}));
+    let both = metal(json!({"library": "copper_johnson_cook", "failure": limit}));
+    let cutoff = metal(json!({"library": "copper", "eos": {"tension_cutoff": 1e9}}));
+    let [gas, rubber] = [gas, rubber].map(metal);
     let contact = ("/contact", json!({"type": "frictionless"}));
-    let made = |edits: &[(&'static str, Value)]| {
-        let scene = edited(&[&per_cell(2)[..], edits].concat());
+    let courant = |courant: f64| ("/time/courant", json!(courant));
+    let gravity = ("/body_force", json!({"gravity": [-10.0]}));
+    let method = |key: &str, value: Value| {
+        let mut method = json!({"preset": "default"});
+        method[key] = value;
+        ("/method", method)
+    };
+    let made = |edits: &[&(&'static str, Value)]| {
+        let edits: Vec<_> = edits.iter().map(|edit| (*edit).clone()).collect();
+        let scene = edited(&[&per_cell(2)[..], &edits].concat());
         let transfer = json!(scene.scene.method.transfer)["fmpm"].clone();
         (transfer, scene.scene.method.mass_lumping, viscosity(&scene))
     };
-    let expected = (json!(18), Some(0.07), (0.08, 1.0, Some(0.03)));
-    assert_eq!(made(std::slice::from_ref(&failing)), expected);
-    assert_eq!(made(&[strong.clone(), contact.clone()]), expected);
-    assert_eq!(made(&[failing.clone(), ("/method", json!("robust"))]), expected);
-    // the flux limiter does not suit other Courant numbers and one particle per cell
-    assert_eq!(made(std::slice::from_ref(&strong)), (json!(12), None, (0.03, 0.4, None)));
-    for courant in [0.29, 0.51] {
-        assert_eq!(made(&[strong.clone(), ("/time/courant", json!(courant))]).0, 18);
-    }
-    let sparse = [std::slice::from_ref(&strong), &per_cell(1)].concat();
-    assert_eq!(made(&sparse), (json!(8), expected.1, expected.2));
-    assert_eq!(made(&[failing.clone(), ("/time/courant", json!(0.8))]).1, Some(0.16));
+    let shared = (json!(18), Some(0.07), (0.08, 1.0, Some(0.03)));
+    let limited = (json!(12), None, (0.03, 0.4, None));
     let moderate = (json!(6), None, (0.1, 1.25, None));
-    assert_eq!(made(&[failing.clone(), ("/time/courant", json!(0.81))]), moderate);
-    assert_eq!(made(&[failing, ("/body_force", json!({"gravity": [-10.0]}))]), moderate);
-    let cutoff = json!({"metal": {"library": "copper", "eos": {"tension_cutoff": 1e9}}});
-    assert_eq!(made(&[contact.clone(), ("/materials", cutoff)]), moderate);
     let strongest = (json!(6), None, (0.2, 2.0, None));
-    assert_eq!(made(&[strong, contact, ("/time/courant", json!(0.81))]), strongest);
+    let robust = ("/method", json!("robust"));
+    for (edits, expected) in [
+        (vec![&failing], &shared),
+        (vec![&both], &shared),
+        (vec![&strong, &contact], &shared),
+        (vec![&failing, &robust], &shared),
+        (vec![&failing, &courant(0.81)], &moderate),
+        (vec![&failing, &gravity], &moderate),
+        (vec![&failing, &method("mass_lumping", Value::Null)], &moderate),
+        (vec![&contact, &cutoff], &moderate),
+        (vec![&contact, &rubber], &moderate),
+        (vec![&strong, &contact, &courant(0.81)], &strongest),
+        (vec![&strong, &gravity, &courant(0.6)], &strongest),
+        // the flux limiter, and what it does not suit
+        (vec![&strong], &limited),
+        (vec![&strong, &courant(0.3)], &limited),
+        (vec![&strong, &courant(0.5)], &limited),
+        (vec![&strong, &gravity], &limited),
+        (vec![&strong, &method("flux_limiter", Value::Null)], &shared),
+        (vec![&strong, &method("mass_lumping", json!(0.07))], &shared),
+        // gas
+        (vec![&gas], &(json!(6), Some(0.07), moderate.2)),
+        (vec![&gas, &contact], &(json!(6), Some(0.07), moderate.2)),
+        (vec![&gas, &gravity], &moderate),
+    ] {
+        assert_eq!(&made(&edits), expected, "{edits:?}");
+    }
+    for (number, share) in [(0.29, 0.0558), (0.51, 0.0888), (0.8, 0.16)] {
+        assert_eq!(made(&[&strong, &courant(number)]).1, Some(share));
+    }
+    // one particle per cell
+    let sparse = per_cell(1);
+    let sparse =
+        |edits: &[&(&'static str, Value)]| made(&[edits, &[&sparse[0], &sparse[1]]].concat()).0;
+    for (number, order) in [(0.4, 8), (0.6, 4), (0.8, 2)] {
+        for edits in [vec![&contact], vec![&strong], vec![&failing]] {
+            assert_eq!(sparse(&[edits, vec![&courant(number)]].concat()), order);
+        }
+    }
+}
+
+/// The scenes whose plates separate have the method that their contents would get.
+#[test]
+fn scenes_with_contact_have_the_default() {
+    for name in ["gap.json", "soft_flyer.json", "three_plates.json"] {
+        let mut value: Value = serde_json::from_slice(&shipped(name)).unwrap();
+        let own = parse(value.to_string().as_bytes(), name, &[]).unwrap().scene;
+        for key in ["method", "artificial_viscosity"] {
+            value.as_object_mut().unwrap().remove(key);
+        }
+        let chosen = parse(value.to_string().as_bytes(), name, &[]).unwrap().scene;
+        assert_eq!(json!(own.method), json!(chosen.method), "{name}");
+        assert_eq!(json!(own.artificial_viscosity), json!(chosen.artificial_viscosity), "{name}");
+    }
 }
 
 #[test]
