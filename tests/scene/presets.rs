@@ -97,15 +97,18 @@ fn impacts_have_viscosity_in_expansion() {
     for key in ["method", "artificial_viscosity"] {
         oblique.as_object_mut().unwrap().remove(key);
     }
-    let mut expansion = |key: &str, value: Value| {
+    let mut made = |key: &str, value: Value| {
         oblique[key] = value;
         let scene = parse(oblique.to_string().as_bytes(), "oblique.json", &[]).unwrap();
-        viscosity(&scene).2
+        let order = json!(scene.scene.method.transfer)["fmpm"].as_u64();
+        (order, scene.scene.method.mass_lumping, viscosity(&scene).2)
     };
-    assert_eq!(expansion("title", json!("plates")), Some(0.1));
-    assert_eq!(expansion("time", json!({"end": 3e-7, "courant": 0.61})), None);
-    assert_eq!(expansion("time", json!({"end": 3e-7})), Some(0.1));
-    assert_eq!(expansion("contact", json!({"type": "frictionless"})), None);
+    let plain = (Some(4), None, None);
+    let matched = (Some(6), Some(0.03), Some(0.1));
+    assert_eq!(made("title", json!("plates")), matched);
+    assert_eq!(made("time", json!({"end": 3e-7, "courant": 0.61})), plain);
+    assert_eq!(made("time", json!({"end": 3e-7})), matched);
+    assert_eq!(made("contact", json!({"type": "frictionless"})), plain);
 }
 
 #[test]
