@@ -44,6 +44,7 @@ pub use multi_body_constraint::MultiBodyConstraint;
 pub use patch_contact::PatchContact;
 pub use self_contact::SelfContact;
 
+use decomp::array::from_fn;
 use smallvec::SmallVec;
 
 use super::scheme::Scheme;
@@ -98,7 +99,7 @@ impl<const D: usize> Scheme<D> {
     ) {
         let f = &self.fields;
         let fields = &patch.nodes.fields;
-        let vector = |k: usize| decomp::array::from_fn(|a| &fields[k + a][..]);
+        let vector = |k: usize| from_fn(|a| &fields[k + a][..]);
         let sums = [vector(f.lumped_velocity), vector(f.acceleration)];
         let nodes = &found.nodes;
         let layers = patch.nodes.layers;
@@ -155,7 +156,7 @@ impl<const D: usize> Scheme<D> {
     /// Grid index of the node at index `node` in a layer.
     fn index_of(&self, patch: &Patch<D>, node: usize) -> [i64; D] {
         let (nodes, stride) = (&patch.nodes.nodes, patch.stencils.stride);
-        decomp::array::from_fn(|a| {
+        from_fn(|a| {
             let at = if D == 1 { node } else { [node % stride, node / stride][a] };
             nodes.lower[a] + at as i64
         })
@@ -176,7 +177,7 @@ impl<const D: usize> Scheme<D> {
     /// Position of a particle relative to the initial position of a node [cells].
     fn place(&self, patch: &Patch<D>, particle: usize, index: [i64; D]) -> [f64; D] {
         let cell = patch.block.cells[particle];
-        decomp::array::from_fn(|a| {
+        from_fn(|a| {
             let cells = (i64::from(cell[a]) - index[a]) as f64;
             let first = cells + patch.block.columns[self.columns.fraction + a][particle];
             self.columns.displacement.map_or(first, |shift| {
@@ -211,19 +212,18 @@ impl<const D: usize> Scheme<D> {
                 member.gradient[a] += filled[r] * weights.gradient(a)[at / K][at % K];
             }
             let place = self.place(patch, r, index);
-            let metres =
-                |v: [f64; D]| -> [f64; D] { decomp::array::from_fn(|a| v[a] * self.cell[a]) };
+            let place = from_fn(|a| place[a] * self.cell[a]);
             let half_edges = match c.half_edges {
-                None => [metres([0.5 * filled[r]; D]), [0.0; D]],
+                None => [from_fn(|a| 0.5 * filled[r] * self.cell[a]), [0.0; D]],
                 Some(first) => {
-                    [0, 1].map(|k| metres(decomp::array::from_fn(|a| column(first + 2 * k + a)[r])))
+                    from_fn(|k| from_fn(|a| column(first + 2 * k + a)[r] * self.cell[a]))
                 }
             };
-            let faces = c.faces.map_or([[0.0; 2]; 2], |first| {
-                [0, 1].map(|k| [0, 1].map(|a| column(first + 2 * k + a)[r]))
-            });
+            let faces = match c.faces {
+                None => [[0.0; 2]; 2],
+                Some(first) => from_fn(|k| from_fn(|a| column(first + 2 * k + a)[r])),
+            };
             let index = touch.particle;
-            let place = metres(place);
             particles[k].push(ContactParticle { index, place, half_edges, volume, faces });
         }
     }
@@ -307,9 +307,8 @@ impl<const D: usize> Scheme<D> {
         let own = constraints.iter().filter(|j| j.share > 0.0);
         forces.extend(own.map(|constraint| {
             let impulse = constraint.impulse(moved, dt);
-            let force: [f64; D] = decomp::array::from_fn(|a| {
-                constraint.share * (impulse[a] / dt + constraint.friction[a])
-            });
+            let force: [f64; D] =
+                from_fn(|a| constraint.share * (impulse[a] / dt + constraint.friction[a]));
             let along: SmallVec<[f64; 2]> =
                 (0..D).map(|a| force[a] * constraint.normal[a]).collect();
             let normal: f64 = along.iter().sum();
