@@ -4,11 +4,11 @@ use serde_json::{Map, Value};
 
 use crate::scene::{Material, Transfer, VelocityField, default_courant};
 
-/// Largest Courant number of viscosity in expansion: without a share of the lumped mass plane
-/// impacts on a line oscillate with it at 0.8, and do not at 0.6.
+/// Largest Courant number of viscosity in expansion on a line without a share of the lumped mass:
+/// plane impacts oscillate with it at 0.8, and do not at 0.6.
 pub(super) const LARGE_COURANT: f64 = 0.6;
 
-/// The same with a share of the lumped mass.
+/// The same with a share of the lumped mass, on a line and in a plane.
 pub(super) const LARGE_MATCHED_COURANT: f64 = 0.8;
 
 /// Contents of a scene on which the choice of a method depends.
@@ -59,14 +59,12 @@ impl SceneContents {
     /// number up to `largest`.
     pub(super) fn allows_expansion(&self, largest: f64) -> bool {
         let untested = self.porous || self.burn || self.body_force || self.untested_keys;
-        let untested_in_plane =
-            self.contact || self.failure || self.strength || self.gas || self.axisymmetric;
-        !(untested || (self.plane && untested_in_plane)) && self.courant <= largest
+        !(untested || (self.plane && self.gas)) && self.courant <= largest
     }
 
-    /// Whether a share of the lumped mass was measured with the contents of the scene, on a line.
+    /// Whether a share of the lumped mass was measured with the contents of the scene.
     pub(super) fn allows_lumping(&self) -> bool {
-        self.fluid && !self.plane && self.allows_expansion(LARGE_MATCHED_COURANT)
+        self.fluid && self.allows_expansion(LARGE_MATCHED_COURANT)
     }
 
     /// Whether the presets limit fluxes in this scene. Impacts on a line have larger errors with it at

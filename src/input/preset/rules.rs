@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::contents::{LARGE_COURANT, SceneContents};
+use super::contents::SceneContents;
 
 /// Share of the lumped mass, beyond that which compensates the time step, with which little tension
 /// is left ahead of a shock.
@@ -48,8 +48,8 @@ const RULES: &[Rule] = &[
     },
     Rule {
         applies: |c| {
-            let tension_matters = c.failure || c.strength;
-            tension_matters && !c.gas && c.allows_lumping() && !c.allows_flux_limiter()
+            let without = c.plane || c.gas || c.allows_flux_limiter();
+            tension_matters(c) && c.allows_lumping() && !without
         },
         changes: |c| {
             json!({"method": {"transfer": {"fmpm": c.order(18)}, "edge_mask": 0.3,
@@ -87,22 +87,25 @@ const RULES: &[Rule] = &[
         reason: "spin, since bodies may turn, with a shorter domain limit",
     },
     Rule {
-        applies: |c| c.plane && c.fluid && c.allows_expansion(LARGE_COURANT),
-        changes: |c| {
-            json!({"method": {"transfer": {"fmpm": c.order(6)},
-                    "mass_lumping": lumping(c.courant, 0.0)},
-                "artificial_viscosity": {"expansion": 0.1}})
-        },
-        reason: "a higher transfer order with a share of the lumped mass, and viscosity in expansion, \
-                 since they reduce the errors of impacts",
-    },
-    Rule {
         applies: |c| c.plane && c.strength,
         changes: |_| {
             json!({"method": {"pressure_relaxation": {"rate": 0.4, "interval": 5}},
                 "artificial_viscosity": moderate()})
         },
         reason: "relaxation every fifth step, since plastic flow needs little of it",
+    },
+    Rule {
+        applies: |c| c.plane && c.allows_lumping(),
+        changes: |c| {
+            let added = if tension_matters(c) { ADDED_LUMPING } else { 0.0 };
+            // a stronger viscosity in expansion would make bodies part later
+            let expansion = if c.contact { 0.02 } else { 0.1 };
+            json!({"method": {"transfer": {"fmpm": c.order(6)},
+                    "mass_lumping": lumping(c.courant, added)},
+                "artificial_viscosity": {"linear": 0.1, "quadratic": 0.75, "expansion": expansion}})
+        },
+        reason: "a higher transfer order with a share of the lumped mass, and viscosity in expansion, \
+                 since they reduce the errors of impacts",
     },
     Rule {
         applies: |c| c.plane && c.gas && !c.burn && !c.sheared_gas,
@@ -169,6 +172,11 @@ const RULES: &[Rule] = &[
         reason: "no pressure relaxation and no spreading of heat, since every body is elastic",
     },
 ];
+
+/// Whether tension ahead of a shock would make particles fail or weaken elastic precursors.
+fn tension_matters(contents: &SceneContents) -> bool {
+    contents.failure || contents.strength
+}
 
 /// Share of the lumped mass at a Courant number: 3/16 of its square, which compensates the error of
 /// the time step, and `added`. `None` for a share of zero and for a Courant number that is not allowed.
