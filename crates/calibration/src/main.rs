@@ -34,7 +34,7 @@ const GUESS_SHARE: f64 = 0.9;
 
 /// Least factors on the half-widths of guesses: plateau, arrival, L1. Random scenes with strength need
 /// more than the impacts of fluids outside of the range.
-const LEAST_GUESS: [f64; 3] = [1.6, 1.6, 1.0];
+const LEAST_GUESS: [f64; 3] = [1.3, 1.6, 1.0];
 
 /// Indicators of the plateau: of the run, of its differences from the coarse runs, of the impact.
 const PLATEAU: &[&str] = &[
