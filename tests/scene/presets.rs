@@ -97,27 +97,44 @@ fn impacts_have_viscosity_in_expansion() {
     for key in ["method", "artificial_viscosity", "reference"] {
         oblique.as_object_mut().unwrap().remove(key);
     }
-    let mut made = |key: &str, value: Value| {
-        oblique[key] = value;
-        let scene = parse(oblique.to_string().as_bytes(), "oblique.json", &[]).unwrap();
+    for key in ["contact", "body_force"] {
+        oblique[key] = Value::Null;
+    }
+    let made = |edits: &[(&str, Value)]| {
+        let mut scene = oblique.clone();
+        edits.iter().for_each(|(path, value)| *scene.pointer_mut(path).unwrap() = value.clone());
+        let scene = parse(scene.to_string().as_bytes(), "oblique.json", &[]).unwrap();
         let order = json!(scene.scene.method.transfer)["fmpm"].as_u64();
         (order, scene.scene.method.mass_lumping, viscosity(&scene).2)
     };
+    let one = |path, value| made(&[(path, value)]);
     let plain = (Some(4), None, None);
     let matched = (Some(6), Some(0.03), Some(0.1));
-    assert_eq!(made("title", json!("plates")), matched);
-    assert_eq!(made("time", json!({"end": 3e-7, "courant": 0.81})), plain);
-    assert_eq!(
-        made("time", json!({"end": 3e-7, "courant": 0.8})),
-        (Some(6), Some(0.12), Some(0.1))
+    assert_eq!(made(&[]), matched);
+    assert_eq!(one("/time/courant", json!(0.81)), plain);
+    assert_eq!(one("/time/courant", json!(0.8)), (Some(6), Some(0.12), Some(0.1)));
+    let contact = ("/contact", json!({"type": "frictionless"}));
+    assert_eq!(made(std::slice::from_ref(&contact)), (Some(6), Some(0.03), Some(0.02)));
+    let with = |model: &str, value: Value| {
+        let mut materials = oblique["materials"].clone();
+        materials["aluminium"][model] = value;
+        ("/materials", materials)
+    };
+    let strength = with(
+        "strength",
+        json!({"type": "von_mises", "shear_modulus": 2.7e10, "yield_stress": 3e8}),
     );
-    assert_eq!(made("time", json!({"end": 3e-7})), matched);
-    let parting = (Some(6), Some(0.03), Some(0.02));
-    assert_eq!(made("contact", json!({"type": "frictionless"})), parting);
-    let strong = json!({"library": "aluminium_2024_johnson_cook"});
-    let strong = json!({"copper": {"library": "copper"}, "aluminium": strong});
-    assert_eq!(made("materials", strong), (Some(6), Some(0.07), Some(0.02)));
-    assert_eq!(made("body_force", json!({"gravity": [0.0, -10.0]})), plain);
+    let larger = (Some(6), Some(0.07), Some(0.1));
+    assert_eq!(made(std::slice::from_ref(&strength)), larger);
+    assert_eq!(made(&[with("failure", json!({"type": "tension_limit", "stress": 1e9}))]), larger);
+    assert_eq!(made(&[strength, contact]), (Some(6), Some(0.07), Some(0.02)));
+    assert_eq!(one("/body_force", json!({"gravity": [0.0, -10.0]})), plain);
+    let sparse = |courant: f64| {
+        made(&[("/bodies/0/particles_per_cell", json!([1, 1])), ("/time/courant", json!(courant))])
+    };
+    assert_eq!([0.4, 0.6].map(|c| sparse(c).0), [Some(6), Some(4)]);
+    assert_eq!([0.6, 0.61].map(|c| sparse(c).1), [Some(0.0675), None]);
+    assert_eq!(sparse(0.61).0, Some(4));
 }
 
 #[test]

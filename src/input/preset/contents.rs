@@ -8,7 +8,7 @@ use crate::scene::{Material, Transfer, VelocityField, default_courant};
 /// plane impacts oscillate with it at 0.8, and do not at 0.6.
 pub(super) const LARGE_COURANT: f64 = 0.6;
 
-/// The same with a share of the lumped mass, on a line and in a plane.
+/// Largest Courant number of viscosity in expansion with a share of the lumped mass.
 pub(super) const LARGE_MATCHED_COURANT: f64 = 0.8;
 
 /// Contents of a scene on which the choice of a method depends.
