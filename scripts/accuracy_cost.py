@@ -2,13 +2,15 @@
 """Writes the tables and pictures of the cost of accuracy to docs/accuracy.md, from the results of
 scripts/accuracy_cost.sh in output/studies/.
 
-    scripts/accuracy_cost.sh && scripts/accuracy_cost.py
+    scripts/accuracy_cost.sh && scripts/accuracy_cost.py [STUDY ...]
 
-A table is the list of cheapest choices of a study, a picture its curves of error against CPU time.
+Without names it writes those of all studies. A table is the list of cheapest choices of a study, a
+picture its curves of error against CPU time.
 """
 
 import re
 import shutil
+import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -40,8 +42,14 @@ def with_table(text: str, study: str) -> str:
 
 
 def main() -> None:
+    known = [study for study, _, _ in PICTURES]
+    wanted = sys.argv[1:] or known
+    if unknown := [study for study in wanted if study not in known]:
+        raise SystemExit(f"unknown study: {', '.join(unknown)}; allowed: {', '.join(known)}")
     text = PAGE.read_text()
     for study, picture, name in PICTURES:
+        if study not in wanted:
+            continue
         text = with_table(text, study)
         shutil.copyfile(STUDIES / study / f"{picture}.png", ROOT / "docs" / f"{name}.png")
     PAGE.write_text(text)

@@ -4,11 +4,11 @@ other schemes.
 
     cargo build --release && scripts/presets.py
 
-The impacts are those of inputs/studies/impacts.json, each with two profiles. All schemes are in the
-range of the error estimate. The preset `sharpest` is the one of them with the least mean of E1; schemes
-within 1 % of the least count as equal, and the one with the smallest median overshoot is taken. The
-script fails if another scheme than `sharpest` wins. A test (tests/contract/pages.rs) holds the table to
-the same rule.
+The impacts are those of inputs/studies/axes/impacts.json, each with two profiles and with the grid at a
+position drawn at random. All schemes are in the range of the error estimate. The preset `sharpest` is the
+one of them with the least mean of E1. Schemes within 1 % of the least count as equal. The median overshoot
+of `sharpest` exceeds the smallest of theirs by at most 0.1 percentage points. The script fails if `sharpest`
+does not meet this rule. A test (tests/contract/pages.rs) holds the table to it.
 """
 
 import csv
@@ -86,7 +86,7 @@ def method_of(scheme):
 def study():
     """The study of all schemes over the impacts."""
     impacts = json.loads((ROOT / "inputs/studies/impacts.json").read_text())
-    axis = next(axis for axis in impacts["sweep"] if axis.get("name") == "impact")
+    axis = {"file": str(ROOT / "inputs/studies/axes/impacts.json")}
     schemes = [{"name": name, "set": {"method": name}} for name in PRESETS]
     schemes += [{"name": name_of(scheme), "set": method_of(scheme)} for scheme in OTHERS]
     return {
@@ -125,11 +125,13 @@ def lines(rows):
     return table, measured
 
 
-def best(measured):
-    """The scheme that the rule takes."""
+def is_sharpest(measured):
+    """Whether `sharpest` meets its rule, with the numbers of the table."""
+    measured = {name: (round(e1, 3), round(o, 2)) for name, (e1, o) in measured.items()}
     least = min(e1 for e1, _ in measured.values())
-    equal = {name: values for name, values in measured.items() if values[0] <= 1.01 * least}
-    return min(equal, key=lambda name: equal[name][1])
+    smallest = min(overshoot for e1, overshoot in measured.values() if e1 <= 1.01 * least)
+    e1, overshoot = measured["sharpest"]
+    return e1 <= 1.01 * least and overshoot <= smallest + 0.1 + 1e-9
 
 
 def main():
@@ -143,9 +145,8 @@ def main():
     before, rest = PAGE.read_text().split(BEGIN)
     after = rest.split(END)[1]
     PAGE.write_text(before + BEGIN + "\n".join(table) + "\n" + END + after)
-    winner = best(measured)
-    if winner != "sharpest":
-        sys.exit(f"the rule takes {winner}, not sharpest")
+    if not is_sharpest(measured):
+        sys.exit("sharpest does not meet its rule")
 
 
 if __name__ == "__main__":

@@ -67,7 +67,8 @@ pub struct SceneArgs {
     pub scene: PathBuf,
 
     /// Override a value of the scene, such as domain.patches=[8], bodies.flyer.velocity=[500] (by
-    /// name or index) or method.shape=cpdi; may be repeated. A value that is not JSON is a string.
+    /// name or index) or method.shape=cpdi; may be repeated. A value that is not JSON is a string;
+    /// without a value, as in artificial_viscosity=, the key is removed.
     #[arg(long, value_name = "PATH=VALUE")]
     pub set: Vec<String>,
 }
@@ -85,7 +86,8 @@ pub struct RunArgs {
     pub restart: Option<PathBuf>,
 
     /// Override a value of the scene, such as domain.patches=[8], bodies.flyer.velocity=[500] (by
-    /// name or index) or method.shape=cpdi; may be repeated. A value that is not JSON is a string.
+    /// name or index) or method.shape=cpdi; may be repeated. A value that is not JSON is a string;
+    /// without a value, as in artificial_viscosity=, the key is removed.
     #[arg(long, value_name = "PATH=VALUE")]
     pub set: Vec<String>,
 

@@ -3,7 +3,8 @@
 //!
 //! A path is a list of keys joined by dots. An entry of an array is given by its `name` or its
 //! number: `bodies.flyer`, `bodies.0` or `bodies[0]`. A key that contains a dot is in double
-//! quotes: `materials."Al 6061.T6".density`. Missing objects along the path are created.
+//! quotes: `materials."Al 6061.T6".density`. Missing objects along the path are created. Without a
+//! value, as in `artificial_viscosity=`, the key or entry is removed.
 
 use serde_json::{Map, Value};
 
@@ -12,15 +13,20 @@ use super::errors::{LONGEST_REASON, LONGEST_VALUE, SceneError, list, nearest, on
 /// Maximum number of keys in a path, more than any path of a scene has.
 const LONGEST_PATH: usize = 32;
 
-const FORM: &str = "allowed: PATH=VALUE, such as time.end=1e-6 or bodies.flyer.velocity=[500]";
+const FORM: &str = "allowed: PATH=VALUE, such as time.end=1e-6 or bodies.flyer.velocity=[500], or PATH= \
+                    to remove a key";
 
-/// Applies one override. A value that is not JSON is taken as a string.
+/// Applies one override. A value that is not JSON is taken as a string; an empty one removes the
+/// key.
 pub(super) fn apply(scene: &mut Value, set: &str) -> Result<(), SceneError> {
     let fail = |reason: String| SceneError::Set {
         set: one_line(&shorten(set, LONGEST_VALUE)),
         reason: one_line(&shorten(&reason, LONGEST_REASON)),
     };
     let (path, value) = split(set).map_err(fail)?;
+    if value.is_empty() {
+        return remove(scene, &path).map_err(fail);
+    }
     let value = serde_json::from_str(value).unwrap_or_else(|_| Value::from(value));
     let mut place = scene;
     let mut walked = String::new();
@@ -30,6 +36,30 @@ pub(super) fn apply(scene: &mut Value, set: &str) -> Result<(), SceneError> {
     }
     *place = value;
     Ok(())
+}
+
+/// Removes the key at the end of `path`.
+fn remove(scene: &mut Value, path: &[String]) -> Result<(), String> {
+    let (key, parents) = path.split_last().expect("a path has a key");
+    let mut place = scene;
+    let mut walked = String::new();
+    for parent in parents {
+        place = enter(place, &walked, parent)?;
+        walked = super::paths::join(&walked, parent);
+    }
+    let removed = match place {
+        Value::Object(object) => object.remove(key).is_some(),
+        Value::Array(entries) => {
+            let i = find_entry(entries, &walked, key)?;
+            entries.remove(i);
+            true
+        }
+        _ => false,
+    };
+    match removed {
+        true => Ok(()),
+        false => Err(format!("no key {} to remove", super::paths::join(&walked, key))),
+    }
 }
 
 /// Rejects an override of a key that is neither in `allowed` nor below such a key.
@@ -145,8 +175,19 @@ mod tests {
         assert_eq!(applied(json!({}), "a=flip"), json!({"a": "flip"}));
         assert_eq!(applied(json!({}), "a=\"flip\""), json!({"a": "flip"}));
         assert_eq!(applied(json!({}), "a=NaN"), json!({"a": "NaN"}));
-        assert_eq!(applied(json!({}), "a="), json!({"a": ""}));
         assert_eq!(applied(json!({}), "a=x=y"), json!({"a": "x=y"}));
+    }
+
+    #[test]
+    fn an_empty_value_removes_the_key() {
+        let scene = json!({"a": {"b": null, "c": 1}, "bodies": [{"name": "flyer"}, {}]});
+        assert_eq!(applied(scene.clone(), "a.b=")["a"], json!({"c": 1}));
+        assert_eq!(applied(scene.clone(), "bodies.flyer=")["bodies"], json!([{}]));
+        assert_eq!(applied(scene.clone(), "a="), json!({"bodies": scene["bodies"]}));
+        for (set, key) in [("d=", "d"), ("a.d=", "a.d"), ("a.c.d=", "a.c.d"), ("e.f=", "e.f")] {
+            let text = refused(scene.clone(), set);
+            assert!(text.contains(&format!("no key {key} to remove")), "{text}");
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use super::spec::{Study, StudyAxis};
+use super::spec::{Study, StudyAxis, Variation};
 use crate::input;
 use crate::scene::CheckedScene;
 
@@ -14,7 +14,7 @@ use crate::scene::CheckedScene;
 pub struct Case {
     /// Labels that identify the case: one text per axis of the sweep.
     pub labels: BTreeMap<String, String>,
-    /// Overrides `PATH=VALUE` of the scene.
+    /// Overrides `PATH=VALUE` of the scene; `PATH=` removes the key.
     pub sets: Vec<String>,
     /// Ranks.
     pub ranks: usize,
@@ -40,13 +40,9 @@ pub fn cases(study: &Study) -> Vec<Case> {
     let sets = study.set.iter().map(|(path, value)| format!("{path}={value}")).collect();
     let mut all = vec![Case { labels: BTreeMap::new(), sets, ranks: 1, threads: 1 }];
     for axis in &study.sweep {
-        let variations: Vec<(String, Vec<(&String, &Value)>)> = match axis {
-            StudyAxis::Key { key, values } => {
-                values.iter().map(|value| (text(value), vec![(key, value)])).collect()
-            }
-            StudyAxis::Variations { cases, .. } => {
-                cases.iter().map(|case| (case.name.clone(), case.set.iter().collect())).collect()
-            }
+        let variations: Vec<Variation> = match axis {
+            StudyAxis::Key { key, values } => values.iter().map(|v| one_key(key, v)).collect(),
+            StudyAxis::Variations { cases, .. } => cases.clone(),
         };
         all = all
             .iter()
@@ -57,11 +53,18 @@ pub fn cases(study: &Study) -> Vec<Case> {
     all
 }
 
+/// A value of one key as a variation.
+fn one_key(key: &str, value: &Value) -> Variation {
+    let set = BTreeMap::from([(key.to_string(), value.clone())]);
+    Variation { name: text(value), remove: Vec::new(), set }
+}
+
 impl Case {
-    fn with(&self, label: &str, (text, sets): &(String, Vec<(&String, &Value)>)) -> Case {
+    fn with(&self, label: &str, variation: &Variation) -> Case {
         let mut case = self.clone();
-        case.labels.insert(label.into(), text.clone());
-        for (path, value) in sets {
+        case.labels.insert(label.into(), variation.name.clone());
+        case.sets.extend(variation.remove.iter().map(|path| format!("{path}=")));
+        for (path, value) in &variation.set {
             let count = value.as_u64().map(|n| n as usize);
             match (path.as_str(), count) {
                 ("run.ranks", Some(n)) => case.ranks = n,
@@ -91,5 +94,22 @@ impl Case {
             digest.update(part.as_bytes());
         }
         digest.finalize().iter().take(16).map(|b| format!("{b:02x}")).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn keys_are_removed_before_values_are_set() {
+        let study = json!({
+            "title": "", "scene": "", "set": {"a": 1},
+            "sweep": [{"name": "s", "cases": [{"name": "b", "remove": ["m"], "set": {"m.x": 2}}]}],
+        });
+        let study: Study = serde_json::from_value(study).unwrap();
+        assert_eq!(cases(&study)[0].sets, ["a=1", "m=", "m.x=2"]);
     }
 }

@@ -23,8 +23,9 @@ pub struct Study {
     /// Overrides for all cases: path of a key and its value.
     #[serde(default)]
     pub set: BTreeMap<String, Value>,
-    /// Axes of the sweep, or `{"file": PATH}` for an axis in a file of its own, relative to the file
-    /// of the study. The cases are all combinations; the last axis changes fastest.
+    /// Axes of the sweep. `{"file": PATH}` stands for an axis in a file of its own, relative to the
+    /// file of the study, and `{"file": PATH, "cases": [NAME, ...]}` for some of its cases. The cases
+    /// of the study are all combinations; the last axis changes fastest.
     pub sweep: Vec<StudyAxis>,
     /// Combinations to leave out, given by their labels.
     #[serde(default)]
@@ -83,7 +84,11 @@ pub enum StudyAxis {
 pub struct Variation {
     /// Value of the label.
     pub name: String,
+    /// Paths of keys to remove from the scene, before `set` is applied.
+    #[serde(default)]
+    pub remove: Vec<String>,
     /// Paths of keys and their values, applied after those of all cases.
+    #[serde(default)]
     pub set: BTreeMap<String, Value>,
 }
 
@@ -211,8 +216,8 @@ impl Study {
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut value: Value = serde_json::from_str(&text).map_err(|e| fail(e.to_string()))?;
         for axis in value["sweep"].as_array_mut().into_iter().flatten() {
-            if let Some(file) = axis["file"].as_str().map(|file| folder.join(file)) {
-                *axis = read_axis(&file).map_err(fail)?;
+            if axis.get("file").is_some() {
+                *axis = read_axis(axis, folder).map_err(fail)?;
             }
         }
         let mut study: Study = serde_path_to_error::deserialize(value)
@@ -238,6 +243,21 @@ impl Study {
         for (k, label) in labels.iter().enumerate() {
             if labels[..k].contains(label) {
                 return Err(format!("sweep: `{label}` stands twice; allowed: once"));
+            }
+        }
+        for axis in &self.sweep {
+            let values = axis.values();
+            if values.is_empty() {
+                return Err(format!(
+                    "sweep: `{}` has no cases; allowed: at least one",
+                    axis.name()
+                ));
+            }
+            for (k, value) in values.iter().enumerate() {
+                if values[..k].contains(value) {
+                    let name = axis.name();
+                    return Err(format!("sweep: `{name}` has {value} twice; allowed: once"));
+                }
             }
         }
         let known = |what: &str, label: &str| match labels.contains(&label) {
@@ -277,12 +297,37 @@ impl Study {
     }
 }
 
-/// The axis in a file of its own, which several studies use. The error is the reason why it cannot be
-/// read.
-fn read_axis(file: &Path) -> Result<Value, String> {
-    let text = input_file::read_text(file, input_file::LARGEST_JSON)
-        .map_err(|fault| format!("sweep.file: {}: {fault}", file.display()))?;
-    serde_json::from_str(&text).map_err(|error| format!("sweep.file: {}: {error}", file.display()))
+/// An axis in a file of its own, which several studies use.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AxisFile {
+    /// Path, relative to the folder of the study.
+    file: PathBuf,
+    /// Names of the cases to use, in this order; without them, all cases of the file.
+    cases: Option<Vec<String>>,
+}
+
+/// The axis in the file that `reference` names. The error is the reason why it cannot be read.
+fn read_axis(reference: &Value, folder: &Path) -> Result<Value, String> {
+    let AxisFile { file, cases } =
+        AxisFile::deserialize(reference).map_err(|error| format!("sweep.file: {error}"))?;
+    let file = folder.join(file);
+    let in_file = |reason: String| format!("sweep.file: {}: {reason}", file.display());
+    let text = input_file::read_text(&file, input_file::LARGEST_JSON)
+        .map_err(|fault| in_file(fault.to_string()))?;
+    let mut axis: Value = serde_json::from_str(&text).map_err(|e| in_file(e.to_string()))?;
+    if let (Some(names), Some(axis)) = (cases, axis.as_object_mut()) {
+        let all = axis.get("cases").and_then(Value::as_array).cloned().unwrap_or_default();
+        let known: Vec<&str> = all.iter().filter_map(|case| case["name"].as_str()).collect();
+        let find = |name: &String| {
+            let found = all.iter().find(|case| case["name"] == name.as_str());
+            let known = || in_file(format!("no case `{name}`; allowed: {}", known.join(", ")));
+            found.cloned().ok_or_else(known)
+        };
+        let found = names.iter().map(find).collect::<Result<_, _>>()?;
+        axis.insert("cases".into(), Value::Array(found));
+    }
+    Ok(axis)
 }
 
 impl StudyAxis {
@@ -291,6 +336,51 @@ impl StudyAxis {
         match self {
             StudyAxis::Key { key, .. } => key,
             StudyAxis::Variations { name, .. } => name,
+        }
+    }
+
+    /// Values of the label.
+    fn values(&self) -> Vec<Value> {
+        match self {
+            StudyAxis::Key { values, .. } => values.clone(),
+            StudyAxis::Variations { cases, .. } => {
+                cases.iter().map(|case| Value::from(&case.name[..])).collect()
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn an_axis_of_a_file_has_the_named_cases_in_their_order() {
+        let home = tempfile::tempdir().unwrap();
+        let case = |name: &str| json!({"name": name, "set": {}});
+        let axis = json!({"name": "scheme", "cases": [case("a"), case("b"), case("c")]});
+        std::fs::write(home.path().join("axis.json"), axis.to_string()).unwrap();
+        let read = |reference: Value| read_axis(&reference, home.path());
+        assert_eq!(read(json!({"file": "axis.json"})), Ok(axis));
+        let some = json!({"name": "scheme", "cases": [case("c"), case("a")]});
+        assert_eq!(read(json!({"file": "axis.json", "cases": ["c", "a"]})), Ok(some));
+        let reason = read(json!({"file": "axis.json", "cases": ["d"]})).unwrap_err();
+        assert!(reason.ends_with("axis.json: no case `d`; allowed: a, b, c"), "{reason}");
+        let reason = read(json!({"file": "axis.json", "case": ["a"]})).unwrap_err();
+        assert!(reason.contains("unknown field `case`"), "{reason}");
+    }
+
+    #[test]
+    fn the_shipped_studies_can_be_read() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/studies");
+        let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+        let files: Vec<PathBuf> = files.filter(|path| path.is_file()).collect();
+        assert!(files.len() > 10, "{files:?}");
+        for file in files {
+            let study = Study::read(&file).unwrap();
+            assert!(study.scene.is_file(), "{}", file.display());
         }
     }
 }

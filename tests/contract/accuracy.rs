@@ -86,6 +86,8 @@ fn a_study_that_makes_no_sense_is_refused() {
     for (key, value, word) in [
         ("repeats", json!(0), "repeats = 0"),
         ("sweep", json!([{"key": "a"}]), "sweep"),
+        ("sweep", json!([{"key": "a", "values": []}]), "`a` has no cases"),
+        ("sweep", json!([{"key": "a", "values": [1, 2, 1]}]), "`a` has 1 twice"),
         ("leave_out", json!([{"speed": 1}]), "no label `speed`; allowed: scheme, domain.cell_size"),
         ("limits", json!(1), "unknown field"),
         ("scene", json!("missing.json"), "missing.json"),

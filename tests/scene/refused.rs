@@ -54,7 +54,7 @@ fn bodies_that_do_not_fit() {
     edit("bodies.flyer.box.upper=[1e-4]", &["bodies.target.box", "overlaps bodies.flyer.box"]);
     edit("bodies.flyer.box.upper=[-0.0007]", &["bodies.flyer.box.upper", "lower < upper"]);
     edit("bodies.flyer.name=target", &["bodies[1].name = \"target\"", "a name of its own"]);
-    edit("bodies.flyer.name=", &["bodies[0].name = \"\"", "is empty"]);
+    edit("bodies.flyer.name=\"\"", &["bodies[0].name = \"\"", "is empty"]);
     edit("bodies.flyer.name=\"a\\nb\"", &["bodies[0].name = \"a\\nb\"", "control character"]);
     edit("title=\"a\\u0007b\"", &["title = \"a\\u0007b\"", "control character"]);
     edit("bodies.flyer.velocity=[1, 2]", &["bodies.flyer.velocity = [1.0,2.0]", "1 number"]);
