@@ -215,7 +215,8 @@ impl Study {
             .map_err(|fault| fail(fault.to_string()))?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut value: Value = serde_json::from_str(&text).map_err(|e| fail(e.to_string()))?;
-        for axis in value["sweep"].as_array_mut().into_iter().flatten() {
+        let sweep = value.get_mut("sweep").and_then(Value::as_array_mut);
+        for axis in sweep.into_iter().flatten() {
             if axis.get("file").is_some() {
                 *axis = read_axis(axis, folder).map_err(fail)?;
             }
@@ -370,6 +371,17 @@ mod tests {
         assert!(reason.ends_with("axis.json: no case `d`; allowed: a, b, c"), "{reason}");
         let reason = read(json!({"file": "axis.json", "case": ["a"]})).unwrap_err();
         assert!(reason.contains("unknown field `case`"), "{reason}");
+    }
+
+    #[test]
+    fn a_file_that_is_no_study_is_refused() {
+        let home = tempfile::tempdir().unwrap();
+        let file = home.path().join("study.json");
+        for text in ["[]", "1", "{\"sweep\": [[]]}"] {
+            std::fs::write(&file, text).unwrap();
+            let reason = Study::read(&file).unwrap_err().to_string();
+            assert!(reason.contains("study.json"), "{reason}");
+        }
     }
 
     #[test]
