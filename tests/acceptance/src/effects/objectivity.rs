@@ -89,6 +89,14 @@ fn strained(run: &Simulation<'_, 2>, stretch: f64, start: Option<Symmetric>) -> 
         let of = [s.xx, s.yy, s.xy];
         (0..3).for_each(|k| set(deviator + k, &|_| of[k]));
     }
+    // in the updated frame a particle starts in the cell of its new place
+    if columns.reference.is_none() {
+        let at = state.iter().position(|&k| k == columns.position).expect("it is state");
+        let [x, y] = [0, 1].map(|a| &saved.particles.columns[at + a]);
+        let cell = |x: f64| (x + 0.5 * BLOCK + BEYOND).floor() as i32;
+        let places = x.iter().zip(y).flat_map(|(&x, &y)| [x, y]);
+        saved.particles.cells = places.map(cell).collect();
+    }
     saved
 }
 
