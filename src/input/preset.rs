@@ -9,7 +9,7 @@ use json_patch::merge;
 use serde_json::{Map, Value, json};
 
 use contents::{LARGE_COURANT, LARGE_MATCHED_COURANT, SceneContents};
-use rules::{acting, lumping, moderate};
+use rules::{ADDED_LUMPING, acting, lumping, moderate};
 
 use super::errors::{SceneFault, suggest};
 use crate::scene::{MethodChoice, Preset, Transfer};
@@ -51,7 +51,8 @@ impl Preset {
         });
         let mut base = json!({"method": method, "artificial_viscosity": viscosity});
         if contents.contact && !contents.plane && self != Preset::Default {
-            // oscillations of `sharpest` separate bodies; `robust` oscillates at large Courant numbers
+            // oscillations of `sharpest` separate bodies, and the viscosity in expansion of `robust`
+            // makes them part later
             return (
                 Preset::Default.base(contents).0,
                 "the method of default, which suits contact best",
@@ -79,9 +80,19 @@ impl Preset {
                 }
             }
             Preset::Robust => {
-                let method = json!({"transfer": {"fmpm": 6}, "edge_mask": 0.3});
+                let transfer = json!({"fmpm": contents.order(6)});
+                let method = json!({"transfer": transfer, "edge_mask": 0.3});
                 merge(&mut base, &json!({"method": method, "artificial_viscosity": moderate()}));
-                "least error over all hard cases"
+                let largest = if contents.sparse_particles { LARGE_MATCHED_COURANT } else { 1.0 };
+                if acting(contents).next().is_none() && contents.allows_expansion(largest) {
+                    let share = lumping(contents.courant, ADDED_LUMPING);
+                    let method =
+                        json!({"transfer": {"fmpm": contents.order(14)}, "mass_lumping": share});
+                    let viscosity = json!({"linear": 0.12, "expansion": 0.05});
+                    let changes = json!({"method": method, "artificial_viscosity": viscosity});
+                    merge(&mut base, &changes);
+                }
+                "least oscillation of plane impacts"
             }
             Preset::Sharpest => {
                 let changes = json!({"method": {"transfer": {"fmpm": 14}},

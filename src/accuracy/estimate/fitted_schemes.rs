@@ -8,8 +8,8 @@ use crate::scene::{CheckedScene, EnergyUpdate, Stepping, StressUpdate};
 use crate::shape::ShapeKind;
 use crate::transfer::Transfer;
 
-/// Largest share of the lumped mass, that of `default` at a Courant number of 0.6 [-].
-const LUMPING: f64 = 0.07;
+/// Largest share of the lumped mass, that of `robust` at a Courant number of 0.6 [-].
+const LUMPING: f64 = 0.11;
 
 /// Ranges of the keys of a scheme: names, or smallest and largest values.
 ///

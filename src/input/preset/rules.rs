@@ -6,7 +6,7 @@ use super::contents::SceneContents;
 
 /// Share of the lumped mass, beyond that which compensates the time step, with which little tension
 /// is left ahead of a shock.
-const ADDED_LUMPING: f64 = 0.04;
+pub(super) const ADDED_LUMPING: f64 = 0.04;
 
 pub(super) struct Rule {
     applies: fn(&SceneContents) -> bool,
