@@ -1,5 +1,5 @@
 //! Measures the Courant numbers up to which each shape function is stable with each transfer, and
-//! prints the table that stands in `src/input/check/courant.rs`.
+//! prints the table that stands in `src/input/check/courant.rs`; then the same of the presets.
 //!
 //! `cargo run --release --example courant_limits` takes some minutes.
 
@@ -91,14 +91,37 @@ fn is_stable(value: &Value) -> bool {
 
 /// The greatest Courant number up to which all `bases` are stable with a scheme; 0: none.
 fn limit(bases: &[Value], shape: &str, transfer: &Value) -> f64 {
+    let scenes: Vec<Value> = bases.iter().map(|base| scheme(base, shape, transfer)).collect();
+    limit_of(&scenes)
+}
+
+/// The greatest Courant number up to which all `scenes` are stable; 0: none.
+fn limit_of(scenes: &[Value]) -> f64 {
     let stable = |tenths: &u32| {
-        bases.iter().all(|base| {
-            let mut scene = scheme(base, shape, transfer);
+        scenes.iter().all(|scene| {
+            let mut scene = scene.clone();
             scene["time"]["courant"] = json!(f64::from(*tenths) / 10.0);
             is_stable(&scene)
         })
     };
     f64::from(TENTHS.take_while(stable).last().unwrap_or(0)) / 10.0
+}
+
+/// Prints the limits of the presets in both frames, with 1, 2 and 3 particles per cell.
+fn print_presets() {
+    for preset in ["default", "sharpest", "robust"] {
+        for frame in ["updated_lagrangian", "total_lagrangian"] {
+            let with_particles = |count: u32| {
+                let mut scene = short("flyer.json");
+                scene["method"] = json!({"preset": preset, "frame": frame});
+                scene.as_object_mut().expect("a scene").remove("artificial_viscosity");
+                (0..2).for_each(|k| scene["bodies"][k]["particles_per_cell"] = json!([count]));
+                format!("{:.1}", limit_of(&[scene]))
+            };
+            let limits: Vec<String> = (1..=3).map(with_particles).collect();
+            println!("preset {preset}, {frame}, 1, 2, 3 particles per cell: {}", limits.join(", "));
+        }
+    }
 }
 
 fn main() {
@@ -133,4 +156,5 @@ fn main() {
             limit(&open, "cpdi_bspline_quadratic", &transfer)
         );
     }
+    print_presets();
 }

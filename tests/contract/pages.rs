@@ -194,3 +194,18 @@ fn the_table_of_the_presets_keeps_the_rule_of_robust() {
         assert!((0..2).all(|k| robust.2[k] <= other.2[k]), "{other:?}, {robust:?}");
     }
 }
+
+/// `default` and `robust` pass every hard case: each cell of their rows is a number.
+#[test]
+fn presets_pass_the_hard_cases() {
+    let page = fs::read_to_string(root().join("docs/hard_cases.md")).unwrap();
+    let cells = |line: &str| -> Vec<String> {
+        line.trim_matches(['|', ' ']).split(" | ").map(String::from).collect()
+    };
+    let rows: Vec<Vec<String>> = page.lines().filter(|l| l.starts_with('|')).map(cells).collect();
+    for preset in ["default", "default, updated frame", "robust"] {
+        let row = rows.iter().find(|row| row[0] == preset).expect(preset);
+        assert_eq!(row.len(), rows[0].len(), "{preset}");
+        assert!(row[1..].iter().all(|cell| cell.parse::<f64>().is_ok()), "{preset}: {row:?}");
+    }
+}

@@ -6,7 +6,9 @@ use flyer_mpm::simulation::Simulation;
 use serde_json::{Value, json};
 
 use super::scenes::{shipped, with};
-use super::tools::{checked, failed, flyer, greatest, hard, run, scored, short, until};
+use super::tools::{
+    checked, failed, flyer, greatest, hard, run, scored, short, until, with_flyers_scheme,
+};
 use super::{Figure, figure};
 
 /// Energy of a scheme that keeps it [-].
@@ -117,10 +119,7 @@ fn impact(value: &Value) -> Option<Impact> {
 
 /// A light flyer that parts, and a gap that closes.
 pub fn separation() -> Vec<Figure> {
-    let mut value = until(&shipped("soft_flyer.json"), &[0.3e-6]);
-    let own = shipped("flyer.json");
-    value["method"] = own["method"].clone();
-    value["artificial_viscosity"] = own["artificial_viscosity"].clone();
+    let mut value = until(&with_flyers_scheme(shipped("soft_flyer.json")), &[0.3e-6]);
     value["domain"]["upper"] = json!([0.0034]);
     value["bodies"][1]["box"]["upper"] = json!([0.003]);
     let exact = impact(&value)

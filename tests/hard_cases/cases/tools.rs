@@ -97,7 +97,12 @@ pub fn flyer() -> Value {
 
 /// A scene of `inputs/hard` with the scheme and viscosity of `inputs/flyer.json`.
 pub fn hard(name: &str) -> Value {
-    let (mut value, own) = (shipped(&format!("hard/{name}")), shipped("flyer.json"));
+    with_flyers_scheme(shipped(&format!("hard/{name}")))
+}
+
+/// A scene with the scheme and viscosity of `inputs/flyer.json` in place of its own.
+pub fn with_flyers_scheme(mut value: Value) -> Value {
+    let own = shipped("flyer.json");
     value["method"] = own["method"].clone();
     value["artificial_viscosity"] = own["artificial_viscosity"].clone();
     value

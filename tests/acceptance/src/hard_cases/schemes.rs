@@ -1,21 +1,22 @@
-//! Every shape function with every transfer in hard cases: stable and its error, ended by the
-//! monitor, or refused; written to `docs/hard_cases.md`.
+//! The presets, and every shape function with every transfer, in hard cases: stable and its error,
+//! ended by the monitor, or refused; written to `docs/hard_cases.md`.
 
 use std::fmt::Write;
 
 use serde_json::{Value, json};
 
 use super::cases::scenes::{SHAPES, shipped, with};
-use super::cases::tools::{checked, hard, run, scored, until};
+use super::cases::tools::{checked, hard, run, scored, until, with_flyers_scheme};
 use crate::contact::{self, Measured, run as run_plane};
 use crate::program::root;
 use crate::table::Table;
 
 const HEAD: &str = "# Schemes in hard cases
 
-Every shape function with every transfer, measured by `cargo run --release -p acceptance -- hard_cases/schemes`. All
-runs have mid-point steps, the viscosity of `inputs/flyer.json`, those of its options that the scheme allows, and a
-Courant number of 0.4 unless the column has another. The first columns are variations of the flyer plate: without
+The [presets](methods.md#presets), and every shape function with every transfer, measured by `cargo run --release -p
+acceptance -- hard_cases/schemes`. The presets choose their method and viscosity for each case. All other runs have
+mid-point steps, the viscosity of `inputs/flyer.json`, and those of its options that the scheme allows. The Courant
+number is 0.4 unless the column has another. The first columns are variations of the flyer plate: without
 viscosity, with 1 and 16 particles per cell, with a grid shifted by 0.37 cells, at higher speeds, with a softer flyer
 and contact. The columns torn and flight have the scenes `inputs/hard/torn.json` and `inputs/hard/flight.json`.
 
@@ -38,6 +39,9 @@ cases the exit code is not 0. The energy of a transfer in italics is not exact.
 
 ";
 
+/// Heading of the case without artificial viscosity.
+const NO_VISCOSITY: &str = "no viscosity";
+
 /// A case: its heading, and the scene with the standard method.
 fn cases() -> Vec<(&'static str, Value)> {
     let base = || {
@@ -58,14 +62,14 @@ fn cases() -> Vec<(&'static str, Value)> {
         value
     };
     let soft = {
-        let mut value = until(&shipped("soft_flyer.json"), &[0.2e-6]);
+        let mut value = until(&with_flyers_scheme(shipped("soft_flyer.json")), &[0.2e-6]);
         value["domain"]["upper"] = json!([0.0033]);
         value["bodies"][1]["box"]["upper"] = json!([0.003]);
         value
     };
     vec![
         ("standard", base()),
-        ("no viscosity", with(&base(), &json!({"artificial_viscosity": null}))),
+        (NO_VISCOSITY, with(&base(), &json!({"artificial_viscosity": null}))),
         ("1 per cell", each(&|b| b["particles_per_cell"] = json!([1]))),
         ("16 per cell", each(&|b| b["particles_per_cell"] = json!([16]))),
         ("grid +0.37", {
@@ -96,6 +100,27 @@ fn transfers() -> [(&'static str, Value); 8] {
         ("fmpm 6", json!({"fmpm": 6})),
         ("fmpm 8", json!({"fmpm": 8})),
     ]
+}
+
+/// Rows of the presets: name, and `method`.
+fn presets() -> [(&'static str, Value); 4] {
+    [
+        ("default", json!({"preset": "default"})),
+        ("default, updated frame", json!({"preset": "default", "frame": "updated_lagrangian"})),
+        ("sharpest", json!({"preset": "sharpest"})),
+        ("robust", json!({"preset": "robust"})),
+    ]
+}
+
+/// The scene of a case with a preset, which also chooses the viscosity unless the case is without.
+fn with_preset(case: &str, base: &Value, method: &Value) -> Value {
+    let mut value = base.clone();
+    value["method"] = method.clone();
+    match case {
+        NO_VISCOSITY => value["artificial_viscosity"] = Value::Null,
+        _ => drop(value.as_object_mut().expect("a scene").remove("artificial_viscosity")),
+    }
+    value
 }
 
 /// The scene with a scheme, and what it allows of the options.
@@ -162,25 +187,33 @@ fn cell(name: &str, value: &Value) -> String {
     })
 }
 
-/// Writes the table; counts a row of the default scheme that is not stable as a miss.
+/// Writes the table; counts rows of presets that are not stable as misses, but for `sharpest`.
 pub fn check(table: &mut Table) {
     let cases = cases();
     let mut text = HEAD.to_string();
     let names: Vec<&str> = cases.iter().map(|(name, _)| *name).collect();
-    let _ = writeln!(text, "| shape, transfer | {} |", names.join(" | "));
+    let _ = writeln!(text, "| preset, or shape and transfer | {} |", names.join(" | "));
     let _ = writeln!(text, "|---|{}", "---|".repeat(names.len()));
+    let mut add = |name: &str, scene: &dyn Fn(&str, &Value) -> Value| -> bool {
+        let row: Vec<String> =
+            cases.iter().map(|(case, base)| cell(case, &scene(case, base))).collect();
+        let _ = writeln!(text, "| {name} | {} |", row.join(" | "));
+        row.iter().all(|cell| !cell.contains("monitor"))
+    };
+    for (name, method) in presets() {
+        let ok = add(name, &|case, base| with_preset(case, base, &method));
+        if name != "sharpest" {
+            let figure = format!("the preset {name} in all cases");
+            table.holds(&figure, "", "stable or refused", ok);
+        }
+    }
+    let own = shipped("flyer.json")["method"].clone();
     for shape in SHAPES {
         for (name, transfer) in transfers() {
-            let row: Vec<String> = cases
-                .iter()
-                .map(|(case, base)| cell(case, &scheme(base, shape, &transfer)))
-                .collect();
             let name = if name == "apic" { "*apic*" } else { name };
-            let _ = writeln!(text, "| {shape}, {name} | {} |", row.join(" | "));
-            let default = shipped("flyer.json")["method"].clone();
-            if default["shape"] == shape && default["transfer"] == transfer {
-                let ok = row.iter().all(|cell| !cell.contains("monitor"));
-                table.holds("the default scheme in all cases", "", "stable or refused", ok);
+            let ok = add(&format!("{shape}, {name}"), &|_, base| scheme(base, shape, &transfer));
+            if own["shape"] == shape && own["transfer"] == transfer {
+                table.holds("the scheme of flyer.json in all cases", "", "stable or refused", ok);
             }
         }
     }
