@@ -242,7 +242,9 @@ impl<const D: usize> Scheme<D> {
         drop(vectors);
         patch.corner_nodes = nodes;
         self.put_sums(patch, fields);
-        let longest = padded_width(self.shape.nodes(self.longest(&patch.block)));
+        // not that of the longest particle, which would take a pass over the particles
+        let longest = patch.reach_length.min(self.longest_ever());
+        let longest = padded_width(self.shape.nodes(longest));
         patch.find_nodes(None, [2, longest as i64], range.corners());
     }
 
