@@ -83,16 +83,17 @@ impl Preset {
                 let transfer = json!({"fmpm": contents.order(6)});
                 let method = json!({"transfer": transfer, "edge_mask": 0.3});
                 merge(&mut base, &json!({"method": method, "artificial_viscosity": moderate()}));
-                let largest = if contents.sparse_particles { LARGE_MATCHED_COURANT } else { 1.0 };
-                if acting(contents).next().is_none() && contents.allows_expansion(largest) {
+                if acting(contents).next().is_none() && contents.allows_robust() {
                     let share = lumping(contents.courant, ADDED_LUMPING);
                     let method =
                         json!({"transfer": {"fmpm": contents.order(14)}, "mass_lumping": share});
                     let viscosity = json!({"linear": 0.12, "expansion": 0.05});
                     let changes = json!({"method": method, "artificial_viscosity": viscosity});
                     merge(&mut base, &changes);
+                    "little oscillation of plane impacts"
+                } else {
+                    "a moderate transfer order and viscosity"
                 }
-                "least oscillation of plane impacts"
             }
             Preset::Sharpest => {
                 let changes = json!({"method": {"transfer": {"fmpm": 14}},
@@ -327,20 +328,20 @@ mod tests {
 
     #[test]
     fn options_of_every_choice_fit_each_other() {
-        let courants = [0.2, 0.4, 0.6, 0.81];
+        let courants = [0.2, 0.4, 0.6, 0.81, 1.0];
         for c in courants.into_iter().flat_map(all) {
             let choices = Preset::ALL.map(|preset| choose(preset, &c).0);
             if c.contact && !c.plane {
                 assert!(choices.iter().all(|choice| *choice == choices[0]), "{choices:?}");
             }
-            for chosen in choices {
-                options_fit_each_other(&chosen, &c);
+            for (chosen, preset) in choices.iter().zip(Preset::ALL) {
+                options_fit_each_other(chosen, preset, &c);
             }
         }
     }
 
     /// Panics if options of the method of a scene with the contents `c` exclude each other.
-    fn options_fit_each_other(chosen: &Value, c: &SceneContents) {
+    fn options_fit_each_other(chosen: &Value, preset: Preset, c: &SceneContents) {
         let [method, viscosity] = ["method", "artificial_viscosity"].map(|key| &chosen[key]);
         let has = |value: &Value, key: &str| !value[key].is_null();
         assert!(!has(viscosity, "limited") || has(viscosity, "limiter"), "{viscosity}");
@@ -348,12 +349,16 @@ mod tests {
         assert!(!total || !has(method, "domain_limit"), "{method}");
         let expands = has(viscosity, "expansion");
         assert!(!expands || has(viscosity, "limiter"), "{viscosity}");
-        assert!(!expands || c.allows_expansion(LARGE_MATCHED_COURANT), "{viscosity}");
+        let measured = match preset {
+            Preset::Robust => c.allows_robust(),
+            _ => c.allows_expansion(LARGE_MATCHED_COURANT),
+        };
+        assert!(!expands || measured, "{viscosity}");
         assert!(!has(method, "spin") || (c.plane && !c.axisymmetric && !total), "{method}");
         let no_fluxes = c.plane || c.contact || c.failure || c.gas || c.porous;
         assert!(!has(method, "flux_limiter") || !no_fluxes, "{method}");
         let lumps = has(method, "mass_lumping");
-        assert!(!lumps || c.allows_expansion(LARGE_MATCHED_COURANT), "{method}");
+        assert!(!lumps || measured, "{method}");
         assert!(!lumps || !has(method, "flux_limiter"), "{method}");
         let order = method["transfer"]["fmpm"].as_u64().unwrap();
         assert!(c.plane || order <= u64::from(c.order(18)) || !c.contact, "{method}");

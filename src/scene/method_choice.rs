@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 pub enum Preset {
     /// The most accurate method that was measured to be stable with the contents of the scene.
     Default,
-    /// The method with the least oscillation of plane impacts, which passes every hard case. Its
-    /// shocks are wider than those of `default`. It equals `default` in two dimensions, and with
-    /// contact, failure, strength, gas or pores.
+    /// A method with little overshoot and tension ahead of the shock in plane impacts. It passes every
+    /// hard case. Its shocks are wider than those of `default`. It equals `default` in two dimensions,
+    /// and with contact, failure, strength, gas or pores.
     Robust,
     /// Of the methods in the range of the error estimate, the one with the smallest mean of E1
     /// over ten plane impacts; in the total-Lagrangian frame if the scene has only fluids on a

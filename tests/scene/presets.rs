@@ -460,11 +460,13 @@ fn bodies_that_may_turn_have_spin() {
 
 #[test]
 fn presets_differ() {
-    let method = |name: &str| json!(edited(&[("/method", json!(name))]).scene.method);
-    let [default, robust, sharpest] = ["default", "robust", "sharpest"].map(method);
-    assert_eq!(default["transfer"], json!({"fmpm": 8}));
-    assert_eq!(robust["transfer"], json!({"fmpm": 8}));
-    assert_eq!(sharpest["frame"], "total_lagrangian");
+    let preset = |name: &str| edited(&[&per_cell(2)[..], &[("/method", json!(name))]].concat());
+    let [default, robust, sharpest] = ["default", "robust", "sharpest"].map(preset);
+    let of = |scene: &CheckedScene| (scene.scene.method.mass_lumping, viscosity(scene));
+    assert_eq!(of(&default), (Some(0.03), (0.055, 0.85, Some(0.02))));
+    assert_eq!(of(&robust), (Some(0.07), (0.12, 1.25, Some(0.05))));
+    assert_eq!(of(&sharpest), (None, (0.03, 0.0, Some(0.035))));
+    assert_eq!(json!(sharpest.scene.method)["frame"], "total_lagrangian");
     // plates apart never meet in that frame
     let apart = edited(&[
         ("/method", json!("sharpest")),
@@ -484,10 +486,10 @@ fn presets_differ() {
     assert!(elastic.scene.method.pressure_relaxation.is_none());
 }
 
-/// Order, share of the lumped mass and viscosity of `robust` at any Courant number. With what they were
-/// not measured it has no share and a moderate viscosity.
+/// Order, share of the lumped mass and viscosity of `robust`. Scenes for which they were not measured
+/// have no share, and a moderate viscosity.
 #[test]
-fn robust_has_a_larger_share_of_the_lumped_mass() {
+fn robust_depends_on_courant_number_and_particles_per_cell() {
     let robust = |count: u32, edits: &[(&str, Value)]| {
         let method = ("/method", json!("robust"));
         let scene = edited(&[&per_cell(count)[..], &[method], edits].concat());
@@ -500,7 +502,9 @@ fn robust_has_a_larger_share_of_the_lumped_mass() {
     assert_eq!(robust(2, &[]), (json!(14), Some(0.07), weak));
     assert_eq!(robust(2, &courant(0.2)), (json!(14), Some(0.0475), weak));
     assert_eq!(robust(3, &courant(1.0)), (json!(14), Some(0.2275), weak));
+    assert_eq!(robust(1, &courant(0.4)), (json!(8), Some(0.07), weak));
     assert_eq!(robust(1, &courant(0.6)), (json!(4), Some(0.1075), weak));
+    assert_eq!(robust(1, &courant(0.8)), (json!(2), Some(0.16), weak));
     assert_eq!(robust(1, &courant(0.9)), (json!(2), None, moderate));
     let eos = json!({"type": "mie_gruneisen", "c0": 3940.0, "s": 1.489, "gamma0": 1.96,
         "tension_cutoff": 1e9});

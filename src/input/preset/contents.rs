@@ -8,8 +8,12 @@ use crate::scene::{Material, Transfer, VelocityField, default_courant};
 /// plane impacts oscillate with it at 0.8, and do not at 0.6.
 pub(super) const LARGE_COURANT: f64 = 0.6;
 
-/// Largest Courant number of viscosity in expansion with a share of the lumped mass.
+/// Largest Courant number of viscosity in expansion with a share of the lumped mass, but for
+/// `robust` with two or more particles per cell.
 pub(super) const LARGE_MATCHED_COURANT: f64 = 0.8;
+
+/// Largest Courant number of the scheme of `robust` with two or more particles per cell.
+pub(super) const LARGE_ROBUST_COURANT: f64 = 1.0;
 
 /// Contents of a scene on which the choice of a method depends.
 #[derive(Default)]
@@ -60,6 +64,14 @@ impl SceneContents {
     pub(super) fn allows_expansion(&self, largest: f64) -> bool {
         let untested = self.porous || self.burn || self.body_force || self.untested_keys;
         !(untested || (self.plane && self.gas)) && self.courant <= largest
+    }
+
+    /// Whether the scheme of `robust` for plane impacts was measured with the contents of the scene.
+    pub(super) fn allows_robust(&self) -> bool {
+        self.allows_expansion(match self.sparse_particles {
+            true => LARGE_MATCHED_COURANT,
+            false => LARGE_ROBUST_COURANT,
+        })
     }
 
     /// Whether a share of the lumped mass was measured with the contents of the scene.

@@ -14,11 +14,12 @@ use crate::table::Table;
 const HEAD: &str = "# Schemes in hard cases
 
 The [presets](methods.md#presets), and every shape function with every transfer, measured by `cargo run --release -p
-acceptance -- hard_cases/schemes`. The presets choose their method and viscosity for each case. All other runs have
-mid-point steps, the viscosity of `inputs/flyer.json`, and those of its options that the scheme allows. The Courant
-number is 0.4 unless the column has another. The first columns are variations of the flyer plate: without
-viscosity, with 1 and 16 particles per cell, with a grid shifted by 0.37 cells, at higher speeds, with a softer flyer
-and contact. The columns torn and flight have the scenes `inputs/hard/torn.json` and `inputs/hard/flight.json`.
+acceptance -- hard_cases/schemes`. The presets choose their method and, but for the case without, their viscosity
+for each case; with contact all have the method of `default`. All other runs have mid-point steps, the viscosity of
+`inputs/flyer.json`, and those of its options that the scheme allows. The Courant number is 0.4 unless the column
+has another. The first columns are variations of the flyer plate: without viscosity, with 1 and 16 particles per
+cell, with a grid shifted by 0.37 cells, at higher speeds, with a softer flyer and contact. The columns torn and
+flight have the scenes `inputs/hard/torn.json` and `inputs/hard/flight.json`.
 
 A number is an error in per cent: the relative L1 norm of the pressure at 0.2 us, in columns marked `e` the drift of
 the energy, in columns marked `s` the speed that a block of rubber loses while it slides on a base for 20 cells
