@@ -497,14 +497,14 @@ fn robust_depends_on_courant_number_and_particles_per_cell() {
         (order, scene.scene.method.mass_lumping, viscosity(&scene))
     };
     let courant = |number: f64| [("/time/courant", json!(number))];
-    let weak = (0.12, 1.25, Some(0.05));
+    let own = (0.12, 1.25, Some(0.05));
     let moderate = (0.1, 1.25, None);
-    assert_eq!(robust(2, &[]), (json!(14), Some(0.07), weak));
-    assert_eq!(robust(2, &courant(0.2)), (json!(14), Some(0.0475), weak));
-    assert_eq!(robust(3, &courant(1.0)), (json!(14), Some(0.2275), weak));
-    assert_eq!(robust(1, &courant(0.4)), (json!(8), Some(0.07), weak));
-    assert_eq!(robust(1, &courant(0.6)), (json!(4), Some(0.1075), weak));
-    assert_eq!(robust(1, &courant(0.8)), (json!(2), Some(0.16), weak));
+    assert_eq!(robust(2, &[]), (json!(14), Some(0.07), own));
+    assert_eq!(robust(2, &courant(0.2)), (json!(14), Some(0.0475), own));
+    assert_eq!(robust(3, &courant(1.0)), (json!(14), Some(0.2275), own));
+    assert_eq!(robust(1, &courant(0.4)), (json!(8), Some(0.07), own));
+    assert_eq!(robust(1, &courant(0.6)), (json!(4), Some(0.1075), own));
+    assert_eq!(robust(1, &courant(0.8)), (json!(2), Some(0.16), own));
     assert_eq!(robust(1, &courant(0.9)), (json!(2), None, moderate));
     let eos = json!({"type": "mie_gruneisen", "c0": 3940.0, "s": 1.489, "gamma0": 1.96,
         "tension_cutoff": 1e9});
